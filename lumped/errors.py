@@ -1,0 +1,64 @@
+"""Exceptions of spurcheck: what a caller can catch, each mapped to a builtin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class FieldProblem:
+    """One refused input.
+
+    Attributes
+    ----------
+    field : dotted path of the field, e.g. ``"pinion.face_width"``
+    value : what was given, as text with its unit
+    allowed : the allowed range or set, as text with its unit
+    action : what to do next
+    """
+
+    field: str
+    value: str
+    allowed: str
+    action: str
+
+    def __str__(self) -> str:
+        return f"{self.field} = {self.value}: allowed {self.allowed}. {self.action}"
+
+
+class SpurcheckError(Exception):
+    """Base of every error that spurcheck raises on purpose."""
+
+
+class ParameterError(SpurcheckError, ValueError):
+    """Input refused before any work started; lists every problem found.
+
+    Parameters
+    ----------
+    problems : the refused inputs
+    source : where they came from (a file name, a preset, "mapping")
+    """
+
+    def __init__(self, problems: list[FieldProblem], source: str = "") -> None:
+        self.problems = tuple(problems)
+        self.source = source
+        head = f"{source}: " if source else ""
+        if len(problems) == 1:
+            text = f"{head}{problems[0]}"
+        else:
+            lines = "\n".join(f"  - {p}" for p in problems)
+            text = f"{head}{len(problems)} problems\n{lines}"
+        super().__init__(text)
+
+
+def refuse(field: str, value: object, allowed: str, action: str) -> ParameterError:
+    """Build the ``ParameterError`` for one refused input (the caller raises it)."""
+    return ParameterError([FieldProblem(field, str(value), allowed, action)])
+
+
+class NumericalError(SpurcheckError, ArithmeticError):
+    """A computation did not reach its accuracy or met a non-finite number; the text says what to try."""
+
+
+class LawRangeWarning(UserWarning):
+    """A friction or film law was evaluated outside the range in which it was fitted."""
