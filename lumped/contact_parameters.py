@@ -1,0 +1,96 @@
+"""Schema of the contact between the teeth: lubricant and friction."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from lumped.errors import FieldProblem, ParameterError
+from lumped.section import Section
+from lumped.units import Quantity
+
+
+class ViscosityLaw(Section):
+    """Dynamic viscosity from two kinematic viscosities, density and temperature (Walther, ASTM D341)."""
+
+    kinematic_viscosity_40: Annotated[float, Quantity("mm**2/s", at_least=2, at_most=2e4)] = Field(
+        description="kinematic viscosity at 40 degC"
+    )
+    kinematic_viscosity_100: Annotated[float, Quantity("mm**2/s", at_least=1, at_most=2e3)] = Field(
+        description="kinematic viscosity at 100 degC"
+    )
+    density: Annotated[float, Quantity("kg/m**3", at_least=500, at_most=1500)] = Field(
+        870.0, description="density at 15 degC"
+    )
+    temperature: Annotated[float, Quantity("degC", at_least=-40, at_most=200)] = Field(
+        description="oil temperature in the contact inlet"
+    )
+
+
+class Lubricant(Section):
+    """Lubricant: dynamic viscosity (a number or a law) and pressure-viscosity constants alpha = k eta^s."""
+
+    viscosity: Annotated[float | None, Quantity("mPa*s", above=0, at_most=1e5, optional=True)] = Field(
+        None, description="dynamic viscosity at the contact inlet"
+    )
+    viscosity_law: ViscosityLaw | None = Field(
+        None, description="viscosity from temperature, instead of viscosity"
+    )
+    pressure_viscosity_k: Annotated[float, Quantity("1", above=0)] = Field(
+        0.010471, description="k in alpha = k eta^s, alpha in mm^2/N, eta in mPa s"
+    )
+    pressure_viscosity_s: Annotated[float, Quantity("1", at_least=0, at_most=1)] = Field(
+        0.1348, description="s in alpha = k eta^s"
+    )
+
+    @model_validator(mode="after")
+    def _one_viscosity(self) -> Self:
+        if (self.viscosity is None) == (self.viscosity_law is None):
+            given = "both" if self.viscosity is not None else "neither"
+            problem = FieldProblem(
+                "viscosity", given, "viscosity or viscosity_law", "Give exactly one of them."
+            )
+            raise ParameterError([problem])
+        return self
+
+
+FrictionLaw = Literal["none", "coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"]
+
+
+class Friction(Section):
+    """Sliding friction between the teeth: the law and the parameters of all laws (they are compared)."""
+
+    law: FrictionLaw = Field(
+        description="I coulomb, II benedict_kelley, III xu_kahraman, IV smoothed_coulomb, V composite"
+    )
+    coefficient: Annotated[float | None, Quantity("1", at_least=0, at_most=1, optional=True)] = Field(
+        None, description="mean coefficient of laws I and IV; default the mean of law II over the path"
+    )
+    sharpness: Annotated[float, Quantity("1/mm", above=0)] = Field(
+        50e3, description="Phi of law IV, the steepness of the sign change at the pitch point"
+    )
+    maximum: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
+        0.2, description="upper bound of law II, which is infinite at the pitch point"
+    )
+    thresholds: Annotated[
+        tuple[float, float, float],
+        Field(description="film parameters at which law V changes: IV | II | III | III"),
+    ] = (1.0, 4.0, 10.0)
+    composite_roughness: Annotated[float | None, Quantity("um", above=0, optional=True)] = Field(
+        None,
+        description="composite roughness R_comp of the film parameter; default root sum square of both Ra",
+    )
+    film_length: Annotated[float, Quantity("mm", above=0)] = Field(
+        0.8e-3, description="cut-off length L_x of the roughness filter in the film parameter"
+    )
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        low, middle, high = self.thresholds
+        if not 0 < low < middle < high:
+            problem = FieldProblem(
+                "thresholds", str(self.thresholds), "three increasing positive numbers", "Reorder them."
+            )
+            raise ParameterError([problem])
+        return self

@@ -1,0 +1,196 @@
+"""Units at the file boundary: a number has the field's stated unit, a string names its own; SI inside."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from decimal import Decimal, DivisionByZero, InvalidOperation, Overflow
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from pydantic_core import PydanticCustomError, core_schema
+
+if TYPE_CHECKING:
+    import pint
+    from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+    from pydantic.json_schema import JsonSchemaValue
+
+_PI = Decimal("3.14159265358979323846264338327950288")
+#: Stated unit in files -> (SI unit, factor to SI, what it measures, example of a string with another unit).
+UNITS: dict[str, tuple[str, Decimal, str, str]] = {
+    "1": ("1", Decimal(1), "a pure number", "0.05"),
+    "mm": ("m", Decimal("1e-3"), "a length", "0.125 inch"),
+    "um": ("m", Decimal("1e-6"), "a length", "16 microinch"),
+    "1/mm": ("1/m", Decimal("1e3"), "an inverse length", "500 1/inch"),
+    "1/inch": ("1/m", Decimal(1) / Decimal("0.0254"), "an inverse length", "8 1/inch"),
+    "deg": ("rad", _PI / 180, "an angle", "0.349 rad"),
+    "rpm": ("rad/s", _PI / 30, "a rotational speed", "104.7 rad/s"),
+    "N*m": ("N*m", Decimal(1), "a torque", "200 lbf*in"),
+    "kg": ("kg", Decimal(1), "a mass", "0.7 lb"),
+    "kg*m**2": ("kg*m**2", Decimal(1), "a moment of inertia", "1.05 lb*inch**2"),
+    "kg/m**3": ("kg/m**3", Decimal(1), "a density", "7.85 g/cm**3"),
+    "GPa": ("Pa", Decimal("1e9"), "a pressure", "30e6 psi"),
+    "N/m": ("N/m", Decimal(1), "a stiffness", "571000 lbf/inch"),
+    "mPa*s": ("Pa*s", Decimal("1e-3"), "a dynamic viscosity", "10 cP"),
+    "mm**2/s": ("m**2/s", Decimal("1e-6"), "a kinematic viscosity", "32 cSt"),
+    "degC": ("K", Decimal(1), "a temperature", "140 degF"),
+    "mm/s": ("m/s", Decimal("1e-3"), "a velocity", "0.1 inch/s"),
+}
+_ZERO_CELSIUS = Decimal("273.15")
+
+
+@cache
+def _registry() -> pint.UnitRegistry[Decimal]:
+    # Decimal arithmetic makes "3.175 mm" and 3.175 the same float, correctly rounded once.
+    import pint
+
+    registry: pint.UnitRegistry[Decimal] = pint.UnitRegistry(
+        non_int_type=Decimal, autoconvert_offset_to_baseunit=True
+    )
+    return registry
+
+
+def to_si(value: float | str, unit: str) -> float:
+    """Convert a number in the stated unit, or a string with any unit of that dimension, to SI.
+
+    Parameters
+    ----------
+    value : number in ``unit``, or text such as ``"200 lbf*in"``
+    unit : the field's stated unit, a key of ``UNITS``
+
+    Raises
+    ------
+    ValueError : text that is no quantity, has no unit, or has another dimension
+    """
+    si, factor, meaning, example = UNITS[unit]
+    if not isinstance(value, str):
+        if not math.isfinite(value):
+            return float(value)
+        number = Decimal(repr(float(value)))
+        return float(number + _ZERO_CELSIUS if unit == "degC" else number * factor)
+    registry = _registry()
+    advice = f"write a number (read as {unit}) or a string such as '{example}'"
+    if len(value) > 80:
+        raise ValueError(f"text of {len(value)} characters is no quantity; {advice}")
+    try:
+        quantity: pint.Quantity[Decimal] = registry.Quantity(value)
+    except (InvalidOperation, Overflow, DivisionByZero):
+        raise ValueError(f"'{value}' is no finite quantity; {advice}") from None
+    except Exception as error:  # noqa: BLE001  (pint lets tokenizer, attribute and arithmetic errors through)
+        raise ValueError(f"'{value}' is no quantity ({type(error).__name__}); {advice}") from None
+    if unit != "1" and quantity.unitless:
+        raise ValueError(f"'{value}' has no unit; {advice}")
+    if unit == "1" and not quantity.unitless:
+        raise ValueError(f"'{value}' is not a pure number; write it without a unit")
+    if not quantity.check(registry.Quantity(1, si).dimensionality):
+        raise ValueError(f"'{value}' is not {meaning}; {advice}")
+    try:
+        return float(quantity.to(si).magnitude)
+    except (InvalidOperation, Overflow, OverflowError):
+        raise ValueError(f"'{value}' is no finite quantity; {advice}") from None
+
+
+def to_file(value: float, unit: str) -> float | str:
+    """Write an SI number so that reading it back gives the same bits: in the stated unit where that is exact.
+
+    Parameters
+    ----------
+    value : SI number
+    unit : the field's stated unit
+    """
+    stated = to_stated(value, unit)
+    return stated if to_si(stated, unit) == value else f"{value!r} {UNITS[unit][0]}"
+
+
+def to_stated(value: float, unit: str) -> float:
+    """Convert an SI number to the field's stated unit, for reading."""
+    number = Decimal(repr(float(value)))
+    return float(number - _ZERO_CELSIUS if unit == "degC" else number / UNITS[unit][1])
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Annotation of a float field: its stated unit and allowed range, both as a user writes them.
+
+    Attributes
+    ----------
+    unit : stated unit of a bare number, a key of ``UNITS``
+    above, below : open bounds in that unit
+    at_least, at_most : closed bounds in that unit
+    optional : whether None (in a file: leaving the key out) is a value
+    action : what to do when the value is refused
+    """
+
+    unit: str
+    above: float | None = None
+    at_least: float | None = None
+    below: float | None = None
+    at_most: float | None = None
+    optional: bool = False
+    action: str = "Correct the value or its unit."
+
+    @property
+    def allowed(self) -> str:
+        """The allowed range as text, with its unit."""
+        parts = [
+            f"{sign} {bound:g}"
+            for sign, bound in (
+                (">", self.above),
+                (">=", self.at_least),
+                ("<", self.below),
+                ("<=", self.at_most),
+            )
+            if bound is not None
+        ]
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        return " and ".join(f"{part}{unit}" for part in parts) or f"any finite number{unit}"
+
+    def parse(self, value: object) -> float | None:
+        """Read a field's value (number or text with a unit) into SI, or raise pydantic's error."""
+        if value is None and self.optional:
+            return None
+        if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+            raise self._refusal(f"{value!r}", "Give a number or a string with a unit.")
+        try:
+            si = to_si(value, self.unit)
+        except (ValueError, OverflowError) as error:
+            action = str(error)
+            raise self._refusal(f"{value!r}", action[:1].upper() + action[1:] + ".") from None
+        shown = value if isinstance(value, str) else f"{value!r} {self.unit}".removesuffix(" 1")
+        if not math.isfinite(si):
+            raise self._refusal(str(shown), "Give a finite number.")
+        stated = to_stated(si, self.unit)
+        inside = (
+            (self.above is None or stated > self.above)
+            and (self.at_least is None or stated >= self.at_least)
+            and (self.below is None or stated < self.below)
+            and (self.at_most is None or stated <= self.at_most)
+        )
+        if not inside:
+            raise self._refusal(str(shown), self.action)
+        return si
+
+    def _refusal(self, value: str, action: str) -> PydanticCustomError:
+        return PydanticCustomError(
+            "quantity",
+            "{value}: allowed {allowed}. {action}",
+            {"value": value, "allowed": self.allowed, "action": action},
+        )
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        """Validate by ``parse``, then as a plain float."""
+        return core_schema.no_info_plain_validator_function(self.parse)
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """Number in the stated unit with its bounds, or a string with a unit."""
+        number: dict[str, Any] = {"type": "number"}
+        keys = ("exclusiveMinimum", "minimum", "exclusiveMaximum", "maximum")
+        for key, bound in zip(keys, (self.above, self.at_least, self.below, self.at_most), strict=True):
+            if bound is not None:
+                number[key] = bound
+        text = {"type": "string", "examples": [UNITS[self.unit][3]]}
+        return {"anyOf": [number, text], "unit": self.unit, "si_unit": UNITS[self.unit][0]}

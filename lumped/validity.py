@@ -1,0 +1,127 @@
+"""Validity ranges of empirical laws as data, and what lies outside them."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.errors import LawRangeWarning, refuse
+
+FloatArray = NDArray[np.float64]
+
+#: Source text of a range that the sources at hand do not give.
+NOT_STATED = "not stated"
+
+
+@dataclass(frozen=True)
+class ValidityRange:
+    """Range of one argument of an empirical law, in the law's own unit.
+
+    Attributes
+    ----------
+    quantity : name of the argument
+    unit : its unit in the law ("1" for a ratio)
+    low, high : limits; None where there is none or where it is not stated
+    source : where the limits come from, or ``NOT_STATED``
+    """
+
+    quantity: str
+    unit: str
+    low: float | None
+    high: float | None
+    source: str
+
+    @property
+    def stated(self) -> bool:
+        """Whether the source gives a limit at all."""
+        return self.low is not None or self.high is not None
+
+    def __str__(self) -> str:
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        if not self.stated:
+            return f"{self.quantity}: {NOT_STATED}"
+        if self.high is None:
+            return f"{self.quantity} >= {self.low:g}{unit}"
+        if self.low is None:
+            return f"{self.quantity} <= {self.high:g}{unit}"
+        return f"{self.quantity} {self.low:g} to {self.high:g}{unit}"
+
+
+@dataclass(frozen=True)
+class RangeViolation:
+    """One argument that left its range.
+
+    Attributes
+    ----------
+    law : name of the law
+    range : the range that was left
+    minimum, maximum : extreme values met, in the range's unit
+    share : fraction of the positions that lie outside, 0 to 1
+    """
+
+    law: str
+    range: ValidityRange
+    minimum: float
+    maximum: float
+    share: float
+
+    def __str__(self) -> str:
+        unit = "" if self.range.unit == "1" else f" {self.range.unit}"
+        return (
+            f"{self.law}: {self.range.quantity} runs from {self.minimum:.4g} to {self.maximum:.4g}{unit}, "
+            f"outside {self.range} over {100 * self.share:.3g} % of the positions ({self.range.source})"
+        )
+
+
+def range_violations(
+    law: str, ranges: Iterable[ValidityRange], values: Mapping[str, ArrayLike]
+) -> tuple[RangeViolation, ...]:
+    """Compare arguments of a law with its validity ranges.
+
+    Parameters
+    ----------
+    law : name for the report
+    ranges : the law's ranges
+    values : arguments by name, any shape, in the units of the ranges; a missing name is not checked
+    """
+    found = []
+    for limits in ranges:
+        if not limits.stated or limits.quantity not in values:
+            continue
+        given = np.asarray(values[limits.quantity], dtype=float)
+        outside = np.zeros(given.shape, dtype=bool)
+        if limits.low is not None:
+            outside |= given < limits.low
+        if limits.high is not None:
+            outside |= given > limits.high
+        if outside.any():
+            found.append(
+                RangeViolation(law, limits, float(given.min()), float(given.max()), float(outside.mean()))
+            )
+    return tuple(found)
+
+
+def warn_violations(violations: Iterable[RangeViolation]) -> None:
+    """Issue one ``LawRangeWarning`` per violation."""
+    for violation in violations:
+        warnings.warn(str(violation), LawRangeWarning, stacklevel=3)
+
+
+def checked(field: str, value: ArrayLike, unit: str, *, allow_zero: bool = False) -> FloatArray:
+    """Return a law's argument as a float array after refusing what no law can take.
+
+    Raises
+    ------
+    ParameterError : a value is not finite, negative, or zero where ``allow_zero`` is false
+    """
+    array = np.asarray(value, dtype=float)
+    good = np.isfinite(array) & ((array >= 0.0) if allow_zero else (array > 0.0))
+    if not good.all():
+        offender = array[~good].flat[0]
+        allowed = f"finite and {'>=' if allow_zero else '>'} 0 {unit}"
+        raise refuse(field, f"{offender:g} {unit}", allowed, "Check its sign and unit.")
+    return array
