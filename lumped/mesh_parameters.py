@@ -29,8 +29,10 @@ class ParabolicStiffness(Section):
         None,
         description="largest stiffness of one tooth pair; default ISO 6336-1 method B c' times face width",
     )
-    end_ratio: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
-        0.7, description="stiffness at the ends of the path of contact over the peak"
+    end_ratio: Annotated[float | None, Quantity("1", above=0, at_most=1, optional=True)] = Field(
+        None,
+        description="stiffness at the ends of the path of contact over the peak; default gives the mean mesh "
+        "stiffness of ISO 6336-1",
     )
     ramp_length: Annotated[float, Quantity("mm", at_least=0)] = Field(
         0.0, description="length along the path over which a pair takes up its stiffness; 0 is a jump"

@@ -1,0 +1,169 @@
+"""Tooth stiffness by ISO 6336-1, method B: single stiffness c' and mean mesh stiffness c_gamma.
+
+The formulas are a fit of measured and computed deflections of steel gears and keep the standard's units,
+N/(mm um): newton per millimetre of face width and micrometre of deflection along the line of action.
+
+Reference: ISO 6336-1:2019, Calculation of load capacity of spur and helical gears, part 1, tooth stiffness
+parameters, eqs (82) to (93).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from lumped.validity import RangeViolation, ValidityRange, range_violations
+
+if TYPE_CHECKING:
+    from lumped.gear_geometry import Geometry
+    from lumped.parameters import GearPair
+
+#: C1 to C9 of q', eq. (84), in the order of the terms.
+COEFFICIENTS = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)
+#: Factor C_M between theory and measurement, eq. (85).
+CORRECTION = 0.8
+#: Young's modulus of the steel that the fit stands for [GPa].
+STEEL_MODULUS = 206.0
+#: Below this load per face width c' falls with the load, eq. (92) [N/mm].
+LOW_LOAD = 100.0
+#: One N/(mm um) in SI: N/m of stiffness per m of face width.
+SI = 1e9
+
+_SOURCE = "ISO 6336-1, method B"
+RANGES = (
+    ValidityRange("profile shift sum x1 + x2", "1", -0.5, 2.0, _SOURCE),
+    ValidityRange("profile shift difference x1 - x2", "1", 0.0, None, _SOURCE),
+    ValidityRange("load per face width", "N/mm", LOW_LOAD, 1600.0, _SOURCE),
+)
+
+
+def theoretical_single_stiffness(z_1: float, z_2: float, x_1: float, x_2: float) -> float:
+    """Theoretical single stiffness c'_th = 1/q' of a pair of solid-disc gears [N/(mm um)], eqs (83), (84).
+
+    Parameters
+    ----------
+    z_1, z_2 : teeth of the smaller and the larger gear (virtual tooth numbers for helical gears) [-]
+    x_1, x_2 : profile shift coefficients [-]
+
+    Notes
+    -----
+    Valid for x1 >= x2 and -0.5 <= x1 + x2 <= 2 (``RANGES``).
+    """
+    c = COEFFICIENTS
+    flexibility = (
+        c[0]
+        + c[1] / z_1
+        + c[2] / z_2
+        + c[3] * x_1
+        + c[4] * x_1 / z_1
+        + c[5] * x_2
+        + c[6] * x_2 / z_2
+        + c[7] * x_1**2
+        + c[8] * x_2**2
+    )
+    return 1.0 / flexibility
+
+
+def basic_rack_factor(dedendum: float, pressure_angle: float) -> float:
+    """Basic rack factor C_B [-], eq. (88).
+
+    Parameters
+    ----------
+    dedendum : dedendum of the basic rack over module, h_fP/m [-]
+    pressure_angle : of the basic rack [deg]
+    """
+    return (1.0 + 0.5 * (1.2 - dedendum)) * (1.0 - 0.02 * (20.0 - pressure_angle))
+
+
+def material_factor(modulus_1: float, modulus_2: float) -> float:
+    """Ratio E/E_St of c' to that of steel gears [-], eqs (90), (91), with E = 2 E1 E2/(E1 + E2).
+
+    Parameters
+    ----------
+    modulus_1, modulus_2 : Young's moduli [GPa]
+    """
+    return 2.0 * modulus_1 * modulus_2 / (modulus_1 + modulus_2) / STEEL_MODULUS
+
+
+def low_load_factor(load: float) -> float:
+    """Factor (load/100)^0.25 on c' below 100 N/mm, 1 above [-], eq. (92).
+
+    Parameters
+    ----------
+    load : tangential load per face width F_t K_A/b [N/mm]
+    """
+    return math.sqrt(math.sqrt(min(load / LOW_LOAD, 1.0)))
+
+
+def single_stiffness(
+    theoretical: float,
+    *,
+    basic_rack: float = 1.0,
+    blank: float = 1.0,
+    material: float = 1.0,
+    helix: float = 0.0,
+) -> float:
+    """Single stiffness c', the largest stiffness of one tooth pair [N/(mm um)], eq. (82).
+
+    Parameters
+    ----------
+    theoretical : c'_th [N/(mm um)]
+    basic_rack, blank, material : factors C_B, C_R (1 for solid discs) and E/E_St [-]
+    helix : helix angle [deg]
+    """
+    return theoretical * CORRECTION * blank * basic_rack * material * math.cos(math.radians(helix))
+
+
+def mean_mesh_stiffness(single: float, contact_ratio: float) -> float:
+    """Mean total mesh stiffness c_gamma_alpha = c' (0.75 eps_alpha + 0.25) [N/(mm um)], eq. (93).
+
+    Parameters
+    ----------
+    single : c' [N/(mm um)]
+    contact_ratio : transverse contact ratio, >= 1.2 in the standard [-]
+    """
+    return single * (0.75 * contact_ratio + 0.25)
+
+
+def pair_single_stiffness(pair: GearPair) -> float:
+    """Single stiffness c' of a gear pair of solid discs [N/(mm um)].
+
+    Without the low-load reduction, as the linear model has one stiffness per position at every torque.
+    The standard's gear 1 is the one with fewer teeth, whichever drives; at equal tooth numbers the one with
+    the larger profile shift.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    """
+    small, large = _ordered(pair)
+    rack = pair.basic_rack
+    return single_stiffness(
+        theoretical_single_stiffness(small[0], large[0], small[1], large[1]),
+        basic_rack=basic_rack_factor(rack.dedendum_coefficient, math.degrees(rack.pressure_angle)),
+        material=material_factor(pair.pinion.youngs_modulus * 1e-9, pair.gear.youngs_modulus * 1e-9),
+    )
+
+
+def violations(pair: GearPair, geometry: Geometry) -> tuple[RangeViolation, ...]:
+    """Validity ranges of the standard that a pair at its operating point leaves.
+
+    Parameters
+    ----------
+    pair, geometry : a gear pair and its geometry
+    """
+    small, large = _ordered(pair)
+    force = pair.operating.pinion_torque / geometry.reference_radius_pinion
+    values = {
+        "profile shift sum x1 + x2": small[1] + large[1],
+        "profile shift difference x1 - x2": small[1] - large[1],
+        "load per face width": force / geometry.face_width * 1e-3,
+    }
+    return range_violations("ISO 6336-1 tooth stiffness", RANGES, values)
+
+
+def _ordered(pair: GearPair) -> tuple[tuple[int, float], tuple[int, float]]:
+    """(teeth, profile shift) of the standard's gears 1 and 2."""
+    gears = ((g.teeth, g.profile_shift) for g in (pair.pinion, pair.gear))
+    small, large = sorted(gears, key=lambda gear: (gear[0], -gear[1]))
+    return small, large

@@ -1,0 +1,104 @@
+"""Stiffness of a tooth pair as a parabola over the path of contact, with an optional smooth engagement.
+
+The parabola, symmetric about the middle of the path of contact, is the classical approximation of measured
+and computed tooth-pair stiffness: Cai and Hayashi (J. Mech. Des. 116 (1994) 558-564) take 0.55 of the peak at
+the ends. The default here makes the mean total stiffness that of ISO 6336-1, eq. (93), for any contact ratio.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+from lumped.errors import refuse
+from lumped.path_function import PathFunction
+from lumped.stiffness import iso6336
+
+if TYPE_CHECKING:
+    from lumped.gear_geometry import Geometry
+    from lumped.mesh_parameters import ParabolicStiffness
+    from lumped.parameters import GearPair
+
+#: Ramp in s from 0 to 1. The square of the cubic smoothstep, so that sqrt(k), and with it the damping
+#: 2 zeta sqrt(k m_e), is analytic on the ramp too; k starts like s^4 and joins the parabola with a
+#: continuous slope.
+RAMP = Polynomial([0.0, 0.0, 3.0, -2.0]) ** 2
+
+
+def iso_end_ratio(contact_ratio: float) -> float:
+    """Stiffness at the ends over the peak for which the mean total stiffness is ISO 6336-1, eq. (93) [-].
+
+    A parabola from r to 1 and back has the mean (2 + r)/3 over the path, so the mean total is eps (2 + r)/3
+    times the peak; equating it to 0.75 eps + 0.25 gives r = 0.25 + 0.75/eps.
+
+    Parameters
+    ----------
+    contact_ratio : eps_alpha [-]
+    """
+    return 0.25 + 0.75 / contact_ratio
+
+
+def parabola(
+    low: float, high: float, peak: float, end_ratio: float, ramp_length: float = 0.0
+) -> PathFunction:
+    """Parabola over the path of contact, times ramps at both ends.
+
+    Parameters
+    ----------
+    low, high : L_XA, L_XD [m]
+    peak : value in the middle, in the result's unit
+    end_ratio : value at the ends over the peak [-]
+    ramp_length : length over which the value rises from 0 at each end [m]; 0 is a jump
+
+    Returns
+    -------
+    PathFunction : of degree 2 without ramps, with switches at the inner ends of the ramps otherwise (the
+        curvature jumps there)
+    """
+    half = 0.5 * (high - low)
+    if ramp_length > half:
+        raise refuse(
+            "mesh.stiffness.ramp_length",
+            f"{ramp_length * 1e3:g} mm",
+            f"0 to {half * 1e3:.4f} mm, half of the path of contact",
+            "Shorten the ramp.",
+        )
+    arch = Polynomial([end_ratio, 2.0 * (1.0 - end_ratio) / half, -(1.0 - end_ratio) / half**2]) * peak
+    if ramp_length == 0.0:
+        return PathFunction(
+            np.array([low, high]), np.asarray(arch.coef[::-1, None], dtype=np.float64), np.empty(0)
+        )
+    inner = (low + ramp_length, high - ramp_length)
+    rise = RAMP(Polynomial([0.0, 1.0 / ramp_length]))
+    fall = RAMP(Polynomial([1.0, -1.0 / ramp_length]))
+    pieces = [arch * rise]
+    if inner[0] < inner[1]:
+        pieces.append(arch(Polynomial([ramp_length, 1.0])))
+    pieces.append(arch(Polynomial([high - low - ramp_length, 1.0])) * fall)
+    coefficients = np.zeros((max(piece.coef.size for piece in pieces), len(pieces)))
+    for column, piece in enumerate(pieces):
+        coefficients[-piece.coef.size :, column] = piece.coef[::-1]
+    switches = np.unique(inner)
+    return PathFunction(np.array([low, *switches, high]), coefficients, switches)
+
+
+def parabolic(model: ParabolicStiffness, pair: GearPair, geometry: Geometry) -> PathFunction:
+    """Stiffness of a tooth pair [N/m]: a parabola from A to D with its peak in the middle.
+
+    Parameters
+    ----------
+    model : ``peak`` [N/m] (None: ISO 6336-1 method B c' times face width), ``end_ratio`` (None:
+        ``iso_end_ratio``), ``ramp_length`` [m]
+    pair, geometry : the gear pair and its geometry
+
+    Raises
+    ------
+    ParameterError : the ramps are longer than half of the path of contact
+    """
+    peak = model.peak
+    if peak is None:
+        peak = iso6336.pair_single_stiffness(pair) * iso6336.SI * geometry.face_width
+    ratio = iso_end_ratio(geometry.contact_ratio) if model.end_ratio is None else model.end_ratio
+    return parabola(geometry.L_XA, geometry.L_XD, peak, ratio, model.ramp_length)

@@ -1,0 +1,98 @@
+"""Does the tooth stiffness reproduce ISO 6336-1 method B?"""
+
+import math
+
+import pytest
+
+from lumped import geometry, load_gear_pair
+from lumped.stiffness import iso6336
+
+
+def test_single_stiffness_of_28_28_by_hand():
+    # q' = 0.04723 + (0.15551 + 0.25791)/28 = 0.061995 mm um/N; C_B = 1 + 0.5 (1.2 - 1.25) = 0.975.
+    by_hand = 0.8 * 0.975 / (0.04723 + 0.41342 / 28)
+    pair = load_gear_pair("nasa_28_28")
+    assert iso6336.pair_single_stiffness(pair) == pytest.approx(by_hand, rel=1e-14)  # same sum, rounding only
+    assert by_hand == pytest.approx(12.5817, abs=5e-5)  # printed digits
+
+
+def test_every_term_of_q_prime():
+    # One term at a time, at arguments where no other term can hide an error; printed digits of the table.
+    def q(z1, z2, x1, x2):
+        return 1.0 / iso6336.theoretical_single_stiffness(z1, z2, x1, x2)
+
+    huge = 1e15
+    base = q(huge, huge, 0.0, 0.0)
+    tiny = 1e-12  # cancellation of numbers near 0.05
+    assert base == pytest.approx(0.04723, abs=tiny)
+    assert q(10, huge, 0, 0) - base == pytest.approx(0.015551, abs=tiny)
+    assert q(huge, 10, 0, 0) - base == pytest.approx(0.025791, abs=tiny)
+    assert q(huge, huge, 0.5, 0) - base == pytest.approx(-0.00635 / 2 + 0.00529 / 4, abs=tiny)
+    assert q(huge, huge, -0.5, 0) - base == pytest.approx(0.00635 / 2 + 0.00529 / 4, abs=tiny)
+    assert q(huge, huge, 0, 0.5) - base == pytest.approx(-0.00193 / 2 + 0.00182 / 4, abs=tiny)
+    assert q(huge, huge, 0, -0.5) - base == pytest.approx(0.00193 / 2 + 0.00182 / 4, abs=tiny)
+    assert q(10, huge, 1, 0) - q(10, huge, 0, 0) - (q(huge, huge, 1, 0) - base) == pytest.approx(
+        -0.011654, abs=tiny
+    )
+    assert q(huge, 10, 0, 1) - q(huge, 10, 0, 0) - (q(huge, huge, 0, 1) - base) == pytest.approx(
+        -0.024188, abs=tiny
+    )
+
+
+def test_worked_example_of_the_standard():
+    # ISO/TR 6336-30:2017, example 1: helical 17/103, m_n 8 mm, beta 15.8 deg, x 0.145/0, rack with h_fP 1.4,
+    # centre distance 500 mm, virtual teeth 18.905/114.543; its c'_th 17.85584, c' 12.37047,
+    # c_gamma_alpha 17.46485 N/(mm um).
+    theory = iso6336.theoretical_single_stiffness(18.905, 114.543, 0.145, 0.0)
+    rack = iso6336.basic_rack_factor(1.4, 20.0)
+    single = iso6336.single_stiffness(theory, basic_rack=rack, helix=15.8)
+    # The example's own c'_th lies 0.07 % off its printed inputs (rounded profile shift); 0.1 % covers that.
+    assert theory == pytest.approx(17.85584, rel=1e-3)
+    assert single == pytest.approx(12.37047, rel=1e-3)
+    # Ratios do not carry the rounded input: c'/c'_th = 0.8 * 0.9 * cos(15.8 deg), to the printed digits.
+    assert single / theory == pytest.approx(12.37047 / 17.85584, rel=2e-6)
+    # Transverse contact ratio of the example's gears with standard addendum m_n (1 + x).
+    beta, m = math.radians(15.8), 8.0
+    alpha_t = math.atan(math.tan(math.radians(20.0)) / math.cos(beta))
+    r = [0.5 * z * m / math.cos(beta) for z in (17, 103)]
+    base = [value * math.cos(alpha_t) for value in r]
+    tip = [r[0] + m * 1.145, r[1] + m]
+    path = sum(math.sqrt(a**2 - b**2) for a, b in zip(tip, base, strict=True)) - math.sqrt(
+        500.0**2 - sum(base) ** 2
+    )
+    contact_ratio = path / (math.pi * m / math.cos(beta) * math.cos(alpha_t))
+    # The example's tip diameters are rounded to manufacturing sizes.
+    assert iso6336.mean_mesh_stiffness(12.37047, contact_ratio) == pytest.approx(17.46485, rel=1e-3)
+
+
+def test_the_standards_gear_one_is_the_smaller_whichever_drives():
+    pair = load_gear_pair("nasa_28_28").with_(
+        centre_distance=None, pinion__profile_shift=0.1, gear__teeth=40, gear__tip_relief=None
+    )
+    swapped = pair.with_(
+        pinion__teeth=40,
+        pinion__profile_shift=0.0,
+        pinion__tip_relief=None,
+        gear__teeth=28,
+        gear__profile_shift=0.1,
+    )
+    assert iso6336.pair_single_stiffness(pair) == iso6336.pair_single_stiffness(swapped)
+
+
+def test_material_and_low_load():
+    assert iso6336.material_factor(206.0, 206.0) == 1.0
+    # Steel on a rigid mate: E = 2 E_1, as half of the flexibility is gone.
+    assert iso6336.material_factor(206.0, 1e12) == pytest.approx(2.0, rel=1e-9)
+    assert iso6336.low_load_factor(100.0) == iso6336.low_load_factor(500.0) == 1.0
+    assert iso6336.low_load_factor(6.25) == pytest.approx(0.5, rel=1e-14)  # (1/16)^(1/4)
+
+
+def test_ranges_are_data_and_reported():
+    pair = load_gear_pair("nasa_28_28")
+    strong = pair.with_(operating__pinion_torque=56.5)
+    assert iso6336.violations(strong, geometry(strong)) == ()
+    weak = pair.with_(operating__pinion_torque=22.6)  # 508 N on 6.35 mm: 80 N/mm
+    (found,) = iso6336.violations(weak, geometry(weak))
+    assert found.range.quantity == "load per face width"
+    # F_t/b = 22.6 N m / 44.45 mm / 6.35 mm
+    assert found.minimum == pytest.approx(22.6e3 / 44.45 / 6.35, rel=1e-12)

@@ -1,0 +1,136 @@
+"""Do the stiffness models give the pair stiffness they promise over the path of contact?"""
+
+import numpy as np
+import pytest
+
+from lumped import ParameterError, geometry, load_gear_pair
+from lumped.stiffness import MODELS, iso6336, pair_stiffness
+from lumped.stiffness.parabolic import iso_end_ratio, parabola
+
+LOW, HIGH, PEAK = 7.5e-3, 22.9e-3, 8e7
+ROUNDING = 1e-12  # of polynomials of degree 8 at arguments of order one
+
+
+def with_model(**model):
+    return load_gear_pair("nasa_28_28").with_(mesh__stiffness=model)
+
+
+@pytest.mark.parametrize("model", sorted(MODELS))
+def test_every_model_spans_the_path_of_contact_and_is_positive_inside(model):
+    pair = with_model(model=model)
+    g = geometry(pair)
+    k = pair_stiffness(pair, g)
+    assert k.interval == (g.L_XA, g.L_XD)
+    inside = np.linspace(g.L_XA, g.L_XD, 400)[1:-1]
+    assert np.all(k(inside) > 0.0)
+    assert k(g.L_XA - 1e-6) == k(g.L_XD + 1e-6) == 0.0
+
+
+def test_rectangular_takes_its_parameter():
+    pair = with_model(model="rectangular", pair_stiffness=1.5e8)
+    k = pair_stiffness(pair, geometry(pair))
+    assert np.all(k(np.linspace(*k.interval, 9)) == 1.5e8)
+
+
+def test_rectangular_defaults_to_iso():
+    pair = with_model(model="rectangular")
+    # c' of 28/28 by hand (test_iso6336) times 6.35 mm: 12.5816 N/(mm um) * 6.35 mm = 79.89 N/um.
+    by_hand = 0.8 * 0.975 / (0.04723 + 0.41342 / 28) * 6.35 * 1e6
+    assert pair_stiffness(pair, geometry(pair)).mean() == pytest.approx(by_hand, rel=1e-12)
+
+
+def test_face_width_is_the_smaller_one():
+    pair = with_model(model="rectangular").with_(pinion__face_width=12.0)
+    reference = with_model(model="rectangular")
+    assert (
+        pair_stiffness(pair, geometry(pair)).mean() == pair_stiffness(reference, geometry(reference)).mean()
+    )
+
+
+def test_parabola_has_its_peak_in_the_middle_and_its_ends():
+    k = parabola(LOW, HIGH, PEAK, 0.6)
+    middle = 0.5 * (LOW + HIGH)
+    assert k(middle) == pytest.approx(PEAK, rel=ROUNDING)
+    assert k.derivative()(middle) == pytest.approx(0.0, abs=ROUNDING * PEAK / (HIGH - LOW))
+    assert k([LOW, HIGH]) == pytest.approx(0.6 * PEAK, rel=ROUNDING)
+    offset = np.linspace(0.0, 0.99, 30) * (HIGH - LOW) / 2
+    assert k(middle - offset) == pytest.approx(k(middle + offset), rel=ROUNDING)
+    assert k.mean() == pytest.approx(PEAK * (2 + 0.6) / 3, rel=ROUNDING)  # mean of a parabola
+
+
+def test_end_ratio_one_is_the_rectangle():
+    k = parabola(LOW, HIGH, PEAK, 1.0)
+    assert k(np.linspace(LOW, HIGH, 7)) == pytest.approx(PEAK, rel=ROUNDING)
+
+
+@pytest.mark.parametrize("tip", [93.5, 95.25])
+def test_default_parabola_has_the_mean_total_stiffness_of_iso(tip):
+    # Sum of k_i averaged over the mesh cycle = integral of k over the path / base pitch.
+    pair = with_model(model="parabolic").with_(
+        pinion__tip_diameter=tip, gear__tip_diameter=tip, pinion__tip_relief=None, gear__tip_relief=None
+    )
+    g = geometry(pair)
+    tau = (np.arange(2000) + 0.5) / 2000 * g.base_pitch
+    k = pair_stiffness(pair, g)
+    total = sum(k(g.L_XA + i * g.base_pitch + tau) for i in range(g.pairs)).mean()
+    expected = iso6336.mean_mesh_stiffness(iso6336.pair_single_stiffness(pair), g.contact_ratio)
+    # Midpoint rule over a jump at one of 2000 points: error up to half a point's share.
+    assert total / (g.face_width * 1e9) == pytest.approx(expected, rel=5e-4)
+
+
+def test_iso_end_ratio_limits():
+    assert iso_end_ratio(1.0) == 1.0  # one pair all the time: c_gamma = c'
+    assert iso_end_ratio(2.0) == 0.625
+
+
+@pytest.mark.parametrize("ramp", [0.3e-3, 2e-3, (HIGH - LOW) / 2])
+def test_ramp_rises_from_zero_and_is_smooth(ramp):
+    k = parabola(LOW, HIGH, PEAK, 0.7, ramp)
+    slope = k.derivative()
+    scale = PEAK / ramp
+    edges = 1e-15
+    assert k([LOW + edges, HIGH - edges]) == pytest.approx(0.0, abs=ROUNDING * PEAK)
+    assert slope([LOW + edges, HIGH - edges]) == pytest.approx(0.0, abs=1e-9 * scale)
+    for join in k.switches:
+        left, right = join - 1e-12, join + 1e-12  # slopes of the two pieces: curvature * 2e-12 m apart
+        assert k(left) == pytest.approx(float(k(right)), rel=1e-7)
+        assert slope(left) == pytest.approx(float(slope(right)), abs=1e-7 * scale)
+    plain = parabola(LOW, HIGH, PEAK, 0.7)
+    between = np.linspace(LOW + ramp, HIGH - ramp, 11)
+    assert k(between) == pytest.approx(plain(between), rel=1e-11)
+    rising = np.linspace(LOW, LOW + 0.999 * min(ramp, 2e-3), 200)
+    assert np.all(np.diff(k(rising)) > 0.0)
+    # Half way up the ramp: smoothstep(1/2)^2 = 1/4 of the parabola.
+    assert k(LOW + ramp / 2) == pytest.approx(plain(LOW + ramp / 2) / 4, rel=1e-11)
+
+
+def test_ramp_makes_the_total_stiffness_continuous():
+    pair = with_model(model="parabolic", ramp_length=1.0)
+    g = geometry(pair)
+    k = pair_stiffness(pair, g)
+    tau = np.linspace(0.0, g.base_pitch, 4001)
+    total = sum(k(g.L_XA + i * g.base_pitch + tau) for i in range(g.pairs + 1))
+    steps = np.abs(np.diff(total))
+    steepest = np.abs(k.derivative()(np.linspace(g.L_XA, g.L_XD, 2001))).max()
+    assert steps.max() <= 1.01 * steepest * (tau[1] - tau[0])
+    assert total[0] == pytest.approx(total[-1], rel=1e-9)
+
+
+def test_too_long_a_ramp_is_refused():
+    pair = with_model(model="parabolic", ramp_length=9.0)
+    with pytest.raises(ParameterError, match="ramp_length") as refusal:
+        pair_stiffness(pair, geometry(pair))
+    problem = refusal.value.problems[0]
+    assert problem.value == "9 mm"
+    # Half of the path of contact of the 28/28 pair: (22.8793 - 7.5263)/2 mm.
+    assert "7.6765 mm" in problem.allowed
+
+
+def test_square_root_of_the_ramp_is_smooth():
+    # c_i = 2 zeta sqrt(k_i m_e): sqrt(k) must behave like s^2 at the start, so c/s^2 tends to a constant.
+    ramp = 1e-3
+    k = parabola(LOW, HIGH, PEAK, 1.0, ramp)
+    s = np.array([1e-3, 2e-3])
+    root = np.sqrt(k(LOW + s * ramp))
+    # sqrt(RAMP) = 3 s^2 - 2 s^3
+    assert root == pytest.approx(np.sqrt(PEAK) * (3 * s**2 - 2 * s**3), rel=1e-6)
