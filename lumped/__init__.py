@@ -3,16 +3,23 @@
 from lumped.bodies import Bodies, bodies
 from lumped.errors import FieldProblem, LawRangeWarning, NumericalError, ParameterError, SpurcheckError
 from lumped.gear_geometry import Geometry, geometry
+from lumped.mesh_cycle import MeshCycle, mesh_cycle
+from lumped.mesh_elements import MeshElements, mesh_elements
 from lumped.parameters import GearPair
 from lumped.path_function import PathFunction
+from lumped.periodic_system import LTVSystem, periodic_system
 from lumped.serialise import json_schema, load_gear_pair, preset_names
+from lumped.solution import simulate, speed_sweep, steady_state
 
 __all__ = [
     "Bodies",
     "FieldProblem",
     "GearPair",
     "Geometry",
+    "LTVSystem",
     "LawRangeWarning",
+    "MeshCycle",
+    "MeshElements",
     "NumericalError",
     "ParameterError",
     "PathFunction",
@@ -21,5 +28,11 @@ __all__ = [
     "geometry",
     "json_schema",
     "load_gear_pair",
+    "mesh_cycle",
+    "mesh_elements",
+    "periodic_system",
     "preset_names",
+    "simulate",
+    "speed_sweep",
+    "steady_state",
 ]

@@ -1,0 +1,304 @@
+"""Solutions of the lumped model as labelled results: transient, periodic motion, speed sweep."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable
+from typing import Any, Literal
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from scipy.integrate import DOP853
+
+from lumped import kernels
+from lumped.equations import COORDINATES, static_deflection
+from lumped.errors import NumericalError, refuse
+from lumped.gear_geometry import geometry
+from lumped.mesh_cycle import MeshCycle
+from lumped.parameters import GearPair
+from lumped.path_function import FloatArray, PathFunction
+from lumped.periodic_system import LTVSystem, periodic_system
+from lumped.results import dataset, provenance
+from lumped.steady import PeriodicSolution, periodic_solution, sample_times, speeds_rad
+
+Progress = Callable[[float], None]
+Initial = Literal["static", "periodic"]
+_MAX_STEPS_PER_SEGMENT = 200_000
+
+
+def simulate(
+    pair: GearPair,
+    cycles: int = 20,
+    *,
+    samples_per_cycle: int = 256,
+    initial: Initial | ArrayLike = "static",
+    rtol: float = 1e-10,
+    as_printed: Collection[int] = (),
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Transient of the 6-DOF linear time-varying model (model.md, eqs. 1 to 9).
+
+    Each smooth segment between two switch times is integrated on its own (scipy's DOP853), so no step
+    straddles a jump.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    cycles : mesh cycles, 1 to 100000
+    samples_per_cycle : output times per mesh cycle; the grid ends on the last cycle's end
+    initial : "static" (at rest relative to nominal rotation, mesh wound up by the mean load), "periodic"
+        (the periodic solution at t = 0) or 12 states in SI
+    rtol : relative tolerance of the integration
+    as_printed : equations out of 1, 2, 7, 9 whose printed sign is used
+    progress : called with the finished fraction
+
+    Returns
+    -------
+    xarray.Dataset over ``time`` [s] and ``pair``, see ``lumped.results.VARIABLES``; the attributes carry the
+    balanced brake torque and the provenance
+
+    Raises
+    ------
+    ParameterError : arguments out of range
+    NumericalError : the integration fails or is not finite
+    """
+    if not 1 <= cycles <= 100_000:
+        raise refuse("cycles", cycles, "1 to 100000", "Choose a number in that range.")
+    if not 1e-13 <= rtol <= 1e-2:
+        raise refuse("rtol", rtol, "1e-13 to 1e-2", "Choose a tolerance in that range.")
+    system = periodic_system(pair, "absolute", as_printed=as_printed)
+    grid = sample_times(system.period, samples_per_cycle)
+    # The torques that hold the mean speed are those of the repaired equations: a printed sign then shows up
+    # as a drift instead of being balanced away.
+    repaired = system if not as_printed else periodic_system(pair, "absolute", cycle=system.cycle)
+    balance = periodic_solution(pair, grid[:1], system=repaired, estimate_error=False)
+    state = initial_state(pair, system, initial, balance)
+    time = np.concatenate([grid + j * system.period for j in range(cycles)] + [[cycles * system.period]])
+    states = np.empty((time.size, 12))
+    states[0] = state
+    rate = _rate_function(pair, system, balance)
+    scale = np.abs(static_deflection(pair, mean_mesh_stiffness(system.cycle)))[:6]
+    length = max(float(scale.max()), 1e-12)
+    atol = rtol * length * np.concatenate([np.ones(6), np.full(6, 1.0 / system.period)])
+    row = 1
+    for cycle in range(cycles):
+        for segment, (low, high) in enumerate(
+            zip(system.cycle.edges[:-1], system.cycle.edges[1:], strict=True)
+        ):
+            last = cycle == cycles - 1 and segment == system.cycle.edges.size - 2
+            inside = grid[(grid > low) & (grid <= high)]
+            targets = np.append(inside, high) if inside.size == 0 or inside[-1] < high else inside
+            values = _integrate(rate(segment), float(low), float(high), state, targets, rtol, atol)
+            count = inside.size + (1 if last else 0)
+            if not last and high == system.period:
+                states[row + inside.size] = values[-1]  # t = T_m is the next cycle's first output
+                count += 1
+            states[row : row + inside.size] = values[: inside.size]
+            if last:
+                states[row + inside.size] = values[-1]
+            row += count
+            state = values[-1]
+        if progress is not None:
+            progress((cycle + 1) / cycles)
+    attributes = provenance(
+        pair, cycles=cycles, samples_per_cycle=samples_per_cycle, rtol=rtol, as_printed=tuple(as_printed)
+    )
+    attributes |= _balance_attributes(pair, balance) | {"model": "lumped"}
+    return dataset(pair, system, time, states, attributes)
+
+
+def initial_state(
+    pair: GearPair, system: LTVSystem, initial: Initial | ArrayLike, balance: PeriodicSolution
+) -> FloatArray:
+    """Return the 12 states at t = 0 for ``initial`` as ``simulate`` takes it.
+
+    Raises
+    ------
+    ParameterError : not one of the names, not 12 states, or not finite
+    """
+    if isinstance(initial, str):
+        if initial == "static":
+            return static_deflection(pair, mean_mesh_stiffness(system.cycle))
+        if initial == "periodic":
+            return np.array(balance.states[0])
+        raise refuse("initial", initial, "'static', 'periodic' or 12 states", "Choose one of them.")
+    state = np.array(initial, dtype=float)
+    if state.shape != (12,) or not np.isfinite(state).all():
+        raise refuse(
+            "initial",
+            f"shape {state.shape}",
+            "12 finite states " + ", ".join(COORDINATES) + " and rates",
+            "Fix it.",
+        )
+    return state
+
+
+def mean_mesh_stiffness(cycle: MeshCycle) -> float:
+    """Mean over the mesh cycle of the stiffness of all pairs [N/m]."""
+    return cycle.elements.stiffness.mean() * cycle.geometry.contact_ratio
+
+
+def _rate_function(
+    pair: GearPair, system: LTVSystem, balance: PeriodicSolution
+) -> Callable[[int], Callable[[float, FloatArray], FloatArray]]:
+    """For a segment, the function (time, state) -> rates on the compiled equations of motion."""
+    g, s, cycle = geometry(pair), system.structure, system.cycle
+    e = cycle.elements
+    speed = g.omega_pinion * g.base_radius_pinion
+    functions: list[PathFunction] = [e.stiffness, e.damping, e.friction, e.error, e.error.derivative()]
+    tables = [array for f in functions for array in (f.breaks, f.coefficients)]
+    external = np.array([balance.pinion_torque, -balance.brake_torque, 0.0, 0.0, 0.0, 0.0])
+    constants = (s.mass, s.damping, s.stiffness, s.deflection, s.normal, s.friction_arm, external)
+
+    def of(segment: int) -> Callable[[float, FloatArray], FloatArray]:
+        margin = 1e-12 * g.base_pitch
+        start = speed * float(cycle.edges[segment]) + margin
+        end = speed * float(cycle.edges[segment + 1]) - margin
+
+        def rate(time: float, state: FloatArray) -> FloatArray:
+            values: FloatArray = kernels.state_rate(
+                time, state, start, end, cycle.offsets, speed, g.L_XD, *tables, *constants
+            )
+            return values
+
+        return rate
+
+    return of
+
+
+def _integrate(
+    rate: Callable[[float, FloatArray], FloatArray],
+    low: float,
+    high: float,
+    state: FloatArray,
+    targets: FloatArray,
+    rtol: float,
+    atol: FloatArray,
+) -> FloatArray:
+    """States at the increasing ``targets`` in (low, high], the last of which is ``high``."""
+    solver = DOP853(rate, low, state, high, rtol=rtol, atol=atol)  # type: ignore[arg-type]  # stubs: scalar only
+    values = np.empty((targets.size, state.size))
+    row = 0
+    for _ in range(_MAX_STEPS_PER_SEGMENT):
+        message = solver.step()
+        if solver.status == "failed" or not np.isfinite(solver.y).all():
+            raise NumericalError(
+                f"Integration stopped at t = {solver.t:.6g} s of the mesh cycle ({message}): "
+                "raise rtol, or check stiffness, damping and inertia for extremes."
+            )
+        if row < targets.size and targets[row] <= solver.t:
+            dense = solver.dense_output()
+            while row < targets.size and targets[row] <= solver.t:
+                values[row] = solver.y if targets[row] == solver.t else dense(targets[row])
+                row += 1
+        if solver.status == "finished":
+            return values
+    raise NumericalError("More than 200000 steps in one segment of the mesh cycle: raise rtol or the speed.")
+
+
+def steady_state(
+    pair: GearPair, *, samples_per_cycle: int = 512, as_printed: Collection[int] = ()
+) -> xr.Dataset:
+    """Periodic motion over one mesh cycle, without settling.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    samples_per_cycle : output times in [0, T_m)
+    as_printed : equations out of 1, 2, 7, 9 whose printed sign is used
+
+    Returns
+    -------
+    xarray.Dataset as of ``simulate`` over one cycle; the attributes carry ``brake_torque`` and
+    ``pinion_torque`` [N m] that hold the mean speed, ``mesh_efficiency`` = T_g Omega_g / (T_p Omega_p), and
+    ``error_estimate``, the relative error of the dynamic transmission error
+
+    Raises
+    ------
+    NumericalError : the speed sits on a stability boundary, where no periodic motion exists
+    """
+    system = periodic_system(pair, "absolute", as_printed=as_printed)
+    times = sample_times(system.period, samples_per_cycle)
+    solution = periodic_solution(pair, times, system=system)
+    attributes = provenance(pair, samples_per_cycle=samples_per_cycle, as_printed=tuple(as_printed))
+    attributes |= _balance_attributes(pair, solution)
+    attributes |= {"model": "lumped", "closure": solution.closure, "error_estimate": solution.error}
+    return dataset(pair, system, times, solution.states, attributes)
+
+
+def _balance_attributes(pair: GearPair, solution: PeriodicSolution) -> dict[str, Any]:
+    g = geometry(pair)
+    efficiency = solution.brake_torque * g.omega_gear / (solution.pinion_torque * g.omega_pinion)
+    return {
+        "brake_torque": solution.brake_torque,
+        "pinion_torque": solution.pinion_torque,
+        "mesh_efficiency": efficiency,
+    }
+
+
+def speed_sweep(
+    pair: GearPair,
+    speeds_rpm: Iterable[float],
+    *,
+    samples_per_cycle: int = 128,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Periodic motion over pinion speed.
+
+    Parameters
+    ----------
+    pair : a validated gear pair; its speed is replaced
+    speeds_rpm : pinion speeds [rpm], positive
+    samples_per_cycle : times per cycle at which extremes are taken
+    progress : called with the finished fraction
+
+    Returns
+    -------
+    xarray.Dataset over ``speed`` [rpm]: peak-to-peak and root mean square of the dynamic transmission error and
+    the translations, largest and smallest normal load of a pair in contact, mesh efficiency. A speed without
+    periodic motion is NaN with ``periodic`` False.
+    """
+    speeds = np.asarray(list(speeds_rpm), dtype=float)
+    speeds_rad(speeds)
+    names = ("dte", "x_p", "x_g", "y_p", "y_g")
+    table = {f"{n}_{kind}": np.full(speeds.size, np.nan) for n in names for kind in ("peak_to_peak", "rms")}
+    table |= {
+        n: np.full(speeds.size, np.nan) for n in ("normal_load_max", "normal_load_min", "mesh_efficiency")
+    }
+    periodic = np.zeros(speeds.size, dtype=bool)
+    for j, rpm in enumerate(speeds):
+        at = pair.with_({"operating.pinion_speed": float(rpm)})
+        try:
+            run = steady_state(at, samples_per_cycle=samples_per_cycle)
+        except NumericalError:
+            continue
+        finally:
+            if progress is not None:
+                progress((j + 1) / speeds.size)
+        periodic[j] = True
+        for name in names:
+            values = run[name].to_numpy()
+            table[f"{name}_peak_to_peak"][j] = np.ptp(values)
+            table[f"{name}_rms"][j] = np.std(values)
+        loads = run["normal_load"].to_numpy()[run["contact"].to_numpy() > 0]
+        table["normal_load_max"][j], table["normal_load_min"][j] = loads.max(), loads.min()
+        table["mesh_efficiency"][j] = run.attrs["mesh_efficiency"]
+    return _sweep_dataset(pair, speeds, table, periodic)
+
+
+def _sweep_dataset(
+    pair: GearPair, speeds: FloatArray, table: dict[str, FloatArray], periodic: Any
+) -> xr.Dataset:
+    result = xr.Dataset(attrs=provenance(pair) | {"model": "lumped"})
+    result["speed"] = xr.DataArray(speeds, dims="speed", attrs={"units": "rpm", "long_name": "pinion speed"})
+    for name, values in table.items():
+        unit = "1" if name == "mesh_efficiency" else "N" if name.startswith("normal") else "m"
+        attrs = {
+            "units": unit,
+            "long_name": name.replace("_", " ").replace("dte", "transmission error"),
+        }
+        result[name] = xr.DataArray(values, dims="speed", attrs=attrs)
+    result["periodic"] = xr.DataArray(
+        periodic, dims="speed", attrs={"units": "1", "long_name": "whether a periodic motion exists"}
+    )
+    return result

@@ -1,0 +1,158 @@
+"""Periodic motion of the gear pair without settling, with the brake torque balanced as an unknown."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from lumped.errors import NumericalError, refuse
+from lumped.gear_geometry import geometry
+from lumped.parameters import GearPair
+from lumped.path_function import FloatArray
+from lumped.periodic_system import LTVSystem, periodic_system
+from lumped.propagation import STAGES, STEP_ANGLE, StepMaps, step_maps
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicSolution:
+    """Periodic motion over one mesh cycle.
+
+    Attributes
+    ----------
+    system : the 12-state system
+    time : (k,) [s]
+    states : (k, 12)
+    pinion_torque, brake_torque : mean torques that hold the mean speed [N m]
+    closure : largest mismatch of state and state one cycle later, relative to the largest state of its kind
+    error : estimate of the largest relative error of the dynamic transmission error
+    """
+
+    system: LTVSystem
+    time: FloatArray
+    states: FloatArray
+    pinion_torque: float
+    brake_torque: float
+    closure: float
+    error: float
+
+
+def periodic_solution(
+    pair: GearPair,
+    times: FloatArray,
+    *,
+    as_printed: Collection[int] = (),
+    system: LTVSystem | None = None,
+    estimate_error: bool = True,
+) -> PeriodicSolution:
+    """Periodic motion at given times of the mesh cycle.
+
+    The 12-state map over one cycle has a defective double multiplier +1 (rigid rotation), so one torque must
+    balance: the brake torque, or, where the brake torque is given, the mean driving torque that holds the
+    speed. Bordering the map with that torque and with the position of the rigid rotation
+    (J_p theta_p / r_bp + J_g theta_g / r_bg = 0 at t = 0) makes it regular.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    times : increasing, within [0, T_m) [s]
+    as_printed : equations out of 1, 2, 7, 9 whose printed sign is used
+    system : the pair's 12-state system where it is known already
+    estimate_error : whether to compute ``error``, by a second integration of lower order
+
+    Raises
+    ------
+    NumericalError : the speed sits on a stability boundary, where no periodic motion exists
+    """
+    system = system or periodic_system(pair, "absolute", as_printed=as_printed)
+    balanced = pair.operating.brake_torque == "balanced"
+    torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
+    maps = step_maps(system, torques, outputs=times)
+    solve = _bordered(pair, system, maps, balanced)
+    states = maps.states(*solve)
+    scale = np.abs(states).max(axis=0) + 1e-300
+    closure = float((np.abs(states[-1] - states[0]) / scale).max())
+    at = np.searchsorted(maps.edges, times - 1e-9 * system.period)
+    result = states[at]
+    error = 0.0
+    if estimate_error:
+        low = step_maps(system, torques, outputs=times, stages=STAGES - 1, step_angle=STEP_ANGLE)
+        other = low.states(*_bordered(pair, system, low, balanced))[at]
+        dte, dte_low = result[:, :6] @ system.deflection, other[:, :6] @ system.deflection
+        error = float(np.abs(dte - dte_low).max() / np.abs(dte).max())
+    weights = solve[1]
+    return PeriodicSolution(
+        system=system,
+        time=times,
+        states=result,
+        pinion_torque=system.pinion_torque + float(weights[1]),
+        brake_torque=float(weights[2]),
+        closure=closure,
+        error=error,
+    )
+
+
+def _bordered(
+    pair: GearPair, system: LTVSystem, maps: StepMaps, balanced: bool
+) -> tuple[FloatArray, FloatArray]:
+    """Initial state (12,) and weights (3,) of own forcing, extra T_p and T_g."""
+    phi, forced = maps.over_all()
+    unknown = 2 if balanced else 1
+    known = np.array([1.0, 0.0, 0.0])
+    if not balanced:
+        brake = pair.operating.brake_torque
+        assert not isinstance(brake, str)
+        known[2] = brake
+    matrix = np.zeros((13, 13))
+    matrix[:12, :12] = np.eye(12) - phi
+    matrix[:12, 12] = -forced[:, unknown]
+    inertia = system.structure.mass[:2] / np.abs(system.structure.deflection[:2])
+    matrix[12, :2] = inertia
+    right = np.append(forced @ known, 0.0)
+    # Angles, lengths and their rates differ by many decades; equilibrate before judging the rank.
+    g = geometry(pair)
+    unit = np.array([1 / g.base_radius_pinion, 1 / g.base_radius_gear, 1.0, 1.0, 1.0, 1.0])
+    rate = 1.0 / system.period
+    columns = np.concatenate([unit, unit * rate, [0.0]])
+    columns[12] = system.pinion_torque / _static(system)
+    rows = np.append(columns[:12], inertia[0] * unit[0])
+    scaled = matrix * columns / rows[:, None]
+    condition = float(np.linalg.cond(scaled))
+    if not condition < 1e13:
+        raise NumericalError(
+            f"No periodic motion at {pair.operating.pinion_speed * 30 / np.pi:.6g} rpm "
+            f"(condition {condition:.1e}): a multiplier is at +1. Change the speed slightly or add damping."
+        )
+    solution = np.linalg.solve(scaled, right / rows) * columns
+    weights = known.copy()
+    weights[unknown] = solution[12]
+    return solution[:12], weights
+
+
+def _static(system: LTVSystem) -> float:
+    """Order of the static deflection [m], for scaling only."""
+    k = system.cycle.elements.stiffness
+    load = system.pinion_torque / abs(float(system.structure.deflection[0]))
+    return load / max(float(k(k.breaks[:-1]).max()), k.mean())
+
+
+def sample_times(period: float, samples: int) -> FloatArray:
+    """Evenly spaced times over one period, the end left out; (samples,) [s].
+
+    Raises
+    ------
+    ParameterError : fewer than 8 or more than 65536 samples
+    """
+    if not 8 <= samples <= 65536:
+        raise refuse("samples_per_cycle", samples, "8 to 65536", "Choose a number in that range.")
+    return np.asarray(np.arange(samples) * (period / samples), dtype=np.float64)
+
+
+def speeds_rad(speeds_rpm: Iterable[float]) -> FloatArray:
+    """Speeds [rpm] as rad/s, each checked to be positive and finite."""
+    speeds = np.asarray(list(speeds_rpm), dtype=float)
+    for value in speeds:
+        if not (np.isfinite(value) and value > 0.0):
+            raise refuse("speeds_rpm", f"{value:g} rpm", "> 0 rpm", "Give running speeds.")
+    return np.asarray(speeds * (np.pi / 30.0), dtype=np.float64)
