@@ -1,0 +1,173 @@
+"""What every friction law shares: the contact along the path, the law's settings, the registry record."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+from lumped import film
+from lumped.validity import FloatArray, ValidityRange
+
+#: Distance from the pitch point [m] below which laws are held constant. A position xi near 0.01 m is known to
+#: 2e-18 m, so xi - L_XP is known to 2e-10 of this distance and log10 of the sliding velocity to 1e-10; the
+#: contact band is four orders wider.
+PITCH_RESOLUTION = 1e-8
+
+_SEARCH_POINTS = 400
+_ROOT_TOLERANCE = 1e-14  # relative, of the distance from the pitch point
+
+
+@dataclass(frozen=True)
+class ContactPath:
+    """The nominal contact of one tooth pair along the path of contact, everything in SI.
+
+    Attributes
+    ----------
+    L_XA, L_XP, L_XD, L_XY : distances from the pinion's tangent point X [m]
+    omega_pinion, omega_gear : nominal speeds [rad/s]
+    unit_load : w_n, full static load per face width [N/m]
+    effective_modulus : E' [Pa]
+    viscosity : eta at the inlet, dynamic [Pa s]
+    pressure_viscosity_k, pressure_viscosity_s : alpha = k eta^s (mm^2/N, mPa s)
+    roughness : S, mean of the two average roughnesses [m]
+    composite_roughness : R_comp [m]
+    film_length : L_x [m]
+    """
+
+    L_XA: float
+    L_XP: float
+    L_XD: float
+    L_XY: float
+    omega_pinion: float
+    omega_gear: float
+    unit_load: float
+    effective_modulus: float
+    viscosity: float
+    pressure_viscosity_k: float
+    pressure_viscosity_s: float
+    roughness: float
+    composite_roughness: float
+    film_length: float
+
+    def radius(self, xi: FloatArray) -> FloatArray:
+        """Reduced radius of curvature rho_r = rho_p rho_g/(rho_p + rho_g) [m], equations (11) and (15)."""
+        return xi * (self.L_XY - xi) / self.L_XY
+
+    def sliding_velocity(self, xi: FloatArray) -> FloatArray:
+        """v_s = |v_rp - v_rg| [m/s], equation (13); written in xi - L_XP so that it is 0 exactly at P."""
+        return (self.omega_pinion + self.omega_gear) * np.abs(xi - self.L_XP)
+
+    def entraining_velocity(self, xi: FloatArray) -> FloatArray:
+        """v_e = v_rp + v_rg [m/s], the sum velocity, equation (13)."""
+        return self.omega_pinion * xi + self.omega_gear * (self.L_XY - xi)
+
+    def slide_to_roll(self, xi: FloatArray) -> FloatArray:
+        """SR = 2 v_s/v_e [-], equation (17)."""
+        return 2.0 * self.sliding_velocity(xi) / self.entraining_velocity(xi)
+
+    def hertz_pressure(self, xi: FloatArray) -> FloatArray:
+        """Largest Hertzian pressure p_h [Pa], equation (16)."""
+        return 1e9 * film.hertz_pressure(
+            self.unit_load * 1e-3, self.radius(xi) * 1e3, self.effective_modulus * 1e-6
+        )
+
+    def half_width(self, xi: FloatArray) -> FloatArray:
+        """Half width b_H of the contact band [m]."""
+        return 1e-3 * film.hertz_half_width(
+            self.unit_load * 1e-3, self.radius(xi) * 1e3, self.effective_modulus * 1e-6
+        )
+
+    def film_thickness(self, xi: FloatArray) -> FloatArray:
+        """Central film thickness h_c [m], equation (21)."""
+        return 1e-6 * film.film_thickness(
+            self.unit_load * 1e-3,
+            self.radius(xi) * 1e3,
+            self.viscosity * 1e3,
+            self.entraining_velocity(xi),
+            self.effective_modulus * 1e-6,
+            pressure_viscosity_k=self.pressure_viscosity_k,
+            pressure_viscosity_s=self.pressure_viscosity_s,
+        )
+
+    def film_parameter(self, xi: FloatArray) -> FloatArray:
+        """Film parameter Lambda [-], equation (21)."""
+        return film.film_parameter(
+            self.film_thickness(xi) * 1e6,
+            self.half_width(xi) * 1e3,
+            self.composite_roughness * 1e6,
+            self.film_length * 1e3,
+        )
+
+    def crossings(self, function: Callable[[FloatArray], FloatArray]) -> list[float]:
+        """Positions strictly inside A..D where a continuous function of xi changes sign [m].
+
+        The search runs over distances from the pitch point that grow geometrically from ``PITCH_RESOLUTION``,
+        because bounded laws may leave their bounds that close to P. Two roots within four per cent of the
+        same distance would be missed: the function then touches its level without consequence.
+        """
+        found = []
+        for side, reach in ((-1.0, self.L_XP - self.L_XA), (1.0, self.L_XD - self.L_XP)):
+            distances = np.geomspace(PITCH_RESOLUTION, reach * (1.0 - 1e-12), _SEARCH_POINTS)
+            values = function(self.L_XP + side * distances)
+
+            def at(distance: float, side: float = side) -> float:
+                return float(function(np.array(self.L_XP + side * distance)))
+
+            for j in np.flatnonzero(np.signbit(values[:-1]) != np.signbit(values[1:])):
+                low, high = float(distances[j]), float(distances[j + 1])
+                if (
+                    at(low) * at(high) > 0.0
+                ):  # equal signs after all: a root on the grid, taken by its neighbour
+                    continue
+                root = brentq(at, low, high, xtol=1e-9 * PITCH_RESOLUTION, rtol=_ROOT_TOLERANCE)
+                found.append(self.L_XP + side * float(root))
+        return sorted(xi for xi in found if self.L_XA < xi < self.L_XD)
+
+
+@dataclass(frozen=True)
+class FrictionSettings:
+    """Parameters of the friction laws.
+
+    Attributes
+    ----------
+    coefficient : mu_avg of laws I and IV [-]; None takes law II's average over the path, as in the paper
+    sharpness : Phi of law IV [1/m]
+    maximum : upper bound of law II [-]
+    thresholds : film parameters at which law V changes over
+    """
+
+    coefficient: float | None
+    sharpness: float
+    maximum: float
+    thresholds: tuple[float, float, float]
+
+    def average(self, path: ContactPath) -> float:
+        """mu_avg: the given coefficient, or the mean of |mu| of law II over A..D."""
+        if self.coefficient is not None:
+            return self.coefficient
+        from lumped.friction.along_path import mean_benedict_kelley
+
+        return mean_benedict_kelley(path, self)
+
+
+@dataclass(frozen=True)
+class FrictionLaw:
+    """Registry record of one law.
+
+    Attributes
+    ----------
+    name : as in parameter files
+    title : for tables and legends
+    signed : (xi, path, settings) -> signed mu, vectorised over xi
+    switches : (path, settings) -> positions where mu jumps or has a kink
+    ranges : validity ranges of the law's arguments
+    """
+
+    name: str
+    title: str
+    signed: Callable[[FloatArray, ContactPath, FrictionSettings], FloatArray]
+    switches: Callable[[ContactPath, FrictionSettings], list[float]]
+    ranges: tuple[ValidityRange, ...]

@@ -1,0 +1,38 @@
+"""Law I: Coulomb friction with one coefficient, equation (10)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
+from lumped.validity import FloatArray, checked
+
+
+def coulomb(coefficient: ArrayLike, distance: ArrayLike) -> FloatArray:
+    """Coulomb friction along the path of contact, mu = mu_avg sgn(d), equation (10).
+
+    Parameters
+    ----------
+    coefficient : mu_avg, average magnitude [-]
+    distance : d = xi - L_XP, signed distance of the contact point from the pitch point, any length unit
+
+    Returns
+    -------
+    mu [-], negative in approach, positive in recess, 0 at the pitch point
+    """
+    mu = checked("coefficient", coefficient, "", allow_zero=True)
+    return np.asarray(mu * np.sign(distance), dtype=np.float64)
+
+
+def _signed(xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> FloatArray:
+    return coulomb(settings.average(path), xi - path.L_XP)
+
+
+LAW = FrictionLaw(
+    name="coulomb",
+    title="I Coulomb",
+    signed=_signed,
+    switches=lambda path, settings: [path.L_XP],
+    ranges=(),
+)

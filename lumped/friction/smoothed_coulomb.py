@@ -1,0 +1,43 @@
+"""Law IV: Coulomb friction smoothed through the pitch point, equation (19)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
+from lumped.validity import FloatArray, checked
+
+
+def smoothed_coulomb(coefficient: ArrayLike, distance: ArrayLike, sharpness: ArrayLike) -> FloatArray:
+    """Smoothed Coulomb friction, the derivative of (2 mu_avg / pi) d arctan(Phi d), equation (19).
+
+    mu = (2 mu_avg / pi) (arctan(Phi d) + Phi d / (1 + Phi^2 d^2))
+
+    Parameters
+    ----------
+    coefficient : mu_avg, magnitude far from the pitch point [-]
+    distance : d = xi - L_XP, signed distance of the contact point from the pitch point
+    sharpness : Phi, in the inverse of the unit of ``distance``
+
+    Returns
+    -------
+    mu [-] with its sign; odd in d, and within 4 mu_avg / (3 pi |Phi d|^3) of law I for |Phi d| >> 1
+    """
+    mu = checked("coefficient", coefficient, "", allow_zero=True)
+    phi = checked("sharpness", sharpness, "1/length")
+    scaled = phi * np.asarray(distance, dtype=float)
+    return np.asarray(2.0 * mu / np.pi * (np.arctan(scaled) + scaled / (1.0 + scaled**2)), dtype=np.float64)
+
+
+def _signed(xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> FloatArray:
+    return smoothed_coulomb(settings.average(path), xi - path.L_XP, settings.sharpness)
+
+
+LAW = FrictionLaw(
+    name="smoothed_coulomb",
+    title="IV smoothed Coulomb",
+    signed=_signed,
+    switches=lambda path, settings: [],
+    ranges=(),
+)
