@@ -254,8 +254,8 @@ def speed_sweep(
 
     Returns
     -------
-    xarray.Dataset over ``speed`` [rpm]: peak-to-peak and root mean square of the dynamic transmission error and
-    the translations, largest and smallest normal load of a pair in contact, mesh efficiency. A speed without
+    xarray.Dataset over ``speed`` [rpm]: peak-to-peak and root mean square of the transmission error and the
+    translations, largest and smallest normal load of a pair in contact, mesh efficiency. A speed without
     periodic motion is NaN with ``periodic`` False.
     """
     speeds = np.asarray(list(speeds_rpm), dtype=float)
