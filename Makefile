@@ -1,0 +1,42 @@
+# make report   set up .venv if needed and write the verification report of the default gear pair to report/
+# make test     set up .venv if needed and run the tests
+# make lint     ruff and mypy --strict
+# PYTHON=python3.12 chooses the interpreter, VENV=path another environment.
+
+PYTHON ?= python3
+VENV ?= .venv
+BIN := $(VENV)/bin
+OUT ?= report
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+
+.PHONY: report test lint clean
+
+report: $(VENV)/.ready
+	$(BIN)/spurcheck report --output $(OUT) --force
+	@echo "Open $(OUT)/index.html"
+
+test: $(VENV)/.ready-test
+	$(BIN)/python -m pytest -n 2
+
+lint: $(VENV)/.ready-dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+$(VENV)/.ready: pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "spurcheck needs Python 3.11 or later: make PYTHON=python3.12 ...")'
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	@echo "Installing spurcheck and its dependencies into $(VENV) ..."
+	@$(PIP) --editable .
+	@touch $@
+
+$(VENV)/.ready-test: $(VENV)/.ready
+	@$(PIP) --editable ".[test]"
+	@touch $@
+
+$(VENV)/.ready-dev: $(VENV)/.ready-test
+	@$(PIP) --editable ".[dev]"
+	@touch $@
+
+clean:
+	rm -rf .venv build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache
