@@ -1,0 +1,166 @@
+"""Monodromy matrix and Floquet multipliers with error bounds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+
+from floquet.multipliers import multipliers_with_bounds, radius_with_bound, verdict
+from floquet.propagation import Propagation, error_of_product, propagate
+from floquet.propagators import Propagator, propagator
+from floquet.system import ComplexArray, FloatArray, PeriodicSystem
+from lumped.errors import NumericalError, refuse
+
+# Where |M| is below this, the tolerance is no longer relative: such a system is dead after one period.
+_DEAD = 1e-150
+
+
+@dataclass(frozen=True, eq=False)
+class Monodromy:
+    """The result of `monodromy`.
+
+    Attributes
+    ----------
+    matrix : (n, n) Phi(T, 0)
+    multipliers : (n,) eigenvalues of ``matrix``, largest modulus first
+    multiplier_errors : (n,) bound on the error of each, from ``matrix_error`` and its own conditioning
+    exponents : (n,) log(multiplier)/T [1/s], principal branch; -inf for a multiplier that is zero
+    spectral_radius : max |multiplier|
+    error : bound on the error of ``spectral_radius``
+    matrix_error : bound on the 2-norm of the error of D^-1 M D, D = diag(``scaling``): truncation (step
+        against two half steps) and rounding, carried to the end of the period
+    scaling : (n,) the balancing scales d
+    liouville_residual : |sum over substeps of log det - integral of tr A|. Taken per substep it stays
+        meaningful when M is so nearly singular that its own determinant carries no information.
+    verdict : "stable", "unstable", or "undecided" when ``spectral_radius`` +- ``error`` contains 1
+    period : T [s]
+    method, rtol, substeps, evaluations : how it was computed
+    """
+
+    matrix: FloatArray
+    multipliers: ComplexArray
+    multiplier_errors: FloatArray
+    exponents: ComplexArray
+    spectral_radius: float
+    error: float
+    matrix_error: float
+    scaling: FloatArray
+    liouville_residual: float
+    verdict: str
+    period: float
+    method: str
+    rtol: float
+    substeps: int
+    evaluations: int
+
+
+def monodromy(
+    system: PeriodicSystem,
+    rtol: float = 1e-10,
+    *,
+    method: str | Propagator = "gauss",
+    max_substeps: int = 200_000,
+) -> Monodromy:
+    """Monodromy matrix of x' = A(t) x over one period, with multipliers and error bounds.
+
+    Parameters
+    ----------
+    system : the periodic system; its forcing, if any, plays no part
+    rtol : wanted error of the matrix relative to its norm (in balanced coordinates), 1e-14 to 1e-1
+    method : name in `floquet.propagators.PROPAGATORS`, or a propagator
+    max_substeps : refuse to work harder than this
+
+    Returns
+    -------
+    Monodromy
+
+    Raises
+    ------
+    ParameterError
+        rtol out of range or unknown method.
+    NumericalError
+        Non-finite A, growth beyond floating point, too many substeps, or rounding alone exceeds rtol. The
+        text says what to try.
+    """
+    if not (isinstance(rtol, int | float) and 1e-14 <= rtol <= 0.1):
+        raise refuse("rtol", rtol, "1e-14 to 0.1", "Use 1e-10 for verdicts, 1e-6 for a quick look.")
+    if max_substeps < 2:
+        raise refuse("max_substeps", max_substeps, "at least 2", "Leave it at its default.")
+    step = propagator(method)
+    local = float(rtol)
+    evaluations = 0
+    for _attempt in range(4):
+        propagation = propagate(system, step, local, max_substeps)
+        evaluations += propagation.evaluations
+        M, delta, rounding = error_of_product(propagation)
+        size = max(float(np.linalg.norm(M, 2)), _DEAD)
+        if delta <= rtol * size:
+            return _record(system, propagation, M, delta, step.name, rtol, evaluations)
+        if rounding > 0.9 * rtol * size:
+            break
+        # Growth and decay inside the period amplified the local errors: ask for that much more.
+        local *= max(0.3 * (rtol * size - rounding) / delta, 1e-4)
+        if local < 1e-16:
+            break
+    raise NumericalError(
+        f"rtol = {rtol:g} cannot be met: the error bound of the monodromy matrix is {delta / size:.2g} "
+        f"of its norm, of which rounding makes {rounding / size:.2g}. Ask for rtol >= "
+        f"{2.0 * max(delta, rounding) / size:.1g}, or use a method of higher order (fewer steps, less "
+        "rounding); if that is too coarse, the period is too long for double precision."
+    )
+
+
+def _record(
+    system: PeriodicSystem,
+    propagation: Propagation,
+    balanced: FloatArray,
+    delta: float,
+    method: str,
+    rtol: float,
+    evaluations: int,
+) -> Monodromy:
+    d = propagation.scaling
+    multipliers, bounds = multipliers_with_bounds(balanced, delta)
+    radius, error = radius_with_bound(multipliers, bounds)
+    with np.errstate(divide="ignore"):
+        exponents = np.log(multipliers.astype(complex)) / system.period
+    return Monodromy(
+        matrix=balanced * d[:, None] / d[None, :],
+        multipliers=multipliers,
+        multiplier_errors=bounds,
+        exponents=exponents,
+        spectral_radius=radius,
+        error=error,
+        matrix_error=delta,
+        scaling=d,
+        liouville_residual=liouville_residual(system, propagation),
+        verdict=verdict(radius, error),
+        period=system.period,
+        method=method,
+        rtol=float(rtol),
+        substeps=propagation.steps.shape[0],
+        evaluations=evaluations,
+    )
+
+
+def liouville_residual(system: PeriodicSystem, propagation: Propagation) -> float:
+    """|sum log det(step) - integral of tr A dt| over one period (Liouville's formula), dimensionless.
+
+    The integral is taken by an 8-point Gauss rule in every substep, independently of the propagator.
+    """
+    x, w = leggauss(8)
+    start, end = propagation.times[:-1], propagation.times[1:]
+    times = start[:, None] + (end - start)[:, None] * 0.5 * (x + 1.0)
+    total = 0.0
+    for first in range(0, start.size, 4096):
+        part = slice(first, first + 4096)
+        inside = system.inside(times[part], start[part, None], end[part, None])
+        trace = np.trace(system.evaluate(inside.ravel()), axis1=1, axis2=2).reshape(inside.shape)
+        total += float(((end - start)[part] * 0.5 * (trace @ w)).sum())
+    sign, log_det = np.linalg.slogdet(propagation.steps)
+    if (sign <= 0).any():
+        return math.inf
+    return abs(float(log_det.sum()) - total)

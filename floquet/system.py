@@ -1,0 +1,142 @@
+"""Periodic linear systems x' = A(t) x (+ b(t)): what every routine of this package consumes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import matrix_balance
+
+from lumped.errors import NumericalError, refuse
+
+FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+# Points nearer to a switch than this part of the period are moved inwards: far enough that a callable which
+# reduces t modulo the period cannot round it onto the switch, near enough that A changes only by rounding.
+_INSET = 64 * np.finfo(np.float64).eps
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicSystem:
+    """A linear system x' = A(t) x + b(t) whose coefficients repeat after one period.
+
+    Parameters
+    ----------
+    A : callable, t [s] -> (n, n); with ``vectorized``, (k,) -> (k, n, n). It is only ever evaluated strictly
+        inside the smooth segments, so its value *at* a switch does not matter.
+    period : T > 0 [s]
+    breakpoints : times in [0, T] at which A or b jumps or has a kink; 0 and T are always segment ends
+    vectorized : whether A (and b) take a vector of times
+    b : forcing, t -> (n,); with ``vectorized``, (k,) -> (k, n). None: no forcing.
+
+    Attributes
+    ----------
+    dimension : n
+
+    Raises
+    ------
+    ParameterError
+        A period that is not positive, breakpoints outside [0, T], an A that is not square.
+    NumericalError
+        A is not finite somewhere inside a segment.
+    """
+
+    A: Callable[..., npt.ArrayLike]
+    period: float
+    breakpoints: Sequence[float] = ()
+    vectorized: bool = False
+    b: Callable[..., npt.ArrayLike] | None = None
+    dimension: int = field(init=False)
+    edges: FloatArray = field(init=False, repr=False)
+    """Segment ends, 0 = edges[0] < edges[1] < ... < edges[-1] = T [s], shape (m+1,)."""
+
+    def __post_init__(self) -> None:
+        if not callable(self.A):
+            raise refuse(
+                "A", type(self.A).__name__, "a callable t -> (n, n)", "Wrap a constant as lambda t: A0."
+            )
+        if not (math.isfinite(self.period) and self.period > 0.0):
+            raise refuse("period", self.period, "a finite number > 0 [s]", "Give the length of one cycle.")
+        breaks = np.atleast_1d(np.asarray(self.breakpoints, dtype=float))
+        if breaks.ndim != 1 or not np.all(np.isfinite(breaks)):
+            raise refuse("breakpoints", self.breakpoints, "a list of finite times [s]", "Remove the others.")
+        outside = breaks[(breaks < 0.0) | (breaks > self.period)]
+        if outside.size:
+            raise refuse(
+                "breakpoints",
+                outside[0],
+                f"0 to the period {self.period:g} s",
+                "Reduce switch times modulo the period.",
+            )
+        edges = np.unique(np.concatenate(([0.0], breaks, [self.period])))
+        # Two switches that differ only by rounding are one switch; keep 0 and T themselves.
+        inner = edges[1:-1]
+        gap = 4.0 * _INSET * self.period
+        kept = [0.0]
+        for t in inner:
+            if t - kept[-1] > gap and self.period - t > gap:
+                kept.append(float(t))
+        object.__setattr__(self, "edges", np.array([*kept, self.period]))
+        object.__setattr__(self, "breakpoints", tuple(float(t) for t in breaks))
+
+        probe = np.asarray(self._call(self.A, np.array([0.5 * (self.edges[0] + self.edges[1])])))
+        if probe.ndim != 3 or probe.shape[1] != probe.shape[2] or probe.shape[1] == 0:
+            shape = probe.shape if self.vectorized else probe.shape[1:]
+            want = "(k, n, n) for k times (vectorized=True)" if self.vectorized else "(n, n)"
+            raise refuse("A", f"shape {shape}", want, "Check the shape that the callable returns.")
+        object.__setattr__(self, "dimension", int(probe.shape[1]))
+
+    def _call(self, function: Callable[..., npt.ArrayLike], times: FloatArray) -> FloatArray:
+        if self.vectorized:
+            return np.asarray(function(times), dtype=float)
+        return np.array([function(float(t)) for t in times], dtype=float)
+
+    def evaluate(self, times: npt.ArrayLike) -> FloatArray:
+        """Return A at times [s] strictly inside smooth segments, (k,) -> (k, n, n); checked finite."""
+        t = np.asarray(times, dtype=float)
+        values = self._call(self.A, t)
+        return self._checked(values, t, (self.dimension, self.dimension), "A(t)")
+
+    def forcing(self, times: npt.ArrayLike) -> FloatArray:
+        """Return b at times [s], (k,) -> (k, n); zeros when the system has no forcing."""
+        t = np.asarray(times, dtype=float)
+        if self.b is None:
+            return np.zeros((t.size, self.dimension))
+        return self._checked(self._call(self.b, t), t, (self.dimension,), "b(t)")
+
+    def inside(self, times: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
+        """Move times that touch the ends of their interval [start, end] strictly inside it."""
+        inset = np.minimum(_INSET * self.period, 0.25 * (end - start))
+        return np.clip(times, start + inset, end - inset)
+
+    def balancing(self) -> FloatArray:
+        """Return d (n,), powers of two such that A_ij d_j / d_i has rows and columns of like size.
+
+        States of mixed units (displacements and rates) make every norm meaningless; all error bounds of this
+        package are taken in the coordinates x_i / d_i. Multipliers do not depend on d.
+        """
+        middle = 0.5 * (self.edges[:-1] + self.edges[1:])
+        magnitude = np.abs(self.evaluate(middle)).max(axis=0)
+        _, (scale, _) = matrix_balance(magnitude, permute=False, separate=True)
+        return np.asarray(scale, dtype=float)
+
+    @staticmethod
+    def _checked(values: FloatArray, t: FloatArray, shape: tuple[int, ...], name: str) -> FloatArray:
+        if values.shape != (t.size, *shape):
+            raise refuse(
+                name[0],
+                f"shape {values.shape[1:]} at t = {t[0] if t.size else 0.0:g} s",
+                f"{shape} at every time",
+                "Return the same shape for every time.",
+            )
+        if not np.isfinite(values).all():
+            bad = t[~np.isfinite(values).reshape(t.size, -1).all(axis=1)][0]
+            raise NumericalError(
+                f"{name} is not finite at t = {bad:.17g} s. Check the coefficients there; if this is a "
+                "switch, add it to breakpoints: nothing is evaluated at the ends of a segment."
+            )
+        return values
