@@ -11,12 +11,14 @@ from lumped.errors import LawRangeWarning, ParameterError
 from lumped.film import regime
 from lumped.friction import (
     LAWS,
+    benedict_kelley,
     contact_path,
     friction_path_function,
     friction_profile,
     friction_settings,
     law_range_violations,
     mean_coefficient,
+    xu_kahraman,
 )
 from lumped.friction.base import PITCH_RESOLUTION
 from lumped.friction.benedict_kelley import friction_number
@@ -60,6 +62,30 @@ def test_path_function_is_the_law(law, speed, which, request):
     if switches.size:  # a switch is a jump: either side of it is right within its own rounding
         xi = xi[np.abs(xi[:, None] - switches).min(axis=1) > 1e-12]
     np.testing.assert_allclose(function(xi), direct(pair, law, xi), atol=FIT, rtol=0, err_msg=f"seed {seed}")
+
+
+def test_laws_get_the_kinematics_and_units_they_are_published_in(unequal):
+    # Everything again from rolling velocities and Hertz's formulas in the laws' own units.
+    pair = unequal.with_(pinion__roughness=0.3, gear__roughness=0.5, operating__pinion_speed=1500)
+    g = geometry(pair)
+    xi = np.array([0.3, 0.6, 0.9]) * (g.L_XD - g.L_XA) + g.L_XA
+    omega_p = 1500 * np.pi / 30
+    v_p, v_g = omega_p * xi, omega_p * 25 / 31 * (g.L_XY - xi)
+    rho = 1e3 / (1 / xi + 1 / (g.L_XY - xi))  # mm
+    w = pair.operating.pinion_torque / (6.35 * g.base_radius_pinion)  # N/mm
+    s, eta = 0.4, 10.0  # um, the mean of both Ra; mPa s
+    np.testing.assert_allclose(
+        np.abs(friction_path_function(pair, law="benedict_kelley")(xi)),
+        benedict_kelley(w, eta, np.abs(v_p - v_g), v_p + v_g, s),
+        atol=FIT,
+    )
+    p_h = np.sqrt(w * (206.0 / 0.91) / (2000 * np.pi * rho))  # GPa
+    half_sum = (v_p + v_g) / 2
+    np.testing.assert_allclose(
+        np.abs(friction_path_function(pair, law="xu_kahraman")(xi)),
+        xu_kahraman(p_h, (v_p - v_g) / half_sum, half_sum, eta, s, rho * 1e-3),
+        atol=FIT,
+    )
 
 
 @pytest.mark.parametrize("law", FIVE)

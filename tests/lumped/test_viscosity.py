@@ -36,6 +36,14 @@ def test_density_expands_about_its_reference():
     assert slope == pytest.approx(-0.6278, rel=1e-5)
 
 
+def test_density_expands_faster_when_hot():
+    # ln(rho/rho_15) = -a dT - 0.8 (a dT)^2: its second difference over dT = 40 K is -1.6 (40 a)^2
+    log_density = np.log(oil_density(870.0, [15.0, 55.0, 95.0]))
+    bend = log_density[2] - 2 * log_density[1] + log_density[0]
+    # 1.3e-3 from logarithms near 6.8: rounding 1e-15/1e-3
+    assert bend == pytest.approx(-1.6 * (0.6278 / 870.0 * 40.0) ** 2, rel=1e-10)
+
+
 def test_lubricant_law_feeds_the_contact():
     pair = load_gear_pair("nasa_28_28").with_(
         lubricant={
