@@ -1,1 +1,7 @@
-"""placeholder"""
+"""Independent multibody reference of a spur gear pair in exudyn, at two fidelities."""
+
+from multibody.balance import PowerBalance, power_balance
+from multibody.effects import EFFECTS
+from multibody.simulation import simulate
+
+__all__ = ["EFFECTS", "PowerBalance", "power_balance", "simulate"]

@@ -1,0 +1,168 @@
+"""Time integration by exudyn's DOPRI5, interval by interval, with dense output.
+
+Each interval ends where the nominal element laws switch (linear) or at the end of a mesh cycle (exact).
+Between the integrator's own steps the state is a quintic Hermite polynomial through coordinates, velocities
+and accelerations; its error, of sixth order in the step, stays below the integrator's, of fifth.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import exudyn as exu
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.errors import NumericalError
+from multibody import kernels as kn
+from multibody.model import ExudynModel, accelerations
+
+FloatArray = NDArray[np.float64]
+
+#: Smallest step over the mesh cycle. A floor that is not tiny hangs where friction changes sign: the step
+#: cannot shrink enough to be accepted and the solver tries it for ever.
+_STEP_FLOOR = 1e-14
+_FIRST_STEP = 1e-4
+
+
+@dataclass(frozen=True)
+class Segment:
+    """Accepted steps of one interval: times (n,), q and v (n, 6), and its dense output."""
+
+    times: FloatArray
+    q: FloatArray
+    v: FloatArray
+    a: FloatArray
+
+    def at(self, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Coordinates and velocities at times t (m,) inside the interval, each (m, 6)."""
+        if self.times.size == 1:
+            return np.repeat(self.q, t.size, axis=0), np.repeat(self.v, t.size, axis=0)
+        j = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, self.times.size - 2)
+        h = (self.times[j + 1] - self.times[j])[:, None]
+        s = (t - self.times[j])[:, None] / h
+        # Coefficients of s^3, s^4, s^5 from what the Taylor start (q, v, a) leaves at the far end.
+        start, speed, bend = self.q[j], h * self.v[j], h * h * self.a[j]
+        gap = self.q[j + 1] - start - speed - 0.5 * bend
+        gap_1 = h * self.v[j + 1] - speed - bend
+        gap_2 = h * h * self.a[j + 1] - bend
+        c3 = 10.0 * gap - 4.0 * gap_1 + 0.5 * gap_2
+        c4 = -15.0 * gap + 7.0 * gap_1 - gap_2
+        c5 = 6.0 * gap - 3.0 * gap_1 + 0.5 * gap_2
+        q = start + s * (speed + s * (0.5 * bend + s * (c3 + s * (c4 + s * c5))))
+        v = (speed + s * (bend + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))) / h
+        return q, v
+
+
+def settings(rtol: float, atol: float, period: float) -> exu.SimulationSettings:
+    """Settings of the explicit integrator: no files, every step stored by the sensors."""
+    s = exu.SimulationSettings()
+    ti = s.timeIntegration
+    ti.solverType = exu.DynamicSolverType.DOPRI5
+    ti.automaticStepSize = True
+    ti.relativeTolerance, ti.absoluteTolerance = rtol, atol
+    ti.minimumStepSize = _STEP_FLOOR * period
+    ti.numberOfSteps = 1
+    ti.verboseMode = 0
+    ti.explicit.computeEndOfStepAccelerations = False
+    s.solution.file.write = False
+    s.solution.sensors.writePeriod = _STEP_FLOOR * period
+    s.show.computationTime = False
+    return s
+
+
+def integrate(
+    model: ExudynModel,
+    q: FloatArray,
+    v: FloatArray,
+    edges: FloatArray,
+    *,
+    rtol: float,
+    atol: float,
+    clamp: bool,
+    visit: Callable[[int, Segment], None],
+) -> tuple[FloatArray, FloatArray]:
+    """Integrate over consecutive intervals.
+
+    Parameters
+    ----------
+    model : assembled model
+    q, v : (6,) initial state
+    edges : (m + 1,) ends of the intervals [s]
+    rtol, atol : tolerances of the step-size control
+    clamp : evaluate the nominal phase strictly inside each interval (the edges are switches)
+    visit : called with (interval number, its segment)
+
+    Returns
+    -------
+    (q, v) at the last edge
+
+    Raises
+    ------
+    NumericalError : a force or a state is not finite, or the force was evaluated more often than allowed
+    """
+    s = settings(rtol, atol, model.machine.period)
+    step = _FIRST_STEP * model.machine.period
+    for number, (start, stop) in enumerate(itertools.pairwise(edges)):
+        if clamp:
+            margin = 1e-12 * model.machine.period
+            model.parameters[kn.T_LOW], model.parameters[kn.T_HIGH] = start + margin, stop - margin
+        segment = _run(model, s, q, v, float(start), float(stop), step)
+        visit(number, segment)
+        q, v = segment.q[-1], segment.v[-1]
+        if segment.times.size > 3:
+            step = float(np.median(np.diff(segment.times)))
+    return q, v
+
+
+def _run(
+    model: ExudynModel,
+    s: exu.SimulationSettings,
+    q: FloatArray,
+    v: FloatArray,
+    start: float,
+    stop: float,
+    step: float,
+) -> Segment:
+    ti, system, budget = s.timeIntegration, model.system, model.budget
+    ti.startTime, ti.endTime = start, stop
+    ti.initialStepSize = min(step, stop - start)
+    system.systemData.SetODE2Coordinates(q.tolist(), configuration=exu.ConfigurationType.Initial)
+    system.systemData.SetODE2Coordinates_t(v.tolist(), configuration=exu.ConfigurationType.Initial)
+    budget.reset()
+    try:
+        finished = system.SolveDynamic(s)
+    except KeyboardInterrupt:
+        raise
+    except Exception as error:  # exudyn wraps whatever a user function raises in its own types
+        raise _failure(model, start, stop) from error
+    if not finished:
+        raise _failure(model, start, stop)
+    rows = [np.asarray(system.GetSensorStoredData(number)) for number in model.sensors]
+    times = rows[0][:, 0]
+    states_q = np.hstack([rows[0][:, 1:], rows[2][:, 1:]])
+    states_v = np.hstack([rows[1][:, 1:], rows[3][:, 1:]])
+    if not (np.isfinite(states_q).all() and np.isfinite(states_v).all()):
+        budget.reason = "not finite"
+        raise _failure(model, start, stop)
+    keep = np.diff(times, prepend=-np.inf) > 0.0
+    times, states_q, states_v = times[keep], states_q[keep], states_v[keep]
+    return Segment(times, states_q, states_v, accelerations(model, times, states_q, states_v))
+
+
+def _failure(model: ExudynModel, start: float, stop: float) -> NumericalError:
+    budget = model.budget
+    where = f"between t = {start:.6g} and {stop:.6g} s"
+    if budget.reason == "not finite":
+        text = "A contact force or a state is not finite; check torque, stiffness and the initial state."
+    elif budget.reason == "too many calls":
+        text = (
+            f"More than {budget.limit} force evaluations in one interval: the steps keep shrinking. "
+            "Loosen rtol, or smooth the friction at the pitch point (friction_velocity) or the engagement "
+            "(mesh.stiffness.ramp_length)."
+        )
+    else:
+        text = "exudyn's integrator stopped; loosen rtol or shorten the run."
+    return NumericalError(f"Multibody run stopped {where}. {text}")

@@ -1,0 +1,218 @@
+"""The exudyn model: two planar rigid bodies in bearings, one massless object that carries the tooth contacts.
+
+Coordinates are deviations from the nominal rotation, q = (x_p, y_p, phi_p, x_g, y_g, phi_g): the bodies
+turn through finite angles (the contact core adds the nominal rotation), while the integrator's relative
+tolerance acts on the vibration and not on the many turns of the shafts. A frame that turns at constant
+speed about each body's own centre of mass adds no inertia terms in the plane.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import exudyn as exu
+import exudyn.itemInterface as items
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody import kernels as kn
+from multibody.kernels import contact_forces
+from multibody.kernels_linear import linear_forces
+from multibody.kinematics import MAX_PAIRS
+from multibody.machine import Machine
+
+FloatArray = NDArray[np.float64]
+#: (t, q, v, parameters, flags, table, offsets, wrench, contacts) -> number of contacts or -1
+ForceCore = Callable[..., int]
+
+FIDELITIES: dict[str, ForceCore] = {"linear": linear_forces, "exact": contact_forces}
+
+
+@dataclass
+class CallBudget:
+    """Counts force evaluations, so that no run can hang, and remembers why one was stopped.
+
+    Attributes
+    ----------
+    limit : most calls allowed until the next ``reset``
+    calls : calls since the start
+    reason : empty, or the first problem met ("not finite", "too many calls")
+    """
+
+    limit: int
+    calls: int = 0
+    allowed: int = field(init=False)
+    reason: str = ""
+
+    def __post_init__(self) -> None:
+        self.allowed = self.limit
+
+    def reset(self) -> None:
+        """Allow ``limit`` more calls."""
+        self.allowed = self.calls + self.limit
+
+
+class _Stop(Exception):
+    """Leaves exudyn's solver from inside a user function."""
+
+
+@dataclass(eq=False)
+class ExudynModel:
+    """An assembled exudyn system and the buffers its user function writes.
+
+    Attributes
+    ----------
+    machine : the numbers it was built from
+    core, flags : force core and effect switches
+    system : exudyn MainSystem
+    container : exudyn SystemContainer (must stay alive; also holds the renderer)
+    sensors : numbers of the sensors that store coordinates and velocities: pinion, gear
+    parameters : the core's parameter vector, may be changed between runs
+    budget : counter of force evaluations
+    """
+
+    machine: Machine
+    core: ForceCore
+    flags: int
+    container: exu.SystemContainer
+    system: exu.MainSystem
+    sensors: tuple[int, int, int, int]
+    nodes: tuple[int, int]
+    parameters: FloatArray
+    budget: CallBudget
+
+
+def build(machine: Machine, fidelity: str, flags: int, call_limit: int) -> ExudynModel:
+    """Assemble the exudyn system.
+
+    Parameters
+    ----------
+    machine : numbers of the gear pair
+    fidelity : "linear" or "exact"
+    flags : effect switches of the exact core (bits of ``kernels``)
+    call_limit : most force evaluations of one integration interval
+    """
+    container = exu.SystemContainer()
+    system = container.AddSystem()
+    p = machine.parameters
+    ground = system.AddObject(items.ObjectGround())
+    centres = ((p[kn.CENTRE_PX], p[kn.CENTRE_PY]), (p[kn.CENTRE_GX], p[kn.CENTRE_GY]))
+    # The pinion turns clockwise: its driving torque is -T_p. The brake acts against the gear: also negative.
+    torques = (-machine.torque_pinion, -machine.torque_gear)
+    nodes = tuple(_add_gear(system, ground, machine, i, centres[i], torques[i]) for i in range(2))
+    parameters = p.copy()
+    budget = CallBudget(call_limit)
+    system.AddObject(
+        items.ObjectGenericODE2(
+            nodeNumbers=list(nodes),
+            massMatrix=np.zeros((6, 6)),
+            forceUserFunction=_force_function(machine, FIDELITIES[fidelity], flags, parameters, budget),
+        )
+    )
+    kinds = (exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t)
+    sensors = tuple(
+        system.AddSensor(
+            items.SensorNode(nodeNumber=node, outputVariableType=kind, storeInternal=True, writeToFile=False)
+        )
+        for node in nodes
+        for kind in kinds
+    )
+    system.Assemble()
+    return ExudynModel(
+        machine=machine,
+        core=FIDELITIES[fidelity],
+        flags=flags,
+        container=container,
+        system=system,
+        sensors=(sensors[0], sensors[1], sensors[2], sensors[3]),
+        nodes=(nodes[0], nodes[1]),
+        parameters=parameters,
+        budget=budget,
+    )
+
+
+def _add_gear(
+    system: exu.MainSystem,
+    ground: int,
+    machine: Machine,
+    which: int,
+    centre: tuple[float, float],
+    torque: float,
+) -> int:
+    """Add one gear: node, rigid body, bearing to ground, torque; returns the node."""
+    node = system.AddNode(items.NodeRigidBody2D(referenceCoordinates=[*centre, 0.0]))
+    body = system.AddObject(
+        items.ObjectRigidBody2D(
+            mass=float(machine.mass[which]), inertia=float(machine.inertia[which]), nodeNumber=node
+        )
+    )
+    at_body = system.AddMarker(items.MarkerBodyPosition(bodyNumber=body))
+    at_ground = system.AddMarker(items.MarkerBodyPosition(bodyNumber=ground, localPosition=[*centre, 0.0]))
+    system.AddObject(
+        items.ObjectConnectorCartesianSpringDamper(
+            markerNumbers=[at_ground, at_body],
+            stiffness=[*machine.bearing_stiffness[which].tolist(), 0.0],
+            damping=[*machine.bearing_damping[which].tolist(), 0.0],
+        )
+    )
+    frame = system.AddMarker(items.MarkerBodyRigid(bodyNumber=body))
+    system.AddLoad(items.LoadTorqueVector(markerNumber=frame, loadVector=[0.0, 0.0, torque]))
+    return int(node)
+
+
+def _force_function(
+    machine: Machine, core: ForceCore, flags: int, p: FloatArray, budget: CallBudget
+) -> Callable[..., FloatArray]:
+    """Return the user function of the contact object; it writes into its own buffers."""
+    q, v, wrench = np.empty(6), np.empty(6), np.empty(6)
+    contacts = np.empty((2 * MAX_PAIRS, kn.N_RECORD))
+    table, offsets = machine.table, machine.offsets
+
+    def forces(
+        _system: exu.MainSystem, t: float, _item: int, coordinates: list[float], rates: list[float]
+    ) -> FloatArray:
+        budget.calls += 1
+        q[:] = coordinates
+        v[:] = rates
+        if core(t, q, v, p, flags, table, offsets, wrench, contacts) < 0:
+            budget.reason = "not finite"
+            raise _Stop
+        if budget.calls > budget.allowed:
+            budget.reason = "too many calls"
+            raise _Stop
+        return wrench
+
+    return forces
+
+
+def accelerations(model: ExudynModel, times: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
+    """Accelerations from Newton's and Euler's laws at given states, without exudyn.
+
+    Parameters
+    ----------
+    times : (n,) [s]
+    q, v : (n, 6) coordinates and velocities
+
+    Returns
+    -------
+    (n, 6) second derivatives of the coordinates
+    """
+    m = model.machine
+    wrench, contacts = np.empty(6), np.empty((2 * MAX_PAIRS, kn.N_RECORD))
+    force = np.empty_like(q)
+    for i, t in enumerate(times):
+        model.core(t, q[i], v[i], model.parameters, model.flags, m.table, m.offsets, wrench, contacts)
+        force[i] = wrench
+    planes = [0, 1, 3, 4]
+    force[:, planes] -= m.bearing_stiffness.ravel() * q[:, planes] + m.bearing_damping.ravel() * v[:, planes]
+    force[:, 2] -= m.torque_pinion
+    force[:, 5] -= m.torque_gear
+    inertia = np.array([m.mass[0], m.mass[0], m.inertia[0], m.mass[1], m.mass[1], m.inertia[1]], dtype=float)
+    return np.asarray(force / inertia, dtype=np.float64)
+
+
+def is_finite(values: FloatArray) -> bool:
+    """True when no entry is NaN or infinite."""
+    return bool(math.isfinite(float(np.sum(values))))

@@ -1,0 +1,157 @@
+"""From integrated states to the labelled variables that the lumped model returns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from lumped.results import labelled
+from multibody import kernels as kn
+from multibody.integration import Segment
+from multibody.kinematics import MAX_PAIRS
+from multibody.model import ExudynModel
+
+FloatArray = NDArray[np.float64]
+
+# q = (x_p, y_p, phi_p, x_g, y_g, phi_g) out of (theta_p, theta_g, x_p, x_g, y_p, y_g): theta_p = -phi_p.
+_ORDER = np.array([2, 4, 0, 3, 5, 1])
+_SIGN = np.array([1.0, 1.0, -1.0, 1.0, 1.0, 1.0])
+_BACK = np.argsort(_ORDER)
+
+#: Variables beyond those of the lumped model: name -> (dimensions, unit, plain name).
+EXTRA = {
+    "overlap": (("time",), "m", "overlap of the driving flanks along the actual line of action"),
+    "normal_load_back": (("pair", "time"), "N", "normal load on the back sides of the teeth"),
+}
+
+
+def from_lumped_state(state: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(q, v) of the multibody model, each (..., 6), from the 12 lumped states (..., 12)."""
+    return state[..., _ORDER] * _SIGN, state[..., 6 + _ORDER] * _SIGN
+
+
+def to_lumped_state(q: FloatArray, v: FloatArray) -> FloatArray:
+    """The 12 lumped states (..., 12) from q and v, each (..., 6)."""
+    return np.concatenate([(q * _SIGN)[..., _BACK], (v * _SIGN)[..., _BACK]], axis=-1)
+
+
+class Recorder:
+    """Collects states and contacts at the output times while the integration runs.
+
+    Parameters
+    ----------
+    model : the model that is integrated; its force core is evaluated again at the output times
+    time : (n,) output times, increasing [s]
+    """
+
+    def __init__(self, model: ExudynModel, time: FloatArray) -> None:
+        self.model, self.time = model, time
+        self.q, self.v = np.zeros((time.size, 6)), np.zeros((time.size, 6))
+        self.contacts = np.zeros((time.size, 2 * MAX_PAIRS, kn.N_RECORD))
+        self.count = np.zeros(time.size, dtype=np.int64)
+
+    def visit(self, segment: Segment, start: float, stop: float) -> None:
+        """Record the output times in [start, stop)."""
+        slack = 1e-9 * self.model.machine.period
+        low, high = np.searchsorted(self.time, [start - slack, stop - slack])
+        if low == high:
+            return
+        inside = np.clip(self.time[low:high], segment.times[0], segment.times[-1])
+        self.q[low:high], self.v[low:high] = segment.at(inside)
+        self._contacts(low, high)
+
+    def finish(self, q: FloatArray, v: FloatArray, end: float) -> None:
+        """Record the last output time, as the first instant of the cycle that would follow."""
+        p, period = self.model.parameters, self.model.machine.period
+        self.q[-1], self.v[-1] = q, v
+        if np.isfinite(p[kn.T_LOW]):
+            p[kn.T_LOW], p[kn.T_HIGH] = end + 1e-12 * period, end + 1e-9 * period
+        self._contacts(self.time.size - 1, self.time.size)
+
+    def _contacts(self, low: int, high: int) -> None:
+        model, machine, wrench = self.model, self.model.machine, np.empty(6)
+        for i in range(low, high):
+            self.count[i] = model.core(
+                self.time[i],
+                self.q[i],
+                self.v[i],
+                model.parameters,
+                model.flags,
+                machine.table,
+                machine.offsets,
+                wrench,
+                self.contacts[i],
+            )
+
+    def dataset(self, attributes: Mapping[str, Any]) -> xr.Dataset:
+        """Return everything recorded under the lumped model's names."""
+        machine, p = self.model.machine, self.model.machine.parameters
+        n, pairs = self.time.size, machine.pairs
+        phase = self.time / machine.period
+        advance = np.maximum(phase - np.floor(phase + 1e-9), 0.0) * p[kn.PITCH]
+        names = {
+            "mu": kn.MU,
+            "normal_load": kn.LOAD,
+            "friction_force": kn.FRICTION_FORCE,
+            "sliding_velocity": kn.SLIDE,
+            "position": kn.XI,
+        }
+        per_pair = {name: np.zeros((pairs, n)) for name in names}
+        per_pair["position"] = p[kn.L_XA] + np.arange(pairs - 1, -1, -1)[:, None] * p[kn.PITCH] + advance
+        contact, back, stiffness = np.zeros((pairs, n)), np.zeros((pairs, n)), np.zeros((pairs, n))
+        for j in range(2 * MAX_PAIRS):
+            rows = np.flatnonzero(j < self.count)
+            record = self.contacts[rows, j]
+            # Whole pitches ahead of the newest nominal position; a pair that enters early or leaves late
+            # takes the slot of the pair that is out of contact.
+            ahead = np.rint((record[:, kn.XI] - p[kn.L_XA] - advance[rows]) / p[kn.PITCH]).astype(int)
+            slot = np.mod(pairs - 1 - ahead, pairs)
+            drive = record[:, kn.FLANK] > 0
+            at = (slot[drive], rows[drive])
+            for name, column in names.items():
+                per_pair[name][at] = record[drive, column]
+            contact[at], stiffness[at] = 1.0, record[drive, kn.K]
+            np.add.at(back, (slot[~drive], rows[~drive]), record[~drive, kn.LOAD])
+        values = self._motion() | per_pair
+        nominal = (p[kn.OMEGA_P] + p[kn.OMEGA_G]) * (per_pair["position"] - p[kn.L_XP])
+        values |= {
+            "friction_power_nominal": -per_pair["friction_force"] * nominal,
+            "mesh_stiffness": stiffness.sum(0),
+            "contact": contact,
+            "friction_power": -per_pair["friction_force"] * per_pair["sliding_velocity"],
+        }
+        result = labelled(self.time, values, attributes)
+        touching = (self.count > 0) & (self.contacts[:, 0, kn.FLANK] > 0)
+        overlap = np.where(touching, self.contacts[:, 0, kn.OVERLAP], values["dte"])
+        for name, data in (("overlap", overlap), ("normal_load_back", back)):
+            dims, unit, text = EXTRA[name]
+            result[name] = xr.DataArray(data, dims=dims, attrs={"units": unit, "long_name": text})
+        return result
+
+    def _motion(self) -> dict[str, FloatArray]:
+        """Coordinates, rates, transmission error and bearing forces."""
+        machine, p = self.model.machine, self.model.machine.parameters
+        values: dict[str, FloatArray] = {}
+        for suffix, rows in (("", self.q), ("_dot", self.v)):
+            x_p, y_p, phi_p, x_g, y_g, phi_g = rows.T
+            values |= {
+                f"theta_p{suffix}": -phi_p,
+                f"theta_g{suffix}": phi_g,
+                f"x_p{suffix}": x_p,
+                f"x_g{suffix}": x_g,
+                f"y_p{suffix}": y_p,
+                f"y_g{suffix}": y_g,
+                f"dte{suffix}": -p[kn.RADIUS_P] * phi_p - p[kn.RADIUS_G] * phi_g + x_p - x_g,
+            }
+        stiffness, damping = machine.bearing_stiffness, machine.bearing_damping
+        for i, gear in enumerate("pg"):
+            for j, axis in enumerate("xy"):
+                name = f"{axis}_{gear}"
+                values[f"bearing_force_{name}"] = -(
+                    stiffness[i, j] * values[name] + damping[i, j] * values[f"{name}_dot"]
+                )
+        return values

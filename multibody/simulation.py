@@ -1,0 +1,215 @@
+"""Simulate a gear pair with the multibody model and return the lumped model's variables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.errors import refuse
+from lumped.parameters import GearPair
+from lumped.periodic_system import periodic_system
+from lumped.results import provenance
+from lumped.solution import Initial, initial_state, mean_mesh_stiffness
+from lumped.steady import periodic_solution, sample_times
+from multibody import kernels as kn
+from multibody.effects import active_effects, effect_flags
+from multibody.integration import Segment, integrate
+from multibody.machine import Machine, machine
+from multibody.model import FIDELITIES, ExudynModel, build
+from multibody.records import Recorder, from_lumped_state
+
+FloatArray = NDArray[np.float64]
+Fidelity = Literal["linear", "exact"]
+Progress = Callable[[float], None]
+
+#: Force evaluations allowed in one interval; an ordinary mesh cycle takes one to three thousand.
+CALL_LIMIT = 400_000
+#: Absolute over relative tolerance, as a share of the static deflection: small enough that it never rules.
+_ATOL_SHARE = 1e-2
+
+
+@dataclass(frozen=True, eq=False)
+class Setup:
+    """A multibody model ready to run, with the lumped model's loads and initial state.
+
+    Attributes
+    ----------
+    model : assembled exudyn model
+    q, v : (6,) initial state in the model's coordinates
+    fidelity : "linear" or "exact"
+    rtol, atol : tolerances
+    attributes : provenance of results
+    """
+
+    model: ExudynModel
+    q: FloatArray
+    v: FloatArray
+    fidelity: Fidelity
+    rtol: float
+    atol: float
+    attributes: dict[str, Any]
+
+    @property
+    def machine(self) -> Machine:
+        """The numbers the model was built from."""
+        return self.model.machine
+
+    @property
+    def position_is_nominal(self) -> bool:
+        """Whether contact positions depend on time alone, so that the switches are known beforehand."""
+        moved = kn.ROTATION_PHASE | kn.MOVING_LINE | kn.SLIDING | kn.ENTRY_SHIFT | kn.CONTACT_LOSS
+        return self.fidelity == "linear" or not self.model.flags & moved
+
+    def edges(self, cycles: int) -> FloatArray:
+        """Ends of the integration intervals [s]: at the switches where those are known, else whole cycles."""
+        phases = self.machine.switches if self.position_is_nominal else np.zeros(1)
+        starts = (np.arange(cycles)[:, None] + phases).ravel()
+        return np.asarray(np.append(starts, float(cycles)) * self.machine.period)
+
+    def run(self, edges: FloatArray, visit: Callable[[int, Segment], None]) -> tuple[FloatArray, FloatArray]:
+        """Integrate over the intervals from the initial state; returns (q, v) at the end."""
+        return integrate(
+            self.model,
+            self.q,
+            self.v,
+            edges,
+            rtol=self.rtol,
+            atol=self.atol,
+            clamp=self.position_is_nominal,
+            visit=visit,
+        )
+
+
+def prepare(
+    pair: GearPair,
+    *,
+    fidelity: Fidelity = "exact",
+    initial: Initial | ArrayLike = "static",
+    effects: Collection[str] | Mapping[str, bool] | None = None,
+    rtol: float = 1e-8,
+    friction_velocity: float = 0.0,
+    call_limit: int = CALL_LIMIT,
+) -> Setup:
+    """Build the model and its initial state; arguments as ``simulate``."""
+    if fidelity not in FIDELITIES:
+        raise refuse("fidelity", fidelity, f"one of {sorted(FIDELITIES)}", "Choose one of them.")
+    if not 1e-12 <= rtol <= 1e-3:
+        raise refuse("rtol", rtol, "1e-12 to 1e-3", "Choose a tolerance in that range.")
+    if not 0.0 <= friction_velocity < np.inf:
+        raise refuse("friction_velocity", f"{friction_velocity} m/s", ">= 0 m/s", "0 switches at once.")
+    if fidelity == "linear" and effects:
+        raise refuse("effects", effects, "none at fidelity 'linear'", "Use fidelity='exact'.")
+    flags = effect_flags(effects) if fidelity == "exact" else 0
+    system = periodic_system(pair, "absolute")
+    balance = periodic_solution(pair, np.zeros(1), system=system, estimate_error=False)
+    numbers = machine(pair, balance.pinion_torque, balance.brake_torque).with_parameter(
+        kn.V_REG, friction_velocity
+    )
+    state = initial_state(pair, system, initial, balance)
+    q, v = from_lumped_state(state)
+    deflection = numbers.torque_pinion / numbers.parameters[kn.RADIUS_P] / mean_mesh_stiffness(system.cycle)
+    names = active_effects(flags)
+    attributes = provenance(
+        pair, fidelity=fidelity, effects=names, rtol=rtol, friction_velocity=friction_velocity
+    )
+    attributes |= {
+        "model": "multibody",
+        "fidelity": fidelity,
+        "effects": ", ".join(names),
+        "brake_torque": balance.brake_torque,
+        "pinion_torque": balance.pinion_torque,
+        "mesh_efficiency": balance.brake_torque
+        * numbers.parameters[kn.OMEGA_G]
+        / (balance.pinion_torque * numbers.parameters[kn.OMEGA_P]),
+    }
+    return Setup(
+        model=build(numbers, fidelity, flags, call_limit),
+        q=q,
+        v=v,
+        fidelity=fidelity,
+        rtol=rtol,
+        atol=rtol * _ATOL_SHARE * deflection,
+        attributes=attributes,
+    )
+
+
+def simulate(
+    pair: GearPair,
+    cycles: int = 20,
+    *,
+    fidelity: Fidelity = "exact",
+    samples_per_cycle: int = 256,
+    initial: Initial | ArrayLike = "static",
+    effects: Collection[str] | Mapping[str, bool] | None = None,
+    rtol: float = 1e-8,
+    friction_velocity: float = 0.0,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Transient of the gear pair as an exudyn multibody system.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    cycles : mesh cycles, 1 to 100000
+    fidelity : "linear" solves the lumped equations with exudyn's objects; "exact" lets rigid gears turn
+        through finite angles with true involute contact
+    samples_per_cycle : output times per mesh cycle; the grid ends on the last cycle's end
+    initial : "static", "periodic" or 12 states, as for ``lumped.simulate``
+    effects : finite-motion effects that act at fidelity "exact", see ``multibody.EFFECTS``: a collection of
+        names, or a mapping name -> bool in which names left out act; default all
+    rtol : relative tolerance of the integration
+    friction_velocity : sliding velocity over which friction changes its sign (tanh) [m/s]; 0 changes at once
+    progress : called with the finished fraction
+
+    Returns
+    -------
+    xarray.Dataset over ``time`` [s] and ``pair`` with the variables, names and units of
+    ``lumped.simulate``, and
+
+        overlap : overlap of the driving flanks along the actual line of action [m]
+        normal_load_back : normal load on the back sides of the teeth [N]
+
+    Raises
+    ------
+    ParameterError : arguments out of range
+    NumericalError : a force is not finite, or the step size collapses
+
+    Notes
+    -----
+    At fidelity "exact" the friction law is read where the nominal motion slides as fast as the teeth actually
+    do, with the sign of the actual sliding velocity, so friction never feeds energy in.
+    """
+    if not 1 <= cycles <= 100_000:
+        raise refuse("cycles", cycles, "1 to 100000", "Choose a number in that range.")
+    setup = prepare(
+        pair,
+        fidelity=fidelity,
+        initial=initial,
+        effects=effects,
+        rtol=rtol,
+        friction_velocity=friction_velocity,
+    )
+    period = setup.machine.period
+    grid = sample_times(period, samples_per_cycle)
+    time = np.concatenate([grid + j * period for j in range(cycles)] + [[cycles * period]])
+    edges = setup.edges(cycles)
+    recorder = Recorder(setup.model, time)
+
+    def visit(number: int, segment: Segment) -> None:
+        recorder.visit(segment, float(edges[number]), float(edges[number + 1]))
+        if progress is not None:
+            progress(float(edges[number + 1] / edges[-1]))
+
+    q, v = setup.run(edges, visit)
+    recorder.finish(q, v, float(edges[-1]))
+    attributes = setup.attributes | {
+        "cycles": cycles,
+        "samples_per_cycle": samples_per_cycle,
+        "force_evaluations": setup.model.budget.calls,
+    }
+    return recorder.dataset(attributes)
