@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from floquet.multipliers import multipliers_with_bounds, radius_with_bound, verdict
+from floquet.multipliers import multipliers_with_bounds
 from floquet.propagation import Propagation, error_of_product, propagate
 from floquet.propagators import Propagator, propagator
-from floquet.system import ComplexArray, FloatArray, PeriodicSystem
+from floquet.spectrum import Spectrum
+from floquet.system import FloatArray, PeriodicSystem
 from lumped.errors import NumericalError, refuse
 
 # Where |M| is below this, the tolerance is no longer relative: such a system is dead after one period.
@@ -19,38 +20,24 @@ _DEAD = 1e-150
 
 
 @dataclass(frozen=True, eq=False)
-class Monodromy:
-    """The result of `monodromy`.
+class Monodromy(Spectrum):
+    """The result of `monodromy`; multipliers, exponents, radius, error and verdict are those of `Spectrum`.
 
     Attributes
     ----------
     matrix : (n, n) Phi(T, 0)
-    multipliers : (n,) eigenvalues of ``matrix``, largest modulus first
-    multiplier_errors : (n,) bound on the error of each, from ``matrix_error`` and its own conditioning
-    exponents : (n,) log(multiplier)/T [1/s], principal branch; -inf for a multiplier that is zero
-    spectral_radius : max |multiplier|
-    error : bound on the error of ``spectral_radius``
     matrix_error : bound on the 2-norm of the error of D^-1 M D, D = diag(``scaling``): truncation (step
         against two half steps) and rounding, carried to the end of the period
     scaling : (n,) the balancing scales d
     liouville_residual : |sum over substeps of log det - integral of tr A|. Taken per substep it stays
         meaningful when M is so nearly singular that its own determinant carries no information.
-    verdict : "stable", "unstable", or "undecided" when ``spectral_radius`` +- ``error`` contains 1
-    period : T [s]
     method, rtol, substeps, evaluations : how it was computed
     """
 
     matrix: FloatArray
-    multipliers: ComplexArray
-    multiplier_errors: FloatArray
-    exponents: ComplexArray
-    spectral_radius: float
-    error: float
     matrix_error: float
     scaling: FloatArray
     liouville_residual: float
-    verdict: str
-    period: float
     method: str
     rtol: float
     substeps: int
@@ -124,21 +111,14 @@ def _record(
 ) -> Monodromy:
     d = propagation.scaling
     multipliers, bounds = multipliers_with_bounds(balanced, delta)
-    radius, error = radius_with_bound(multipliers, bounds)
-    with np.errstate(divide="ignore"):
-        exponents = np.log(multipliers.astype(complex)) / system.period
     return Monodromy(
-        matrix=balanced * d[:, None] / d[None, :],
         multipliers=multipliers,
         multiplier_errors=bounds,
-        exponents=exponents,
-        spectral_radius=radius,
-        error=error,
+        period=system.period,
+        matrix=balanced * d[:, None] / d[None, :],
         matrix_error=delta,
         scaling=d,
         liouville_residual=liouville_residual(system, propagation),
-        verdict=verdict(radius, error),
-        period=system.period,
         method=method,
         rtol=float(rtol),
         substeps=propagation.steps.shape[0],

@@ -1,0 +1,83 @@
+"""Does a chart show at every point what the single computation gives there?"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from joblib import parallel_config
+from scipy.special import mathieu_a, mathieu_b
+
+from floquet import PeriodicSystem, Spectrum, chart, load_chart, monodromy, save_chart, scan
+from lumped.errors import NumericalError, ParameterError
+
+
+def mathieu_point(point: dict[str, float]) -> PeriodicSystem:
+    a, q = point["a"], point["q"]
+    return PeriodicSystem(lambda t: [[0.0, 1.0], [-(a - 2 * q * np.cos(2 * t)), 0.0]], np.pi)
+
+
+def test_ince_strutt_chart() -> None:
+    # With q > 0 the Mathieu equation is stable exactly for a_m(q) < a < b_(m+1)(q) (DLMF 28.17).
+    q_values, a_values = [0.5, 2.0], np.linspace(-1.0, 9.0, 31)
+    calls: list[tuple[int, int]] = []
+    result = chart(
+        mathieu_point, {"q": q_values, "a": a_values}, rtol=1e-8, progress=lambda i, n: calls.append((i, n))
+    )
+    assert result.spectral_radius.dims == ("q", "a")
+    assert calls[0] == (1, 62)
+    assert calls[-1] == (62, 62)
+    for q in q_values:
+        edges = np.sort([mathieu_a(m, q) for m in range(4)] + [mathieu_b(m, q) for m in range(1, 5)])
+        inside = np.searchsorted(edges, a_values) % 2 == 1  # between a_m and b_(m+1)
+        verdict = result.verdict.sel(q=q).values
+        # Conservative: inside the stable bands |multiplier| = 1, which no error bound can call stable.
+        assert (verdict[inside] == 0).all()
+        assert (verdict[~inside] == -1).all()
+
+
+def test_chart_equals_single_points_in_parallel() -> None:
+    axes = {"a": [1.1, 3.0], "q": [0.2, 0.7, 1.5]}
+    serial = chart(mathieu_point, axes)
+    with parallel_config(backend="threading"):  # processes could not import this test file
+        parallel = chart(mathieu_point, axes, n_jobs=2)
+    xr.testing.assert_identical(serial, parallel)
+    single = monodromy(mathieu_point({"a": 3.0, "q": 0.7}))
+    assert serial.spectral_radius.sel(a=3.0, q=0.7).item() == single.spectral_radius
+    assert serial.error.sel(a=3.0, q=0.7).item() == single.error
+
+
+def test_results_are_labelled() -> None:
+    result = chart(mathieu_point, {"a": [1.0], "q": [0.1]})
+    for variable in result.data_vars.values():
+        assert variable.attrs["units"]
+        assert variable.attrs["long_name"]
+
+
+def test_netcdf_round_trip_loses_nothing(tmp_path: Path) -> None:
+    pytest.importorskip("h5py")  # the backend that h5netcdf needs and does not always bring
+    result = chart(mathieu_point, {"a": [1.0, 2.0], "q": [0.1, 0.4]})
+    save_chart(result, tmp_path / "chart.nc")
+    again = load_chart(tmp_path / "chart.nc")
+    xr.testing.assert_equal(result, again)
+    assert again.spectral_radius.attrs["long_name"] == result.spectral_radius.attrs["long_name"]
+
+
+def test_failing_point_is_named() -> None:
+    def evaluate(point: dict[str, float]) -> Spectrum:
+        if point["speed"] > 1.5:
+            raise NumericalError("no luck")
+        return monodromy(PeriodicSystem(lambda t: [[-1.0]], 1.0))
+
+    with pytest.raises(NumericalError, match="at speed = 2: no luck"):
+        scan(evaluate, {"speed": [1.0, 2.0]})
+
+
+@pytest.mark.parametrize(
+    "axes", [{}, {"a": []}, {"a": [1.0, np.nan]}, {"a": [1.0, 1.0]}, {"a": [[1.0], [2.0]]}]
+)
+def test_unusable_axes_are_refused(axes: dict[str, list[float]]) -> None:
+    with pytest.raises(ParameterError, match="axes"):
+        chart(mathieu_point, axes)
