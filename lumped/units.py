@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from decimal import Decimal, DivisionByZero, InvalidOperation, Overflow
 from functools import cache
@@ -37,6 +38,7 @@ UNITS: dict[str, tuple[str, Decimal, str, str]] = {
     "mm/s": ("m/s", Decimal("1e-3"), "a velocity", "0.1 inch/s"),
 }
 _ZERO_CELSIUS = Decimal("273.15")
+_NOT_IN_QUANTITY = re.compile(r"[^\w\s.+\-*/^()°²³·]")
 
 
 @cache
@@ -72,6 +74,12 @@ def to_si(value: float | str, unit: str) -> float:
     advice = f"write a number (read as {unit}) or a string such as '{example}'"
     if len(value) > 80:
         raise ValueError(f"text of {len(value)} characters is no quantity; {advice}")
+    # The unit parser drops what it does not know: it would read 1,5 as 15.
+    if odd := _NOT_IN_QUANTITY.search(value):
+        comma = " and decimals with a point" if odd[0] == "," else ""
+        raise ValueError(f"{value!r} has the character {odd[0]!r}; {advice}{comma}")
+    if not any(character.isdigit() for character in value):
+        raise ValueError(f"'{value}' has no number; {advice}")
     try:
         quantity: pint.Quantity[Decimal] = registry.Quantity(value)
     except (InvalidOperation, Overflow, DivisionByZero):
@@ -82,12 +90,16 @@ def to_si(value: float | str, unit: str) -> float:
         raise ValueError(f"'{value}' has no unit; {advice}")
     if unit == "1" and not quantity.unitless:
         raise ValueError(f"'{value}' is not a pure number; write it without a unit")
-    if not quantity.check(registry.Quantity(1, si).dimensionality):
-        raise ValueError(f"'{value}' is not {meaning}; {advice}")
     try:
-        return float(quantity.to(si).magnitude)
+        # Comparing base units rather than dimensions keeps the radian: 50 Hz is not 50 rad/s.
+        if quantity.to_root_units().units != registry.Quantity(1, si).to_root_units().units:
+            raise ValueError(f"'{value}' is not {meaning}; {advice}")
+        result = float(quantity.to(si).magnitude)
     except (InvalidOperation, Overflow, OverflowError):
-        raise ValueError(f"'{value}' is no finite quantity; {advice}") from None
+        result = math.nan
+    if not math.isfinite(result):
+        raise ValueError(f"'{value}' is no finite quantity; {advice}")
+    return result
 
 
 def to_file(value: float, unit: str) -> float | str:
@@ -159,12 +171,12 @@ class Quantity:
         shown = value if isinstance(value, str) else f"{value!r} {self.unit}".removesuffix(" 1")
         if not math.isfinite(si):
             raise self._refusal(str(shown), "Give a finite number.")
-        stated = to_stated(si, self.unit)
+        # Bounds are converted like values, so a value at a bound equals it bit for bit.
         inside = (
-            (self.above is None or stated > self.above)
-            and (self.at_least is None or stated >= self.at_least)
-            and (self.below is None or stated < self.below)
-            and (self.at_most is None or stated <= self.at_most)
+            (self.above is None or si > to_si(self.above, self.unit))
+            and (self.at_least is None or si >= to_si(self.at_least, self.unit))
+            and (self.below is None or si < to_si(self.below, self.unit))
+            and (self.at_most is None or si <= to_si(self.at_most, self.unit))
         )
         if not inside:
             raise self._refusal(str(shown), self.action)

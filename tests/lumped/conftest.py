@@ -1,0 +1,164 @@
+"""Gear pairs and schema introspection shared by the tests of the lumped model."""
+
+from __future__ import annotations
+
+import copy
+import math
+
+import numpy as np
+import pytest
+
+from lumped import load_gear_pair
+from lumped.units import Quantity
+
+
+def _quantities(model, prefix=""):
+    """Every quantity field of the schema, through unions, as (dotted path, Quantity)."""
+    from lumped.serialise import _models_in
+
+    for name, info in model.model_fields.items():
+        quantity = next((m for m in info.metadata if isinstance(m, Quantity)), None)
+        if quantity is not None:
+            yield f"{prefix}{name}", quantity
+        for inner in _models_in(info.annotation):
+            yield from _quantities(inner, f"{prefix}{name}.")
+
+
+@pytest.fixture(scope="session")
+def nasa():
+    """The default pair as shipped."""
+    return load_gear_pair("nasa_28_28")
+
+
+@pytest.fixture(scope="session")
+def coulomb_pair(nasa):
+    """The default pair with law I and a round coefficient."""
+    return nasa.with_(friction__law="coulomb", friction__coefficient=0.05)
+
+
+@pytest.fixture(scope="session")
+def unequal(nasa):
+    """25/31 on the same centre distance with different inertias, masses and bearings everywhere."""
+    return nasa.with_(
+        {
+            "pinion.teeth": 25,
+            "gear.teeth": 31,
+            "pinion.mass": 0.25,
+            "gear.mass": 0.41,
+            "pinion.inertia": 2.1e-4,
+            "gear.inertia": 4.9e-4,
+            "bearings.pinion.loa_stiffness": 0.8e8,
+            "bearings.pinion.oloa_stiffness": 1.3e8,
+            "bearings.gear.loa_stiffness": 1.1e8,
+            "bearings.gear.oloa_stiffness": 0.6e8,
+            "bearings.gear.loa_damping_ratio": 0.03,
+            "bearings.pinion.oloa_damping_ratio": 0.07,
+            "friction.law": "coulomb",
+            "friction.coefficient": 0.08,
+            "mesh.stiffness": {"model": "parabolic"},
+        }
+    )
+
+
+@pytest.fixture(scope="session")
+def high_contact(nasa):
+    """Contact ratio between 2 and 3: long addenda on many teeth."""
+    return nasa.with_(
+        {
+            "pinion.teeth": 50,
+            "gear.teeth": 50,
+            "centre_distance": None,
+            "basic_rack.addendum_coefficient": 1.35,
+            "basic_rack.dedendum_coefficient": 1.6,
+            "basic_rack.fillet_radius_coefficient": 0.25,
+            "friction.law": "coulomb",
+            "friction.coefficient": 0.05,
+        }
+    )
+
+
+@pytest.fixture(scope="session")
+def edited(nasa):
+    """Function: the default pair's file data with one field replaced (or deleted by ``...``)."""
+
+    def edit(path, value):
+        data = copy.deepcopy(nasa.to_mapping())
+        *parents, leaf = path.split(".")
+        node = data
+        for part in parents:
+            node = node.setdefault(part, {})
+        if value is ...:
+            node.pop(leaf)
+        else:
+            node[leaf] = value
+        return data
+
+    return edit
+
+
+@pytest.fixture(scope="session")
+def written_out():
+    """Function: accelerations of model.md eqs. 1 to 9, typed in here from the page, one line per equation."""
+
+    def accelerations(pair, geometry, masses, t, state, k, c, mu, torque, brake):
+        """k, c, mu are functions of xi; state is theta_p, theta_g, x_p, x_g, y_p, y_g and rates."""
+        th_p, th_g, x_p, x_g, y_p, y_g, dth_p, dth_g, dx_p, dx_g, dy_p, dy_g = state
+        r_bp, r_bg = geometry.base_radius_pinion, geometry.base_radius_gear
+        lam, omega = geometry.base_pitch, geometry.omega_pinion
+        delta = r_bp * th_p - r_bg * th_g + x_p - x_g
+        rate = r_bp * dth_p - r_bg * dth_g + dx_p - dx_g
+        n = math.floor(geometry.contact_ratio)
+        sum_n = sum_f = sum_pf = sum_gf = 0.0
+        for i in range(n + 1):
+            xi = geometry.L_XA + (n - i) * lam + (omega * r_bp * t) % lam
+            if not geometry.L_XA <= xi <= geometry.L_XD:
+                continue
+            load = float(k(xi)) * delta + float(c(xi)) * rate
+            force = float(mu(xi)) * load
+            sum_n += load
+            sum_f += force
+            sum_pf += xi * force
+            sum_gf += (geometry.L_XY - xi) * force
+        b_p, b_g = pair.bearings.pinion, pair.bearings.gear
+        m_p, m_g, j_p, j_g = masses
+        return np.array(
+            [
+                (torque - r_bp * sum_n - sum_pf) / j_p,
+                (-brake + r_bg * sum_n + sum_gf) / j_g,
+                (
+                    -2 * b_p.loa_damping_ratio * math.sqrt(b_p.loa_stiffness * m_p) * dx_p
+                    - b_p.loa_stiffness * x_p
+                    - sum_n
+                )
+                / m_p,
+                (
+                    -2 * b_g.loa_damping_ratio * math.sqrt(b_g.loa_stiffness * m_g) * dx_g
+                    - b_g.loa_stiffness * x_g
+                    + sum_n
+                )
+                / m_g,
+                (
+                    -2 * b_p.oloa_damping_ratio * math.sqrt(b_p.oloa_stiffness * m_p) * dy_p
+                    - b_p.oloa_stiffness * y_p
+                    + sum_f
+                )
+                / m_p,
+                (
+                    -2 * b_g.oloa_damping_ratio * math.sqrt(b_g.oloa_stiffness * m_g) * dy_g
+                    - b_g.oloa_stiffness * y_g
+                    - sum_f
+                )
+                / m_g,
+            ]
+        )
+
+    return accelerations
+
+
+def pytest_generate_tests(metafunc):
+    """Parametrise ``quantity_field`` over every quantity of the schema."""
+    if "quantity_field" in metafunc.fixturenames:
+        from lumped import GearPair
+
+        fields = list(dict(_quantities(GearPair)).items())
+        metafunc.parametrize("quantity_field", fields, ids=[path for path, _ in fields])
