@@ -36,8 +36,8 @@ class PowerBalance:
     bearings : dissipated in the bearings
     friction : dissipated by sliding friction between the teeth
     mesh_damping : dissipated by the damping of the teeth
-    mesh_stiffness : work done on the elastic teeth: stored, or moved by the change of stiffness along the
-        path
+    mesh_stiffness : work done on the elastic teeth: stored, or moved by the change of stiffness and profile
+        along the path
     """
 
     driving: float
@@ -128,10 +128,9 @@ def _powers(model: ExudynModel, t: FloatArray, q: FloatArray, v: FloatArray) -> 
             t[i], q[i], v[i], model.parameters, model.flags, m.table, m.offsets, wrench, contacts
         )
         c = contacts[:count]
-        total = c[:, kn.LOAD] @ c[:, kn.OVERLAP_RATE]
         # A contact that does not press stores and dissipates nothing.
         pressed = c[c[:, kn.LOAD] != 0.0]
-        elastic = float(np.sum(pressed[:, kn.K] * pressed[:, kn.OVERLAP] * pressed[:, kn.OVERLAP_RATE]))
+        damping = float(np.sum(pressed[:, kn.C] * pressed[:, kn.OVERLAP_RATE] ** 2))
         powers[i, 3] = c[:, kn.FRICTION_FORCE] @ c[:, kn.SLIDE]
-        powers[i, 4], powers[i, 5] = total - elastic, elastic
+        powers[i, 4], powers[i, 5] = damping, c[:, kn.LOAD] @ c[:, kn.CLOSING] - damping
     return powers

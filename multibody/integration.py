@@ -7,8 +7,9 @@ and accelerations; its error, of sixth order in the step, stays below the integr
 
 from __future__ import annotations
 
+import contextlib
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import exudyn as exu
@@ -133,10 +134,11 @@ def _run(
     system.systemData.SetODE2Coordinates_t(v.tolist(), configuration=exu.ConfigurationType.Initial)
     budget.reset()
     try:
-        finished = system.SolveDynamic(s)
-    except KeyboardInterrupt:
-        raise
+        with _quiet():
+            finished = system.SolveDynamic(s)
     except Exception as error:  # exudyn wraps whatever a user function raises in its own types
+        if "KeyboardInterrupt" in str(error):  # Ctrl-C lands in the user function and is wrapped as well
+            raise KeyboardInterrupt from None
         raise _failure(model, start, stop) from error
     if not finished:
         raise _failure(model, start, stop)
@@ -150,6 +152,17 @@ def _run(
     keep = np.diff(times, prepend=-np.inf) > 0.0
     times, states_q, states_v = times[keep], states_q[keep], states_v[keep]
     return Segment(times, states_q, states_v, accelerations(model, times, states_q, states_v))
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep exudyn from writing to the console; what went wrong is in the exception."""
+    before = exu.config.printToConsole
+    exu.config.printToConsole = False
+    try:
+        yield
+    finally:
+        exu.config.printToConsole = before
 
 
 def _failure(model: ExudynModel, start: float, stop: float) -> NumericalError:

@@ -50,8 +50,10 @@ ROTATION_PHASE, MOVING_LINE, SLIDING, ENTRY_SHIFT, CONTACT_LOSS, BACK_SIDE = 1, 
 STIFFNESS, DAMPING, FRICTION, ERROR = 0, 1, 2, 3
 
 # Columns of a contact record.
-XI, LOAD, FRICTION_FORCE, MU, K, SLIDE, OVERLAP, OVERLAP_RATE, C, FLANK = range(10)
-N_RECORD = 10
+# OVERLAP and its rate are those pressed elastically (tooth error taken off); CLOSING is the overlap's own
+# rate.
+XI, LOAD, FRICTION_FORCE, MU, K, SLIDE, OVERLAP, OVERLAP_RATE, C, FLANK, CLOSING = range(11)
+N_RECORD = 11
 
 
 @compiled
@@ -180,6 +182,7 @@ def contact_forces(
             record[XI], record[LOAD], record[FRICTION_FORCE], record[MU] = xi, normal, mu * normal, mu
             record[K], record[C], record[SLIDE] = stiffness, damping, slide
             record[OVERLAP], record[OVERLAP_RATE], record[FLANK] = pressed, pressing, flank
+            record[CLOSING] = rate
             count += 1
     total = 0.0
     for i in range(6):

@@ -58,7 +58,7 @@ def linear_forces(
         record = contacts[count]
         record[kn.XI], record[kn.LOAD], record[kn.FRICTION_FORCE], record[kn.MU] = xi, normal, friction, mu
         record[kn.K], record[kn.C], record[kn.FLANK] = stiffness, damping, 1.0
-        record[kn.OVERLAP], record[kn.OVERLAP_RATE] = pressed, pressing
+        record[kn.OVERLAP], record[kn.OVERLAP_RATE], record[kn.CLOSING] = pressed, pressing, rate
         gear_arm = p[kn.L_XY] - xi
         slide = (p[kn.OMEGA_P] - v[2]) * xi - (p[kn.OMEGA_G] + v[5]) * gear_arm - (v[1] - v[4])
         record[kn.SLIDE] = slide
