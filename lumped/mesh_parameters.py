@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, ValidationInfo, model_validator
 
 from lumped.section import Section
 from lumped.units import Quantity
@@ -39,7 +39,67 @@ class ParabolicStiffness(Section):
     )
 
 
-StiffnessModel = Annotated[RectangularStiffness | ParabolicStiffness, Field(discriminator="model")]
+class EnergyStiffness(Section):
+    """Potential-energy stiffness of the true tooth form on its gear body."""
+
+    model: Literal["energy"] = "energy"
+    scale: Literal["none", "iso6336"] = Field(
+        "none", description="'iso6336' scales the curve to the mean mesh stiffness of ISO 6336-1 method B"
+    )
+    ramp_length: Annotated[float, Quantity("mm", at_least=0)] = Field(
+        0.0, description="length along the path over which a pair takes up its stiffness; 0 is a jump"
+    )
+
+
+class TableStiffness(Section):
+    """Tabulated stiffness: of one pair over the path of contact, or of all pairs over a mesh cycle."""
+
+    model: Literal["table"] = "table"
+    kind: Literal["pair", "total"] = Field(
+        "pair", description="stiffness of one pair from A to D, or sum of all pairs over one mesh cycle"
+    )
+    axis: Literal["position_mm", "roll_angle_deg", "phase"] = Field(
+        description="what 'points' are: distance from X [mm], pinion roll angle [deg], or cycles after A [1]"
+    )
+    points: tuple[float, ...] = Field(
+        min_length=4, max_length=100_000, description="increasing abscissae, in the unit of 'axis'"
+    )
+    stiffness: tuple[float, ...] = Field(
+        min_length=4, max_length=100_000, description="stiffness at the points [N/m]"
+    )
+    interpolation: Literal["monotone", "cubic"] = Field(
+        "monotone",
+        description="monotone (no overshoot, continuous slope) or cubic spline (continuous curvature)",
+    )
+    ramp_length: Annotated[float, Quantity("mm", at_least=0)] = Field(
+        0.0, description="length along the path over which a pair takes up its stiffness; 0 is a jump"
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _read_file(cls, data: Any, info: ValidationInfo) -> Any:
+        """Replace ``file = "curve.csv"`` by its contents; a relative path is beside the parameter file."""
+        if not isinstance(data, dict) or "file" not in data:
+            return data
+        from lumped.stiffness.table_file import read_stiffness_table
+
+        folder = (info.context or {}).get("folder", ".")
+        return {key: value for key, value in data.items() if key != "file"} | read_stiffness_table(
+            data["file"], folder
+        )
+
+    @model_validator(mode="after")
+    def _checked(self) -> Self:
+        from lumped.stiffness.table_file import check_stiffness_table
+
+        check_stiffness_table(self.points, self.stiffness)
+        return self
+
+
+StiffnessModel = Annotated[
+    RectangularStiffness | ParabolicStiffness | EnergyStiffness | TableStiffness,
+    Field(discriminator="model"),
+]
 
 
 class Mesh(Section):

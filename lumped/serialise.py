@@ -77,7 +77,7 @@ def load_gear_pair(source: str | Path | Mapping[str, Any] | GearPair) -> GearPai
         return _validated(_parsed(preset_text(source), f"preset {source}"), f"preset {source}")
     if path.suffix.lower() != ".toml" and not path.exists() and "/" not in str(source):
         preset_text(str(source))
-    return _validated(_parsed(_read(path), str(path)), str(path))
+    return _validated(_parsed(_read(path), str(path)), str(path), path.parent)
 
 
 def to_mapping(pair: GearPair) -> dict[str, Any]:
@@ -223,9 +223,10 @@ def _parsed(text: str, source: str) -> dict[str, Any]:
         ) from None
 
 
-def _validated(data: Mapping[str, Any], source: str) -> GearPair:
+def _validated(data: Mapping[str, Any], source: str, folder: Path = Path()) -> GearPair:
+    """Validate; data files that the parameters name are read relative to ``folder``."""
     try:
-        return GearPair.model_validate(data)
+        return GearPair.model_validate(data, context={"folder": folder})
     except ParameterError as error:
         raise ParameterError(list(error.problems), error.source or source) from None
     except ValidationError as error:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from lumped.stiffness.energy import energy
 from lumped.stiffness.parabolic import parabolic
 from lumped.stiffness.rectangular import rectangular
+from lumped.stiffness.table import table
 
 if TYPE_CHECKING:
     from lumped.gear_geometry import Geometry
@@ -17,6 +19,8 @@ if TYPE_CHECKING:
 MODELS: dict[str, Callable[[Any, GearPair, Geometry], PathFunction]] = {
     "rectangular": rectangular,
     "parabolic": parabolic,
+    "energy": energy,
+    "table": table,
 }
 
 
@@ -36,4 +40,4 @@ def pair_stiffness(pair: GearPair, geometry: Geometry) -> PathFunction:
     return MODELS[model.model](model, pair, geometry)
 
 
-__all__ = ["MODELS", "pair_stiffness", "parabolic", "rectangular"]
+__all__ = ["MODELS", "energy", "pair_stiffness", "parabolic", "rectangular", "table"]

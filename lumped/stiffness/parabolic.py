@@ -12,19 +12,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from lumped.errors import refuse
 from lumped.path_function import PathFunction
 from lumped.stiffness import iso6336
+from lumped.stiffness.ramp import RAMP, check_ramp_length
 
 if TYPE_CHECKING:
     from lumped.gear_geometry import Geometry
     from lumped.mesh_parameters import ParabolicStiffness
     from lumped.parameters import GearPair
-
-#: Ramp in s from 0 to 1. The square of the cubic smoothstep, so that sqrt(k), and with it the damping
-#: 2 zeta sqrt(k m_e), is analytic on the ramp too; k starts like s^4 and joins the parabola with a
-#: continuous slope.
-RAMP = Polynomial([0.0, 0.0, 3.0, -2.0]) ** 2
 
 
 def iso_end_ratio(contact_ratio: float) -> float:
@@ -57,14 +52,8 @@ def parabola(
     PathFunction : of degree 2 without ramps, with switches at the inner ends of the ramps otherwise (the
         curvature jumps there)
     """
+    check_ramp_length(ramp_length, low, high)
     half = 0.5 * (high - low)
-    if ramp_length > half:
-        raise refuse(
-            "mesh.stiffness.ramp_length",
-            f"{ramp_length * 1e3:g} mm",
-            f"0 to {half * 1e3:.4f} mm, half of the path of contact",
-            "Shorten the ramp.",
-        )
     arch = Polynomial([end_ratio, 2.0 * (1.0 - end_ratio) / half, -(1.0 - end_ratio) / half**2]) * peak
     if ramp_length == 0.0:
         return PathFunction(

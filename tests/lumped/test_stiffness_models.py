@@ -15,7 +15,7 @@ def with_model(**model):
     return load_gear_pair("nasa_28_28").with_(mesh__stiffness=model)
 
 
-@pytest.mark.parametrize("model", sorted(MODELS))
+@pytest.mark.parametrize("model", sorted(set(MODELS) - {"table"}))
 def test_every_model_spans_the_path_of_contact_and_is_positive_inside(model):
     pair = with_model(model=model)
     g = geometry(pair)

@@ -1,0 +1,154 @@
+"""Tabulated stiffness: interpolation of a pair's curve, or of a total curve shared out to the pairs."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
+
+from lumped.errors import NumericalError, refuse
+from lumped.path_function import FloatArray, PathFunction
+from lumped.stiffness.energy import energy_curve
+from lumped.stiffness.ramp import check_ramp_length, ramped
+
+if TYPE_CHECKING:
+    from lumped.gear_geometry import Geometry
+    from lumped.mesh_parameters import TableStiffness
+    from lumped.parameters import GearPair
+
+#: A pair's table may miss the ends of the path of contact by this fraction of the path; it is then continued
+#: with its end value's polynomial.
+_END_GAP = 0.02
+#: Largest gap between points, over a mesh cycle, across which a curve is still called sampled.
+_LARGEST_GAP = 0.25
+_FIT_TOLERANCE = 1e-10
+
+
+def table(model: TableStiffness, pair: GearPair, geometry: Geometry) -> PathFunction:
+    """Stiffness of a tooth pair from A to D by interpolation of a table [N/m].
+
+    A total curve is shared out so that the sum over the pairs in contact is the table: each pair gets the
+    part that its potential-energy stiffness has in the sum of theirs.
+
+    Parameters
+    ----------
+    model : the table
+    pair, geometry : the gear pair and its geometry
+
+    Raises
+    ------
+    ParameterError : the table does not cover the path of contact, or one mesh cycle
+    """
+    position = _positions(model, geometry)
+    stiffness = np.array(model.stiffness)
+    if model.kind == "pair":
+        return ramped(_pair_curve(position, stiffness, model, geometry), model.ramp_length)
+    check_ramp_length(model.ramp_length, geometry.L_XA, geometry.L_XD)
+    return _shared(_total_curve(position, stiffness, model, geometry), model.ramp_length, pair, geometry)
+
+
+def _positions(model: TableStiffness, geometry: Geometry) -> FloatArray:
+    """Points of the table as xi [m]."""
+    points = np.array(model.points)
+    if model.axis == "position_mm":
+        return np.asarray(points * 1e-3, dtype=np.float64)
+    if model.axis == "roll_angle_deg":
+        return np.asarray(np.deg2rad(points) * geometry.base_radius_pinion, dtype=np.float64)
+    return np.asarray(geometry.L_XA + points * geometry.base_pitch, dtype=np.float64)
+
+
+def _spline(x: FloatArray, y: FloatArray, interpolation: str) -> PPoly:
+    spline = PchipInterpolator(x, y) if interpolation == "monotone" else CubicSpline(x, y)
+    return PPoly(spline.c, spline.x)
+
+
+def _pair_curve(x: FloatArray, y: FloatArray, model: TableStiffness, geometry: Geometry) -> PathFunction:
+    low, high = geometry.L_XA, geometry.L_XD
+    allowed = _END_GAP * (high - low)
+    if x[0] > low + allowed or x[-1] < high - allowed:
+        raise refuse(
+            "mesh.stiffness.points",
+            f"{x[0] * 1e3:.4f} to {x[-1] * 1e3:.4f} mm from X",
+            f"at least {low * 1e3:.4f} to {high * 1e3:.4f} mm, A to D",
+            "Extend the table, or check its axis and unit.",
+        )
+    _check_gaps(np.diff(np.clip(x, low, high)).max(), geometry)
+    poly = _spline(x, y, model.interpolation)
+    inner = x[(x > low) & (x < high)]
+    breaks = np.array([low, *inner, high])
+    left = np.clip(np.searchsorted(poly.x, breaks[:-1], side="right") - 1, 0, poly.c.shape[1] - 1)
+    shift = breaks[:-1] - poly.x[left]
+    taylor = [
+        poly.derivative(k)(poly.x[left] + shift, extrapolate=True) / math.factorial(k) for k in (3, 2, 1, 0)
+    ]
+    return _positive(PathFunction(breaks, np.array(taylor), np.empty(0)))
+
+
+def _total_curve(x: FloatArray, y: FloatArray, model: TableStiffness, geometry: Geometry) -> PPoly:
+    """Periodic interpolant of the total stiffness over xi, one period from A, wrapped around."""
+    period = geometry.base_pitch
+    phase = np.mod(x - geometry.L_XA, period)
+    order = np.argsort(phase, kind="stable")
+    phase, y = phase[order], y[order]
+    same = np.diff(phase, append=phase[0] + period) <= 1e-9 * period
+    if same.any():  # several periods, or both ends of one: equal phases must agree
+        following = np.roll(y, -1)
+        if np.any(np.abs(y - following)[same] > 1e-3 * y[same]):
+            raise refuse(
+                "mesh.stiffness.stiffness",
+                "different values at the same phase",
+                f"a curve with the period {period * 1e3:.4f} mm (one base pitch)",
+                "Check the axis and unit, or give one period only.",
+            )
+        phase, y = phase[~same], y[~same]
+    _check_gaps(np.diff(phase, append=phase[0] + period).max(), geometry)
+    # Periodic by repetition: the middle copy of three is what an infinite table gives.
+    tiled = np.concatenate([phase - period, phase, phase + period])
+    return _spline(tiled, np.tile(y, 3), model.interpolation)
+
+
+def _shared(total: PPoly, ramp_length: float, pair: GearPair, geometry: Geometry) -> PathFunction:
+    low, high, period = geometry.L_XA, geometry.L_XD, geometry.base_pitch
+    shifts = np.arange(1 - geometry.pairs, geometry.pairs) * period
+    weight = ramped(energy_curve(pair, geometry), ramp_length)
+
+    def share(xi: FloatArray) -> FloatArray:
+        part = weight(xi) / sum(weight(xi + shift) for shift in shifts)
+        return np.asarray(total(np.mod(xi - low, period)) * part, dtype=np.float64)
+
+    # Another pair enters or leaves where xi is a whole number of pitches from A or D.
+    ramps = [low + ramp_length, high - ramp_length] if ramp_length > 0.0 else []
+    marks = np.add.outer([low, high, *ramps], shifts).ravel()
+    switches = np.unique(marks[(marks > low + 1e-9 * period) & (marks < high - 1e-9 * period)])
+    knots = np.add.outer(low + total.x, shifts).ravel()
+    knots = knots[(knots > low) & (knots < high)]
+    apart = np.abs(np.subtract.outer(knots, switches)).min(axis=1, initial=np.inf) > 1e-9 * period
+    inner = np.unique(np.concatenate([switches, knots[apart]]))
+    inner = inner[np.diff(inner, prepend=-np.inf) > 1e-9 * period]
+    switches = switches[np.isin(switches, inner)]
+    scale = float(np.abs(total.c[-1]).max())
+    breaks = np.array([low, *inner, high])
+    return _positive(PathFunction.fit(share, breaks, switches, tolerance=_FIT_TOLERANCE * scale))
+
+
+def _check_gaps(gap: float, geometry: Geometry) -> None:
+    if gap > _LARGEST_GAP * geometry.base_pitch:
+        raise refuse(
+            "mesh.stiffness.points",
+            f"a gap of {gap / geometry.base_pitch:.3f} mesh cycles",
+            f"<= {_LARGEST_GAP:g} mesh cycles between points, over the whole curve",
+            "Sample the curve more densely, or check the axis and unit.",
+        )
+
+
+def _positive(k: PathFunction) -> PathFunction:
+    low, high = k.interval
+    lowest = float(k(np.linspace(low, high, 4001)[1:-1]).min())
+    if lowest < 0.0:
+        raise NumericalError(
+            f"The interpolated stiffness falls to {lowest:.3g} N/m: use interpolation = 'monotone' or more "
+            "points."
+        )
+    return k

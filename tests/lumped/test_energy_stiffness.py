@@ -1,0 +1,223 @@
+"""Does the potential-energy stiffness agree with closed forms, with ISO 6336-1 and with itself?"""
+
+import math
+
+import numpy as np
+import pytest
+
+from lumped import geometry, load_gear_pair
+from lumped.stiffness import iso6336, pair_stiffness
+from lumped.stiffness.energy import hertz_compliance, pair_compliance, violations
+from lumped.stiffness.foundation import (
+    coefficients,
+    foundation_compliance,
+    published_compliance,
+    ring_twist,
+)
+from lumped.stiffness.tooth_beam import beam_compliance
+from lumped.stiffness.tooth_profile import ToothProfile
+
+PRESETS = ["nasa_28_28", "nasa_art_25_31", "kahraman_blankenship_50_50", "fzg_c"]
+
+
+def energy_pair(name="nasa_28_28", **changes):
+    return load_gear_pair(name).with_({"mesh.stiffness": {"model": "energy"}, **changes})
+
+
+class Bar:
+    """A prismatic tooth of half thickness h and length l: the beam integrals have closed forms."""
+
+    base_radius, form_length, fillet_range = 1.0, 0.5, (0.0, 1.0)
+    half, foot = 0.1, 0.4
+
+    def fillet_points(self, roll):
+        return self.foot * roll, np.full_like(roll, self.half), np.full_like(roll, self.foot)
+
+    def involute_points(self, length):
+        flat = np.full_like(length, self.half)
+        return self.foot + length - self.form_length, flat, np.ones_like(length), np.full_like(length, 0.3)
+
+
+def test_prismatic_cantilever():
+    # End load F at angle a on the surface of a bar: bending by F cos a at the tip and the couple F sin a h.
+    modulus, poisson, a, h = 2.0e11, 0.3, 0.3, 0.1
+    length = np.array([0.7, 1.1])
+    span = 0.4 + length - 0.5
+    inertia, area, shear_modulus = 2 / 3 * h**3, 2 * h, modulus / 2.6
+    force, couple = math.cos(a), math.sin(a) * h
+    bending = (force**2 * span**3 / 3 - force * couple * span**2 + couple**2 * span) / (modulus * inertia)
+    found = beam_compliance(Bar(), length, modulus, poisson)
+    tight = 1e-13  # polynomials of degree 2 are exact under Gauss; rounding only
+    assert found.bending == pytest.approx(bending, rel=tight)
+    assert found.shear == pytest.approx(1.2 * math.cos(a) ** 2 * span / (shear_modulus * area), rel=tight)
+    assert found.axial == pytest.approx(math.sin(a) ** 2 * span / (modulus * area), rel=tight)
+
+
+def test_gauss_integration_converges_exponentially():
+    profile = ToothProfile(28, 3e-3, math.radians(20.0), 0.0, 1.25, 0.38)
+    length = np.linspace(profile.form_length, 0.5 * profile.base_radius, 5)
+
+    def flexibility(nodes):
+        from lumped.stiffness.tooth_beam import _integrals
+
+        return np.concatenate(_integrals(profile, length, nodes))
+
+    exact = flexibility(80)
+    errors = [np.abs(flexibility(n) / exact - 1).max() for n in (6, 12, 18)]
+    # Analytic integrands: each six nodes gain at least two decades until rounding.
+    assert errors[1] < 1e-2 * errors[0]
+    assert errors[2] < 1e-2 * errors[1]
+    assert np.abs(flexibility(24) / exact - 1).max() < 1e-12
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_quadrature_error_of_the_presets(name):
+    pair = energy_pair(name)
+    g = geometry(pair)
+    compliance = pair_compliance(pair, g, np.linspace(g.L_XA, g.L_XD, 41))
+    finest = pair_compliance(pair, g, np.linspace(g.L_XA, g.L_XD, 41), nodes=64)
+    true = np.abs(compliance.stiffness / finest.stiffness - 1).max()
+    estimate = max(compliance.pinion.quadrature_error, compliance.gear.quadrature_error)
+    assert estimate < 1e-9
+    assert true <= estimate + 1e-13  # the estimate bounds the true error, down to rounding
+
+
+def test_hertz_of_equal_steel_gears():
+    # Yang and Sun (1985): k_h = pi E b/(4 (1 - nu^2)).
+    expected = math.pi * 206e9 * 0.02 / (4 * (1 - 0.09))
+    assert 1.0 / hertz_compliance((206e9, 206e9), (0.3, 0.3), 0.02) == pytest.approx(expected, rel=1e-14)
+
+
+def test_foundation_coefficients_stay_in_the_published_ranges():
+    # The paper's ranges of the fitted functions: L* to 6.94, P* to 13.47, Q* 0.141 (thick body, wide tooth)
+    # to 0.62 (thin body). The polynomials meet these corners within their fit error.
+    h, theta = np.meshgrid(np.linspace(1.4, 7.0, 29), np.linspace(0.01, 0.12, 45))
+    l_, _, p_, _ = coefficients(h, theta)
+    assert (l_.max(), p_.max()) == pytest.approx((6.94, 13.47), rel=5e-3)
+    assert coefficients(7.0, 0.12)[3] == pytest.approx(0.141, abs=2e-3)
+    assert coefficients(1.4, 0.06)[3] == pytest.approx(0.62, abs=2e-2)
+
+
+def test_foundation_holds_the_twist_of_the_ring():
+    # Between h = 2 and 6 the published formula must grow by what Lame's ring twists more; the rest is local
+    # and varies slowly (fit error).
+    profile = ToothProfile(50, 1.0, math.radians(20.0), 0.0, 1.25, 0.38)
+    angle = profile.involute_points(np.array([25.0 * math.sin(math.radians(20.0))]))[3]
+
+    def parts(h):
+        formula = published_compliance(
+            profile.base_radius, profile.root_radius, h, profile.root_half_angle, angle, 1.0
+        )[0]
+        return formula, ring_twist(
+            profile.base_radius, profile.root_radius, profile.root_radius / h, 1.0, 0.3
+        )
+
+    (low, low_twist), (high, high_twist) = parts(2.0), parts(6.0)
+    assert high - low == pytest.approx(high_twist - low_twist, rel=0.06)
+    assert (high - high_twist) == pytest.approx(low - low_twist, rel=0.10)
+
+
+def test_foundation_over_the_bore():
+    args = {"half_angle": 0.1, "load_angle": np.array([0.25]), "modulus": 2e11, "poisson": 0.3}
+    inside = foundation_compliance(40e-3, 39e-3, 39e-3 / 3, **args)
+    assert inside == pytest.approx(
+        published_compliance(40e-3, 39e-3, 3.0, 0.1, np.array([0.25]), 2e11), rel=1e-14
+    )
+    solid = foundation_compliance(40e-3, 39e-3, 0.0, **args)
+    assert 0.0 < solid[0] < inside[0]  # no hub, no twist
+    # Below the fitted bores the twist grows as in closed form; the step at h = 7 is the fit's error.
+    below, above = (foundation_compliance(40e-3, 39e-3, 39e-3 / h, **args)[0] for h in (6.999, 7.001))
+    assert above == pytest.approx(below, rel=0.05)
+    ten = foundation_compliance(40e-3, 39e-3, 39e-3 / 10, **args)[0]
+    assert ten - solid[0] == pytest.approx(ring_twist(40e-3, 39e-3, 39e-3 / 10, 2e11, 0.3), rel=1e-12)
+
+
+def test_components_add_up_and_scale():
+    pair = energy_pair()
+    g = geometry(pair)
+    xi = np.linspace(g.L_XA, g.L_XD, 11)
+    c = pair_compliance(pair, g, xi)
+    total = c.hertz + sum(
+        getattr(tooth, part)
+        for tooth in (c.pinion, c.gear)
+        for part in ("bending", "shear", "axial", "foundation")
+    )
+    assert c.stiffness == pytest.approx(1.0 / total, rel=1e-14)
+    wide = energy_pair(**{"pinion.face_width": 12.7, "gear.face_width": 12.7})
+    assert pair_compliance(wide, geometry(wide), xi).stiffness == pytest.approx(2 * c.stiffness, rel=1e-12)
+    # Twice the size: the plane problem has no length, so k per width stays.
+    big = energy_pair(**{"basic_rack.module": 6.35, "centre_distance": 177.8, "mesh.backlash": 0.2})
+    assert pair_compliance(big, geometry(big), 2 * xi).stiffness == pytest.approx(c.stiffness, rel=1e-10)
+    soft = energy_pair(**{"pinion.youngs_modulus": 103, "gear.youngs_modulus": 103})
+    assert pair_compliance(soft, geometry(soft), xi).stiffness == pytest.approx(c.stiffness / 2, rel=1e-12)
+
+
+def test_equal_gears_are_symmetric_and_stiffest_at_the_pitch_point():
+    pair = energy_pair()
+    g = geometry(pair)
+    k = pair_stiffness(pair, g)
+    offset = np.linspace(0.0, 0.99 * (g.L_XD - g.L_XP), 40)
+    assert k(g.L_XP + offset) == pytest.approx(k(g.L_XP - offset), rel=1e-9)  # fit tolerance 1e-10
+    assert np.all(np.diff(k(g.L_XP + offset)) < 0.0)
+
+
+def test_pinion_tooth_softens_towards_its_tip():
+    pair = energy_pair("fzg_c")
+    g = geometry(pair)
+    c = pair_compliance(pair, g, np.linspace(g.L_XA, g.L_XD, 30))
+    assert np.all(np.diff(c.pinion.total) > 0.0)
+    assert np.all(np.diff(c.gear.total) < 0.0)
+
+
+def test_fit_matches_direct_evaluation():
+    pair = energy_pair("kahraman_blankenship_50_50")
+    g = geometry(pair)
+    xi = np.linspace(g.L_XA, g.L_XD, 500)[1:-1]
+    direct = pair_compliance(pair, g, xi).stiffness
+    assert pair_stiffness(pair, g)(xi) == pytest.approx(direct, rel=1e-9)  # fit tolerance 1e-10 of the peak
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_level_against_the_theory_behind_iso(name):
+    # c'_th C_B of ISO 6336-1 is plane elastic theory of solid gears; without the measured factor C_M = 0.8 it
+    # must lie where the energy method does. Two plane models with different foundation formulas: 12 %.
+    pair = energy_pair(name)
+    g = geometry(pair)
+    peak = pair_stiffness(pair, g)(np.linspace(g.L_XA, g.L_XD, 201)[1:-1]).max() / g.face_width / iso6336.SI
+    theory = iso6336.pair_single_stiffness(pair) / iso6336.CORRECTION
+    assert peak == pytest.approx(theory, rel=0.12)
+
+
+def test_scaling_to_iso():
+    pair = energy_pair()
+    scaled = pair.with_(mesh__stiffness={"model": "energy", "scale": "iso6336"})
+    g = geometry(pair)
+    k, k_iso = pair_stiffness(pair, g), pair_stiffness(scaled, g)
+    mean = k_iso.mean() * g.contact_ratio / g.face_width / iso6336.SI
+    target = iso6336.mean_mesh_stiffness(iso6336.pair_single_stiffness(pair), g.contact_ratio)
+    assert mean == pytest.approx(target, rel=1e-12)
+    xi = np.linspace(g.L_XA, g.L_XD, 50)[1:-1]
+    ratio = k_iso(xi) / k(xi)
+    assert ratio == pytest.approx(ratio[0], rel=1e-12)
+
+
+def test_ramped_energy_stiffness_rises_from_zero():
+    pair = energy_pair().with_(mesh__stiffness={"model": "energy", "ramp_length": 1.0})
+    plain = energy_pair()
+    g = geometry(pair)
+    k, reference = pair_stiffness(pair, g), pair_stiffness(plain, g)
+    assert k([g.L_XA, g.L_XD]) == pytest.approx(0.0, abs=1e-9 * float(reference(g.L_XP)))
+    middle = np.linspace(g.L_XA + 1.0e-3, g.L_XD - 1.0e-3, 20)
+    assert k(middle) == pytest.approx(reference(middle), rel=1e-9)
+    # Half way up: smoothstep(1/2)^2 = 1/4.
+    assert k(g.L_XA + 0.5e-3) == pytest.approx(float(reference(g.L_XA + 0.5e-3)) / 4, rel=1e-8)
+
+
+def test_fitted_range_of_the_foundation_is_reported():
+    pair = energy_pair("fzg_c")  # z 16: half angle on the root circle beyond 0.12 rad
+    found = violations(pair, geometry(pair))
+    assert {v.range.quantity for v in found} == {"half tooth angle on the root circle"}
+    assert violations(energy_pair(), geometry(energy_pair())) == ()
+    thin = energy_pair(**{"pinion.bore": 70.0})
+    (rim,) = violations(thin, geometry(thin))
+    assert rim.range.quantity == "root radius over bore radius"
