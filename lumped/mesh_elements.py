@@ -13,8 +13,10 @@ from lumped.parameters import GearPair
 from lumped.path_function import FloatArray, PathFunction
 from lumped.stiffness import pair_stiffness
 
-#: Fit error of c over its largest value; far below integration tolerances.
+#: Fit error of c over its largest value.
 _DAMPING_TOLERANCE = 1e-11
+#: The same where k starts from zero: rounding of k by 1e-16 of its peak is 1e-8 in its root.
+_DAMPING_TOLERANCE_FROM_ZERO = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,8 +71,9 @@ def _damping(stiffness: PathFunction, ratio: float, mass: float) -> PathFunction
     def damping(xi: FloatArray) -> FloatArray:
         return np.asarray(scale * np.sqrt(np.maximum(stiffness(xi), 0.0)), dtype=np.float64)
 
-    top = float(damping(stiffness.breaks[:-1]).max())
-    middle = float(damping(0.5 * (stiffness.breaks[:-1] + stiffness.breaks[1:])).max())
+    values = damping(np.linspace(low, high, 401))
+    from_zero = min(values[0], values[-1]) < 1e-3 * values.max()
+    relative = _DAMPING_TOLERANCE_FROM_ZERO if from_zero else _DAMPING_TOLERANCE
     return PathFunction.fit(
-        damping, stiffness.breaks, stiffness.switches, tolerance=_DAMPING_TOLERANCE * max(top, middle)
+        damping, stiffness.breaks, stiffness.switches, tolerance=relative * float(values.max())
     )

@@ -23,6 +23,8 @@ FloatArray = NDArray[np.float64]
 #: rounding errors, 2.5e-13 at degree 8, so the fit stays below its tolerances.
 FIT_DEGREE = 8
 _MAX_HALVINGS = 40
+#: Halving without end means rounding noise or an undeclared kink; smooth laws take fewer than 100 pieces.
+_MAX_PIECES = 4000
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,6 +123,11 @@ class PathFunction:
         columns: list[FloatArray] = []
         stack = [(float(a), float(b), 0) for a, b in itertools.pairwise(breaks)][::-1]
         while stack:
+            if len(columns) + len(stack) > _MAX_PIECES:
+                raise NumericalError(
+                    f"No polynomial fit to {tolerance:.2g} near xi = {stack[-1][0]:.6g} m: the function is noisy or "
+                    "has an undeclared kink there; name it as a break or raise the tolerance."
+                )
             low, high, depth = stack.pop()
             centre, half = 0.5 * (low + high), 0.5 * (high - low)
             series = np.asarray(

@@ -36,3 +36,9 @@ def test_an_undeclared_jump_is_refused_not_smoothed():
 def test_non_finite_values_are_refused():
     with pytest.raises(NumericalError, match="not finite"):
         PathFunction.fit(lambda x: np.full_like(x, np.nan), [0.0, 1.0], tolerance=1e-10)
+
+
+def test_noise_is_refused_after_a_bounded_number_of_pieces():
+    rng = np.random.default_rng(1)
+    with pytest.raises(NumericalError, match="noisy"):
+        PathFunction.fit(lambda x: x + 1e-6 * rng.standard_normal(x.size), [0.0, 1.0], tolerance=1e-10)
