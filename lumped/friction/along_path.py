@@ -18,6 +18,7 @@ from lumped.friction.benedict_kelley import LAW as BENEDICT_KELLEY
 from lumped.friction.benedict_kelley import friction_number
 from lumped.friction.registry import LAWS, law_named
 from lumped.path_function import PathFunction
+from lumped.roughness import composite_roughness, mean_roughness
 from lumped.validity import FloatArray, RangeViolation, range_violations
 from lumped.viscosity import dynamic_viscosity
 
@@ -47,7 +48,7 @@ def contact_path(pair: GearPair, geometry: Geometry | None = None) -> ContactPat
     pinion, gear, lubricant, friction = pair.pinion, pair.gear, pair.lubricant, pair.friction
     composite = friction.composite_roughness
     if composite is None:
-        composite = float(np.hypot(pinion.roughness, gear.roughness))
+        composite = float(composite_roughness(pinion.roughness, gear.roughness))
     return ContactPath(
         L_XA=g.L_XA,
         L_XP=g.L_XP,
@@ -64,7 +65,7 @@ def contact_path(pair: GearPair, geometry: Geometry | None = None) -> ContactPat
         viscosity=dynamic_viscosity(lubricant),
         pressure_viscosity_k=lubricant.pressure_viscosity_k,
         pressure_viscosity_s=lubricant.pressure_viscosity_s,
-        roughness=0.5 * (pinion.roughness + gear.roughness),
+        roughness=float(mean_roughness(pinion.roughness, gear.roughness)),
         composite_roughness=composite,
         film_length=friction.film_length,
     )

@@ -1,0 +1,27 @@
+"""Losses of the mesh: loss factor, mean friction, sliding loss and efficiency, quasi-static and dynamic."""
+
+from lumped.losses.anderson_loewenthal import (
+    anderson_loewenthal_coefficient,
+    anderson_loewenthal_sliding_loss,
+)
+from lumped.losses.dynamic import dynamic_losses, losses_of_laws, sliding_power_along_path
+from lumped.losses.loss_factor import addendum_contact_ratios, loss_factor, ohlendorf, ohlendorf_of
+from lumped.losses.mean_friction import iso_14179_mean_coefficient, iso_14179_of
+from lumped.losses.quasi_static import quasi_static_losses
+from lumped.losses.sharing import Sharing
+
+__all__ = [
+    "Sharing",
+    "addendum_contact_ratios",
+    "anderson_loewenthal_coefficient",
+    "anderson_loewenthal_sliding_loss",
+    "dynamic_losses",
+    "iso_14179_mean_coefficient",
+    "iso_14179_of",
+    "loss_factor",
+    "losses_of_laws",
+    "ohlendorf",
+    "ohlendorf_of",
+    "quasi_static_losses",
+    "sliding_power_along_path",
+]

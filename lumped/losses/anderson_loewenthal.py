@@ -1,0 +1,90 @@
+"""Sliding loss of a spur mesh after Anderson and Loewenthal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lumped.friction import contact_path
+from lumped.gear_geometry import geometry
+from lumped.losses.cycle import CyclePositions, quadrature
+from lumped.losses.loss_factor import sliding_velocity
+from lumped.losses.sharing import load_share
+from lumped.path_function import PathFunction
+from lumped.validity import FloatArray, checked
+
+if TYPE_CHECKING:
+    from lumped.parameters import GearPair
+
+_HALVINGS = 40
+
+
+def anderson_loewenthal_coefficient(
+    unit_load: ArrayLike, viscosity: ArrayLike, sliding_velocity: ArrayLike, sum_velocity: ArrayLike
+) -> FloatArray:
+    """Friction coefficient of the loss model, Benedict and Kelley's for smooth surfaces.
+
+    f = 0.0127 log10(29.66 w / (mu v_s v_T^2)), not below 0
+
+    Parameters
+    ----------
+    unit_load : w, load of one tooth pair per face width [N/mm]
+    viscosity : mu, dynamic viscosity of the oil [Pa s]
+    sliding_velocity : v_s [m/s], > 0
+    sum_velocity : v_T, sum of the rolling velocities [m/s]
+
+    Returns
+    -------
+    f [-]
+
+    References
+    ----------
+    N. E. Anderson and S. H. Loewenthal, "Spur-gear-system efficiency at part and full load",
+    NASA TP-1622, 1980.
+    """
+    w = checked("unit_load", unit_load, "N/mm")
+    eta = checked("viscosity", viscosity, "Pa s")
+    v_s = checked("sliding_velocity", sliding_velocity, "m/s")
+    v_t = checked("sum_velocity", sum_velocity, "m/s")
+    f = 0.0127 * np.log10(29.66 * w / (eta * v_s * v_t**2))
+    return np.asarray(np.maximum(f, 0.0), dtype=np.float64)
+
+
+def anderson_loewenthal_sliding_loss(pair: GearPair) -> float:
+    """Mean sliding loss of the mesh [W].
+
+    The instantaneous loss f w v_s of every pair in contact, each pair with an equal share of the load, is
+    averaged over the mesh cycle. Unlike law II along the path, which takes the full static load everywhere,
+    the coefficient belongs to the load that the pair carries. Rolling and windage losses of the same report
+    are not part of it.
+    """
+    g, path = geometry(pair), contact_path(pair)
+    relative = PathFunction.constant(1.0, g.L_XA, g.L_XD)
+    at = quadrature(g, [_graded(g.L_XA, g.L_XP, g.L_XD)])
+    share = load_share(relative, at)
+    return _mean_loss(at, share, np.abs(sliding_velocity(g, at.position)), pair, path.unit_load)
+
+
+def _mean_loss(
+    at: CyclePositions, share: FloatArray, slide: FloatArray, pair: GearPair, unit_load: float
+) -> float:
+    path = contact_path(pair)
+    touching = at.contact
+    loads = share[touching] * unit_load  # N/m
+    f = anderson_loewenthal_coefficient(
+        loads * 1e-3, path.viscosity, slide[touching], path.entraining_velocity(at.position[touching])
+    )
+    power = np.zeros_like(share)
+    power[touching] = f * loads * slide[touching]
+    return at.mean(power.sum(axis=0)) * geometry(pair).face_width
+
+
+def _graded(low: float, pitch: float, high: float) -> PathFunction:
+    """A constant whose breaks close in on P by halves: the loss has a v_s log(v_s) there."""
+    scale = 0.5 ** np.arange(_HALVINGS)
+    breaks = np.unique(
+        np.concatenate([pitch - (pitch - low) * scale, [pitch], pitch + (high - pitch) * scale])
+    )
+    return PathFunction(breaks, np.ones((1, breaks.size - 1)), np.empty(0))

@@ -1,0 +1,164 @@
+"""Mesh efficiency and sliding power of a dynamic solution, and of all friction laws side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from lumped.errors import ParameterError, refuse
+from lumped.friction import LAWS
+from lumped.gear_geometry import geometry
+from lumped.losses.quasi_static import quasi_static_losses
+from lumped.losses.sharing import Sharing
+
+if TYPE_CHECKING:
+    from lumped.parameters import GearPair
+
+
+def dynamic_losses(pair: GearPair, solution: xr.Dataset) -> xr.Dataset:
+    """Sliding loss and efficiency over time of a lumped or multibody solution.
+
+    The loss is -SUM F_i v_s,i with the nominal sliding velocity: by the mean moment balance of both gears it
+    is, over whole mesh cycles, exactly the input power less the power at the brake. Power at the vibrating
+    velocity differs by what friction exchanges with the vibration.
+
+    Parameters
+    ----------
+    pair : the gear pair of the solution
+    solution : dataset of ``lumped.simulate``, ``lumped.steady_state`` or the multibody model
+
+    Returns
+    -------
+    xarray.Dataset over ``time``: sliding_loss [W], instantaneous_efficiency = 1 - loss/(T_p Omega_p) [-];
+    attributes ``input_power`` [W], ``power_loss`` [W] (mean of the samples) and ``mesh_efficiency`` (the
+    solution's own from its balanced brake torque where it has one, else from the mean of the samples)
+
+    Raises
+    ------
+    ParameterError : the dataset has no friction power
+    """
+    if "friction_power_nominal" not in solution:
+        raise refuse(
+            "solution",
+            ", ".join(map(str, solution.data_vars)) or "no variables",
+            "a dataset with friction_power_nominal",
+            "Pass the result of simulate or steady_state.",
+        )
+    torque = float(solution.attrs.get("pinion_torque", pair.operating.pinion_torque))
+    power_in = torque * geometry(pair).omega_pinion
+    loss = -solution["friction_power_nominal"].sum("pair")
+    mean = float(loss.mean())
+    result = xr.Dataset(
+        {
+            "sliding_loss": loss.assign_attrs(units="W", long_name="sliding loss of the mesh"),
+            "instantaneous_efficiency": (1.0 - loss / power_in).assign_attrs(
+                units="1", long_name="instantaneous mesh efficiency"
+            ),
+        },
+        attrs={
+            key: solution.attrs[key] for key in ("gear_pair", "parameters_sha256") if key in solution.attrs
+        },
+    )
+    result.attrs |= {
+        "input_power": power_in,
+        "power_loss": mean,
+        "mesh_efficiency": float(solution.attrs.get("mesh_efficiency", 1.0 - mean / power_in)),
+    }
+    return result
+
+
+def sliding_power_along_path(solution: xr.Dataset) -> xr.Dataset:
+    """Local sliding power of one tooth pair over the path of contact.
+
+    Every pair in contact at every time of a solution is one point of the path; over one mesh cycle of a
+    periodic solution the pairs together cover it once.
+
+    Parameters
+    ----------
+    solution : dataset with position, contact, normal_load and a friction power over (pair, time)
+
+    Returns
+    -------
+    xarray.Dataset over ``xi`` [m], increasing: sliding_power [W] (>= 0 where friction opposes sliding) and
+    normal_load [N]
+    """
+    name = "friction_power_nominal" if "friction_power_nominal" in solution else "friction_power"
+    touching = solution["contact"].to_numpy().ravel() > 0.0
+    xi = solution["position"].to_numpy().ravel()[touching]
+    order = np.argsort(xi, kind="stable")
+    along = {
+        "sliding_power": (-solution[name], "W", "sliding power of one tooth pair"),
+        "normal_load": (solution["normal_load"], "N", "normal load of one tooth pair"),
+    }
+    return xr.Dataset(
+        {
+            key: ("xi", array.to_numpy().ravel()[touching][order], {"units": unit, "long_name": text})
+            for key, (array, unit, text) in along.items()
+        },
+        coords={"xi": ("xi", xi[order], {"units": "m", "long_name": "distance of the contact point from X"})},
+    )
+
+
+def losses_of_laws(
+    pair: GearPair,
+    laws: Sequence[str] | None = None,
+    sharing: Sharing = "stiffness",
+    *,
+    dynamic: bool = True,
+) -> xr.Dataset:
+    """Mesh efficiency of every friction law at the operating point.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    laws : names of the laws; default all five that the pair allows
+    sharing : load sharing of the quasi-static result
+    dynamic : whether to add the efficiency of the periodic motion
+
+    Returns
+    -------
+    xarray.Dataset over ``law``: mesh_efficiency, power_loss [W], mean_coefficient (quasi-static), and
+    mesh_efficiency_dynamic; attribute ``left_out``, laws that the pair does not allow and why
+    """
+    names = [name for name in LAWS if name != "none"] if laws is None else list(laws)
+    rows: dict[str, dict[str, float]] = {}
+    left_out: list[str] = []
+    for name in names:
+        try:
+            static = quasi_static_losses(pair, name, sharing, samples_per_cycle=8).attrs
+            rows[name] = {key: static[key] for key in ("mesh_efficiency", "power_loss", "mean_coefficient")}
+            if dynamic:
+                from lumped.solution import steady_state
+
+                run = steady_state(pair.with_(friction__law=name), samples_per_cycle=8)
+                rows[name]["mesh_efficiency_dynamic"] = run.attrs["mesh_efficiency"]
+        except ParameterError as error:
+            if laws is not None:
+                raise
+            left_out.append(f"{LAWS[name].title}: {error}")
+    units = {"power_loss": "W"}
+    texts = {
+        "mesh_efficiency": "mesh efficiency, quasi-static",
+        "mesh_efficiency_dynamic": "mesh efficiency of the periodic motion",
+        "power_loss": "mean sliding loss, quasi-static",
+        "mean_coefficient": "loss over loss factor and power",
+    }
+    columns = next(iter(rows.values()), {})
+    return xr.Dataset(
+        {
+            key: (
+                "law",
+                np.array([row[key] for row in rows.values()]),
+                {"units": units.get(key, "1"), "long_name": texts[key]},
+            )
+            for key in columns
+        },
+        coords={
+            "law": ("law", list(rows), {"long_name": "friction law"}),
+            "law_title": ("law", [LAWS[name].title for name in rows]),
+        },
+        attrs={"left_out": left_out},
+    )
