@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
+from pydantic_core import PydanticCustomError
 
-from lumped.errors import FieldProblem, ParameterError
+from lumped.errors import FieldProblem, ParameterError, shown
 from lumped.section import Section
 from lumped.units import Quantity
 
@@ -58,6 +60,20 @@ class Lubricant(Section):
 FrictionLaw = Literal["none", "coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"]
 
 
+def _increasing(value: object) -> object:
+    """Three increasing positive numbers; pydantic alone would take booleans and text for numbers."""
+    numbers = list(value) if isinstance(value, (list, tuple)) else []
+    real = all(isinstance(n, (int, float)) and not isinstance(n, bool) for n in numbers)
+    if len(numbers) == 3 and real and 0 < numbers[0] < numbers[1] < numbers[2] < math.inf:
+        return tuple(float(n) for n in numbers)
+    context = {
+        "value": shown(value),
+        "allowed": "three increasing positive numbers",
+        "action": "Correct the list.",
+    }
+    raise PydanticCustomError("quantity", "{value}: allowed {allowed}. {action}", context)
+
+
 class Friction(Section):
     """Sliding friction between the teeth: the law and the parameters of all laws (they are compared)."""
 
@@ -73,10 +89,9 @@ class Friction(Section):
     maximum: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
         0.2, description="upper bound of law II, which is infinite at the pitch point"
     )
-    thresholds: Annotated[
-        tuple[float, float, float],
-        Field(description="film parameters at which law V changes: IV | II | III | III"),
-    ] = (1.0, 4.0, 10.0)
+    thresholds: Annotated[tuple[float, float, float], BeforeValidator(_increasing)] = Field(
+        (1.0, 4.0, 10.0), description="film parameters at which law V changes: IV | II | III | III"
+    )
     composite_roughness: Annotated[float | None, Quantity("um", above=0, optional=True)] = Field(
         None,
         description="composite roughness R_comp of the film parameter; default root sum square of both Ra",
@@ -84,13 +99,3 @@ class Friction(Section):
     film_length: Annotated[float, Quantity("mm", above=0)] = Field(
         0.8e-3, description="cut-off length L_x of the roughness filter in the film parameter"
     )
-
-    @model_validator(mode="after")
-    def _ordered(self) -> Self:
-        low, middle, high = self.thresholds
-        if not 0 < low < middle < high:
-            problem = FieldProblem(
-                "thresholds", str(self.thresholds), "three increasing positive numbers", "Reorder them."
-            )
-            raise ParameterError([problem])
-        return self

@@ -26,6 +26,17 @@ class FieldProblem:
         return f"{self.field} = {self.value}: allowed {self.allowed}. {self.action}"
 
 
+_SHOWN_CHARACTERS = 60
+
+
+def shown(value: object) -> str:
+    """Text of a refused value, cut to a length that a message bears."""
+    text = value if isinstance(value, str) else repr(value)
+    if len(text) <= _SHOWN_CHARACTERS:
+        return text
+    return f"{text[:_SHOWN_CHARACTERS]}... ({len(text)} characters)"
+
+
 class SpurcheckError(Exception):
     """Base of every error that spurcheck raises on purpose."""
 

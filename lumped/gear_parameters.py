@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
+from pydantic_core import PydanticCustomError
 
-from lumped.errors import FieldProblem, ParameterError
+from lumped.errors import FieldProblem, ParameterError, refuse
 from lumped.section import Section
 from lumped.units import Quantity, to_stated
 
@@ -25,8 +27,21 @@ class ProfileRelief(Section):
     )
 
 
+_PITCH = Quantity("1/inch", at_least=0.254, at_most=200)
+
+
+def _with_diametral_pitch(schema: dict[str, Any]) -> None:
+    """Let the JSON Schema take what ``_diametral_pitch`` takes."""
+    described = {"description": "diametral pitch, instead of module"}
+    schema["properties"]["diametral_pitch"] = described | _PITCH.json_schema()
+    others = [name for name in schema.pop("required") if name != "module"]
+    schema["anyOf"] = [{"required": [*others, name]} for name in ("module", "diametral_pitch")]
+
+
 class BasicRack(Section):
     """Basic rack of both gears (ISO 53). ``diametral_pitch`` may be given instead of ``module``."""
+
+    model_config = ConfigDict(json_schema_extra=_with_diametral_pitch)
 
     module: Annotated[float, Quantity("mm", above=0, at_most=100, action=_SIZE)] = Field(
         description="normal module; or give diametral_pitch [1/inch] instead"
@@ -59,8 +74,37 @@ class BasicRack(Section):
                 "Remove one of the two.",
             )
             raise ParameterError([problem])
-        pitch = Quantity("1/inch", above=0.25, at_most=200).parse(given)
-        return {**rest, "module": None if pitch is None else 25.4 / to_stated(pitch, "1/inch")}
+        try:
+            pitch = _PITCH.parse(given)
+        except PydanticCustomError as error:
+            reason = error.context or {}
+            problem = FieldProblem("diametral_pitch", reason["value"], reason["allowed"], reason["action"])
+            raise ParameterError([problem]) from None
+        assert pitch is not None  # only optional quantities are None
+        return {**rest, "module": 25.4 / to_stated(pitch, "1/inch")}
+
+    @model_validator(mode="after")
+    def _tip_has_room(self) -> Self:
+        # Half the rack tooth's width at its tip, over module, is pi/4 - h tan a; a tip radius rho between
+        # flank and tip takes rho (1 - sin a)/cos a of it.
+        sine, cosine = math.sin(self.pressure_angle), math.cos(self.pressure_angle)
+        room = 0.25 * math.pi - self.dedendum_coefficient * sine / cosine
+        largest = room * cosine / (1.0 - sine)
+        if room < 0.0:
+            raise refuse(
+                "dedendum_coefficient",
+                f"{self.dedendum_coefficient:g}",
+                f"<= {0.25 * math.pi * cosine / sine:.4f} at this pressure angle",
+                "The rack's teeth are pointed above their tips: lower the dedendum or the pressure angle.",
+            )
+        if self.fillet_radius_coefficient > largest:
+            raise refuse(
+                "fillet_radius_coefficient",
+                f"{self.fillet_radius_coefficient:g}",
+                f"<= {largest:.4f} (full tip radius) for this pressure angle and dedendum",
+                "Lower the fillet radius or the dedendum of the rack.",
+            )
+        return self
 
 
 class Gear(Section):

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, PlainSerializer, model_validator
+from pydantic_core import PydanticCustomError
 
 from lumped.contact_parameters import Friction, FrictionLaw, Lubricant, ViscosityLaw
 from lumped.gear_parameters import BasicRack, Gear, ProfileRelief
@@ -37,10 +38,20 @@ class Bearings(Section):
     gear: Bearing
 
 
+_BRAKE = Quantity("N*m", above=0, action="Correct the value, or write 'balanced'.")
+
+
 def _brake(value: object) -> object:
-    return (
-        value if value == "balanced" else Quantity("N*m", above=0, action="Or write 'balanced'.").parse(value)
-    )
+    if value == "balanced":
+        return value
+    try:
+        return _BRAKE.parse(value)
+    except PydanticCustomError as error:
+        context = error.context or {}
+        allowed = f"{context['allowed']} or 'balanced'"
+        raise PydanticCustomError(
+            "quantity", "{value}: allowed {allowed}", context | {"allowed": allowed}
+        ) from None
 
 
 class OperatingPoint(Section):
@@ -59,7 +70,9 @@ class OperatingPoint(Section):
     brake_torque: Annotated[
         Literal["balanced"] | float, BeforeValidator(_brake, json_schema_input_type=float | str)
     ] = Field(
-        "balanced", description="torque braking the gear [N*m], or 'balanced': no drift of the mean speed"
+        "balanced",
+        description="torque braking the gear [N*m], or 'balanced': no drift of the mean speed",
+        json_schema_extra={"unit": "N*m", "si_unit": "N*m"},
     )
 
 
@@ -131,7 +144,7 @@ class GearPair(Section):
 
 def stated_unit(path: str) -> str | None:
     """Return the stated unit of a field by dotted path, or None where the field has none."""
-    from lumped.serialise import field_at
+    from lumped.schema_errors import field_at
 
     for marker in field_at(path).metadata:
         if isinstance(marker, Quantity):

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import copy
-import difflib
 import tomllib
 from collections.abc import Mapping
 from functools import cache
 from importlib import resources
 from pathlib import Path
-from types import UnionType
-from typing import Annotated, Any, Union, get_args, get_origin
+from typing import Any
 
 from pydantic import BaseModel, ValidationError
-from pydantic.fields import FieldInfo
 
-from lumped.errors import FieldProblem, ParameterError
+from lumped.errors import FieldProblem, ParameterError, shown
 from lumped.parameters import GearPair
+from lumped.schema_errors import field_at, nearest, translated, unknown_key
 from lumped.units import Quantity, to_file
 
 #: Largest parameter file read, a bound against a wrong path rather than a limit of the format.
@@ -27,6 +25,8 @@ _ALTERNATIVES = (
     ("gear.addendum", "gear.tip_diameter"),
     ("lubricant.viscosity", "lubricant.viscosity_law"),
 )
+#: Inputs that the schema keeps under another name.
+_STORED_AS = {"basic_rack.diametral_pitch": "basic_rack.module"}
 
 
 @cache
@@ -48,9 +48,9 @@ def preset_text(name: str) -> str:
             [
                 FieldProblem(
                     "preset",
-                    repr(name),
+                    shown(repr(name)),
                     "a file that exists or one of " + ", ".join(preset_names()),
-                    _nearest(name, preset_names()) or "Check the path, or see 'spurcheck presets'.",
+                    nearest(name, preset_names()) or "Check the path, or see 'spurcheck presets'.",
                 )
             ]
         )
@@ -72,10 +72,13 @@ def load_gear_pair(source: str | Path | Mapping[str, Any] | GearPair) -> GearPai
         return source
     if isinstance(source, Mapping):
         return _validated(dict(source), "mapping")
+    if not isinstance(source, (str, Path)):
+        allowed = "a preset name, a TOML file, a mapping or a GearPair"
+        raise ParameterError([FieldProblem("pair", shown(source), allowed, "Give one of these.")])
     path = Path(source)
     if isinstance(source, str) and source in preset_names():
         return _validated(_parsed(preset_text(source), f"preset {source}"), f"preset {source}")
-    if path.suffix.lower() != ".toml" and not path.exists() and "/" not in str(source):
+    if path.suffix.lower() != ".toml" and not _exists(path) and "/" not in str(source):
         preset_text(str(source))
     return _validated(_parsed(_read(path), str(path)), str(path), path.parent)
 
@@ -111,46 +114,18 @@ def varied(pair: GearPair, changes: Mapping[str, Any]) -> GearPair:
     data = copy.deepcopy(to_mapping(pair))
     sources: dict[str, str] = data.setdefault("sources", {})
     for path, value in changes.items():
+        outdated = [path]
         for group in _ALTERNATIVES:
             if path in group and value is not None:
+                outdated += group
                 for other in group:
                     _assign(data, other, None)
         _assign(data, path, value)
-        for known in [key for key in sources if key == path or key.startswith(f"{path}.")]:
+        for known in [key for key in sources if any(key == p or key.startswith(f"{p}.") for p in outdated)]:
             del sources[known]
         if path not in ("name", "description", "sources") and value is not None:
-            sources[path] = "varied by the user"
+            sources[_STORED_AS.get(path, path)] = "varied by the user"
     return _validated(data, f"{pair.name} varied")
-
-
-def field_at(path: str) -> FieldInfo:
-    """Return pydantic's description of a field by dotted path (through every member of a union).
-
-    Raises
-    ------
-    ParameterError : no such field; the nearest is suggested
-    """
-    models: list[type[BaseModel]] = [GearPair]
-    info: FieldInfo | None = None
-    for part in path.split("."):
-        names = {name: field for model in models for name, field in model.model_fields.items()}
-        if part not in names:
-            raise ParameterError([_unknown(path, list(names), part)])
-        info = names[part]
-        models = _models_in(info.annotation)
-    assert info is not None  # "".split(".") has one part, which is unknown
-    return info
-
-
-def _models_in(annotation: Any) -> list[type[BaseModel]]:
-    origin = get_origin(annotation)
-    if origin is Annotated:
-        return _models_in(get_args(annotation)[0])
-    if origin in (Union, UnionType):
-        return [model for part in get_args(annotation) for model in _models_in(part)]
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return [annotation]
-    return []
 
 
 def _assign(data: dict[str, Any], path: str, value: Any) -> None:
@@ -159,12 +134,14 @@ def _assign(data: dict[str, Any], path: str, value: Any) -> None:
     for part in parents:
         inner = node.setdefault(part, {})
         if not isinstance(inner, dict):
-            raise ParameterError([_unknown(path, list(node), part)])
+            raise ParameterError([unknown_key(path, list(node), part)])
         node = inner
     if value is None:
+        if path not in _STORED_AS:
+            field_at(path)  # a name that does not exist is an error also where nothing is set
         node.pop(leaf, None)
     else:
-        node[leaf] = _plain(value) if isinstance(value, BaseModel) else value
+        node[leaf] = _plain(value) if isinstance(value, BaseModel) else copy.deepcopy(value)
 
 
 def _plain(model: BaseModel) -> dict[str, Any]:
@@ -188,11 +165,22 @@ def _plain(model: BaseModel) -> dict[str, Any]:
     return result
 
 
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except OSError:  # such as a name that is too long
+        return False
+
+
 def _read(path: Path) -> str:
     try:
         if path.stat().st_size > MAX_FILE_BYTES:
             raise ParameterError(
-                [FieldProblem("file", str(path), f"<= {MAX_FILE_BYTES} bytes", "Is this a parameter file?")]
+                [
+                    FieldProblem(
+                        "file", shown(str(path)), f"<= {MAX_FILE_BYTES} bytes", "Is this a parameter file?"
+                    )
+                ]
             )
         return path.read_text(encoding="utf-8")
     except FileNotFoundError:
@@ -200,7 +188,7 @@ def _read(path: Path) -> str:
             [
                 FieldProblem(
                     "file",
-                    str(path),
+                    shown(str(path)),
                     "a TOML file that exists, or a preset: " + ", ".join(preset_names()),
                     "Check the path, or start from 'spurcheck init'.",
                 )
@@ -210,7 +198,14 @@ def _read(path: Path) -> str:
         if isinstance(error, ParameterError):
             raise
         raise ParameterError(
-            [FieldProblem("file", str(path), "a readable UTF-8 TOML file", f"It cannot be read: {error}.")]
+            [
+                FieldProblem(
+                    "file",
+                    shown(str(path)),
+                    "a readable UTF-8 TOML file",
+                    f"It cannot be read: {getattr(error, 'strerror', None) or error}.",
+                )
+            ]
         ) from None
 
 
@@ -230,61 +225,4 @@ def _validated(data: Mapping[str, Any], source: str, folder: Path = Path()) -> G
     except ParameterError as error:
         raise ParameterError(list(error.problems), error.source or source) from None
     except ValidationError as error:
-        raise ParameterError(_translated(error, data), source) from None
-
-
-def _translated(error: ValidationError, data: Mapping[str, Any]) -> list[FieldProblem]:
-    problems: list[FieldProblem] = []
-    for item in error.errors(include_url=False):
-        location = [str(p) for p in item["loc"] if str(p) not in _UNION_TAGS]
-        path = ".".join(location) or "file"
-        context = item.get("ctx", {})
-        cause = context.get("error")
-        if isinstance(cause, ParameterError):
-            prefix = f"{path}." if location else ""
-            problems += [
-                FieldProblem(f"{prefix}{p.field}" if not p.field.startswith(prefix) else p.field, *_rest(p))
-                for p in cause.problems
-            ]
-        elif item["type"] == "quantity":
-            problems.append(FieldProblem(path, context["value"], context["allowed"], context["action"]))
-        elif item["type"] == "extra_forbidden":
-            problems.append(_unknown(path, _siblings(location), location[-1]))
-        elif item["type"] == "missing":
-            problems.append(
-                FieldProblem(path, "missing", _description(path), "Add it to the parameter file.")
-            )
-        else:
-            problems.append(FieldProblem(path, repr(item.get("input")), item["msg"], "Correct the value."))
-    return problems
-
-
-_UNION_TAGS = {"rectangular", "parabolic", "energy", "table"}
-
-
-def _rest(problem: FieldProblem) -> tuple[str, str, str]:
-    return problem.value, problem.allowed, problem.action
-
-
-def _siblings(location: list[str]) -> list[str]:
-    models: list[type[BaseModel]] = [GearPair]
-    if len(location) > 1:
-        models = _models_in(field_at(".".join(location[:-1])).annotation)
-    return [name for model in models for name in model.model_fields]
-
-
-def _description(path: str) -> str:
-    info = field_at(path)
-    quantity = next((m for m in info.metadata if isinstance(m, Quantity)), None)
-    text = info.description or "a section of the parameter file"
-    return f"{quantity.allowed} ({text})" if quantity else text
-
-
-def _nearest(name: str, known: tuple[str, ...] | list[str]) -> str:
-    close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-    return f"Did you mean '{close[0]}'?" if close else ""
-
-
-def _unknown(path: str, known: list[str], part: str) -> FieldProblem:
-    action = _nearest(part, known) or "Remove the key, or correct its name."
-    return FieldProblem(path, "unknown key", "one of " + ", ".join(known), action)
+        raise ParameterError(translated(error, data), source) from None

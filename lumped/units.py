@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic_core import PydanticCustomError, core_schema
 
+from lumped.errors import shown
+
 if TYPE_CHECKING:
     import pint
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -162,15 +164,15 @@ class Quantity:
         if value is None and self.optional:
             return None
         if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-            raise self._refusal(f"{value!r}", "Give a number or a string with a unit.")
+            raise self._refusal(shown(value), "Give a number or a string with a unit.")
         try:
             si = to_si(value, self.unit)
         except (ValueError, OverflowError) as error:
             action = str(error)
-            raise self._refusal(f"{value!r}", action[:1].upper() + action[1:] + ".") from None
-        shown = value if isinstance(value, str) else f"{value!r} {self.unit}".removesuffix(" 1")
+            raise self._refusal(shown(repr(value)), action[:1].upper() + action[1:] + ".") from None
+        text = value if isinstance(value, str) else f"{value!r} {self.unit}".removesuffix(" 1")
         if not math.isfinite(si):
-            raise self._refusal(str(shown), "Give a finite number.")
+            raise self._refusal(text, "Give a finite number.")
         # Bounds are converted like values, so a value at a bound equals it bit for bit.
         inside = (
             (self.above is None or si > to_si(self.above, self.unit))
@@ -179,7 +181,7 @@ class Quantity:
             and (self.at_most is None or si <= to_si(self.at_most, self.unit))
         )
         if not inside:
-            raise self._refusal(str(shown), self.action)
+            raise self._refusal(text, self.action)
         return si
 
     def _refusal(self, value: str, action: str) -> PydanticCustomError:
@@ -199,6 +201,10 @@ class Quantity:
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
         """Number in the stated unit with its bounds, or a string with a unit."""
+        return self.json_schema()
+
+    def json_schema(self) -> JsonSchemaValue:
+        """JSON Schema of the quantity: a number in the stated unit with its bounds, or text with a unit."""
         number: dict[str, Any] = {"type": "number"}
         keys = ("exclusiveMinimum", "minimum", "exclusiveMaximum", "maximum")
         for key, bound in zip(keys, (self.above, self.at_least, self.below, self.at_most), strict=True):

@@ -14,13 +14,13 @@ from lumped.units import Quantity
 
 def _quantities(model, prefix=""):
     """Every quantity field of the schema, through unions, as (dotted path, Quantity)."""
-    from lumped.serialise import _models_in
+    from lumped.schema_errors import models_in
 
     for name, info in model.model_fields.items():
         quantity = next((m for m in info.metadata if isinstance(m, Quantity)), None)
         if quantity is not None:
             yield f"{prefix}{name}", quantity
-        for inner in _models_in(info.annotation):
+        for inner in models_in(info.annotation):
             yield from _quantities(inner, f"{prefix}{name}.")
 
 
