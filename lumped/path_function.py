@@ -125,8 +125,8 @@ class PathFunction:
         while stack:
             if len(columns) + len(stack) > _MAX_PIECES:
                 raise NumericalError(
-                    f"No polynomial fit to {tolerance:.2g} near xi = {stack[-1][0]:.6g} m: the function is noisy or "
-                    "has an undeclared kink there; name it as a break or raise the tolerance."
+                    f"No polynomial fit to {tolerance:.2g} near xi = {stack[-1][0]:.6g} m: the function is "
+                    "noisy or has an undeclared kink there; name it as a break or raise the tolerance."
                 )
             low, high, depth = stack.pop()
             centre, half = 0.5 * (low + high), 0.5 * (high - low)
