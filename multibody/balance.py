@@ -63,7 +63,7 @@ def power_balance(
     initial: Initial | ArrayLike = "static",
     effects: Collection[str] | Mapping[str, bool] | None = None,
     rtol: float = 1e-8,
-    friction_velocity: float = 0.0,
+    friction_velocity: float | None = None,
 ) -> PowerBalance:
     """Energy ledger of a run; arguments as ``multibody.simulate``.
 

@@ -22,6 +22,7 @@ from multibody.integration import Segment, integrate
 from multibody.machine import Machine, machine
 from multibody.model import FIDELITIES, ExudynModel, build
 from multibody.records import Recorder, from_lumped_state
+from multibody.reversal import friction_velocity as choose_friction_velocity
 
 FloatArray = NDArray[np.float64]
 Fidelity = Literal["linear", "exact"]
@@ -92,35 +93,34 @@ def prepare(
     initial: Initial | ArrayLike = "static",
     effects: Collection[str] | Mapping[str, bool] | None = None,
     rtol: float = 1e-8,
-    friction_velocity: float = 0.0,
-    call_limit: int = CALL_LIMIT,
+    friction_velocity: float | None = None,
 ) -> Setup:
     """Build the model and its initial state; arguments as ``simulate``."""
     if fidelity not in FIDELITIES:
         raise refuse("fidelity", fidelity, f"one of {sorted(FIDELITIES)}", "Choose one of them.")
     if not 1e-12 <= rtol <= 1e-3:
         raise refuse("rtol", rtol, "1e-12 to 1e-3", "Choose a tolerance in that range.")
-    if not 0.0 <= friction_velocity < np.inf:
+    if friction_velocity is not None and not 0.0 <= friction_velocity < np.inf:
         raise refuse("friction_velocity", f"{friction_velocity} m/s", ">= 0 m/s", "0 switches at once.")
     if fidelity == "linear" and effects:
         raise refuse("effects", effects, "none at fidelity 'linear'", "Use fidelity='exact'.")
     flags = effect_flags(effects) if fidelity == "exact" else 0
     system = periodic_system(pair, "absolute")
     balance = periodic_solution(pair, np.zeros(1), system=system, estimate_error=False)
-    numbers = machine(pair, balance.pinion_torque, balance.brake_torque).with_parameter(
-        kn.V_REG, friction_velocity
-    )
+    numbers = machine(pair, balance.pinion_torque, balance.brake_torque)
+    velocity, reason = _friction_velocity(numbers, flags, friction_velocity)
+    numbers = numbers.with_parameter(kn.V_REG, velocity)
     state = initial_state(pair, system, initial, balance)
     q, v = from_lumped_state(state)
     deflection = numbers.torque_pinion / numbers.parameters[kn.RADIUS_P] / mean_mesh_stiffness(system.cycle)
     names = active_effects(flags)
-    attributes = provenance(
-        pair, fidelity=fidelity, effects=names, rtol=rtol, friction_velocity=friction_velocity
-    )
+    attributes = provenance(pair, fidelity=fidelity, effects=names, rtol=rtol, friction_velocity=velocity)
     attributes |= {
         "model": "multibody",
         "fidelity": fidelity,
         "effects": ", ".join(names),
+        "friction_velocity": velocity,
+        "friction_velocity_reason": reason,
         "brake_torque": balance.brake_torque,
         "pinion_torque": balance.pinion_torque,
         "mesh_efficiency": balance.brake_torque
@@ -128,7 +128,7 @@ def prepare(
         / (balance.pinion_torque * numbers.parameters[kn.OMEGA_P]),
     }
     return Setup(
-        model=build(numbers, fidelity, flags, call_limit),
+        model=build(numbers, fidelity, flags, CALL_LIMIT),
         q=q,
         v=v,
         fidelity=fidelity,
@@ -136,6 +136,14 @@ def prepare(
         atol=rtol * _ATOL_SHARE * deflection,
         attributes=attributes,
     )
+
+
+def _friction_velocity(numbers: Machine, flags: int, given: float | None) -> tuple[float, str]:
+    if not flags & kn.SLIDING:
+        return 0.0, "sign of the nominal sliding velocity"
+    if given is not None:
+        return given, "as given"
+    return choose_friction_velocity(numbers)
 
 
 def simulate(
@@ -147,7 +155,7 @@ def simulate(
     initial: Initial | ArrayLike = "static",
     effects: Collection[str] | Mapping[str, bool] | None = None,
     rtol: float = 1e-8,
-    friction_velocity: float = 0.0,
+    friction_velocity: float | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Transient of the gear pair as an exudyn multibody system.
@@ -163,7 +171,9 @@ def simulate(
     effects : finite-motion effects that act at fidelity "exact", see ``multibody.EFFECTS``: a collection of
         names, or a mapping name -> bool in which names left out act; default all
     rtol : relative tolerance of the integration
-    friction_velocity : sliding velocity over which friction changes its sign (tanh) [m/s]; 0 changes at once
+    friction_velocity : sliding velocity over which friction changes its sign (tanh) [m/s]; 0 changes at
+        once; None chooses, and the attribute ``friction_velocity_reason`` says why (see
+        ``multibody.reversal``)
     progress : called with the finished fraction
 
     Returns

@@ -1,0 +1,50 @@
+"""What happens where the actual sliding velocity changes sign away from the pitch point?"""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+import lumped
+import multibody
+
+SLOW = lumped.load_gear_pair("nasa_28_28").with_(
+    friction__law="coulomb",
+    friction__coefficient=0.05,
+    operating__pinion_torque=79.1,
+    operating__pinion_speed=800,
+)
+
+
+def test_default_says_which_sign_function_it_takes_and_why():
+    fast = SLOW.with_(operating__pinion_speed=4000)
+    for pair, velocity, word in (
+        (SLOW, 1e-4, "hold the teeth"),
+        (fast, 0.0, "resonance could take away"),
+        (SLOW.with_(friction__law="xu_kahraman"), 0.0, "continuous"),
+    ):
+        attributes = multibody.simulate(pair, 1).attrs
+        assert attributes["friction_velocity"] == velocity
+        assert word in attributes["friction_velocity_reason"]
+
+
+def test_sign_function_gets_stuck_and_says_so(monkeypatch):
+    """In a sliding mode the steps shrink without end; the cap on calls turns a hang into an error."""
+    monkeypatch.setattr("multibody.simulation.CALL_LIMIT", 60_000)
+    with pytest.raises(lumped.NumericalError, match="friction_velocity"):
+        multibody.simulate(SLOW, 2, friction_velocity=0.0)
+
+
+def test_solution_converges_as_the_sign_change_sharpens():
+    """79.1 N m, 800 rpm: each halving of v_reg moves the motion by less, at about first order."""
+    runs = [multibody.simulate(SLOW, 2, friction_velocity=v) for v in (8e-3, 4e-3, 2e-3, 1e-3, 5e-4)]
+    scale = {name: float(np.ptp(runs[-1][name].to_numpy())) for name in ("dte", "y_p")}
+    for name, size in scale.items():
+        steps = [float(np.abs(a[name] - b[name]).max()) / size for a, b in itertools.pairwise(runs)]
+        ratios = np.array(steps[:-1]) / steps[1:]
+        assert np.all(ratios > 1.2), (name, steps)
+        # What is left below 0.5 mm/s: a geometric series with the last ratio; the default is smaller still.
+        assert steps[-1] / (ratios[-1] - 1) < 0.02
+    assert all(float(run["friction_power"].max()) <= 0.0 for run in runs)
