@@ -16,6 +16,7 @@ from lumped.errors import ParameterError
 from lumped.friction.base import ContactPath, FrictionSettings
 from lumped.friction.benedict_kelley import LAW as BENEDICT_KELLEY
 from lumped.friction.benedict_kelley import friction_number
+from lumped.friction.graded_fit import graded_fit
 from lumped.friction.registry import LAWS, law_named
 from lumped.path_function import PathFunction
 from lumped.roughness import composite_roughness, mean_roughness
@@ -234,7 +235,9 @@ def _fit(path: ContactPath, settings: FrictionSettings, name: str) -> PathFuncti
     known = settings
     if name in _LAWS_WITH_AVERAGE:  # worked out once, not in every evaluation of the law
         known = replace(settings, coefficient=settings.average(path))
-    return PathFunction.fit(lambda xi: law.signed(xi, path, known), breaks, switches, tolerance=FIT_TOLERANCE)
+    return graded_fit(
+        lambda xi: law.signed(xi, path, known), path.L_XP, breaks, switches, tolerance=FIT_TOLERANCE
+    )
 
 
 def _arguments(path: ContactPath, xi: FloatArray) -> dict[str, FloatArray]:
