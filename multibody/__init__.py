@@ -1,7 +1,8 @@
 """Independent multibody reference of a spur gear pair in exudyn, at two fidelities."""
 
 from multibody.balance import PowerBalance, power_balance
+from multibody.drive import Drive
 from multibody.effects import EFFECTS
 from multibody.simulation import simulate
 
-__all__ = ["EFFECTS", "PowerBalance", "power_balance", "simulate"]
+__all__ = ["EFFECTS", "Drive", "PowerBalance", "power_balance", "simulate"]

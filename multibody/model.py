@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from multibody import kernels as kn
+from multibody.drive import DriveTables, drive_torques
 from multibody.kernels import contact_forces
 from multibody.kernels_linear import linear_forces
 from multibody.kinematics import MAX_PAIRS
@@ -69,6 +70,7 @@ class ExudynModel:
     system : exudyn MainSystem
     container : exudyn SystemContainer (must stay alive; also holds the renderer)
     sensors : numbers of the sensors that store coordinates and velocities: pinion, gear
+    drive : torques beyond the constant ones
     parameters : the core's parameter vector, may be changed between runs
     budget : counter of force evaluations
     """
@@ -80,11 +82,14 @@ class ExudynModel:
     system: exu.MainSystem
     sensors: tuple[int, int, int, int]
     nodes: tuple[int, int]
+    drive: DriveTables | None
     parameters: FloatArray
     budget: CallBudget
 
 
-def build(machine: Machine, fidelity: str, flags: int, call_limit: int) -> ExudynModel:
+def build(
+    machine: Machine, fidelity: str, flags: int, call_limit: int, drive: DriveTables | None = None
+) -> ExudynModel:
     """Assemble the exudyn system.
 
     Parameters
@@ -93,6 +98,7 @@ def build(machine: Machine, fidelity: str, flags: int, call_limit: int) -> Exudy
     fidelity : "linear" or "exact"
     flags : effect switches of the exact core (bits of ``kernels``)
     call_limit : most force evaluations of one integration interval
+    drive : torques beyond the constant ones; they act on the same two nodes as the contacts
     """
     container = exu.SystemContainer()
     system = container.AddSystem()
@@ -108,7 +114,9 @@ def build(machine: Machine, fidelity: str, flags: int, call_limit: int) -> Exudy
         items.ObjectGenericODE2(
             nodeNumbers=list(nodes),
             massMatrix=np.zeros((6, 6)),
-            forceUserFunction=_force_function(machine, FIDELITIES[fidelity], flags, parameters, budget),
+            forceUserFunction=_force_function(
+                machine, FIDELITIES[fidelity], flags, parameters, budget, drive
+            ),
         )
     )
     kinds = (exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t)
@@ -128,6 +136,7 @@ def build(machine: Machine, fidelity: str, flags: int, call_limit: int) -> Exudy
         system=system,
         sensors=(sensors[0], sensors[1], sensors[2], sensors[3]),
         nodes=(nodes[0], nodes[1]),
+        drive=drive,
         parameters=parameters,
         budget=budget,
     )
@@ -163,7 +172,12 @@ def _add_gear(
 
 
 def _force_function(
-    machine: Machine, core: ForceCore, flags: int, p: FloatArray, budget: CallBudget
+    machine: Machine,
+    core: ForceCore,
+    flags: int,
+    p: FloatArray,
+    budget: CallBudget,
+    drive: DriveTables | None,
 ) -> Callable[..., FloatArray]:
     """Return the user function of the contact object; it writes into its own buffers."""
     q, v, wrench = np.empty(6), np.empty(6), np.empty(6)
@@ -182,9 +196,18 @@ def _force_function(
         if budget.calls > budget.allowed:
             budget.reason = "too many calls"
             raise _Stop
+        if drive is not None:
+            add_drive(drive, t, q, v, wrench)
         return wrench
 
     return forces
+
+
+def add_drive(drive: DriveTables, t: float, q: FloatArray, v: FloatArray, wrench: FloatArray) -> None:
+    """Add a drive's torques to the wrench; both act against the counter-clockwise angles."""
+    driving, braking = drive_torques(t, -q[2], -v[2], drive.spring, drive.motor, drive.pinion, drive.gear)
+    wrench[2] -= driving
+    wrench[5] -= braking
 
 
 def accelerations(model: ExudynModel, times: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
@@ -204,6 +227,8 @@ def accelerations(model: ExudynModel, times: FloatArray, q: FloatArray, v: Float
     force = np.empty_like(q)
     for i, t in enumerate(times):
         model.core(t, q[i], v[i], model.parameters, model.flags, m.table, m.offsets, wrench, contacts)
+        if model.drive is not None:
+            add_drive(model.drive, t, q[i], v[i], wrench)
         force[i] = wrench
     planes = [0, 1, 3, 4]
     force[:, planes] -= m.bearing_stiffness.ravel() * q[:, planes] + m.bearing_damping.ravel() * v[:, planes]

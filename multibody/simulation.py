@@ -17,6 +17,7 @@ from lumped.results import provenance
 from lumped.solution import Initial, initial_state, mean_mesh_stiffness
 from lumped.steady import periodic_solution, sample_times
 from multibody import kernels as kn
+from multibody.drive import Drive, drive_tables
 from multibody.effects import active_effects, effect_flags
 from multibody.integration import Segment, integrate
 from multibody.machine import Machine, machine
@@ -94,6 +95,7 @@ def prepare(
     effects: Collection[str] | Mapping[str, bool] | None = None,
     rtol: float = 1e-8,
     friction_velocity: float | None = None,
+    drive: Drive | None = None,
 ) -> Setup:
     """Build the model and its initial state; arguments as ``simulate``."""
     if fidelity not in FIDELITIES:
@@ -111,10 +113,19 @@ def prepare(
     velocity, reason = _friction_velocity(numbers, flags, friction_velocity)
     numbers = numbers.with_parameter(kn.V_REG, velocity)
     state = initial_state(pair, system, initial, balance)
+    tables = None
+    if drive is not None:
+        omega = numbers.parameters[kn.OMEGA_P]
+        tables = drive_tables(drive, omega, numbers.torque_pinion, numbers.torque_gear, float(state[0]))
+        if isinstance(initial, str):  # both gears start at the motor's speed
+            state[6] += tables.motor[0, 1]
+            state[7] += tables.motor[0, 1] * numbers.parameters[kn.OMEGA_G] / omega
     q, v = from_lumped_state(state)
     deflection = numbers.torque_pinion / numbers.parameters[kn.RADIUS_P] / mean_mesh_stiffness(system.cycle)
     names = active_effects(flags)
-    attributes = provenance(pair, fidelity=fidelity, effects=names, rtol=rtol, friction_velocity=velocity)
+    attributes = provenance(
+        pair, fidelity=fidelity, effects=names, rtol=rtol, friction_velocity=velocity, drive=drive
+    )
     attributes |= {
         "model": "multibody",
         "fidelity": fidelity,
@@ -128,7 +139,7 @@ def prepare(
         / (balance.pinion_torque * numbers.parameters[kn.OMEGA_P]),
     }
     return Setup(
-        model=build(numbers, fidelity, flags, CALL_LIMIT),
+        model=build(numbers, fidelity, flags, CALL_LIMIT, tables),
         q=q,
         v=v,
         fidelity=fidelity,
@@ -156,6 +167,7 @@ def simulate(
     effects: Collection[str] | Mapping[str, bool] | None = None,
     rtol: float = 1e-8,
     friction_velocity: float | None = None,
+    drive: Drive | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Transient of the gear pair as an exudyn multibody system.
@@ -174,6 +186,8 @@ def simulate(
     friction_velocity : sliding velocity over which friction changes its sign (tanh) [m/s]; 0 changes at
         once; None chooses, and the attribute ``friction_velocity_reason`` says why (see
         ``multibody.reversal``)
+    drive : motor, torque histories and run-up ramps, see ``multibody.Drive``; None keeps both torques
+        constant
     progress : called with the finished fraction
 
     Returns
@@ -203,6 +217,7 @@ def simulate(
         effects=effects,
         rtol=rtol,
         friction_velocity=friction_velocity,
+        drive=drive,
     )
     period = setup.machine.period
     grid = sample_times(period, samples_per_cycle)
