@@ -1,0 +1,140 @@
+"""What a statically loaded mesh hands to the linear dynamic model: k_i(xi; T) and e_i(xi).
+
+The linear model keeps every pair in contact over a fixed interval. With relief that interval depends on the
+load: a pair takes part where delta(T) - e_i > 0. There its stiffness is k_i and its unloaded error e_i;
+elsewhere it carries nothing. Contact before A and behind D is left out: the linear model's path of contact is
+A to D.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+from lumped.errors import NumericalError
+from lumped.gear_geometry import Geometry, geometry
+from lumped.parameters import GearPair
+from lumped.path_function import FloatArray, PathFunction
+from lumped.quasi_static.load_sharing import share_load
+from lumped.quasi_static.tooth_error import error_function
+from lumped.stiffness import pair_stiffness
+
+#: Samples over the path of contact between which contact begins or ends at most once.
+_SAMPLES = 2000
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedMesh:
+    """One tooth pair in the statically loaded mesh, over xi in [L_XA, L_XD].
+
+    Attributes
+    ----------
+    stiffness : k(xi; T), zero where the loaded pair is apart [N/m]
+    error : e(xi), unloaded [m]
+    contact : (n, 2) intervals of xi in which the pair carries load [m]
+    """
+
+    stiffness: PathFunction
+    error: PathFunction
+    contact: FloatArray
+
+
+def loaded_mesh(
+    pair: GearPair, torque: float | None = None, stiffness: PathFunction | None = None
+) -> LoadedMesh:
+    """Stiffness and unloaded error of a tooth pair for the linear model at a mean torque.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    torque : mean pinion torque >= 0 [N m]; default the operating torque
+    stiffness : k_i(xi) [N/m]; default the pair's stiffness model
+
+    Raises
+    ------
+    ParameterError : a relief starts outside the active flank
+    NumericalError : at this torque no pair touches at some position
+    """
+    g = geometry(pair)
+    k = pair_stiffness(pair, g) if stiffness is None else stiffness
+    error = error_function(pair, g)
+    torque = pair.operating.pinion_torque if torque is None else torque
+    if not error.coefficients.any():
+        return LoadedMesh(k, error, np.array([[g.L_XA, g.L_XD]]))
+    force = torque / g.base_radius_pinion
+
+    def clearance(xi: FloatArray) -> FloatArray:
+        return _clearance(xi, k, error, force, g)
+
+    contact = _positive_intervals(clearance, g, np.concatenate([k.switches, error.switches]))
+    if contact.size == 0:
+        raise NumericalError(
+            f"At {torque:g} N m no tooth pair carries load: raise the torque or lower the relief."
+        )
+    return LoadedMesh(_restricted(k, contact), error, contact)
+
+
+def _clearance(xi: FloatArray, k: PathFunction, error: PathFunction, force: float, g: Geometry) -> FloatArray:
+    """Approach minus error of the pair at xi, with its neighbours a pitch apart; (n,) [m]."""
+    shifts = np.arange(1 - g.pairs, g.pairs) * g.base_pitch
+    place = xi[:, None] + shifts
+    outside = (place < g.L_XA) | (place > g.L_XD)
+    e = np.where(outside, np.inf, error(place))
+    delta = share_load(np.where(outside, 0.0, k(place)), e, force).transmission_error
+    return np.asarray(delta - e[:, g.pairs - 1], dtype=np.float64)
+
+
+def _positive_intervals(
+    function: Callable[[FloatArray], FloatArray], g: Geometry, kinks: FloatArray
+) -> FloatArray:
+    """Intervals of [L_XA, L_XD] in which a piecewise smooth function is positive; (n, 2)."""
+    inside = 1e-12 * g.base_pitch
+    jumps = np.add.outer(np.array([g.L_XA, g.L_XD, *kinks]), np.arange(-g.pairs, g.pairs + 1) * g.base_pitch)
+    marks = np.unique(jumps[(jumps > g.L_XA + inside) & (jumps < g.L_XD - inside)])
+    found: list[list[float]] = []
+    for low, high in itertools.pairwise([g.L_XA, *marks, g.L_XD]):
+        if high - low <= 4 * inside:
+            continue
+        count = max(3, int(_SAMPLES * (high - low) / (g.L_XD - g.L_XA)))
+        xi = np.linspace(low + inside, high - inside, count)
+        value = function(xi)
+        for a, b, f_a, f_b in zip(xi[:-1], xi[1:], value[:-1], value[1:], strict=True):
+            if f_a <= 0.0 and f_b <= 0.0:
+                continue
+            start, end = a, b
+            if f_a <= 0.0 or f_b <= 0.0:
+                root = float(brentq(lambda x: float(function(np.array([x]))[0]), a, b, xtol=1e-16))
+                start, end = (root, b) if f_a <= 0.0 else (a, root)
+            if found and start - found[-1][1] <= 4 * inside:
+                found[-1][1] = end
+            else:
+                found.append([start, end])
+    if not found:
+        return np.empty((0, 2))
+    intervals = np.array(found)
+    intervals[np.abs(intervals - g.L_XA) <= 4 * inside] = g.L_XA
+    intervals[np.abs(intervals - g.L_XD) <= 4 * inside] = g.L_XD
+    return intervals
+
+
+def _restricted(k: PathFunction, contact: FloatArray) -> PathFunction:
+    """The function on the intervals, zero between them; jumps are switches."""
+    low, high = k.interval
+    ends = contact.ravel()
+    new = ends[(ends > low) & (ends < high)]
+    breaks = np.unique(np.concatenate([k.breaks, new]))
+    left = np.searchsorted(k.breaks, breaks[:-1], side="right") - 1
+    order = k.coefficients.shape[0]
+    shift = breaks[:-1] - k.breaks[left]
+    moved = np.zeros((order, breaks.size - 1))
+    for column, (j, s) in enumerate(zip(left, shift, strict=True)):
+        poly = np.polynomial.Polynomial(k.coefficients[::-1, j])
+        shifted = poly(np.polynomial.Polynomial([s, 1.0])).coef
+        moved[order - shifted.size :, column] = shifted[::-1]
+    middle = 0.5 * (breaks[:-1] + breaks[1:])
+    loaded = ((middle[:, None] > contact[:, 0]) & (middle[:, None] < contact[:, 1])).any(axis=1)
+    return PathFunction(breaks, np.where(loaded, moved, 0.0), np.union1d(k.switches, new))

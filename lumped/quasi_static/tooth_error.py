@@ -1,0 +1,161 @@
+"""Unloaded error of a tooth pair: tip and root relief of both flanks, and the gap before A and behind D.
+
+Errors are lengths along the line of action, positive where material is missing, so that the teeth come too
+late to touch. Relief is given per gear over its roll angle, L/r_b for a contact at the length L on the base
+tangent.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lumped.errors import refuse
+from lumped.path_function import FloatArray, PathFunction
+
+if TYPE_CHECKING:
+    from lumped.gear_geometry import Geometry
+    from lumped.gear_parameters import ProfileRelief
+    from lumped.parameters import GearPair
+
+
+def flank_relief(relief: ProfileRelief, end: float, roll: FloatArray) -> FloatArray:
+    """Material removed from a flank by one tip or root relief [m].
+
+    Parameters
+    ----------
+    relief : shape, amount C [m] and start roll angle [rad]
+    end : roll angle at which the amount is reached: of the tip circle for tip relief, of the start of the
+        active flank (the mate's tip) for root relief [rad]
+    roll : roll angles [rad], any shape
+
+    Returns
+    -------
+    C s (linear) or C s^2 (parabolic), s = (roll - start)/(end - start) where positive, 0 elsewhere
+    """
+    s = np.maximum((roll - relief.start_roll_angle) / (end - relief.start_roll_angle), 0.0)
+    return np.asarray(relief.amount * (s if relief.shape == "linear" else s**2), dtype=np.float64)
+
+
+def relief_error(pair: GearPair, geometry: Geometry, xi: FloatArray) -> FloatArray:
+    """Sum of the reliefs of both flanks at the contact position xi [m].
+
+    Parameters
+    ----------
+    pair, geometry : the gear pair and its geometry
+    xi : positions from X [m], any shape
+
+    Raises
+    ------
+    ParameterError : a relief starts outside the active flank
+    """
+    total = np.zeros(np.shape(xi))
+    for relief in _reliefs(pair, geometry):
+        total = total + relief(np.asarray(xi, dtype=float))
+    return total
+
+
+def error_function(pair: GearPair, geometry: Geometry) -> PathFunction:
+    """Unloaded error e(xi) of a tooth pair from A to D [m], exactly, with switches where a relief starts.
+
+    Parameters
+    ----------
+    pair, geometry : the gear pair and its geometry
+
+    Raises
+    ------
+    ParameterError : a relief starts outside the active flank
+    """
+    low, high = geometry.L_XA, geometry.L_XD
+    starts = np.array([relief.start for relief in _reliefs(pair, geometry)])
+    switches = np.unique(starts[(starts > low) & (starts < high)])
+    breaks = np.array([low, *switches, high])
+    # Each piece is a parabola: three values fix it.
+    left, width = breaks[:-1], np.diff(breaks)
+    inside = left + width * np.array([[1e-9], [0.5], [1.0 - 1e-9]])
+    a, b, c = relief_error(pair, geometry, inside)
+    s = (inside - left) / width
+    second = ((c - b) / (s[2] - s[1]) - (b - a) / (s[1] - s[0])) / (s[2] - s[0])
+    first = (b - a) / (s[1] - s[0]) - second * (s[0] + s[1])
+    constant = a - s[0] * (first + second * s[0])
+    return PathFunction(breaks, np.stack([second / width**2, first / width, constant]), switches)
+
+
+def corner_gap(geometry: Geometry, xi: FloatArray) -> FloatArray:
+    """Gap between perfect flanks outside the path of contact, 0 within it [m].
+
+    Before A the corner of the gear's tip faces the pinion's flank, behind D the corner of the pinion's tip
+    faces the gear's. The gap is measured on the tangent from the corner to the flank's base circle: involutes
+    of one base circle are parallel curves.
+
+    Parameters
+    ----------
+    geometry : the pair's geometry
+    xi : positions from X, any shape; those outside [L_XA, L_XD] are where longer teeth would touch [m]
+    """
+    g = geometry
+    early = np.maximum(g.L_XA - xi, 0.0)
+    late = np.maximum(xi - g.L_XD, 0.0)
+    before = _gap(early, g.L_XA, g.L_XY, g.base_radius_pinion, g.base_radius_gear)
+    behind = _gap(late, g.L_XY - g.L_XD, g.L_XY, g.base_radius_gear, g.base_radius_pinion)
+    return np.asarray(before + behind, dtype=np.float64)
+
+
+def _gap(
+    beyond: FloatArray, start: float, tangent: float, flank_radius: float, tip_radius: float
+) -> FloatArray:
+    """Gap of a tip corner from the mate's flank, ``beyond`` before the flank's first contact at ``start``.
+
+    Axes with the flank's tangent point as origin, t along the line of action, n away from the flank's centre.
+    """
+    corner = tangent - start  # length on the tip's base tangent of its corner
+    turn = beyond / tip_radius
+    t = tangent - (tip_radius * np.sin(turn) + corner * np.cos(turn))
+    n = tip_radius - tip_radius * np.cos(turn) + corner * np.sin(turn)
+    length = np.sqrt(np.maximum(t**2 + (n + flank_radius) ** 2 - flank_radius**2, 0.0))
+    angle = np.arctan2(t, n + flank_radius) - np.arctan2(length, flank_radius)
+    return np.asarray(length + flank_radius * angle - (start - beyond), dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class _Relief:
+    """One relief of the pair, seen over xi."""
+
+    relief: ProfileRelief
+    end: float
+    radius: float
+    origin: float  # xi of the gear's own tangent point
+    sense: float  # +1 where the gear's roll angle grows with xi
+
+    def __call__(self, xi: FloatArray) -> FloatArray:
+        return flank_relief(self.relief, self.end, self.sense * (xi - self.origin) / self.radius)
+
+    @property
+    def start(self) -> float:
+        """Start of the relief as xi [m]."""
+        return self.origin + self.sense * self.relief.start_roll_angle * self.radius
+
+
+def _reliefs(pair: GearPair, geometry: Geometry) -> list[_Relief]:
+    g = geometry
+    sides = (
+        ("pinion", pair.pinion, g.base_radius_pinion, g.L_XD, g.L_XA, 0.0, 1.0),
+        ("gear", pair.gear, g.base_radius_gear, g.L_XY - g.L_XA, g.L_XY - g.L_XD, g.L_XY, -1.0),
+    )
+    found = []
+    for which, gear, radius, tip, root, origin, sense in sides:
+        for name, relief, end in (("tip", gear.tip_relief, tip), ("root", gear.root_relief, root)):
+            if relief is None or relief.amount == 0.0:
+                continue
+            if not root < relief.start_roll_angle * radius < tip:
+                raise refuse(
+                    f"{which}.{name}_relief.start_roll_angle",
+                    f"{math.degrees(relief.start_roll_angle):.4g} deg",
+                    f"{math.degrees(root / radius):.4f} to {math.degrees(tip / radius):.4f} deg",
+                    "Start the relief on the active flank.",
+                )
+            found.append(_Relief(relief, end / radius, radius, origin, sense))
+    return found

@@ -1,0 +1,169 @@
+"""Static transmission error and load sharing over the mesh cycle and torque (Harris map).
+
+S. L. Harris, Dynamic loads on the teeth of spur gears, Proc. Inst. Mech. Eng. 172 (1958) 87-112: curves of
+static transmission error for a family of loads.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.errors import NumericalError, refuse
+from lumped.gear_geometry import geometry
+from lumped.parameters import GearPair
+from lumped.path_function import FloatArray
+from lumped.quasi_static.load_sharing import share_load
+from lumped.quasi_static.tooth_error import corner_gap, relief_error
+from lumped.stiffness import pair_stiffness
+
+#: Pairs are followed this fraction of a base pitch beyond A and D, where deflection lets them touch.
+REACH = 0.45
+#: Stiffness and error at the very ends of the path are taken this fraction of a base pitch inside it.
+_INSIDE = 1e-12
+
+
+@dataclass(frozen=True)
+class MeshPositions:
+    """Tooth pairs over a whole number of mesh cycles, those near the path of contact included.
+
+    Attributes
+    ----------
+    phase : (k,) mesh cycles since a pair was at A
+    ahead : (pairs,) whole pitches by which a pair is ahead of the one that was at A when its cycle began
+    tooth : (k, pairs) number of the tooth pair; later pairs have larger numbers
+    xi : (k, pairs) positions from X [m]
+    stiffness : (k, pairs) k_i, that of the nearest end of the path for a pair outside [N/m]
+    error : (k, pairs) e_i, infinite where a pair cannot touch [m]
+    """
+
+    phase: FloatArray
+    ahead: NDArray[np.int64]
+    tooth: NDArray[np.int64]
+    xi: FloatArray
+    stiffness: FloatArray
+    error: FloatArray
+
+
+def mesh_positions(
+    pair: GearPair, *, phases: int = 256, pitch_errors: Sequence[float] = (0.0,), extended: bool = True
+) -> MeshPositions:
+    """Stiffness and unloaded error of the tooth pairs over mesh cycles.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    phases : positions per mesh cycle, evenly spaced from a pair at A
+    pitch_errors : errors of successive tooth pairs, repeated for ever, positive for a pair that comes late
+        [m]; as many mesh cycles are returned
+    extended : whether deflection lets pairs touch before A and behind D
+
+    Raises
+    ------
+    ParameterError : a relief starts outside the active flank, or too few phases
+    """
+    if phases < 2:
+        raise refuse("phases", phases, ">= 2", "Give the number of positions per mesh cycle.")
+    g = geometry(pair)
+    reach = REACH if extended else 0.0
+    ahead = np.arange(math.floor(-reach), math.ceil(g.contact_ratio + reach) + 1)
+    phase = np.arange(phases * len(pitch_errors)) / phases
+    cycle = np.floor(phase).astype(np.int64)[:, None]
+    tooth = cycle - ahead
+    xi = g.L_XA + (phase[:, None] - cycle + ahead) * g.base_pitch
+    inside = _INSIDE * g.base_pitch
+    k = pair_stiffness(pair, g)(np.clip(xi, g.L_XA + inside, g.L_XD - inside))
+    e = corner_gap(g, xi) + relief_error(pair, g, np.clip(xi, g.L_XA, g.L_XD))
+    e = e + np.asarray(pitch_errors, dtype=float)[tooth % len(pitch_errors)]
+    margin = reach * g.base_pitch + inside
+    apart = (xi < g.L_XA - margin) | (xi > g.L_XD + margin)
+    return MeshPositions(phase, ahead, tooth, xi, np.where(apart, 0.0, k), np.where(apart, np.inf, e))
+
+
+def static_transmission_error(
+    pair: GearPair,
+    torques: ArrayLike | None = None,
+    *,
+    phases: int = 256,
+    pitch_errors: Sequence[float] = (0.0,),
+    extended: bool = True,
+) -> xr.Dataset:
+    """Quasi-static meshing of a gear pair: a Harris map and the load of every tooth pair.
+
+    At each position the rigid approach delta and the loads satisfy sum_i k_i max(delta - e_i, 0) = T/r_bp.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    torques : (n,) pinion torques >= 0 [N m]; default the operating torque
+    phases, pitch_errors, extended : as in ``mesh_positions``
+
+    Returns
+    -------
+    xarray.Dataset over ``torque`` [N m], ``phase`` [mesh cycles] and ``pair``: ``transmission_error`` [m],
+    ``peak_to_peak`` [m], ``normal_load`` [N], ``load_share`` [1], ``contact_ratio`` [1] under load,
+    ``position`` [m] and ``error`` [m]
+
+    Raises
+    ------
+    ParameterError : a negative torque, or a relief that starts outside the active flank
+    NumericalError : contact reaches further beyond the path than the pairs are followed
+    """
+    torque = np.atleast_1d(
+        np.asarray(pair.operating.pinion_torque if torques is None else torques, dtype=float)
+    )
+    if not (np.isfinite(torque).all() and (torque >= 0.0).all()):
+        raise refuse("torques", f"{torque.min():g} N m", ">= 0 and finite", "Give driving torques.")
+    g = geometry(pair)
+    mesh = mesh_positions(pair, phases=phases, pitch_errors=pitch_errors, extended=extended)
+    force = torque / g.base_radius_pinion
+    result = share_load(mesh.stiffness, mesh.error, force[:, None])
+    _check_reach(mesh, result.load, g.L_XA, g.L_XD, g.base_pitch)
+    te = result.transmission_error
+    with np.errstate(invalid="ignore"):
+        share = np.where(force[:, None, None] > 0.0, result.load / force[:, None, None], 0.0)
+    axes = ("torque", "phase", "pair")
+    return xr.Dataset(
+        {
+            "transmission_error": (axes[:2], te, _attrs("m", "static transmission error, driven gear late")),
+            "peak_to_peak": (
+                axes[:1],
+                np.ptp(te, axis=1),
+                _attrs("m", "peak to peak static transmission error"),
+            ),
+            "normal_load": (axes, result.load, _attrs("N", "normal load of a tooth pair")),
+            "load_share": (axes, share, _attrs("1", "share of a tooth pair in the load")),
+            "contact_ratio": (
+                axes[:1],
+                (result.load > 0.0).sum(axis=2).mean(axis=1),
+                _attrs("1", "mean number of loaded pairs"),
+            ),
+            "position": (axes[1:], mesh.xi, _attrs("m", "position from X along the line of action")),
+            "error": (axes[1:], mesh.error, _attrs("m", "unloaded error of a tooth pair")),
+        },
+        coords={
+            "torque": (axes[0], torque, _attrs("N*m", "pinion torque")),
+            "phase": (axes[1], mesh.phase, _attrs("1", "mesh cycles after a pair was at A")),
+            "pair": (axes[2], mesh.ahead, _attrs("1", "pitches ahead of the pair that was at A")),
+        },
+        attrs={"pair": pair.name, "extended_contact": int(extended)},
+    )
+
+
+def _attrs(units: str, name: str) -> dict[str, str]:
+    return {"units": units, "long_name": name}
+
+
+def _check_reach(mesh: MeshPositions, load: FloatArray, low: float, high: float, pitch: float) -> None:
+    near = 0.98 * REACH * pitch
+    far = (mesh.xi < low - near) | (mesh.xi > high + near)
+    if np.any(load[:, far] > 0.0):
+        raise NumericalError(
+            f"Teeth deflect so far that pairs touch {0.98 * REACH:.2f} base pitches outside the path of "
+            "contact: lower the torque, check the stiffness, or set extended=False."
+        )

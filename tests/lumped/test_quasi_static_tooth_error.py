@@ -1,0 +1,131 @@
+"""Are relief and the gap outside the path of contact what the flanks' geometry says?"""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+
+from lumped import ParameterError, geometry, load_gear_pair
+from lumped.quasi_static import corner_gap, error_function, relief_error
+
+UNEQUAL = {"centre_distance": None, "gear.teeth": 40, "gear.tip_relief": None, "pinion.tip_relief": None}
+
+
+def relieved(**changes):
+    pair = load_gear_pair("nasa_28_28").with_({"pinion.tip_relief": None, "gear.tip_relief": None, **changes})
+    return pair, geometry(pair)
+
+
+def relief(shape, amount, start):
+    return {"shape": shape, "amount": amount, "start_roll_angle": start}
+
+
+@pytest.mark.parametrize(("shape", "half_way"), [("linear", 0.5), ("parabolic", 0.25)])
+def test_tip_relief_of_the_pinion_ends_at_d(shape, half_way):
+    pair, g = relieved(**{"pinion.tip_relief": relief(shape, 20.0, 24.0)})
+    start = math.radians(24.0) * g.base_radius_pinion
+    xi = np.array([g.L_XA, start, 0.5 * (start + g.L_XD), g.L_XD])
+    assert relief_error(pair, g, xi) == pytest.approx([0.0, 0.0, half_way * 20e-6, 20e-6], abs=1e-18)
+
+
+def test_tip_relief_of_the_gear_ends_at_a():
+    pair, g = relieved(**{"gear.tip_relief": relief("linear", 20.0, 24.0)})
+    start = g.L_XY - math.radians(24.0) * g.base_radius_gear
+    xi = np.array([g.L_XA, 0.5 * (start + g.L_XA), start, g.L_XD])
+    assert relief_error(pair, g, xi) == pytest.approx([20e-6, 10e-6, 0.0, 0.0], abs=1e-18)
+
+
+def test_root_relief_ends_where_the_mates_tip_touches():
+    pair, g = relieved(
+        **{
+            "pinion.root_relief": relief("linear", 12.0, 16.0),
+            "gear.root_relief": relief("parabolic", 8.0, 16.0),
+        }
+    )
+    assert relief_error(pair, g, np.array([g.L_XA, g.L_XP, g.L_XD])) == pytest.approx(
+        [12e-6, 0.0, 8e-6], abs=1e-18
+    )
+
+
+def test_error_function_is_the_relief_and_names_its_kinks():
+    pair, g = relieved(
+        **{
+            "pinion.tip_relief": relief("linear", 20.0, 24.0),
+            "pinion.root_relief": relief("parabolic", 5.0, 14.0),
+            "gear.tip_relief": relief("parabolic", 15.0, 23.0),
+        }
+    )
+    e = error_function(pair, g)
+    xi = np.linspace(g.L_XA, g.L_XD, 400)[1:-1]
+    assert e(xi) == pytest.approx(relief_error(pair, g, xi), abs=1e-13)  # a parabola through three points
+    kinks = [math.radians(a) * g.base_radius_pinion for a in (14.0, 24.0)]
+    kinks.append(g.L_XY - math.radians(23.0) * g.base_radius_gear)
+    assert e.switches == pytest.approx(sorted(kinks), rel=1e-12)
+
+
+def test_perfect_flanks_have_no_error():
+    pair, g = relieved()
+    assert not error_function(pair, g).coefficients.any()
+
+
+@pytest.mark.parametrize(
+    ("field", "start"), [("tip_relief", 40.0), ("tip_relief", 5.0), ("root_relief", 40.0)]
+)
+def test_relief_outside_the_active_flank_is_refused(field, start):
+    pair, g = relieved(**{f"pinion.{field}": relief("linear", 5.0, start)})
+    with pytest.raises(ParameterError, match=rf"pinion\.{field}\.start_roll_angle"):
+        error_function(pair, g)
+
+
+def flank(radius, phase, length):
+    """Involute that is at ``phase`` on the line of action; axes t along it, n away from the centre."""
+    turn = (phase - length) / radius
+    return (
+        radius * np.sin(turn) + length * np.cos(turn),
+        radius * np.cos(turn) - radius - length * np.sin(turn),
+    )
+
+
+@pytest.mark.parametrize("end", ["A", "D"])
+@pytest.mark.parametrize("beyond", [0.05, 0.2, 0.4])
+def test_the_gap_is_the_turn_that_brings_the_corner_onto_the_flank(end, beyond):
+    _, g = relieved(**UNEQUAL)
+    distance = beyond * g.base_pitch
+    if end == "A":
+        r_flank, r_tip, start, xi = g.base_radius_pinion, g.base_radius_gear, g.L_XA, g.L_XA - distance
+    else:
+        r_flank, r_tip, start, xi = (
+            g.base_radius_gear,
+            g.base_radius_pinion,
+            g.L_XY - g.L_XD,
+            g.L_XD + distance,
+        )
+    gap = float(corner_gap(g, np.array([xi]))[0])
+    assert gap > 0.0
+    # The mate seen from its own tangent point: its corner is the point of its involute at the tip's length.
+    corner_length = g.L_XY - start
+    t, n = flank(r_tip, corner_length + distance, corner_length)
+    corner = np.array([g.L_XY - t, -n])
+
+    def nearest(turned):
+        def distance_to(length):
+            return math.dist(flank(r_flank, start - distance + turned, length), corner)
+
+        found = minimize_scalar(
+            distance_to, bounds=(0.1 * start, 2.0 * start), method="bounded", options={"xatol": 1e-12}
+        )
+        return found.fun
+
+    # The flank turned forward by gap/r passes through that corner; one turned by 1 % more does not.
+    assert nearest(gap) < 1e-4 * gap
+    assert nearest(1.01 * gap) == pytest.approx(0.01 * gap, rel=0.05)
+
+
+def test_the_gap_opens_with_the_square_of_the_distance():
+    _, g = relieved()
+    h = 1e-3 * g.base_pitch
+    one, two = corner_gap(g, np.array([g.L_XA - h, g.L_XA - 2 * h]))
+    assert two / one == pytest.approx(4.0, rel=5e-3)  # third-order term, h/L
+    inside = np.linspace(g.L_XA, g.L_XD, 20)
+    assert corner_gap(g, inside) == pytest.approx(0.0, abs=1e-15)
