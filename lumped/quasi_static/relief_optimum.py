@@ -2,8 +2,8 @@
 
 Both gears get the same tip relief, given by its amount and its length along the line of action: back from D
 on the pinion and from A on the gear. With one constant stiffness per pair the best linear relief is known:
-amount F/k, the deflection of a single pair, over the whole length of double contact; it makes the transmission
-error constant at the design torque.
+amount F/k, the deflection of a single pair, over the whole length of double contact; it makes the
+transmission error constant at the design torque.
 """
 
 from __future__ import annotations
