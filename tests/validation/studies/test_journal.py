@@ -1,0 +1,200 @@
+"""Does the journal give back every whole record, and never a damaged one?"""
+
+from __future__ import annotations
+
+import math
+import os
+import struct
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lumped.errors import ParameterError
+from validation.studies.cases import case_list
+from validation.studies.files import StoreError, replaced
+from validation.studies.journal import Journal, Key, scan
+from validation.studies.record import MAX_MESSAGE, Record, Status, decode, encode
+
+texts = st.text(max_size=60) | st.just("x" * 5000) | st.just("é" * MAX_MESSAGE)
+COMPUTED = [Status.OK, Status.OUTSIDE_LAW_RANGE]
+records = st.one_of(
+    st.builds(
+        Record,
+        case=st.integers(0, 2**64 - 1),
+        status=st.sampled_from(COMPUTED),
+        seconds=st.floats(0, 1e6, width=32),
+        values=st.tuples(st.floats(), st.floats()),
+        message=texts,
+    ),
+    st.builds(
+        Record,
+        case=st.integers(0, 2**64 - 1),
+        status=st.sampled_from([s for s in Status if s.failed]),
+        seconds=st.floats(0, 1e6, width=32),
+        message=texts,
+    ),
+)
+
+
+def bits(values):
+    return struct.pack(f"<{len(values)}d", *values)
+
+
+@given(records, st.integers(0, 2**32 - 1))
+def test_a_record_comes_back_bit_for_bit(record, seed):
+    data = encode(record, 2, seed)
+    read, after = decode(data, 0, 2, seed)
+    assert after == len(data)
+    assert (read.case, read.status, read.seconds) == (record.case, record.status, record.seconds)
+    assert bits(read.values) == bits(record.values)
+    kept = record.message.encode("utf-8", "ignore")[:MAX_MESSAGE].decode("utf-8", "ignore")
+    assert read.message == kept
+
+
+@given(records, st.integers(0, 2**32 - 1))
+def test_a_record_of_another_study_does_not_pass(record, seed):
+    assert decode(encode(record, 2, seed), 0, 2, seed ^ 1) is None
+
+
+@given(records, st.data())
+def test_no_flipped_bit_passes(record, data):
+    # CRC-32 finds every single-bit error; the length field is checked before it is trusted.
+    whole = bytearray(encode(record, 2, 7))
+    bit = data.draw(st.integers(0, 8 * len(whole) - 1))
+    whole[bit // 8] ^= 1 << bit % 8
+    assert decode(bytes(whole), 0, 2, 7) is None
+
+
+def sample_records(count):
+    values = [Record(j, Status.OK, 0.5, (math.sqrt(j), -float(j))) for j in range(count)]
+    values[2] = Record(2, Status.NUMERICAL, 0.5, message="did not converge")
+    return values
+
+
+@pytest.fixture
+def journal(study, tmp_path):
+    """Key, file and the ten records written to it."""
+    key, path, written = Key(case_list(study)), tmp_path / "journal.bin", sample_records(10)
+    with Journal(path, key) as file:
+        file.append(written[:4])
+        file.append(written[4:])
+    return key, path, written
+
+
+def read(path, key):
+    found = []
+    return found, scan(path, key, found.append)
+
+
+def test_what_was_appended_is_read_in_order(journal):
+    key, path, written = journal
+    found, result = read(path, key)
+    assert found == written
+    assert result.damaged_bytes == 0
+    assert result.end == path.stat().st_size
+
+
+def test_cut_anywhere_the_records_before_the_cut_survive(journal):
+    key, path, written = journal
+    data = path.read_bytes()
+    ends = [len(key.header)]
+    while ends[-1] < len(data):
+        ends.append(decode(data, ends[-1], key.outputs, key.seed)[1])
+    for size in range(len(data)):
+        path.write_bytes(data[:size])
+        found, result = read(path, key)
+        whole = max((j for j, end in enumerate(ends) if end <= size), default=0)
+        assert found == written[:whole]
+        assert result.damaged_bytes == max(size - ends[whole], 0)
+
+
+def test_damaged_anywhere_only_the_record_itself_is_lost(journal):
+    key, path, written = journal
+    data = path.read_bytes()
+    for at in range(len(key.header), len(data)):
+        changed = bytearray(data)
+        changed[at] ^= 0xFF
+        path.write_bytes(changed)
+        found, result = read(path, key)
+        assert len(found) == len(written) - 1
+        assert [record for record in written if record in found] == found
+        assert result.damaged_bytes > 0
+
+
+def test_after_damage_appending_goes_on(journal):
+    key, path, written = journal
+    data = path.read_bytes()
+    path.write_bytes(data[:-5])
+    _, result = read(path, key)
+    with Journal(path, key, result.end) as file:
+        file.append([written[-1]])
+    assert path.read_bytes() == data
+
+
+def test_a_damaged_header_is_repaired(journal):
+    key, path, written = journal
+    data = path.read_bytes()
+    path.write_bytes(b"\0" * 20 + data[20:])
+    found, result = read(path, key)
+    assert found == written
+    Journal(path, key, result.end).close()
+    assert path.read_bytes() == data
+
+
+def test_the_journal_of_another_study_is_refused(journal, make_study):
+    _, path, _ = journal
+    other = Key(case_list(make_study(outputs=["contact_ratio", "base_pitch"])))
+    with pytest.raises(ParameterError, match="choose another --output"):
+        read(path, other)
+
+
+def test_a_second_writer_is_refused(journal):
+    key, path, _ = journal
+    with Journal(path, key, path.stat().st_size), pytest.raises(StoreError, match="another run"):
+        Journal(path, key, path.stat().st_size)
+
+
+@pytest.mark.parametrize("kind", ["link", "pipe", "folder"])
+def test_only_a_regular_file_is_opened(journal, tmp_path, kind):
+    key, path, _ = journal
+    target = tmp_path / "precious"
+    target.write_bytes(b"do not touch")
+    path.unlink()
+    if kind == "link":
+        path.symlink_to(target)
+    elif kind == "pipe":
+        os.mkfifo(path)
+    else:
+        path.mkdir()
+    for use in (lambda: Journal(path, key), lambda: read(path, key)):
+        with pytest.raises(StoreError):
+            use()
+    assert target.read_bytes() == b"do not touch"
+
+
+def test_replacing_a_link_leaves_its_target_alone(tmp_path):
+    target, link = tmp_path / "precious", tmp_path / "results.nc"
+    target.write_bytes(b"do not touch")
+    link.symlink_to(target)
+    (tmp_path / ".results.nc.part").symlink_to(target)
+    with replaced(link) as part:
+        part.write_bytes(b"new")
+    assert target.read_bytes() == b"do not touch"
+    assert link.read_bytes() == b"new"
+    assert not link.is_symlink()
+
+
+def test_a_failed_replacement_keeps_the_old_file(tmp_path):
+    path = tmp_path / "results.nc"
+    path.write_bytes(b"old")
+
+    def half() -> None:
+        with replaced(path) as part:
+            part.write_bytes(b"half")
+            raise OSError(28, "No space left on device")
+
+    with pytest.raises(StoreError, match="--resume"):
+        half()
+    assert path.read_bytes() == b"old"
+    assert [p.name for p in tmp_path.iterdir()] == ["results.nc"]

@@ -1,0 +1,241 @@
+"""Does a sweep compute every case once, whatever the cases do, and wherever they run?"""
+
+from __future__ import annotations
+
+import threading
+import time
+import warnings
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from lumped import LawRangeWarning, NumericalError, geometry, load_gear_pair, speed_sweep
+from lumped.errors import ParameterError
+from validation.studies import Status, StoreError, analyses, read_results, run_sweep, runner
+
+
+@pytest.fixture
+def replace_analysis(monkeypatch):
+    """Put another function in the place of the geometry analysis."""
+
+    def put(function):
+        monkeypatch.setitem(analyses.ANALYSES, "geometry", function)
+
+    return put
+
+
+def constant(**values):
+    return {"contact_ratio": 1.5, "mesh_frequency": 2.0} | values
+
+
+def speed_of(variation):
+    return round(variation.pair.operating.pinion_speed * 30 / np.pi, 6)
+
+
+def test_the_result_is_labelled_and_right(study, tmp_path):
+    summary = run_sweep(study, tmp_path / "out")
+    assert (summary.cases, summary.computed, summary.before) == (120, 120, 0)
+    with xr.open_dataset(summary.results, engine="h5netcdf") as result:
+        assert result.contact_ratio.dims == ("operating_pinion_speed", "face_width", "centre_distance")
+        assert result.operating_pinion_speed.attrs["units"] == "rpm"
+        assert result.face_width.attrs["field"] == "pinion.face_width, gear.face_width"
+        pair = load_gear_pair("nasa_28_28")
+        for distance in (88.9, 89.4):
+            for speed in result.operating_pinion_speed.to_numpy():
+                at = result.sel(operating_pinion_speed=speed, face_width=6.0, centre_distance=distance)
+                g = geometry(pair.with_(centre_distance=distance, operating__pinion_speed=speed))
+                assert float(at.contact_ratio) == g.contact_ratio
+                assert float(at.mesh_frequency) == g.mesh_frequency
+                assert int(at.status) == Status.OK
+
+
+def test_failed_cases_are_recorded_and_the_others_go_on(study, tmp_path):
+    summary = run_sweep(study, tmp_path / "out")
+    result = read_results(tmp_path / "out")
+    wedged = result.sel(centre_distance=88.5)
+    assert (wedged.status == Status.REFUSED).all()
+    assert wedged.contact_ratio.isnull().all()
+    assert (result.sel(centre_distance=[88.9, 89.0, 89.2, 89.4]).status == Status.OK).all()
+    assert result.sizes["failure"] == summary.failed == 24
+    assert all("wedge" in str(text) for text in result.failure_message.to_numpy())
+    assert result.failed_case.to_numpy().tolist() == list(range(0, 120, 5))
+    assert summary.exit_code == 1
+
+
+@pytest.mark.parametrize(
+    ("raised", "status"),
+    [
+        (NumericalError("raise rtol"), Status.NUMERICAL),
+        (ZeroDivisionError("a defect"), Status.UNEXPECTED),
+        (MemoryError("too large"), Status.UNEXPECTED),
+        (RecursionError("too deep"), Status.UNEXPECTED),
+    ],
+)
+def test_any_error_of_a_case_is_its_own(study, tmp_path, replace_analysis, raised, status):
+    def analysis(variation, settings):
+        if speed_of(variation) == 500.0:
+            raise raised
+        return constant()
+
+    replace_analysis(analysis)
+    run_sweep(study, tmp_path / "out")
+    result = read_results(tmp_path / "out").sel(centre_distance=88.9)
+    assert (result.sel(operating_pinion_speed=500.0).status == status).all()
+    assert int((result.status == Status.OK).sum()) == 7 * 3
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf")])
+def test_a_number_that_is_not_finite_is_a_failure(study, tmp_path, replace_analysis, value):
+    replace_analysis(lambda variation, settings: constant(mesh_frequency=value))
+    summary = run_sweep(study, tmp_path / "out")
+    assert dict(summary.statuses)[Status.NUMERICAL] == 96
+    assert "not finite: mesh_frequency" in dict(summary.failures)[1]
+
+
+def test_a_law_outside_its_range_is_flagged(study, tmp_path, replace_analysis):
+    def analysis(variation, settings):
+        warnings.warn("outside", LawRangeWarning, stacklevel=1)
+        return constant()
+
+    replace_analysis(analysis)
+    summary = run_sweep(study, tmp_path / "out")
+    assert dict(summary.statuses)[Status.OUTSIDE_LAW_RANGE] == 96
+    assert int(read_results(tmp_path / "out").contact_ratio.notnull().sum()) == 96
+
+
+def test_a_case_that_does_not_end_is_stopped(study, tmp_path, replace_analysis):
+    def analysis(variation, settings):
+        while speed_of(variation) == 500.0:
+            time.sleep(0.01)
+        return constant()
+
+    replace_analysis(analysis)
+    summary = run_sweep(study, tmp_path / "out", case_seconds=0.05)
+    assert dict(summary.statuses)[Status.TIME_LIMIT] == 3 * 4  # 500 rpm: 3 widths, 4 distances that exist
+    assert "0.05 s" in dict(summary.failures)[1]
+
+
+def test_processes_give_the_same_bytes(study, tmp_path, undisturbed):
+    summary = run_sweep(study, tmp_path / "out", workers=2)
+    assert summary.results.read_bytes() == undisturbed
+
+
+def test_stopping_and_resuming_gives_the_same_bytes(study, tmp_path, undisturbed, replace_analysis):
+    class Stop(Exception):
+        pass
+
+    def stop_at(number):
+        def progress(done, total, failed):
+            if done >= number:
+                raise Stop
+
+        return progress
+
+    out = tmp_path / "out"
+    computed = []
+    for number in (1, 30, 50):
+        with pytest.raises(Stop):
+            run_sweep(study, out, resume=True, progress=stop_at(number))
+        computed.append(int((read_results(out).status != Status.MISSING).sum()))
+    summary = run_sweep(study, out, resume=True)
+    assert computed == sorted(set(computed))
+    assert summary.before == computed[-1]
+    assert summary.before + summary.computed == 120
+    assert summary.results.read_bytes() == undisturbed
+    again = run_sweep(study, out, resume=True)
+    assert (again.computed, again.before) == (0, 120)
+    assert again.results.read_bytes() == undisturbed
+
+
+def test_failed_cases_are_computed_again_on_request(study, tmp_path, undisturbed, replace_analysis):
+    out = tmp_path / "out"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(
+            analyses.ANALYSES, "geometry", lambda variation, settings: constant(contact_ratio=np.nan)
+        )
+        assert run_sweep(study, out).failed == 120
+    assert run_sweep(study, out, resume=True).computed == 0
+    summary = run_sweep(study, out, resume=True, retry_failed=True)
+    assert (summary.computed, summary.failed) == (120, 24)
+    assert summary.results.read_bytes() == undisturbed
+
+
+def test_a_store_is_not_overwritten_by_accident(study, make_study, tmp_path):
+    out = tmp_path / "out"
+    before = run_sweep(study, out).results.read_bytes()
+    with pytest.raises(ParameterError, match="--resume"):
+        run_sweep(study, out)
+    with pytest.raises(ParameterError, match="study was changed"):
+        run_sweep(make_study(outputs=["base_pitch"]), out, resume=True)
+    assert (out / "results.nc").read_bytes() == before
+
+
+def test_a_folder_with_other_things_is_left_alone(study, tmp_path):
+    (tmp_path / "thesis.tex").write_text("years of work")
+    with pytest.raises(ParameterError, match=r"thesis\.tex"):
+        run_sweep(study, tmp_path)
+    assert [p.name for p in tmp_path.iterdir()] == ["thesis.tex"]
+    with pytest.raises(ParameterError, match="A file has that name"):
+        run_sweep(study, tmp_path / "thesis.tex")
+
+
+def test_a_sweep_that_cannot_fit_is_refused_before_it_starts(study, tmp_path, monkeypatch):
+    monkeypatch.setattr(runner.shutil, "disk_usage", lambda path: SimpleNamespace(free=1000))
+    with pytest.raises(StoreError, match="Free space"):
+        run_sweep(study, tmp_path / "out")
+
+
+@pytest.mark.parametrize("options", [{"workers": 0}, {"workers": 5000}, {"case_seconds": 0.0}])
+def test_options_out_of_range_are_refused(study, tmp_path, options):
+    with pytest.raises(ParameterError, match=next(iter(options))):
+        run_sweep(study, tmp_path / "out", **options)
+
+
+def test_results_can_be_read_while_the_sweep_runs(study, tmp_path):
+    seen = []
+
+    def progress(done, total, failed):
+        result = read_results(tmp_path / "out")
+        seen.append((done, int((result.status != Status.MISSING).sum()), failed))
+
+    run_sweep(study, tmp_path / "out", progress=progress)
+    assert [done for done, found, failed in seen] == [found for done, found, failed in seen]
+    assert seen[-1] == (120, 120, 24)
+
+
+def test_a_sweep_runs_outside_the_main_thread(study, tmp_path, undisturbed):
+    thread = threading.Thread(target=run_sweep, args=(study, tmp_path / "out"))
+    thread.start()
+    thread.join(60)
+    assert (tmp_path / "out" / "results.nc").read_bytes() == undisturbed
+
+
+def test_the_lumped_analysis_is_the_speed_sweep(make_study, tmp_path):
+    speeds = [1000.0, 2000.0]
+    names = ["dte_peak_to_peak", "dte_rms", "normal_load_max", "mesh_efficiency"]
+    axis = {"field": "speed_rpm", "values": speeds}
+    study = make_study(analysis="lumped", outputs=[*names, "error_estimate"], axes=[axis])
+    assert run_sweep(study, tmp_path / "out").failed == 0
+    result = read_results(tmp_path / "out")
+    expected = speed_sweep(load_gear_pair("nasa_28_28"), speeds)
+    for name in names:
+        np.testing.assert_array_equal(result[name], expected[name])
+    assert (result.error_estimate < 1e-6).all()
+
+
+def test_the_floquet_analysis_is_the_stability_chart(make_study, tmp_path):
+    from floquet import stability_chart
+
+    grid = {"speed_rpm": [4000.0, 6000.0], "stiffness_variation": [0.5, 1.0]}
+    axes = [{"field": name, "values": values} for name, values in grid.items()]
+    study = make_study(
+        analysis="floquet", outputs=["spectral_radius", "spectral_radius_error", "verdict"], axes=axes
+    )
+    assert run_sweep(study, tmp_path / "out").failed == 0
+    result = read_results(tmp_path / "out")
+    chart = stability_chart(load_gear_pair("nasa_28_28"), grid)
+    np.testing.assert_array_equal(result.spectral_radius, chart.spectral_radius)
+    np.testing.assert_array_equal(result.spectral_radius_error, chart.error)
+    np.testing.assert_array_equal(result.verdict, chart.verdict)

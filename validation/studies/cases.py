@@ -1,0 +1,122 @@
+"""The cases of a study: a fixed list, numbered from 0, that depends on nothing but the study."""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy.stats import qmc
+
+from validation.studies.axes import AxisValue, spaced, target_of
+from validation.studies.schema import Study
+
+FloatArray = npt.NDArray[np.float64]
+_BLOCK = 65_536
+
+
+@dataclass(frozen=True, eq=False)
+class CaseList:
+    """Parameters of every case by number.
+
+    A grid is numbered in C order (the last axis runs fastest). Samples are numbered as drawn; with
+    sensitivity indices they are the blocks A, B, AB_1 ... AB_d of Saltelli et al., Comput. Phys. Commun. 181
+    (2010) 259-270: AB_i is A with column i taken from B.
+
+    Attributes
+    ----------
+    study : the study
+    count : number of cases
+    """
+
+    study: Study
+    count: int
+
+    @cached_property
+    def grid(self) -> tuple[tuple[AxisValue, ...], ...] | None:
+        """Values of each axis of a grid, None for samples."""
+        if self.study.design.method != "grid":
+            return None
+        return tuple(axis.listed() for axis in self.study.axes)
+
+    @cached_property
+    def _shares(self) -> FloatArray:
+        """Samples (n, d) of the unit cube, without the sensitivity blocks AB; (n, 2 d) with them."""
+        design, d = self.study.design, len(self.study.axes)
+        columns = 2 * d if design.sensitivity else d
+        kind: Any = qmc.LatinHypercube if design.method == "latin_hypercube" else qmc.Sobol
+        # scipy renamed the argument in 1.15.
+        word = "rng" if "rng" in inspect.signature(kind).parameters else "seed"
+        arguments: dict[str, Any] = {word: np.random.default_rng(design.seed)}
+        if kind is qmc.Sobol:
+            arguments["bits"] = 64
+        assert design.samples is not None
+        shares: FloatArray = kind(columns, **arguments).random(design.samples)
+        return shares
+
+    def shares(self, cases: npt.NDArray[np.int64]) -> FloatArray:
+        """Samples (k, d) of the unit cube for sampled cases."""
+        if not self.study.design.sensitivity:
+            return self._shares[cases]
+        d, n = len(self.study.axes), len(self._shares)
+        block, row = np.divmod(cases, n)
+        result = self._shares[row, :d].copy()
+        result[block == 1] = self._shares[row[block == 1], d:]
+        for i in range(d):
+            at = block == i + 2
+            result[at, i] = self._shares[row[at], d + i]
+        return result
+
+    def values(self, cases: npt.ArrayLike) -> list[tuple[AxisValue, ...]]:
+        """Values of the axes for each of the given case numbers, in the fields' stated units."""
+        return list(zip(*self.columns(cases), strict=True))
+
+    def columns(self, cases: npt.ArrayLike) -> list[tuple[AxisValue, ...]]:
+        """Values of the given cases, axis by axis."""
+        numbers = np.asarray(cases, dtype=np.int64)
+        if self.grid is not None:
+            where = np.unravel_index(numbers, self.shape)
+            return [tuple(axis[i] for i in at) for axis, at in zip(self.grid, where, strict=True)]
+        shares = self.shares(numbers)
+        return [
+            spaced(axis, target_of(axis.field[0]).kind, shares[:, j])
+            for j, axis in enumerate(self.study.axes)
+        ]
+
+    @cached_property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of the grid, or (count,)."""
+        return (self.count,) if self.grid is None else tuple(len(axis) for axis in self.grid)
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """Dimensions of the results: the axes of a grid, or "case"."""
+        return ("case",) if self.grid is None else tuple(axis.label for axis in self.study.axes)
+
+    @cached_property
+    def sha256(self) -> str:
+        """Hash of the parameters of all cases: another sampler version cannot slip in on resume."""
+        digest = hashlib.sha256(repr((self.shape, self.grid)).encode())
+        if self.grid is None:
+            digest.update(np.ascontiguousarray(self._shares).tobytes())
+        return digest.hexdigest()
+
+    def pending(self, wanted: npt.NDArray[np.bool_]) -> Iterator[int]:
+        """Numbers of the wanted cases, in order, without holding them all."""
+        for start in range(0, self.count, _BLOCK):
+            yield from (start + np.flatnonzero(wanted[start : start + _BLOCK])).tolist()
+
+
+def case_list(study: Study) -> CaseList:
+    """Return the cases of a study."""
+    design = study.design
+    if design.method == "grid":
+        return CaseList(study, math.prod(len(axis.listed()) for axis in study.axes))
+    assert design.samples is not None
+    return CaseList(study, design.samples * (len(study.axes) + 2 if design.sensitivity else 1))

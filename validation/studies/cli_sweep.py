@@ -1,0 +1,181 @@
+"""The command ``spurcheck sweep``: options, progress, summary, exit code."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from pathlib import Path
+from types import TracebackType
+from typing import Annotated, Self
+
+import typer
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+from lumped.errors import ParameterError, SpurcheckError
+from validation.studies.cases import case_list
+from validation.studies.load import load_study
+from validation.studies.record import MEANINGS
+from validation.studies.runner import Summary, run_sweep
+
+#: Exit codes: every case has outputs; some failed; input refused; storage or workers gone; interrupted.
+OK, FAILED, REFUSED, STOPPED, INTERRUPTED = 0, 1, 2, 3, 130
+_PLAIN_SECONDS = 10.0
+
+
+def sweep_command(
+    study: Annotated[Path, typer.Argument(help="study file (TOML)")],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="output folder; default: the study file's name")
+    ] = None,
+    resume: Annotated[bool, typer.Option(help="go on where an earlier run in that folder ended")] = False,
+    retry_failed: Annotated[bool, typer.Option(help="with --resume, compute failed cases again")] = False,
+    workers: Annotated[int | None, typer.Option(help="processes; default: one a core")] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Dask scheduler, tcp://HOST:PORT, instead of --workers")
+    ] = None,
+    case_seconds: Annotated[float | None, typer.Option(help="longest time of a case [s]")] = None,
+    dry_run: Annotated[bool, typer.Option(help="check the study and count its cases only")] = False,
+) -> None:
+    """Compute every case of a study; resumable, in parallel, on this machine or a Dask cluster."""
+    code = sweep(
+        study,
+        output,
+        resume=resume,
+        retry_failed=retry_failed,
+        workers=workers,
+        scheduler=scheduler,
+        case_seconds=case_seconds,
+        dry_run=dry_run,
+    )
+    raise typer.Exit(code)
+
+
+def sweep(
+    study_file: Path,
+    output: Path | None = None,
+    *,
+    resume: bool = False,
+    retry_failed: bool = False,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    case_seconds: float | None = None,
+    dry_run: bool = False,
+    console: Console | None = None,
+) -> int:
+    """Run ``spurcheck sweep`` and return its exit code (the constants of this module)."""
+    console = console or Console(stderr=True, highlight=False)
+    # The folder's name never comes from inside the file.
+    folder = output if output is not None else Path(study_file.stem + "-sweep")
+    try:
+        study = load_study(study_file)
+        count = case_list(study).count
+        where = f"on {scheduler}" if scheduler else f"on {workers or cores()} worker(s)"
+        console.print(escape(f"{study.name}: {count} cases, {study.analysis}, {where} -> {folder}"))
+        if dry_run:
+            return OK
+        with SweepProgress(console) as progress:
+            summary = run_sweep(
+                study,
+                folder,
+                workers=min(workers or cores(), max(count, 1)),
+                scheduler=scheduler,
+                resume=resume,
+                retry_failed=retry_failed,
+                case_seconds=case_seconds,
+                progress=progress,
+            )
+    except ParameterError as error:
+        console.print(escape(str(error)), style="red")
+        return REFUSED
+    except SpurcheckError as error:
+        console.print(escape(str(error)), style="red")
+        return STOPPED
+    except KeyboardInterrupt:
+        again = escape(f"Stopped. What was computed is in {folder}; run the same command with --resume.")
+        console.print(again, style="yellow")
+        return INTERRUPTED
+    print_summary(summary, console)
+    return FAILED if summary.failed else OK
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+class SweepProgress:
+    """Progress with rate and time left: a bar on a terminal, else a line every ten seconds.
+
+    Parameters
+    ----------
+    console : where
+    """
+
+    def __init__(self, console: Console) -> None:
+        self._console = console
+        self._bar = Progress(
+            TextColumn("{task.completed:.0f}/{task.total:.0f}"),
+            BarColumn(),
+            TaskProgressColumn(),
+            TextColumn("{task.fields[rate]}, {task.fields[failed]} failed, left"),
+            TimeRemainingColumn(),
+            console=console,
+            transient=True,
+            disable=not console.is_terminal,
+        )
+        self._task = self._bar.add_task("", total=None, rate="", failed=0)
+        self._start = self._printed = time.monotonic()
+
+    def __call__(self, done: int, total: int, failed: int) -> None:
+        """Show how far the sweep is."""
+        now = time.monotonic()
+        rate = done / max(now - self._start, 1e-9)
+        text = f"{rate:.3g} cases/s"
+        if self._console.is_terminal:
+            self._bar.update(self._task, completed=done, total=total, rate=text, failed=failed)
+        elif now - self._printed > _PLAIN_SECONDS:
+            self._printed = now
+            left = (total - done) / rate
+            self._console.print(f"{done}/{total}, {text}, {failed} failed, {left:.0f} s left")
+
+    def __enter__(self) -> Self:
+        self._bar.__enter__()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._bar.__exit__(kind, error, trace)
+
+
+def print_summary(summary: Summary, console: Console) -> None:
+    """Print what a run did: counts by status, failures, the file."""
+    table = Table("status", "cases", box=None, pad_edge=False)
+    for status, number in summary.statuses:
+        table.add_row(MEANINGS[status], str(number))
+    console.print(table)
+    for case, text in summary.failures:
+        first = text.splitlines()[0] if text else ""
+        console.print(escape(f"case {case}: {first}"), style="red")
+    if summary.failed > len(summary.failures):
+        console.print(f"... and {summary.failed - len(summary.failures)} more, see failure_message")
+    if summary.damaged_bytes:
+        console.print(
+            f"{summary.damaged_bytes} damaged bytes of the journal were skipped, their cases computed"
+        )
+    rate = summary.computed / max(summary.seconds, 1e-9)
+    console.print(
+        escape(
+            f"{summary.computed} computed, {summary.before} kept from before, in {summary.seconds:.3g} s "
+            f"({rate:.3g} cases/s) -> {summary.results}"
+        )
+    )
+
+
+if __name__ == "__main__":
+    typer.run(sweep_command)
+    sys.exit(0)

@@ -1,0 +1,154 @@
+"""Reading a study: from TOML or a mapping, refused in the user's words."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from lumped.errors import FieldProblem, ParameterError, refuse, shown
+from lumped.parameters import GearPair
+from lumped.schema_errors import unknown_key
+from lumped.serialise import load_gear_pair, preset_names
+from validation.studies.files import StoreError, read_bytes
+from validation.studies.schema import Axis, Design, Settings, Study
+
+#: Largest study file read: a bound against a wrong path; a list of a million values fits.
+MAX_FILE_BYTES = 100_000_000
+
+
+def load_study(source: str | Path | Mapping[str, Any] | Study, *, name: str = "") -> Study:
+    """Read and validate a study.
+
+    Parameters
+    ----------
+    source : path of a TOML file, TOML text (with a line end in it), a mapping, or a Study (returned as is)
+    name : what to call TOML text or a mapping in errors
+
+    Raises
+    ------
+    ParameterError : everything that is refused, with field, value, allowed range and next action
+    """
+    if isinstance(source, Study):
+        return source
+    if isinstance(source, Mapping):
+        return _validated(dict(source), name or "mapping", Path())
+    if isinstance(source, str) and "\n" in source:
+        return _validated(_parsed(source, name or "study"), name or "study", Path())
+    path = Path(source)
+    try:
+        text = _text(path)
+    except (OSError, ValueError) as error:
+        reason = error if isinstance(error, StoreError) else f"It cannot be read: {error}."
+        raise refuse("study", path, "a readable UTF-8 TOML file", str(reason)) from None
+    return _validated(_parsed(text, str(path)), str(path), path.parent)
+
+
+def _text(path: Path) -> str:
+    # The user's own file may be a link; what it leads to must be an ordinary file all the same.
+    return read_bytes(path.resolve(strict=True), MAX_FILE_BYTES).decode("utf-8")
+
+
+def _parsed(text: str, source: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise ParameterError(
+            [FieldProblem("file", source, "well-formed TOML", f"The TOML is malformed: {error}.")]
+        ) from None
+
+
+def _validated(data: dict[str, Any], source: str, folder: Path) -> Study:
+    problems: list[FieldProblem] = []
+    pair = data.get("gear_pair")
+    try:
+        if isinstance(pair, str):
+            data["gear_pair"] = load_gear_pair(pair if pair in preset_names() else folder / _inside(pair))
+        elif isinstance(pair, Mapping):
+            data["gear_pair"] = load_gear_pair(pair)
+        elif pair is not None and not isinstance(pair, GearPair):
+            raise refuse("name", shown(pair), "a preset, a TOML path or a table", "Correct the gear pair.")
+    except ParameterError as error:
+        problems += [
+            FieldProblem(f"gear_pair.{p.field}", p.value, p.allowed, p.action) for p in error.problems
+        ]
+        del data["gear_pair"]
+    try:
+        study = Study.model_validate(data)
+    except ParameterError as error:
+        problems += error.problems
+    except ValidationError as error:
+        problems += [
+            p
+            for p in _translated(error)
+            if not (problems and p.field == "gear_pair" and p.value == "missing")
+        ]
+    except RecursionError:
+        problems.append(FieldProblem("file", source, "a few levels of nesting", "Flatten it."))
+    if problems:
+        raise ParameterError(problems, source)
+    return study
+
+
+def _inside(name: str) -> str:
+    if not name or "\0" in name or len(name) > 1000:
+        raise refuse("file", shown(repr(name)), "a preset or the path of a TOML file", "Correct the path.")
+    return name
+
+
+def _translated(error: ValidationError) -> list[FieldProblem]:
+    """Return pydantic's findings as the tool's own; the parts of a union are one finding."""
+    problems: dict[str, FieldProblem] = {}
+    for item in error.errors(include_url=False):
+        location = [str(part) for part in item["loc"] if str(part) not in _UNION_PARTS]
+        path = ".".join(location) or "file"
+        context = item.get("ctx", {})
+        cause = context.get("error")
+        if isinstance(cause, ParameterError):
+            prefix = f"{path}." if location else ""
+            for p in cause.problems:
+                problems[prefix + p.field] = FieldProblem(prefix + p.field, p.value, p.allowed, p.action)
+        elif item["type"] == "quantity":
+            problems[path] = FieldProblem(path, context["value"], context["allowed"], context["action"])
+        elif item["type"] == "extra_forbidden":
+            problems[path] = _unknown(path, location)
+        elif item["type"] == "missing":
+            problems[path] = FieldProblem(path, "missing", _description(location), "Add it.")
+        else:
+            problems.setdefault(
+                path,
+                FieldProblem(
+                    path, shown(repr(item.get("input"))), _plainly(item["msg"]), "Correct the value."
+                ),
+            )
+    return list(problems.values())
+
+
+def _plainly(message: str) -> str:
+    """Return pydantic's rule as what is allowed."""
+    for start in ("Input should be ", "Value should be ", "Input should ", "Value should "):
+        message = message.removeprefix(start)
+    return message
+
+
+_UNION_PARTS = {"int", "float", "str", "function-before[_pair_in(), GearPair]"}
+_SECTIONS: dict[str, type[BaseModel]] = {"axes": Axis, "design": Design, "settings": Settings}
+
+
+def _fields(location: list[str]) -> Mapping[str, Any]:
+    """Fields of the section that a location is in."""
+    fields: Mapping[str, Any] = _SECTIONS.get(location[0] if len(location) > 1 else "", Study).model_fields
+    return fields
+
+
+def _unknown(path: str, location: list[str]) -> FieldProblem:
+    known = list(_fields(location))
+    return unknown_key(path, known, location[-1])
+
+
+def _description(location: list[str]) -> str:
+    info = _fields(location).get(location[-1])
+    return (info.description if info else None) or "a value"

@@ -1,0 +1,222 @@
+"""Where cases run: this process, worker processes of this machine, or a Dask cluster."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import BrokenExecutor, Future
+from contextlib import suppress
+from typing import Any, Protocol
+
+from lumped.errors import SpurcheckError, refuse
+from validation.studies.evaluate import Batch
+
+Work = Callable[..., Batch]
+#: How long a cluster may be without any worker before the sweep stops [s].
+WORKER_WAIT = 60.0
+_CONNECT_SECONDS = 20.0
+_ONE_THREAD = dict.fromkeys(
+    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
+)
+
+
+class SweepStopped(SpurcheckError):
+    """The workers cannot go on; every case that was computed is kept, and the text says how to continue."""
+
+
+class Pool(Protocol):
+    """Runs batches.
+
+    Attributes
+    ----------
+    slots : batches that run at the same time
+    died : exceptions by which a batch says that its worker process died
+    dies_together : whether the death of one worker ends all batches under way
+    """
+
+    slots: int
+    died: tuple[type[BaseException], ...]
+    dies_together: bool
+
+    def submit(self, work: Work, *arguments: Any) -> Future[Batch]:
+        """Start a batch."""
+        ...
+
+    def check(self) -> None:
+        """Raise ``SweepStopped`` when nothing can finish any more."""
+        ...
+
+    def restart(self) -> None:
+        """Make the pool usable after a worker died."""
+        ...
+
+    def close(self) -> None:
+        """End the workers of this pool."""
+        ...
+
+
+class SerialPool:
+    """One case after the other in this process."""
+
+    slots = 1
+    died: tuple[type[BaseException], ...] = ()
+    dies_together = True
+
+    def submit(self, work: Work, *arguments: Any) -> Future[Batch]:
+        """Run the batch now."""
+        future: Future[Batch] = Future()
+        future.set_result(work(*arguments))
+        return future
+
+    def check(self) -> None:
+        """Nothing can be wrong."""
+
+    def restart(self) -> None:
+        """Nothing to do."""
+
+    def close(self) -> None:
+        """Nothing to do."""
+
+
+def _worker_start(parent: int) -> None:
+    """Leave Ctrl-C to the parent, and end when the parent is killed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(1.0)
+        os._exit(1)
+
+    if os.name == "posix":
+        threading.Thread(target=watch, daemon=True, name="parent watch").start()
+
+
+class ProcessPool:
+    """Worker processes of this machine (joblib's process executor, one thread each)."""
+
+    died: tuple[type[BaseException], ...] = (BrokenExecutor,)
+    dies_together = True
+
+    def __init__(self, workers: int) -> None:
+        self.slots = workers
+        self._executor = self._start()
+
+    def _start(self) -> Any:
+        from joblib.externals.loky import ProcessPoolExecutor
+
+        return ProcessPoolExecutor(
+            self.slots, env=_ONE_THREAD, initializer=_worker_start, initargs=(os.getpid(),)
+        )
+
+    def submit(self, work: Work, *arguments: Any) -> Future[Batch]:
+        """Queue a batch."""
+        try:
+            future: Future[Batch] = self._executor.submit(work, *arguments)
+        except BrokenExecutor as error:  # a worker died between two batches
+            future = Future()
+            future.set_exception(error)
+        return future
+
+    def check(self) -> None:
+        """The executor itself notices dead workers."""
+
+    def restart(self) -> None:
+        """Replace all workers."""
+        self.close()
+        self._executor = self._start()
+
+    def close(self) -> None:
+        """End the workers."""
+        self._executor.shutdown(wait=True, kill_workers=True)
+
+
+class DaskPool:
+    """A Dask cluster by the address of its scheduler; spurcheck must be installed on its workers."""
+
+    dies_together = False
+
+    def __init__(self, address: str) -> None:
+        try:
+            distributed: Any = importlib.import_module("distributed")
+        except ImportError:
+            raise refuse(
+                "scheduler",
+                address,
+                "an installation with dask.distributed",
+                "Install the extra: pip install 'spurcheck[cluster]'.",
+            ) from None
+        try:
+            self._client: Any = distributed.Client(address, timeout=_CONNECT_SECONDS)
+            self._client.wait_for_workers(1, timeout=WORKER_WAIT)
+        except (OSError, ValueError, TimeoutError) as error:
+            raise refuse(
+                "scheduler", address, "address of a running scheduler with workers", f"No answer: {error}."
+            ) from None
+        self.died: tuple[type[BaseException], ...] = (distributed.scheduler.KilledWorker,)
+        self._executor = self._client.get_executor(pure=False)
+        self._without_workers: float | None = None
+        self.slots = self._threads()
+
+    def _threads(self) -> int:
+        return sum(self._client.nthreads().values())
+
+    def submit(self, work: Work, *arguments: Any) -> Future[Batch]:
+        """Send a batch to the scheduler."""
+        try:
+            future: Future[Batch] = self._executor.submit(work, *arguments)
+        except Exception as error:
+            raise self._lost(error) from error
+        return future
+
+    def check(self) -> None:
+        """Stop when the scheduler is gone, or has been without workers for long; follow a growing cluster."""
+        if self._client.status != "running":
+            raise self._lost("the connection is closed")
+        try:
+            threads = self._threads()
+        except Exception as error:
+            raise self._lost(error) from error
+        if threads:
+            self.slots, self._without_workers = threads, None
+        elif self._without_workers is None:
+            self._without_workers = time.monotonic()
+        elif time.monotonic() - self._without_workers > WORKER_WAIT:
+            raise SweepStopped(
+                f"The cluster has had no worker for {WORKER_WAIT:g} s: start workers, then run the same "
+                "command with --resume."
+            )
+
+    @staticmethod
+    def _lost(error: object) -> SweepStopped:
+        return SweepStopped(
+            f"The scheduler does not answer any more ({error}): restart it, then run the same command with "
+            "--resume."
+        )
+
+    def restart(self) -> None:
+        """Dask replaces dead workers itself."""
+
+    def close(self) -> None:
+        """Leave the cluster running and disconnect."""
+        with suppress(Exception):  # a scheduler that is gone cannot say goodbye
+            self._executor.shutdown(wait=False)
+        with suppress(Exception):
+            self._client.close(timeout=5)
+
+
+def pool_of(workers: int, scheduler: str | None) -> Pool:
+    """Return the pool of the options ``--workers`` and ``--scheduler``.
+
+    Raises
+    ------
+    ParameterError : workers out of range, or no scheduler at the address
+    """
+    if scheduler is not None:
+        return DaskPool(scheduler)
+    if not 1 <= workers <= 1024:
+        raise refuse("workers", workers, "1 to 1024", "Use as many as there are cores.")
+    return SerialPool() if workers == 1 else ProcessPool(workers)

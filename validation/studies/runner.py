@@ -1,0 +1,234 @@
+"""Run a study: every case once, each outcome kept the moment it is known."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import shutil
+import signal
+import threading
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from types import FrameType
+
+import numpy as np
+
+from lumped.errors import refuse
+from validation.studies.cases import CaseList, case_list
+from validation.studies.dispatch import Dispatcher
+from validation.studies.evaluate import versions
+from validation.studies.files import StoreError, storage_failure, write_text
+from validation.studies.journal import Journal, Key, Scan, scan
+from validation.studies.pools import pool_of
+from validation.studies.record import Record, Status
+from validation.studies.results import JOURNAL, RESULTS, STUDY, Table, results_dataset, write_results
+from validation.studies.schema import Study
+
+#: Called after every block of records with (cases computed in this run, cases to compute, failed so far).
+Progress = Callable[[int, int, int], None]
+_SHOWN_FAILURES = 20
+_RECORD_BYTES = 25
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a run of a sweep did.
+
+    Attributes
+    ----------
+    study : name
+    cases : number of cases of the study
+    before : of these, computed by earlier runs
+    computed : computed by this run
+    statuses : (status, number) of all cases, by status
+    failures : (case, text) of the first failed ones
+    damaged_bytes : bytes of the journal that a crash had left unusable; their cases were computed again
+    seconds : wall time of this run
+    case_seconds : computing time of this run's cases together
+    results : the compiled file
+    """
+
+    study: str
+    cases: int
+    before: int
+    computed: int
+    statuses: tuple[tuple[Status, int], ...]
+    failures: tuple[tuple[int, str], ...]
+    damaged_bytes: int
+    seconds: float
+    case_seconds: float
+    results: Path
+
+    @property
+    def failed(self) -> int:
+        """Cases without outputs."""
+        return sum(number for status, number in self.statuses if status.failed)
+
+    @property
+    def exit_code(self) -> int:
+        """0 when every case has its outputs, else 1."""
+        return 1 if self.failed else 0
+
+
+def run_sweep(
+    study: Study,
+    folder: str | Path,
+    *,
+    workers: int = 1,
+    scheduler: str | None = None,
+    resume: bool = False,
+    retry_failed: bool = False,
+    case_seconds: float | None = None,
+    progress: Progress | None = None,
+) -> Summary:
+    """Compute every case of a study into a folder.
+
+    Parameters
+    ----------
+    study : the study
+    folder : output folder; it is created, and holds ``study.toml``, ``journal.bin`` and ``results.nc``
+    workers : processes of this machine; 1 computes in this process
+    scheduler : address of a Dask scheduler, instead of ``workers``
+    resume : go on where an earlier run of the same study in that folder ended
+    retry_failed : with ``resume``, also compute the failed cases again
+    case_seconds : longest time of a case [s]; on a cluster it acts where a worker runs its tasks on its
+        main thread
+    progress : called with (computed, to compute, failed)
+
+    Returns
+    -------
+    Summary
+
+    Raises
+    ------
+    ParameterError : the folder holds something else, or arguments out of range
+    StoreError : the store cannot be written; nothing written before is lost
+    SweepStopped : the workers are gone; nothing computed before is lost
+    KeyboardInterrupt : Ctrl-C or SIGTERM; nothing computed before is lost
+    """
+    start = time.perf_counter()
+    if case_seconds is not None and not 0.0 < case_seconds < 1e9:
+        raise refuse("case_seconds", f"{case_seconds:g} s", "> 0 s", "Give the longest time of a case.")
+    root = Path(folder)
+    cases = case_list(study)
+    key = Key(cases)
+    begun = _prepare(root, study, resume)
+    path = root / JOURNAL
+    table = Table.of(cases, with_values=False)
+    found = scan(path, key, table.add) if begun else Scan(0, 0, 0, ())
+    wanted = table.status == Status.MISSING
+    if retry_failed:
+        wanted |= table.status >= Status.REFUSED
+    todo = int(np.count_nonzero(wanted))
+    with _terminate_as_interrupt(), Journal(path, key, found.end) as journal:
+        spent = 0.0
+        if todo:
+            _check_space(root, key, todo)
+            pool = pool_of(workers, scheduler)
+            try:
+                journal.append([Record(len(found.sessions), Status.SESSION, 0.0, message=versions())])
+                spent = _compute(cases, journal, Dispatcher(pool, cases, case_seconds), wanted, progress)
+            finally:
+                pool.close()
+        journal.sync()
+        full = Table.of(cases)
+        complete = scan(path, key, full.add)
+        write_results(root, results_dataset(cases, full, complete))
+    return Summary(
+        study=study.name,
+        cases=cases.count,
+        before=cases.count - todo,
+        computed=todo,
+        statuses=tuple(sorted(full.counts().items())),
+        failures=tuple(sorted(full.messages.items())[:_SHOWN_FAILURES]),
+        damaged_bytes=found.damaged_bytes,
+        seconds=time.perf_counter() - start,
+        case_seconds=spent,
+        results=root / RESULTS,
+    )
+
+
+def _compute(
+    cases: CaseList,
+    journal: Journal,
+    dispatcher: Dispatcher,
+    wanted: np.ndarray[tuple[int], np.dtype[np.bool_]],
+    progress: Progress | None,
+) -> float:
+    """Compute the wanted cases into the journal; returns their computing time [s]."""
+    todo = int(np.count_nonzero(wanted))
+    statuses: Counter[bool] = Counter()
+    spent = 0.0
+    for records in dispatcher.records(cases.pending(wanted), todo):
+        journal.append(records)
+        statuses.update(record.status.failed for record in records)
+        spent += sum(record.seconds for record in records)
+        if progress is not None:
+            progress(statuses.total(), todo, statuses[True])
+    return spent
+
+
+def _prepare(root: Path, study: Study, resume: bool) -> bool:
+    """Make the folder; returns whether a sweep was begun in it.
+
+    Raises
+    ------
+    ParameterError : the folder holds a sweep and ``resume`` was not asked for, or holds something else
+    """
+    try:
+        root.mkdir(parents=True, exist_ok=True)
+        names = {entry.name for entry in root.iterdir()}
+    except (FileExistsError, NotADirectoryError):
+        raise refuse("output", root, "a folder", "A file has that name: choose another --output.") from None
+    except OSError as error:
+        raise storage_failure(root, "use it", error) from error
+    begun = JOURNAL in names
+    if begun and not resume:
+        raise refuse(
+            "output",
+            root,
+            "a new folder",
+            "It holds a sweep: go on with --resume, or choose another --output.",
+        )
+    foreign = sorted(name for name in names if not name.startswith(".") and name not in _OURS)
+    if foreign and not begun:
+        raise refuse(
+            "output", root, "a new or empty folder", f"It holds {foreign[0]}: choose another --output."
+        )
+    if not begun or STUDY not in names:
+        write_text(root / STUDY, study.to_toml())
+    return begun
+
+
+_OURS = {STUDY, JOURNAL, RESULTS}
+
+
+def _check_space(root: Path, key: Key, todo: int) -> None:
+    """Refuse a sweep that cannot fit on the disk before it starts."""
+    need = todo * (_RECORD_BYTES + 8 * key.outputs) + key.count * (1 + 8 * key.outputs)
+    free = shutil.disk_usage(root).free
+    if need > free:
+        raise StoreError(
+            f"{root}: the results need about {need / 1e6:.4g} MB and {free / 1e6:.4g} MB are free. "
+            "Free space, or choose an --output on another disk."
+        )
+
+
+@contextlib.contextmanager
+def _terminate_as_interrupt() -> Iterator[None]:
+    """Let SIGTERM, by which batch systems announce the end, stop the sweep as Ctrl-C does."""
+    if threading.current_thread() is not threading.main_thread() or os.name != "posix":
+        yield
+        return
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)

@@ -1,0 +1,277 @@
+"""The schema of a study: one gear pair, what varies, how it is analysed, what is kept."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BeforeValidator, Field, PlainSerializer, StrictFloat, StrictInt, model_validator
+from pydantic_core import PydanticCustomError
+
+from lumped.errors import FieldProblem, ParameterError, shown
+from lumped.parameters import GearPair
+from lumped.section import Section
+from lumped.units import Quantity
+from validation.studies.axes import AxisValue, checked_values, target_of
+from validation.studies.outputs import OUTPUTS, Analysis
+
+#: Most cases of one study: bookkeeping takes about 1 byte of memory a case, results 8 bytes an output.
+MAX_CASES = 1_000_000_000
+_Bound = Quantity("1", optional=True, action="Give the number in the axis' unit.")
+
+
+def _plain_value(value: object) -> object:
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if isinstance(value, str) or (number and abs(value) < 2.0**63):  # type: ignore[arg-type]
+        return value
+    text = "{value}: allowed {allowed}. {action}"
+    allowed = {"value": shown(value), "allowed": "a finite number or text with a unit"}
+    raise PydanticCustomError("quantity", text, {**allowed, "action": "Correct the value."})
+
+
+_Value = Annotated[StrictInt | StrictFloat | str, BeforeValidator(_plain_value)]
+
+
+def _single(value: object) -> object:
+    return (value,) if isinstance(value, str) else value
+
+
+class Axis(Section):
+    """One parameter that varies, or several fields that vary together (both face widths, say)."""
+
+    name: str = Field("", max_length=80, pattern=r"^\w*$", description="label; default the field's name")
+    field: Annotated[
+        tuple[str, ...], BeforeValidator(_single, json_schema_input_type=str | list[str]), Field(min_length=1)
+    ] = Field(description="dotted path of a gear-pair field, several paths, or the name of a chart axis")
+    values: tuple[_Value, ...] | None = Field(
+        None, min_length=1, max_length=10_000_000, description="the values, for a grid"
+    )
+    low: Annotated[float | None, _Bound] = Field(None, description="lower end, in the field's stated unit")
+    high: Annotated[float | None, _Bound] = Field(None, description="upper end, in the field's stated unit")
+    count: Annotated[int | None, Field(ge=2, le=10_000_000, strict=True)] = Field(
+        None, description="number of values from low to high, for a grid"
+    )
+    spacing: Literal["linear", "log"] = Field("linear", description="spacing or distribution, low to high")
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        def stop(field: str, value: object, allowed: str, action: str) -> ParameterError:
+            return ParameterError([FieldProblem(field, str(value), allowed, action)])
+
+        for path in self.field:
+            target_of(path)
+        if self.values is not None:
+            if self.low is not None or self.high is not None or self.count is not None:
+                raise stop("values", "with low, high or count", "one of the two ways", "Remove one.")
+            return self
+        if self.low is None or self.high is None:
+            raise stop("low", self.low, "values, or low and high", "Give the range or the list of the axis.")
+        if not self.low < self.high:
+            raise stop("high", f"{self.high:g}", f"> low = {self.low:g}", "Swap or correct the two.")
+        if self.spacing == "log" and self.low <= 0.0:
+            raise stop("low", f"{self.low:g}", "> 0 with spacing 'log'", "Use spacing = 'linear'.")
+        return self
+
+    @property
+    def label(self) -> str:
+        """Name of the axis in the results: ``name``, or the path with "_" for the dot."""
+        return self.name or self.field[0].replace(".", "_")
+
+    def listed(self) -> tuple[AxisValue, ...]:
+        """Values of the axis as the field reads them (numbers in its stated unit)."""
+        return checked_values(self)
+
+
+class Design(Section):
+    """Which combinations of the axes are cases."""
+
+    method: Literal["grid", "latin_hypercube", "sobol"] = Field(
+        "grid", description="product of the axes' values, or samples of their ranges"
+    )
+    samples: Annotated[int | None, Field(ge=1, le=MAX_CASES, strict=True)] = Field(
+        None, description="number of samples; a power of two for sobol"
+    )
+    seed: Annotated[int, Field(ge=0, le=2**63 - 1, strict=True)] = Field(
+        0, description="seed of the scrambling"
+    )
+    sensitivity: bool = Field(
+        False, description="global sensitivity indices: sobol with samples * (axes + 2) cases"
+    )
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        problems = []
+        if self.method == "grid" and self.samples is not None:
+            problems.append(
+                FieldProblem("samples", str(self.samples), "none for a grid", "Remove it, or sample.")
+            )
+        if self.method != "grid" and self.samples is None:
+            problems.append(FieldProblem("samples", "missing", "number of samples", "Give it."))
+        if self.method == "sobol" and self.samples is not None and self.samples & (self.samples - 1):
+            near = 1 << (self.samples.bit_length() - 1)
+            problems.append(
+                FieldProblem(
+                    "samples",
+                    str(self.samples),
+                    "a power of two (the balance of a Sobol sequence)",
+                    f"Take {near} or {2 * near}.",
+                )
+            )
+        if self.sensitivity and self.method != "sobol":
+            problems.append(
+                FieldProblem("sensitivity", "true", "method = 'sobol'", "Change the method or leave it out.")
+            )
+        if problems:
+            raise ParameterError(problems)
+        return self
+
+
+class Settings(Section):
+    """Numerical settings of the analyses; each reads its own."""
+
+    samples_per_cycle: Annotated[int, Field(ge=8, le=65536, strict=True)] = Field(
+        128, description="output times per mesh cycle (lumped, multibody)"
+    )
+    cycles: Annotated[int, Field(ge=2, le=100_000, strict=True)] = Field(
+        20, description="mesh cycles simulated (multibody)"
+    )
+    kept_cycles: Annotated[int, Field(ge=1, le=100_000, strict=True)] = Field(
+        1, description="last mesh cycles that the outputs are taken from (multibody)"
+    )
+    fidelity: Literal["linear", "exact"] = Field("exact", description="contact kinematics (multibody)")
+    rtol: Annotated[float | None, Quantity("1", at_least=1e-13, at_most=1e-2, optional=True)] = Field(
+        None, description="relative tolerance (multibody, floquet); default that of the analysis"
+    )
+
+    @model_validator(mode="after")
+    def _kept(self) -> Self:
+        if self.kept_cycles > self.cycles:
+            problem = FieldProblem(
+                "kept_cycles", str(self.kept_cycles), f"<= cycles = {self.cycles}", "Lower it."
+            )
+            raise ParameterError([problem])
+        return self
+
+
+def _pair_in(value: object) -> object:
+    return value.to_mapping() if isinstance(value, GearPair) else value
+
+
+def _pair_out(pair: GearPair) -> dict[str, Any]:
+    return pair.to_mapping()
+
+
+class Study(Section):
+    """A study: everything that decides the results, nothing about where and how it runs."""
+
+    name: str = Field(min_length=1, max_length=80, description="short name")
+    description: str = Field("", max_length=2000, description="what the study is for")
+    gear_pair: Annotated[GearPair, BeforeValidator(_pair_in), PlainSerializer(_pair_out)] = Field(
+        description="preset name, TOML path beside the study file, or the gear pair's sections"
+    )
+    analysis: Analysis = Field(description="what is computed for every case")
+    outputs: Annotated[tuple[str, ...], Field(min_length=1)] = Field(description="what is kept of a case")
+    design: Design = Field(
+        default_factory=lambda: Design.model_validate({}),
+        description="which combinations of the axes are cases",
+    )
+    axes: Annotated[tuple[Axis, ...], Field(min_length=1, max_length=32)] = Field(description="what varies")
+    settings: Settings = Field(
+        default_factory=lambda: Settings.model_validate({}), description="numerical settings"
+    )
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        problems = _output_problems(self) + _axis_problems(self)
+        if problems:
+            raise ParameterError(problems)
+        return self
+
+    def to_mapping(self) -> dict[str, Any]:
+        """Return the study as plain data for TOML, with the gear pair written out: nothing else is read."""
+        data = self.model_dump(exclude_none=True, exclude_defaults=True, mode="python")
+        return {key: _lists(value) for key, value in data.items()}
+
+    def to_toml(self) -> str:
+        """Return the study as TOML text; reading it back gives an equal study."""
+        import tomli_w
+
+        return tomli_w.dumps(self.to_mapping())
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the study's TOML text, which names the store it belongs to."""
+        return hashlib.sha256(self.to_toml().encode()).hexdigest()
+
+
+def _lists(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {key: _lists(inner) for key, inner in value.items()}
+    if isinstance(value, (tuple, list)):
+        return [_lists(inner) for inner in value]
+    return value
+
+
+def _output_problems(study: Study) -> list[FieldProblem]:
+    known = OUTPUTS[study.analysis]
+    problems = [
+        FieldProblem(f"outputs.{j}", repr(name), "one of " + ", ".join(known), "Correct the name.")
+        for j, name in enumerate(study.outputs)
+        if name not in known
+    ]
+    if len(set(study.outputs)) < len(study.outputs):
+        problems.append(
+            FieldProblem("outputs", "a name twice", "names that all differ", "Remove the repetition.")
+        )
+    return problems
+
+
+def _axis_problems(study: Study) -> list[FieldProblem]:
+    """Reasons why the axes do not fit each other, the design or the analysis."""
+    problems: list[FieldProblem] = []
+
+    def add(field: str, value: str, allowed: str, action: str) -> None:
+        problems.append(FieldProblem(field, value, allowed, action))
+
+    labels = [axis.label for axis in study.axes]
+    paths = [path for axis in study.axes for path in axis.field]
+    reserved = {*study.outputs, "status", "case", "failed_case", "failed_status", "failure_message", "axis"}
+    cases = 1
+    for j, axis in enumerate(study.axes):
+        at = f"axes.{j}"
+        if labels.count(axis.label) > 1 or axis.label in reserved:
+            add(
+                f"{at}.name",
+                repr(axis.label),
+                "a name that no other axis or result has",
+                "Give the axis a name.",
+            )
+        for path in axis.field:
+            if paths.count(path) > 1:
+                add(f"{at}.field", repr(path), "a field that no other axis changes", "Remove one.")
+            if target_of(path).floquet_only and study.analysis != "floquet":
+                add(
+                    f"{at}.field",
+                    repr(path),
+                    "an axis of analysis = 'floquet'",
+                    "Vary friction.coefficient (law coulomb) or the stiffness model's fields instead.",
+                )
+        if study.design.method == "grid":
+            if axis.values is None and axis.count is None:
+                add(f"{at}.count", "missing", "values, or low, high and count, for a grid", "Add it.")
+            cases *= len(axis.values) if axis.values is not None else axis.count or 1
+        elif axis.values is not None or axis.count is not None:
+            add(f"{at}.values", "given", "low and high, for samples", "Give the range only, or use a grid.")
+        try:
+            if not any(problem.field.startswith(f"{at}.") for problem in problems):
+                checked_values(axis)
+        except ParameterError as error:
+            problems += [
+                FieldProblem(f"{at}.{p.field}", p.value, p.allowed, p.action) for p in error.problems
+            ]
+    if study.design.method != "grid":
+        cases = (study.design.samples or 0) * (len(study.axes) + 2 if study.design.sensitivity else 1)
+    if cases > MAX_CASES:
+        add("design", f"{cases} cases", f"<= {MAX_CASES} cases", "Take fewer values, or split the study.")
+    return problems
