@@ -144,7 +144,7 @@ def _build(pair: GearPair) -> tuple[Geometry, list[FieldProblem]]:
         form_radius_gear=math.hypot(r_bg, forms[1]),
         centre_distance=centre,
         operating_pressure_angle=alpha_w,
-        normal_backlash=max(theoretical, 0.0) + pair.mesh.backlash,
+        normal_backlash=max(theoretical + pair.mesh.backlash, 0.0),
         face_width=min(pinion.face_width, gear.face_width),
         L_XA=l_xa,
         L_XB=l_xd - base_pitch,

@@ -59,8 +59,10 @@ def form_length(
     sine, r = math.sin(pressure_angle), 0.5 * module * teeth
     flank_depth = dedendum_coefficient - fillet_radius_coefficient * (1.0 - sine)
     length = r * sine - (flank_depth - profile_shift) * module / sine
-    if length >= 0.0:
-        return length
+    if (
+        length >= -1e-4 * module
+    ):  # such an undercut is about as long, which moves the form radius by 1e-9 modules
+        return max(length, 0.0)
     return _undercut_length(
         module, teeth, pressure_angle, profile_shift, dedendum_coefficient, fillet_radius_coefficient
     )
@@ -101,26 +103,34 @@ def trochoid(
 def _undercut_length(
     module: float, teeth: int, pressure_angle: float, profile_shift: float, dedendum: float, fillet: float
 ) -> float:
-    r_base = 0.5 * module * teeth * math.cos(pressure_angle)
+    """Length at which the fillet's trochoid crosses the involute, where the rack undercuts.
 
-    def gap(roll: FloatArray) -> tuple[FloatArray, FloatArray]:
-        # Positive where the trochoid has cut beyond the involute; defined above the base circle only.
-        radius, angle = trochoid(roll, module, teeth, pressure_angle, profile_shift, dedendum, fillet)
-        ratio = np.minimum(r_base / radius, 1.0)
-        profile = np.arccos(ratio)
-        reference = (0.5 * math.pi + 2.0 * profile_shift * math.tan(pressure_angle)) / teeth
-        half = reference + involute(pressure_angle) - (np.tan(profile) - profile)
-        return angle - (math.pi / teeth - half), radius
+    The trochoid climbs from the root circle (roll angle ``bottom``) to its joint with the rack's straight
+    flank, which lies beyond the tangent point here. Where it passes the base circle it is inside the tooth,
+    at the joint outside: it crosses the involute once in between.
+    """
+    r = 0.5 * module * teeth
+    r_base = r * math.cos(pressure_angle)
+    half_width = 0.25 * math.pi - (dedendum - fillet) * math.tan(pressure_angle)
+    bottom = module * (half_width - fillet / math.cos(pressure_angle)) / r
+    joint = bottom - module * (dedendum - profile_shift - fillet) / (r * math.tan(pressure_angle))
 
-    roll = np.linspace(-1.5, 1.5, 3001) * max(1.0, 20.0 / teeth)
-    excess, radius = gap(roll)
-    cut = (excess > 0) & (radius > r_base)
-    if not cut.any():
+    def point(roll: float) -> tuple[float, float]:
+        radius, angle = trochoid(
+            np.array([roll]), module, teeth, pressure_angle, profile_shift, dedendum, fillet
+        )
+        return float(radius[0]), float(angle[0])
+
+    def depth(roll: float) -> float:
+        """Angle by which the trochoid is inside the tooth."""
+        radius, angle = point(roll)
+        profile = math.acos(min(1.0, r_base / radius))
+        half = tooth_half_angle(teeth, profile_shift, pressure_angle, profile)
+        return angle - (math.pi / teeth - half)
+
+    base = brentq(lambda roll: point(roll)[0] - r_base, bottom, joint, xtol=1e-15)
+    if depth(base) <= 0.0:
         return 0.0
-    highest = int(np.flatnonzero(cut)[np.argmax(radius[cut])])
-    for neighbour in (highest - 1, highest + 1):
-        if 0 <= neighbour < roll.size and excess[neighbour] <= 0 and radius[neighbour] > radius[highest]:
-            root = brentq(lambda s: float(gap(np.array([s]))[0][0]), roll[highest], roll[neighbour])
-            end = float(gap(np.array([root]))[1][0])
-            return math.sqrt(end**2 - r_base**2)
-    return math.sqrt(float(radius[highest]) ** 2 - r_base**2)
+    # By rounding the depth may vanish at a joint that is all but on the base circle; so is the crossing then.
+    crossing = joint if depth(joint) >= 0.0 else brentq(depth, base, joint, xtol=1e-15)
+    return math.sqrt(max(point(crossing)[0] ** 2 - r_base**2, 0.0))
