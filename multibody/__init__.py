@@ -4,5 +4,6 @@ from multibody.balance import PowerBalance, power_balance
 from multibody.drive import Drive
 from multibody.effects import EFFECTS
 from multibody.simulation import simulate
+from multibody.sweep import speed_sweep
 
-__all__ = ["EFFECTS", "Drive", "PowerBalance", "power_balance", "simulate"]
+__all__ = ["EFFECTS", "Drive", "PowerBalance", "power_balance", "simulate", "speed_sweep"]

@@ -18,7 +18,7 @@ from multibody import kernels as kn
 from multibody.integration import Segment
 from multibody.kinematics import MAX_PAIRS
 from multibody.model import ExudynModel
-from multibody.simulation import Fidelity, prepare
+from multibody.setup import Fidelity, prepare
 
 FloatArray = NDArray[np.float64]
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
-from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
@@ -12,149 +10,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import refuse
 from lumped.parameters import GearPair
-from lumped.periodic_system import periodic_system
-from lumped.results import provenance
-from lumped.solution import Initial, initial_state, mean_mesh_stiffness
-from lumped.steady import periodic_solution, sample_times
-from multibody import kernels as kn
-from multibody.drive import Drive, drive_tables
-from multibody.effects import active_effects, effect_flags
-from multibody.integration import Segment, integrate
-from multibody.machine import Machine, machine
-from multibody.model import FIDELITIES, ExudynModel, build
-from multibody.records import Recorder, from_lumped_state
-from multibody.reversal import friction_velocity as choose_friction_velocity
+from lumped.solution import Initial
+from lumped.steady import sample_times
+from multibody.drive import Drive
+from multibody.integration import Segment
+from multibody.records import Recorder
+from multibody.setup import Fidelity, Setup, prepare
 
 FloatArray = NDArray[np.float64]
-Fidelity = Literal["linear", "exact"]
 Progress = Callable[[float], None]
-
-#: Force evaluations allowed in one interval; an ordinary mesh cycle takes one to three thousand.
-CALL_LIMIT = 400_000
-#: Absolute over relative tolerance, as a share of the static deflection: small enough that it never rules.
-_ATOL_SHARE = 1e-2
-
-
-@dataclass(frozen=True, eq=False)
-class Setup:
-    """A multibody model ready to run, with the lumped model's loads and initial state.
-
-    Attributes
-    ----------
-    model : assembled exudyn model
-    q, v : (6,) initial state in the model's coordinates
-    fidelity : "linear" or "exact"
-    rtol, atol : tolerances
-    attributes : provenance of results
-    """
-
-    model: ExudynModel
-    q: FloatArray
-    v: FloatArray
-    fidelity: Fidelity
-    rtol: float
-    atol: float
-    attributes: dict[str, Any]
-
-    @property
-    def machine(self) -> Machine:
-        """The numbers the model was built from."""
-        return self.model.machine
-
-    @property
-    def position_is_nominal(self) -> bool:
-        """Whether contact positions depend on time alone, so that the switches are known beforehand."""
-        moved = kn.ROTATION_PHASE | kn.MOVING_LINE | kn.SLIDING | kn.ENTRY_SHIFT | kn.CONTACT_LOSS
-        return self.fidelity == "linear" or not self.model.flags & moved
-
-    def edges(self, cycles: int) -> FloatArray:
-        """Ends of the integration intervals [s]: at the switches where those are known, else whole cycles."""
-        phases = self.machine.switches if self.position_is_nominal else np.zeros(1)
-        starts = (np.arange(cycles)[:, None] + phases).ravel()
-        return np.asarray(np.append(starts, float(cycles)) * self.machine.period)
-
-    def run(self, edges: FloatArray, visit: Callable[[int, Segment], None]) -> tuple[FloatArray, FloatArray]:
-        """Integrate over the intervals from the initial state; returns (q, v) at the end."""
-        return integrate(
-            self.model,
-            self.q,
-            self.v,
-            edges,
-            rtol=self.rtol,
-            atol=self.atol,
-            clamp=self.position_is_nominal,
-            visit=visit,
-        )
-
-
-def prepare(
-    pair: GearPair,
-    *,
-    fidelity: Fidelity = "exact",
-    initial: Initial | ArrayLike = "static",
-    effects: Collection[str] | Mapping[str, bool] | None = None,
-    rtol: float = 1e-8,
-    friction_velocity: float | None = None,
-    drive: Drive | None = None,
-) -> Setup:
-    """Build the model and its initial state; arguments as ``simulate``."""
-    if fidelity not in FIDELITIES:
-        raise refuse("fidelity", fidelity, f"one of {sorted(FIDELITIES)}", "Choose one of them.")
-    if not 1e-12 <= rtol <= 1e-3:
-        raise refuse("rtol", rtol, "1e-12 to 1e-3", "Choose a tolerance in that range.")
-    if friction_velocity is not None and not 0.0 <= friction_velocity < np.inf:
-        raise refuse("friction_velocity", f"{friction_velocity} m/s", ">= 0 m/s", "0 switches at once.")
-    if fidelity == "linear" and effects:
-        raise refuse("effects", effects, "none at fidelity 'linear'", "Use fidelity='exact'.")
-    flags = effect_flags(effects) if fidelity == "exact" else 0
-    system = periodic_system(pair, "absolute")
-    balance = periodic_solution(pair, np.zeros(1), system=system, estimate_error=False)
-    numbers = machine(pair, balance.pinion_torque, balance.brake_torque)
-    velocity, reason = _friction_velocity(numbers, flags, friction_velocity)
-    numbers = numbers.with_parameter(kn.V_REG, velocity)
-    state = initial_state(pair, system, initial, balance)
-    tables = None
-    if drive is not None:
-        omega = numbers.parameters[kn.OMEGA_P]
-        tables = drive_tables(drive, omega, numbers.torque_pinion, numbers.torque_gear, float(state[0]))
-        if isinstance(initial, str):  # both gears start at the motor's speed
-            state[6] += tables.motor[0, 1]
-            state[7] += tables.motor[0, 1] * numbers.parameters[kn.OMEGA_G] / omega
-    q, v = from_lumped_state(state)
-    deflection = numbers.torque_pinion / numbers.parameters[kn.RADIUS_P] / mean_mesh_stiffness(system.cycle)
-    names = active_effects(flags)
-    attributes = provenance(
-        pair, fidelity=fidelity, effects=names, rtol=rtol, friction_velocity=velocity, drive=drive
-    )
-    attributes |= {
-        "model": "multibody",
-        "fidelity": fidelity,
-        "effects": ", ".join(names),
-        "friction_velocity": velocity,
-        "friction_velocity_reason": reason,
-        "brake_torque": balance.brake_torque,
-        "pinion_torque": balance.pinion_torque,
-        "mesh_efficiency": balance.brake_torque
-        * numbers.parameters[kn.OMEGA_G]
-        / (balance.pinion_torque * numbers.parameters[kn.OMEGA_P]),
-    }
-    return Setup(
-        model=build(numbers, fidelity, flags, CALL_LIMIT, tables),
-        q=q,
-        v=v,
-        fidelity=fidelity,
-        rtol=rtol,
-        atol=rtol * _ATOL_SHARE * deflection,
-        attributes=attributes,
-    )
-
-
-def _friction_velocity(numbers: Machine, flags: int, given: float | None) -> tuple[float, str]:
-    if not flags & kn.SLIDING:
-        return 0.0, "sign of the nominal sliding velocity"
-    if given is not None:
-        return given, "as given"
-    return choose_friction_velocity(numbers)
 
 
 def simulate(
@@ -219,9 +83,35 @@ def simulate(
         friction_velocity=friction_velocity,
         drive=drive,
     )
+    run, _, _ = record(setup, cycles, samples_per_cycle, progress=progress)
+    return run
+
+
+def record(
+    setup: Setup,
+    cycles: int,
+    samples_per_cycle: int,
+    *,
+    first_cycle: int = 0,
+    progress: Progress | None = None,
+) -> tuple[xr.Dataset, FloatArray, FloatArray]:
+    """Run a model and keep the variables of the last cycles.
+
+    Parameters
+    ----------
+    setup : model ready to run
+    cycles : mesh cycles to run
+    samples_per_cycle : output times per mesh cycle
+    first_cycle : the first one whose variables are kept
+    progress : called with the finished fraction
+
+    Returns
+    -------
+    (dataset, q, v) : the variables, and the state (6,) at the end in the model's coordinates
+    """
     period = setup.machine.period
     grid = sample_times(period, samples_per_cycle)
-    time = np.concatenate([grid + j * period for j in range(cycles)] + [[cycles * period]])
+    time = np.concatenate([grid + j * period for j in range(first_cycle, cycles)] + [[cycles * period]])
     edges = setup.edges(cycles)
     recorder = Recorder(setup.model, time)
 
@@ -237,4 +127,4 @@ def simulate(
         "samples_per_cycle": samples_per_cycle,
         "force_evaluations": setup.model.budget.calls,
     }
-    return recorder.dataset(attributes)
+    return recorder.dataset(attributes), q, v

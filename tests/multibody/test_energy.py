@@ -67,7 +67,7 @@ def test_newtons_law_gives_exudyns_accelerations():
 
     from multibody.integration import settings
     from multibody.model import accelerations
-    from multibody.simulation import prepare
+    from multibody.setup import prepare
 
     setup = prepare(PAIR, fidelity="exact")
     model, system = setup.model, setup.model.system

@@ -32,7 +32,7 @@ def test_default_says_which_sign_function_it_takes_and_why():
 
 def test_sign_function_gets_stuck_and_says_so(monkeypatch):
     """In a sliding mode the steps shrink without end; the cap on calls turns a hang into an error."""
-    monkeypatch.setattr("multibody.simulation.CALL_LIMIT", 60_000)
+    monkeypatch.setattr("multibody.setup.CALL_LIMIT", 60_000)
     with pytest.raises(lumped.NumericalError, match="friction_velocity"):
         multibody.simulate(SLOW, 2, friction_velocity=0.0)
 

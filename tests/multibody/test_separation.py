@@ -1,0 +1,89 @@
+"""Do the teeth separate, strike back and jump as a lightly damped pair with backlash does?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import lumped
+import multibody
+from multibody import Drive
+
+#: The classic 50/50 pair at low torque and light damping, without friction.
+PAIR = lumped.load_gear_pair("kahraman_blankenship_50_50").with_(
+    friction__law="none", operating__pinion_torque=50, mesh__damping_ratio=0.02
+)
+
+
+@pytest.mark.slow
+def test_primary_resonance_jumps():
+    """Softening by separation: near resonance a rising and a falling sweep see different motions."""
+    speeds = np.array([5000.0, 5250, 5500, 5750, 6000])
+    up = multibody.speed_sweep(PAIR, speeds)
+    down = multibody.speed_sweep(PAIR, speeds[::-1]).isel(speed=slice(None, None, -1))
+    ltv = lumped.speed_sweep(PAIR, speeds)
+    rms = {name: run["dte_rms"].to_numpy() for name, run in (("up", up), ("down", down), ("ltv", ltv))}
+    flagged = ltv["normal_load_min"].to_numpy() < 0
+    np.testing.assert_array_equal(flagged, [False, False, False, True, True])
+    # Below the flag two motions exist: the falling sweep stays on the one with impacts, several times as
+    # large.
+    assert np.all(rms["down"][~flagged] > 2.0 * rms["up"][~flagged])
+    assert np.all(down["separated"] > 0.2)
+    # The rising sweep stays on the lower one, which is the LTV motion, until the LTV model's own validity
+    # flag (a negative load) says that teeth separate, and separates from there on.
+    np.testing.assert_allclose(rms["up"][~flagged], rms["ltv"][~flagged], rtol=0.01)
+    np.testing.assert_array_equal(up["separated"].to_numpy() > 0, flagged)
+    # There the two sweeps meet again; what is left is the beat of a lightly damped transient.
+    np.testing.assert_allclose(rms["up"][flagged], rms["down"][flagged], rtol=0.02)
+
+
+def test_low_torque_separates_where_high_torque_does_not():
+    """A larger mean deflection leaves room for the dynamic one; the LTV response scales with torque."""
+    at = PAIR.with_(operating__pinion_speed=5000)
+    for torque in (50.0, 400.0):
+        pair = at.with_(operating__pinion_torque=torque)
+        start = lumped.simulate(pair, 1, initial="periodic")
+        state = np.array([float(start[n][0]) for n in lumped.periodic_system(pair, "absolute").state_names])
+        # The same knock at both torques: the pinion pulled back by 2 um at the base circle.
+        state[0] -= 2e-6 / lumped.geometry(pair).base_radius_pinion
+        run = multibody.simulate(pair, 3, initial=state)
+        assert (float(run["overlap"].min()) < 0) == (torque == 50.0)
+
+
+def test_loads_never_pull_and_back_sides_strike():
+    """A torque that reverses for some cycles drives the pair across its backlash and back."""
+    pair = PAIR.with_(operating__pinion_speed=3000)
+    period = lumped.geometry(pair).mesh_period
+    brake = lumped.steady_state(pair).attrs["brake_torque"]
+    times, factor = np.array([0.0, 5, 5.01, 15, 15.01]) * period, np.array([1, 1, -1, -1, 1.0])
+    drive = Drive(pinion_torque=(times, 50 * factor), brake_torque=(times, brake * factor))
+    run = multibody.simulate(pair, 40, drive=drive)
+    assert float(run["normal_load"].min()) >= 0.0
+    assert float(run["normal_load_back"].min()) >= 0.0
+    front, back = (run[name].sum("pair") for name in ("normal_load", "normal_load_back"))
+    backlash = lumped.geometry(pair).normal_backlash
+    assert (
+        float(back.max()) > 50 / lumped.geometry(pair).base_radius_pinion
+    )  # an impact, above the static load
+    # Never both sides, and only with the pinion a whole backlash behind.
+    assert float((front * back).max()) == 0.0
+    assert float(run["overlap"].where(back > 0).max()) < -0.97 * backlash  # bearings give way by some um
+    assert float(run["overlap"][-256:].mean()) > 0.0  # driving again at the end
+
+
+def test_impacts_are_resolved():
+    """A tighter tolerance moves a run with impacts by little: the events are located."""
+    pair = PAIR.with_(operating__pinion_speed=5000)
+    runs = [multibody.simulate(pair, 10, initial=_knocked(pair), rtol=rtol) for rtol in (1e-7, 1e-9, 1e-11)]
+    assert float(runs[0]["overlap"].min()) < -1e-6
+    errors = [float(np.abs(run["dte"] - runs[2]["dte"]).max()) for run in runs[:2]]
+    scale = float(np.ptp(runs[2]["dte"].to_numpy()))
+    # Damping switches on at impact: a jump in force that the step-size control must find.
+    assert errors[0] < 1e-4 * scale
+    assert errors[1] < 1e-6 * scale
+
+
+def _knocked(pair):
+    state = np.zeros(12)
+    state[0] = -5e-6 / lumped.geometry(pair).base_radius_pinion
+    return state
