@@ -59,9 +59,7 @@ def form_length(
     sine, r = math.sin(pressure_angle), 0.5 * module * teeth
     flank_depth = dedendum_coefficient - fillet_radius_coefficient * (1.0 - sine)
     length = r * sine - (flank_depth - profile_shift) * module / sine
-    if (
-        length >= -1e-4 * module
-    ):  # such an undercut is about as long, which moves the form radius by 1e-9 modules
+    if length >= -1e-4 * module:  # no longer than that: it moves the form radius by 1e-9 modules
         return max(length, 0.0)
     return _undercut_length(
         module, teeth, pressure_angle, profile_shift, dedendum_coefficient, fillet_radius_coefficient
