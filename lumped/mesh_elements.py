@@ -11,6 +11,7 @@ from lumped.friction import friction_path_function
 from lumped.gear_geometry import geometry
 from lumped.parameters import GearPair
 from lumped.path_function import FloatArray, PathFunction
+from lumped.quasi_static.loaded_mesh import loaded_mesh
 from lumped.stiffness import pair_stiffness
 
 #: Fit error of c over its largest value.
@@ -53,11 +54,15 @@ def mesh_elements(pair: GearPair) -> MeshElements:
     """
     g = geometry(pair)
     stiffness = pair_stiffness(pair, g)
+    error = PathFunction.constant(0.0, g.L_XA, g.L_XD)
+    if pair.mesh.relief == "static":
+        loaded = loaded_mesh(pair, stiffness=stiffness)
+        stiffness, error = loaded.stiffness, loaded.error
     return MeshElements(
         stiffness=stiffness,
         damping=_damping(stiffness, pair.mesh.damping_ratio, bodies(pair).effective_mass),
         friction=friction_path_function(pair, g),
-        error=PathFunction.constant(0.0, g.L_XA, g.L_XD),
+        error=error,
     )
 
 

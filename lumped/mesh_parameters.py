@@ -109,6 +109,11 @@ class Mesh(Section):
     damping_ratio: Annotated[float, Quantity("1", at_least=0, at_most=1)] = Field(
         description="zeta in c_i = 2 zeta sqrt(k_i m_e)"
     )
+    relief: Literal["ignored", "static"] = Field(
+        "ignored",
+        description="'static': tip and root relief enter as unloaded error, and a pair touches where it "
+        "carries load at the mean torque; 'ignored': perfect involutes from A to D",
+    )
     backlash: Annotated[float, Quantity("mm", at_least=0)] = Field(
         0.0, description="normal backlash by tooth thinning, beyond that of the centre distance"
     )
