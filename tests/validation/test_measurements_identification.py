@@ -1,0 +1,203 @@
+"""Does alignment find the phase and identification the friction, when the truth is known?"""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from lumped import geometry, load_gear_pair, simulate
+from lumped.errors import NumericalError, ParameterError
+from validation.measurements import (
+    align,
+    identification_study,
+    identify_friction,
+    load_measurement,
+    mesh_cycles,
+    overlay,
+    overlay_metrics,
+    predict,
+    synthetic_measurement,
+    write_measurement,
+)
+
+MU = 0.05
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return load_gear_pair("nasa_28_28").with_(operating__pinion_speed=800, operating__pinion_torque=79.1)
+
+
+@pytest.fixture(scope="module")
+def truth(pair):
+    return predict(pair.with_(friction__law="coulomb", friction__coefficient=MU), recurrence=3)
+
+
+def record(truth, **changes):
+    settings = {"seed": 5, "engagements": 4, "noise_normal": 0.0, "noise_friction": 0.0} | changes
+    return synthetic_measurement(truth, **settings)
+
+
+def test_prediction_follows_a_tooth_pair_through_a_transient(pair):
+    # Independent of the labelling code: a settled transient, in which the pair that enters in cycle j is
+    # slot n # during cycle j and slot n - 1 during cycle j + 1.
+    prediction = predict(pair, recurrence=2, samples_per_cycle=256)
+    run = simulate(pair, 2, samples_per_cycle=256, initial="periodic")
+    u = run["time"].to_numpy()[:-1] / prediction.geometry.mesh_period
+    first = np.where(u < 1.0, run["normal_load"].to_numpy()[1, :-1], run["normal_load"].to_numpy()[0, :-1])
+    # 1e-6: the transient's tolerance is 1e-10, the periodic start is good to better than 1e-8
+    np.testing.assert_allclose(
+        prediction.value("normal_load", u, "A"), first, atol=1e-6 * first.max(), rtol=0
+    )
+    np.testing.assert_array_equal(prediction.contact(u, "A"), u < prediction.geometry.contact_ratio)
+    np.testing.assert_allclose(prediction.value("normal_load", u + 1.0, "B"), first, atol=1e-6 * first.max())
+
+
+def test_roll_angle_gives_the_phase(truth):
+    # The pinion's roll angle at a contact point is xi / r_b: at A it is L_XA / r_bp, one pitch later 2 pi /
+    # z more.
+    g = geometry(truth.pair)
+    spec = record(truth).spec
+    spec = spec.model_copy(update={"abscissa": spec.abscissa.model_copy(update={"kind": "roll_angle"})})
+    rolls = g.L_XA / g.base_radius_pinion + 2 * np.pi / 28 * np.arange(9)
+    measurement = dataclasses.replace(record(truth), spec=spec, abscissa=rolls)
+    np.testing.assert_allclose(mesh_cycles(measurement, truth.pair), np.arange(9), atol=1e-12)
+
+
+@pytest.mark.parametrize("start", [0.0, 0.37, 1.9, 2.75])
+def test_alignment_finds_an_unknown_start(truth, start):
+    found = align(record(truth, start=start, noise_normal=0.02), truth)
+    away = (found.shift - start + 1.5) % 3.0 - 1.5
+    # The sampled jumps fix the phase to a fraction of the sample spacing, 1/100 cycle.
+    assert abs(away) < 2e-3
+    assert found.gain[0] == pytest.approx(1.0, abs=0.01)  # 1900 samples with 2 % noise: 0.01 is many sigma
+
+
+def test_alignment_does_not_take_a_calibration_error_for_a_phase(truth):
+    clean = record(truth, start=0.6)
+    wrong = dataclasses.replace(clean, channels={k: 1.2 * v + 30.0 for k, v in clean.channels.items()})
+    found = align(wrong, truth)
+    assert found.shift == pytest.approx(0.6, abs=2e-3)
+    np.testing.assert_allclose(found.gain, 1.2, rtol=1e-2)
+
+
+def test_alignment_refuses_a_record_that_does_not_fit(truth):
+    rng = np.random.default_rng(3)
+    noise = dataclasses.replace(
+        record(truth), channels={k: rng.standard_normal(v.size) for k, v in record(truth).channels.items()}
+    )
+    with pytest.raises(NumericalError, match="explains only"):
+        align(noise, truth)
+
+
+@pytest.mark.parametrize("normal", ["measured", "predicted"])
+def test_without_noise_the_truth_comes_back(truth, normal):
+    clean = record(truth, start=1.3)
+    found = identify_friction(clean, truth, align(clean, truth, shift=1.3), normal=normal, guard=2e-5)
+    # The guard is two prediction samples. Beyond it F = mu N holds through the linear interpolation
+    assert found.estimate == pytest.approx(MU, rel=1e-9 if normal == "measured" else 2e-3)
+    assert found.standard_error < 1e-3 * MU
+
+
+def test_a_scale_on_a_law_and_a_zero_error_come_back(pair):
+    truth = predict(pair.with_(friction__law="xu_kahraman"), recurrence=3)
+    clean = record(truth, scale=0.7, zero=-4.0)
+    found = identify_friction(clean, truth, align(clean, truth, shift=0.0), law="xu_kahraman", zero=True)
+    # 1e-3: F is interpolated between 1024 samples, N and the law are not
+    assert found.estimate == pytest.approx(0.7, rel=1e-3)
+    np.testing.assert_allclose(found.zero, -4.0, atol=0.02)
+
+
+def test_noise_on_the_load_biases_plain_least_squares_but_not_the_weighted_one(truth):
+    # Plain least squares: E[estimate] = mu <N^2> / (<N^2> + sigma_N^2), here with sigma_N = 20 % of T_p/r_bp.
+    how = {"noise_normal": 0.2, "engagements": 60, "noise_friction": 0.02, "seed": 11}
+    found = {}
+    for stated in (True, False):
+        noisy = record(truth, stated_noise=stated, **how)
+        found[stated] = identify_friction(noisy, truth, align(noisy, truth, shift=0.0))
+    load = truth.pair.operating.pinion_torque / truth.geometry.base_radius_pinion
+    phases = np.linspace(0, truth.geometry.contact_ratio, 20001)[:-1]
+    mean_square = float(np.mean(truth.value("normal_load", phases, "A") ** 2))
+    expected = MU * mean_square / (mean_square + (0.2 * load) ** 2)
+    assert expected < 0.96 * MU  # the effect is there to be seen
+    # 19700 samples: standard errors near 0.2 %, so 4 of them
+    assert found[False].estimate == pytest.approx(expected, abs=4 * found[False].standard_error)
+    assert found[True].estimate == pytest.approx(MU, abs=4 * found[True].standard_error)
+    assert found[True].standard_error < 0.005 * MU
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "case",
+    [
+        "constant mu, white noise 2 %",
+        "constant mu, noise 2 % with correlation 0.7",
+        "constant mu, noise 10 %",
+        "scale on law III, white noise 2 %",
+    ],
+)
+def test_interval_covers_the_truth_over_200_seeds(pair, case):
+    (row,) = identification_study(pair, seeds=200, cases=[case])
+    # A correct 95 % interval covers 181 to 197 times out of 200 with probability 0.99.
+    assert row.coverage_low <= row.coverage <= row.coverage_high, row
+    # Bias: three standard errors of the mean, and half a percent at most whatever the noise.
+    assert abs(row.bias) < min(3.5 * row.bias_standard_error, 5e-3), row
+    # 200 estimates know their own spread to 5 %; 25 % is five of those.
+    assert row.stated_spread == pytest.approx(row.spread, rel=0.25)
+
+
+def test_the_study_sees_that_unstated_noise_spoils_the_interval(pair):
+    (row,) = identification_study(pair, seeds=20, cases=["constant mu, noise 10 %, not stated"])
+    assert row.bias < -0.01
+    assert row.coverage < 0.7
+
+
+def test_a_written_record_is_read_back(truth, tmp_path):
+    original = record(truth, start=0.4, noise_normal=0.02, noise_friction=0.02)
+    again = load_measurement(write_measurement(original, tmp_path))
+    for name, values in original.channels.items():
+        # nine digits are written
+        np.testing.assert_allclose(again.channels[name], values, rtol=1e-8, atol=1e-6)
+    assert again.noise == pytest.approx(original.noise, rel=1e-12)
+    assert len(again.sha256) == 64
+    phases = [align(m, truth) for m in (original, again)]
+    results = [identify_friction(m, truth, a) for m, a in zip((original, again), phases, strict=True)]
+    assert results[0].estimate == pytest.approx(results[1].estimate, rel=1e-6)
+    assert "95 % interval" in results[0].text
+
+
+def test_overlay_metrics_know_a_constant_offset(truth):
+    clean = record(truth)
+    shifted = dataclasses.replace(clean, channels={k: v + 12.0 for k, v in clean.channels.items()})
+    metrics = overlay_metrics(shifted, truth, align(shifted, truth, shift=0.0), resamples=99)
+    for name in ("bias", "rms", "mean_absolute", "largest", "bias_low", "bias_high"):
+        np.testing.assert_allclose(metrics[name], 12.0, rtol=1e-9)
+    np.testing.assert_allclose(metrics["correlation"], 1.0, atol=1e-12)
+    band = overlay(shifted, truth, align(shifted, truth, shift=0.0), bins=16)
+    np.testing.assert_allclose((band["measured"] - band["predicted"]).to_numpy(), 12.0, rtol=1e-9)
+    np.testing.assert_allclose(band["scatter"], 0.0, atol=1e-4)  # difference of squares of 12 N in doubles
+
+
+def test_overlay_interval_has_the_width_of_the_noise(truth):
+    noisy = record(truth, engagements=100, noise_normal=0.05, seed=17)
+    metrics = overlay_metrics(noisy, truth, align(noisy, truth, shift=0.0), level=0.95)
+    load = truth.pair.operating.pinion_torque / truth.geometry.base_radius_pinion
+    in_contact = int(truth.contact(align(noisy, truth, shift=0.0).cycles, "A").sum())
+    half = 0.5 * (metrics["bias_high"] - metrics["bias_low"]).sel(channel="normal_A").item()
+    # 1.96 sigma/sqrt(n); 999 bootstrap samples of 100 blocks know it to about 10 %
+    assert half == pytest.approx(1.96 * 0.05 * load / np.sqrt(in_contact), rel=0.3)
+    assert metrics["rms"].sel(channel="normal_A").item() == pytest.approx(0.05 * load, rel=0.05)
+
+
+def test_arguments_that_cannot_be_used_are_refused(truth):
+    clean = record(truth)
+    phase = align(clean, truth, shift=0.0)
+    for how in ({"level": 1.0}, {"normal": "guessed"}, {"guard": -1.0}, {"law": "unknown"}):
+        with pytest.raises(ParameterError):
+            identify_friction(clean, truth, phase, **how)
+    with pytest.raises(ParameterError):
+        align(clean, truth, channels=["nothing"])
+    with pytest.raises(NumericalError, match="in contact"):
+        identify_friction(clean, truth, phase, guard=1.0)
+    with pytest.raises(ParameterError, match="recurrence"):
+        predict(truth.pair, recurrence=1)

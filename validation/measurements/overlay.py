@@ -1,0 +1,172 @@
+"""A record laid over a prediction: sample by sample, and as metrics with uncertainty."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from lumped.errors import refuse
+from validation.measurements.alignment import Alignment
+from validation.measurements.prediction import Prediction
+from validation.measurements.record import Measurement
+from validation.measurements.specification import PAIR_LABELS, QUANTITIES
+
+FloatArray = NDArray[np.float64]
+
+#: Metric -> plain name. All but the correlation are in the channel's unit or relative to the predicted peak
+#: to peak.
+METRICS = {
+    "bias": "mean of measured - predicted",
+    "rms": "root mean square of measured - predicted",
+    "relative_rms": "rms over the prediction's peak to peak",
+    "mean_absolute": "mean of |measured - predicted|",
+    "relative_mean_absolute": "mean of |measured - predicted| over the prediction's peak to peak",
+    "correlation": "Pearson correlation of measured and predicted",
+}
+
+
+def overlay(
+    measurement: Measurement, prediction: Prediction, alignment: Alignment, *, bins: int = 64
+) -> xr.Dataset:
+    """Measured and predicted values over one engagement (pair channels) or one mesh cycle.
+
+    Parameters
+    ----------
+    measurement, prediction, alignment : the record, its prediction, its phase
+    bins : equal phase bins of the band
+
+    Returns
+    -------
+    Dataset over ``channel`` and ``bin`` with phase (middle of the bin, mesh cycles since A), measured (mean
+    of the bin), predicted (likewise), scatter (standard deviation of measured - predicted in the bin),
+    standard_error (of the bin's mean) and count; empty bins are NaN with count 0
+    """
+    if not 4 <= bins <= 4096:
+        raise refuse("bins", bins, "4 to 4096", "Choose a number in that range.")
+    names = list(measurement.channels)
+    table = {n: np.full((len(names), bins), np.nan) for n in ("measured", "predicted", "scatter")}
+    phase, count = np.zeros((len(names), bins)), np.zeros((len(names), bins), dtype=np.int64)
+    for j, channel in enumerate(measurement.spec.channel):
+        age, y, p, _ = _samples(measurement, prediction, alignment, j)
+        reach = prediction.geometry.contact_ratio if channel.pair else 1.0
+        phase[j] = (np.arange(bins) + 0.5) * reach / bins
+        place = np.minimum((age / reach * bins).astype(np.int64), bins - 1)
+        count[j] = np.bincount(place, minlength=bins)
+        full = count[j] > 0
+
+        def mean(values: FloatArray, place: NDArray[np.int64] = place, j: int = j) -> FloatArray:
+            sums = np.bincount(place, weights=values, minlength=bins)
+            return np.asarray(np.where(count[j] > 0, sums / np.maximum(count[j], 1), np.nan))
+
+        table["measured"][j], table["predicted"][j] = mean(y), mean(p)
+        error = y - p
+        variance = mean(error**2) - mean(error) ** 2
+        correction = count[j][full] / np.maximum(count[j][full] - 1, 1)
+        table["scatter"][j, full] = np.sqrt(np.maximum(variance[full] * correction, 0.0))
+    result = xr.Dataset(
+        {name: (("channel", "bin"), values) for name, values in table.items()}
+        | {
+            "phase": (("channel", "bin"), phase, {"units": "1", "long_name": "mesh cycles since A"}),
+            "count": (("channel", "bin"), count, {"units": "1", "long_name": "samples in the bin"}),
+            "units": ("channel", [QUANTITIES[c.quantity][0] for c in measurement.spec.channel]),
+        },
+        coords={"channel": names},
+        attrs={"record": measurement.spec.name, "source": measurement.spec.source},
+    )
+    result["standard_error"] = result["scatter"] / np.sqrt(result["count"].where(result["count"] > 0))
+    return result
+
+
+def overlay_metrics(
+    measurement: Measurement,
+    prediction: Prediction,
+    alignment: Alignment,
+    *,
+    resamples: int = 999,
+    level: float = 0.95,
+    seed: int = 0,
+) -> xr.Dataset:
+    """How far a record is from its prediction, with bootstrap intervals.
+
+    Whole blocks are resampled with replacement (one engagement of a labelled pair or one mesh cycle each; a
+    record with fewer than eight is cut into eight runs of samples), because neighbouring samples are not
+    independent.
+
+    Parameters
+    ----------
+    measurement, prediction, alignment : the record, its prediction, its phase
+    resamples : bootstrap samples
+    level : of the percentile interval
+    seed : of the resampling
+
+    Returns
+    -------
+    Dataset over ``channel``: each metric of ``METRICS``, with ``<metric>_low`` and ``<metric>_high``,
+    largest (the largest |measured - predicted|) and the number of blocks
+    """
+    if resamples < 99 or not 0.5 <= level < 1.0:
+        raise refuse("resamples, level", (resamples, level), ">= 99, 0.5 to 1", "Use 999 and 0.95.")
+    rng = np.random.default_rng(seed)
+    names = list(measurement.channels)
+    tails = [50.0 * (1.0 - level), 50.0 * (1.0 + level)]
+    columns: dict[str, list[float]] = {}
+    for j, channel in enumerate(measurement.spec.channel):
+        _, y, p, block = _samples(measurement, prediction, alignment, j)
+        if np.unique(block).size < 8:
+            block = np.arange(y.size) * 8 // y.size
+        number = np.unique(block, return_inverse=True)[1]
+        blocks = int(number.max()) + 1
+        e = y - p
+        terms = (np.ones(y.size), e, e**2, np.abs(e), y, p, y * p, y**2, p**2)
+        sums = np.stack([np.bincount(number, weights=term, minlength=blocks) for term in terms])
+        span = float(np.ptp(prediction.value(channel.quantity, _one_turn(prediction), channel.pair)))
+        draws = rng.integers(0, blocks, (resamples, blocks))
+        whole = _metrics(sums.sum(axis=1), span)
+        spread = _metrics(sums[:, draws].sum(axis=2), span)
+        for name, value in whole.items():
+            low, high = np.percentile(spread[name], tails)
+            for key, number_ in ((name, value), (f"{name}_low", low), (f"{name}_high", high)):
+                columns.setdefault(key, []).append(float(number_))
+        columns.setdefault("largest", []).append(float(np.abs(e).max()))
+        columns.setdefault("blocks", []).append(blocks)
+    return xr.Dataset(
+        {name: ("channel", values) for name, values in columns.items()},
+        coords={"channel": names},
+        attrs={"level": level, "resamples": resamples, "seed": seed, "definitions": str(METRICS)},
+    )
+
+
+def _one_turn(prediction: Prediction) -> FloatArray:
+    return np.linspace(0.0, prediction.geometry.pairs, 2048, endpoint=False)
+
+
+def _metrics(sums: FloatArray, span: float) -> dict[str, FloatArray]:
+    n, e, e2, absolute, y, p, yp, y2, p2 = sums
+    rms, mean_absolute = np.sqrt(e2 / n), absolute / n
+    spread = np.sqrt(np.maximum(n * y2 - y**2, 0.0) * np.maximum(n * p2 - p**2, 0.0))
+    correlation = np.where(spread > 0.0, (n * yp - y * p) / np.where(spread > 0.0, spread, 1.0), 0.0)
+    return {
+        "bias": e / n,
+        "rms": rms,
+        "relative_rms": rms / span,
+        "mean_absolute": mean_absolute,
+        "relative_mean_absolute": mean_absolute / span,
+        "correlation": correlation,
+    }
+
+
+def _samples(
+    measurement: Measurement, prediction: Prediction, alignment: Alignment, place: int
+) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.int64]]:
+    """Phase since A, measured, predicted and block number of a channel's samples (pairs: in contact only)."""
+    channel = measurement.spec.channel[place]
+    u, y = alignment.cycles, measurement.channels[channel.name]
+    if channel.pair is None:
+        age, inside = np.mod(u, 1.0), np.ones(u.shape, dtype=bool)
+        block = np.floor(u)
+    else:
+        age, inside = prediction.age(u, channel.pair), prediction.contact(u, channel.pair)
+        block = np.floor((u - PAIR_LABELS.index(channel.pair)) / prediction.recurrence)
+    p = prediction.value(channel.quantity, u, channel.pair)
+    return age[inside], y[inside], p[inside], block[inside].astype(np.int64)

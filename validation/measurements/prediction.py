@@ -1,0 +1,128 @@
+"""A prediction as functions of mesh phase, so that it can be read where a record has its samples."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from lumped import Geometry, PathFunction, geometry, mesh_elements, steady_state
+from lumped.errors import refuse
+from lumped.parameters import GearPair
+from validation.measurements.specification import PAIR_LABELS, QUANTITIES
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """Periodic motion of a gear pair, read by mesh cycles u since pair A was at point A.
+
+    Attributes
+    ----------
+    pair : the gear pair at the record's operating point
+    geometry : of it
+    friction : its signed mu(xi)
+    cycle : one mesh cycle of results, ``lumped.steady_state``
+    recurrence : mesh cycles after which the same labelled pair is in contact again
+    """
+
+    pair: GearPair
+    geometry: Geometry
+    friction: PathFunction
+    cycle: xr.Dataset
+    recurrence: int
+
+    def age(self, cycles: ArrayLike, label: str) -> FloatArray:
+        """Mesh cycles since the labelled pair was last at A; in contact while below the contact ratio."""
+        u = np.asarray(cycles, dtype=float) - PAIR_LABELS.index(label)
+        return np.asarray(np.mod(u, self.recurrence), dtype=np.float64)
+
+    def contact(self, cycles: ArrayLike, label: str) -> BoolArray:
+        """Whether the labelled pair is in contact."""
+        return np.asarray(self.age(cycles, label) < self.geometry.contact_ratio, dtype=np.bool_)
+
+    def position(self, cycles: ArrayLike, label: str) -> FloatArray:
+        """Position xi of the labelled pair, also beyond D [m]."""
+        g = self.geometry
+        return np.asarray(g.L_XA + self.age(cycles, label) * g.base_pitch, dtype=np.float64)
+
+    def value(self, quantity: str, cycles: ArrayLike, label: str | None = None) -> FloatArray:
+        """A predicted quantity at mesh cycles u, any shape, in SI; of one labelled pair where it has pairs.
+
+        Raises
+        ------
+        ParameterError : unknown quantity, or a label where there are no pairs
+        """
+        if quantity not in QUANTITIES or QUANTITIES[quantity][1] != (label is not None):
+            raise refuse("quantity", (quantity, label), "a channel's quantity and pair", "Correct it.")
+        values = self.cycle[quantity].to_numpy()
+        if label is None:
+            return self._periodic(values, np.asarray(cycles, dtype=float))
+        age = self.age(cycles, label)
+        places, life = self._life(values)
+        return np.asarray(
+            np.where(age < self.geometry.contact_ratio, np.interp(age, places, life), 0.0), dtype=np.float64
+        )
+
+    def _life(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Values (pairs, k) of one cycle as those of one tooth pair from A to D, and their mesh cycles since
+        A.
+
+        Whole cycles after A the pair is that many slots ahead. Past the last sample before D its value holds.
+        """
+        slots = np.arange(self.geometry.pairs)
+        places = (slots[:, None] + self._grid()).ravel()
+        life = values[slots[::-1]].ravel()
+        inside = places < self.geometry.contact_ratio
+        return places[inside], life[inside]
+
+    def _grid(self) -> FloatArray:
+        return np.asarray(self.cycle["time"].to_numpy() / self.geometry.mesh_period, dtype=np.float64)
+
+    def _periodic(self, values: FloatArray, cycles: FloatArray) -> FloatArray:
+        return np.asarray(np.interp(np.mod(cycles, 1.0), self._grid(), values, period=1.0))
+
+
+def predict(
+    pair: GearPair,
+    speed: float | None = None,
+    torque: float | None = None,
+    *,
+    recurrence: int | None = None,
+    samples_per_cycle: int = 1024,
+) -> Prediction:
+    """Predict the periodic motion at an operating point.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    speed : pinion speed [rad/s]; default the pair's
+    torque : pinion torque [N m]; default the pair's
+    recurrence : see ``Prediction``; default the pinion's number of teeth
+    samples_per_cycle : resolution; between samples the results are interpolated linearly
+    """
+    at = pair
+    if speed is not None:
+        at = at.with_({"operating.pinion_speed": f"{speed!r} rad/s"})
+    if torque is not None:
+        at = at.with_({"operating.pinion_torque": float(torque)})
+    g = geometry(at)
+    again = at.pinion.teeth if recurrence is None else recurrence
+    if again < g.pairs:
+        raise refuse(
+            "recurrence",
+            again,
+            f">= {g.pairs} mesh cycles, the pairs in contact at once",
+            "Count the mesh cycles until the same labelled pair is in contact again.",
+        )
+    return Prediction(
+        pair=at,
+        geometry=g,
+        friction=mesh_elements(at).friction,
+        cycle=steady_state(at, samples_per_cycle=samples_per_cycle),
+        recurrence=again,
+    )

@@ -1,0 +1,174 @@
+"""A measured record: its samples in SI, and how it is read from CSV."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.errors import ParameterError, refuse
+from validation.measurements.specification import (
+    QUANTITIES,
+    MeasurementSpec,
+    read_specification,
+    sampling_rate,
+    si_factor,
+)
+
+FloatArray = NDArray[np.float64]
+
+_HEADING = re.compile(r"^\s*(?P<name>.*?)\s*(?:[\[(](?P<unit>[^\])]*)[\])])?\s*$")
+
+
+@dataclass(frozen=True, eq=False)
+class Measurement:
+    """Samples of a record, everything in SI.
+
+    Attributes
+    ----------
+    spec : the description it was read with
+    abscissa : (k,) times [s], or pinion roll angles of pair A [rad], increasing
+    channels : channel name -> (k,) values in the SI unit of its quantity
+    noise : channel name -> standard deviation of its noise in that unit, or None where it is not known
+    sha256 : hash of the data file, "" where the record was not read from one
+    """
+
+    spec: MeasurementSpec
+    abscissa: FloatArray
+    channels: dict[str, FloatArray]
+    noise: dict[str, float | None]
+    sha256: str = ""
+
+    def named(self, quantity: str) -> list[tuple[str, str | None]]:
+        """Names and pair labels of the channels of a quantity."""
+        return [(c.name, c.pair) for c in self.spec.channel if c.quantity == quantity]
+
+
+def load_measurement(source: str | Path | Mapping[str, Any], data: str | Path | None = None) -> Measurement:
+    """Read a measured record.
+
+    Parameters
+    ----------
+    source : the TOML description (see ``MeasurementSpec``), as a file or as a mapping
+    data : the CSV file; default the one that the description names, relative to it
+
+    Returns
+    -------
+    Measurement
+
+    Raises
+    ------
+    ParameterError : the description or the data file cannot be used; the text names field, row or column
+    """
+    spec, folder = read_specification(source)
+    if data is None and not spec.data:
+        raise refuse("data", "", "the CSV file of the record", "Name it in the description.")
+    path = Path(data) if data is not None else folder / spec.data
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        raise refuse("data", str(path), "a readable UTF-8 CSV file", f"It cannot be read: {error}.") from None
+    try:
+        return parse_measurement(spec, text)
+    except ParameterError as error:
+        raise ParameterError(list(error.problems), str(path)) from None
+
+
+def parse_measurement(spec: MeasurementSpec, text: str) -> Measurement:
+    """Read the samples of a record from CSV text: optional # lines, one line of headings, then numbers."""
+    lines = text.splitlines()
+    first = next((j for j, line in enumerate(lines) if line.strip() and not line.startswith("#")), None)
+    if first is None:
+        raise refuse("data", "empty", "a line of headings and numbers", "Check the file.")
+    headings = next(csv.reader([lines[first]], delimiter=spec.delimiter))
+    columns = _columns(headings)
+    wanted = [(c.column, f"channel.{c.name}.column") for c in spec.channel]
+    if spec.abscissa.column is not None:
+        wanted.insert(0, (spec.abscissa.column, "abscissa.column"))
+    for column, field in wanted:
+        if column not in columns:
+            raise refuse(field, column, "one of " + ", ".join(columns), "Correct the column's name.")
+    table = _numbers(spec, lines, first + 1, [columns[column][0] for column, _ in wanted])
+    if table.shape[0] < 8:
+        raise refuse("data", f"{table.shape[0]} rows", ">= 8 rows", "Check the file.")
+    units = [columns[column][1] for column, _ in wanted]
+    if spec.abscissa.column is not None:
+        abscissa = _abscissa(spec, table[:, 0], units.pop(0))
+        table = table[:, 1:]
+    else:
+        assert spec.abscissa.sampling_rate is not None  # the description asks for it
+        abscissa = np.arange(table.shape[0]) / sampling_rate(spec.abscissa.sampling_rate)
+    channels: dict[str, FloatArray] = {}
+    noise: dict[str, float | None] = {}
+    for j, channel in enumerate(spec.channel):
+        field = f"channel.{channel.name}.unit"
+        unit = _unit(channel.unit, units[j], field)
+        factor = channel.gain * si_factor(unit, QUANTITIES[channel.quantity][0], field)
+        channels[channel.name] = factor * (table[:, j] - channel.zero)
+        noise[channel.name] = None if channel.noise is None else abs(factor) * channel.noise
+    return Measurement(spec, abscissa, channels, noise, hashlib.sha256(text.encode()).hexdigest())
+
+
+def _columns(headings: list[str]) -> dict[str, tuple[int, str | None]]:
+    """Name -> (place, unit in the heading), for headings such as ``normal A [N]``."""
+    found: dict[str, tuple[int, str | None]] = {}
+    for place, heading in enumerate(headings):
+        match = _HEADING.match(heading)
+        assert match is not None  # the pattern matches every text
+        found.setdefault(match["name"], (place, match["unit"]))
+        found.setdefault(heading.strip(), (place, match["unit"]))
+    return found
+
+
+def _numbers(spec: MeasurementSpec, lines: list[str], start: int, places: list[int]) -> FloatArray:
+    def cells() -> Iterator[str]:
+        for line in islice(lines, start, None):
+            yield line.replace(",", ".") if spec.decimal == "," else line
+
+    try:
+        table = np.loadtxt(cells(), delimiter=spec.delimiter, usecols=places, ndmin=2, comments="#")
+    except (ValueError, IndexError) as error:
+        raise refuse(
+            "data", "a cell", "a finite number in every cell of a named column", f"{error}."
+        ) from None
+    bad = np.argwhere(~np.isfinite(table))
+    if bad.size:
+        raise refuse(
+            "data",
+            f"row {bad[0, 0] + 1} after the headings is not finite",
+            "finite numbers",
+            "Remove or repair the row; gaps are not filled.",
+        )
+    return np.asarray(table, dtype=np.float64)
+
+
+def _unit(stated: str | None, heading: str | None, field: str) -> str:
+    unit = stated or heading
+    if unit is None:
+        raise refuse(field, "none", "a unit, here or in the column's heading", "State the unit.")
+    # Two names may still be one unit; two different units are a mistake somewhere.
+    if stated and heading and stated != heading and si_factor(stated, heading, field) != 1.0:
+        raise refuse(field, stated, f"the heading's unit {heading}", "Correct one of the two.")
+    return unit
+
+
+def _abscissa(spec: MeasurementSpec, cells: FloatArray, heading: str | None) -> FloatArray:
+    unit = _unit(spec.abscissa.unit, heading, "abscissa.unit")
+    values = cells * si_factor(unit, "s" if spec.abscissa.kind == "time" else "rad", "abscissa.unit")
+    back = np.flatnonzero(np.diff(values) <= 0.0)
+    if back.size:
+        raise refuse(
+            "abscissa.column",
+            f"row {back[0] + 2} is not beyond the row before",
+            "increasing values",
+            "Sort or cut the record.",
+        )
+    return np.asarray(values, dtype=np.float64)

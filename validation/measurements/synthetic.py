@@ -1,0 +1,142 @@
+"""Synthetic records whose truth is known, in the format of tooth-pair force measurements."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomli_w
+from numpy.typing import NDArray
+from scipy.signal import lfilter
+
+from lumped.errors import refuse
+from validation.measurements.prediction import Prediction
+from validation.measurements.record import Measurement
+from validation.measurements.specification import PAIR_LABELS, read_specification
+
+FloatArray = NDArray[np.float64]
+
+
+def synthetic_measurement(
+    truth: Prediction,
+    *,
+    seed: int,
+    engagements: int = 12,
+    samples_per_cycle: float = 100.3,
+    noise_normal: float = 0.02,
+    noise_friction: float = 0.02,
+    correlation: float = 0.0,
+    start: float = 0.0,
+    scale: float = 1.0,
+    zero: float = 0.0,
+    stated_noise: bool = True,
+) -> Measurement:
+    """Sample a prediction as an instrumented tooth pair would, and add sensor noise.
+
+    Parameters
+    ----------
+    truth : the prediction that is the truth; its friction law is what identification should find
+    seed : of the noise
+    engagements : times each labelled pair passes through the mesh
+    samples_per_cycle : samples per mesh cycle; not an integer, so that phases fill in
+    noise_normal, noise_friction : standard deviations over the mean mesh load T_p/r_bp, and over the largest
+        friction force
+    correlation : of neighbouring noise samples (first-order autoregression), as an anti-aliasing filter makes
+    start : mesh cycles since pair A was at A when the record starts; unknown to whoever aligns it
+    scale : factor on the friction force
+    zero : zero error of the friction channels [N]
+    stated_noise : whether the description states the noise
+
+    Returns
+    -------
+    Measurement with time as abscissa, channels normal_A, friction_A, normal_B, ...
+    """
+    if engagements < 1 or not 0.0 <= correlation < 1.0 or samples_per_cycle <= 4.0:
+        raise refuse(
+            "engagements, correlation, samples_per_cycle",
+            (engagements, correlation, samples_per_cycle),
+            ">= 1, 0 to 1, > 4",
+            "Correct them.",
+        )
+    rng = np.random.default_rng(seed)
+    g = truth.geometry
+    count = int(engagements * truth.recurrence * samples_per_cycle)
+    time = np.arange(count, dtype=np.float64) * (g.mesh_period / samples_per_cycle)
+    u = start + np.arange(count, dtype=np.float64) / samples_per_cycle
+    load = truth.pair.operating.pinion_torque / g.base_radius_pinion
+    channels: dict[str, FloatArray] = {}
+    entries: list[dict[str, Any]] = []
+    for label in PAIR_LABELS[: g.pairs]:
+        clean = {q: truth.value(q, u, label) for q in ("normal_load", "friction_force")}
+        clean["friction_force"] = scale * clean["friction_force"] + zero
+        sizes = {
+            "normal_load": noise_normal * load,
+            "friction_force": noise_friction * float(np.abs(clean["friction_force"] - zero).max()),
+        }
+        for quantity, values in clean.items():
+            name = f"{quantity.split('_')[0]}_{label}"
+            channels[name] = np.asarray(values + sizes[quantity] * _noise(rng, count, correlation))
+            entry: dict[str, Any] = {"name": name, "column": name, "quantity": quantity, "unit": "N"}
+            entry["pair"] = label
+            if stated_noise and sizes[quantity] > 0.0:
+                entry["noise"] = sizes[quantity]
+            entries.append(entry)
+    spec, _ = read_specification(
+        {
+            "name": "synthetic tooth forces",
+            "source": f"computed, seed {seed}",
+            "data": "tooth_forces.csv",
+            "pinion_speed": f"{truth.pair.operating.pinion_speed!r} rad/s",
+            "pinion_torque": truth.pair.operating.pinion_torque,
+            "recurrence": truth.recurrence,
+            "abscissa": {"kind": "time", "column": "time", "unit": "s"},
+            "channel": entries,
+        }
+    )
+    noise = {c.name: c.noise for c in spec.channel}
+    return Measurement(spec, np.asarray(time, dtype=np.float64), channels, noise)
+
+
+def _noise(rng: np.random.Generator, count: int, correlation: float) -> FloatArray:
+    """Stationary normal noise of unit variance, first-order autoregressive."""
+    white = rng.standard_normal(count)
+    if correlation == 0.0:
+        return white
+    shape = np.sqrt(1.0 - correlation**2)
+    start = [correlation * rng.standard_normal()]
+    noise, _ = lfilter([shape], [1.0, -correlation], white, zi=start)
+    return np.asarray(noise, dtype=np.float64)
+
+
+def write_measurement(measurement: Measurement, folder: str | Path) -> Path:
+    """Write a record as ``measurement.toml`` and its CSV; returns the path of the former.
+
+    Parameters
+    ----------
+    measurement : with the channels' values in the units, gains and zeros that its description states: this
+        writes SI values, so units are SI, gains 1 and zeros 0 (as synthetic records have them)
+    folder : created if it does not exist
+    """
+    spec = measurement.spec
+    plain = all(c.gain == 1.0 and c.zero == 0.0 for c in spec.channel)
+    if not plain or spec.abscissa.column is None:
+        raise refuse("measurement", spec.name, "gains 1, zeros 0, a column of abscissae", "Rescale it first.")
+    target = Path(folder)
+    target.mkdir(parents=True, exist_ok=True)
+    data = spec.model_dump(mode="json", exclude_none=True)
+    data["pinion_speed"] = f"{spec.pinion_speed!r} rad/s"
+    data["data"] = spec.data or "record.csv"
+    (target / "measurement.toml").write_text(tomli_w.dumps(data), encoding="utf-8")
+    headings = [spec.abscissa.column, *(c.column for c in spec.channel)]
+    rows = np.column_stack([measurement.abscissa, *(measurement.channels[c.name] for c in spec.channel)])
+    np.savetxt(
+        target / data["data"],
+        rows,
+        delimiter=spec.delimiter,
+        header=spec.delimiter.join(headings),
+        comments="",
+        fmt="%.9g",
+        encoding="utf-8",
+    )
+    return target / "measurement.toml"
