@@ -20,7 +20,7 @@ from lumped.friction.graded_fit import graded_fit
 from lumped.friction.registry import LAWS, law_named
 from lumped.path_function import PathFunction
 from lumped.roughness import composite_roughness, mean_roughness
-from lumped.validity import FloatArray, RangeViolation, range_violations
+from lumped.validity import FloatArray, RangeViolation, range_violations, warn_violations
 from lumped.viscosity import dynamic_viscosity
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 #: Absolute error of mu in the piecewise polynomials.
 FIT_TOLERANCE = 1e-10
 
+_CHECKED_POSITIONS = 201
 _LAWS_WITH_AVERAGE = ("coulomb", "smoothed_coulomb", "composite")
 
 
@@ -98,8 +99,15 @@ def friction_path_function(
     Raises
     ------
     ParameterError : an unknown law, or roughness of 1.13 um and above with law II
+
+    Warns
+    -----
+    LawRangeWarning : the contact leaves a validity range of the law, see ``law_range_violations``
     """
-    return _fit(contact_path(pair, geometry), friction_settings(pair), law or pair.friction.law)
+    path, settings, name = contact_path(pair, geometry), friction_settings(pair), law or pair.friction.law
+    function = _fit(path, settings, name)
+    warn_violations(_violations(path, settings, name))
+    return function
 
 
 def mean_coefficient(function: PathFunction, low: float | None = None, high: float | None = None) -> float:
@@ -125,21 +133,19 @@ def mean_benedict_kelley(path: ContactPath, settings: FrictionSettings) -> float
 
 
 def law_range_violations(
-    pair: GearPair, law: str | None = None, geometry: Geometry | None = None, points: int = 201
+    pair: GearPair, law: str | None = None, geometry: Geometry | None = None
 ) -> tuple[RangeViolation, ...]:
     """List where a pair leaves the validity ranges of a friction law.
+
+    A law made of others (V) is checked against each of them where that one is in force.
 
     Parameters
     ----------
     pair : the gear pair
     law : name of a friction law; default ``pair.friction.law``
     geometry : its geometry, if it is at hand
-    points : number of positions along the path that are checked
     """
-    chosen = law_named(law or pair.friction.law)
-    path = contact_path(pair, geometry)
-    xi = np.linspace(path.L_XA, path.L_XD, points + 2)[1:-1]
-    return range_violations(chosen.title, chosen.ranges, _arguments(path, xi))
+    return _violations(contact_path(pair, geometry), friction_settings(pair), law or pair.friction.law)
 
 
 def friction_profile(
@@ -238,6 +244,20 @@ def _fit(path: ContactPath, settings: FrictionSettings, name: str) -> PathFuncti
     return graded_fit(
         lambda xi: law.signed(xi, path, known), path.L_XP, breaks, switches, tolerance=FIT_TOLERANCE
     )
+
+
+@lru_cache(maxsize=256)
+def _violations(path: ContactPath, settings: FrictionSettings, name: str) -> tuple[RangeViolation, ...]:
+    law = law_named(name)
+    xi = np.linspace(path.L_XA, path.L_XD, _CHECKED_POSITIONS + 2)[1:-1]
+    if law.parts is None:
+        return range_violations(law.title, law.ranges, _arguments(path, xi))
+    found: list[RangeViolation] = []
+    for part, inside in law.parts(xi, path, settings):
+        if inside.any():
+            title = f"{law.title} ({part.title})"
+            found += range_violations(title, part.ranges, _arguments(path, xi[inside]))
+    return tuple(found)
 
 
 def _arguments(path: ContactPath, xi: FloatArray) -> dict[str, FloatArray]:

@@ -6,10 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from lumped import film
 from lumped.validity import FloatArray, ValidityRange
+
+BoolArray = NDArray[np.bool_]
 
 #: Distance from the pitch point [m] below which laws are held constant. A position xi near 0.01 m is known to
 #: 2e-18 m, so xi - L_XP is known to 2e-10 of this distance and log10 of the sliding velocity to 1e-10; the
@@ -164,6 +167,7 @@ class FrictionLaw:
     signed : (xi, path, settings) -> signed mu, vectorised over xi
     switches : (path, settings) -> positions where mu jumps or has a kink
     ranges : validity ranges of the law's arguments
+    parts : for a law made of others, (xi, path, settings) -> pairs of a law and where it is in force
     """
 
     name: str
@@ -171,3 +175,6 @@ class FrictionLaw:
     signed: Callable[[FloatArray, ContactPath, FrictionSettings], FloatArray]
     switches: Callable[[ContactPath, FrictionSettings], list[float]]
     ranges: tuple[ValidityRange, ...]
+    parts: (
+        Callable[[FloatArray, ContactPath, FrictionSettings], list[tuple[FrictionLaw, BoolArray]]] | None
+    ) = None

@@ -94,7 +94,7 @@ def _factor(roughness: ArrayLike) -> FloatArray:
             "roughness",
             f"{float(s.max()):g} um",
             "0 <= S < 1.13 um (law II, Benedict-Kelley)",
-            "Use a smoother surface or another friction law, for example xu_kahraman.",
+            "S is the mean Ra of both gears: make them smoother, or take another law such as xu_kahraman.",
         )
     return np.asarray(0.0127 * ROUGHNESS_LIMIT / (ROUGHNESS_LIMIT - s), dtype=np.float64)
 

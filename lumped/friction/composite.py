@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from lumped.film import DEFAULT_THRESHOLDS, RANGES, regime
 from lumped.friction import benedict_kelley, smoothed_coulomb, xu_kahraman
-from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
+from lumped.friction.base import BoolArray, ContactPath, FrictionLaw, FrictionSettings
 from lumped.validity import FloatArray
 
 
@@ -68,6 +68,17 @@ def _switches(path: ContactPath, settings: FrictionSettings) -> list[float]:
     return [*changes, *inherited]
 
 
+def _parts(
+    xi: FloatArray, path: ContactPath, settings: FrictionSettings
+) -> list[tuple[FrictionLaw, BoolArray]]:
+    number = regime(path.film_parameter(xi), settings.thresholds)
+    return [
+        (smoothed_coulomb.LAW, number == 0),
+        (benedict_kelley.LAW, number == 1),
+        (xu_kahraman.LAW, number >= 2),
+    ]
+
+
 def _excess(path: ContactPath, threshold: float, xi: FloatArray) -> FloatArray:
     return path.film_parameter(xi) - threshold
 
@@ -78,4 +89,5 @@ LAW = FrictionLaw(
     signed=_signed,
     switches=_switches,
     ranges=(*benedict_kelley.RANGES, *xu_kahraman.RANGES, *RANGES),
+    parts=_parts,
 )

@@ -161,7 +161,8 @@ def test_benedict_kelley_switches_where_it_meets_its_upper_bound(pair):
 def test_benedict_kelley_switches_where_its_logarithm_turns_negative(pair):
     fast = pair.with_(operating__pinion_speed=30000, operating__pinion_torque=10)
     path = contact_path(fast)
-    function = friction_path_function(fast, law="benedict_kelley")
+    with pytest.warns(LawRangeWarning, match="friction_number"):
+        function = friction_path_function(fast, law="benedict_kelley")
     first, last = function.switches[[0, -1]]
     for xi in (first, last):
         number = friction_number(
@@ -174,6 +175,19 @@ def test_benedict_kelley_switches_where_its_logarithm_turns_negative(pair):
     np.testing.assert_array_equal(function(np.linspace(path.L_XA, first, 9)[:-1]), 0.0)
     np.testing.assert_array_equal(function(np.linspace(last, path.L_XD, 9)[1:]), 0.0)
     assert law_range_violations(fast, "benedict_kelley")[0].range.quantity == "friction_number"
+
+
+def test_composite_answers_for_the_laws_in_force_only(pair):
+    # At 30000 rpm the film is thick: law V is III everywhere, and II's negative logarithm does not matter.
+    fast = pair.with_(operating__pinion_speed=30000, operating__pinion_torque=10)
+    assert (friction_profile(fast, ["xu_kahraman"]).film_parameter > 4).all()
+    assert law_range_violations(fast, "composite") == ()
+    # Rough flanks at the same speed bring law II back, on part of the path or all of it.
+    mixed = fast.with_(friction__composite_roughness=1.5)
+    assert (friction_profile(mixed, ["xu_kahraman"]).regime == 1).all()
+    (violation,) = law_range_violations(mixed, "composite")
+    assert violation.law == "V composite (II Benedict-Kelley)"
+    assert violation.share == law_range_violations(fast, "benedict_kelley")[0].share
 
 
 def test_composite_switches_at_its_film_parameters(unequal):
