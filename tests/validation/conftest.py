@@ -1,0 +1,17 @@
+"""Fixtures of the cross-check, report and command tests."""
+
+import pytest
+
+import lumped
+from validation.comparison import crosscheck
+
+
+@pytest.fixture(scope="session")
+def pair():
+    return lumped.load_gear_pair("nasa_28_28")
+
+
+@pytest.fixture(scope="session")
+def check(pair):
+    """Cross-check of the default pair, shared because it is only read."""
+    return crosscheck(pair, cycles=24, samples_per_cycle=128)

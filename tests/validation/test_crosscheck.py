@@ -1,0 +1,121 @@
+"""Does the cross-check tell agreement from disagreement, and does the verdict follow from the numbers?"""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import lumped
+import multibody
+from lumped import ParameterError
+from validation.comparison import QUANTITIES, crosscheck, off_switch_samples, overall_verdict
+from validation.tolerances import EXACT_SMOOTH, LOST, REFERENCE_SHIFT, stiffness_jumps, tolerance
+
+
+def test_linear_fidelity_solves_the_same_equations(check):
+    dte = next(a for a in check.of("linear") if a.quantity == "dte")
+    assert dte.maximum_over_span < 1e-6  # the requirement; both integrate to 1e-10
+    assert all(a.within for a in check.of("linear"))
+
+
+def test_every_quantity_is_judged_at_both_fidelities(check):
+    assert [(a.fidelity, a.quantity) for a in check.agreements] == [
+        (fidelity, quantity) for fidelity in ("linear", "exact") for quantity in QUANTITIES
+    ]
+
+
+def test_the_exact_model_has_settled(check):
+    # The slowest multiplier is 0.79 per cycle: after 22 cycles 5e-3 of the initial mismatch of 1e-2 remains.
+    assert check.unsettled["exact"] < 1e-4
+
+
+def test_metrics_see_a_wrong_sign_of_the_gear_displacement(pair, check, monkeypatch):
+    def wrong(*args, **kwargs):
+        result = true_simulate(*args, **kwargs)
+        result["x_g"] = -result["x_g"]
+        return result
+
+    true_simulate = multibody.simulate
+    monkeypatch.setattr(multibody, "simulate", wrong)
+    found = crosscheck(pair, cycles=6, samples_per_cycle=64, quantities=("dte", "x_g"))
+    assert found.verdict == "not confirmed"
+    by_name = {(a.quantity, a.fidelity): a for a in found.agreements}
+    assert by_name["dte", "linear"].within
+    # x_g oscillates about its mean: reversed it is twice itself away, and exactly out of phase.
+    assert by_name["x_g", "linear"].relative_l2 == pytest.approx(2.0, rel=1e-6)
+    assert by_name["x_g", "linear"].sprague_geers.phase == pytest.approx(1.0, abs=1e-6)
+
+
+def test_pairs_without_friction_agree_though_nothing_moves_off_the_line_of_action(pair):
+    found = crosscheck(pair.with_({"friction.law": "none"}), cycles=12, samples_per_cycle=64)
+    for agreement in found.agreements:
+        if agreement.quantity in ("y_p", "y_g", "friction_force"):
+            assert agreement.within
+            assert agreement.peak_to_peak_ratio is None
+            assert agreement.sprague_geers is None
+
+
+def test_order_amplitudes_of_both_models_agree_at_linear_fidelity(check):
+    orders = next(o for o in check.orders if o.quantity == "dte" and o.fidelity == "linear")
+    np.testing.assert_allclose(orders.multibody.amplitude, orders.lumped.amplitude, rtol=1e-6)
+    # Order 0 is the mean over whole cycles; the grid's last time starts a cycle that is not there.
+    mean = float(check.lumped["dte"][:-1].mean())
+    assert orders.lumped.amplitude[0] == pytest.approx(mean, rel=1e-9)
+
+
+def test_samples_on_switches_are_left_out_also_after_many_cycles(pair):
+    cycle = lumped.mesh_cycle(pair)
+    # 21 T_m reduced modulo T_m rounds to just below T_m: a sample on a switch all the same.
+    time = np.array([0.0, 1.0, 21.0, 21.5, 40.0]) * cycle.period
+    assert off_switch_samples(pair, time).tolist() == [False, False, False, True, False]
+    assert not off_switch_samples(pair, cycle.switch_times + 3 * cycle.period).any()
+
+
+def _with(agreements, fidelity, quantity, **changes):
+    return tuple(
+        dataclasses.replace(a, **changes) if (a.fidelity, a.quantity) == (fidelity, quantity) else a
+        for a in agreements
+    )
+
+
+def test_verdict_follows_from_the_agreements(check):
+    agreeing = tuple(
+        dataclasses.replace(a, relative_l2=0.5 * a.tolerance.limit, maximum_over_span=0.5 * a.tolerance.limit)
+        for a in check.agreements
+    )
+    assert overall_verdict(agreeing) == "confirmed"
+    assert overall_verdict(_with(agreeing, "exact", "y_p", relative_l2=1.0)) == "bounded"
+    assert overall_verdict(_with(agreeing, "exact", "dte", relative_l2=1.01 * LOST)) == "not confirmed"
+    assert overall_verdict(_with(agreeing, "linear", "x_p", maximum_over_span=1e-3)) == "not confirmed"
+    assert overall_verdict([a for a in agreeing if a.fidelity == "linear"]) == "not confirmed"
+    assert overall_verdict([a for a in agreeing if a.fidelity == "exact"]) == "not confirmed"
+
+
+def test_exact_tolerance_grows_with_the_finite_motion_and_linear_does_not(pair):
+    assert tolerance("dte", "exact", REFERENCE_SHIFT, False).limit == pytest.approx(EXACT_SMOOTH["dte"])
+    quarter = tolerance("dte", "exact", REFERENCE_SHIFT / 4, False)
+    assert quarter.limit == pytest.approx(EXACT_SMOOTH["dte"] / 4)
+    assert tolerance("dte", "linear", 0.1, True) == tolerance("dte", "linear", 1e-5, False)
+    assert tolerance("dte", "linear", 0.1, True).limit == 1e-6
+
+
+def test_ramped_stiffness_is_smooth_and_rectangular_jumps(pair):
+    assert stiffness_jumps(pair)
+    ramped = pair.with_({"mesh.stiffness": {"model": "parabolic", "ramp_length": 2.0}})
+    assert not stiffness_jumps(ramped)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        {"cycles": 5},
+        {"samples_per_cycle": 31},
+        {"fidelities": ("rough",)},
+        {"fidelities": ()},
+        {"quantities": ("dte", "dte")},
+        {"quantities": ("speed",)},
+    ],
+)
+def test_arguments_out_of_range_are_refused_before_any_work(pair, arguments):
+    with pytest.raises(ParameterError):
+        crosscheck(pair, **arguments)
