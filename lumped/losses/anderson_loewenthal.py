@@ -11,7 +11,7 @@ from lumped.friction import contact_path
 from lumped.gear_geometry import geometry
 from lumped.losses.cycle import CyclePositions, quadrature
 from lumped.losses.loss_factor import sliding_velocity
-from lumped.losses.sharing import load_share
+from lumped.losses.sharing import springs
 from lumped.path_function import PathFunction
 from lumped.validity import FloatArray, checked
 
@@ -61,9 +61,8 @@ def anderson_loewenthal_sliding_loss(pair: GearPair) -> float:
     are not part of it.
     """
     g, path = geometry(pair), contact_path(pair)
-    relative = PathFunction.constant(1.0, g.L_XA, g.L_XD)
     at = quadrature(g, [_graded(g.L_XA, g.L_XP, g.L_XD)])
-    share = load_share(relative, at)
+    share = springs(pair, g, "uniform").share(at)
     return _mean_loss(at, share, np.abs(sliding_velocity(g, at.position)), pair, path.unit_load)
 
 

@@ -105,7 +105,7 @@ def sliding_power_along_path(solution: xr.Dataset) -> xr.Dataset:
 def losses_of_laws(
     pair: GearPair,
     laws: Sequence[str] | None = None,
-    sharing: Sharing = "stiffness",
+    sharing: Sharing = "elements",
     *,
     dynamic: bool = True,
 ) -> xr.Dataset:

@@ -9,7 +9,7 @@ import numpy as np
 
 from lumped.gear_geometry import Geometry, geometry
 from lumped.losses.cycle import CyclePositions, quadrature
-from lumped.losses.sharing import Sharing, load_share, sharing_function
+from lumped.losses.sharing import Sharing, springs
 from lumped.path_function import FloatArray
 
 if TYPE_CHECKING:
@@ -76,9 +76,9 @@ def loss_factor(pair: GearPair, sharing: Sharing = "uniform") -> float:
     H_v [-]; the mean sliding loss of a constant mu is mu H_v times the power, to first order in mu
     """
     g = geometry(pair)
-    relative = sharing_function(pair, g, sharing)
-    at = quadrature(g, [relative])
-    return mean_loss_factor(g, at, load_share(relative, at))
+    teeth = springs(pair, g, sharing)
+    at = quadrature(g, teeth.functions)
+    return mean_loss_factor(g, at, teeth.share(at))
 
 
 def mean_loss_factor(g: Geometry, at: CyclePositions, share: FloatArray) -> float:

@@ -12,7 +12,7 @@ from lumped.friction import friction_path_function
 from lumped.gear_geometry import Geometry, geometry
 from lumped.losses.cycle import CyclePositions, quadrature, samples
 from lumped.losses.loss_factor import mean_loss_factor, sliding_velocity
-from lumped.losses.sharing import Sharing, load_share, sharing_function
+from lumped.losses.sharing import Sharing, Springs, springs
 from lumped.path_function import FloatArray, PathFunction
 from lumped.results import labelled, provenance
 from lumped.steady import sample_times
@@ -37,21 +37,23 @@ class _Loads:
 def quasi_static_losses(
     pair: GearPair,
     law: str | None = None,
-    sharing: Sharing = "stiffness",
+    sharing: Sharing = "elements",
     *,
     samples_per_cycle: int = 512,
 ) -> xr.Dataset:
     """Loads, friction power and mesh efficiency over one mesh cycle at vanishing speed of vibration.
 
-    At every instant T_p = SUM (r_bp + X_pi mu_i) N_i fixes the mesh load, its shares follow the stiffness,
-    and T_g = SUM (r_bg + X_gi mu_i) N_i. The efficiency T_g Omega_g/(T_p Omega_p) equals 1 - SUM F_i v_s,i
-    over the input power, because the normal loads do no work at constant speed ratio.
+    At every instant T_p = SUM (r_bp + X_pi mu_i) N_i fixes the mesh load. Its shares are those of springs
+    under the frictionless load T_p/r_bp, and T_g = SUM (r_bg + X_gi mu_i) N_i. The efficiency
+    T_g Omega_g/(T_p Omega_p) equals 1 - SUM F_i v_s,i over the input power, because the normal loads do no
+    work at constant speed ratio.
 
     Parameters
     ----------
     pair : the gear pair
     law : name of a friction law; default ``pair.friction.law``
-    sharing : "stiffness" (default), "uniform" or a path function of relative stiffness
+    sharing : how pairs share the load, see ``lumped.losses.sharing``; by default with the stiffness and
+        tooth error of the dynamic model
     samples_per_cycle : output times in [0, T_m)
 
     Returns
@@ -64,16 +66,16 @@ def quasi_static_losses(
     """
     g = geometry(pair)
     mu = friction_path_function(pair, g, law)
-    relative = sharing_function(pair, g, sharing)
+    teeth = springs(pair, g, sharing)
     torque = pair.operating.pinion_torque
     power_in = torque * g.omega_pinion
-    nodes = quadrature(g, [mu, relative])
-    exact = _loads(g, torque, mu, relative, nodes)
+    nodes = quadrature(g, [mu, *teeth.functions])
+    exact = _loads(g, torque, mu, teeth, nodes)
     loss = -nodes.mean(exact.power.sum(axis=0))
     factor = mean_loss_factor(g, nodes, exact.share)
     at = samples(g, samples_per_cycle)
     time = sample_times(g.mesh_period, samples_per_cycle)
-    loads = _loads(g, torque, mu, relative, at)
+    loads = _loads(g, torque, mu, teeth, at)
     touching = at.contact
     result = labelled(
         time,
@@ -107,10 +109,8 @@ def quasi_static_losses(
     return result
 
 
-def _loads(
-    g: Geometry, torque: float, mu: PathFunction, relative: PathFunction, at: CyclePositions
-) -> _Loads:
-    share = load_share(relative, at)
+def _loads(g: Geometry, torque: float, mu: PathFunction, teeth: Springs, at: CyclePositions) -> _Loads:
+    share = teeth.share(at)
     coefficient = np.where(at.contact, mu(at.position), 0.0)
     arm = g.base_radius_pinion + at.position * coefficient
     normal = torque / (share * arm).sum(axis=0) * share

@@ -2,43 +2,85 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from lumped.errors import refuse
 from lumped.losses.cycle import CyclePositions
+from lumped.mesh_elements import mesh_elements
 from lumped.path_function import FloatArray, PathFunction
+from lumped.quasi_static.loaded_mesh import loaded_mesh
 from lumped.stiffness import pair_stiffness
 
 if TYPE_CHECKING:
     from lumped.gear_geometry import Geometry
     from lumped.parameters import GearPair
 
-#: "uniform", "stiffness" (as the pair's stiffness model) or a path function of relative stiffness.
-Sharing = Literal["uniform", "stiffness"] | PathFunction
+#: "elements": stiffness and tooth error as the dynamic model has them; "loaded": with the relief of the
+#: flanks under the operating torque; "stiffness": the stiffness model without tooth errors; "uniform": equal
+#: shares; or a path function of relative stiffness.
+Sharing = Literal["elements", "loaded", "stiffness", "uniform"] | PathFunction
 
 
-def sharing_function(pair: GearPair, g: Geometry, sharing: Sharing) -> PathFunction:
-    """Return the relative stiffness of a tooth pair over the path for a kind of load sharing.
+@dataclass(frozen=True, eq=False)
+class Springs:
+    """Tooth pairs as springs k_i with unloaded errors e_i under a mesh force.
+
+    Attributes
+    ----------
+    stiffness : k(xi), any unit
+    error : e(xi) [m], or None for none
+    force : total normal load [N], in the unit of ``stiffness`` times m where there is an error
+    """
+
+    stiffness: PathFunction
+    error: PathFunction | None
+    force: float
+
+    @property
+    def functions(self) -> list[PathFunction]:
+        """The path functions that the shares are made of."""
+        return [self.stiffness] if self.error is None else [self.stiffness, self.error]
+
+    def share(self, at: CyclePositions) -> FloatArray:
+        """Fraction of the mesh load on each pair; (pairs, k), sums to 1 over the pairs.
+
+        All pairs deflect by the same delta = (F + SUM k_i e_i)/SUM k_i and carry k_i (delta - e_i).
+        """
+        k = np.where(at.contact, self.stiffness(at.position), 0.0)
+        if self.error is None:
+            return np.asarray(k / k.sum(axis=0), dtype=np.float64)
+        e = np.where(at.contact, self.error(at.position), 0.0)
+        delta = (self.force + (k * e).sum(axis=0)) / k.sum(axis=0)
+        return np.asarray(k * (delta - e) / self.force, dtype=np.float64)
+
+
+def springs(pair: GearPair, g: Geometry, sharing: Sharing) -> Springs:
+    """Return the springs that share the load of a gear pair.
 
     Raises
     ------
     ParameterError : not one of the kinds
+    NumericalError : "loaded", and at some position no pair touches
     """
+    force = pair.operating.pinion_torque / g.base_radius_pinion
     if isinstance(sharing, PathFunction):
-        return sharing
+        return Springs(sharing, None, force)
     if sharing == "uniform":
-        return PathFunction.constant(1.0, g.L_XA, g.L_XD)
+        return Springs(PathFunction.constant(1.0, g.L_XA, g.L_XD), None, force)
     if sharing == "stiffness":
-        return pair_stiffness(pair, g)
-    raise refuse("sharing", sharing, "'uniform', 'stiffness' or a PathFunction", "Choose one of them.")
-
-
-def load_share(relative: PathFunction, at: CyclePositions) -> FloatArray:
-    """Fraction of the mesh load on each pair, k_i / SUM k; (pairs, k), sums to 1 over the pairs.
-
-    All pairs deflect by the same transmission error, so a pair's load is proportional to its stiffness.
-    """
-    weights = np.where(at.contact, relative(at.position), 0.0)
-    return np.asarray(weights / weights.sum(axis=0), dtype=np.float64)
+        return Springs(pair_stiffness(pair, g), None, force)
+    if sharing == "loaded":
+        mesh = loaded_mesh(pair)
+        return Springs(mesh.stiffness, mesh.error, force)
+    if sharing == "elements":
+        elements = mesh_elements(pair)
+        return Springs(elements.stiffness, elements.error, force)
+    raise refuse(
+        "sharing",
+        sharing,
+        "'elements', 'loaded', 'stiffness', 'uniform' or a PathFunction",
+        "Choose one of them.",
+    )

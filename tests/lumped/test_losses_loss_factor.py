@@ -94,6 +94,31 @@ def test_sharing_by_stiffness():
     assert loss_factor(pair, middle) < loss_factor(pair)  # less load where sliding is fast
 
 
+def test_tip_relief_lowers_the_loss_factor_where_it_unloads_the_ends():
+    pair = load_gear_pair("nasa_28_28")
+    assert loss_factor(pair, "loaded") < loss_factor(pair, "stiffness")
+    # With all pairs of the path in contact the shares are k_i (delta - e_i)/F: linear in 1/torque
+    deficit = [
+        loss_factor(heavy, "stiffness") - loss_factor(heavy, "loaded")
+        for heavy in (pair.with_(operating__pinion_torque=torque) for torque in (5000.0, 10000.0))
+    ]
+    assert deficit[0] / deficit[1] == pytest.approx(2.0, rel=1e-9)  # rounding of a difference of 1e-3
+
+
+def test_loaded_shares_are_those_of_the_static_transmission_error():
+    from lumped.quasi_static import static_transmission_error
+
+    pair = load_gear_pair("nasa_28_28")
+    g = geometry(pair)
+    static = static_transmission_error(pair, phases=2048, extended=False).isel(torque=0)
+    slide = (g.omega_pinion + g.omega_gear) * np.abs(static["position"] - g.L_XP)
+    mean = float((static["load_share"] * slide).sum("pair").mean())
+    # evenly spaced samples of a sum that jumps at A and D: first order in 1/2048
+    assert loss_factor(pair, "loaded") == pytest.approx(
+        mean / (g.omega_pinion * g.base_radius_pinion), rel=1e-3
+    )
+
+
 def test_addendum_contact_ratios_add_up():
     for name in preset_names():
         g = geometry(load_gear_pair(name))
