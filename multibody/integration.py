@@ -151,7 +151,17 @@ def _run(
         raise _failure(model, start, stop)
     keep = np.diff(times, prepend=-np.inf) > 0.0
     times, states_q, states_v = times[keep], states_q[keep], states_v[keep]
-    return Segment(times, states_q, states_v, accelerations(model, times, states_q, states_v))
+    states_a = accelerations(model, times, states_q, states_v)
+    if times[-1] < stop:
+        # exudyn counts an interval as finished up to 1e-10 s before its end. Left out, that would shift every
+        # later time; a Taylor step over so little is exact to rounding.
+        gap = stop - float(times[-1])
+        last_q = states_q[-1] + gap * (states_v[-1] + 0.5 * gap * states_a[-1])
+        last_v = states_v[-1] + gap * states_a[-1]
+        times = np.append(times, stop)
+        states_q, states_v = np.vstack([states_q, last_q]), np.vstack([states_v, last_v])
+        states_a = np.vstack([states_a, accelerations(model, times[-1:], last_q[None], last_v[None])])
+    return Segment(times, states_q, states_v, states_a)
 
 
 @contextlib.contextmanager
