@@ -97,12 +97,14 @@ class MeshCycle:
         """
         g = self.geometry
         t = np.atleast_1d(np.asarray(time, dtype=float))
-        tau = np.mod(t, self.period) if segment is None else t
-        index = (
-            np.clip(np.searchsorted(self.edges, tau, side="right") - 1, 0, self.edges.size - 2)
-            if segment is None
-            else np.full(t.shape, segment)
-        )
+        if segment is None:
+            # Multiples of the period round to either side of an edge; just before it counts as at it.
+            same = _SAME * self.period
+            tau = np.mod(t, self.period)
+            tau = np.where(tau > self.period - same, 0.0, tau)
+            index = np.searchsorted(self.edges[1:-1], tau + same, side="right")
+        else:
+            tau, index = t, np.full(t.shape, segment)
         speed, inside = g.omega_pinion * g.base_radius_pinion, _INSIDE * g.base_pitch
         low, high = speed * self.edges[index] + inside, speed * self.edges[index + 1] - inside
         shift = np.clip(speed * tau, low, high)

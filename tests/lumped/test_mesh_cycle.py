@@ -1,0 +1,196 @@
+"""Is every tooth pair where it should be, and does every coefficient switch when it should?"""
+
+import math
+
+import numpy as np
+import pytest
+
+from lumped import geometry, mesh_cycle
+
+
+@pytest.fixture(scope="module", params=["nasa", "unequal", "high_contact"])
+def cycle(request):
+    return mesh_cycle(request.getfixturevalue(request.param))
+
+
+def inside(cycle, count=7):
+    """Times strictly inside every smooth segment, and the segment of each."""
+    fractions = np.linspace(0.03, 0.97, count)
+    times = cycle.edges[:-1, None] + np.diff(cycle.edges)[:, None] * fractions
+    return times.ravel(), np.repeat(np.arange(cycle.edges.size - 1), count)
+
+
+def test_positions_are_those_of_the_model_page(cycle):
+    g = cycle.geometry
+    n = math.floor(g.contact_ratio)
+    times, _ = inside(cycle)
+    state = cycle.sample(times)
+    assert state.position.shape == (n + 1, times.size)
+    for i in range(n + 1):
+        expected = (
+            g.L_XA
+            + (n - i) * g.base_pitch
+            + np.mod(g.omega_pinion * g.base_radius_pinion * times, g.base_pitch)
+        )
+        # Lengths of 0.03 m by two operations.
+        np.testing.assert_allclose(state.position[i], expected, rtol=1e-14, atol=1e-17)
+
+
+def test_a_pair_carries_between_a_and_d_only(cycle):
+    g = cycle.geometry
+    times, _ = inside(cycle)
+    state = cycle.sample(times)
+    expected = (state.position >= g.L_XA) & (state.position <= g.L_XD)
+    np.testing.assert_array_equal(state.contact, expected)
+    for values in (state.stiffness, state.damping, state.friction):
+        assert np.all(values[~expected] == 0.0)
+    assert np.all(state.stiffness[expected] > 0.0)
+
+
+def test_number_of_pairs_in_contact(cycle):
+    """floor(eps) + 1 pairs for the fraction eps - floor(eps) of a cycle, floor(eps) for the rest."""
+    g = cycle.geometry
+    n = math.floor(g.contact_ratio)
+    middles = 0.5 * (cycle.edges[1:] + cycle.edges[:-1])
+    count = cycle.sample(middles).contact.sum(axis=0)
+    assert set(count) == {n, n + 1}
+    share = np.diff(cycle.edges)[count == n + 1].sum() / cycle.period
+    assert share == pytest.approx(g.contact_ratio - n, rel=1e-12)
+    # The mean number of pairs is the contact ratio.
+    assert (count * np.diff(cycle.edges)).sum() / cycle.period == pytest.approx(g.contact_ratio, rel=1e-12)
+
+
+def test_events_are_when_a_pair_passes_the_point(cycle):
+    g, events = cycle.geometry, cycle.events
+    speed = g.omega_pinion * g.base_radius_pinion
+    points = {"A": g.L_XA, "B": g.L_XB, "P": g.L_XP, "C": g.L_XC, "D": g.L_XD}
+    assert set(events) == set(points)
+    for name, xi in points.items():
+        assert 0.0 <= events[name] < cycle.period
+        at = cycle.offsets + speed * events[name]
+        # One of the pairs, or the one that has just left, is there.
+        cycles_off = (at - xi) / g.base_pitch
+        assert np.abs(cycles_off - np.round(cycles_off)).min() < 1e-12, name
+    assert events["A"] == 0.0
+    # B is one base pitch before D, C one after A: the same instants.
+    wrapped = (events["B"] - events["D"]) / cycle.period
+    assert abs(wrapped - round(wrapped)) < 1e-12
+    assert events["C"] / cycle.period == pytest.approx(round(events["C"] / cycle.period), abs=1e-12)
+
+
+def test_switches_hold_the_exit_and_the_pitch_point(cycle):
+    for name in ("D", "P"):
+        assert np.abs(cycle.switch_times - cycle.events[name]).min() < 1e-12 * cycle.period
+    assert np.all(np.diff(cycle.edges) > 0)
+    assert (cycle.edges[0], cycle.edges[-1]) == (0.0, cycle.period)
+
+
+def test_coefficients_are_continuous_between_switches(cycle):
+    """Between switches nothing jumps: neighbours differ by no more than the step times a slope."""
+    e, g = cycle.elements, cycle.geometry
+    speed = g.omega_pinion * g.base_radius_pinion
+    for segment, (low, high) in enumerate(zip(cycle.edges[:-1], cycle.edges[1:], strict=True)):
+        times = np.linspace(low, high, 2001)
+        state = cycle.sample(times, segment)
+        for values, function in (
+            (state.stiffness, e.stiffness),
+            (state.damping, e.damping),
+            (state.friction, e.friction),
+        ):
+            slope = np.abs(function.derivative()(np.linspace(g.L_XA, g.L_XD, 20001))).max() * speed
+            scale = np.abs(values).max()
+            steps = np.abs(np.diff(values, axis=1)).max()
+            assert steps <= 1.5 * slope * (high - low) / 2000 + 1e-9 * scale
+
+
+def test_ends_of_a_segment_are_its_one_sided_limits(cycle):
+    for segment, (low, high) in enumerate(zip(cycle.edges[:-1], cycle.edges[1:], strict=True)):
+        nudge = 1e-9 * (high - low)
+        at = cycle.sample([low, high], segment)
+        near = cycle.sample([low + nudge, high - nudge])
+        for name in ("stiffness", "damping", "friction"):
+            a, b = getattr(at, name), getattr(near, name)
+            # The largest slope over 1e-9 of a segment.
+            np.testing.assert_allclose(a, b, rtol=1e-6, atol=1e-7 * np.abs(a).max())
+
+
+def test_the_total_jumps_by_one_pair_when_it_leaves(nasa):
+    cycle = mesh_cycle(nasa)
+    leaves = cycle.events["D"]
+    j = int(np.argmin(np.abs(cycle.edges - leaves)))
+    before = cycle.sample([cycle.edges[j]], j - 1).stiffness.sum()
+    after = cycle.sample([cycle.edges[j]], j).stiffness.sum()
+    assert before == pytest.approx(2 * after, rel=1e-14)  # rectangular: two equal pairs, then one
+
+
+def test_friction_changes_sign_at_the_pitch_point(coulomb_pair):
+    cycle = mesh_cycle(coulomb_pair)
+    j = int(np.argmin(np.abs(cycle.edges - cycle.events["P"])))
+    before = cycle.sample([cycle.edges[j]], j - 1).friction
+    after = cycle.sample([cycle.edges[j]], j).friction
+    passing = np.flatnonzero(before.ravel() != after.ravel())
+    assert passing.size == 1
+    assert before[passing[0], 0] == pytest.approx(-0.05, rel=1e-12)
+    assert after[passing[0], 0] == pytest.approx(0.05, rel=1e-12)
+
+
+class TestManyCycles:
+    @pytest.mark.parametrize("start", [1, 3, 7, 1000, 99_999])
+    def test_the_pattern_repeats(self, cycle, start):
+        times, _ = inside(cycle)
+        first, later = cycle.sample(times), cycle.sample(times + start * cycle.period)
+        np.testing.assert_array_equal(first.contact, later.contact)
+        # Time is known to 1e-16 of itself, the position to that times the speed.
+        slack = start * cycle.geometry.base_pitch * 4e-16
+        np.testing.assert_allclose(first.position, later.position, rtol=1e-13, atol=slack)
+
+    @pytest.mark.parametrize("start", range(1, 60))
+    def test_right_continuous_at_the_start_of_every_cycle(self, cycle, start):
+        """A multiple of the period rounds to either side of itself: it counts as the next cycle's start."""
+        at = cycle.sample([start * cycle.period])
+        first = cycle.sample([0.0])
+        np.testing.assert_array_equal(at.contact, first.contact)
+        np.testing.assert_allclose(at.position, first.position, rtol=1e-12)
+        np.testing.assert_allclose(at.stiffness, first.stiffness, rtol=1e-12)
+
+    @pytest.mark.parametrize("start", range(60))
+    def test_right_continuous_at_every_switch(self, coulomb_pair, start):
+        cycle = mesh_cycle(coulomb_pair)
+        times = cycle.switch_times
+        at = cycle.sample(times + start * cycle.period)
+        for j in range(times.size):
+            after = cycle.sample(times[j : j + 1], j + 1)
+            for name in ("stiffness", "damping", "friction", "contact"):
+                np.testing.assert_allclose(getattr(at, name)[:, j], getattr(after, name)[:, 0], rtol=1e-9)
+
+
+def at_contact_ratio(nasa, ratio):
+    """28/28 with tip circles that give the contact ratio to rounding."""
+    slim = nasa.with_(
+        {"basic_rack.dedendum_coefficient": 1.6, "basic_rack.fillet_radius_coefficient": 0.1}
+    ).with_(
+        pinion__teeth=50, gear__teeth=50, centre_distance=None, pinion__tip_relief=None, gear__tip_relief=None
+    )
+    g = geometry(slim)
+    length = 0.5 * (ratio * g.base_pitch + g.L_XY)
+    tip = f"{2 * math.hypot(g.base_radius_pinion, length)!r} m"
+    return slim.with_(pinion__tip_diameter=tip, gear__tip_diameter=tip)
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-10, -1e-10, 1e-8, -1e-8, 1e-5, -1e-5])
+def test_an_integer_contact_ratio_is_no_special_place(nasa, off):
+    cycle = mesh_cycle(at_contact_ratio(nasa, 2.0 + off))
+    assert cycle.geometry.contact_ratio == pytest.approx(2.0 + off, abs=1e-13)
+    middles = 0.5 * (cycle.edges[1:] + cycle.edges[:-1])
+    count = cycle.sample(middles).contact.sum(axis=0)
+    mean = (count * np.diff(cycle.edges)).sum() / cycle.period
+    # Switches closer than 1e-10 of a cycle count as one, at most two of them.
+    assert mean == pytest.approx(2.0 + off, abs=3e-10)
+    assert np.all(np.isfinite(cycle.sample(np.linspace(0, cycle.period, 101)).stiffness))
+
+
+@pytest.mark.parametrize("off", [1e-12, 1e-6])
+def test_the_least_contact_ratio(nasa, off):
+    cycle = mesh_cycle(at_contact_ratio(nasa, 1.0 + off))
+    times = np.linspace(0, cycle.period, 1001)
+    assert cycle.sample(times).contact.any(axis=0).all()
