@@ -55,3 +55,25 @@ def test_04_the_printed_sign_speeds_the_pair_up(example):
     assert abs(module.drift(result["repaired"])) < 1e-6 * expected
     # First order in the friction coefficient: the forces themselves change by some 5 %.
     assert module.drift(result["printed"]) == pytest.approx(expected, rel=0.1)
+
+
+def test_05_the_best_relief_is_best_near_its_design_torque(example):
+    module = example(5)
+    result = module.compute()
+    labelled(module.draw(result))
+    best = float(result["torque"][int(result["relieved"].argmin("torque"))])
+    assert best == pytest.approx(result.attrs["design_torque"], rel=0.05)
+    # A perfect involute pair of constant compliance shape deflects in proportion to torque.
+    ratio = result["involute"] / result["torque"]
+    np.testing.assert_allclose(ratio, ratio[-1], rtol=1e-6)  # load sharing solved to rounding
+
+
+def test_06_the_separating_pair_has_two_motions_and_the_linear_one(example):
+    module = example(6)
+    result = module.compute()
+    labelled(module.draw(result))
+    at = result.sel(speed=2300.0, method="nearest")
+    assert float(at["separated"]) == 0.0
+    # In contact all the time the models differ by finite motions only, of the order of 1 %.
+    assert float(at["rising"]) == pytest.approx(float(at["linear"]), rel=0.02)
+    assert float(at["falling"]) > 2.0 * float(at["rising"])
