@@ -2,8 +2,8 @@
 Tip relief for a design torque
 ==============================
 
-How much tip relief, and over which length, makes the static transmission error smallest at one torque? And what
-does it do at others (Harris map)?
+How much tip relief, and over which length, makes the static transmission error smallest at one torque?
+And what does it do at others (Harris map)?
 """
 
 import numpy as np

@@ -2,7 +2,8 @@
 The jump at the primary resonance
 =================================
 
-A lightly damped 50/50 pair answers differently when the speed rises and when it falls. The linear model cannot.
+A lightly damped 50/50 pair answers differently when the speed rises and when it falls.
+The linear model cannot.
 """
 
 import numpy as np
