@@ -43,6 +43,14 @@ class EnergyStiffness(Section):
     """Potential-energy stiffness of the true tooth form on its gear body."""
 
     model: Literal["energy"] = "energy"
+    hertz: Literal["weber_banaschek", "linear"] = Field(
+        "weber_banaschek",
+        description="contact compliance: by Weber and Banaschek at the operating torque, or linearised",
+    )
+    coupling: Literal["none", "ring_twist"] = Field(
+        "none",
+        description="'ring_twist': pairs in contact together share the twist of bored gear bodies",
+    )
     scale: Literal["none", "iso6336"] = Field(
         "none", description="'iso6336' scales the curve to the mean mesh stiffness of ISO 6336-1 method B"
     )

@@ -4,24 +4,28 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
 from lumped import geometry, load_gear_pair
 from lumped.stiffness import iso6336, pair_stiffness
-from lumped.stiffness.energy import hertz_compliance, pair_compliance, violations
+from lumped.stiffness.contact import contact_half_width, linear_hertz_compliance, local_compliance
+from lumped.stiffness.coupling import twist_compliance
+from lumped.stiffness.energy import violations
 from lumped.stiffness.foundation import (
     coefficients,
     foundation_compliance,
     published_compliance,
     ring_twist,
 )
+from lumped.stiffness.pair_compliance import pair_compliance
 from lumped.stiffness.tooth_beam import beam_compliance
 from lumped.stiffness.tooth_profile import ToothProfile
 
 PRESETS = ["nasa_28_28", "nasa_art_25_31", "kahraman_blankenship_50_50", "fzg_c"]
 
 
-def energy_pair(name="nasa_28_28", **changes):
-    return load_gear_pair(name).with_({"mesh.stiffness": {"model": "energy"}, **changes})
+def energy_pair(name="nasa_28_28", hertz="linear", **changes):
+    return load_gear_pair(name).with_({"mesh.stiffness": {"model": "energy", "hertz": hertz}, **changes})
 
 
 class Bar:
@@ -85,7 +89,7 @@ def test_quadrature_error_of_the_presets(name):
 def test_hertz_of_equal_steel_gears():
     # Yang and Sun (1985): k_h = pi E b/(4 (1 - nu^2)).
     expected = math.pi * 206e9 * 0.02 / (4 * (1 - 0.09))
-    assert 1.0 / hertz_compliance((206e9, 206e9), (0.3, 0.3), 0.02) == pytest.approx(expected, rel=1e-14)
+    assert 0.02 / linear_hertz_compliance((206e9, 206e9), (0.3, 0.3)) == pytest.approx(expected, rel=1e-14)
 
 
 def test_foundation_coefficients_stay_in_the_published_ranges():
@@ -136,7 +140,7 @@ def test_components_add_up_and_scale():
     pair = energy_pair()
     g = geometry(pair)
     xi = np.linspace(g.L_XA, g.L_XD, 11)
-    c = pair_compliance(pair, g, xi)
+    c = pair_compliance(pair, g, xi, hertz="linear")
     total = c.hertz + sum(
         getattr(tooth, part)
         for tooth in (c.pinion, c.gear)
@@ -144,12 +148,18 @@ def test_components_add_up_and_scale():
     )
     assert c.stiffness == pytest.approx(1.0 / total, rel=1e-14)
     wide = energy_pair(**{"pinion.face_width": 12.7, "gear.face_width": 12.7})
-    assert pair_compliance(wide, geometry(wide), xi).stiffness == pytest.approx(2 * c.stiffness, rel=1e-12)
+    assert pair_compliance(wide, geometry(wide), xi, hertz="linear").stiffness == pytest.approx(
+        2 * c.stiffness, rel=1e-12
+    )
     # Twice the size: the plane problem has no length, so k per width stays.
     big = energy_pair(**{"basic_rack.module": 6.35, "centre_distance": 177.8, "mesh.backlash": 0.2})
-    assert pair_compliance(big, geometry(big), 2 * xi).stiffness == pytest.approx(c.stiffness, rel=1e-10)
+    assert pair_compliance(big, geometry(big), 2 * xi, hertz="linear").stiffness == pytest.approx(
+        c.stiffness, rel=1e-10
+    )
     soft = energy_pair(**{"pinion.youngs_modulus": 103, "gear.youngs_modulus": 103})
-    assert pair_compliance(soft, geometry(soft), xi).stiffness == pytest.approx(c.stiffness / 2, rel=1e-12)
+    assert pair_compliance(soft, geometry(soft), xi, hertz="linear").stiffness == pytest.approx(
+        c.stiffness / 2, rel=1e-12
+    )
 
 
 def test_equal_gears_are_symmetric_and_stiffest_at_the_pitch_point():
@@ -173,24 +183,85 @@ def test_fit_matches_direct_evaluation():
     pair = energy_pair("kahraman_blankenship_50_50")
     g = geometry(pair)
     xi = np.linspace(g.L_XA, g.L_XD, 500)[1:-1]
-    direct = pair_compliance(pair, g, xi).stiffness
+    direct = pair_compliance(pair, g, xi, hertz="linear").stiffness
     assert pair_stiffness(pair, g)(xi) == pytest.approx(direct, rel=1e-9)  # fit tolerance 1e-10 of the peak
 
 
 @pytest.mark.parametrize("name", PRESETS)
-def test_level_against_the_theory_behind_iso(name):
-    # c'_th C_B of ISO 6336-1 is plane elastic theory of solid gears; without the measured factor C_M = 0.8 it
-    # must lie where the energy method does. Two plane models with different foundation formulas: 12 %.
-    pair = energy_pair(name)
+def test_mean_mesh_stiffness_against_iso(name):
+    # ISO 6336-1, eq. (93), is a fit of measurements that states deviations of +5 to -8 %. The foundation
+    # formula and the beam model add theirs (finite elements: up to 10 %): 12 %. The linearised contact lies
+    # above the standard by 12 to 33 %, which is its own error.
+    pair = energy_pair(name, hertz="weber_banaschek")
     g = geometry(pair)
-    peak = pair_stiffness(pair, g)(np.linspace(g.L_XA, g.L_XD, 201)[1:-1]).max() / g.face_width / iso6336.SI
-    theory = iso6336.pair_single_stiffness(pair) / iso6336.CORRECTION
-    assert peak == pytest.approx(theory, rel=0.12)
+    mean = pair_stiffness(pair, g).mean() * g.contact_ratio / g.face_width / iso6336.SI
+    standard = iso6336.mean_mesh_stiffness(iso6336.pair_single_stiffness(pair), g.contact_ratio)
+    assert mean == pytest.approx(standard, rel=0.12)
+
+
+def test_local_compliance_is_the_strain_under_a_hertzian_pressure():
+    # On the axis of an elastic half-plane under p_0 sqrt(1 - x^2/a^2), at the depth z a (Johnson, Contact
+    # Mechanics, eq. 4.46): sigma_y = -p_0/sqrt(1 + z^2), sigma_x = -p_0 ((1 + 2 z^2)/sqrt(1 + z^2) - 2 z).
+    nu, modulus, a, depth = 0.3, 2e11, 0.1e-3, 3e-3
+    load = 1.0
+    p_0 = 2 * load / (math.pi * a)
+
+    def strain(z):
+        root = math.sqrt(1 + z * z)
+        sigma_y, sigma_x = -p_0 / root, -p_0 * ((1 + 2 * z * z) / root - 2 * z)
+        return ((1 - nu**2) * sigma_y - nu * (1 + nu) * sigma_x) / modulus
+
+    shortening = -quad(strain, 0.0, depth / a, epsabs=0.0, epsrel=1e-10, limit=200)[0] * a
+    found = local_compliance(np.array([a]), np.array([depth]), modulus, nu)[0]
+    assert found == pytest.approx(
+        shortening / load, rel=(a / depth) ** 2
+    )  # next term of the expansion in a/h
+
+
+def test_contact_half_width_is_that_of_the_film_formulas():
+    # w = 100 N/mm, rho = 8 mm, E = 206 GPa, nu = 0.3: b_H = 0.0948642 mm.
+    half = contact_half_width(1e5, np.array([8e-3]), (206e9, 206e9), (0.3, 0.3))
+    assert half[0] == pytest.approx(0.0948642e-3, rel=1e-6)  # printed digits
+
+
+def test_contact_softens_with_the_logarithm_of_the_load():
+    pair = energy_pair(hertz="weber_banaschek")
+    g = geometry(pair)
+    one, four = (
+        pair_compliance(pair.with_(operating__pinion_torque=t), g, np.array([g.L_XP])).hertz[0]
+        for t in (20, 80)
+    )
+    # Four times the load doubles the half width: each tooth loses 2 (1 - nu^2)/(pi E b) ln 2.
+    change = 2 * 2 * (1 - 0.09) / (math.pi * 206e9 * 6.35e-3) * math.log(2)
+    assert one - four == pytest.approx(change, rel=1e-9)
+
+
+def test_shared_ring_twist_is_a_spring_in_series_with_all_pairs():
+    alone = energy_pair(**{"pinion.bore": 25.0, "gear.bore": 30.0})
+    g = geometry(alone)
+    together = alone.with_(mesh__stiffness={"model": "energy", "hertz": "linear", "coupling": "ring_twist"})
+    k, k_coupled = pair_stiffness(alone, g), pair_stiffness(together, g)
+    w = twist_compliance(alone, g)
+    assert w > 0.0
+    single = np.linspace(g.L_XB, g.L_XC, 12)[1:-1]
+    assert k_coupled(single) == pytest.approx(k(single), rel=1e-9)  # no neighbour, no coupling
+    tau = np.linspace(0.0, g.L_XB - g.L_XA, 12)[1:-1]
+    one, two = k(g.L_XA + tau), k(g.L_XC + tau)
+    local = one / (1 - w * one) + two / (1 - w * two)
+    total = k_coupled(g.L_XA + tau) + k_coupled(g.L_XC + tau)
+    assert 1 / total == pytest.approx(1 / local + w, rel=1e-9)
+    assert np.all(total < one + two)
+    assert k_coupled.switches == pytest.approx([g.L_XB, g.L_XC])
+
+
+def test_solid_gears_have_no_ring_to_twist():
+    pair = energy_pair()
+    assert twist_compliance(pair, geometry(pair)) == 0.0
 
 
 def test_scaling_to_iso():
     pair = energy_pair()
-    scaled = pair.with_(mesh__stiffness={"model": "energy", "scale": "iso6336"})
+    scaled = pair.with_(mesh__stiffness={"model": "energy", "hertz": "linear", "scale": "iso6336"})
     g = geometry(pair)
     k, k_iso = pair_stiffness(pair, g), pair_stiffness(scaled, g)
     mean = k_iso.mean() * g.contact_ratio / g.face_width / iso6336.SI
@@ -202,7 +273,7 @@ def test_scaling_to_iso():
 
 
 def test_ramped_energy_stiffness_rises_from_zero():
-    pair = energy_pair().with_(mesh__stiffness={"model": "energy", "ramp_length": 1.0})
+    pair = energy_pair().with_(mesh__stiffness={"model": "energy", "hertz": "linear", "ramp_length": 1.0})
     plain = energy_pair()
     g = geometry(pair)
     k, reference = pair_stiffness(pair, g), pair_stiffness(plain, g)

@@ -1,0 +1,84 @@
+"""Structural coupling of the tooth pairs in contact through the twist of both gear bodies.
+
+All pairs load the same two rings. With c_i the compliance of a pair without the twist, the twist w of both
+rings stands in every place of the compliance matrix: delta = c_i N_i + w sum_j N_j. Without unloaded errors
+
+    N_i = k_i delta,   k_i = (1/c_i)/(1 + w sum_j 1/c_j),
+
+which is one spring 1/w in series with all pairs: in double contact each pair is softer than alone. What a
+tooth's load does to the fillet of its neighbour otherwise (local coupling) is left out.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lumped.path_function import FloatArray, PathFunction
+from lumped.stiffness.foundation import ring_twist
+
+if TYPE_CHECKING:
+    from lumped.gear_geometry import Geometry
+    from lumped.parameters import GearPair
+
+_FIT_TOLERANCE = 1e-10
+
+
+def twist_compliance(pair: GearPair, geometry: Geometry) -> float:
+    """Compliance of both rings in twist along the line of action [m/N]; a gear without a bore has none.
+
+    Parameters
+    ----------
+    pair, geometry : the gear pair and its geometry
+    """
+    g = geometry
+    sides = (
+        (pair.pinion, g.base_radius_pinion, g.root_radius_pinion),
+        (pair.gear, g.base_radius_gear, g.root_radius_gear),
+    )
+    total = 0.0
+    for gear, base, root in sides:
+        if gear.bore > 0.0:
+            total += ring_twist(base, root, 0.5 * gear.bore, gear.youngs_modulus, gear.poisson_ratio)
+    return total / g.face_width
+
+
+def coupled(k: PathFunction, twist: float, geometry: Geometry) -> PathFunction:
+    """Stiffness of a pair in the presence of its neighbours [N/m].
+
+    Parameters
+    ----------
+    k : stiffness of a pair alone, its twist included, from A to D [N/m]
+    twist : w, compliance of both rings in twist, smaller than 1/k [m/N]
+    geometry : of the pair
+
+    Returns
+    -------
+    PathFunction : with jumps where a neighbour enters or leaves contact
+    """
+    if twist == 0.0:
+        return k
+    low, high = k.interval
+    pitch = geometry.base_pitch
+    shifts = np.arange(1 - geometry.pairs, geometry.pairs) * pitch
+
+    def local(xi: FloatArray) -> FloatArray:
+        inside = (xi > low) & (xi < high)
+        alone = np.where(inside, k(np.clip(xi, low, np.nextafter(high, low))), 1.0)
+        return np.where(inside, alone / (1.0 - twist * alone), 0.0)
+
+    def stiffness(xi: FloatArray) -> FloatArray:
+        together = sum(local(xi + shift) for shift in shifts)
+        return np.asarray(local(xi) / (1.0 + twist * together), dtype=np.float64)
+
+    marks = np.add.outer([low, high], shifts).ravel()
+    switches = np.unique(marks[(marks > low + 1e-9 * pitch) & (marks < high - 1e-9 * pitch)])
+    knots = np.add.outer(k.breaks[1:-1], shifts).ravel()
+    knots = knots[(knots > low) & (knots < high)]
+    apart = (
+        np.abs(np.subtract.outer(knots, [low, high, *switches])).min(axis=1, initial=np.inf) > 1e-9 * pitch
+    )
+    breaks = np.unique(np.concatenate([[low, high], switches, knots[apart]]))
+    scale = float(k(np.linspace(low, high, 65)[1:-1]).max())
+    return PathFunction.fit(stiffness, breaks, switches, tolerance=_FIT_TOLERANCE * scale)

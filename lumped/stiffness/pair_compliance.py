@@ -1,0 +1,155 @@
+"""Compliances of a tooth pair along the line of action: teeth, bodies and the contact between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lumped.path_function import FloatArray
+from lumped.stiffness.contact import contact_half_width, linear_hertz_compliance, local_compliance
+from lumped.stiffness.foundation import foundation_compliance
+from lumped.stiffness.tooth_beam import NODES, beam_compliance
+from lumped.stiffness.tooth_profile import ToothProfile
+
+if TYPE_CHECKING:
+    from lumped.gear_geometry import Geometry
+    from lumped.parameters import GearPair
+
+Contact = Literal["linear", "weber_banaschek"]
+
+
+@dataclass(frozen=True)
+class ToothCompliance:
+    """Compliances of one tooth along the line of action, one per position [m/N].
+
+    Attributes
+    ----------
+    bending, shear, axial, foundation : (n,) the parts
+    quadrature_error : relative error estimate of the Gauss integration [-]
+    """
+
+    bending: FloatArray
+    shear: FloatArray
+    axial: FloatArray
+    foundation: FloatArray
+    quadrature_error: float
+
+    @property
+    def total(self) -> FloatArray:
+        """Sum of the parts [m/N]."""
+        return self.bending + self.shear + self.axial + self.foundation
+
+
+@dataclass(frozen=True)
+class PairCompliance:
+    """Compliances of a tooth pair over positions on the path of contact.
+
+    Attributes
+    ----------
+    position : (n,) xi from X [m]
+    hertz : (n,) compliance of the contact [m/N]
+    pinion, gear : the two teeth
+    """
+
+    position: FloatArray
+    hertz: FloatArray
+    pinion: ToothCompliance
+    gear: ToothCompliance
+
+    @property
+    def stiffness(self) -> FloatArray:
+        """Stiffness of the pair [N/m]."""
+        return 1.0 / (self.hertz + self.pinion.total + self.gear.total)
+
+
+def tooth_profile(pair: GearPair, which: str) -> ToothProfile:
+    """Profile of a tooth of the ``"pinion"`` or the ``"gear"``."""
+    gear, rack = (pair.pinion if which == "pinion" else pair.gear), pair.basic_rack
+    return _profile(
+        gear.teeth,
+        rack.module,
+        rack.pressure_angle,
+        gear.profile_shift,
+        rack.dedendum_coefficient,
+        rack.fillet_radius_coefficient,
+    )
+
+
+#: One object per tooth form, as it keeps the ends of its fillet once they are found.
+_profile = lru_cache(maxsize=256)(ToothProfile)
+
+
+def pair_compliance(
+    pair: GearPair,
+    geometry: Geometry,
+    xi: ArrayLike,
+    *,
+    hertz: Contact = "weber_banaschek",
+    nodes: int = NODES,
+) -> PairCompliance:
+    """Compliances of a tooth pair in contact at positions xi.
+
+    Parameters
+    ----------
+    pair, geometry : the gear pair and its geometry
+    xi : (n,) positions from X in [L_XA, L_XD] [m]
+    hertz : "weber_banaschek" at the load of a single pair under the operating torque, or "linear"
+    nodes : Gauss points on the fillet and on the involute of each tooth
+
+    Raises
+    ------
+    ParameterError : the rack cannot cut these teeth
+    NumericalError : the Gauss integration did not converge
+    """
+    position = np.atleast_1d(np.asarray(xi, dtype=float))
+    width = geometry.face_width
+    return PairCompliance(
+        position=position,
+        hertz=_contact(pair, geometry, position, hertz),
+        pinion=_tooth(pair, "pinion", position, width, nodes),
+        gear=_tooth(pair, "gear", geometry.L_XY - position, width, nodes),
+    )
+
+
+def _contact(pair: GearPair, geometry: Geometry, xi: FloatArray, hertz: Contact) -> FloatArray:
+    width = geometry.face_width
+    moduli = (pair.pinion.youngs_modulus, pair.gear.youngs_modulus)
+    ratios = (pair.pinion.poisson_ratio, pair.gear.poisson_ratio)
+    if hertz == "linear":
+        return np.full(xi.shape, linear_hertz_compliance(moduli, ratios) / width)
+    load = pair.operating.pinion_torque / geometry.base_radius_pinion / width
+    radius = xi * (geometry.L_XY - xi) / geometry.L_XY
+    half_width = contact_half_width(load, radius, moduli, ratios)
+    total = np.zeros(xi.shape)
+    lengths = (xi, geometry.L_XY - xi)
+    for which, length, modulus, ratio in zip(("pinion", "gear"), lengths, moduli, ratios, strict=True):
+        _, h, _, angle = tooth_profile(pair, which).involute_points(length)
+        total = total + local_compliance(half_width, h / np.cos(angle), modulus, ratio) / width
+    return total
+
+
+def _tooth(pair: GearPair, which: str, length: FloatArray, width: float, nodes: int) -> ToothCompliance:
+    gear = pair.pinion if which == "pinion" else pair.gear
+    profile = tooth_profile(pair, which)
+    beam = beam_compliance(profile, length, gear.youngs_modulus, gear.poisson_ratio, nodes)
+    *_, angle = profile.involute_points(length)
+    foundation = foundation_compliance(
+        profile.base_radius,
+        profile.root_radius,
+        0.5 * gear.bore,
+        profile.root_half_angle,
+        angle,
+        gear.youngs_modulus,
+        gear.poisson_ratio,
+    )
+    return ToothCompliance(
+        bending=beam.bending / width,
+        shear=beam.shear / width,
+        axial=beam.axial / width,
+        foundation=foundation / width,
+        quadrature_error=beam.quadrature_error,
+    )
