@@ -144,6 +144,8 @@ def static_deflection(pair: GearPair, total_stiffness: float) -> FloatArray:
     pair : a validated gear pair
     total_stiffness : mean of the mesh stiffness of all pairs [N/m]
     """
+    if not math.isfinite(total_stiffness) or total_stiffness <= 0.0:
+        raise refuse("mesh.stiffness", total_stiffness, "> 0 N/m", "Give a stiffness that carries the load.")
     g, b = geometry(pair), bodies(pair)
     load = pair.operating.pinion_torque / g.base_radius_pinion
     x_p = -load / pair.bearings.pinion.loa_stiffness
@@ -154,6 +156,4 @@ def static_deflection(pair: GearPair, total_stiffness: float) -> FloatArray:
     theta_g = -(1.0 - share_p) * wind_up / g.base_radius_gear
     state = np.zeros(12)
     state[:4] = theta_p, theta_g, x_p, x_g
-    if not math.isfinite(total_stiffness) or total_stiffness <= 0.0:
-        raise refuse("mesh.stiffness", total_stiffness, "> 0 N/m", "Give a stiffness that carries the load.")
     return state

@@ -133,13 +133,13 @@ def periodic_system(
     ----------
     pair : a validated gear pair
     form : coordinates, see ``LTVSystem``; the rigid rotation is only in "absolute"
-    as_printed : equations out of 1, 2, 7, 9 whose printed sign is used. With eq. 2 as printed the two
-        rotations no longer combine to q, so only "absolute" exists
+    as_printed : equations out of 1, 2, 7, 9 whose printed sign is used; every form stays exact, because all
+        forces depend on the rotations through the dynamic transmission error only
     cycle : the pair's mesh cycle where it is known already
 
     Raises
     ------
-    ParameterError : unknown form or equation, or eq. 2 as printed in a form without rotations
+    ParameterError : unknown form or equation
     """
     s = structure(pair, as_printed)
     g = geometry(pair)

@@ -100,8 +100,10 @@ def edited(nasa):
 def written_out():
     """Function: accelerations of model.md eqs. 1 to 9, typed in here from the page, one line per equation."""
 
-    def accelerations(pair, geometry, masses, t, state, k, c, mu, torque, brake):
-        """k, c, mu are functions of xi; state is theta_p, theta_g, x_p, x_g, y_p, y_g and rates."""
+    def accelerations(pair, geometry, masses, t, state, elements, torque, brake):
+        """Elements are k, c, mu, e over xi; state is theta_p, theta_g, x_p, x_g, y_p, y_g and rates."""
+        k, c, mu, e = elements.stiffness, elements.damping, elements.friction, elements.error
+        e_slope = e.derivative()
         th_p, th_g, x_p, x_g, y_p, y_g, dth_p, dth_g, dx_p, dx_g, dy_p, dy_g = state
         r_bp, r_bg = geometry.base_radius_pinion, geometry.base_radius_gear
         lam, omega = geometry.base_pitch, geometry.omega_pinion
@@ -113,7 +115,8 @@ def written_out():
             xi = geometry.L_XA + (n - i) * lam + (omega * r_bp * t) % lam
             if not geometry.L_XA <= xi <= geometry.L_XD:
                 continue
-            load = float(k(xi)) * delta + float(c(xi)) * rate
+            error_rate = float(e_slope(xi)) * omega * r_bp
+            load = float(k(xi)) * (delta - float(e(xi))) + float(c(xi)) * (rate - error_rate)
             force = float(mu(xi)) * load
             sum_n += load
             sum_f += force
