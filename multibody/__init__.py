@@ -3,7 +3,17 @@
 from multibody.balance import PowerBalance, power_balance
 from multibody.drive import Drive
 from multibody.effects import EFFECTS
+from multibody.flow_map import FlowMap, monodromy
 from multibody.simulation import simulate
 from multibody.sweep import speed_sweep
 
-__all__ = ["EFFECTS", "Drive", "PowerBalance", "power_balance", "simulate", "speed_sweep"]
+__all__ = [
+    "EFFECTS",
+    "Drive",
+    "FlowMap",
+    "PowerBalance",
+    "monodromy",
+    "power_balance",
+    "simulate",
+    "speed_sweep",
+]
