@@ -3,7 +3,6 @@
 from lumped.friction.along_path import (
     contact_path,
     friction_path_function,
-    friction_profile,
     friction_settings,
     law_range_violations,
     mean_coefficient,
@@ -12,6 +11,7 @@ from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.benedict_kelley import benedict_kelley
 from lumped.friction.composite import composite
 from lumped.friction.coulomb import coulomb
+from lumped.friction.profile import friction_profile
 from lumped.friction.registry import LAWS
 from lumped.friction.smoothed_coulomb import smoothed_coulomb
 from lumped.friction.xu_kahraman import xu_kahraman

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from scipy.interpolate import PPoly
 
 from lumped import film
-from lumped.errors import ParameterError
-from lumped.friction.base import ContactPath, FrictionSettings
+from lumped.errors import refuse
+from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.benedict_kelley import LAW as BENEDICT_KELLEY
 from lumped.friction.benedict_kelley import friction_number
-from lumped.friction.graded_fit import graded_fit
-from lumped.friction.registry import LAWS, law_named
+from lumped.friction.registry import law_named
 from lumped.path_function import PathFunction
 from lumped.roughness import composite_roughness, mean_roughness
 from lumped.validity import FloatArray, RangeViolation, range_violations, warn_violations
@@ -98,15 +95,15 @@ def friction_path_function(
 
     Raises
     ------
-    ParameterError : an unknown law, or roughness of 1.13 um and above with law II
+    ParameterError : an unknown law, roughness of 1.13 um and above with law II, or a mu above 1
 
     Warns
     -----
     LawRangeWarning : the contact leaves a validity range of the law, see ``law_range_violations``
     """
     path, settings, name = contact_path(pair, geometry), friction_settings(pair), law or pair.friction.law
-    function = _fit(path, settings, name)
-    warn_violations(_violations(path, settings, name))
+    function = fit_law(path, settings, name)
+    warn_violations(violations_of(path, settings, name))
     return function
 
 
@@ -129,7 +126,7 @@ def mean_coefficient(function: PathFunction, low: float | None = None, high: flo
 
 def mean_benedict_kelley(path: ContactPath, settings: FrictionSettings) -> float:
     """Mean of |mu| of law II over A..D: the paper's mu_avg for laws I and IV."""
-    return mean_coefficient(_fit(path, settings, BENEDICT_KELLEY.name))
+    return mean_coefficient(fit_law(path, settings, BENEDICT_KELLEY.name))
 
 
 def law_range_violations(
@@ -145,95 +142,12 @@ def law_range_violations(
     law : name of a friction law; default ``pair.friction.law``
     geometry : its geometry, if it is at hand
     """
-    return _violations(contact_path(pair, geometry), friction_settings(pair), law or pair.friction.law)
-
-
-def friction_profile(
-    pair: GearPair,
-    laws: Sequence[str] | None = None,
-    points: int = 401,
-    geometry: Geometry | None = None,
-) -> xr.Dataset:
-    """Compare the friction laws over the path of contact, with the contact conditions they see.
-
-    Parameters
-    ----------
-    pair : the gear pair
-    laws : names of the laws; default all five
-    points : number of equally spaced positions; the switches of every law are added to them
-    geometry : its geometry, if it is at hand
-
-    Returns
-    -------
-    Dataset over ``xi`` [m] with mu (law, xi), mean_mu (law), film_thickness, film_parameter, regime,
-    hertz_pressure, half_width, sliding_velocity, entraining_velocity, slide_to_roll. Attributes:
-    ``range_warnings``, one text per left validity range; ``left_out``, laws that this pair does not allow
-    and why.
-    """
-    path, settings = contact_path(pair, geometry), friction_settings(pair)
-    functions: dict[str, PathFunction] = {}
-    left_out: list[str] = []
-    names = [name for name in LAWS if name != "none"] if laws is None else list(laws)
-    for name in names:
-        try:
-            functions[name] = _fit(path, settings, name)
-        except ParameterError as error:
-            if laws is not None:
-                raise
-            left_out.append(f"{LAWS[name].title}: {error}")
-    grid = np.linspace(path.L_XA, path.L_XD, points)
-    # Just below the end: a path function is right-continuous and zero beyond it.
-    grid[-1] = np.nextafter(path.L_XD, 0.0)
-    xi = np.unique(np.concatenate([grid, *(f.switches for f in functions.values())]))
-    parameter = path.film_parameter(xi)
-    warnings = [
-        str(violation) for name in functions for violation in law_range_violations(pair, name, geometry)
-    ]
-    return xr.Dataset(
-        {
-            "mu": (
-                ("law", "xi"),
-                np.array([f(xi) for f in functions.values()]).reshape(len(functions), xi.size),
-                _attrs("1", "friction coefficient, negative in approach"),
-            ),
-            "mean_mu": (
-                "law",
-                np.array([mean_coefficient(f) for f in functions.values()]),
-                _attrs("1", "mean of |mu| over the path of contact"),
-            ),
-            "film_thickness": ("xi", path.film_thickness(xi), _attrs("m", "central film thickness")),
-            "film_parameter": ("xi", parameter, _attrs("1", "film parameter Lambda")),
-            "regime": (
-                "xi",
-                film.regime(parameter, settings.thresholds),
-                {
-                    **_attrs("1", "lubrication regime"),
-                    "flag_values": [0, 1, 2, 3],
-                    "flag_meanings": ", ".join(film.REGIMES),
-                },
-            ),
-            "hertz_pressure": ("xi", path.hertz_pressure(xi), _attrs("Pa", "largest Hertzian pressure")),
-            "half_width": ("xi", path.half_width(xi), _attrs("m", "Hertzian half width")),
-            "sliding_velocity": ("xi", path.sliding_velocity(xi), _attrs("m/s", "sliding velocity")),
-            "entraining_velocity": (
-                "xi",
-                path.entraining_velocity(xi),
-                _attrs("m/s", "sum of the rolling velocities"),
-            ),
-            "slide_to_roll": ("xi", path.slide_to_roll(xi), _attrs("1", "slide-to-roll ratio")),
-        },
-        coords={
-            "xi": ("xi", xi, _attrs("m", "distance of the contact point from X")),
-            "law": ("law", list(functions), {"long_name": "friction law"}),
-            "law_title": ("law", [LAWS[name].title for name in functions]),
-        },
-        attrs={"range_warnings": warnings, "left_out": left_out},
-    )
+    return violations_of(contact_path(pair, geometry), friction_settings(pair), law or pair.friction.law)
 
 
 @lru_cache(maxsize=256)
-def _fit(path: ContactPath, settings: FrictionSettings, name: str) -> PathFunction:
-    # Cached: charts over damping, stiffness or bearings ask for the same immutable function at every node.
+def fit_law(path: ContactPath, settings: FrictionSettings, name: str) -> PathFunction:
+    """mu(xi) of one law; cached, because charts over damping or stiffness ask for it at every node."""
     law = law_named(name)
     switches = sorted({xi for xi in law.switches(path, settings) if path.L_XA < xi < path.L_XD})
     # The pitch point is a break of every law: also where mu is smooth there, it varies fastest around it.
@@ -241,15 +155,36 @@ def _fit(path: ContactPath, settings: FrictionSettings, name: str) -> PathFuncti
     known = settings
     if name in _LAWS_WITH_AVERAGE:  # worked out once, not in every evaluation of the law
         known = replace(settings, coefficient=settings.average(path))
+    _must_be_friction(path, known, law)
     return graded_fit(
         lambda xi: law.signed(xi, path, known), path.L_XP, breaks, switches, tolerance=FIT_TOLERANCE
     )
 
 
+def _must_be_friction(path: ContactPath, settings: FrictionSettings, law: FrictionLaw) -> None:
+    """Refuse a law that leaves all bounds, as III does in thin oil under high pressure."""
+    xi = _positions(path)
+    with np.errstate(over="ignore", invalid="ignore"):
+        largest = float(np.abs(law.signed(xi, path, settings)).max())
+    if not largest <= 1.0:
+        reasons = "; ".join(map(str, violations_of(path, settings, law.name))) or "no range of it was left"
+        raise refuse(
+            "friction.law",
+            f"{law.name} with mu up to {largest:.3g}",
+            "a law with mu <= 1 on the path of contact",
+            f"Take another law or operating point ({reasons}).",
+        )
+
+
+def _positions(path: ContactPath) -> FloatArray:
+    return np.asarray(np.linspace(path.L_XA, path.L_XD, _CHECKED_POSITIONS + 2)[1:-1], dtype=np.float64)
+
+
 @lru_cache(maxsize=256)
-def _violations(path: ContactPath, settings: FrictionSettings, name: str) -> tuple[RangeViolation, ...]:
+def violations_of(path: ContactPath, settings: FrictionSettings, name: str) -> tuple[RangeViolation, ...]:
+    """Validity ranges that a contact leaves under a law."""
     law = law_named(name)
-    xi = np.linspace(path.L_XA, path.L_XD, _CHECKED_POSITIONS + 2)[1:-1]
+    xi = _positions(path)
     if law.parts is None:
         return range_violations(law.title, law.ranges, _arguments(path, xi))
     found: list[RangeViolation] = []
@@ -274,10 +209,6 @@ def _arguments(path: ContactPath, xi: FloatArray) -> dict[str, FloatArray]:
         "radius": path.radius(xi),
         "friction_number": friction_number(path.unit_load * 1e-3, path.viscosity * 1e3, *velocities),
     }
-
-
-def _attrs(units: str, long_name: str) -> dict[str, str]:
-    return {"units": units, "long_name": long_name}
 
 
 def _geometry(pair: GearPair) -> Geometry:

@@ -272,6 +272,15 @@ def test_thin_oil_leaves_the_range_of_law_three_and_says_so(pair):
         assert law_range_violations(pair, "xu_kahraman") == ()
 
 
+def test_a_law_that_leaves_all_bounds_is_refused_with_its_reason(pair):
+    # exp(-|SR| p_h log10(eta)) with eta < 1 mPa s: law III's double exponential, mu of 1e5 and more
+    thin = pair.with_(lubricant__viscosity=0.15, operating__pinion_torque=3000)
+    with pytest.raises(
+        ParameterError, match=r"friction.law = xu_kahraman with mu up to .*viscosity >= 1 mPa s"
+    ):
+        friction_path_function(thin, law="xu_kahraman")
+
+
 def test_ranges_of_every_law_are_complete_records():
     for law in LAWS.values():
         for limits in law.ranges:

@@ -1,0 +1,109 @@
+"""The friction laws side by side over the path of contact, for tables and figures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from lumped import film
+from lumped.errors import ParameterError
+from lumped.friction.along_path import (
+    contact_path,
+    fit_law,
+    friction_settings,
+    mean_coefficient,
+)
+from lumped.friction.registry import LAWS
+from lumped.path_function import PathFunction
+
+if TYPE_CHECKING:
+    from lumped.gear_geometry import Geometry
+    from lumped.parameters import GearPair
+
+
+def friction_profile(
+    pair: GearPair,
+    laws: Sequence[str] | None = None,
+    points: int = 401,
+    geometry: Geometry | None = None,
+) -> xr.Dataset:
+    """Compare the friction laws over the path of contact, with the contact conditions they see.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    laws : names of the laws; default all five
+    points : number of equally spaced positions; the switches of every law are added to them
+    geometry : its geometry, if it is at hand
+
+    Returns
+    -------
+    Dataset over ``xi`` [m] with mu (law, xi), mean_mu (law), film_thickness, film_parameter, regime,
+    hertz_pressure, half_width, sliding_velocity, entraining_velocity, slide_to_roll. Attributes:
+    ``range_warnings``, one text per left validity range; ``left_out``, laws that this pair does not allow
+    and why.
+    """
+    path, settings = contact_path(pair, geometry), friction_settings(pair)
+    functions: dict[str, PathFunction] = {}
+    left_out: list[str] = []
+    names = [name for name in LAWS if name != "none"] if laws is None else list(laws)
+    for name in names:
+        try:
+            functions[name] = fit_law(path, settings, name)
+        except ParameterError as error:
+            if laws is not None:
+                raise
+            left_out.append(f"{LAWS[name].title}: {error}")
+    grid = np.linspace(path.L_XA, path.L_XD, points)
+    # Just below the end: a path function is right-continuous and zero beyond it.
+    grid[-1] = np.nextafter(path.L_XD, 0.0)
+    xi = np.unique(np.concatenate([grid, *(f.switches for f in functions.values())]))
+    parameter = path.film_parameter(xi)
+    warnings = [str(violation) for name in functions for violation in violations_of(path, settings, name)]
+    return xr.Dataset(
+        {
+            "mu": (
+                ("law", "xi"),
+                np.array([f(xi) for f in functions.values()]).reshape(len(functions), xi.size),
+                _attrs("1", "friction coefficient, negative in approach"),
+            ),
+            "mean_mu": (
+                "law",
+                np.array([mean_coefficient(f) for f in functions.values()]),
+                _attrs("1", "mean of |mu| over the path of contact"),
+            ),
+            "film_thickness": ("xi", path.film_thickness(xi), _attrs("m", "central film thickness")),
+            "film_parameter": ("xi", parameter, _attrs("1", "film parameter Lambda")),
+            "regime": (
+                "xi",
+                film.regime(parameter, settings.thresholds),
+                {
+                    **_attrs("1", "lubrication regime"),
+                    "flag_values": [0, 1, 2, 3],
+                    "flag_meanings": ", ".join(film.REGIMES),
+                },
+            ),
+            "hertz_pressure": ("xi", path.hertz_pressure(xi), _attrs("Pa", "largest Hertzian pressure")),
+            "half_width": ("xi", path.half_width(xi), _attrs("m", "Hertzian half width")),
+            "sliding_velocity": ("xi", path.sliding_velocity(xi), _attrs("m/s", "sliding velocity")),
+            "entraining_velocity": (
+                "xi",
+                path.entraining_velocity(xi),
+                _attrs("m/s", "sum of the rolling velocities"),
+            ),
+            "slide_to_roll": ("xi", path.slide_to_roll(xi), _attrs("1", "slide-to-roll ratio")),
+        },
+        coords={
+            "xi": ("xi", xi, _attrs("m", "distance of the contact point from X")),
+            "law": ("law", list(functions), {"long_name": "friction law"}),
+            "law_title": ("law", [LAWS[name].title for name in functions]),
+        },
+        attrs={"range_warnings": warnings, "left_out": left_out},
+    )
+
+
+def _attrs(units: str, long_name: str) -> dict[str, str]:
+    return {"units": units, "long_name": long_name}
