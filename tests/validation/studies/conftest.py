@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from validation.studies import Study, load_study, run_sweep
+from validation.studies import Study, Summary, load_study, run_sweep
+from validation.studies.cases import case_list
+from validation.studies.journal import Key, scan
 
 Make = Callable[..., Study]
 
@@ -53,12 +56,79 @@ def undisturbed(study: Study, tmp_path_factory: pytest.TempPathFactory) -> bytes
     return run_sweep(study, folder).results.read_bytes()
 
 
+#: Run a sweep of the study in argv[1] into argv[2] with argv[3] workers.
+PROGRAM = """
+import sys
+from validation.studies import load_study, run_sweep
+study = load_study(open(sys.argv[1]).read())
+run_sweep(study, sys.argv[2], workers=int(sys.argv[3]), resume=True)
+"""
+
+
+class Sweep:
+    """A sweep of the test study in a process of its own, which a test disturbs.
+
+    Attributes
+    ----------
+    study, undisturbed : the study and the bytes of its undisturbed result
+    out : output folder
+    SLOW : program text that slows the cases down, so that a fault comes in the middle
+    """
+
+    SLOW = """
+import time
+from validation.studies import analyses
+fast = analyses.ANALYSES["geometry"]
+def slow(variation, settings):
+    time.sleep(0.02)
+    return fast(variation, settings)
+analyses.ANALYSES["geometry"] = slow
+"""
+
+    def __init__(self, study: Study, undisturbed: bytes, file: Path, out: Path) -> None:
+        self.study, self.undisturbed, self.file, self.out = study, undisturbed, file, out
+        file.write_text(study.to_toml())
+
+    def command(self, before: str = "", workers: int = 1) -> list[str]:
+        """Arguments of the interpreter for a sweep, with program text that runs before it."""
+        return ["-c", before + PROGRAM, str(self.file), str(self.out), str(workers)]
+
+    def start(self, before: str = "", workers: int = 1, **options: Any) -> subprocess.Popen[str]:
+        """Start the sweep."""
+        command = [sys.executable, *self.command(before, workers)]
+        return subprocess.Popen(command, text=True, stderr=subprocess.PIPE, **options)
+
+    def finished(self) -> list[int]:
+        """Numbers of the cases that the journal holds."""
+        found: list[int] = []
+        if (self.out / "journal.bin").exists():
+            key = Key(case_list(self.study))
+            scan(self.out / "journal.bin", key, lambda record: found.append(record.case))
+        return found
+
+    def wait_for(self, condition: Callable[[], bool], what: str, seconds: float = 60.0) -> None:
+        """Wait until a condition holds."""
+        end = time.monotonic() + seconds
+        while not condition():
+            assert time.monotonic() < end, f"waited {seconds} s for {what}"
+            time.sleep(0.005)
+
+    def check_resume(self, before: Collection[int]) -> Summary:
+        """Resume: what the journal holds is not computed again, and the result is the undisturbed one."""
+        summary = run_sweep(self.study, self.out, resume=True)
+        assert summary.before == len(set(before))
+        assert summary.computed == summary.cases - summary.before
+        assert summary.results.read_bytes() == self.undisturbed
+        return summary
+
+
 @pytest.fixture
-def python() -> Callable[..., subprocess.Popen[str]]:
-    """Start a Python program in a process of its own."""
+def sweep_in(study: Study, undisturbed: bytes, tmp_path: Path) -> Callable[[Path], Sweep]:
+    """Make a sweep into a given folder."""
+    return lambda out: Sweep(study, undisturbed, tmp_path / "study.toml", out)
 
-    def start(program: str, *arguments: str | Path, **options: Any) -> subprocess.Popen[str]:
-        command = [sys.executable, "-c", program, *map(str, arguments)]
-        return subprocess.Popen(command, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
 
-    return start
+@pytest.fixture
+def sweep(sweep_in: Callable[[Path], Sweep], tmp_path: Path) -> Sweep:
+    """A sweep into a folder that does not exist yet."""
+    return sweep_in(tmp_path / "out")

@@ -1,0 +1,159 @@
+"""After a kill or an interrupt, does resuming give the undisturbed result, byte for byte?"""
+
+from __future__ import annotations
+
+import os
+import random
+import shutil
+import signal
+import sys
+from pathlib import Path
+
+import pytest
+
+from validation.studies import Status, SweepStopped, dispatch, run_sweep
+from validation.studies.evaluate import evaluate_batch
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(sys.platform != "linux", reason="signals and /proc of Linux"),
+]
+
+
+def workers_of(pid):
+    """Worker processes of a sweep."""
+    listed = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+    return [int(child) for child in listed if is_worker(int(child))]
+
+
+def is_worker(pid):
+    try:
+        return b"popen_loky" in Path(f"/proc/{pid}/cmdline").read_bytes()
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_kill_9_in_the_middle(sweep, seed):
+    random.seed(seed)
+    wanted = random.randint(1, 60)
+    print(f"seed {seed}: kill after {wanted} cases")
+    run = sweep.start(sweep.SLOW, workers=1)
+    sweep.wait_for(lambda: len(sweep.finished()) >= wanted, "cases")
+    run.kill()
+    run.communicate()
+    before = sweep.finished()
+    assert wanted <= len(before) < 120
+    sweep.check_resume(before)
+
+
+def test_kill_9_of_the_whole_pool_leaves_no_process_and_no_loss(sweep):
+    run = sweep.start(workers=2)
+    sweep.wait_for(lambda: len(sweep.finished()) >= 10, "cases")
+    workers = workers_of(run.pid)
+    run.kill()
+    run.communicate()
+    before = sweep.finished()
+    sweep.wait_for(lambda: not any(is_worker(pid) for pid in workers), "workers to end", 20)
+    sweep.check_resume(before)
+
+
+TORN = """
+import os, signal
+from validation.studies import journal
+write, calls = os.write, 0
+def torn(descriptor, block):
+    global calls
+    calls += 1
+    if calls == 5:
+        write(descriptor, block[: len(block) // 2])
+        os.kill(os.getpid(), signal.SIGKILL)
+    return write(descriptor, block)
+journal.os.write = torn
+"""
+
+
+def test_kill_9_during_a_write(sweep):
+    run = sweep.start(TORN, workers=1)
+    run.communicate()
+    assert run.returncode == -signal.SIGKILL
+    before = sweep.finished()
+    summary = sweep.check_resume(before)
+    assert summary.damaged_bytes > 0
+
+
+COMPILING = """
+import os, signal
+from validation.studies import files
+def die(*names):
+    os.kill(os.getpid(), signal.SIGKILL)
+files.os.replace = die
+"""
+
+
+def test_kill_9_while_the_result_is_compiled(sweep):
+    sweep.out.mkdir()
+    shutil.copy(sweep.file, sweep.out)  # the study is there, so that the only replacement is the result
+    run = sweep.start(COMPILING, workers=1)
+    run.communicate()
+    assert run.returncode == -signal.SIGKILL
+    assert not (sweep.out / "results.nc").exists()
+    sweep.check_resume(sweep.finished())
+
+
+@pytest.mark.parametrize(("number", "workers"), [(signal.SIGINT, 2), (signal.SIGTERM, 1)])
+def test_interrupts_stop_cleanly(sweep, number, workers):
+    run = sweep.start(sweep.SLOW, workers=workers, start_new_session=True)
+    sweep.wait_for(lambda: len(sweep.finished()) >= 5, "cases")
+    os.killpg(run.pid, number) if number is signal.SIGINT else run.send_signal(number)
+    _, errors = run.communicate(timeout=30)
+    assert errors.rstrip().endswith("KeyboardInterrupt")
+    sweep.check_resume(sweep.finished())
+
+
+def test_killing_a_worker_is_not_noticed_in_the_result(sweep):
+    killed = []
+
+    def kill_one(done, total, failed):
+        workers = workers_of(os.getpid())
+        if len(killed) < 2 and workers and done > 5 * (1 + len(killed)):
+            os.kill(workers[0], signal.SIGKILL)
+            killed.append(workers[0])
+
+    summary = run_sweep(sweep.study, sweep.out, workers=2, progress=kill_one)
+    assert len(killed) == 2
+    assert summary.results.read_bytes() == sweep.undisturbed
+
+
+def deadly(evaluator, cases, limit):
+    """A batch that kills its process on case 41."""
+    if any(number == 41 for number, values in cases):
+        os.kill(os.getpid(), signal.SIGKILL)
+    return evaluate_batch(evaluator, cases, limit)
+
+
+def test_a_case_that_kills_its_worker_is_found_out(sweep, monkeypatch):
+    from joblib.externals.loky.backend.reduction import cloudpickle
+
+    module = sys.modules[__name__]
+    cloudpickle.register_pickle_by_value(module)  # workers cannot import a test module
+    try:
+        with monkeypatch.context() as patch:
+            patch.setattr(dispatch, "evaluate_batch", deadly)
+            summary = run_sweep(sweep.study, sweep.out, workers=2)
+    finally:
+        cloudpickle.unregister_pickle_by_value(module)
+    statuses = dict(summary.statuses)
+    assert statuses[Status.WORKER_DIED] == 1
+    assert "worker process died" in dict(summary.failures)[41]
+    assert statuses[Status.OK] == 95
+    again = run_sweep(sweep.study, sweep.out, resume=True, retry_failed=True)
+    assert again.results.read_bytes() == sweep.undisturbed
+
+
+def test_workers_that_cannot_run_cases_stop_the_sweep(sweep, monkeypatch):
+    monkeypatch.setattr(dispatch, "versions", lambda: "python 2.7, numpy 1.0")
+    with pytest.raises(SweepStopped, match="same versions"):
+        run_sweep(sweep.study, sweep.out, workers=2)
+    monkeypatch.undo()
+    sweep.check_resume([])
