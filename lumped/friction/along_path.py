@@ -14,6 +14,7 @@ from lumped.errors import refuse
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.benedict_kelley import LAW as BENEDICT_KELLEY
 from lumped.friction.benedict_kelley import friction_number
+from lumped.friction.graded_fit import graded_fit
 from lumped.friction.registry import law_named
 from lumped.path_function import PathFunction
 from lumped.roughness import composite_roughness, mean_roughness

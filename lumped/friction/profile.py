@@ -15,6 +15,7 @@ from lumped.friction.along_path import (
     fit_law,
     friction_settings,
     mean_coefficient,
+    violations_of,
 )
 from lumped.friction.registry import LAWS
 from lumped.path_function import PathFunction
