@@ -43,8 +43,8 @@ def local_compliance(half_width: FloatArray, depth: FloatArray, modulus: float, 
 
     2 (1 - nu^2)/(pi E) (ln(2 h/a) - nu/(2 (1 - nu))), C. Weber and K. Banaschek, Formaenderung und
     Profilruecknahme bei gerad- und schraegverzahnten Raedern, Vieweg 1953: the strain under a Hertzian
-    pressure of half width a, integrated over the depth h (plane strain, h well beyond a). It depends on the load
-    by a.
+    pressure of half width a, integrated over the depth h (plane strain, h well beyond a). It depends on the
+    load through a.
 
     Parameters
     ----------

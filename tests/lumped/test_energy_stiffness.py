@@ -17,7 +17,7 @@ from lumped.stiffness.foundation import (
     published_compliance,
     ring_twist,
 )
-from lumped.stiffness.pair_compliance import pair_compliance
+from lumped.stiffness.pair_compliance import pair_compliance, tooth_profile
 from lumped.stiffness.tooth_beam import beam_compliance
 from lumped.stiffness.tooth_profile import ToothProfile
 
@@ -222,6 +222,21 @@ def test_contact_half_width_is_that_of_the_film_formulas():
     # w = 100 N/mm, rho = 8 mm, E = 206 GPa, nu = 0.3: b_H = 0.0948642 mm.
     half = contact_half_width(1e5, np.array([8e-3]), (206e9, 206e9), (0.3, 0.3))
     assert half[0] == pytest.approx(0.0948642e-3, rel=1e-6)  # printed digits
+
+
+def test_contact_is_taken_between_flank_and_centre_line():
+    pair = energy_pair(hertz="weber_banaschek")
+    g = geometry(pair)
+    xi = 0.5 * (g.L_XA + g.L_XP)
+    load = pair.operating.pinion_torque / g.base_radius_pinion / g.face_width
+    half = contact_half_width(load, np.array([xi * (g.L_XY - xi) / g.L_XY]), (206e9, 206e9), (0.3, 0.3))
+    expected = 0.0
+    for which, length in (("pinion", xi), ("gear", g.L_XY - xi)):
+        u, h, _, a = (v[0] for v in tooth_profile(pair, which).involute_points(np.array([length])))
+        crossing = g.base_radius_pinion / math.cos(a)  # of the line of action and the centre line
+        expected += local_compliance(half, np.array([math.hypot(u - crossing, h)]), 206e9, 0.3)[0]
+    found = pair_compliance(pair, g, np.array([xi])).hertz[0]
+    assert found == pytest.approx(expected / g.face_width, rel=1e-12)
 
 
 def test_contact_softens_with_the_logarithm_of_the_load():

@@ -1,0 +1,111 @@
+"""Labelled views of the tooth stiffness: components over the path of contact, total over a mesh cycle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from lumped.gear_geometry import geometry
+from lumped.stiffness import iso6336, pair_stiffness
+from lumped.stiffness.pair_compliance import Contact, pair_compliance
+
+if TYPE_CHECKING:
+    from lumped.parameters import GearPair
+
+
+def stiffness_components(pair: GearPair, points: int = 201, hertz: Contact = "weber_banaschek") -> xr.Dataset:
+    """Components of the potential-energy stiffness over the path of contact.
+
+    Parameters
+    ----------
+    pair : a validated gear pair, whatever its own stiffness model
+    points : positions from A to D
+    hertz : contact compliance, as in ``pair_compliance``
+
+    Returns
+    -------
+    xarray.Dataset over ``position`` [m]: ``compliance`` [m/N] over ``component`` (contact, then bending,
+    shear, axial, foundation of pinion and gear), their sum's inverse ``stiffness`` [N/m]; the attributes carry
+    ISO 6336-1's single stiffness times face width, ``iso_single_stiffness`` [N/m], and the quadrature error
+    """
+    g = geometry(pair)
+    found = pair_compliance(pair, g, np.linspace(g.L_XA, g.L_XD, points), hertz=hertz)
+    parts = ("bending", "shear", "axial", "foundation")
+    names = ["contact"] + [f"{part} {which}" for which in ("pinion", "gear") for part in parts]
+    values = [found.hertz, *(getattr(tooth, part) for tooth in (found.pinion, found.gear) for part in parts)]
+    return xr.Dataset(
+        {
+            "compliance": (
+                ("component", "position"),
+                np.stack(values),
+                {"units": "m/N", "long_name": "compliance along the line of action"},
+            ),
+            "stiffness": (
+                ("position",),
+                found.stiffness,
+                {"units": "N/m", "long_name": "stiffness of a tooth pair"},
+            ),
+        },
+        coords={
+            "component": ("component", names, {"long_name": "part of the tooth pair"}),
+            "position": (
+                "position",
+                found.position,
+                {"units": "m", "long_name": "position from X along the line of action"},
+            ),
+        },
+        attrs={
+            "pair": pair.name,
+            "hertz": hertz,
+            "iso_single_stiffness": iso6336.pair_single_stiffness(pair) * iso6336.SI * g.face_width,
+            "quadrature_error": max(found.pinion.quadrature_error, found.gear.quadrature_error),
+        },
+    )
+
+
+def mesh_stiffness(pair: GearPair, samples: int = 512) -> xr.Dataset:
+    """Total mesh stiffness of the pair's stiffness model over one mesh cycle.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    samples : phases per cycle, each in the middle of its interval
+
+    Returns
+    -------
+    xarray.Dataset over ``phase`` [mesh cycles after a pair was at A] and ``pair``: ``pair_stiffness`` and
+    ``mesh_stiffness`` [N/m]; the attribute ``mean`` is the exact mean and ``iso_mean`` ISO 6336-1's c_gamma
+    times face width [N/m]
+    """
+    g = geometry(pair)
+    curve = pair_stiffness(pair, g)
+    phase = (np.arange(samples) + 0.5) / samples
+    ahead = np.arange(g.pairs)
+    each = curve(g.L_XA + (phase[:, None] + ahead) * g.base_pitch)
+    iso = iso6336.mean_mesh_stiffness(iso6336.pair_single_stiffness(pair), g.contact_ratio)
+    return xr.Dataset(
+        {
+            "pair_stiffness": (
+                ("phase", "pair"),
+                each,
+                {"units": "N/m", "long_name": "tooth pair stiffness"},
+            ),
+            "mesh_stiffness": (
+                ("phase",),
+                each.sum(axis=1),
+                {"units": "N/m", "long_name": "total mesh stiffness"},
+            ),
+        },
+        coords={
+            "phase": ("phase", phase, {"units": "1", "long_name": "mesh cycles after a pair was at A"}),
+            "pair": ("pair", ahead, {"units": "1", "long_name": "pitches ahead of the pair that was at A"}),
+        },
+        attrs={
+            "pair": pair.name,
+            "model": pair.mesh.stiffness.model,
+            "mean": curve.mean() * g.contact_ratio,
+            "iso_mean": iso * iso6336.SI * g.face_width,
+        },
+    )

@@ -1,0 +1,40 @@
+"""Do the labelled views of the stiffness hold together?"""
+
+import numpy as np
+import pytest
+
+from lumped import geometry, load_gear_pair
+from lumped.stiffness import pair_stiffness
+from lumped.stiffness.components import mesh_stiffness, stiffness_components
+
+
+def test_components_add_up_to_the_pair_of_the_energy_model():
+    pair = load_gear_pair("nasa_28_28").with_(mesh__stiffness={"model": "energy"})
+    data = stiffness_components(pair, 31)
+    assert list(data.component.values[:2]) == ["contact", "bending pinion"]
+    assert 1 / data.compliance.sum("component").values == pytest.approx(data.stiffness.values, rel=1e-12)
+    k = pair_stiffness(pair, geometry(pair))
+    inner = data.position.values[1:-1]
+    assert data.stiffness.values[1:-1] == pytest.approx(k(inner), rel=1e-9)  # fit tolerance 1e-10
+    # Equal gears: what the pinion is at A the gear is at D.
+    mirrored = data.compliance.sel(component="bending gear").values[::-1]
+    assert data.compliance.sel(component="bending pinion").values == pytest.approx(mirrored, rel=1e-9)
+    assert data.compliance.attrs["units"] == "m/N"
+
+
+@pytest.mark.parametrize("name", ["nasa_28_28", "fzg_c"])
+def test_total_is_the_sum_of_the_pairs_and_has_the_stated_mean(name):
+    pair = load_gear_pair(name).with_(mesh__stiffness={"model": "energy"})
+    data = mesh_stiffness(pair, 4000)
+    assert data.mesh_stiffness.values == pytest.approx(data.pair_stiffness.sum("pair").values, rel=1e-12)
+    # Midpoint rule of 4000 with one jump per cycle.
+    assert float(data.mesh_stiffness.mean()) == pytest.approx(data.attrs["mean"], rel=2e-4)
+    loaded = (data.pair_stiffness > 0).sum("pair").mean()
+    assert float(loaded) == pytest.approx(geometry(pair).contact_ratio, abs=1 / 4000)
+
+
+def test_parabola_of_the_default_end_ratio_has_isos_mean():
+    pair = load_gear_pair("nasa_28_28").with_(mesh__stiffness={"model": "parabolic"})
+    data = mesh_stiffness(pair)
+    assert data.attrs["mean"] == pytest.approx(data.attrs["iso_mean"], rel=1e-12)
+    assert np.ptp(data.mesh_stiffness.values) > 0.0
