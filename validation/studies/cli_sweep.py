@@ -12,7 +12,14 @@ from typing import Annotated, Self
 import typer
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TaskProgressColumn,
+    TextColumn,
+    TimeRemainingColumn,
+)
 from rich.table import Table
 
 from lumped.errors import ParameterError, SpurcheckError
@@ -118,7 +125,7 @@ class SweepProgress:
     def __init__(self, console: Console) -> None:
         self._console = console
         self._bar = Progress(
-            TextColumn("{task.completed:.0f}/{task.total:.0f}"),
+            MofNCompleteColumn(),
             BarColumn(),
             TaskProgressColumn(),
             TextColumn("{task.fields[rate]}, {task.fields[failed]} failed, left"),

@@ -125,24 +125,15 @@ def test_killing_a_worker_is_not_noticed_in_the_result(sweep):
     assert summary.results.read_bytes() == sweep.undisturbed
 
 
-def deadly(evaluator, cases, limit):
-    """A batch that kills its process on case 41."""
-    if any(number == 41 for number, values in cases):
-        os.kill(os.getpid(), signal.SIGKILL)
-    return evaluate_batch(evaluator, cases, limit)
-
-
 def test_a_case_that_kills_its_worker_is_found_out(sweep, monkeypatch):
-    from joblib.externals.loky.backend.reduction import cloudpickle
+    def deadly(evaluator, cases, limit):
+        if any(number == 41 for number, values in cases):
+            os.kill(os.getpid(), signal.SIGKILL)
+        return evaluate_batch(evaluator, cases, limit)
 
-    module = sys.modules[__name__]
-    cloudpickle.register_pickle_by_value(module)  # workers cannot import a test module
-    try:
-        with monkeypatch.context() as patch:
-            patch.setattr(dispatch, "evaluate_batch", deadly)
-            summary = run_sweep(sweep.study, sweep.out, workers=2)
-    finally:
-        cloudpickle.unregister_pickle_by_value(module)
+    with monkeypatch.context() as patch:
+        patch.setattr(dispatch, "evaluate_batch", deadly)
+        summary = run_sweep(sweep.study, sweep.out, workers=2)
     statuses = dict(summary.statuses)
     assert statuses[Status.WORKER_DIED] == 1
     assert "worker process died" in dict(summary.failures)[41]

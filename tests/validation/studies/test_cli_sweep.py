@@ -1,0 +1,119 @@
+"""Does the command do what its options say, and does its exit code?"""
+
+from __future__ import annotations
+
+import io
+
+import pytest
+from rich.console import Console
+
+from validation.studies import read_results
+from validation.studies.cli_sweep import FAILED, INTERRUPTED, OK, REFUSED, STOPPED, SweepProgress, sweep
+
+STUDY = """
+name = "command [red]"
+gear_pair = "nasa_28_28"
+analysis = "geometry"
+outputs = ["contact_ratio"]
+[[axes]]
+field = "centre_distance"
+values = {values}
+"""
+
+
+@pytest.fixture
+def command(tmp_path, monkeypatch):
+    """Run the command on a study with the given distances; returns exit code and what was printed."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "study.toml").write_text(STUDY.format(values=[88.9, 89.0, 89.1]))
+
+    def run(values=None, **options):
+        if values is not None:
+            (tmp_path / "study.toml").write_text(STUDY.format(values=values))
+        text = io.StringIO()
+        console = Console(file=text, width=300)
+        code = sweep(tmp_path / "study.toml", console=console, **{"workers": 1} | options)
+        return code, text.getvalue()
+
+    return run
+
+
+def test_all_cases_computed_is_0(command, tmp_path):
+    code, text = command()
+    assert code == OK
+    assert "command [red]: 3 cases, geometry" in text
+    assert "3 computed, 0 kept from before" in text
+    assert read_results(tmp_path / "study-sweep").contact_ratio.notnull().all()
+
+
+def test_a_failed_case_is_1_and_listed(command):
+    code, text = command([88.5, 88.9])
+    assert code == FAILED
+    assert "case 0: " in text
+    assert "refused" in text
+
+
+def test_a_refused_study_is_2_and_one_message(command, tmp_path):
+    code, text = command(["88.9 kg"])
+    assert code == REFUSED
+    assert "axes.0.values" in text
+    assert "Traceback" not in text
+    assert not (tmp_path / "study-sweep").exists()
+
+
+def test_the_second_run_needs_resume(command):
+    assert command()[0] == OK
+    code, text = command()
+    assert code == REFUSED
+    assert "--resume" in text
+    code, text = command(resume=True)
+    assert code == OK
+    assert "0 computed, 3 kept from before" in text
+
+
+def test_a_store_that_cannot_be_written_is_3(command, tmp_path):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "journal.bin").symlink_to(tmp_path / "elsewhere")
+    code, text = command(output=tmp_path / "out", resume=True)
+    assert code == STOPPED
+    assert "symbolic link" in text
+    assert not (tmp_path / "elsewhere").exists()
+
+
+def test_ctrl_c_is_130_and_says_how_to_go_on(command, monkeypatch):
+    def interrupt(self, done, total, failed):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(SweepProgress, "__call__", interrupt)
+    code, text = command()
+    assert code == INTERRUPTED
+    assert "--resume" in text
+    monkeypatch.undo()
+    assert command(resume=True, output="study-sweep")[0] == OK
+
+
+def test_dry_run_only_counts(command, tmp_path):
+    code, text = command(dry_run=True)
+    assert (code, "3 cases" in text) == (OK, True)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["study.toml"]
+
+
+def test_progress_shows_rate_failures_and_time_left():
+    text = io.StringIO()
+    with SweepProgress(Console(file=text, width=200, force_terminal=True)) as progress:
+        progress(30, 120, 2)
+        progress._bar.refresh()
+    shown = text.getvalue()
+    assert "30/120" in shown
+    assert "cases/s" in shown
+    assert "2 failed" in shown
+    assert "left" in shown
+
+
+def test_progress_without_a_terminal_is_a_line_now_and_then(monkeypatch):
+    monkeypatch.setattr("validation.studies.cli_sweep._PLAIN_SECONDS", -1.0)
+    text = io.StringIO()
+    with SweepProgress(Console(file=text, width=200)) as progress:
+        progress(30, 120, 2)
+    assert "30/120" in text.getvalue()
+    assert "s left" in text.getvalue()

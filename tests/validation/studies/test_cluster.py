@@ -1,0 +1,100 @@
+"""Does the same study give the same bytes on a Dask cluster, also when its workers die?"""
+
+from __future__ import annotations
+
+import os
+import signal
+
+import pytest
+
+from lumped.errors import ParameterError
+from validation.studies import Status, SweepStopped, dispatch, pools, run_sweep
+from validation.studies.evaluate import evaluate_batch
+
+distributed = pytest.importorskip("distributed")
+pytestmark = [
+    pytest.mark.slow,
+    # The cluster's own event loop and sockets may outlive it by a moment.
+    pytest.mark.filterwarnings("ignore::ResourceWarning"),
+    pytest.mark.filterwarnings("ignore::DeprecationWarning"),
+]
+
+
+@pytest.fixture
+def cluster():
+    """Three worker processes behind a scheduler on TCP."""
+    with distributed.LocalCluster(
+        n_workers=3,
+        threads_per_worker=1,
+        processes=True,
+        protocol="tcp",
+        dashboard_address=None,
+        silence_logs=50,
+    ) as cluster:
+        yield cluster
+
+
+def worker_pids(cluster):
+    return {name: worker.pid for name, worker in cluster.workers.items()}
+
+
+def test_a_cluster_gives_the_same_bytes_also_after_losing_a_worker(study, tmp_path, undisturbed, cluster):
+    assert cluster.scheduler_address.startswith("tcp://")
+    plain = run_sweep(study, tmp_path / "plain", scheduler=cluster.scheduler_address)
+    assert plain.results.read_bytes() == undisturbed
+
+    killed = []
+
+    def kill_one(done, total, failed):
+        if not killed:
+            pid = next(iter(worker_pids(cluster).values()))
+            os.kill(pid, signal.SIGKILL)
+            killed.append(pid)
+
+    out = tmp_path / "killed"
+    summary = run_sweep(study, out, scheduler=cluster.scheduler_address, progress=kill_one)
+    assert killed
+    assert summary.results.read_bytes() == undisturbed
+
+
+def test_a_case_that_kills_every_worker_is_found_out(study, tmp_path, cluster, monkeypatch, undisturbed):
+    def deadly(evaluator, cases, limit):
+        if any(number == 41 for number, values in cases):
+            os.kill(os.getpid(), signal.SIGKILL)
+        return evaluate_batch(evaluator, cases, limit)
+
+    with distributed.Client(cluster) as client:
+        client.run_on_scheduler(lambda dask_scheduler: setattr(dask_scheduler, "allowed_failures", 0))
+    with monkeypatch.context() as patch:
+        patch.setattr(dispatch, "evaluate_batch", deadly)
+        summary = run_sweep(study, tmp_path / "out", scheduler=cluster.scheduler_address)
+    assert dict(summary.statuses)[Status.WORKER_DIED] == 1
+    assert 41 in dict(summary.failures)
+    again = run_sweep(study, tmp_path / "out", resume=True, retry_failed=True)
+    assert again.results.read_bytes() == undisturbed
+
+
+def test_a_lost_scheduler_stops_the_sweep_and_nothing_is_lost(study, tmp_path, undisturbed):
+    cluster = distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, dashboard_address=None, silence_logs=50
+    )
+    computed = []
+
+    def lose(done, total, failed):
+        computed.append(done)
+        if len(computed) == 3:
+            cluster.close()
+
+    with pytest.raises(SweepStopped, match="--resume"):
+        run_sweep(study, tmp_path / "out", scheduler=cluster.scheduler_address, progress=lose)
+    summary = run_sweep(study, tmp_path / "out", resume=True, workers=2)
+    assert summary.before >= computed[2]
+    assert summary.results.read_bytes() == undisturbed
+
+
+def test_no_scheduler_is_refused(study, tmp_path, monkeypatch):
+    monkeypatch.setattr(pools, "_CONNECT_SECONDS", 0.5)
+    with pytest.raises(ParameterError, match="running scheduler"):
+        run_sweep(study, tmp_path / "out", scheduler="tcp://127.0.0.1:9")
+    with pytest.raises(ParameterError, match="running scheduler"):
+        run_sweep(study, tmp_path / "out", resume=True, scheduler="nonsense://x")
