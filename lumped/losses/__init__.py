@@ -6,7 +6,7 @@ from lumped.losses.anderson_loewenthal import (
 )
 from lumped.losses.dynamic import dynamic_losses, losses_of_laws, sliding_power_along_path
 from lumped.losses.loss_factor import addendum_contact_ratios, loss_factor, ohlendorf, ohlendorf_of
-from lumped.losses.mean_friction import iso_14179_mean_coefficient, iso_14179_of
+from lumped.losses.mean_friction import iso_14179_mean_coefficient, iso_14179_mesh_loss, iso_14179_of
 from lumped.losses.quasi_static import quasi_static_losses
 from lumped.losses.sharing import Sharing
 
@@ -17,6 +17,7 @@ __all__ = [
     "anderson_loewenthal_sliding_loss",
     "dynamic_losses",
     "iso_14179_mean_coefficient",
+    "iso_14179_mesh_loss",
     "iso_14179_of",
     "loss_factor",
     "losses_of_laws",

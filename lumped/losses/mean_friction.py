@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from lumped.friction import contact_path
 from lumped.gear_geometry import geometry
+from lumped.losses.loss_factor import loss_factor
 from lumped.validity import NOT_STATED, FloatArray, ValidityRange, checked
 
 if TYPE_CHECKING:
@@ -77,3 +78,12 @@ def iso_14179_of(pair: GearPair, oil_factor: float = 1.0) -> float:
             oil_factor,
         )
     )
+
+
+def iso_14179_mesh_loss(pair: GearPair, oil_factor: float = 1.0) -> float:
+    """Load-dependent loss of the mesh after ISO/TR 14179-2, P_VZP = P mu_mz H_v [W].
+
+    With the exact loss factor of equal load sharing, which is Ohlendorf's wherever his closed form holds.
+    """
+    power = pair.operating.pinion_torque * pair.operating.pinion_speed
+    return power * iso_14179_of(pair, oil_factor) * loss_factor(pair, "uniform")
