@@ -27,8 +27,9 @@ def stiffness_components(pair: GearPair, points: int = 201, hertz: Contact = "we
     Returns
     -------
     xarray.Dataset over ``position`` [m]: ``compliance`` [m/N] over ``component`` (contact, then bending,
-    shear, axial, foundation of pinion and gear), their sum's inverse ``stiffness`` [N/m]; the attributes carry
-    ISO 6336-1's single stiffness times face width, ``iso_single_stiffness`` [N/m], and the quadrature error
+    shear, axial, foundation of pinion and gear), their sum's inverse ``stiffness`` [N/m]; the attributes
+    carry ISO 6336-1's single stiffness times face width, ``iso_single_stiffness`` [N/m], and the quadrature
+    error
     """
     g = geometry(pair)
     found = pair_compliance(pair, g, np.linspace(g.L_XA, g.L_XD, points), hertz=hertz)

@@ -18,8 +18,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
-from lumped.errors import NumericalError
-from lumped.path_function import PathFunction
+from lumped.path_function import FloatArray, PathFunction
 from lumped.stiffness import iso6336
 from lumped.stiffness.coupling import coupled, twist_compliance
 from lumped.stiffness.foundation import BODY_RATIO, HALF_ANGLE
@@ -34,8 +33,8 @@ if TYPE_CHECKING:
 
 #: Fit error of k over its largest value.
 _FIT_TOLERANCE = 1e-10
-#: Terms of the Chebyshev series of k over the path of contact.
-_SERIES = 64
+#: Terms of the Chebyshev series of k over the path of contact that are tried.
+_SERIES = (64, 128)
 
 
 def energy(model: EnergyStiffness, pair: GearPair, geometry: Geometry) -> PathFunction:
@@ -68,25 +67,27 @@ def energy_curve(pair: GearPair, geometry: Geometry, hertz: Contact = "weber_ban
     hertz : contact compliance, as in ``pair_compliance``
     """
     low, high = geometry.L_XA, geometry.L_XD
-    # Stiffness is analytic over the path, so one evaluation at Chebyshev points stands for it everywhere.
-    nodes = chebyshev.chebpts1(_SERIES)
-    sample = pair_compliance(pair, geometry, low + 0.5 * (high - low) * (1.0 + nodes), hertz=hertz).stiffness
-    series = chebyshev.chebvander(nodes, _SERIES - 1).T @ sample * (2.0 / _SERIES)
-    series[0] *= 0.5
-    scale = float(np.abs(sample).max())
-    tail = float(np.abs(series[-_SERIES // 8 :]).max())
-    if not tail <= 0.1 * _FIT_TOLERANCE * scale:
-        raise NumericalError(
-            f"The stiffness does not converge over the path of contact (last terms {tail / scale:.1e} of the "
-            "peak): check the tooth form (a nearly pointed tip, contact at the base circle)."
-        )
-    return PathFunction.fit(
-        lambda xi: np.asarray(
-            chebyshev.chebval(2.0 * (xi - low) / (high - low) - 1.0, series), dtype=np.float64
-        ),
-        (low, high),
-        tolerance=_FIT_TOLERANCE * scale,
-    )
+
+    def stiffness(xi: FloatArray) -> FloatArray:
+        return pair_compliance(pair, geometry, xi, hertz=hertz).stiffness
+
+    # Stiffness is analytic over the path, so its Chebyshev series from a few dozen evaluations stands for it.
+    for terms in _SERIES:
+        nodes = chebyshev.chebpts1(terms)
+        sample = stiffness(low + 0.5 * (high - low) * (1.0 + nodes))
+        scale = float(np.abs(sample).max())
+        series = chebyshev.chebvander(nodes, terms - 1).T @ sample * (2.0 / terms)
+        series[0] *= 0.5
+        if np.abs(series[-terms // 8 :]).max() <= 0.1 * _FIT_TOLERANCE * scale:
+            return _fit_series(series, low, high, _FIT_TOLERANCE * scale)
+    return PathFunction.fit(stiffness, (low, high), tolerance=_FIT_TOLERANCE * scale)
+
+
+def _fit_series(series: FloatArray, low: float, high: float, tolerance: float) -> PathFunction:
+    def value(xi: FloatArray) -> FloatArray:
+        return np.asarray(chebyshev.chebval(2.0 * (xi - low) / (high - low) - 1.0, series), dtype=np.float64)
+
+    return PathFunction.fit(value, (low, high), tolerance=tolerance)
 
 
 def violations(pair: GearPair, geometry: Geometry) -> tuple[RangeViolation, ...]:

@@ -62,7 +62,7 @@ def test_deflection_of_a_published_gear_pair():
     # F. H. A. S. Dias, G. C. Silva, D. S. Chui, Vibration attenuation on spur gears through optimal profile
     # modification, J. Braz. Soc. Mech. Sci. Eng. 46 (2024) 10: 27/35 teeth, m 3 mm, b 25 mm, E 206 GPa, 80 kW
     # at 2000 rpm; the authors' program gives F/min(k) = 43.881 um in single contact. Their tooth stands on
-    # the base circle, their body has h_f = 5, theta_f that of the base circle, and S_f = theta_f m (z - 2.334).
+    # the base circle, their body has h_f = 5, theta_f of the base circle, and S_f = theta_f m (z - 2.334).
     teeth, module, width = (27, 35), 3e-3, 25e-3
     profiles = [tooth(z, module) for z in teeth]
     tangents = [
