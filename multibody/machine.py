@@ -19,6 +19,7 @@ from lumped.mesh_elements import mesh_elements
 from lumped.parameters import GearPair
 from lumped.path_function import PathFunction
 from multibody import kernels as kn
+from multibody.kinematics import DRIVE, line_of_action, mesh_phase, wrap
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -126,6 +127,36 @@ def machine(pair: GearPair, torque_pinion: float, torque_gear: float) -> Machine
         period=pitch / (omega_p * r_p),
         switches=switch_phases(laws, l_xa, tip_p, pitch),
     )
+
+
+def loaded_phase(machine: Machine, flags: int, q: FloatArray) -> Machine:
+    """Turn the unloaded gears so that it is the loaded pair that stands at A at t = 0.
+
+    Wind-up and bearing deflection move the contact along the path, by a constant in the mean. The rigid
+    rotation of a free gear train is arbitrary, so that constant is no difference between models but a
+    choice of the time origin; it is taken out.
+
+    Parameters
+    ----------
+    machine : numbers whose flanks touch at A when unloaded
+    flags : effect switches of the contact core: without moving contacts nothing is turned
+    q : (6,) static state
+    """
+    p = machine.parameters.copy()
+    px, py, gx, gy = p[kn.CENTRE_PX], p[kn.CENTRE_PY], p[kn.CENTRE_GX], p[kn.CENTRE_GY]
+    if flags & kn.MOVING_LINE:
+        px, py, gx, gy = px + q[0], py + q[1], gx + q[3], gy + q[4]
+    phi_p, phi_g = (q[2], q[5]) if flags & kn.ROTATION_PHASE else (0.0, 0.0)
+    _, _, length, psi = line_of_action(px, py, gx, gy, p[kn.RADIUS_P] + p[kn.RADIUS_G], DRIVE)
+    radii = (p[kn.RADIUS_P], p[kn.RADIUS_G])
+    first, beyond = mesh_phase(
+        psi, length, phi_p, phi_g, *radii, p[kn.PITCH], p[kn.CHI_P], p[kn.CHI_G], DRIVE
+    )
+    moved = wrap(first + 0.5 * (p[kn.L_XY] - length - beyond) - p[kn.L_XA], p[kn.PITCH])
+    # rho_p falls and rho_g grows by what the contact has moved; the overlap stays.
+    p[[kn.CHI_P, kn.CHI_P_BACK]] += moved / radii[0]
+    p[[kn.CHI_G, kn.CHI_G_BACK]] -= moved / radii[1]
+    return replace(machine, parameters=p)
 
 
 def pack_laws(laws: tuple[PathFunction, ...]) -> tuple[FloatArray, IntArray]:

@@ -19,7 +19,7 @@ from multibody import kernels as kn
 from multibody.drive import Drive, drive_tables
 from multibody.effects import active_effects, effect_flags
 from multibody.integration import Segment, integrate
-from multibody.machine import Machine, machine
+from multibody.machine import Machine, loaded_phase, machine
 from multibody.model import FIDELITIES, ExudynModel, build
 from multibody.records import from_lumped_state
 from multibody.reversal import friction_velocity as choose_friction_velocity
@@ -113,6 +113,8 @@ def prepare(
     numbers = machine(pair, balance.pinion_torque, balance.brake_torque)
     velocity, reason = _friction_velocity(numbers, flags, friction_velocity)
     numbers = numbers.with_parameter(kn.V_REG, velocity)
+    static, _ = from_lumped_state(initial_state(pair, system, "static", balance))
+    numbers = loaded_phase(numbers, flags, static)
     state = initial_state(pair, system, initial, balance)
     tables = None
     if drive is not None:
