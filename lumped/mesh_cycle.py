@@ -65,8 +65,18 @@ class MeshCycle:
         t = 0.
         """
         g, e = self.geometry, self.elements
-        positions = [np.array([g.L_XP, g.L_XD])]
-        positions += [f.switches for f in (e.stiffness, e.damping, e.friction, e.error)]
+        functions = (e.stiffness, e.damping, e.friction, e.error)
+        return self._times([np.array([g.L_XP, g.L_XD]), *(f.switches for f in functions)])
+
+    @cached_property
+    def knot_times(self) -> FloatArray:
+        """Times strictly inside (0, T_m) at which a pair passes from one polynomial piece to the next [s]."""
+        e = self.elements
+        return self._times([f.breaks for f in (e.stiffness, e.damping, e.friction, e.error)])
+
+    def _times(self, positions: list[FloatArray]) -> FloatArray:
+        """Increasing times strictly inside (0, T_m) at which any pair is at any of the positions [s]."""
+        g = self.geometry
         phases = np.sort(np.mod((np.concatenate(positions) - g.L_XA) / g.base_pitch, 1.0))
         phases = phases[(phases > _SAME) & (phases < 1.0 - _SAME)]
         keep = np.diff(phases, prepend=-1.0) > _SAME

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import platform
 from collections.abc import Mapping
+from functools import cache
 from importlib import metadata
 from typing import Any
 
@@ -42,25 +43,29 @@ VARIABLES: dict[str, tuple[tuple[str, ...], str, str]] = {
     "sliding_velocity": (("pair", "time"), "m/s", "sliding velocity, vibration included"),
     "friction_power": (("pair", "time"), "W", "friction power, vibration included"),
     "friction_power_nominal": (("pair", "time"), "W", "friction power at the nominal sliding velocity"),
-    "bearing_force_x_p": (("time",), "N", "pinion bearing force on the gear body, along the line of action"),
-    "bearing_force_x_g": (("time",), "N", "gear bearing force on the gear body, along the line of action"),
-    "bearing_force_y_p": (("time",), "N", "pinion bearing force on the gear body, off the line of action"),
-    "bearing_force_y_g": (("time",), "N", "gear bearing force on the gear body, off the line of action"),
+    "bearing_force_x_p": (("time",), "N", "pinion bearing force on the pinion, along the line of action"),
+    "bearing_force_x_g": (("time",), "N", "gear bearing force on the gear, along the line of action"),
+    "bearing_force_y_p": (("time",), "N", "pinion bearing force on the pinion, off the line of action"),
+    "bearing_force_y_g": (("time",), "N", "gear bearing force on the gear, off the line of action"),
 }
 
 
 def provenance(pair: GearPair, **settings: Any) -> dict[str, Any]:
     """Attributes that say what a result was made from: parameters, hash, versions, settings."""
-    text = pair.to_toml()
-    names = ("spurcheck", "numpy", "scipy", "exudyn")
-    versions = [f"{name} {metadata.version(name)}" for name in names]
     return {
         "gear_pair": pair.name,
-        "parameters": text,
+        "parameters": pair.to_toml(),
         "parameters_sha256": parameters_hash(pair),
-        "versions": ", ".join([f"python {platform.python_version()}", *versions]),
+        "versions": _versions(),
         "settings": ", ".join(f"{key}={value}" for key, value in sorted(settings.items())),
     }
+
+
+@cache
+def _versions() -> str:
+    names = ("spurcheck", "numpy", "scipy", "exudyn")
+    versions = [f"{name} {metadata.version(name)}" for name in names]
+    return ", ".join([f"python {platform.python_version()}", *versions])
 
 
 def parameters_hash(pair: GearPair) -> str:
@@ -102,6 +107,13 @@ def dataset(
     states : (k, 12)
     attributes : of the dataset
     """
+    return labelled(time, response(pair, system, time, states), attributes)
+
+
+def response(
+    pair: GearPair, system: LTVSystem, time: FloatArray, states: FloatArray
+) -> dict[str, FloatArray]:
+    """Return the arrays of ``dataset`` by name, without labels; arguments as there."""
     g, s = geometry(pair), system.structure
     z, rates = states[:, :6], states[:, 6:]
     dte, dte_dot = z @ s.deflection, rates @ s.deflection
@@ -131,4 +143,4 @@ def dataset(
         "friction_power": np.where(pairs.contact, -friction * sliding, 0.0),
         "friction_power_nominal": -friction * (g.omega_pinion * pairs.position - g.omega_gear * arm_g),
     }
-    return labelled(time, values, attributes)
+    return values

@@ -18,7 +18,7 @@ from lumped.mesh_cycle import MeshCycle
 from lumped.parameters import GearPair
 from lumped.path_function import FloatArray, PathFunction
 from lumped.periodic_system import LTVSystem, periodic_system
-from lumped.results import dataset, provenance
+from lumped.results import dataset, provenance, response
 from lumped.steady import PeriodicSolution, periodic_solution, sample_times, speeds_rad
 
 Progress = Callable[[float], None]
@@ -254,9 +254,9 @@ def speed_sweep(
 
     Returns
     -------
-    xarray.Dataset over ``speed`` [rpm]: peak-to-peak and root mean square of the transmission error and the
-    translations, largest and smallest normal load of a pair in contact, mesh efficiency. A speed without
-    periodic motion is NaN with ``periodic`` False.
+    xarray.Dataset over ``speed`` [rpm]: peak-to-peak and root mean square (about the mean) of the
+    transmission error and the translations, largest and smallest normal load of a pair in contact, mesh
+    efficiency. A speed without periodic motion is NaN with ``periodic`` False.
     """
     speeds = np.asarray(list(speeds_rpm), dtype=float)
     speeds_rad(speeds)
@@ -268,21 +268,23 @@ def speed_sweep(
     periodic = np.zeros(speeds.size, dtype=bool)
     for j, rpm in enumerate(speeds):
         at = pair.with_({"operating.pinion_speed": float(rpm)})
+        system = periodic_system(at, "absolute")
+        times = sample_times(system.period, samples_per_cycle)
         try:
-            run = steady_state(at, samples_per_cycle=samples_per_cycle)
+            solution = periodic_solution(at, times, system=system, estimate_error=False)
         except NumericalError:
             continue
         finally:
             if progress is not None:
                 progress((j + 1) / speeds.size)
         periodic[j] = True
+        run = response(at, system, times, solution.states)
         for name in names:
-            values = run[name].to_numpy()
-            table[f"{name}_peak_to_peak"][j] = np.ptp(values)
-            table[f"{name}_rms"][j] = np.std(values)
-        loads = run["normal_load"].to_numpy()[run["contact"].to_numpy() > 0]
+            table[f"{name}_peak_to_peak"][j] = np.ptp(run[name])
+            table[f"{name}_rms"][j] = np.std(run[name])
+        loads = run["normal_load"][run["contact"] > 0]
         table["normal_load_max"][j], table["normal_load_min"][j] = loads.max(), loads.min()
-        table["mesh_efficiency"][j] = run.attrs["mesh_efficiency"]
+        table["mesh_efficiency"][j] = _balance_attributes(at, solution)["mesh_efficiency"]
     return _sweep_dataset(pair, speeds, table, periodic)
 
 
