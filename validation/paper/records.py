@@ -1,0 +1,170 @@
+"""What the paper chapters return: findings as text, numbers and verdict, ready for any report."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any, Literal
+
+#: The paper that is reproduced.
+PAPER = (
+    "A. F. Abbas Al-Zubaidi, Alternate sliding friction formulations of elasto-hydrodynamic of spur gears, "
+    "Journal of Engineering (Baghdad) 14(4), 2008"
+)
+
+ErratumVerdict = Literal["wrong", "incomplete", "misprinted symbol"]
+ClaimVerdict = Literal["reproduced", "not reproduced", "cannot be judged"]
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """One number or test, with the equation as printed and as repaired.
+
+    Attributes
+    ----------
+    quantity : what is computed, in plain words
+    unit : of both values; "" for a statement
+    printed, repaired : values, or short statements
+    requirement : what holds for a right equation; "" where the row only shows the size of the effect
+    """
+
+    quantity: str
+    unit: str
+    printed: float | str
+    repaired: float | str
+    requirement: str = ""
+
+
+@dataclass(frozen=True)
+class Erratum:
+    """One misprint, shown by computation.
+
+    Attributes
+    ----------
+    equation : number in the paper
+    printed, repaired : the disputed term
+    verdict : "wrong", "incomplete" or "misprinted symbol"
+    text : what the evidence shows
+    evidence : the computations
+    """
+
+    equation: str
+    printed: str
+    repaired: str
+    verdict: ErratumVerdict
+    text: str
+    evidence: tuple[Evidence, ...]
+
+    def value(self, quantity: str) -> Evidence:
+        """The evidence on one quantity.
+
+        Raises
+        ------
+        KeyError : there is none of that name
+        """
+        for row in self.evidence:
+            if row.quantity == quantity:
+                return row
+        raise KeyError(quantity)
+
+
+@dataclass(frozen=True)
+class ErrataChapter:
+    """The errata of the print with everything that shows them.
+
+    Attributes
+    ----------
+    title, text : heading and introduction
+    conditions : operating point and assumptions of the computations, name -> value with unit
+    errata : one per row of the table
+    """
+
+    title: str
+    text: str
+    conditions: Mapping[str, str]
+    errata: tuple[Erratum, ...]
+
+    def equation(self, number: str) -> Erratum:
+        """The erratum of an equation number as it stands in the table, e.g. "7" or "13b, 14"."""
+        for erratum in self.errata:
+            if erratum.equation == number:
+                return erratum
+        raise KeyError(number)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return asdict(self) | {"conditions": dict(self.conditions)}
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One statement of the paper as a number with a verdict.
+
+    Attributes
+    ----------
+    name : short name
+    statement : what the paper says, in other words
+    definition : how the number is computed
+    value : the number at the stated assumptions; None where nothing can be computed
+    unit : its unit
+    criterion : when the statement counts as reproduced
+    verdict : "reproduced", "not reproduced" or "cannot be judged"
+    text : one or two sentences on the outcome
+    details : further numbers, name -> value with unit as text
+    share : share of samples of the assumptions in which the criterion holds; None where it was not sampled
+    low, high : 5th and 95th percentile of the number over these samples
+    """
+
+    name: str
+    statement: str
+    definition: str
+    value: float | None
+    unit: str
+    criterion: str
+    verdict: ClaimVerdict
+    text: str
+    details: Mapping[str, str] = field(default_factory=dict)
+    share: float | None = None
+    low: float | None = None
+    high: float | None = None
+
+
+@dataclass(frozen=True)
+class ClaimsTable:
+    """All claims, and how the assumptions were varied.
+
+    Attributes
+    ----------
+    title, text : heading and introduction
+    conditions : stated assumptions at which the values hold
+    ranges : assumption -> range of the Latin hypercube, as text with unit
+    samples : number of samples of the hypercube; 0 without it
+    failed : samples in which a law or a periodic motion did not exist
+    seed : of the hypercube
+    claims : the rows
+    """
+
+    title: str
+    text: str
+    conditions: Mapping[str, str]
+    ranges: Mapping[str, str]
+    samples: int
+    failed: int
+    seed: int
+    claims: tuple[Claim, ...]
+
+    def claim(self, name: str) -> Claim:
+        """The claim of a name.
+
+        Raises
+        ------
+        KeyError : there is none of that name
+        """
+        for claim in self.claims:
+            if claim.name == name:
+                return claim
+        raise KeyError(name)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return asdict(self)
