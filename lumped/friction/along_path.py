@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import PPoly
 
 from lumped import film
 from lumped.errors import refuse
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
-from lumped.friction.benedict_kelley import LAW as BENEDICT_KELLEY
 from lumped.friction.benedict_kelley import friction_number
-from lumped.friction.graded_fit import graded_fit
+from lumped.friction.fitted import fit_signed, mean_coefficient
 from lumped.friction.registry import law_named
 from lumped.path_function import PathFunction
 from lumped.roughness import composite_roughness, mean_roughness
@@ -25,11 +22,17 @@ if TYPE_CHECKING:
     from lumped.gear_geometry import Geometry
     from lumped.parameters import GearPair
 
-#: Absolute error of mu in the piecewise polynomials.
-FIT_TOLERANCE = 1e-10
+__all__ = [
+    "contact_path",
+    "fit_law",
+    "friction_path_function",
+    "friction_settings",
+    "law_range_violations",
+    "mean_coefficient",
+    "violations_of",
+]
 
 _CHECKED_POSITIONS = 201
-_LAWS_WITH_AVERAGE = ("coulomb", "smoothed_coulomb", "composite")
 
 
 def contact_path(pair: GearPair, geometry: Geometry | None = None) -> ContactPath:
@@ -108,28 +111,6 @@ def friction_path_function(
     return function
 
 
-def mean_coefficient(function: PathFunction, low: float | None = None, high: float | None = None) -> float:
-    """Mean of |mu| over the path of contact.
-
-    Parameters
-    ----------
-    function : signed mu(xi), changing sign at its breaks only
-    low, high : first and last position [m]; default the whole path
-    """
-    breaks = function.breaks
-    middles = 0.5 * (breaks[:-1] + breaks[1:])
-    signs = np.where(function(middles) < 0.0, -1.0, 1.0)
-    magnitude = PPoly(function.coefficients * signs, breaks)
-    a = breaks[0] if low is None else low
-    b = breaks[-1] if high is None else high
-    return float(magnitude.integrate(a, b)) / float(b - a)
-
-
-def mean_benedict_kelley(path: ContactPath, settings: FrictionSettings) -> float:
-    """Mean of |mu| of law II over A..D: the paper's mu_avg for laws I and IV."""
-    return mean_coefficient(fit_law(path, settings, BENEDICT_KELLEY.name))
-
-
 def law_range_violations(
     pair: GearPair, law: str | None = None, geometry: Geometry | None = None
 ) -> tuple[RangeViolation, ...]:
@@ -150,16 +131,8 @@ def law_range_violations(
 def fit_law(path: ContactPath, settings: FrictionSettings, name: str) -> PathFunction:
     """mu(xi) of one law; cached, because charts over damping or stiffness ask for it at every node."""
     law = law_named(name)
-    switches = sorted({xi for xi in law.switches(path, settings) if path.L_XA < xi < path.L_XD})
-    # The pitch point is a break of every law: also where mu is smooth there, it varies fastest around it.
-    breaks = sorted({path.L_XA, path.L_XP, path.L_XD, *switches})
-    known = settings
-    if name in _LAWS_WITH_AVERAGE:  # worked out once, not in every evaluation of the law
-        known = replace(settings, coefficient=settings.average(path))
-    _must_be_friction(path, known, law)
-    return graded_fit(
-        lambda xi: law.signed(xi, path, known), path.L_XP, breaks, switches, tolerance=FIT_TOLERANCE
-    )
+    _must_be_friction(path, settings, law)
+    return fit_signed(law, path, settings)
 
 
 def _must_be_friction(path: ContactPath, settings: FrictionSettings, law: FrictionLaw) -> None:

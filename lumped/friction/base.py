@@ -147,14 +147,6 @@ class FrictionSettings:
     maximum: float
     thresholds: tuple[float, float, float]
 
-    def average(self, path: ContactPath) -> float:
-        """mu_avg: the given coefficient, or the mean of |mu| of law II over A..D."""
-        if self.coefficient is not None:
-            return self.coefficient
-        from lumped.friction.along_path import mean_benedict_kelley
-
-        return mean_benedict_kelley(path, self)
-
 
 @dataclass(frozen=True)
 class FrictionLaw:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
+from lumped.friction.fitted import average_coefficient
 from lumped.validity import FloatArray, checked
 
 
@@ -26,7 +27,7 @@ def coulomb(coefficient: ArrayLike, distance: ArrayLike) -> FloatArray:
 
 
 def _signed(xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> FloatArray:
-    return coulomb(settings.average(path), xi - path.L_XP)
+    return coulomb(average_coefficient(path, settings), xi - path.L_XP)
 
 
 LAW = FrictionLaw(

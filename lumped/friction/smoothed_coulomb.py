@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
+from lumped.friction.fitted import average_coefficient
 from lumped.validity import FloatArray, checked
 
 
@@ -31,7 +32,7 @@ def smoothed_coulomb(coefficient: ArrayLike, distance: ArrayLike, sharpness: Arr
 
 
 def _signed(xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> FloatArray:
-    return smoothed_coulomb(settings.average(path), xi - path.L_XP, settings.sharpness)
+    return smoothed_coulomb(average_coefficient(path, settings), xi - path.L_XP, settings.sharpness)
 
 
 LAW = FrictionLaw(
