@@ -51,18 +51,20 @@ def loaded_mesh(
     Parameters
     ----------
     pair : a validated gear pair
-    torque : mean pinion torque >= 0 [N m]; default the operating torque
-    stiffness : k_i(xi) [N/m]; default the pair's stiffness model
+    torque : mean pinion torque > 0 [N m]; default the operating torque
+    stiffness : k_i(xi) [N/m]; default the pair's stiffness model at that torque
 
     Raises
     ------
-    ParameterError : a relief starts outside the active flank
+    ParameterError : a relief starts outside the active flank, or the torque is not positive
     NumericalError : at this torque no pair touches at some position
     """
+    if torque is not None:
+        pair = pair.with_(operating__pinion_torque=torque)
+    torque = pair.operating.pinion_torque
     g = geometry(pair)
     k = pair_stiffness(pair, g) if stiffness is None else stiffness
     error = error_function(pair, g)
-    torque = pair.operating.pinion_torque if torque is None else torque
     if not error.coefficients.any():
         return LoadedMesh(k, error, np.array([[g.L_XA, g.L_XD]]))
     force = torque / g.base_radius_pinion

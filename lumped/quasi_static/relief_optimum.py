@@ -124,8 +124,6 @@ def optimal_relief(
     ParameterError : the design torque is not positive
     """
     g, bare, force = _prepared(pair, torque, phases)
-    if force <= 0.0:
-        raise refuse("torque", f"{force * g.base_radius_pinion:g} N m", "> 0", "Give the design torque.")
     plain = share_load(bare.stiffness, bare.error, force).transmission_error
     scale, path = float(plain.max() - min(bare.error.min(), 0.0)), g.L_XD - g.L_XA
     amounts, lengths = np.linspace(0.0, 2.0 * scale, 41), np.linspace(0.02, 0.6, 40) * path
@@ -183,9 +181,11 @@ def with_tip_relief(pair: GearPair, optimum: OptimalRelief) -> GearPair:
 
 
 def _prepared(pair: GearPair, torque: float | None, phases: int) -> tuple[Geometry, MeshPositions, float]:
-    bare = pair.with_(pinion__tip_relief=None, gear__tip_relief=None)
-    g = geometry(bare)
     moment = pair.operating.pinion_torque if torque is None else torque
+    if not moment > 0.0:
+        raise refuse("torque", f"{moment:g} N m", "> 0", "Give the design torque.")
+    bare = pair.with_(pinion__tip_relief=None, gear__tip_relief=None, operating__pinion_torque=moment)
+    g = geometry(bare)
     return g, mesh_positions(bare, phases=phases), moment / g.base_radius_pinion
 
 

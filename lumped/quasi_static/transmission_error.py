@@ -15,17 +15,20 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import NumericalError, refuse
-from lumped.gear_geometry import geometry
+from lumped.gear_geometry import Geometry, geometry
 from lumped.parameters import GearPair
 from lumped.path_function import FloatArray
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.tooth_error import corner_gap, relief_error
 from lumped.stiffness import pair_stiffness
+from lumped.stiffness.energy import contact_softening
 
 #: Pairs are followed this fraction of a base pitch beyond A and D, where deflection lets them touch.
 REACH = 0.45
 #: Stiffness and error at the very ends of the path are taken this fraction of a base pitch inside it.
 _INSIDE = 1e-12
+#: Over the operating torque; below it the contact's compliance, which grows as the logarithm, is held.
+_LEAST_TORQUE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -96,6 +99,8 @@ def static_transmission_error(
     """Quasi-static meshing of a gear pair: a Harris map and the load of every tooth pair.
 
     At each position the rigid approach delta and the loads satisfy sum_i k_i max(delta - e_i, 0) = T/r_bp.
+    The energy stiffness with Weber and Banaschek's contact is taken at each torque; other stiffness does not
+    depend on it.
 
     Parameters
     ----------
@@ -122,7 +127,8 @@ def static_transmission_error(
     g = geometry(pair)
     mesh = mesh_positions(pair, phases=phases, pitch_errors=pitch_errors, extended=extended)
     force = torque / g.base_radius_pinion
-    result = share_load(mesh.stiffness, mesh.error, force[:, None])
+    stiffness = _at_torques(mesh.stiffness, torque, pair, g)
+    result = share_load(stiffness, mesh.error, force[:, None])
     _check_reach(mesh, result.load, g.L_XA, g.L_XD, g.base_pitch)
     te = result.transmission_error
     with np.errstate(invalid="ignore"):
@@ -153,6 +159,16 @@ def static_transmission_error(
         },
         attrs={"pair": pair.name, "extended_contact": int(extended)},
     )
+
+
+def _at_torques(stiffness: FloatArray, torque: FloatArray, pair: GearPair, g: Geometry) -> FloatArray:
+    """Stiffness of the pairs at every torque; (torques or 1, k, pairs) [N/m]."""
+    softening = contact_softening(pair, g)
+    if softening == 0.0:
+        return stiffness[None]
+    ratio = np.maximum(torque / pair.operating.pinion_torque, _LEAST_TORQUE)
+    change = softening * np.log(ratio)[:, None, None]
+    return np.asarray(stiffness / (1.0 - change * stiffness), dtype=np.float64)
 
 
 def _attrs(units: str, name: str) -> dict[str, str]:

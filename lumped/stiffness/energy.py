@@ -12,6 +12,7 @@ that they share the two bodies (structural coupling) and is an upper estimate in
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -88,6 +89,30 @@ def _fit_series(series: FloatArray, low: float, high: float, tolerance: float) -
         return np.asarray(chebyshev.chebval(2.0 * (xi - low) / (high - low) - 1.0, series), dtype=np.float64)
 
     return PathFunction.fit(value, (low, high), tolerance=tolerance)
+
+
+def contact_softening(pair: GearPair, geometry: Geometry) -> float:
+    """How the compliance of a pair falls with load: D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N].
+
+    Weber and Banaschek's contact depends on the load by -2 (1 - nu^2)/(pi E b) ln(a) per tooth, and its half
+    width a grows as the root of the load, so D = sum (1 - nu^2)/(pi E b) over both teeth, at every position.
+
+    Parameters
+    ----------
+    pair, geometry : the gear pair and its geometry
+
+    Returns
+    -------
+    D, or 0 for stiffness that does not depend on the load: other models, the linearised contact, and curves
+    that are scaled, coupled or ramped (they keep the operating torque)
+    """
+    model = pair.mesh.stiffness
+    if model.model != "energy" or model.hertz != "weber_banaschek":
+        return 0.0
+    if model.scale != "none" or model.coupling != "none" or model.ramp_length > 0.0:
+        return 0.0
+    plane = sum((1.0 - g.poisson_ratio**2) / g.youngs_modulus for g in (pair.pinion, pair.gear))
+    return plane / (math.pi * geometry.face_width)
 
 
 def violations(pair: GearPair, geometry: Geometry) -> tuple[RangeViolation, ...]:

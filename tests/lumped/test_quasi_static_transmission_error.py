@@ -224,6 +224,19 @@ def test_light_load_leaves_the_relieved_tips_apart():
     assert approach == pytest.approx(float(e(start)), rel=1e-6)
 
 
+def test_energy_stiffness_follows_the_torque():
+    # Every row of the map must be what the pair gives when it operates at that torque.
+    pair = plain(model="energy").with_(operating__pinion_torque=40.0)
+    torques = [4.0, 40.0, 160.0]
+    data = static_transmission_error(pair, torques, extended=False).transmission_error.values
+    for row, torque in zip(data, torques, strict=True):
+        own = pair.with_(operating__pinion_torque=torque)
+        exact = static_transmission_error(own, extended=False).transmission_error.values[0]
+        assert row == pytest.approx(exact, rel=1e-8)  # two fits of k at 1e-10 of the peak
+    # Softer at low load: more than a tenth of the deflection's share would give.
+    assert data[0].mean() * 10 > 1.02 * data[1].mean()
+
+
 def test_hundred_curves_in_a_tenth_of_a_second():
     pair = load_gear_pair("nasa_28_28").with_(mesh__stiffness={"model": "energy"})
     static_transmission_error(pair, [1.0])
