@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -110,6 +112,7 @@ def _level(xi: FloatArray, path: ContactPath) -> FloatArray:
     return np.asarray(_factor(path.roughness * 1e6) * np.log10(number), dtype=np.float64)
 
 
+@lru_cache(maxsize=256)
 def _cap(path: ContactPath, settings: FrictionSettings) -> float:
     """The bound in force: ``maximum``, or the law at ``PITCH_RESOLUTION`` from the pitch point if less."""
     nearest = np.array([path.L_XP - PITCH_RESOLUTION, path.L_XP + PITCH_RESOLUTION])

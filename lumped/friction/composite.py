@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from functools import partial
 
@@ -45,25 +46,27 @@ def composite(
 
 
 def _signed(xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> FloatArray:
-    return composite(
-        path.film_parameter(xi),
-        smoothed_coulomb.LAW.signed(xi, path, settings),
-        benedict_kelley.LAW.signed(xi, path, settings),
-        xu_kahraman.LAW.signed(xi, path, settings),
-        settings.thresholds,
-    )
+    """``composite``, with each law evaluated only where it is in force."""
+    positions = np.atleast_1d(xi)
+    mu = np.empty_like(positions)
+    for law, inside in _parts(positions, path, settings):
+        if inside.any():
+            mu[inside] = law.signed(positions[inside], path, settings)
+    return mu.reshape(np.shape(xi))
 
 
 def _switches(path: ContactPath, settings: FrictionSettings) -> list[float]:
-    changes = []
+    changes: list[float] = []
     for threshold in settings.thresholds[:2]:  # above the third one the law stays III
         changes += path.crossings(partial(_excess, path, threshold))
-    laws = (smoothed_coulomb.LAW, benedict_kelley.LAW, xu_kahraman.LAW, xu_kahraman.LAW)
+    edges = [path.L_XA, *sorted(changes), path.L_XD]
     inherited = [
         xi
-        for number, law in enumerate(laws)
+        for low, high in itertools.pairwise(edges)
+        for law, inside in _parts(np.array([0.5 * (low + high)]), path, settings)
+        if inside.any()
         for xi in law.switches(path, settings)
-        if regime(path.film_parameter(np.array(xi)), settings.thresholds) == number
+        if low < xi < high
     ]
     return [*changes, *inherited]
 

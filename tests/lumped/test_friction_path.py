@@ -12,6 +12,7 @@ from lumped.film import regime
 from lumped.friction import (
     LAWS,
     benedict_kelley,
+    composite,
     contact_path,
     friction_path_function,
     friction_profile,
@@ -207,6 +208,20 @@ def test_composite_switches_at_its_film_parameters(unequal):
     assert seen == {1.0, 4.0}
 
 
+@pytest.mark.parametrize("speed", [200, 1200, 3000])
+def test_composite_is_made_of_the_other_laws(unequal, speed):
+    pair = unequal.with_(operating__pinion_speed=speed)
+    path, settings = contact_path(pair), friction_settings(pair)
+    xi = np.linspace(path.L_XA, path.L_XD, 402)[1:-1]
+    four, two, three = (
+        direct(pair, name, xi) for name in ("smoothed_coulomb", "benedict_kelley", "xu_kahraman")
+    )
+    np.testing.assert_array_equal(
+        direct(pair, "composite", xi),
+        composite(path.film_parameter(xi), four, two, three, settings.thresholds),
+    )
+
+
 def test_composite_changes_regime_where_the_paper_says(pair):
     # Fig. 2b: at 22.6 N m the switch to law III falls near 2500 rpm. Read off a figure: 5 per cent.
     def film_at_pitch(speed):
@@ -246,8 +261,10 @@ def test_a_law_that_cannot_take_the_roughness_is_left_out_with_its_reason(pair):
     rough = pair.with_(pinion__roughness=1.3, gear__roughness=1.3, friction__coefficient=0.06)
     profile = friction_profile(rough)
     assert "benedict_kelley" not in profile.law
-    assert "composite" not in profile.law
-    assert any("1.13 um" in text for text in profile.attrs["left_out"])
+    # law V asks law II only where the film parameter does: at 0.144 um composite roughness it is III here
+    assert "composite" in profile.law
+    (reason,) = profile.attrs["left_out"]
+    assert "1.13 um" in reason
     with pytest.raises(ParameterError, match="roughness"):
         friction_path_function(rough, law="benedict_kelley")
     with pytest.raises(ParameterError, match="roughness"):
