@@ -1,1 +1,31 @@
-"""placeholder"""
+"""Does the model deserve trust: cross-check, validity, verification report, and the command ``spurcheck``.
+
+Names are imported on first use, so that ``spurcheck --help`` answers at once.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from validation.comparison import CrossCheck, crosscheck
+    from validation.reporting import Report, report
+    from validation.validity import Flag, validity_flags
+
+_HOMES = {
+    "CrossCheck": "validation.comparison",
+    "crosscheck": "validation.comparison",
+    "Report": "validation.reporting",
+    "report": "validation.reporting",
+    "Flag": "validation.validity",
+    "validity_flags": "validation.validity",
+}
+
+__all__ = ["CrossCheck", "Flag", "Report", "crosscheck", "report", "validity_flags"]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'validation' has no attribute {name!r}")
+    return getattr(importlib.import_module(_HOMES[name]), name)

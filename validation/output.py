@@ -1,0 +1,134 @@
+"""Result files: NetCDF or CSV of a dataset, each written whole or not at all."""
+
+from __future__ import annotations
+
+import csv
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from lumped.errors import refuse
+
+DATA_SUFFIXES = (".nc", ".csv")
+FIGURE_SUFFIXES = (".png", ".svg")
+
+
+def check_file(path: Path, suffixes: tuple[str, ...], *, force: bool) -> Path:
+    """Return the path after refusing one that must not be written, before any work is done.
+
+    Raises
+    ------
+    ParameterError : unknown suffix, an existing file without ``force``, or a folder that does not exist or
+        cannot be written
+    """
+    if path.suffix.lower() not in suffixes:
+        allowed = "a name ending in " + ", ".join(suffixes)
+        raise refuse("output", path, allowed, "The suffix chooses the format.")
+    if path.is_dir():
+        raise refuse("output", path, "a file", "This is a folder; add a file name.")
+    if path.exists() and not force:
+        raise refuse("output", path, "a new file", "It exists: choose another name, or give --force.")
+    if not path.parent.is_dir():
+        raise refuse(
+            "output", path, "a file in a folder that exists", f"Make the folder {path.parent} first."
+        )
+    try:
+        with tempfile.TemporaryFile(dir=path.parent):
+            pass
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise refuse(
+            "output", path, "a place that can be written", f"It cannot be written ({reason})."
+        ) from None
+    return path
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """Give a temporary file beside ``path`` to write, and put it in place of ``path`` at the end.
+
+    On any failure nothing is left behind and an existing file stays as it was.
+    """
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=path.suffix, dir=path.parent)
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        yield temporary
+        mask = os.umask(0)
+        os.umask(mask)
+        temporary.chmod(0o666 & ~mask)  # mkstemp makes it private
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file whole."""
+    with whole_file(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def write_dataset(result: xr.Dataset, path: Path) -> None:
+    """Write a dataset as NetCDF or CSV, by suffix, whole."""
+    with whole_file(path) as temporary:
+        if path.suffix.lower() == ".csv":
+            _write_csv(result, temporary)
+        else:
+            _write_netcdf(result, temporary)
+
+
+def _write_netcdf(result: xr.Dataset, path: Path) -> None:
+    # NetCDF has neither booleans, complex numbers nor lists of text.
+    ready = result.copy()
+    for name, variable in result.variables.items():
+        if variable.dtype == bool:
+            ready[name] = variable.astype(np.int8)
+        elif np.iscomplexobj(variable):
+            ready[f"{name}_real"] = (variable.dims, variable.to_numpy().real, variable.attrs)
+            ready[f"{name}_imag"] = (variable.dims, variable.to_numpy().imag, variable.attrs)
+            ready = ready.drop_vars([name])
+    ready.attrs = {key: _attribute(value) for key, value in result.attrs.items()}
+    encoding = {
+        str(name): {"zlib": True, "complevel": 4}
+        for name, variable in ready.data_vars.items()
+        if variable.ndim and variable.dtype.kind == "f"
+    }
+    ready.to_netcdf(path, engine="h5netcdf", encoding=encoding)
+
+
+def _attribute(value: Any) -> Any:
+    if isinstance(value, bool):
+        return int(value)
+    if isinstance(value, (list, tuple)):
+        return "; ".join(map(str, value))
+    return value
+
+
+def _write_csv(result: xr.Dataset, path: Path) -> None:
+    """One row per point of time (or speed), one column per variable and pair; headings carry the unit."""
+    first = str(next(iter(result.sizes)))
+    if "time" in result.sizes:
+        first = "time"
+    columns: list[tuple[str, Any]] = []
+    for name in [first, *(str(n) for n in result.data_vars)]:
+        variable = result[name]
+        unit = variable.attrs.get("units", "1")
+        if variable.dims == (first,):
+            columns.append((f"{name} [{unit}]", variable.to_numpy()))
+        elif set(variable.dims) == {first, *variable.dims} and variable.ndim == 2:
+            other = next(str(d) for d in variable.dims if d != first)
+            for index in range(variable.sizes[other]):
+                part = variable.isel({other: index})
+                label = result[other].to_numpy()[index] if other in result.coords else index
+                columns.append((f"{name}_{other}{label} [{unit}]", part.to_numpy()))
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow([heading for heading, _ in columns])
+        for row in zip(*(values for _, values in columns), strict=True):
+            writer.writerow([repr(v.item()) if isinstance(v, np.generic) else v for v in row])

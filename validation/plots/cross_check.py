@@ -1,0 +1,91 @@
+"""Lumped against multibody: histories laid over each other, and their difference."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from lumped import Geometry
+from validation.plots.style import BLACK, BLUE, DASHES, RED, legend_above, new_figure, scaled
+
+_LABELS = {
+    "dte": "transmission error",
+    "x_p": "pinion, along the\nline of action",
+    "x_g": "gear, along the\nline of action",
+    "y_p": "pinion, off the\nline of action",
+    "y_g": "gear, off the\nline of action",
+    "normal_load": "normal load,\nall pairs",
+    "friction_force": "friction force,\nall pairs",
+}
+_SHOWN_CYCLES = 2
+
+
+def cross_check_figure(
+    g: Geometry,
+    quantity: str,
+    unit: str,
+    reference: xr.Dataset,
+    others: Mapping[str, xr.Dataset],
+    keep: NDArray[np.bool_],
+) -> Figure:
+    """One quantity of all models over the last mesh cycles, and the differences to the lumped model below.
+
+    Parameters
+    ----------
+    g : geometry of the pair
+    quantity, unit : variable of the datasets and its SI unit
+    reference : dataset of the lumped model
+    others : fidelity -> dataset of the multibody model at the same times
+    keep : which times lie off the switches; the others belong to either side of a jump, so no difference is
+        drawn
+    """
+    figure, axes = new_figure(2, 1, height=3.9, sharex=True, height_ratios=(1.6, 1.0))
+    top, bottom = axes[:, 0]
+    time = reference["time"].to_numpy()
+    shown = time >= time[-1] - (_SHOWN_CYCLES + 1e-9) * g.mesh_period
+    x = (time[shown] - time[shown][0]) / g.mesh_period
+
+    def history(result: xr.Dataset) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+        values = result[quantity].to_numpy()[..., shown]
+        return np.asarray(values.sum(axis=0) if values.ndim == 2 else values, dtype=np.float64)
+
+    base = history(reference)
+    factor, label = scaled(base, unit=unit)
+    top.plot(x, base / factor, color=BLACK, linewidth=2.6, alpha=0.35, label="lumped")
+    styles = {"linear": (BLUE, DASHES[2]), "exact": (RED, DASHES[0])}
+    differences = {name: history(result) - base for name, result in others.items()}
+    # The linear difference is integration error, nine decades down: it is a number in the table, not a curve.
+    drawn = [name for name in differences if name != "linear"] or list(differences)
+    difference_factor, difference_label = scaled(
+        *(differences[name][keep[shown]] for name in drawn), unit=unit
+    )
+    for name, result in others.items():
+        colour, dash = styles[name]
+        top.plot(
+            x,
+            history(result) / factor,
+            color=colour,
+            linestyle=dash,
+            linewidth=1.2,
+            label=f"multibody {name}",
+        )
+    for name in drawn:
+        colour, dash = styles[name]
+        bottom.plot(
+            x,
+            np.where(keep[shown], differences[name], np.nan) / difference_factor,
+            color=colour,
+            linewidth=1.0,
+        )
+    bottom.axhline(0.0, color=BLACK, linewidth=0.5)
+    top.set_ylabel(f"{_LABELS.get(quantity, quantity)} [{label}]")
+    bottom.set_ylabel(f"{' and '.join(drawn)} -\nlumped [{difference_label}]")
+    bottom.set_xlabel("time, last cycles of the run [mesh cycles]")
+    bottom.set_xlim(0.0, _SHOWN_CYCLES)
+    legend_above(top, 1 + len(others))
+    figure.align_ylabels()
+    return figure

@@ -1,0 +1,39 @@
+"""Floquet multipliers on the unit circle."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from floquet.gear_pair import GearPairMultipliers
+from validation.plots.style import BLACK, BLUE, GREY, RED, legend, new_figure
+
+
+def multipliers_figure(multipliers: GearPairMultipliers) -> Figure:
+    """Multipliers in the complex plane, with the rigid rotation apart.
+
+    Parameters
+    ----------
+    multipliers : of the gear pair
+    """
+    figure, axes = new_figure(height=3.4)
+    ax = axes[0, 0]
+    angle = np.linspace(0.0, 2.0 * np.pi, 361)
+    ax.plot(np.cos(angle), np.sin(angle), color=BLACK, linewidth=1.0)
+    ax.axhline(0.0, color=GREY, linewidth=0.5)
+    ax.axvline(0.0, color=GREY, linewidth=0.5)
+    for values, marker, colour, label in (
+        (multipliers.feedback, "o", BLUE, "mesh: q, x of pinion and gear"),
+        (multipliers.oloa, "s", RED, "bearings: y of pinion and gear"),
+    ):
+        style = {"markerfacecolor": "none", "markeredgecolor": colour, "markeredgewidth": 1.6}
+        ax.plot(values.real, values.imag, marker, markersize=7, label=label, **style)
+    ax.plot([1.0], [0.0], "x", color=BLACK, markersize=7, label="rigid rotation (taken out)")
+    ax.set_aspect("equal")
+    reach = 1.1 * max(1.0, multipliers.spectral_radius)
+    ax.set_xlim(-reach, reach)
+    ax.set_ylim(-reach, reach)
+    ax.set_xlabel("real part [-]")
+    ax.set_ylabel("imaginary part [-]")
+    legend(ax, loc="center left", bbox_to_anchor=(1.02, 0.5), handlelength=1.2)
+    return figure

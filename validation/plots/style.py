@@ -1,0 +1,155 @@
+"""What all figures share: palette, axes, units, letters of the path of contact, and how they are written."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from lumped import Geometry
+
+FloatArray = NDArray[np.float64]
+
+#: Okabe and Ito's palette, distinguishable with every common colour vision deficiency.
+BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PURPLE = (
+    "#000000",
+    "#E69F00",
+    "#56B4E9",
+    "#009E73",
+    "#F0E442",
+    "#0072B2",
+    "#D55E00",
+    "#CC79A7",
+)
+#: Colours of lines in order; yellow is too pale for a line on white.
+LINES = (BLUE, RED, GREEN, PURPLE, ORANGE, SKY, BLACK)
+#: Line styles that go with ``LINES``, so that colour is never the only difference.
+DASHES = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (6, 1.5, 1.2, 1.5)), (0, (3, 1, 1, 1, 1, 1)), "-", ":")
+GREY = "#6b6b6b"
+WIDTH = 7.2
+_PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p"))
+_LARGE = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
+_PNG_DPI = 150
+_RC: Any = {
+    "font.family": ["DejaVu Sans"],
+    "font.size": 9.0,
+    "axes.labelsize": 9.0,
+    "xtick.labelsize": 8.5,
+    "ytick.labelsize": 8.5,
+    "legend.fontsize": 8.5,
+    "axes.titlesize": 9.0,
+    "mathtext.fontset": "dejavusans",
+    # Text as paths and ids from a fixed salt: the same bytes everywhere, and no font needed to read them.
+    "svg.fonttype": "path",
+    "svg.hashsalt": "spurcheck",
+    "path.simplify": True,
+}
+
+
+def new_figure(
+    rows: int = 1, columns: int = 1, height: float = 2.9, **options: Any
+) -> tuple[Figure, NDArray[np.object_]]:
+    """Return an empty figure and its axes (rows, columns), in the house style.
+
+    Parameters
+    ----------
+    rows, columns : panels
+    height : of the figure [inch]; its width is ``WIDTH``
+    **options : of ``Figure.subplots``
+    """
+    with mpl.rc_context(_RC):
+        figure = Figure(figsize=(WIDTH, height), layout="constrained")
+        axes = figure.subplots(rows, columns, squeeze=False, **options)
+    for ax in axes.flat:
+        ax.spines[["top", "right"]].set_visible(False)
+        ax.grid(True, color="#d9d9d9", linewidth=0.5)
+        ax.set_axisbelow(True)
+        ax.tick_params(width=0.6, length=3)
+        for spine in ax.spines.values():
+            spine.set_linewidth(0.6)
+    return figure, axes
+
+
+def legend(ax: Axes, **options: Any) -> None:
+    """Add a legend without a frame that hides nothing important."""
+    settings: dict[str, Any] = {"frameon": False, "handlelength": 2.6, "borderaxespad": 0.2, "fontsize": 8.5}
+    ax.legend(**(settings | options))
+
+
+def legend_above(ax: Axes, columns: int) -> None:
+    """Add a legend in one row above the axes, where no curve can be."""
+    legend(ax, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, columnspacing=1.6)
+
+
+def prefix(largest: float) -> tuple[float, str]:
+    """Factor and SI prefix that bring a number of this size between 1 and 1000."""
+    for factor, name in _LARGE:
+        if largest >= factor:
+            return factor, name
+    for factor, name in _PREFIXES:
+        if largest >= factor:
+            return factor, name
+    return (1.0, "") if largest == 0.0 else _PREFIXES[-1]
+
+
+def scaled(*values: Any, unit: str) -> tuple[float, str]:
+    """Divisor and prefixed unit for arrays that share an axis."""
+    finite = [np.asarray(v, dtype=float)[np.isfinite(np.asarray(v, dtype=float))] for v in values]
+    largest = max((float(np.abs(v).max()) for v in finite if v.size), default=0.0)
+    factor, name = prefix(largest)
+    return factor, f"{name}{unit}"
+
+
+def mesh_cycles(result: xr.Dataset, g: Geometry) -> FloatArray:
+    """Time in mesh cycles from the start of the data."""
+    time = result["time"].to_numpy()
+    return np.asarray((time - time[0]) / g.mesh_period, dtype=np.float64)
+
+
+def with_gaps(x: FloatArray, y: FloatArray, present: NDArray[np.bool_]) -> FloatArray:
+    """Values with gaps where a tooth pair is out of contact, so that no line is drawn across."""
+    return np.asarray(np.where(present, y, np.nan), dtype=np.float64)
+
+
+def mark_switches(ax: Axes, events: Mapping[str, float], *, letters: bool = True) -> None:
+    """Mark events on the x axis by thin lines, letters above the axes; equal places share a label."""
+    places: dict[float, list[str]] = {}
+    for name, place in events.items():
+        key = next((known for known in places if abs(known - place) < 1e-6), place)
+        places.setdefault(key, []).append(name)
+    for place, names in places.items():
+        ax.axvline(place, color=GREY, linewidth=0.6, linestyle=(0, (2, 2)), zorder=0.5)
+        if not letters:
+            continue
+        ax.annotate(
+            ", ".join(names),
+            (place, 1.0),
+            xycoords=("data", "axes fraction"),
+            xytext=(0, 2),
+            textcoords="offset points",
+            ha="center",
+            va="bottom",
+            fontsize=8.0,
+            color=GREY,
+        )
+
+
+def path_marks(g: Geometry) -> dict[str, float]:
+    """Letters of the path of contact -> distance from X [mm]."""
+    marks = {"A": g.L_XA, "B": g.L_XB, "P": g.L_XP, "C": g.L_XC, "D": g.L_XD}
+    return {name: 1e3 * place for name, place in marks.items()}
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write a figure as SVG or PNG, by suffix; the same figure gives the same bytes, without dates."""
+    suffix = path.suffix.lower().removeprefix(".")
+    metadata: dict[str, Any] = {"Date": None} if suffix == "svg" else {"Software": None}
+    with mpl.rc_context(_RC):
+        figure.savefig(path, format=suffix, dpi=_PNG_DPI, metadata=metadata)

@@ -1,0 +1,68 @@
+"""Periodic motion over speed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from validation.plots.style import BLUE, GREY, LINES, RED, legend_above, new_figure, scaled
+
+
+def sweep_figure(
+    sweep: xr.Dataset, operating_rpm: float, static_load: float, resonances_rpm: Sequence[float] = ()
+) -> Figure:
+    """Peak to peak of the transmission error, and largest and smallest tooth load, over pinion speed.
+
+    Parameters
+    ----------
+    sweep : dataset of ``lumped.speed_sweep``
+    operating_rpm : operating speed, marked [rpm]
+    static_load : T_p/r_bp, to scale the loads [N]
+    resonances_rpm : speeds at which the mesh frequency meets a natural frequency of the averaged pair [rpm]
+    """
+    figure, axes = new_figure(2, 1, height=4.2, sharex=True)
+    top, bottom = axes[:, 0]
+    speed = sweep["speed"].to_numpy()
+    values = sweep["dte_peak_to_peak"].to_numpy()
+    factor, unit = scaled(values, unit="m")
+    top.plot(speed, values / factor, color=BLUE)
+    top.set_ylabel(f"transmission error,\npeak to peak [{unit}]")
+    top.set_ylim(bottom=0.0)
+    low = sweep["normal_load_min"].to_numpy() / static_load
+    bottom.plot(speed, sweep["normal_load_max"].to_numpy() / static_load, color=BLUE, label="largest")
+    bottom.plot(speed, low, color=LINES[2], linestyle="--", label="smallest")
+    with np.errstate(invalid="ignore"):
+        bottom.fill_between(
+            speed,
+            low,
+            0.0,
+            where=low < 0.0,
+            color=RED,
+            alpha=0.3,
+            linewidth=0,
+            label="teeth separate: not valid",
+        )
+    bottom.axhline(0.0, color=GREY, linewidth=0.6)
+    bottom.set_ylabel("tooth load over\nstatic load [-]")
+    bottom.set_xlabel("pinion speed [rpm]")
+    bottom.set_xlim(speed[0], speed[-1])
+    for ax in (top, bottom):
+        ax.axvline(operating_rpm, color=RED, linewidth=1.0)
+        for place in resonances_rpm:
+            if speed[0] <= place <= speed[-1]:
+                ax.axvline(place, color=GREY, linewidth=0.7, linestyle=":")
+    top.annotate(
+        "operating point",
+        (operating_rpm, 1.0),
+        xycoords=("data", "axes fraction"),
+        xytext=(0, 2),
+        textcoords="offset points",
+        ha="center",
+        fontsize=8.0,
+        color=RED,
+    )
+    legend_above(bottom, 3)
+    return figure

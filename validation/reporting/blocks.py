@@ -1,0 +1,189 @@
+"""What a chapter of the report is made of: plain data that becomes both HTML and JSON.
+
+A number is shown only through these blocks, and every block goes into report.json, so the page cannot show a
+number that the file does not have.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from matplotlib.figure import Figure
+
+#: State of a badge -> its class in the page. The words themselves always stand beside the colour.
+STATES = {
+    "ok": "good",
+    "confirmed": "good",
+    "stable": "good",
+    "within": "good",
+    "warning": "fair",
+    "bounded": "fair",
+    "undecided": "fair",
+    "violated": "bad",
+    "not confirmed": "bad",
+    "unstable": "bad",
+    "outside": "bad",
+    "prediction": "plain",
+}
+
+
+@dataclass(frozen=True)
+class Badge:
+    """A verdict in a word; ``state`` is a key of ``STATES``."""
+
+    state: str
+    text: str = ""
+
+    @property
+    def tone(self) -> str:
+        """Class of the badge: good, fair, bad or plain."""
+        return STATES[self.state]
+
+    @property
+    def label(self) -> str:
+        """Words of the badge."""
+        return self.text or self.state
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number in SI with its unit ("1" for a ratio), shown with a prefix."""
+
+    value: float
+    unit: str
+
+
+Cell = str | int | float | bool | Quantity | Badge | None
+
+
+@dataclass(frozen=True)
+class Column:
+    """Column of a table.
+
+    Attributes
+    ----------
+    key : name in report.json
+    title : heading
+    """
+
+    key: str
+    title: str
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table.
+
+    Attributes
+    ----------
+    key : name in report.json
+    caption : what it shows
+    columns : headings
+    rows : cells, one per column
+    marked : indices of rows to highlight
+    note : remark below
+    """
+
+    key: str
+    caption: str
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    marked: frozenset[int] = frozenset()
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Fact:
+    """One named number or word with what it means."""
+
+    key: str
+    label: str
+    value: Cell
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Facts:
+    """A list of facts."""
+
+    key: str
+    items: tuple[Fact, ...]
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure, drawn when it is needed.
+
+    Attributes
+    ----------
+    key : file name without suffix, and name in report.json
+    caption : what it shows and what to see in it
+    draw : makes the figure
+    """
+
+    key: str
+    caption: str
+    draw: Callable[[], Figure]
+
+
+@dataclass(frozen=True)
+class Text:
+    """A paragraph, or a list where ``items`` are given."""
+
+    text: str
+    items: tuple[str, ...] = ()
+
+
+Block = Text | Facts | Table | Picture
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """A chapter of the report.
+
+    Attributes
+    ----------
+    key : anchor in the page and name in report.json
+    title : heading
+    blocks : content, in order
+    badge : verdict beside the heading, if the chapter has one
+    """
+
+    key: str
+    title: str
+    blocks: tuple[Block, ...]
+    badge: Badge | None = None
+
+
+def plain(value: Cell) -> Any:
+    """Cell as JSON data; a number that is not finite becomes null."""
+    if isinstance(value, Badge):
+        return {"state": value.state, "text": value.label}
+    if isinstance(value, Quantity):
+        return {"value": plain(value.value), "unit": value.unit}
+    if isinstance(value, float):
+        return float(value) if math.isfinite(value) else None
+    return value
+
+
+def chapter_data(chapter: Chapter) -> dict[str, Any]:
+    """Everything a chapter shows, as JSON data."""
+    data: dict[str, Any] = {"title": chapter.title}
+    if chapter.badge is not None:
+        data["verdict"] = plain(chapter.badge)
+    for block in chapter.blocks:
+        if isinstance(block, Facts):
+            data[block.key] = {
+                fact.key: {"label": fact.label, "value": plain(fact.value)} for fact in block.items
+            }
+        elif isinstance(block, Table):
+            keys = [column.key for column in block.columns]
+            data[block.key] = [dict(zip(keys, map(plain, row), strict=True)) for row in block.rows]
+        elif isinstance(block, Picture):
+            data.setdefault("figures", []).append(block.key)
+        else:
+            data.setdefault("text", []).append([block.text, *block.items])
+    return data

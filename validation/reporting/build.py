@@ -1,0 +1,157 @@
+"""Build the report: compute, draw, render, and put the folder in place."""
+
+from __future__ import annotations
+
+import base64
+import json
+import resource
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from lumped import GearPair, load_gear_pair
+from validation.output import write_dataset
+from validation.plots import save
+from validation.reporting.blocks import Chapter, Picture, chapter_data, plain
+from validation.reporting.chapters import CHAPTERS
+from validation.reporting.folder import FORMAT, whole_folder
+from validation.reporting.page import render
+from validation.reporting.results import FULL, QUICK, Results, compute
+from validation.reporting.verdict import Summary, summarise
+
+Progress = Callable[[float, str], None]
+
+#: Version of the layout of report.json; a change that breaks readers raises it.
+FORMAT_VERSION = 1
+
+
+@dataclass(frozen=True)
+class Report:
+    """A report that was written.
+
+    Attributes
+    ----------
+    folder : where it is
+    sentence : its verdict in one sentence
+    verdicts : chapter -> word of its verdict
+    seconds : wall time
+    """
+
+    folder: Path
+    sentence: str
+    verdicts: dict[str, str]
+    seconds: float
+
+
+def report(
+    pair: GearPair | str | Path,
+    out: str | Path,
+    *,
+    force: bool = False,
+    quick: bool = False,
+    progress: Progress | None = None,
+) -> Report:
+    """Write the verification report of a gear pair into a folder.
+
+    The folder gets ``index.html`` (self-contained: it needs no network and no other file), ``report.json``
+    (every number shown), ``figures/`` (PNG and SVG) and ``data/`` (NetCDF and the parameter file). It is
+    written whole or not at all.
+
+    Parameters
+    ----------
+    pair : gear pair, preset name or parameter file
+    out : folder, new or empty
+    force : replace an earlier report in that folder
+    quick : coarser sampling, for a first look
+    progress : called with the finished fraction and what is being done
+
+    Raises
+    ------
+    ParameterError : a refused parameter or output folder, before any work
+    NumericalError : a model fails; the text says what to try
+    """
+    started = time.perf_counter()
+    tell = progress or (lambda fraction, text: None)
+    gear_pair = load_gear_pair(pair)
+    target = Path(out)
+    with whole_folder(target, force=force) as folder:
+        results = compute(gear_pair, QUICK if quick else FULL, lambda f, text: tell(0.8 * f, text))
+        computed = time.perf_counter()
+        summary = summarise(results)
+        chapters = tuple(write(results) for write in CHAPTERS)
+        images = _draw(chapters, folder / "figures", lambda f: tell(0.8 + 0.17 * f, "figures"))
+        tell(0.97, "page and data")
+        _write_data(results, folder / "data")
+        data = document(results, summary, chapters, quick=quick)
+        created = datetime.now(UTC).isoformat(timespec="seconds")
+        seconds = {"compute": computed - started, "all": time.perf_counter() - started}
+        data["timestamps"] = {
+            "created": created,
+            "seconds": {name: round(value, 2) for name, value in seconds.items()},
+            "peak_memory_MB": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, 1),
+        }
+        text = json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False, sort_keys=False)
+        (folder / "report.json").write_text(text + "\n", encoding="utf-8")
+        page = render(results.pair, summary, chapters, images, data)
+        (folder / "index.html").write_text(page, encoding="utf-8")
+    tell(1.0, "done")
+    verdicts = {c.key: c.badge.state for c in chapters if c.badge is not None}
+    return Report(target, summary.sentence, verdicts, time.perf_counter() - started)
+
+
+def document(
+    results: Results, summary: Summary, chapters: tuple[Chapter, ...], *, quick: bool
+) -> dict[str, Any]:
+    """report.json without its timestamps: the same parameters and software give the same data."""
+    return {
+        "format": FORMAT,
+        "format_version": FORMAT_VERSION,
+        "gear_pair": results.pair.name,
+        "description": results.pair.description,
+        "quick": quick,
+        "verdict": summary.sentence,
+        "answers": [
+            {"question": a.question, "verdict": plain(a.badge), "text": a.text, "chapter": a.chapter}
+            for a in summary.answers
+        ],
+        "chapters": {chapter.key: chapter_data(chapter) for chapter in chapters},
+        "parameters": results.pair.to_mapping(),
+    }
+
+
+def _draw(chapters: tuple[Chapter, ...], folder: Path, tell: Callable[[float], None]) -> dict[str, str]:
+    """Write all figures; return their SVG as data URIs by key."""
+    folder.mkdir()
+    pictures = [block for chapter in chapters for block in chapter.blocks if isinstance(block, Picture)]
+    images: dict[str, str] = {}
+    for done, picture in enumerate(pictures, 1):
+        figure = picture.draw()
+        for suffix in (".svg", ".png"):
+            save(figure, folder / f"{picture.key}{suffix}")
+        svg = (folder / f"{picture.key}.svg").read_bytes()
+        images[picture.key] = "data:image/svg+xml;base64," + base64.b64encode(svg).decode("ascii")
+        tell(done / len(pictures))
+    return images
+
+
+def _write_data(results: Results, folder: Path) -> None:
+    folder.mkdir()
+    check = results.check
+    samples = slice(-(check.compared_cycles * (check.lumped.sizes["time"] - 1) // check.cycles) - 1, None)
+    datasets: dict[str, xr.Dataset] = {
+        "periodic_motion": results.motion,
+        "friction_laws": results.profile,
+        "speed_sweep": results.sweep,
+        "stability_chart": results.chart,
+        "cross_check_lumped": check.lumped.isel(time=samples),
+    }
+    for fidelity, result in check.multibody.items():
+        datasets[f"cross_check_{fidelity}"] = result.isel(time=samples)
+    for name, dataset in datasets.items():
+        write_dataset(dataset, folder / f"{name}.nc")
+    (folder / "parameters.toml").write_text(results.pair.to_toml(), encoding="utf-8")

@@ -1,0 +1,30 @@
+"""Chapters of the report, one small module each, in the order of ``CHAPTERS``.
+
+A chapter is a function ``Results -> Chapter``; to add one, write it and name it here.
+"""
+
+from collections.abc import Callable
+
+from validation.reporting.blocks import Chapter
+from validation.reporting.chapters.cross_check import cross_check
+from validation.reporting.chapters.parameters import parameters
+from validation.reporting.chapters.path_of_contact import path_of_contact
+from validation.reporting.chapters.provenance import provenance
+from validation.reporting.chapters.scope import scope
+from validation.reporting.chapters.stability import stability
+from validation.reporting.chapters.steady_state import steady_state
+from validation.reporting.chapters.validity import validity
+from validation.reporting.results import Results
+
+CHAPTERS: tuple[Callable[[Results], Chapter], ...] = (
+    scope,
+    parameters,
+    path_of_contact,
+    steady_state,
+    cross_check,
+    stability,
+    validity,
+    provenance,
+)
+
+__all__ = ["CHAPTERS"]

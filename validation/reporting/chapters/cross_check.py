@@ -1,0 +1,216 @@
+"""Lumped against multibody: overlays, metrics, verdicts."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from lumped.results import VARIABLES
+from validation import plots
+from validation.comparison import MEANINGS, RTOL, Agreement, CrossCheck, off_switch_samples
+from validation.reporting.blocks import (
+    Badge,
+    Block,
+    Cell,
+    Chapter,
+    Column,
+    Fact,
+    Facts,
+    Picture,
+    Quantity,
+    Table,
+    Text,
+)
+from validation.reporting.results import Results
+
+#: Short names for table rows.
+NAMES = {
+    "dte": "transmission error",
+    "x_p": "x, pinion",
+    "x_g": "x, gear",
+    "y_p": "y, pinion",
+    "y_g": "y, gear",
+    "normal_load": "normal load",
+    "friction_force": "friction force",
+}
+_SHOWN = ("dte", "x_p", "y_p", "normal_load", "friction_force")
+_CAPTIONS = {
+    "dte": "Dynamic transmission error of all models, and the difference of the exact model.",
+    "x_p": "Motion of the pinion along the line of action. The gear moves likewise (table).",
+    "y_p": "Motion of the pinion off the line of action, which friction alone drives.",
+    "normal_load": "Normal load, sum of the pairs in contact. In the exact model teeth enter and leave where "
+    "the deflected flanks cross the tip circles, so jumps move a little.",
+    "friction_force": "Friction force, sum of the pairs in contact; two pairs in contact largely cancel.",
+}
+
+
+def cross_check(results: Results) -> Chapter:
+    """Write the chapter."""
+    check, g = results.check, results.geometry
+    keep = off_switch_samples(results.pair, check.lumped["time"].to_numpy())
+    models = {str(fidelity): result for fidelity, result in check.multibody.items()}
+    blocks: list[Block] = [
+        Text(
+            f"The verdict is “{check.verdict}”: {MEANINGS[check.verdict]}. Each model starts from the "
+            f"periodic motion and runs for {check.cycles} mesh cycles; the linear model is compared over "
+            f"all of them, the exact model over the last {check.compared_cycles}, when it has settled to "
+            "its own periodic motion."
+        ),
+        _judged(check),
+        _reasons(check),
+    ]
+    for name in _SHOWN:
+        unit = VARIABLES[name][1]
+        blocks.append(
+            Picture(
+                f"cross_check_{name}",
+                _CAPTIONS[name],
+                partial(plots.cross_check_figure, g, name, unit, check.lumped, models, keep),
+            )
+        )
+    blocks += [
+        _metrics(check),
+        _orders(check),
+        Facts(
+            "settings",
+            (
+                Fact(
+                    "contact_shift",
+                    "shift of the contact by finite motions, over the base pitch",
+                    check.contact_shift,
+                    "the small parameter of the exact model's differences",
+                ),
+                Fact(
+                    "unsettled",
+                    "what is left of the exact model's transient",
+                    check.unsettled["exact"],
+                    "change of the transmission error over the last two cycles, over its peak to peak",
+                ),
+                *(
+                    Fact(f"rtol_{name}", f"relative tolerance of the integration, {name}", value)
+                    for name, value in RTOL.items()
+                ),
+            ),
+        ),
+    ]
+    return Chapter(
+        "cross_check", "Cross-check against the multibody model", tuple(blocks), Badge(check.verdict)
+    )
+
+
+def _judged(check: CrossCheck) -> Table:
+    words = {"maximum_over_span": "largest difference / peak to peak", "relative_l2": "relative L2"}
+    rows: list[tuple[Cell, ...]] = [
+        (
+            NAMES[a.quantity],
+            a.fidelity,
+            words[a.tolerance.metric],
+            a.judged,
+            a.tolerance.limit,
+            Badge("within" if a.within else "outside"),
+        )
+        for a in check.agreements
+    ]
+    return Table(
+        "verdicts",
+        "Verdict per quantity against its stated tolerance.",
+        (
+            Column("quantity", "quantity"),
+            Column("fidelity", "multibody"),
+            Column("metric", "metric judged"),
+            Column("value", "value"),
+            Column("tolerance", "tolerance"),
+            Column("verdict", "verdict"),
+        ),
+        tuple(rows),
+    )
+
+
+def _reasons(check: CrossCheck) -> Text:
+    """Every tolerance's reason once, with what it is for."""
+    told: dict[tuple[str, str], list[str]] = {}
+    for a in check.agreements:
+        told.setdefault((a.fidelity, a.tolerance.reason), []).append(NAMES[a.quantity])
+    return Text(
+        "Why these tolerances:",
+        tuple(f"{fidelity}; {', '.join(names)}: {reason}." for (fidelity, reason), names in told.items()),
+    )
+
+
+def _metrics(check: CrossCheck) -> Table:
+    def row(a: Agreement) -> tuple[Cell, ...]:
+        sg = a.sprague_geers
+        return (
+            NAMES[a.quantity],
+            a.fidelity,
+            a.relative_l2,
+            a.maximum_over_span,
+            a.rms_over_span,
+            a.mean_shift,
+            a.peak_to_peak_ratio,
+            sg.magnitude if sg else None,
+            sg.phase if sg else None,
+            sg.comprehensive if sg else None,
+        )
+
+    return Table(
+        "metrics",
+        "All metrics of multibody against lumped.",
+        (
+            Column("quantity", "quantity"),
+            Column("fidelity", "multibody"),
+            Column("relative_l2", "relative L2"),
+            Column("maximum_over_span", "largest difference"),
+            Column("rms_over_span", "rms difference"),
+            Column("mean_shift", "mean shift"),
+            Column("peak_to_peak_ratio", "peak-to-peak ratio"),
+            Column("sprague_geers_magnitude", "S-G magnitude"),
+            Column("sprague_geers_phase", "S-G phase"),
+            Column("sprague_geers_comprehensive", "S-G both"),
+        ),
+        tuple(row(a) for a in check.agreements),
+        note="Relative L2: norm of the difference over the norm of the lumped history. Largest, rms and mean "
+        "shift are over the peak to peak of the lumped history. Sprague and Geers (2003, 2004): "
+        "M = √(I_cc/I_rr) − 1, P = arccos(I_cr/√(I_cc I_rr))/π of the oscillation about the mean, "
+        "I_xy = ∫ x y dt; M > 0 where multibody is larger. Samples on a switch are left out: they belong to "
+        "either side of the jump.",
+    )
+
+
+def _orders(check: CrossCheck) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for comparison in check.orders:
+        if comparison.fidelity != "exact":
+            continue
+        # An order below a thousandth of the largest has no phase worth comparing.
+        floor = 1e-3 * float(comparison.lumped.amplitude[1:].max())
+        for order in range(1, 6):
+            amplitude = float(comparison.lumped.amplitude[order])
+            if amplitude <= floor or amplitude == 0.0:
+                continue
+            other = float(comparison.multibody.amplitude[order])
+            rows.append(
+                (
+                    NAMES[comparison.quantity],
+                    order,
+                    Quantity(amplitude, comparison.unit),
+                    Quantity(other, comparison.unit),
+                    other / amplitude,
+                    float(np.degrees(comparison.phase_difference[order])),
+                )
+            )
+    return Table(
+        "orders",
+        "Exact multibody against lumped by mesh order; tooth forces as the sum of the pairs in contact.",
+        (
+            Column("quantity", "quantity"),
+            Column("order", "order"),
+            Column("lumped", "lumped"),
+            Column("multibody", "multibody"),
+            Column("ratio", "ratio"),
+            Column("phase_difference_deg", "phase difference [°]"),
+        ),
+        tuple(rows),
+        note="Orders below a thousandth of the largest are left out.",
+    )

@@ -1,0 +1,44 @@
+"""Scope: what was computed, with which models, and what this report cannot tell."""
+
+from __future__ import annotations
+
+from validation.reporting.blocks import Chapter, Text
+from validation.reporting.results import Results
+
+
+def scope(results: Results) -> Chapter:
+    """Write the chapter."""
+    text = Text(
+        "This report predicts the motion of one spur gear pair with a lumped model, checks the prediction "
+        "with an independent multibody model, decides the stability of the motion, and lists where the "
+        "lumped model stops being valid. The frame: x runs along the line of action, y off it; pair 0 is "
+        "the tooth pair ahead; time zero is when the newest pair enters contact at A."
+    )
+    models = Text(
+        "Three models share one set of parameters and the laws for stiffness, damping and friction along "
+        "the path of contact:",
+        (
+            "Lumped: six coordinates (two rotations, and the centres of both gears along and off the line "
+            "of action), linear, with coefficients that repeat every mesh cycle; stiffness and friction "
+            "switch where teeth enter and leave contact and pass the pitch point. The periodic motion is "
+            "computed directly, without waiting for a transient to settle.",
+            "Multibody: the same gears as rigid bodies in exudyn. Fidelity “linear” assembles the same "
+            "equations from the body side, so it must agree to integration error. Fidelity “exact” turns "
+            "the bodies through finite angles, finds the contacts from true involutes, and takes friction "
+            "from the actual sliding velocity; its difference measures what the lumped model leaves out.",
+            "Floquet: the growth or decay of disturbances from one mesh cycle to the next, with error "
+            "bounds.",
+        ),
+    )
+    limits = Text(
+        "What this report does not cover:",
+        (
+            "Three-dimensional effects: shaft tilt, crowning, load distribution across the face width.",
+            "Elastic gear blanks, shafts and housing beyond the bearing stiffness given.",
+            "Tooth errors that differ from tooth to tooth; every tooth pair is alike.",
+            "Temperature, wear and strength.",
+            "Agreement of models with each other is verification. Whether the parameters describe a real "
+            "gearbox is for measurements to say; values marked “assumed” carry that question.",
+        ),
+    )
+    return Chapter("scope", "Scope", (text, models, limits))

@@ -1,0 +1,168 @@
+"""Periodic motion at the operating point, and over speed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lumped.results import VARIABLES
+from validation import plots
+from validation.reporting.blocks import (
+    Block,
+    Cell,
+    Chapter,
+    Column,
+    Fact,
+    Facts,
+    Picture,
+    Quantity,
+    Table,
+    Text,
+)
+from validation.reporting.results import Results
+
+
+def steady_state(results: Results) -> Chapter:
+    """Write the chapter."""
+    pair, g, motion = results.pair, results.geometry, results.motion
+    load = motion["normal_load"].to_numpy()
+    touching = motion["contact"].to_numpy() > 0
+    largest = float(load[touching].max())
+    friction = float(motion["friction_power"].sum("pair").mean())
+    facts = Facts(
+        "key_results",
+        (
+            Fact(
+                "dte_peak_to_peak",
+                "transmission error, peak to peak",
+                Quantity(float(np.ptp(motion["dte"].to_numpy())), "m"),
+            ),
+            Fact("dte_mean", "transmission error, mean", Quantity(float(motion["dte"].mean()), "m")),
+            Fact("largest_load", "largest load of a tooth pair", Quantity(largest, "N")),
+            Fact("dynamic_factor", "that load over the static load", largest / results.static_load),
+            Fact(
+                "mesh_efficiency",
+                "mesh efficiency",
+                float(motion.attrs["mesh_efficiency"]),
+                "friction losses only",
+            ),
+            Fact(
+                "brake_torque",
+                "brake torque that holds the speed",
+                Quantity(motion.attrs["brake_torque"], "N m"),
+            ),
+            Fact("friction_power", "mean friction power", Quantity(friction, "W"), "negative: it is lost"),
+            Fact(
+                "error_estimate",
+                "estimated relative error of the motion",
+                float(motion.attrs["error_estimate"]),
+            ),
+        ),
+    )
+    names = ("dte", "x_p", "x_g", "y_p", "y_g")
+    rows: list[tuple[Cell, ...]] = []
+    for order in range(1, 7):
+        row: list[Cell] = [order]
+        row += [Quantity(float(results.orders[name].amplitude[order]), "m") for name in names]
+        rows.append(tuple(row))
+    orders = Table(
+        "mesh_orders",
+        "Amplitudes by mesh order.",
+        (Column("order", "order"), *(Column(name, VARIABLES[name][2]) for name in names)),
+        tuple(rows),
+    )
+    blocks: list[Block] = [
+        facts,
+        Picture(
+            "transmission_error",
+            "Dynamic transmission error over one mesh cycle (dotted: its mean) and its amplitudes by mesh "
+            "order.",
+            lambda: plots.transmission_error_figure(pair, g, motion, results.orders["dte"]),
+        ),
+        Picture(
+            "tooth_forces",
+            "Normal load and friction force of each tooth pair over one mesh cycle. Friction changes its "
+            "sign at the pitch point P.",
+            lambda: plots.tooth_forces_figure(pair, g, motion),
+        ),
+        Picture(
+            "motions",
+            "Motion of the gear centres along (left) and off (right) the line of action.",
+            lambda: plots.motions_figure(g, motion),
+        ),
+        Picture(
+            "motions_by_order",
+            "The same motions by mesh order.",
+            lambda: plots.orders_figure({name: results.orders[name] for name in names[1:]}),
+        ),
+        orders,
+        *_over_speed(results),
+    ]
+    return Chapter("steady_state", "Periodic motion", tuple(blocks))
+
+
+def _over_speed(results: Results) -> list[Block]:
+    sweep = results.sweep
+    places = [mode.resonant_speed for mode in results.modes if _moves_mesh(mode.shape)]
+    speed = sweep["speed"].to_numpy()
+    lost = speed[~sweep["periodic"].to_numpy().astype(bool)]
+    low = sweep["normal_load_min"].to_numpy()
+    with np.errstate(invalid="ignore"):
+        share = float(np.mean(low < 0.0))
+    blocks: list[Block] = [
+        Picture(
+            "speed_sweep",
+            "Periodic motion over pinion speed. Dotted: speeds at which the mesh frequency meets a natural "
+            "frequency of the averaged pair. Where the smallest load is negative the teeth would separate "
+            "and the lumped model is not valid.",
+            lambda: plots.sweep_figure(sweep, results.operating_rpm, results.static_load, places),
+        ),
+        Facts(
+            "over_speed",
+            (
+                Fact("speed_low", "lowest speed", Quantity(float(speed[0]), "rpm")),
+                Fact("speed_high", "highest speed", Quantity(float(speed[-1]), "rpm")),
+                Fact("speeds", "speeds computed", int(speed.size)),
+                Fact("share_separating", "share of the speeds with negative loads", share),
+                Fact(
+                    "speed_of_largest",
+                    "speed of the largest transmission error",
+                    Quantity(float(speed[int(np.nanargmax(sweep["dte_peak_to_peak"].to_numpy()))]), "rpm"),
+                ),
+            ),
+        ),
+    ]
+    if lost.size:
+        listed = ", ".join(f"{s:.5g} rpm" for s in lost)
+        blocks.append(Text(f"No periodic motion exists at: {listed}."))
+    if not results.modes:
+        blocks.append(
+            Text("A mode of the averaged pair is overdamped, so natural frequencies are not listed.")
+        )
+        return blocks
+    rows: list[tuple[Cell, ...]] = [
+        (
+            Quantity(mode.natural_frequency, "Hz"),
+            mode.damping_ratio,
+            Quantity(mode.resonant_speed, "rpm"),
+            "along the line of action" if _moves_mesh(mode.shape) else "off the line of action",
+        )
+        for mode in results.modes
+    ]
+    blocks.append(
+        Table(
+            "modes",
+            "Modes of the time-averaged pair.",
+            (
+                Column("natural_frequency", "natural frequency"),
+                Column("damping_ratio", "damping ratio"),
+                Column("resonant_speed", "pinion speed at mesh resonance"),
+                Column("motion", "motion"),
+            ),
+            tuple(rows),
+        )
+    )
+    return blocks
+
+
+def _moves_mesh(shape: dict[str, float]) -> bool:
+    return max(abs(shape[name]) for name in ("q", "x_p", "x_g")) > max(abs(shape[n]) for n in ("y_p", "y_g"))

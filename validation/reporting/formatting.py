@@ -1,0 +1,60 @@
+"""Numbers for readers: significant digits, SI prefixes, powers of ten."""
+
+from __future__ import annotations
+
+import math
+
+from validation.reporting.blocks import Badge, Cell, Quantity
+
+_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_MINUS = "\u2212"
+#: A number and its unit stay on one line.
+_SPACE = "\u00a0"
+_PREFIXED = frozenset({"m", "N", "Pa", "N/m", "W", "s", "Hz", "m/s", "N s/m"})
+_PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p"}
+
+
+def number(value: float, digits: int = 4) -> str:
+    """A number with significant digits; powers of ten outside 0.001 to 99999."""
+    if not math.isfinite(value):
+        return "n/a"
+    if value == 0.0:
+        return "0"
+    if 1e-3 <= abs(value) < 1e5:
+        # Digits before the point are never rounded away: 16663 stays 16660 at four digits, not 1.666e+04.
+        places = max(digits - 1 - math.floor(math.log10(abs(value))), 0)
+        text = f"{float(f'{value:.{digits}g}'):.{places}f}"
+        text = text.rstrip("0").rstrip(".") if "." in text else text
+        return text.replace("-", _MINUS)
+    mantissa, exponent = f"{value:.{min(digits, 3) - 1}e}".split("e")
+    return f"{mantissa}{_SPACE}×{_SPACE}10{str(int(exponent)).translate(_SUPERSCRIPT)}".replace("-", _MINUS)
+
+
+def quantity(value: float, unit: str, digits: int = 4) -> str:
+    """A number in SI with its unit, prefixed where that is usual."""
+    if unit == "1":
+        return number(value, digits)
+    if unit in _PREFIXED and value != 0.0 and math.isfinite(value):
+        exponent = 3 * math.floor(math.log10(abs(value)) / 3)
+        exponent = min(max(exponent, -12), 9)
+        scaled = value / 10.0**exponent
+        if abs(float(f"{scaled:.{digits}g}")) >= 1000.0 and exponent < 9:  # 999.99 rounds to 1000
+            exponent += 3
+            scaled = value / 10.0**exponent
+        return f"{number(scaled, digits)}{_SPACE}{_PREFIXES[exponent]}{unit.replace(' ', _SPACE)}"
+    return f"{number(value, digits)}{_SPACE}{unit.replace(' ', _SPACE)}"
+
+
+def cell(value: Cell, digits: int = 4) -> str:
+    """Text of a table cell."""
+    if value is None:
+        return "–"
+    if isinstance(value, Badge):
+        return value.label
+    if isinstance(value, Quantity):
+        return quantity(value.value, value.unit, digits)
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return number(value, digits)
+    return str(value)

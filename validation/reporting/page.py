@@ -1,0 +1,56 @@
+"""The HTML page, by a jinja2 template that escapes everything."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from lumped import GearPair
+from validation.reporting.blocks import Badge, Block, Chapter, Facts, Picture, Quantity, Table
+from validation.reporting.formatting import cell
+from validation.reporting.verdict import Summary
+
+
+def render(
+    pair: GearPair,
+    summary: Summary,
+    chapters: tuple[Chapter, ...],
+    images: Mapping[str, str],
+    data: Mapping[str, Any],
+) -> str:
+    """Return the page as text.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    summary, chapters : content
+    images : figure key -> data URI
+    data : what report.json holds, for dates and mode
+    """
+    environment = Environment(
+        loader=PackageLoader("validation", "templates"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["cell"] = cell
+    environment.filters["kind"] = _kind
+    environment.tests["badge"] = lambda value: isinstance(value, Badge)
+    environment.tests["numeric"] = _is_numeric
+    template = environment.get_template("report.html")
+    return template.render(pair=pair, summary=summary, chapters=chapters, images=images, data=data)
+
+
+def _kind(block: Block) -> str:
+    if isinstance(block, Facts):
+        return "facts"
+    if isinstance(block, Table):
+        return "table"
+    return "picture" if isinstance(block, Picture) else "text"
+
+
+def _is_numeric(value: object) -> bool:
+    return isinstance(value, (int, float, Quantity)) and not isinstance(value, bool)

@@ -1,0 +1,166 @@
+"""Everything the report needs, computed once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+import lumped
+from floquet.gear_pair import GearPairMultipliers, gear_pair_multipliers, stability_chart
+from lumped import GearPair, Geometry, NumericalError
+from lumped.averaged import Mode, modes
+from lumped.friction import friction_profile
+from validation.comparison import CrossCheck, crosscheck
+from validation.metrics import FloatArray, MeshOrders, mesh_orders
+from validation.validity import Flag, speed_drift, validity_flags
+
+Progress = Callable[[float, str], None]
+
+_DISPLACEMENTS = ("dte", "x_p", "x_g", "y_p", "y_g")
+_ORDERS = 10
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How finely the report samples.
+
+    Attributes
+    ----------
+    samples : per mesh cycle of the periodic motion
+    cycles : of the cross-check
+    sweep_speeds : of the response over speed
+    chart_speeds, chart_dampings : nodes of the stability chart
+    chart_rtol : accuracy of the monodromy matrices in the chart
+    """
+
+    samples: int
+    cycles: int
+    sweep_speeds: int
+    chart_speeds: int
+    chart_dampings: int
+    chart_rtol: float
+
+
+FULL = Effort(samples=512, cycles=40, sweep_speeds=240, chart_speeds=81, chart_dampings=13, chart_rtol=1e-8)
+QUICK = Effort(samples=128, cycles=16, sweep_speeds=24, chart_speeds=16, chart_dampings=4, chart_rtol=1e-6)
+
+
+@dataclass(frozen=True, eq=False)
+class Results:
+    """Results of one gear pair, from which the chapters are written."""
+
+    pair: GearPair
+    geometry: Geometry
+    effort: Effort
+    profile: xr.Dataset
+    motion: xr.Dataset
+    orders: Mapping[str, MeshOrders]
+    modes: tuple[Mode, ...]
+    sweep: xr.Dataset
+    check: CrossCheck
+    multipliers: GearPairMultipliers
+    chart: xr.Dataset
+    flags: tuple[Flag, ...]
+
+    @property
+    def operating_rpm(self) -> float:
+        """Pinion speed [rpm]."""
+        return self.pair.operating.pinion_speed * 30.0 / np.pi
+
+    @property
+    def static_load(self) -> float:
+        """Normal load of all pairs at rest, T_p/r_bp [N]."""
+        return self.pair.operating.pinion_torque / self.geometry.base_radius_pinion
+
+
+def compute(pair: GearPair, effort: Effort, progress: Progress) -> Results:
+    """Compute everything for one pair.
+
+    Raises
+    ------
+    NumericalError : a model fails; the text says what to try
+    """
+    progress(0.0, "periodic motion")
+    motion = lumped.steady_state(pair, samples_per_cycle=effort.samples)
+    orders = {n: mesh_orders(motion[n].to_numpy(), effort.samples, _ORDERS) for n in _DISPLACEMENTS}
+    profile = friction_profile(pair)
+    try:
+        found = modes(pair)
+    except NumericalError:  # an overdamped mode has no natural frequency; the report says so
+        found = ()
+    speeds = speed_range(pair, found)
+    progress(0.05, "response over speed")
+    sweep = lumped.speed_sweep(
+        pair,
+        np.linspace(*speeds, effort.sweep_speeds),
+        samples_per_cycle=128,
+        progress=lambda f: progress(0.05 + 0.15 * f, "response over speed"),
+    )
+    check = crosscheck(
+        pair,
+        cycles=effort.cycles,
+        progress=lambda f: progress(0.2 + 0.25 * f, "cross-check against the multibody model"),
+    )
+    progress(0.45, "stability")
+    multipliers = gear_pair_multipliers(pair)
+    chart = stability_chart(
+        pair,
+        {
+            "speed_rpm": _with_point(np.linspace(*speeds, effort.chart_speeds), _rpm(pair)),
+            "damping_ratio": _with_point(
+                np.linspace(0.0, _largest_damping(pair), effort.chart_dampings), pair.mesh.damping_ratio
+            ),
+        },
+        rtol=effort.chart_rtol,
+        progress=lambda done, total: progress(0.45 + 0.5 * done / total, "stability chart"),
+    )
+    g = lumped.geometry(pair)
+    flags = validity_flags(pair, motion, multipliers)
+    flags += (speed_drift(g, check.multibody["exact"]),)
+    return Results(
+        pair=pair,
+        geometry=g,
+        effort=effort,
+        profile=profile,
+        motion=motion,
+        orders=orders,
+        modes=found,
+        sweep=sweep,
+        check=check,
+        multipliers=multipliers,
+        chart=chart,
+        flags=flags,
+    )
+
+
+def speed_range(pair: GearPair, found: tuple[Mode, ...]) -> tuple[float, float]:
+    """Speeds [rpm] that the report covers.
+
+    The upper end is past the operating speed by half and past the speed where the mesh frequency meets the
+    highest mode of the averaged pair, which is also the widest parametric resonance 2 omega/2 below its
+    first tongue.
+    """
+    rpm = _rpm(pair)
+    top = max([1.5 * rpm, *(1.2 * mode.resonant_speed for mode in found)])
+    # Two digits are enough for the end of an axis.
+    digits = 10.0 ** (np.floor(np.log10(top)) - 1)
+    top = float(np.ceil(top / digits) * digits)
+    return min(0.05 * top, 0.5 * rpm), top
+
+
+def _rpm(pair: GearPair) -> float:
+    return float(pair.operating.pinion_speed * 30.0 / np.pi)
+
+
+def _largest_damping(pair: GearPair) -> float:
+    return min(max(0.08, 1.5 * pair.mesh.damping_ratio), 1.0)
+
+
+def _with_point(values: FloatArray, point: float) -> FloatArray:
+    """Axis values with the node nearest to the operating point moved onto it."""
+    nodes = values.copy()
+    nodes[np.argmin(np.abs(nodes - point))] = point
+    return nodes
