@@ -9,7 +9,8 @@ from lumped.parameters import GearPair
 from lumped.path_function import PathFunction
 from lumped.periodic_system import LTVSystem, periodic_system
 from lumped.serialise import json_schema, load_gear_pair, preset_names
-from lumped.solution import simulate, speed_sweep, steady_state
+from lumped.solution import simulate, steady_state
+from lumped.sweep import speed_sweep
 
 __all__ = [
     "Bodies",

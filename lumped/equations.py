@@ -133,7 +133,9 @@ def structure(pair: GearPair, as_printed: Collection[int] = ()) -> Structure:
     )
 
 
-def static_deflection(pair: GearPair, total_stiffness: float) -> FloatArray:
+def static_deflection(
+    pair: GearPair, total_stiffness: float, pinion_torque: float | None = None
+) -> FloatArray:
     """At rest under the mean mesh load T_p / r_bp: the 12 states, rates zero.
 
     The rotations split the wind-up so that J_p theta_p / r_bp + J_g theta_g / r_bg = 0, as two free rotors
@@ -143,11 +145,13 @@ def static_deflection(pair: GearPair, total_stiffness: float) -> FloatArray:
     ----------
     pair : a validated gear pair
     total_stiffness : mean of the mesh stiffness of all pairs [N/m]
+    pinion_torque : T_p [N m]; default the operating point's
     """
     if not math.isfinite(total_stiffness) or total_stiffness <= 0.0:
         raise refuse("mesh.stiffness", total_stiffness, "> 0 N/m", "Give a stiffness that carries the load.")
     g, b = geometry(pair), bodies(pair)
-    load = pair.operating.pinion_torque / g.base_radius_pinion
+    torque = pair.operating.pinion_torque if pinion_torque is None else pinion_torque
+    load = torque / g.base_radius_pinion
     x_p = -load / pair.bearings.pinion.loa_stiffness
     x_g = load / pair.bearings.gear.loa_stiffness
     wind_up = load / total_stiffness - x_p + x_g

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import operator
 from dataclasses import dataclass
+from typing import SupportsIndex
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,24 @@ class ParameterError(SpurcheckError, ValueError):
 def refuse(field: str, value: object, allowed: str, action: str) -> ParameterError:
     """Build the ``ParameterError`` for one refused input (the caller raises it)."""
     return ParameterError([FieldProblem(field, str(value), allowed, action)])
+
+
+def whole_number(field: str, value: object, low: int, high: int) -> int:
+    """Return a count given as any integer type, or refuse it.
+
+    Raises
+    ------
+    ParameterError : not an integer from ``low`` to ``high``
+    """
+    if (
+        isinstance(value, bool)
+        or not isinstance(value, SupportsIndex)
+        or not low <= operator.index(value) <= high
+    ):
+        raise refuse(
+            field, shown(value), f"a whole number, {low} to {high}", "Choose a number in that range."
+        )
+    return operator.index(value)
 
 
 class NumericalError(SpurcheckError, ArithmeticError):

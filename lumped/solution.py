@@ -1,8 +1,9 @@
-"""Solutions of the lumped model as labelled results: transient, periodic motion, speed sweep."""
+"""Solutions of the lumped model as labelled results: transient and periodic motion."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
+import numbers
+from collections.abc import Callable, Collection
 from typing import Any, Literal
 
 import numpy as np
@@ -12,14 +13,14 @@ from scipy.integrate import DOP853
 
 from lumped import kernels
 from lumped.equations import COORDINATES, static_deflection
-from lumped.errors import NumericalError, refuse
+from lumped.errors import NumericalError, refuse, shown, whole_number
 from lumped.gear_geometry import geometry
 from lumped.mesh_cycle import MeshCycle
 from lumped.parameters import GearPair
 from lumped.path_function import FloatArray, PathFunction
 from lumped.periodic_system import LTVSystem, periodic_system
-from lumped.results import dataset, provenance, response
-from lumped.steady import PeriodicSolution, periodic_solution, sample_times, speeds_rad
+from lumped.results import dataset, provenance
+from lumped.steady import PeriodicSolution, periodic_solution, sample_times
 
 Progress = Callable[[float], None]
 Initial = Literal["static", "periodic"]
@@ -62,10 +63,9 @@ def simulate(
     ParameterError : arguments out of range
     NumericalError : the integration fails or is not finite
     """
-    if not 1 <= cycles <= 100_000:
-        raise refuse("cycles", cycles, "1 to 100000", "Choose a number in that range.")
-    if not 1e-13 <= rtol <= 1e-2:
-        raise refuse("rtol", rtol, "1e-13 to 1e-2", "Choose a tolerance in that range.")
+    cycles = whole_number("cycles", cycles, 1, 100_000)
+    if not (isinstance(rtol, numbers.Real) and 1e-13 <= rtol <= 1e-2):
+        raise refuse("rtol", shown(rtol), "1e-13 to 1e-2", "Choose a tolerance in that range.")
     system = periodic_system(pair, "absolute", as_printed=as_printed)
     grid = sample_times(system.period, samples_per_cycle)
     # The torques that hold the mean speed are those of the repaired equations: a printed sign then shows up
@@ -101,9 +101,14 @@ def simulate(
         if progress is not None:
             progress((cycle + 1) / cycles)
     attributes = provenance(
-        pair, cycles=cycles, samples_per_cycle=samples_per_cycle, rtol=rtol, as_printed=tuple(as_printed)
+        pair,
+        cycles=cycles,
+        samples_per_cycle=samples_per_cycle,
+        initial=initial if isinstance(initial, str) else "given",
+        rtol=rtol,
+        as_printed=tuple(as_printed),
     )
-    attributes |= _balance_attributes(pair, balance) | {"model": "lumped"}
+    attributes |= balance_attributes(pair, balance) | {"model": "lumped"}
     return dataset(pair, system, time, states, attributes)
 
 
@@ -118,11 +123,14 @@ def initial_state(
     """
     if isinstance(initial, str):
         if initial == "static":
-            return static_deflection(pair, mean_mesh_stiffness(system.cycle))
+            return static_deflection(pair, mean_mesh_stiffness(system.cycle), balance.pinion_torque)
         if initial == "periodic":
             return np.array(balance.states[0])
         raise refuse("initial", initial, "'static', 'periodic' or 12 states", "Choose one of them.")
-    state = np.array(initial, dtype=float)
+    try:
+        state = np.array(initial, dtype=float)
+    except (TypeError, ValueError):
+        state = np.empty(0)
     if state.shape != (12,) or not np.isfinite(state).all():
         raise refuse(
             "initial",
@@ -221,12 +229,13 @@ def steady_state(
     times = sample_times(system.period, samples_per_cycle)
     solution = periodic_solution(pair, times, system=system)
     attributes = provenance(pair, samples_per_cycle=samples_per_cycle, as_printed=tuple(as_printed))
-    attributes |= _balance_attributes(pair, solution)
+    attributes |= balance_attributes(pair, solution)
     attributes |= {"model": "lumped", "closure": solution.closure, "error_estimate": solution.error}
     return dataset(pair, system, times, solution.states, attributes)
 
 
-def _balance_attributes(pair: GearPair, solution: PeriodicSolution) -> dict[str, Any]:
+def balance_attributes(pair: GearPair, solution: PeriodicSolution) -> dict[str, Any]:
+    """Return the torques that hold the mean speed [N m] and the mesh efficiency, by name."""
     g = geometry(pair)
     efficiency = solution.brake_torque * g.omega_gear / (solution.pinion_torque * g.omega_pinion)
     return {
@@ -234,73 +243,3 @@ def _balance_attributes(pair: GearPair, solution: PeriodicSolution) -> dict[str,
         "pinion_torque": solution.pinion_torque,
         "mesh_efficiency": efficiency,
     }
-
-
-def speed_sweep(
-    pair: GearPair,
-    speeds_rpm: Iterable[float],
-    *,
-    samples_per_cycle: int = 128,
-    progress: Progress | None = None,
-) -> xr.Dataset:
-    """Periodic motion over pinion speed.
-
-    Parameters
-    ----------
-    pair : a validated gear pair; its speed is replaced
-    speeds_rpm : pinion speeds [rpm], positive
-    samples_per_cycle : times per cycle at which extremes are taken
-    progress : called with the finished fraction
-
-    Returns
-    -------
-    xarray.Dataset over ``speed`` [rpm]: peak-to-peak and root mean square (about the mean) of the
-    transmission error and the translations, largest and smallest normal load of a pair in contact, mesh
-    efficiency. A speed without periodic motion is NaN with ``periodic`` False.
-    """
-    speeds = np.asarray(list(speeds_rpm), dtype=float)
-    speeds_rad(speeds)
-    names = ("dte", "x_p", "x_g", "y_p", "y_g")
-    table = {f"{n}_{kind}": np.full(speeds.size, np.nan) for n in names for kind in ("peak_to_peak", "rms")}
-    table |= {
-        n: np.full(speeds.size, np.nan) for n in ("normal_load_max", "normal_load_min", "mesh_efficiency")
-    }
-    periodic = np.zeros(speeds.size, dtype=bool)
-    for j, rpm in enumerate(speeds):
-        at = pair.with_({"operating.pinion_speed": float(rpm)})
-        system = periodic_system(at, "absolute")
-        times = sample_times(system.period, samples_per_cycle)
-        try:
-            solution = periodic_solution(at, times, system=system, estimate_error=False)
-        except NumericalError:
-            continue
-        finally:
-            if progress is not None:
-                progress((j + 1) / speeds.size)
-        periodic[j] = True
-        run = response(at, system, times, solution.states)
-        for name in names:
-            table[f"{name}_peak_to_peak"][j] = np.ptp(run[name])
-            table[f"{name}_rms"][j] = np.std(run[name])
-        loads = run["normal_load"][run["contact"] > 0]
-        table["normal_load_max"][j], table["normal_load_min"][j] = loads.max(), loads.min()
-        table["mesh_efficiency"][j] = _balance_attributes(at, solution)["mesh_efficiency"]
-    return _sweep_dataset(pair, speeds, table, periodic)
-
-
-def _sweep_dataset(
-    pair: GearPair, speeds: FloatArray, table: dict[str, FloatArray], periodic: Any
-) -> xr.Dataset:
-    result = xr.Dataset(attrs=provenance(pair) | {"model": "lumped"})
-    result["speed"] = xr.DataArray(speeds, dims="speed", attrs={"units": "rpm", "long_name": "pinion speed"})
-    for name, values in table.items():
-        unit = "1" if name == "mesh_efficiency" else "N" if name.startswith("normal") else "m"
-        attrs = {
-            "units": unit,
-            "long_name": name.replace("_", " ").replace("dte", "transmission error"),
-        }
-        result[name] = xr.DataArray(values, dims="speed", attrs=attrs)
-    result["periodic"] = xr.DataArray(
-        periodic, dims="speed", attrs={"units": "1", "long_name": "whether a periodic motion exists"}
-    )
-    return result

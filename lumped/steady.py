@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
 
-from lumped.errors import NumericalError, refuse
+from lumped.errors import NumericalError, whole_number
 from lumped.gear_geometry import geometry
 from lumped.parameters import GearPair
 from lumped.path_function import FloatArray
@@ -142,17 +142,7 @@ def sample_times(period: float, samples: int) -> FloatArray:
 
     Raises
     ------
-    ParameterError : fewer than 8 or more than 65536 samples
+    ParameterError : not a whole number from 8 to 65536
     """
-    if not 8 <= samples <= 65536:
-        raise refuse("samples_per_cycle", samples, "8 to 65536", "Choose a number in that range.")
-    return np.asarray(np.arange(samples) * (period / samples), dtype=np.float64)
-
-
-def speeds_rad(speeds_rpm: Iterable[float]) -> FloatArray:
-    """Speeds [rpm] as rad/s, each checked to be positive and finite."""
-    speeds = np.asarray(list(speeds_rpm), dtype=float)
-    for value in speeds:
-        if not (np.isfinite(value) and value > 0.0):
-            raise refuse("speeds_rpm", f"{value:g} rpm", "> 0 rpm", "Give running speeds.")
-    return np.asarray(speeds * (np.pi / 30.0), dtype=np.float64)
+    count = whole_number("samples_per_cycle", samples, 8, 65536)
+    return np.asarray(np.arange(count) * (period / count), dtype=np.float64)

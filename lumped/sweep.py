@@ -1,0 +1,107 @@
+"""Periodic motion of a gear pair over pinion speed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from lumped.errors import NumericalError, refuse, shown
+from lumped.parameters import GearPair
+from lumped.path_function import FloatArray
+from lumped.periodic_system import periodic_system
+from lumped.results import provenance, response
+from lumped.solution import Progress, balance_attributes
+from lumped.steady import periodic_solution, sample_times
+
+
+def speed_sweep(
+    pair: GearPair,
+    speeds_rpm: Iterable[float],
+    *,
+    samples_per_cycle: int = 128,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Periodic motion over pinion speed.
+
+    Parameters
+    ----------
+    pair : a validated gear pair; its speed is replaced
+    speeds_rpm : pinion speeds [rpm], positive
+    samples_per_cycle : times per cycle at which extremes are taken
+    progress : called with the finished fraction
+
+    Returns
+    -------
+    xarray.Dataset over ``speed`` [rpm]: peak-to-peak and root mean square (about the mean) of the
+    transmission error and the translations, largest and smallest normal load of a pair in contact, mesh
+    efficiency. A speed without periodic motion is NaN with ``periodic`` False.
+
+    Raises
+    ------
+    ParameterError : a speed or the number of samples is out of range, before any work starts
+    """
+    speeds = running_speeds(speeds_rpm)
+    pairs = [pair.with_({"operating.pinion_speed": float(rpm)}) for rpm in speeds]
+    names = ("dte", "x_p", "x_g", "y_p", "y_g")
+    table = {f"{n}_{kind}": np.full(speeds.size, np.nan) for n in names for kind in ("peak_to_peak", "rms")}
+    table |= {
+        n: np.full(speeds.size, np.nan) for n in ("normal_load_max", "normal_load_min", "mesh_efficiency")
+    }
+    periodic = np.zeros(speeds.size, dtype=bool)
+    for j, at in enumerate(pairs):
+        system = periodic_system(at, "absolute")
+        times = sample_times(system.period, samples_per_cycle)
+        try:
+            solution = periodic_solution(at, times, system=system, estimate_error=False)
+        except NumericalError:
+            continue
+        finally:
+            if progress is not None:
+                progress((j + 1) / speeds.size)
+        periodic[j] = True
+        run = response(at, system, times, solution.states)
+        for name in names:
+            table[f"{name}_peak_to_peak"][j] = np.ptp(run[name])
+            table[f"{name}_rms"][j] = np.std(run[name])
+        loads = run["normal_load"][run["contact"] > 0]
+        table["normal_load_max"][j], table["normal_load_min"][j] = loads.max(), loads.min()
+        table["mesh_efficiency"][j] = balance_attributes(at, solution)["mesh_efficiency"]
+    return _sweep_dataset(pair, speeds, table, periodic)
+
+
+def _sweep_dataset(
+    pair: GearPair, speeds: FloatArray, table: dict[str, FloatArray], periodic: Any
+) -> xr.Dataset:
+    result = xr.Dataset(attrs=provenance(pair) | {"model": "lumped"})
+    result["speed"] = xr.DataArray(speeds, dims="speed", attrs={"units": "rpm", "long_name": "pinion speed"})
+    for name, values in table.items():
+        unit = "1" if name == "mesh_efficiency" else "N" if name.startswith("normal") else "m"
+        attrs = {
+            "units": unit,
+            "long_name": name.replace("_", " ").replace("dte", "transmission error"),
+        }
+        result[name] = xr.DataArray(values, dims="speed", attrs=attrs)
+    result["periodic"] = xr.DataArray(
+        periodic, dims="speed", attrs={"units": "1", "long_name": "whether a periodic motion exists"}
+    )
+    return result
+
+
+def running_speeds(speeds_rpm: Iterable[float]) -> FloatArray:
+    """Return speeds [rpm] as an array, each checked to be positive and finite.
+
+    Raises
+    ------
+    ParameterError : something else than positive finite numbers
+    """
+    try:
+        speeds = np.asarray(list(speeds_rpm), dtype=float).reshape(-1)
+    except (TypeError, ValueError):
+        raise refuse("speeds_rpm", shown(speeds_rpm), "numbers > 0 rpm", "Give running speeds.") from None
+    for value in speeds:
+        if not (np.isfinite(value) and value > 0.0):
+            raise refuse("speeds_rpm", f"{value:g} rpm", "> 0 rpm", "Give running speeds.")
+    return speeds

@@ -1,0 +1,81 @@
+"""Is a sweep over speed the periodic solution at each of its speeds?"""
+
+import math
+
+import numpy as np
+import pytest
+
+from lumped import ParameterError, speed_sweep, steady_state
+
+SPEEDS = [700.0, 2300.0, 4875.0, 9000.0]
+
+
+@pytest.fixture(scope="module")
+def sweep(unequal):
+    return speed_sweep(unequal, SPEEDS, samples_per_cycle=64)
+
+
+def test_every_speed_is_its_own_periodic_solution(sweep, unequal):
+    np.testing.assert_array_equal(sweep["speed"], SPEEDS)
+    assert bool(sweep["periodic"].all())
+    for j, speed in enumerate(SPEEDS):
+        run = steady_state(unequal.with_(operating__pinion_speed=speed), samples_per_cycle=64)
+        for name in ("dte", "x_p", "x_g", "y_p", "y_g"):
+            values = run[name].to_numpy()
+            assert float(sweep[f"{name}_peak_to_peak"][j]) == pytest.approx(np.ptp(values), rel=1e-12)
+            assert float(sweep[f"{name}_rms"][j]) == pytest.approx(
+                math.sqrt(np.mean((values - values.mean()) ** 2)), rel=1e-12
+            )
+        loads = run["normal_load"].to_numpy()[run["contact"].to_numpy() > 0]
+        assert float(sweep["normal_load_max"][j]) == loads.max()
+        assert float(sweep["normal_load_min"][j]) == loads.min()
+        assert float(sweep["mesh_efficiency"][j]) == pytest.approx(run.attrs["mesh_efficiency"], rel=1e-14)
+
+
+def test_labels(sweep):
+    for name in sweep.variables:
+        assert sweep[name].attrs["units"], name
+        assert sweep[name].attrs["long_name"], name
+    assert sweep["speed"].attrs["units"] == "rpm"
+    assert sweep["mesh_efficiency"].attrs["units"] == "1"
+
+
+def test_a_speed_without_periodic_motion_is_marked(nasa):
+    """Undamped and on the third subharmonic of the bearing's own frequency: NaN, and said so."""
+    pair = nasa.with_(
+        {
+            "friction.law": "none",
+            "mesh.damping_ratio": 0.0,
+            **{f"bearings.{g}.{d}_damping_ratio": 0.0 for g in ("pinion", "gear") for d in ("loa", "oloa")},
+            "pinion.mass": 0.3,
+            "gear.mass": 0.3,
+        }
+    )
+    speed = math.sqrt(1e8 / 0.3) * 60 / (2 * math.pi * 28) / 3
+    result = speed_sweep(pair, [0.97 * speed, speed], samples_per_cycle=8)
+    assert result["periodic"].to_numpy().tolist() == [True, False]
+    assert np.isnan(result["dte_rms"][1])
+    assert np.isfinite(result["dte_rms"][0])
+
+
+def test_progress_and_empty_sweep(nasa):
+    seen = []
+    speed_sweep(nasa, [1000, 2000], samples_per_cycle=8, progress=seen.append)
+    assert seen == [0.5, 1.0]
+    assert speed_sweep(nasa, []).sizes["speed"] == 0
+
+
+@pytest.mark.parametrize(
+    "speeds", [[0.0], [-1000.0], [1000.0, math.nan], [math.inf], ["fast"], [None], 3.0, None]
+)
+def test_speeds_are_positive_numbers(nasa, speeds):
+    with pytest.raises(ParameterError, match="speed"):
+        speed_sweep(nasa, speeds)
+
+
+def test_no_speed_beyond_the_schema_is_computed_first(nasa):
+    """A refused speed at the end is refused before the others have cost any time."""
+    seen = []
+    with pytest.raises(ParameterError, match="speed"):
+        speed_sweep(nasa, [1000, 1e9], samples_per_cycle=8, progress=seen.append)
+    assert seen == []
