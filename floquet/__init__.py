@@ -1,27 +1,37 @@
 """Floquet theory for any linear system with periodic coefficients, and its application to the gear pair."""
 
 from floquet.chart import chart, load_chart, save_chart, scan
-from floquet.gear_axes import GEAR_AXES
+from floquet.fast import FastMonodromy, FastMultipliers, fast_monodromies, fast_multipliers
 from floquet.gear_pair import (
+    GEAR_AXES,
     GearPairMultipliers,
+    gear_block,
     gear_pair_multipliers,
     gear_pair_system,
     stability_chart,
 )
 from floquet.monodromy import Monodromy, monodromy
 from floquet.propagators import PROPAGATORS, Propagator
+from floquet.rank_one import ModalForm, RankOneSystem
 from floquet.spectrum import Spectrum
 from floquet.system import PeriodicSystem
 
 __all__ = [
     "GEAR_AXES",
     "PROPAGATORS",
+    "FastMonodromy",
+    "FastMultipliers",
     "GearPairMultipliers",
+    "ModalForm",
     "Monodromy",
     "PeriodicSystem",
     "Propagator",
+    "RankOneSystem",
     "Spectrum",
     "chart",
+    "fast_monodromies",
+    "fast_multipliers",
+    "gear_block",
     "gear_pair_multipliers",
     "gear_pair_system",
     "load_chart",

@@ -1,190 +1,22 @@
-"""Multipliers of a gear pair: the 6 states that feed back, the off-line-of-action block in closed form."""
+"""The gear pair in Floquet theory: where the engine, which knows no gears, meets the lumped model."""
 
-from __future__ import annotations
+from floquet.gear_axes import GEAR_AXES, GearVariation
+from floquet.gear_block import gear_block
+from floquet.gear_chart import stability_chart
+from floquet.gear_multipliers import (
+    GearPairMultipliers,
+    gear_pair_multipliers,
+    gear_pair_system,
+    mean_mesh_stiffness,
+)
 
-from dataclasses import dataclass
-from functools import partial
-
-import numpy as np
-import xarray as xr
-
-from floquet.chart import Axes, Progress, checked_axes, scan
-from floquet.gear_axes import GearVariation, gear_axis, vary
-from floquet.monodromy import monodromy
-from floquet.propagators import Propagator
-from floquet.spectrum import Spectrum
-from floquet.system import ComplexArray, FloatArray, PeriodicSystem
-from lumped.parameters import GearPair
-from lumped.periodic_system import Form, LTVSystem, periodic_system
-
-
-@dataclass(frozen=True, eq=False)
-class GearPairMultipliers(Spectrum):
-    """Multipliers of a gear pair over one mesh cycle, 10 in all.
-
-    Attributes
-    ----------
-    feedback : (6,) of q = r_bp theta_p - r_bg theta_g, x_p, x_g, which alone can become unstable
-    oloa : (4,) of y_p, y_g, two each: driven by friction without acting back, so those of their bearings
-    rigid_body : (2,) of the free rotation, a defective double +1 that the relative coordinate q removes; no
-        part of ``multipliers``, the radius or the verdict, since it means a free choice of angle and speed
-    liouville_residual : of the feedback block, see `Monodromy`
-    """
-
-    feedback: ComplexArray
-    oloa: ComplexArray
-    rigid_body: ComplexArray
-    liouville_residual: float
-
-
-def gear_pair_system(source: GearPair | GearVariation, form: Form = "relative") -> PeriodicSystem:
-    """Return the gear pair (or a variation of it) as a `PeriodicSystem`.
-
-    Parameters
-    ----------
-    source : the pair
-    form : "relative" (10 states), "feedback" (6) or "absolute" (12), as in ``lumped.periodic_system``
-    """
-    variation = GearVariation(source) if isinstance(source, GearPair) else source
-    cycle = variation.cycle()
-    system = periodic_system(variation.pair, form, cycle=cycle)
-    factor = variation.stiffness_variation
-    coefficients = system.matrices if factor == 1.0 else _VariedStiffness(system, factor)
-    return PeriodicSystem(coefficients, system.period, tuple(system.breakpoints), vectorized=True)
-
-
-@dataclass(frozen=True, eq=False)
-class _VariedStiffness:
-    """A(t) with the total mesh stiffness k replaced by mean + factor (k - mean).
-
-    Every pair keeps its share of k, so k_i is multiplied by f = (mean + factor (k - mean))/k and c_i, which
-    goes with sqrt(k_i), by sqrt(f).
-    """
-
-    system: LTVSystem
-    factor: float
-
-    def __call__(self, times: FloatArray) -> FloatArray:
-        system = self.system
-        total = system.cycle.sample(times).stiffness.sum(axis=0)
-        mean = mean_mesh_stiffness(system)
-        f = (mean + self.factor * (total - mean)) / total
-        gain = system.gain(times)
-        m = len(system.coordinates)
-        A = np.repeat(system.constant[None], times.size, axis=0)
-        A[:, m:, :m] += (f[:, None] * gain.stiffness)[:, :, None] * system.deflection
-        A[:, m:, m:] += (np.sqrt(f)[:, None] * gain.damping)[:, :, None] * system.deflection
-        return A
-
-
-def mean_mesh_stiffness(system: LTVSystem) -> float:
-    """Mean over the mesh cycle of the total stiffness: integral of k_i over the path, over one base pitch."""
-    k = system.cycle.elements.stiffness
-    low, high = k.interval
-    return k.mean() * (high - low) / system.cycle.geometry.base_pitch
-
-
-def oloa_multipliers(system: LTVSystem) -> ComplexArray:
-    """Multipliers (4,) of the motions y_p, y_g off the line of action, closed form.
-
-    m y'' + c y' + K y = 0 for each: exp(s T) with s = -c/(2 m) +- sqrt((c/(2 m))^2 - K/m).
-    """
-    s = system.structure
-    decay = s.damping[4:] / (2.0 * s.mass[4:])
-    root = np.sqrt((decay**2 - s.stiffness[4:] / s.mass[4:]).astype(complex))
-    exponents = np.concatenate([-decay + root, -decay - root])
-    return np.asarray(np.exp(exponents * system.period))
-
-
-def gear_pair_multipliers(
-    source: GearPair | GearVariation, rtol: float = 1e-10, *, method: str | Propagator = "gauss"
-) -> GearPairMultipliers:
-    """Floquet multipliers of a gear pair over one mesh cycle.
-
-    The equations of y_p and y_g contain q, x_p, x_g but not the other way round, so the 10 x 10 matrix is
-    block triangular: its multipliers are those of the 6 x 6 feedback block and of the bearings of y.
-
-    Parameters
-    ----------
-    source : a gear pair, or a variation from a chart
-    rtol, method : as in `monodromy`
-
-    Returns
-    -------
-    GearPairMultipliers
-
-    Raises
-    ------
-    NumericalError
-        As in `monodromy`.
-    """
-    variation = GearVariation(source) if isinstance(source, GearPair) else source
-    block = monodromy(gear_pair_system(variation, "feedback"), rtol, method=method)
-    oloa = oloa_multipliers(periodic_system(variation.pair, "relative"))
-    values = np.concatenate([block.multipliers, oloa])
-    # The closed form is exact up to the rounding of the exponent s T.
-    angle = np.abs(np.log(np.where(oloa == 0.0, 1e-300, oloa)))
-    errors = np.concatenate([block.multiplier_errors, 4e-16 * (1.0 + angle) * np.abs(oloa)])
-    order = np.argsort(-np.abs(values), kind="stable")
-    return GearPairMultipliers(
-        multipliers=values[order],
-        multiplier_errors=errors[order],
-        period=block.period,
-        feedback=block.multipliers,
-        oloa=oloa,
-        rigid_body=np.ones(2, dtype=complex),
-        liouville_residual=block.liouville_residual,
-    )
-
-
-def _evaluate(pair: GearPair, rtol: float, method: str | Propagator, point: dict[str, float]) -> Spectrum:
-    return gear_pair_multipliers(vary(pair, point), rtol, method=method)
-
-
-def stability_chart(
-    pair: GearPair,
-    axes: Axes,
-    *,
-    friction_law: str | None = None,
-    rtol: float = 1e-10,
-    method: str | Propagator = "gauss",
-    n_jobs: int = 1,
-    progress: Progress | None = None,
-) -> xr.Dataset:
-    """Stability chart of a gear pair.
-
-    Parameters
-    ----------
-    pair : the gear pair
-    axes : name -> values, names out of `GEAR_AXES`: speed_rpm, damping_ratio (mesh), friction_coefficient,
-        torque, stiffness_variation, bearing_stiffness, in their stated units
-    friction_law : law to use instead of the pair's: "coulomb" for a constant |mu| that changes sign at the
-        pitch point, the others for mu that varies along the path. With an axis friction_coefficient the law
-        is scaled to that mean of |mu|.
-    rtol, method : as in `monodromy`
-    n_jobs, progress : as in `floquet.chart.scan`
-
-    Returns
-    -------
-    xarray.Dataset over the axes: spectral_radius, error, verdict, multipliers, multiplier_errors
-
-    Raises
-    ------
-    ParameterError
-        Unknown axis, or values outside the range of an axis.
-    NumericalError
-        A point fails; the message names it.
-    """
-    grid = checked_axes(axes)
-    for name, values in grid.items():
-        gear_axis(name).check(name, values)
-    if friction_law is not None:
-        pair = pair.with_({"friction.law": friction_law})
-    dataset = scan(partial(_evaluate, pair, rtol, method), grid, n_jobs=n_jobs, progress=progress)
-    for name in grid:
-        axis = gear_axis(name)
-        dataset[name].attrs.update(units=axis.units, long_name=axis.long_name)
-    dataset.attrs.update(
-        title=f"stability chart of {pair.name}", friction_law=pair.friction.law, method=str(method), rtol=rtol
-    )
-    return dataset
+__all__ = [
+    "GEAR_AXES",
+    "GearPairMultipliers",
+    "GearVariation",
+    "gear_block",
+    "gear_pair_multipliers",
+    "gear_pair_system",
+    "mean_mesh_stiffness",
+    "stability_chart",
+]

@@ -24,15 +24,15 @@ class Propagation:
     ----------
     times : (m+1,) ends of the substeps [s], all switches among them
     steps : (m, n, n) transition matrix of each substep
-    local_errors : (m,) estimated Frobenius norm of the error of each step matrix, truncation and rounding
-    rounding : (m,) the part of ``local_errors`` that no smaller step can remove
+    truncation : (m,) estimated Frobenius norm of the truncation error of each step matrix
+    rounding : (m,) the same of its rounding error, which no smaller step can remove
     scaling : (n,) d, powers of two (`PeriodicSystem.balancing`)
     evaluations : how many times A was evaluated
     """
 
     times: FloatArray
     steps: FloatArray
-    local_errors: FloatArray
+    truncation: FloatArray
     rounding: FloatArray
     scaling: FloatArray
     evaluations: int
@@ -164,7 +164,7 @@ def propagate(
     return Propagation(
         times=np.append(t[order], system.period),
         steps=np.concatenate([part[1] for part in done])[order],
-        local_errors=np.concatenate([part[2] for part in done])[order] + rounding,
+        truncation=np.concatenate([part[2] for part in done])[order],
         rounding=rounding,
         scaling=d,
         evaluations=evaluations,
@@ -211,5 +211,7 @@ def error_of_product(propagation: Propagation) -> tuple[FloatArray, float, float
         )
     # Multiplying m factors rounds m times; n eps per product.
     product = 2.0 * _EPS * math.sqrt(n) * np.linalg.norm(steps, axis=(1, 2))
-    rounding = float(np.dot(weight, propagation.rounding + product))
-    return M, float(np.dot(weight, propagation.local_errors + product)), rounding
+    # Rounding errors of different steps are independent, unlike truncation errors, and add up like their
+    # squares; 4 is four standard deviations even if every single estimate were exact.
+    rounding = 4.0 * float(np.linalg.norm(weight * (propagation.rounding + product)))
+    return M, float(np.dot(weight, propagation.truncation)) + rounding, rounding

@@ -6,7 +6,6 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from scipy.linalg import expm
 
 from floquet import PeriodicSystem
 
@@ -37,10 +36,13 @@ def triangle(t: np.ndarray, period: float) -> tuple[np.ndarray, np.ndarray]:
 def lyapunov_system(
     B: np.ndarray, S: np.ndarray, period: float, shape: str = "sine"
 ) -> tuple[PeriodicSystem, np.ndarray]:
-    """A system that the change of variables x = exp(g(t) S) y turns into y' = B y, and its exact Phi(T, 0).
+    """A system that the change of variables x = (I + g(t) N) y turns into y' = B y, and Phi(T, 0).
 
-    With g periodic and g(0) = 0:  A(t) = g'(t) S + exp(g S) B exp(-g S)  and  Phi(T, 0) = exp(B T).
+    """A system that x = (I + g(t) N) y turns into the constant y' = B y, and its exact Phi(T, 0).
+    periodic and g(0) = 0:  A(t) = g'(t) N + (I + g N) B (I - g N)  and  Phi(T, 0) = exp(B T).
     """
+    a, b = S[:, 0], S[:, 1] - S[:, 0] * (S[:, 0] @ S[:, 1]) / (S[:, 0] @ S[:, 0])
+    N = np.outer(a, b)
 
     def A(t: np.ndarray) -> np.ndarray:
         if shape == "sine":
@@ -48,8 +50,9 @@ def lyapunov_system(
             g, slope = np.sin(w * t), w * np.cos(w * t)
         else:
             g, slope = triangle(t, period)
-        P, Q = expm(g[:, None, None] * S), expm(-g[:, None, None] * S)
-        return slope[:, None, None] * S + P @ B @ Q
+        gN = g[:, None, None] * N
+        # (g' N) (I + g N)^-1 = g' N because N^2 = 0.
+        return slope[:, None, None] * N + (np.eye(len(B)) + gN) @ B @ (np.eye(len(B)) - gN)
 
     breaks = () if shape == "sine" else (period / 2,)
     return PeriodicSystem(A, period, breaks, vectorized=True), accurate_expm(B * period)

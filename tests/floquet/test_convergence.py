@@ -9,9 +9,9 @@ from floquet import PROPAGATORS, PeriodicSystem
 from floquet.propagation import propagate_fixed
 from floquet.propagators import GaussLegendre, Propagator, propagator
 
-# Numbers of steps at which the error is well above rounding and already asymptotic.
-STEPS = {"gauss": 3, "gauss8": 6, "gauss6": 12, "gauss4": 24, "magnus6": 12, "magnus4": 24, "expm": 64,
-         "rk4": 64, "dop853": 12}  # fmt: skip
+# Steps over the period at which the error is well above rounding and already asymptotic.
+STEPS = {"gauss": 2, "gauss8": 8, "gauss6": 8, "gauss4": 16, "magnus6": 8, "magnus4": 16, "expm": 32,
+         "rk4": 64, "dop853": 8}  # fmt: skip
 
 
 def observed_order(
@@ -26,28 +26,30 @@ def observed_order(
 def test_order_on_smooth_coefficients(name: str, known_system) -> None:
     rng = np.random.default_rng(11)
     B, S = rng.normal(size=(2, 3, 3))
-    system, exact = known_system(0.5 * B, 0.3 * S, 2.0)
+    system, exact = known_system(0.5 * B, 0.45 * S, 4.0)
     method = propagator(name)
-    # 0.35: the next term of the error series at these coarse steps.
-    assert observed_order(method, system, exact, STEPS[name], 2) == pytest.approx(method.order, abs=0.35)
+    # 0.3: the next term of the error series at these coarse steps.
+    assert observed_order(method, system, exact, STEPS[name], 2) == pytest.approx(method.order, abs=0.3)
 
 
 @pytest.mark.parametrize("stages", [1, 2, 3, 4, 5])
 def test_order_of_collocation_is_twice_its_stages(stages: int, known_system) -> None:
     rng = np.random.default_rng(12)
     B, S = rng.normal(size=(2, 3, 3))
-    system, exact = known_system(0.5 * B, 0.3 * S, 2.0)
-    assert observed_order(GaussLegendre(stages), system, exact, 8, 2) == pytest.approx(2 * stages, abs=0.35)
+    system, exact = known_system(0.5 * B, 0.45 * S, 4.0)
+    assert observed_order(GaussLegendre(stages), system, exact, 4 if stages > 1 else 32, 2) == pytest.approx(
+        2 * stages, abs=0.3
+    )
 
 
 @pytest.mark.parametrize("name", sorted(PROPAGATORS))
 def test_order_survives_declared_switches(name: str, known_system) -> None:
     rng = np.random.default_rng(13)
     B, S = rng.normal(size=(2, 3, 3))
-    system, exact = known_system(0.5 * B, 0.4 * S, 2.0, "triangle")
+    system, exact = known_system(0.5 * B, 0.6 * S, 7.0, "triangle")
     method = propagator(name)
     n = max(1, STEPS[name] // 2)  # per segment
-    assert observed_order(method, system, exact, n, 2) == pytest.approx(method.order, abs=0.35)
+    assert observed_order(method, system, exact, n, 2) == pytest.approx(method.order, abs=0.3)
 
 
 @pytest.mark.parametrize("name", sorted(PROPAGATORS))

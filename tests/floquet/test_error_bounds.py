@@ -15,8 +15,17 @@ def distances(computed: np.ndarray, exact: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("shape", ["sine", "triangle"])
-@pytest.mark.parametrize("rtol", [1e-4, 1e-7, 1e-10])
-@pytest.mark.parametrize("method", ["gauss", "gauss8", "magnus6", "dop853"])
+@pytest.mark.parametrize(
+    ("method", "rtol"),
+    [
+        ("gauss", 1e-4),
+        ("gauss", 1e-7),
+        ("gauss", 1e-10),
+        ("gauss8", 1e-7),
+        ("magnus6", 1e-5),
+        ("dop853", 1e-8),
+    ],
+)
 def test_bounds_hold_on_random_systems(known_system, method: str, rtol: float, shape: str) -> None:
     rng = np.random.default_rng(101)
     for _ in range(10):

@@ -138,7 +138,8 @@ def test_chart_axes_are_labelled_and_match_single_points(pair) -> None:
     result = stability_chart(pair, axes)
     assert result.speed_rpm.attrs == {"units": "rpm", "long_name": "pinion speed"}
     one = gear_pair_multipliers(pair.with_(operating__pinion_speed=6000, mesh__damping_ratio=0.01))
-    assert result.spectral_radius.sel(speed_rpm=6000, damping_ratio=0.01).item() == one.spectral_radius
+    at = result.sel(speed_rpm=6000, damping_ratio=0.01)
+    assert abs(at.spectral_radius.item() - one.spectral_radius) <= at.error.item() + one.error
     assert set(result.data_vars) >= {"spectral_radius", "error", "multipliers"}
 
 

@@ -1,0 +1,154 @@
+"""Monodromy matrices of rank-one feedback systems by the compiled Taylor kernel, for many points at once."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from floquet.kernels.eigen import spectra
+from floquet.kernels.taylor import propagate_points
+from floquet.multipliers import multipliers_with_bounds
+from floquet.rank_one import RankOneSystem
+from floquet.system import ComplexArray, FloatArray
+from lumped.errors import NumericalError, refuse
+
+_T = TypeVar("_T")
+
+_ANGLE = 5.0  # majorant exponent per step: about 35 terms at 1e-13, rounding amplified at most exp(5)
+
+
+@dataclass(frozen=True, eq=False)
+class FastMonodromy:
+    """Monodromy matrices of N variants of one system, in energy coordinates.
+
+    Attributes
+    ----------
+    matrices : (N, 2m, 2m) in x = (omega eta, eta') of `ModalForm`
+    errors : (N,) bound on the Frobenius norm of the error of each: majorant of the truncation, misfit of the
+        polynomials, rounding
+    forced : (N, 2m) state at T from rest under the constant forcing
+    """
+
+    matrices: FloatArray
+    errors: FloatArray
+    forced: FloatArray
+
+
+def fast_monodromies(
+    system: RankOneSystem,
+    periods: npt.ArrayLike | None = None,
+    damping_factors: npt.ArrayLike = 1.0,
+    *,
+    tolerance: float = 1e-13,
+    threads: int | None = None,
+    max_steps: int = 20_000,
+) -> FastMonodromy:
+    """Monodromy matrices for many periods T and factors on wd.
+
+    Parameters
+    ----------
+    system : the system; its phases, w and wd are taken as independent of T
+    periods : (N,) [s]; default the system's own
+    damping_factors : (N,) or scalar, factor on wd
+    tolerance : largest neglected remainder of one step, in units of the energy norm
+    threads : default one per core
+    max_steps : steps per period at most
+
+    Raises
+    ------
+    NumericalError
+        Too many steps or terms, or a result that is not finite.
+    """
+    if system.v.size > 3:
+        raise refuse("coordinates", system.v.size, "at most 3", "Use floquet.monodromy for larger systems.")
+    T = np.atleast_1d(np.asarray(system.period if periods is None else periods, dtype=float))
+    factors = np.ascontiguousarray(np.broadcast_to(np.asarray(damping_factors, dtype=float), T.shape))
+    form = system.modal()
+    n = 2 * system.v.size
+    M, bound, forced = np.empty((T.size, n, n)), np.empty(T.size), np.empty((T.size, n))
+    pieces = system.phases.size - 1
+    f = np.ascontiguousarray(np.broadcast_to(form.forcing[None, :, None], (pieces, n // 2, 1)))
+    degrees = (form.w.shape[2] - 1, form.wd.shape[2] - 1, 0)
+
+    def run(part: slice) -> int:
+        failed = propagate_points(
+            system.phases, form.w, form.wd, f, degrees, system.fit_errors, factors[part], form.C, form.omega,
+            form.v, T[part], tolerance, _ANGLE, max_steps, M[part], bound[part], forced[part],
+        )  # fmt: skip
+        return -1 if failed < 0 else part.start + failed
+
+    failures = in_threads(run, T.size, threads)
+    bad = [index for index in failures if index >= 0]
+    if bad:
+        raise NumericalError(
+            f"period {T[bad[0]]:g} s needs more than {max_steps} Taylor steps, or a step more terms than the "
+            "kernel has. Raise max_steps, loosen the tolerance, or raise the speed."
+        )
+    if not np.isfinite(M).all():
+        raise NumericalError(
+            "the state grows beyond floating point within one period; shorten the period (raise the speed)."
+        )
+    return FastMonodromy(M, bound, forced)
+
+
+@dataclass(frozen=True, eq=False)
+class FastMultipliers:
+    """Multipliers of N variants of one system.
+
+    Attributes
+    ----------
+    multipliers, errors : (N, 2m) with a bound on the error of each, in no particular order
+    matrix_errors : (N,) bound on the error of the monodromy matrix in energy coordinates
+    """
+
+    multipliers: ComplexArray
+    errors: FloatArray
+    matrix_errors: FloatArray
+
+
+def fast_multipliers(
+    system: RankOneSystem,
+    periods: npt.ArrayLike | None = None,
+    damping_factors: npt.ArrayLike = 1.0,
+    *,
+    tolerance: float = 1e-13,
+    threads: int | None = None,
+    max_steps: int = 20_000,
+) -> FastMultipliers:
+    """Floquet multipliers for many periods and factors on wd, with error bounds.
+
+    Parameters and errors as in `fast_monodromies`. Where multipliers are so close together that the quick
+    bound of the kernel does not separate them (defective ones at the edges of tongues),
+    `multipliers_with_bounds` decides.
+    """
+    flow = fast_monodromies(
+        system, periods, damping_factors, tolerance=tolerance, threads=threads, max_steps=max_steps
+    )
+    shape = flow.matrices.shape[:2]
+    values, radii = np.empty(shape, dtype=complex), np.empty(shape)
+    safe = np.empty(shape[0], dtype=bool)
+
+    def run(part: slice) -> None:
+        spectra(flow.matrices[part], flow.errors[part], values[part], radii[part], safe[part])
+
+    in_threads(run, shape[0], threads)
+    for point in np.flatnonzero(~safe):
+        values[point], radii[point] = multipliers_with_bounds(flow.matrices[point], float(flow.errors[point]))
+    return FastMultipliers(values, radii, flow.errors)
+
+
+def in_threads(run: Callable[[slice], _T], size: int, threads: int | None = None) -> list[_T]:
+    """Call ``run`` on slices of range(size) by threads (the kernels release the interpreter lock)."""
+    count = threads or os.cpu_count() or 1
+    chunk = max(1, min(512, -(-size // count)))
+    parts = [slice(first, min(first + chunk, size)) for first in range(0, size, chunk)]
+    if count == 1 or len(parts) == 1:
+        return [run(part) for part in parts]
+    with ThreadPoolExecutor(count) as pool:
+        return list(pool.map(run, parts))

@@ -1,0 +1,1 @@
+"""Compiled kernels: Taylor propagation of rank-one feedback systems, small eigenvalue problems."""
