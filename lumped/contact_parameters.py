@@ -11,23 +11,46 @@ from pydantic_core import PydanticCustomError
 from lumped.errors import FieldProblem, ParameterError, shown
 from lumped.section import Section
 from lumped.units import Quantity
+from lumped.viscosity_grade import ISO_VG_MIDPOINT
 
 
 class ViscosityLaw(Section):
-    """Dynamic viscosity from two kinematic viscosities, density and temperature (Walther, ASTM D341)."""
+    """Dynamic viscosity from temperature (Walther, ASTM D341): of an ISO VG grade, or of two viscosities."""
 
-    kinematic_viscosity_40: Annotated[float, Quantity("mm**2/s", at_least=2, at_most=2e4)] = Field(
-        description="kinematic viscosity at 40 degC"
+    iso_vg: Annotated[int, Field(strict=True)] | None = Field(
+        None, description="ISO 3448 viscosity grade, e.g. 100; or give the two kinematic viscosities"
     )
-    kinematic_viscosity_100: Annotated[float, Quantity("mm**2/s", at_least=1, at_most=2e3)] = Field(
-        description="kinematic viscosity at 100 degC"
+    viscosity_index: Annotated[float, Quantity("1", at_least=0, at_most=400)] = Field(
+        95.0, description="viscosity index of the grade, ASTM D2270"
     )
+    kinematic_viscosity_40: Annotated[
+        float | None, Quantity("mm**2/s", at_least=2, at_most=2e4, optional=True)
+    ] = Field(None, description="kinematic viscosity at 40 degC, instead of iso_vg")
+    kinematic_viscosity_100: Annotated[
+        float | None, Quantity("mm**2/s", at_least=1, at_most=2e3, optional=True)
+    ] = Field(None, description="kinematic viscosity at 100 degC, instead of iso_vg")
     density: Annotated[float, Quantity("kg/m**3", at_least=500, at_most=1500)] = Field(
         870.0, description="density at 15 degC"
     )
     temperature: Annotated[float, Quantity("degC", at_least=-40, at_most=200)] = Field(
         description="oil temperature in the contact inlet"
     )
+
+    @model_validator(mode="after")
+    def _grade_or_two_points(self) -> Self:
+        points = (self.kinematic_viscosity_40, self.kinematic_viscosity_100)
+        given = [v is not None for v in points]
+        if not (all(given) if self.iso_vg is None else not any(given)):
+            allowed = "iso_vg, or kinematic_viscosity_40 and kinematic_viscosity_100"
+            raise ParameterError(
+                [FieldProblem("iso_vg", shown(self.iso_vg), allowed, "Give one of the two descriptions.")]
+            )
+        if self.iso_vg is not None and self.iso_vg not in ISO_VG_MIDPOINT:
+            grades = ", ".join(str(grade) for grade in ISO_VG_MIDPOINT)
+            raise ParameterError(
+                [FieldProblem("iso_vg", str(self.iso_vg), f"a grade of ISO 3448: {grades}", "Take a grade.")]
+            )
+        return self
 
 
 class Lubricant(Section):

@@ -5,18 +5,13 @@ Kinematic viscosities in mm^2/s (cSt) and temperatures in degC, the units of the
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.errors import refuse
 from lumped.validity import FloatArray, checked
 
-if TYPE_CHECKING:
-    from lumped.parameters import Lubricant
-
-_ZERO_CELSIUS = 273.15
+ZERO_CELSIUS = 273.15
 
 
 def walther_constants(
@@ -51,7 +46,7 @@ def walther_constants(
             "Check the two points of the oil's data sheet.",
         )
     level = np.log10(np.log10(nu + 0.7))
-    kelvin = np.log10(np.array([temperature_1, temperature_2]) + _ZERO_CELSIUS)
+    kelvin = np.log10(np.array([temperature_1, temperature_2]) + ZERO_CELSIUS)
     slope = float((level[0] - level[1]) / (kelvin[1] - kelvin[0]))
     return float(level[0] + slope * kelvin[0]), slope
 
@@ -69,7 +64,7 @@ def kinematic_viscosity(temperature: ArrayLike, constants: tuple[float, float]) 
     nu [mm^2/s]
     """
     a, b = constants
-    kelvin = np.asarray(temperature, dtype=float) + _ZERO_CELSIUS
+    kelvin = np.asarray(temperature, dtype=float) + ZERO_CELSIUS
     return np.asarray(10.0**10.0 ** (a - b * np.log10(kelvin)) - 0.7, dtype=np.float64)
 
 
@@ -92,17 +87,3 @@ def oil_density(density_15: ArrayLike, temperature: ArrayLike) -> FloatArray:
     rho = checked("density", density_15, "kg/m^3")
     expansion = 0.6278 / rho * (np.asarray(temperature, dtype=float) - 15.0)
     return np.asarray(rho * np.exp(-expansion * (1.0 + 0.8 * expansion)), dtype=np.float64)
-
-
-def dynamic_viscosity(lubricant: Lubricant) -> float:
-    """Dynamic viscosity of a lubricant section [Pa s]: the given number, or its law at its temperature."""
-    law = lubricant.viscosity_law
-    if law is None:
-        assert lubricant.viscosity is not None  # the schema asks for exactly one of them
-        return lubricant.viscosity
-    constants = walther_constants(
-        law.kinematic_viscosity_40 * 1e6, 40.0, law.kinematic_viscosity_100 * 1e6, 100.0
-    )
-    celsius = law.temperature - _ZERO_CELSIUS
-    nu = float(kinematic_viscosity(celsius, constants))
-    return nu * 1e-6 * float(oil_density(law.density, celsius))

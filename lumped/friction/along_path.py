@@ -13,10 +13,10 @@ from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.benedict_kelley import friction_number
 from lumped.friction.fitted import fit_signed, mean_coefficient
 from lumped.friction.registry import law_named
+from lumped.lubricant import dynamic_viscosity
 from lumped.path_function import PathFunction
 from lumped.roughness import composite_roughness, mean_roughness
 from lumped.validity import FloatArray, RangeViolation, range_violations, warn_violations
-from lumped.viscosity import dynamic_viscosity
 
 if TYPE_CHECKING:
     from lumped.gear_geometry import Geometry

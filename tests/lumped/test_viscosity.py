@@ -6,7 +6,9 @@ import pytest
 from lumped import load_gear_pair
 from lumped.errors import ParameterError
 from lumped.friction import contact_path
-from lumped.viscosity import dynamic_viscosity, kinematic_viscosity, oil_density, walther_constants
+from lumped.lubricant import dynamic_viscosity
+from lumped.viscosity import kinematic_viscosity, oil_density, walther_constants
+from lumped.viscosity_grade import viscosity_at_100
 
 
 def test_walther_passes_through_its_points():
@@ -58,3 +60,30 @@ def test_lubricant_law_feeds_the_contact():
     expected = 11.1e-6 * float(oil_density(880.0, 100.0))
     assert dynamic_viscosity(pair.lubricant) == pytest.approx(expected, rel=1e-12)
     assert contact_path(pair).viscosity == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_grade_in_the_parameter_file_is_its_walther_line():
+    by_grade = load_gear_pair("nasa_28_28").with_(
+        {"lubricant.viscosity": None, "lubricant.viscosity_law": {"iso_vg": 100, "temperature": "60 degC"}}
+    )
+    points = {
+        "kinematic_viscosity_40": 100.0,
+        "kinematic_viscosity_100": viscosity_at_100(100.0),
+        "temperature": 60.0,
+    }
+    by_points = by_grade.with_({"lubricant.viscosity_law": points})
+    # The same line through the same two points; the second passes through the file's units once more.
+    assert dynamic_viscosity(by_grade.lubricant) == pytest.approx(
+        dynamic_viscosity(by_points.lubricant), rel=1e-12
+    )
+
+
+@pytest.mark.parametrize(
+    "law",
+    [{"iso_vg": 90}, {"iso_vg": 100, "kinematic_viscosity_40": 100.0}, {"kinematic_viscosity_40": 100.0}],
+)
+def test_half_a_description_of_an_oil_is_refused(law):
+    with pytest.raises(ParameterError, match="iso_vg"):
+        load_gear_pair("nasa_28_28").with_(
+            {"lubricant.viscosity": None, "lubricant.viscosity_law": {**law, "temperature": 60.0}}
+        )
