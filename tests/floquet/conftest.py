@@ -38,7 +38,7 @@ def lyapunov_system(
 ) -> tuple[PeriodicSystem, np.ndarray]:
     """A system that the change of variables x = (I + g(t) N) y turns into y' = B y, and Phi(T, 0).
 
-    """A system that x = (I + g(t) N) y turns into the constant y' = B y, and its exact Phi(T, 0).
+    N = a b^T with a, b the first two columns of S made orthogonal: N^2 = 0, (I + g N)^-1 = I - g N. With g
     periodic and g(0) = 0:  A(t) = g'(t) N + (I + g N) B (I - g N)  and  Phi(T, 0) = exp(B T).
     """
     a, b = S[:, 0], S[:, 1] - S[:, 0] * (S[:, 0] @ S[:, 1]) / (S[:, 0] @ S[:, 0])
