@@ -3,7 +3,7 @@
 from multibody.balance import PowerBalance, power_balance
 from multibody.drive import Drive
 from multibody.effects import EFFECTS
-from multibody.flow_map import FlowMap, monodromy
+from multibody.flow_map import FlowMap, monodromy, steady_state
 from multibody.simulation import simulate
 from multibody.sweep import speed_sweep
 
@@ -16,4 +16,5 @@ __all__ = [
     "power_balance",
     "simulate",
     "speed_sweep",
+    "steady_state",
 ]

@@ -54,7 +54,7 @@ def attribution(
     for cause, names in CAUSES.items():
         cases[cause, "alone"], cases[cause, "without"] = set(names), every - set(names)
     options = {"initial": initial, "samples_per_cycle": samples_per_cycle, "rtol": rtol}
-    base = simulate(pair, cycles, effects=(), **options)  # type: ignore[arg-type]  # mypy does not unpack mixed types
+    base = simulate(pair, cycles, effects=(), **options)  # type: ignore[arg-type]  # mixed types
     labels = [*CAUSES, "all"]
     table = {kind: np.zeros((len(labels), len(_QUANTITIES))) for kind in ("alone", "without")}
     for number, ((cause, kind), effects) in enumerate(cases.items()):

@@ -115,7 +115,8 @@ def mesh_phase(
     """
     rho_p = flank * radius_p * (psi - phi_p - chi_p)
     rho_g = flank * radius_g * (psi + math.pi - phi_g - chi_g)
-    return rho_p - pitch * math.floor(rho_p / pitch), wrap(rho_p + rho_g - length, pitch)
+    # % is exact for any number of turns; subtracting whole pitches leaves metres after 1e16 of them.
+    return rho_p % pitch, wrap(rho_p + rho_g - length, pitch)
 
 
 @compiled

@@ -85,3 +85,50 @@ def test_each_effect_acts(effect):
     reference = multibody.simulate(BASE, 3, effects=())
     run = multibody.simulate(BASE, 3, effects={effect})
     assert difference(run, reference, "dte") > 1e-7
+
+
+@pytest.mark.slow
+def test_order_in_torque_is_two():
+    """Absolute differences grow with the square of the torque: slope 2 over T ... T/64, smooth stiffness."""
+    torques = 56.5 / 2.0 ** np.arange(7)
+    sizes = {name: np.empty(7) for name in ("dte", "x_p", "y_p")}
+    for j, torque in enumerate(torques):
+        pair = SMOOTH.with_(operating__pinion_torque=float(torque))
+        run = multibody.steady_state(pair, samples_per_cycle=128, effects={"contact_loss": False})
+        reference = lumped.steady_state(pair, samples_per_cycle=128)
+        for name, values in sizes.items():
+            values[j] = np.abs(run[name] - reference[name]).max()
+    for name, values in sizes.items():
+        order = np.polyfit(np.log(torques), np.log(values), 1)[0]
+        assert order == pytest.approx(2.0, abs=0.05), name
+
+
+def test_steady_state_attracts():
+    """Pushed off the motion that Newton's method found on the flow map, a run settles on it again."""
+    pair = SMOOTH.with_(mesh__damping_ratio=0.08)
+    steady = multibody.steady_state(pair, samples_per_cycle=64)
+    assert steady.attrs["closure"] < 1e-6
+    drive = multibody.Drive(brake_torque=([0.0], [steady.attrs["brake_torque"]]))
+    names = lumped.periodic_system(pair, "absolute").state_names
+    start = np.array([float(steady[name][0]) for name in names])
+    start[2] += 2e-6  # the pinion, by a third of the swing of the transmission error
+    run = multibody.simulate(pair, 80, initial=start, drive=drive, samples_per_cycle=64, rtol=1e-9)
+    swing = float(np.ptp(steady["dte"].to_numpy()))
+    off = [
+        float(np.abs(run["dte"].to_numpy()[rows] - steady["dte"].to_numpy()).max()) / swing
+        for rows in (slice(0, 64), slice(-65, -1))
+    ]
+    assert off[0] > 0.1
+    # The free rotation is neutral: it keeps what friction did to it meanwhile, a slow shift of the phase.
+    assert off[1] < 0.02 * off[0]
+
+
+@pytest.mark.parametrize("stiffness", ["rectangular", "parabolic"])
+def test_linear_steady_state_is_the_lumped_one(stiffness):
+    pair = BASE.with_(mesh__stiffness={"model": stiffness})
+    run, reference = multibody.steady_state(pair, fidelity="linear", rtol=1e-10), lumped.steady_state(pair)
+    np.testing.assert_array_equal(run["time"], reference["time"])
+    for name in ("dte", "x_p", "y_p", "theta_p", "normal_load"):
+        assert difference(run, reference, name) < 1e-7
+    for key in ("brake_torque", "mesh_efficiency"):
+        assert run.attrs[key] == pytest.approx(reference.attrs[key], rel=1e-9)
