@@ -2,6 +2,7 @@
 
 from floquet.chart import chart, load_chart, save_chart, scan
 from floquet.fast import FastMonodromy, FastMultipliers, fast_monodromies, fast_multipliers
+from floquet.gear_boundaries import Tongue, predicted_lines, stability_boundaries
 from floquet.gear_pair import (
     GEAR_AXES,
     GearPairMultipliers,
@@ -28,6 +29,7 @@ __all__ = [
     "Propagator",
     "RankOneSystem",
     "Spectrum",
+    "Tongue",
     "chart",
     "fast_monodromies",
     "fast_multipliers",
@@ -36,7 +38,9 @@ __all__ = [
     "gear_pair_system",
     "load_chart",
     "monodromy",
+    "predicted_lines",
     "save_chart",
     "scan",
+    "stability_boundaries",
     "stability_chart",
 ]

@@ -67,18 +67,19 @@ def fast_monodromies(
     """
     if system.v.size > 3:
         raise refuse("coordinates", system.v.size, "at most 3", "Use floquet.monodromy for larger systems.")
-    T = np.atleast_1d(np.asarray(system.period if periods is None else periods, dtype=float))
-    factors = np.ascontiguousarray(np.broadcast_to(np.asarray(damping_factors, dtype=float), T.shape))
+    T = _own(system.period if periods is None else periods)
+    factors = _own(np.broadcast_to(np.asarray(damping_factors, dtype=float), T.shape))
     form = system.modal()
     n = 2 * system.v.size
     M, bound, forced = np.empty((T.size, n, n)), np.empty(T.size), np.empty((T.size, n))
     pieces = system.phases.size - 1
-    f = np.ascontiguousarray(np.broadcast_to(form.forcing[None, :, None], (pieces, n // 2, 1)))
+    f = _own(np.broadcast_to(form.forcing[None, :, None], (pieces, n // 2, 1)))
+    phases, fit_errors = _own(system.phases), _own(system.fit_errors)
     degrees = (form.w.shape[2] - 1, form.wd.shape[2] - 1, 0)
 
     def run(part: slice) -> int:
         failed = propagate_points(
-            system.phases, form.w, form.wd, f, degrees, system.fit_errors, factors[part], form.C, form.omega,
+            phases, form.w, form.wd, f, degrees, fit_errors, factors[part], form.C, form.omega,
             form.v, T[part], tolerance, _ANGLE, max_steps, M[part], bound[part], forced[part],
         )  # fmt: skip
         return -1 if failed < 0 else part.start + failed
@@ -141,6 +142,11 @@ def fast_multipliers(
     for point in np.flatnonzero(~safe):
         values[point], radii[point] = multipliers_with_bounds(flow.matrices[point], float(flow.errors[point]))
     return FastMultipliers(values, radii, flow.errors)
+
+
+def _own(values: npt.ArrayLike) -> FloatArray:
+    """Copy as a contiguous, writable array: other kinds would each make the kernel compile once more."""
+    return np.array(values, dtype=float, ndmin=1, order="C")
 
 
 def in_threads(run: Callable[[slice], _T], size: int, threads: int | None = None) -> list[_T]:

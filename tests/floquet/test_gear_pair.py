@@ -112,6 +112,17 @@ def test_stiffness_variation_keeps_the_mean(pair, factor: float) -> None:
         assert np.ptp(k) < 1e-9 * mean
 
 
+def test_stiffness_variation_keeps_the_damping_law(pair) -> None:
+    # c_i goes with sqrt(k_i): scaling every k_i by f scales every c_i by sqrt(f), in the same row of x_p.
+    given = gear_pair_system(pair, "feedback")
+    varied = gear_pair_system(GearVariation(pair, stiffness_variation=0.4), "feedback")
+    times = np.array([0.1, 0.5, 0.9]) * given.period
+    before, after = given.evaluate(times)[:, 4], varied.evaluate(times)[:, 4]
+    f = after[:, 0] / before[:, 0]
+    assert np.abs(f - 1.0).min() > 0.05
+    assert np.allclose(after[:, 3] / before[:, 3], np.sqrt(f), rtol=1e-12)  # rounding
+
+
 def test_friction_axis_sets_the_mean(pair) -> None:
     for law in LAWS:
         variation = vary(pair.with_(friction__law=law), {"friction_coefficient": 0.07})

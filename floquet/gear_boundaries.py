@@ -1,0 +1,222 @@
+"""Tongues of instability of a gear pair over speed: their boundaries, labelled by mode pair and order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from floquet.chart import Progress, checked_axes
+from floquet.fast import fast_monodromies
+from floquet.gear_axes import gear_axis, vary
+from floquet.gear_block import gear_block
+from floquet.gear_chart import stability_chart
+from floquet.intervals import UnstableInterval, seeded_nodes, unstable_intervals
+from floquet.system import FloatArray
+from lumped.errors import refuse
+from lumped.parameters import GearPair
+
+
+@dataclass(frozen=True, order=True)
+class Tongue:
+    """Label of a tongue: mesh frequency = (omega_i + sign omega_j)/order, modes numbered from 1.
+
+    i = j with sign +1 is a parametric resonance of one mode, i < j a combination resonance.
+    """
+
+    mode_i: int
+    mode_j: int
+    sign: int
+    order: int
+
+    def __str__(self) -> str:
+        if self.mode_i == self.mode_j:
+            return f"2w{self.mode_i}/{self.order}"
+        first, second = (self.mode_i, self.mode_j) if self.sign > 0 else (self.mode_j, self.mode_i)
+        return f"(w{first}{'+' if self.sign > 0 else '-'}w{second})/{self.order}"
+
+
+def predicted_lines(pair: GearPair, orders: int = 12) -> dict[Tongue, float]:
+    """Pinion speeds [rpm] at which the mesh frequency is (omega_i +- omega_j)/k.
+
+    omega are the natural frequencies of the time-averaged undamped feedback block, k = 1..orders.
+    """
+    omega = gear_block(pair).modal().omega
+    per_rpm = pair.pinion.teeth * 2.0 * np.pi / 60.0  # mesh frequency [rad/s] per rpm
+    lines = {}
+    for i in range(omega.size):
+        for j in range(i, omega.size):
+            for sign in (1, -1):
+                total = omega[j] + sign * omega[i]
+                if i == j and sign < 0:
+                    continue
+                for k in range(1, orders + 1):
+                    lines[Tongue(i + 1, j + 1, sign, k)] = float(total / k / per_rpm)
+    return lines
+
+
+def label_at(pair: GearPair, speed_rpm: float) -> tuple[Tongue, FloatArray]:
+    """Label the largest multiplier at a speed by its mode shape.
+
+    The monodromy matrix in energy coordinates (omega eta, eta') has two rows per mode of the mean system; the
+    energy of its leading eigenvector in each mode says which modes take part. One mode with more than 80 %
+    of the energy is a parametric resonance of that mode, otherwise the two strongest combine; sign and
+    order are those whose line is nearest in frequency.
+
+    Returns
+    -------
+    label, and the (m,) shares of energy
+    """
+    block = gear_block(pair.with_({"operating.pinion_speed": speed_rpm}))
+    omega = block.modal().omega
+    m = omega.size
+    values, vectors = np.linalg.eig(fast_monodromies(block).matrices[0])
+    x = np.abs(vectors[:, np.argmax(np.abs(values))]) ** 2
+    shares = x[:m] + x[m:]
+    shares = shares / shares.sum()
+    strongest = np.argsort(-shares)
+    if shares[strongest[0]] > 0.8:
+        i = j = int(strongest[0])
+        signs: tuple[int, ...] = (1,)
+    else:
+        i, j = sorted((int(strongest[0]), int(strongest[1])))
+        signs = (1, -1)
+    mesh = 2.0 * np.pi / block.period
+    best: tuple[float, Tongue] | None = None
+    for sign in signs:
+        ratio = (omega[j] + sign * omega[i]) / mesh
+        k = max(1, round(ratio))
+        distance = abs(ratio / k - 1.0)
+        if best is None or distance < best[0]:
+            best = (distance, Tongue(i + 1, j + 1, sign, k))
+    assert best is not None
+    return best[1], shares
+
+
+def stability_boundaries(
+    pair: GearPair,
+    speed_rpm: tuple[float, float] = (500.0, 20000.0),
+    axes: dict[str, npt.ArrayLike] | None = None,
+    *,
+    friction_law: str | None = None,
+    nodes: int = 400,
+    orders: int = 12,
+    xtol: float = 1e-8,
+    rtol: float = 1e-9,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Boundaries, spectral radius = 1, of the tongues of instability over speed.
+
+    Along speed the search starts from an even grid and a graded cluster at every predicted line
+    (omega_i +- omega_j)/k, so that thin tongues are met; ends are found by bisection.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    speed_rpm : range searched [rpm]
+    axes : one more axis {name: values} out of `GEAR_AXES` other than speed; default the pair as it is
+    friction_law : law to use instead of the pair's
+    nodes : evenly spaced speeds of the search
+    orders : largest k of the seeds
+    xtol : relative accuracy of the boundaries
+    rtol : of the monodromy matrices
+    progress : called with (values done, values in all)
+
+    Returns
+    -------
+    Dataset over ``tongue`` (coordinates label, mode_i, mode_j, sign, order) and the axis: ``present``;
+    ``lower`` and ``upper`` [rpm], the boundaries; ``peak`` [rpm] and ``peak_radius``; ``open_end``, whether
+    the tongue runs out of the range. Where ``present`` is False the numbers are NaN. Where one label has
+    several intervals at one value, lower and upper enclose them all and ``intervals`` counts them.
+
+    Raises
+    ------
+    ParameterError
+        Unusable range or axis.
+    """
+    low, high = float(speed_rpm[0]), float(speed_rpm[1])
+    if not 0.0 < low < high < np.inf:
+        raise refuse("speed_rpm", speed_rpm, "0 < low < high", "Give a range of speeds in rpm.")
+    if friction_law is not None:
+        pair = pair.with_({"friction.law": friction_law})
+    if axes is not None and (len(axes) != 1 or "speed_rpm" in axes):
+        raise refuse("axes", list(axes), "one axis other than speed_rpm", "Scan other axes one at a time.")
+    name, values = next(iter(checked_axes(axes).items())) if axes else ("value", np.array([np.nan]))
+    if axes:
+        gear_axis(name).check(name, values)
+        if name == "stiffness_variation":
+            raise refuse(
+                "axes", name, "axes that change the pair itself", "Use stability_chart for this axis."
+            )
+    found: dict[Tongue, dict[int, list[UnstableInterval]]] = {}
+    for index, value in enumerate(values):
+        variation = vary(pair, {name: float(value)} if axes else {})
+        here = variation.pair
+        lines = np.array(list(predicted_lines(here, orders).values()))
+        start = seeded_nodes(lines, low, high, nodes)
+
+        def radius(speeds: FloatArray, here: GearPair = here) -> FloatArray:
+            return np.asarray(stability_chart(here, {"speed_rpm": speeds}, rtol=rtol).spectral_radius.values)
+
+        for interval in unstable_intervals(radius, start, xtol=xtol):
+            label, _ = label_at(here, interval.peak)
+            found.setdefault(label, {}).setdefault(index, []).append(interval)
+        if progress is not None:
+            progress(index + 1, values.size)
+    return _dataset(pair, found, name, values, bool(axes))
+
+
+def _dataset(
+    pair: GearPair,
+    found: dict[Tongue, dict[int, list[UnstableInterval]]],
+    name: str,
+    values: FloatArray,
+    has_axis: bool,
+) -> xr.Dataset:
+    tongues = sorted(found)
+    shape = (len(tongues), values.size)
+    numbers = {key: np.full(shape, np.nan) for key in ("lower", "upper", "peak", "peak_radius")}
+    present, open_end = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
+    intervals = np.zeros(shape, dtype=np.int64)
+    for row, tongue in enumerate(tongues):
+        for column, parts in found[tongue].items():
+            top = max(parts, key=lambda part: part.peak_radius)
+            numbers["lower"][row, column] = min(part.lower for part in parts)
+            numbers["upper"][row, column] = max(part.upper for part in parts)
+            numbers["peak"][row, column] = top.peak
+            numbers["peak_radius"][row, column] = top.peak_radius
+            present[row, column] = True
+            open_end[row, column] = any(part.open_below or part.open_above for part in parts)
+            intervals[row, column] = len(parts)
+    dims = ("tongue", name)
+    names = {
+        "lower": ("rpm", "lower boundary of the tongue"),
+        "upper": ("rpm", "upper boundary of the tongue"),
+        "peak": ("rpm", "speed of the largest spectral radius in the tongue"),
+        "peak_radius": ("1", "largest spectral radius in the tongue"),
+    }
+    data: dict[str, tuple[tuple[str, ...], npt.NDArray[np.generic], dict[str, str]]] = {
+        key: (dims, numbers[key], {"units": unit, "long_name": text}) for key, (unit, text) in names.items()
+    }
+    data["present"] = (dims, present, {"units": "1", "long_name": "tongue exists at this value"})
+    data["open_end"] = (dims, open_end, {"units": "1", "long_name": "tongue runs out of the range searched"})
+    data["intervals"] = (dims, intervals, {"units": "1", "long_name": "number of intervals of this label"})
+    result = xr.Dataset(
+        data,
+        coords={
+            name: values,
+            "label": ("tongue", np.array([str(t) for t in tongues], dtype=object)),
+            "mode_i": ("tongue", np.array([t.mode_i for t in tongues], dtype=np.int64)),
+            "mode_j": ("tongue", np.array([t.mode_j for t in tongues], dtype=np.int64)),
+            "sign": ("tongue", np.array([t.sign for t in tongues], dtype=np.int64)),
+            "order": ("tongue", np.array([t.order for t in tongues], dtype=np.int64)),
+        },
+        attrs={"title": f"stability boundaries of {pair.name}", "friction_law": pair.friction.law},
+    )
+    if not has_axis:
+        return result.isel({name: 0}, drop=True)
+    axis = gear_axis(name)
+    result[name].attrs.update(units=axis.units, long_name=axis.long_name)
+    return result

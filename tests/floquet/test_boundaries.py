@@ -1,0 +1,135 @@
+"""Are the tongues of instability found where they are, all of them, and under their right names?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.special import mathieu_a, mathieu_b
+
+from floquet import monodromy, predicted_lines, stability_boundaries, stability_chart
+from floquet.gear_boundaries import Tongue, label_at
+from floquet.intervals import seeded_nodes, unstable_intervals
+from lumped import load_gear_pair
+from lumped.errors import ParameterError
+
+
+@pytest.fixture(scope="module")
+def pair():
+    """The default pair with friction off and light mesh damping, so that tongues exist."""
+    return load_gear_pair("nasa_28_28").with_(friction__law="none", mesh__damping_ratio=0.002)
+
+
+def test_mathieu_tongues_end_on_the_characteristic_values(mathieu) -> None:
+    q = 0.8
+
+    def radius(a: np.ndarray) -> np.ndarray:
+        return np.array([monodromy(mathieu(float(x), q), rtol=1e-11).spectral_radius for x in a])
+
+    found = unstable_intervals(radius, np.linspace(0.3, 5.0, 48), xtol=1e-8, threshold=1e-6)
+    expected = [(mathieu_b(1, q), mathieu_a(1, q)), (mathieu_b(2, q), mathieu_a(2, q))]
+    ends = sorted(float(x) for pair_of_ends in expected for x in pair_of_ends)
+    inside = [x for x in ends if 0.3 < x < 5.0]
+    computed = [i.lower for i in found if not i.open_below] + [i.upper for i in found if not i.open_above]
+    assert len(computed) == len(inside)
+    # The radius leaves one like a square root, so the threshold 1e-6 moves an end by far less than 1e-7.
+    assert np.abs(np.array(sorted(computed)) - np.array(inside)).max() < 1e-7
+
+
+@pytest.mark.parametrize("offset", [0.0, 3e-5, -2e-3])
+def test_a_thin_tongue_near_its_line_is_not_lost(offset: float) -> None:
+    # Width 1e-5 of the speed, ten thousand times narrower than the even grid; displaced by damping or
+    # friction.
+    line = 3141.0
+    centre, half = line * (1 + offset), 0.5e-5 * line + 0.3 * abs(offset) * line
+
+    def radius(x: np.ndarray) -> np.ndarray:
+        return 0.999 + 0.01 * np.sqrt(np.clip(1 - ((x - centre) / half) ** 2, 0, None))
+
+    nodes = seeded_nodes(np.array([line]), 500.0, 20000.0, 100)
+    found = unstable_intervals(radius, nodes)
+    assert len(found) == 1
+    reach = half * np.sqrt(1 - 0.1**2)  # 0.01 sqrt(1 - s^2) = 0.001
+    assert found[0].lower == pytest.approx(centre - reach, rel=1e-8)
+    assert found[0].upper == pytest.approx(centre + reach, rel=1e-8)
+    assert not unstable_intervals(radius, np.linspace(500.0, 20000.0, 100))  # the even grid alone loses it
+
+
+def test_lines_are_sums_and_differences_of_frequencies(pair) -> None:
+    lines = predicted_lines(pair, orders=3)
+    assert len(lines) == 3 * (6 + 3)  # 6 sums of 3 modes, 3 differences
+    for k in (1, 2, 3):
+        combination = lines[Tongue(1, 3, 1, k)]
+        assert combination == pytest.approx(0.5 * (lines[Tongue(1, 1, 1, k)] + lines[Tongue(3, 3, 1, k)]))
+        difference = 0.5 * (lines[Tongue(3, 3, 1, k)] - lines[Tongue(1, 1, 1, k)])
+        assert lines[Tongue(1, 3, -1, k)] == pytest.approx(difference)
+
+
+def test_radius_is_one_on_every_boundary(pair) -> None:
+    found = stability_boundaries(pair, (2000.0, 19000.0))
+    assert found.sizes["tongue"] >= 3
+    for side, inward in (("lower", 1.0), ("upper", -1.0)):
+        for speed in found[side].values:
+            around = speed * (1 + inward * np.array([-1e-6, 1e-6]))
+            radius = stability_chart(pair, {"speed_rpm": np.sort(around)}).spectral_radius.values
+            outside, inside = radius if inward > 0 else radius[::-1]
+            assert outside < 1.0 < inside
+
+
+def test_no_unstable_node_of_a_dense_chart_is_missed(pair) -> None:
+    low, high = 1500.0, 19000.0
+    axes = {"damping_ratio": [0.0, 0.004, 0.015]}
+    found = stability_boundaries(pair, (low, high), axes)
+    speeds = np.linspace(low, high, 6001)
+    chart = stability_chart(pair, {"speed_rpm": speeds, **axes})
+    missed = unstable = 0
+    for value in axes["damping_ratio"]:
+        here = found.sel(damping_ratio=value)
+        inside = np.zeros(speeds.size, dtype=bool)
+        for lower, upper in zip(here.lower.values, here.upper.values, strict=True):
+            inside |= (speeds >= lower) & (speeds <= upper)
+        bad = (chart.verdict.sel(damping_ratio=value) == -1).values
+        unstable += int(bad.sum())
+        missed += int((bad & ~inside).sum())
+    assert unstable > 500
+    assert missed == 0
+
+
+def test_principal_tongue_is_named_by_its_mode_shape(pair) -> None:
+    found = stability_boundaries(pair, (15000.0, 18500.0))
+    assert found.label.values.tolist() == ["2w3/2"]
+    label, shares = label_at(pair, float(found.peak.values[0]))
+    assert label == Tongue(3, 3, 1, 2)
+    assert shares[2] > 0.8
+    # Its line lies within the tongue or close by: damping and detuning shift it by a few percent at most.
+    assert predicted_lines(pair)[label] == pytest.approx(float(found.peak.values[0]), rel=0.03)
+
+
+def test_damping_closes_tongues_and_absence_is_marked(pair) -> None:
+    found = stability_boundaries(pair, (15000.0, 18500.0), {"damping_ratio": [0.01, 0.1]})
+    assert found.present.values.tolist() == [[True, False]]
+    assert np.isnan(found.lower.values[0, 1])
+    assert found.lower.attrs["units"] == "rpm"
+    assert found.damping_ratio.attrs["long_name"]
+
+
+def test_friction_that_varies_with_speed_is_followed() -> None:
+    law = load_gear_pair("nasa_28_28").with_(friction__law="xu_kahraman", mesh__damping_ratio=0.005)
+    found = stability_boundaries(law, (15500.0, 18000.0), nodes=12, orders=2, xtol=1e-5)
+    assert found.label.values.tolist() == ["2w3/2"]
+    plain = stability_boundaries(law.with_(friction__law="none"), (15500.0, 18000.0))
+    # Friction of a few percent moves tongues by well under a percent (it scales k_i by 1 +- mu tan alpha).
+    assert float(found.lower.values[0]) == pytest.approx(float(plain.lower.values[0]), rel=0.01)
+
+
+@pytest.mark.parametrize("speeds", [(0.0, 1000.0), (2000.0, 1000.0), (1000.0, np.inf)])
+def test_bad_ranges_are_refused(pair, speeds: tuple[float, float]) -> None:
+    with pytest.raises(ParameterError, match="speed_rpm"):
+        stability_boundaries(pair, speeds)
+
+
+@pytest.mark.parametrize(
+    "axes", [{"speed_rpm": [1000.0]}, {"stiffness_variation": [0.5]}, {"unknown": [1.0]}]
+)
+def test_bad_axes_are_refused(pair, axes: dict[str, list[float]]) -> None:
+    with pytest.raises(ParameterError, match="axes"):
+        stability_boundaries(pair, (1000.0, 2000.0), axes)
