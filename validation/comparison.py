@@ -16,6 +16,7 @@ from lumped.errors import NumericalError, refuse
 from lumped.results import VARIABLES
 from validation import metrics
 from validation.metrics import FloatArray, MeshOrders, SpragueGeers
+from validation.sliding_effect import sliding_effect
 from validation.tolerances import GROUPS, LOST, Tolerance, stiffness_jumps, tolerance
 
 Fidelity = Literal["linear", "exact"]
@@ -210,6 +211,7 @@ def crosscheck(
     g = lumped.geometry(pair)
     shift = float(np.mean(np.abs(reference["theta_p"].to_numpy()))) * g.base_radius_pinion / g.base_pitch
     jumps = stiffness_jumps(pair)
+    sliding = sliding_effect(pair, reference.isel(time=slice(-samples_per_cycle - 1, -1)))
     compared = min(COMPARED_CYCLES, cycles // 2)
     agreements: list[Agreement] = []
     orders: list[OrderComparison] = []
@@ -218,7 +220,7 @@ def crosscheck(
         keep = off_switch_samples(pair, reference["time"].to_numpy())
         keep[:first] = False
         for quantity in quantities:
-            limit = tolerance(quantity, fidelity, shift, jumps)
+            limit = tolerance(quantity, fidelity, shift, jumps, sliding)
             agreements.append(_agreement(quantity, fidelity, result, reference, keep, limit))
             orders.append(_orders(quantity, fidelity, result, reference, compared, samples_per_cycle))
     return CrossCheck(

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Literal
 
 from lumped import GearPair, geometry, mesh_elements
+from validation.sliding_effect import SlidingEffect
 
 Metric = Literal["maximum_over_span", "relative_l2"]
 Group = Literal["dte", "x", "y", "normal_load", "friction_force"]
@@ -80,7 +81,9 @@ def stiffness_jumps(pair: GearPair) -> bool:
     return float(stiffness(g.L_XA)) > _JUMP * max(largest, stiffness.mean())
 
 
-def tolerance(quantity: str, fidelity: str, shift: float, jumps: bool) -> Tolerance:
+def tolerance(
+    quantity: str, fidelity: str, shift: float, jumps: bool, sliding: SlidingEffect | None = None
+) -> Tolerance:
     """Limit for one quantity.
 
     Parameters
@@ -90,6 +93,7 @@ def tolerance(quantity: str, fidelity: str, shift: float, jumps: bool) -> Tolera
     shift : mean distance by which wind-up and bearing deflection move the contact along the line of action,
         over the base pitch; the small parameter of every finite-motion effect
     jumps : whether the pair stiffness jumps at entry, see ``stiffness_jumps``
+    sliding : predicted effect of the actual sliding velocity, added to the limits of friction and y
     """
     group = GROUPS[quantity]
     if fidelity == "linear":
@@ -100,4 +104,12 @@ def tolerance(quantity: str, fidelity: str, shift: float, jumps: bool) -> Tolera
         f"finite motions shift the contact by {shift:.2e} of a base pitch; to first order the difference "
         f"grows with that: {base:g} expected at {REFERENCE_SHIFT:g} with {kind} stiffness"
     )
-    return Tolerance("relative_l2", base * shift / REFERENCE_SHIFT, reason)
+    limit = base * shift / REFERENCE_SHIFT
+    predicted = getattr(sliding, quantity, 0.0)
+    if predicted:
+        limit += predicted
+        reason += (
+            f"; plus {predicted:.3g}, the first-order effect of friction at the actual sliding velocity, "
+            "predicted from the lumped motion"
+        )
+    return Tolerance("relative_l2", limit, reason)
