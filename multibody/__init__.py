@@ -1,5 +1,6 @@
 """Independent multibody reference of a spur gear pair in exudyn, at two fidelities."""
 
+from multibody.attribution import attribution
 from multibody.balance import PowerBalance, power_balance
 from multibody.drive import Drive
 from multibody.effects import EFFECTS
@@ -12,6 +13,7 @@ __all__ = [
     "Drive",
     "FlowMap",
     "PowerBalance",
+    "attribution",
     "monodromy",
     "power_balance",
     "simulate",

@@ -39,6 +39,16 @@ def to_lumped_state(q: FloatArray, v: FloatArray) -> FloatArray:
     return np.concatenate([(q * _SIGN)[..., _BACK], (v * _SIGN)[..., _BACK]], axis=-1)
 
 
+#: Per-pair variables that a contact record holds as they are.
+_COLUMNS = {
+    "mu": kn.MU,
+    "normal_load": kn.LOAD,
+    "friction_force": kn.FRICTION_FORCE,
+    "sliding_velocity": kn.SLIDE,
+    "position": kn.XI,
+}
+
+
 class Recorder:
     """Collects states and contacts at the output times while the integration runs.
 
@@ -50,9 +60,16 @@ class Recorder:
 
     def __init__(self, model: ExudynModel, time: FloatArray) -> None:
         self.model, self.time = model, time
-        self.q, self.v = np.zeros((time.size, 6)), np.zeros((time.size, 6))
-        self.contacts = np.zeros((time.size, 2 * MAX_PAIRS, kn.N_RECORD))
-        self.count = np.zeros(time.size, dtype=np.int64)
+        machine, p, n = model.machine, model.machine.parameters, time.size
+        self.q, self.v = np.zeros((n, 6)), np.zeros((n, 6))
+        phase = time / machine.period
+        self.advance = np.maximum(phase - np.floor(phase + 1e-9), 0.0) * p[kn.PITCH]
+        ahead = np.arange(machine.pairs - 1, -1, -1)[:, None] * p[kn.PITCH]
+        self.pairs = {
+            name: np.zeros((machine.pairs, n)) for name in (*_COLUMNS, "contact", "normal_load_back")
+        }
+        self.pairs["position"] += p[kn.L_XA] + ahead + self.advance  # a pair out of contact: nominal
+        self.stiffness, self.overlap = np.zeros(n), np.full(n, np.nan)
 
     def visit(self, segment: Segment, start: float, stop: float) -> None:
         """Record the output times in [start, stop)."""
@@ -62,7 +79,7 @@ class Recorder:
             return
         inside = np.clip(self.time[low:high], segment.times[0], segment.times[-1])
         self.q[low:high], self.v[low:high] = segment.at(inside)
-        self._contacts(low, high)
+        self._contacts(int(low), int(high))
 
     def finish(self, q: FloatArray, v: FloatArray, end: float) -> None:
         """Record the last output time, as the first instant of the cycle that would follow."""
@@ -73,60 +90,51 @@ class Recorder:
         self._contacts(self.time.size - 1, self.time.size)
 
     def _contacts(self, low: int, high: int) -> None:
+        """Evaluate the contacts at output times low ... high - 1 and sort them into the pairs' slots."""
         model, machine, wrench = self.model, self.model.machine, np.empty(6)
-        for i in range(low, high):
-            self.count[i] = model.core(
-                self.time[i],
-                self.q[i],
-                self.v[i],
+        contacts, count = np.zeros((high - low, 2 * MAX_PAIRS, kn.N_RECORD)), np.zeros(high - low, dtype=int)
+        for i in range(high - low):
+            count[i] = model.core(
+                self.time[low + i],
+                self.q[low + i],
+                self.v[low + i],
                 model.parameters,
                 model.flags,
                 machine.table,
                 machine.offsets,
                 wrench,
-                self.contacts[i],
+                contacts[i],
             )
+        p, slots = machine.parameters, machine.pairs
+        for j in range(int(count.max(initial=0))):
+            found = np.flatnonzero(j < count)
+            record, rows = contacts[found, j], low + found
+            # Whole pitches ahead of the newest nominal position; a pair that enters early or leaves late
+            # takes the slot of the pair that is out of contact.
+            pitches = np.rint((record[:, kn.XI] - p[kn.L_XA] - self.advance[rows]) / p[kn.PITCH])
+            slot = np.mod(slots - 1 - pitches.astype(int), slots)
+            drive = record[:, kn.FLANK] > 0
+            at = (slot[drive], rows[drive])
+            for name, column in _COLUMNS.items():
+                self.pairs[name][at] = record[drive, column]
+            self.pairs["contact"][at] = 1.0
+            np.add.at(self.pairs["normal_load_back"], (slot[~drive], rows[~drive]), record[~drive, kn.LOAD])
+            self.stiffness[rows[drive]] += record[drive, kn.K]
+            self.overlap[rows[drive]] = record[drive, kn.OVERLAP]
 
     def dataset(self, attributes: Mapping[str, Any]) -> xr.Dataset:
         """Return everything recorded under the lumped model's names."""
-        machine, p = self.model.machine, self.model.machine.parameters
-        n, pairs = self.time.size, machine.pairs
-        phase = self.time / machine.period
-        advance = np.maximum(phase - np.floor(phase + 1e-9), 0.0) * p[kn.PITCH]
-        names = {
-            "mu": kn.MU,
-            "normal_load": kn.LOAD,
-            "friction_force": kn.FRICTION_FORCE,
-            "sliding_velocity": kn.SLIDE,
-            "position": kn.XI,
-        }
-        per_pair = {name: np.zeros((pairs, n)) for name in names}
-        per_pair["position"] = p[kn.L_XA] + np.arange(pairs - 1, -1, -1)[:, None] * p[kn.PITCH] + advance
-        contact, back, stiffness = np.zeros((pairs, n)), np.zeros((pairs, n)), np.zeros((pairs, n))
-        for j in range(2 * MAX_PAIRS):
-            rows = np.flatnonzero(j < self.count)
-            record = self.contacts[rows, j]
-            # Whole pitches ahead of the newest nominal position; a pair that enters early or leaves late
-            # takes the slot of the pair that is out of contact.
-            ahead = np.rint((record[:, kn.XI] - p[kn.L_XA] - advance[rows]) / p[kn.PITCH]).astype(int)
-            slot = np.mod(pairs - 1 - ahead, pairs)
-            drive = record[:, kn.FLANK] > 0
-            at = (slot[drive], rows[drive])
-            for name, column in names.items():
-                per_pair[name][at] = record[drive, column]
-            contact[at], stiffness[at] = 1.0, record[drive, kn.K]
-            np.add.at(back, (slot[~drive], rows[~drive]), record[~drive, kn.LOAD])
+        p, per_pair = self.model.machine.parameters, dict(self.pairs)
+        back = per_pair.pop("normal_load_back")
         values = self._motion() | per_pair
         nominal = (p[kn.OMEGA_P] + p[kn.OMEGA_G]) * (per_pair["position"] - p[kn.L_XP])
         values |= {
             "friction_power_nominal": -per_pair["friction_force"] * nominal,
-            "mesh_stiffness": stiffness.sum(0),
-            "contact": contact,
+            "mesh_stiffness": self.stiffness,
             "friction_power": -per_pair["friction_force"] * per_pair["sliding_velocity"],
         }
         result = labelled(self.time, values, attributes)
-        touching = (self.count > 0) & (self.contacts[:, 0, kn.FLANK] > 0)
-        overlap = np.where(touching, self.contacts[:, 0, kn.OVERLAP], values["dte"])
+        overlap = np.where(np.isnan(self.overlap), values["dte"], self.overlap)
         for name, data in (("overlap", overlap), ("normal_load_back", back)):
             dims, unit, text = EXTRA[name]
             result[name] = xr.DataArray(data, dims=dims, attrs={"units": unit, "long_name": text})

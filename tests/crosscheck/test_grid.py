@@ -66,6 +66,31 @@ def test_exact_level_scales_with_torque(preset, stiffness):
         assert value < 0.15
 
 
+def test_three_pairs_in_contact():
+    """Unequal gears with high teeth, contact ratio 2.24: the same formulas, the same agreement."""
+    pair = lumped.load_gear_pair("nasa_28_28").with_(
+        pinion__teeth=50,
+        gear__teeth=60,
+        centre_distance=None,
+        basic_rack__addendum_coefficient=1.3,
+        basic_rack__dedendum_coefficient=1.6,
+        basic_rack__fillet_radius_coefficient=0.2,
+        friction__law="coulomb",
+        friction__coefficient=0.05,
+    )
+    assert lumped.geometry(pair).contact_ratio == pytest.approx(2.24, abs=0.01)
+    linear, reference = runs(pair, fidelity="linear")
+    assert linear.sizes["pair"] == 3
+    assert float((linear["normal_load"] != 0).sum("pair").max()) == 3
+    for name in ("dte", "x_p", "normal_load", "friction_force", "position"):
+        assert difference(linear, reference, name) < 1e-6, name
+    full, quarter = (
+        steady_difference(pair.with_(operating__pinion_torque=torque)) for torque in (56.5, 56.5 / 4)
+    )
+    assert full["dte"] / quarter["dte"] == pytest.approx(4.0, rel=0.08)
+    assert full["dte"] < 0.1
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("law", LAWS)
 def test_exact_level_agrees_under_every_law(law):
