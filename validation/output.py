@@ -17,6 +17,8 @@ from lumped.errors import refuse
 
 DATA_SUFFIXES = (".nc", ".csv")
 FIGURE_SUFFIXES = (".png", ".svg")
+#: Dimensions that become columns of a CSV file; all others become rows.
+_COLUMN_DIMENSIONS = ("pair", "multiplier", "law")
 
 
 def check_file(path: Path, suffixes: tuple[str, ...], *, force: bool) -> Path:
@@ -84,22 +86,28 @@ def write_dataset(result: xr.Dataset, path: Path) -> None:
 
 
 def _write_netcdf(result: xr.Dataset, path: Path) -> None:
-    # NetCDF has neither booleans, complex numbers nor lists of text.
-    ready = result.copy()
-    for name, variable in result.variables.items():
-        if variable.dtype == bool:
-            ready[name] = variable.astype(np.int8)
-        elif np.iscomplexobj(variable):
-            ready[f"{name}_real"] = (variable.dims, variable.to_numpy().real, variable.attrs)
-            ready[f"{name}_imag"] = (variable.dims, variable.to_numpy().imag, variable.attrs)
-            ready = ready.drop_vars([name])
+    ready = _real(result)
     ready.attrs = {key: _attribute(value) for key, value in result.attrs.items()}
+    for name, variable in result.variables.items():
+        if variable.dtype == bool:  # NetCDF has no booleans
+            ready[name] = variable.astype(np.int8)
     encoding = {
         str(name): {"zlib": True, "complevel": 4}
         for name, variable in ready.data_vars.items()
         if variable.ndim and variable.dtype.kind == "f"
     }
     ready.to_netcdf(path, engine="h5netcdf", encoding=encoding)
+
+
+def _real(result: xr.Dataset) -> xr.Dataset:
+    """Split complex variables, which neither format has, into real and imaginary part."""
+    ready = result.copy()
+    for name, variable in result.data_vars.items():
+        if np.iscomplexobj(variable):
+            ready[f"{name}_real"] = (variable.dims, variable.to_numpy().real, variable.attrs)
+            ready[f"{name}_imag"] = (variable.dims, variable.to_numpy().imag, variable.attrs)
+            ready = ready.drop_vars([str(name)])
+    return ready
 
 
 def _attribute(value: Any) -> Any:
@@ -111,24 +119,27 @@ def _attribute(value: Any) -> Any:
 
 
 def _write_csv(result: xr.Dataset, path: Path) -> None:
-    """One row per point of time (or speed), one column per variable and pair; headings carry the unit."""
-    first = str(next(iter(result.sizes)))
-    if "time" in result.sizes:
-        first = "time"
-    columns: list[tuple[str, Any]] = []
-    for name in [first, *(str(n) for n in result.data_vars)]:
-        variable = result[name]
+    """One row per point of the axes, one column per variable (and tooth pair, multiplier or law)."""
+    ready = _real(result)
+    axes = [str(d) for d in ready.sizes if d not in _COLUMN_DIMENSIONS]
+    grid = np.meshgrid(*(ready[d].to_numpy() for d in axes), indexing="ij")
+    columns: list[tuple[str, Any]] = [
+        (f"{d} [{ready[d].attrs.get('units', '1')}]", v.ravel()) for d, v in zip(axes, grid, strict=True)
+    ]
+    for name, variable in ready.data_vars.items():
         unit = variable.attrs.get("units", "1")
-        if variable.dims == (first,):
-            columns.append((f"{name} [{unit}]", variable.to_numpy()))
-        elif set(variable.dims) == {first, *variable.dims} and variable.ndim == 2:
-            other = next(str(d) for d in variable.dims if d != first)
-            for index in range(variable.sizes[other]):
-                part = variable.isel({other: index})
-                label = result[other].to_numpy()[index] if other in result.coords else index
-                columns.append((f"{name}_{other}{label} [{unit}]", part.to_numpy()))
+        others = [str(d) for d in variable.dims if d in _COLUMN_DIMENSIONS]
+        wide = variable.expand_dims({d: ready[d] for d in axes if d not in variable.dims}).transpose(
+            *others, *axes
+        )
+        values = wide.to_numpy().reshape(-1, grid[0].size)
+        labels = [""]
+        for d in others:
+            known = ready[d].to_numpy() if d in ready.coords else np.arange(ready.sizes[d])
+            labels = [f"{label}_{d}{k}" for label in labels for k in known]
+        columns += [(f"{name}{label} [{unit}]", row) for label, row in zip(labels, values, strict=True)]
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow([heading for heading, _ in columns])
-        for row in zip(*(values for _, values in columns), strict=True):
-            writer.writerow([repr(v.item()) if isinstance(v, np.generic) else v for v in row])
+        for row in zip(*(values.tolist() for _, values in columns), strict=True):
+            writer.writerow(row)

@@ -13,14 +13,14 @@ from validation.plots.style import BLACK, RED, new_figure
 _STABLE = LinearSegmentedColormap.from_list("decay", ["#08519c", "#6baed6", "#f7fbff"])
 
 
-def stability_figure(chart: xr.Dataset, x: str, y: str, point: tuple[float, float]) -> Figure:
+def stability_figure(chart: xr.Dataset, x: str, y: str, point: tuple[float, float] | None) -> Figure:
     """Spectral radius over two axes of a chart; unstable regions hatched, the operating point marked.
 
     Parameters
     ----------
     chart : dataset of ``floquet.stability_chart`` over exactly the axes ``x`` and ``y``
     x, y : names of its axes
-    point : operating point (x, y)
+    point : operating point (x, y); None: not marked
     """
     figure, axes = new_figure(height=3.4)
     ax = axes[0, 0]
@@ -35,17 +35,23 @@ def stability_figure(chart: xr.Dataset, x: str, y: str, point: tuple[float, floa
     if unstable.any():
         ax.contourf(xs, ys, radius, levels=[1.0, np.inf], colors=[RED], alpha=0.75)
         ax.contour(xs, ys, radius, levels=[1.0], colors=[BLACK], linewidths=1.0)
-    ax.plot(
-        *point, marker="o", markersize=8, markerfacecolor="white", markeredgecolor=BLACK, markeredgewidth=1.6
-    )
-    ax.annotate(
-        "operating point",
-        point,
-        xytext=(8, 6),
-        textcoords="offset points",
-        fontsize=8.5,
-        bbox={"boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "none", "alpha": 0.85},
-    )
+    if point is not None:
+        ax.plot(
+            *point,
+            marker="o",
+            markersize=8,
+            markerfacecolor="white",
+            markeredgecolor=BLACK,
+            markeredgewidth=1.6,
+        )
+        ax.annotate(
+            "operating point",
+            point,
+            xytext=(8, 6),
+            textcoords="offset points",
+            fontsize=8.5,
+            bbox={"boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "none", "alpha": 0.85},
+        )
     bar = figure.colorbar(mesh, ax=ax, pad=0.01)
     bar.set_label("spectral radius [-]; unstable above 1 (orange)", fontsize=8.5)
     bar.outline.set_linewidth(0.5)

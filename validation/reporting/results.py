@@ -108,12 +108,7 @@ def compute(pair: GearPair, effort: Effort, progress: Progress) -> Results:
     multipliers = gear_pair_multipliers(pair)
     chart = stability_chart(
         pair,
-        {
-            "speed_rpm": _with_point(np.linspace(*speeds, effort.chart_speeds), _rpm(pair)),
-            "damping_ratio": _with_point(
-                np.linspace(0.0, _largest_damping(pair), effort.chart_dampings), pair.mesh.damping_ratio
-            ),
-        },
+        chart_axes(pair, effort),
         rtol=effort.chart_rtol,
         progress=lambda done, total: progress(0.45 + 0.5 * done / total, "stability chart"),
     )
@@ -149,6 +144,20 @@ def speed_range(pair: GearPair, found: tuple[Mode, ...]) -> tuple[float, float]:
     digits = 10.0 ** (np.floor(np.log10(top)) - 1)
     top = float(np.ceil(top / digits) * digits)
     return min(0.05 * top, 0.5 * rpm), top
+
+
+def chart_axes(pair: GearPair, effort: Effort) -> dict[str, FloatArray]:
+    """Axes of the stability chart, speed and mesh damping ratio; the operating point is a node."""
+    try:
+        found = modes(pair)
+    except NumericalError:
+        found = ()
+    speeds = np.linspace(*speed_range(pair, found), effort.chart_speeds)
+    dampings = np.linspace(0.0, _largest_damping(pair), effort.chart_dampings)
+    return {
+        "speed_rpm": _with_point(speeds, _rpm(pair)),
+        "damping_ratio": _with_point(dampings, pair.mesh.damping_ratio),
+    }
 
 
 def _rpm(pair: GearPair) -> float:

@@ -1,0 +1,62 @@
+"""Are numbers written as a reader expects, and without loss of digits?"""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from validation.reporting.blocks import Badge, Quantity, plain
+from validation.reporting.formatting import cell, number, quantity
+
+NBSP = "\u00a0"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"),
+        (3.175, "3.175"),
+        (16663.4, "16660"),
+        (21000.0, "21000"),
+        (-0.25, "\u22120.25"),
+        (0.000123, f"1.23{NBSP}×{NBSP}10⁻⁴"),
+        (9.99996, "10"),
+        (math.nan, "n/a"),
+    ],
+)
+def test_numbers(value, text):
+    assert number(value) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (1.4634e-5, "m", "14.63 µm"),
+        (9.9999e-4, "m", "1 mm"),
+        (1353.0, "N", "1.353 kN"),
+        (8e7, "N/m", "80 MN/m"),
+        (56.5, "N m", "56.5 N m"),
+        (0.25, "1", "0.25"),
+        (0.0, "m", "0 m"),
+        (-2.5e-8, "m", "\u221225 nm"),
+    ],
+)
+def test_quantities_get_prefixes(value, unit, text):
+    assert quantity(value, unit).replace(NBSP, " ") == text
+
+
+@given(st.floats(1e-12, 1e9), st.sampled_from(["m", "N"]))
+def test_a_shown_quantity_is_right_to_four_digits(value, unit):
+    shown, prefixed = quantity(value, unit).split(NBSP)[0], quantity(value, unit).split(NBSP)[-1]
+    factor = {"p": 1e-12, "n": 1e-9, "µ": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}[
+        prefixed[: -len(unit)]
+    ]
+    assert float(shown) * factor == pytest.approx(value, rel=5.1e-4)  # half a unit of the fourth digit
+
+
+def test_cells():
+    assert cell(None) == "–"
+    assert cell(True) == "yes"
+    assert cell(Badge("bounded")) == "bounded"
+    assert plain(Quantity(math.inf, "m")) == {"value": None, "unit": "m"}

@@ -1,0 +1,68 @@
+"""The command ``spurcheck``."""
+
+from __future__ import annotations
+
+import inspect
+from importlib import metadata
+from typing import Annotated
+
+import typer
+
+from validation.commands.crosscheck import crosscheck
+from validation.commands.parameter_files import init, presets, schema
+from validation.commands.report import report
+from validation.commands.simulate import simulate
+from validation.commands.stability import stability
+
+app = typer.Typer(
+    name="spurcheck",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode="rich",
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"spurcheck {metadata.version('spurcheck')}")
+        raise typer.Exit
+
+
+def spurcheck(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and exit.")
+    ] = False,
+) -> None:
+    """Trustworthy dynamics of spur gear pairs with sliding friction.
+
+    A lumped model predicts the vibration of a gear pair, an independent multibody model checks it, and
+    Floquet theory decides whether it is stable. Start with [bold]spurcheck report -o report[/bold], or write
+    a parameter file for your own pair with [bold]spurcheck init[/bold].
+
+    Speeds are pinion speeds in rpm, torques pinion torques in N m; other units may be written out ("200
+    lbf*in").
+
+    Exit codes: 0 done, 1 a verdict fails, 2 an input is refused, 3 a computation fails.
+    """
+
+
+def paragraphs(text: str | None) -> str:
+    """Docstring as help text: lines of a paragraph joined, so that the terminal's width wraps them."""
+    blocks = inspect.cleandoc(text or "").split("\n\n")
+    return "\n\n".join(" ".join(block.split()) for block in blocks)
+
+
+for command in (report, presets, init, simulate, crosscheck, stability, schema):
+    app.command(help=paragraphs(command.__doc__))(command)
+app.callback(help=paragraphs(spurcheck.__doc__))(spurcheck)
+
+
+def main() -> None:
+    """Entry point of the installed command."""
+    app()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,4 @@
+"""The subcommands of ``spurcheck``, one module each.
+
+Nothing here imports the numerics at module level: ``spurcheck --help`` must answer at once.
+"""

@@ -1,0 +1,92 @@
+"""Options that several commands share, and how they become a gear pair."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from lumped import GearPair
+
+DEFAULT_PAIR = "nasa_28_28"
+
+PairArgument = Annotated[
+    str,
+    typer.Argument(
+        metavar="PAIR",
+        help="Gear pair: the name of a preset (see 'spurcheck presets') or a parameter file (TOML).",
+    ),
+]
+Speed = Annotated[
+    str | None,
+    typer.Option("--speed", help="Pinion speed; a bare number is rpm, or write the unit: '200 rad/s'."),
+]
+Torque = Annotated[
+    str | None,
+    typer.Option("--torque", help="Pinion torque; a bare number is N m, or write the unit: '200 lbf*in'."),
+]
+Law = Annotated[
+    str | None,
+    typer.Option(
+        "--law",
+        help="Friction law: none, coulomb (I), benedict_kelley (II), xu_kahraman (III), smoothed_coulomb "
+        "(IV) or composite (V).",
+    ),
+]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="FIELD=VALUE",
+        help="Change any parameter, as often as needed: --set mesh.damping_ratio=0.03 "
+        "--set 'bearings.pinion.loa_stiffness=2e8 N/m'.",
+    ),
+]
+Force = Annotated[bool, typer.Option("--force", help="Overwrite what is there already.")]
+
+
+def gear_pair(
+    source: str, speed: str | None, torque: str | None, law: str | None, settings: list[str] | None
+) -> GearPair:
+    """Load a gear pair and apply the overrides of the command line.
+
+    Raises
+    ------
+    ParameterError : everything that a parameter file could be refused for, and a --set without '='
+    """
+    from lumped import load_gear_pair
+    from lumped.errors import refuse
+
+    changes: dict[str, Any] = {}
+    for item in settings or []:
+        path, separator, text = item.partition("=")
+        if not separator or not path.strip():
+            raise refuse("--set", item, "FIELD=VALUE", "For example --set mesh.damping_ratio=0.03.")
+        changes[path.strip()] = value_of(text.strip())
+    for path, text_or_none in (
+        ("operating.pinion_speed", speed),
+        ("operating.pinion_torque", torque),
+        ("friction.law", law),
+    ):
+        if text_or_none is not None:
+            changes[path] = value_of(text_or_none)
+    pair = load_gear_pair(source)
+    return pair.with_(changes) if changes else pair
+
+
+def value_of(text: str) -> Any:
+    """Value of an option as a parameter file would read it; what is no TOML value is text."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except (tomllib.TOMLDecodeError, RecursionError):
+        return text
+
+
+def figure_or_data(output: Path | None, *, force: bool) -> Path | None:
+    """Check an output file that may be data or a figure, before any work."""
+    from validation.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
+
+    return None if output is None else check_file(output, DATA_SUFFIXES + FIGURE_SUFFIXES, force=force)

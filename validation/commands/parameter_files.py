@@ -1,0 +1,97 @@
+"""spurcheck presets, init, schema: parameter files to start from."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from validation.commands.options import DEFAULT_PAIR, Force
+from validation.commands.terminal import guarded, stderr, stdout, table
+
+
+@guarded
+def presets(
+    name: Annotated[str | None, typer.Argument(help="Show this preset as a parameter file.")] = None,
+) -> None:
+    """List the built-in gear pairs, or show one of them with all values, units and sources.
+
+    [bold]Examples[/bold]
+
+    spurcheck presets
+
+    spurcheck presets nasa_28_28
+    """
+    from lumped import geometry, load_gear_pair, preset_names
+    from lumped.serialise import preset_text
+
+    if name is not None:
+        typer.echo(preset_text(name), nl=False)
+        return
+    shown = table("", "preset", ">teeth", ">contact ratio", "what it is")
+    shown.columns[0].no_wrap = True
+    for known in preset_names():
+        pair = load_gear_pair(known)
+        teeth = f"{pair.pinion.teeth}/{pair.gear.teeth}"
+        shown.add_row(known, teeth, f"{geometry(pair).contact_ratio:.3f}", pair.description)
+    stdout().print(shown)
+
+
+@guarded
+def init(
+    preset: Annotated[str, typer.Argument(help="Preset to start from.")] = DEFAULT_PAIR,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="File to write; default PRESET.toml here. '-' prints it."),
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Write a commented parameter file to edit.
+
+    Every value has its unit beside it, and its source at the end of the file. A bare number means that unit;
+    text may carry any unit of the same kind, such as "200 lbf*in".
+
+    [bold]Examples[/bold]
+
+    spurcheck init
+
+    spurcheck init nasa_28_28 -o my_pair.toml
+    """
+    from lumped.serialise import preset_text
+    from validation.output import check_file, write_text
+
+    text = preset_text(preset)
+    if output is not None and str(output) == "-":
+        typer.echo(text, nl=False)
+        return
+    path = check_file(output or Path(f"{preset}.toml"), (".toml",), force=force)
+    write_text(path, text)
+    stderr().print(f"wrote {path}; next: spurcheck report {path} -o report", soft_wrap=True)
+
+
+@guarded
+def schema(
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="File to write (.json); default: print it.")
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Print the JSON Schema of parameter files: every field with its unit, range and meaning.
+
+    Editors use it to complete and check a parameter file while it is written.
+
+    [bold]Example[/bold]
+
+    spurcheck schema -o spurcheck.schema.json
+    """
+    from lumped import json_schema
+    from validation.output import check_file, write_text
+
+    text = json.dumps(json_schema(), indent=2, ensure_ascii=False) + "\n"
+    if output is None:
+        typer.echo(text, nl=False)
+        return
+    write_text(check_file(output, (".json",), force=force), text)
+    stderr().print(f"wrote {output}", soft_wrap=True)

@@ -1,0 +1,112 @@
+"""spurcheck simulate: the motion of a pair in time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from validation.commands import options as opt
+from validation.commands.terminal import guarded, progress_bar, stderr, stdout, table
+
+Model = Literal["lumped", "multibody"]
+Fidelity = Literal["exact", "linear"]
+Start = Literal["static", "periodic"]
+
+
+@guarded
+def simulate(
+    pair: opt.PairArgument = opt.DEFAULT_PAIR,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", help="Result file: .nc (NetCDF), .csv, .png or .svg; the suffix chooses."
+        ),
+    ] = None,
+    model: Annotated[Model, typer.Option(help="Which model to run.")] = "lumped",
+    fidelity: Annotated[Fidelity, typer.Option(help="Of the multibody model.")] = "exact",
+    cycles: Annotated[int, typer.Option(help="Mesh cycles to run.")] = 20,
+    samples: Annotated[int, typer.Option(help="Output times per mesh cycle.")] = 256,
+    initial: Annotated[
+        Start, typer.Option(help="Start at rest under the mean load, or on the periodic motion.")
+    ] = "static",
+    steady: Annotated[
+        bool, typer.Option("--steady", help="Only the periodic motion over one mesh cycle (lumped).")
+    ] = False,
+    speed: opt.Speed = None,
+    torque: opt.Torque = None,
+    law: opt.Law = None,
+    settings: opt.Settings = None,
+    force: opt.Force = False,
+) -> None:
+    """Simulate a gear pair: transmission error, tooth loads, friction and motions in time.
+
+    Prints the main numbers of the last mesh cycle; -o writes all histories (SI units: m, N, s, rad).
+
+    [bold]Examples[/bold]
+
+    spurcheck simulate nasa_28_28 --speed 4000 --torque 79.1 -o run.nc
+
+    spurcheck simulate my_pair.toml --model multibody --cycles 50 -o run.csv
+
+    spurcheck simulate --steady --law coulomb -o steady.png
+    """
+    import lumped
+    from lumped.errors import refuse
+    from validation.output import FIGURE_SUFFIXES, whole_file, write_dataset
+
+    target = opt.figure_or_data(output, force=force)
+    gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
+    if steady and model == "multibody":
+        raise refuse("--steady", "with --model multibody", "the lumped model", "Leave one of the two out.")
+    with progress_bar(f"{model} model") as tell:
+        if steady:
+            result = lumped.steady_state(gear_pair, samples_per_cycle=samples)
+        elif model == "lumped":
+            result = lumped.simulate(
+                gear_pair,
+                cycles,
+                samples_per_cycle=samples,
+                initial=initial,
+                progress=lambda f: tell(f, ""),
+            )
+        else:
+            import multibody
+
+            result = multibody.simulate(
+                gear_pair,
+                cycles,
+                fidelity=fidelity,
+                samples_per_cycle=samples,
+                initial=initial,
+                progress=lambda f: tell(f, ""),
+            )
+    from validation.reporting.formatting import number, quantity
+
+    g = lumped.geometry(gear_pair)
+    last = result.isel(time=slice(-samples, None))
+    load = last["normal_load"].to_numpy()[last["contact"].to_numpy() > 0]
+    shown = table(f"{gear_pair.name}, last mesh cycle", "quantity", ">value")
+    dte = last["dte"].to_numpy()
+    shown.add_row("transmission error, peak to peak", quantity(float(dte.max() - dte.min()), "m"))
+    shown.add_row("transmission error, mean", quantity(float(dte.mean()), "m"))
+    shown.add_row("largest load of a tooth pair", quantity(float(load.max()), "N"))
+    shown.add_row("smallest load of a tooth pair", quantity(float(load.min()), "N"))
+    static = gear_pair.operating.pinion_torque / g.base_radius_pinion
+    shown.add_row("largest load over static load", number(float(load.max()) / static))
+    shown.add_row("mesh efficiency", number(float(result.attrs["mesh_efficiency"]), 6))
+    shown.add_row(
+        "brake torque that holds the speed", quantity(float(result.attrs["brake_torque"]), "N m", 6)
+    )
+    stdout().print(shown)
+    if target is None:
+        return
+    if target.suffix.lower() in FIGURE_SUFFIXES:
+        from validation.plots import history_figure, save
+
+        with whole_file(target) as temporary:
+            save(history_figure(g, result), temporary)
+    else:
+        write_dataset(result, target)
+    stderr().print(f"wrote {target}", soft_wrap=True)

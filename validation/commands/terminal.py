@@ -1,0 +1,95 @@
+"""How commands talk: errors in one message, progress on stderr, tables on stdout."""
+
+from __future__ import annotations
+
+import functools
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import ParamSpec
+
+import typer
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+P = ParamSpec("P")
+
+#: Exit codes: a verdict that fails, an input that is refused, a computation that fails, an interruption.
+FAILED, REFUSED, NUMERICAL, INTERRUPTED = 1, 2, 3, 130
+
+
+def stdout() -> Console:
+    """Console for results; made anew so that a replaced stream is used."""
+    return Console(highlight=False, emoji=False)
+
+
+def stderr() -> Console:
+    """Console for everything that is not the result."""
+    return Console(stderr=True, highlight=False, emoji=False)
+
+
+def guarded(command: Callable[P, None]) -> Callable[P, None]:
+    """Turn the errors of spurcheck into one message and an exit code, and its warnings into notes."""
+
+    @functools.wraps(command)
+    def run(*args: P.args, **kwargs: P.kwargs) -> None:
+        from lumped.errors import LawRangeWarning, NumericalError, ParameterError
+
+        told: set[str] = set()
+
+        def show(message: Warning | str, *_: object, **__: object) -> None:
+            text = str(message)
+            if text not in told:
+                told.add(text)
+                stderr().print(f"[yellow]note:[/yellow] {escape(text)}")
+
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("always", LawRangeWarning)
+                warnings.showwarning = show
+                command(*args, **kwargs)
+        except ParameterError as error:
+            _fail(str(error), REFUSED)
+        except NumericalError as error:
+            _fail(str(error), NUMERICAL)
+        except OSError as error:
+            name = f"{error.filename}: " if error.filename else ""
+            _fail(f"{name}{error.strerror or type(error).__name__}", REFUSED)
+        except KeyboardInterrupt:
+            _fail("interrupted; nothing was written", INTERRUPTED)
+
+    return run
+
+
+def _fail(text: str, code: int) -> None:
+    stderr().print(f"[bold red]error:[/bold red] {escape(text)}", soft_wrap=True)
+    raise typer.Exit(code)
+
+
+@contextmanager
+def progress_bar(text: str) -> Iterator[Callable[[float, str], None]]:
+    """Progress bar on stderr while the block runs; gives a function (finished fraction, what is being done).
+
+    Without a terminal nothing is drawn.
+    """
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn())
+    console = stderr()
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task(text, total=1.0)
+
+        def tell(fraction: float, doing: str = "") -> None:
+            bar.update(task, completed=fraction, description=doing or text)
+
+        yield tell
+
+
+def table(title: str, *columns: str) -> Table:
+    """Table for the terminal; columns whose heading starts with '>' are right-aligned."""
+    made = Table(title=title or None, title_justify="left", title_style="bold")
+    for column in columns:
+        right = column.startswith(">")
+        made.add_column(column.removeprefix(">"), justify="right" if right else "left", no_wrap=right)
+    return made
