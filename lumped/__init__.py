@@ -8,8 +8,10 @@ from lumped.mesh_elements import MeshElements, mesh_elements
 from lumped.parameters import GearPair
 from lumped.path_function import PathFunction
 from lumped.periodic_system import LTVSystem, periodic_system
+from lumped.quasi_static import optimal_relief, static_transmission_error
 from lumped.serialise import json_schema, load_gear_pair, preset_names
 from lumped.solution import simulate, steady_state
+from lumped.stiffness.components import mesh_stiffness, stiffness_components
 from lumped.sweep import speed_sweep
 
 __all__ = [
@@ -31,9 +33,13 @@ __all__ = [
     "load_gear_pair",
     "mesh_cycle",
     "mesh_elements",
+    "mesh_stiffness",
+    "optimal_relief",
     "periodic_system",
     "preset_names",
     "simulate",
     "speed_sweep",
+    "static_transmission_error",
     "steady_state",
+    "stiffness_components",
 ]

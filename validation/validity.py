@@ -12,6 +12,7 @@ import xarray as xr
 
 from lumped import GearPair, Geometry, geometry
 from lumped.friction import contact_path, law_range_violations
+from lumped.stiffness import stiffness_range_violations
 
 if TYPE_CHECKING:
     from floquet.gear_pair import GearPairMultipliers
@@ -76,6 +77,7 @@ def validity_flags(
         sliding_reversal(g, motion),
         contact_ratio(g),
         law_ranges(pair),
+        stiffness_ranges(pair, g),
         film_regime(pair),
         torque_balance(pair, motion),
     ]
@@ -205,9 +207,27 @@ def law_ranges(pair: GearPair) -> Flag:
         state="warning" if violations else "ok",
         value=float(len(violations)),
         unit="1",
-        detail="; ".join(str(v) for v in violations) or f"{pair.friction.law}: no stated limit is left",
+        detail="; ".join(str(v) for v in violations) or f"{pair.friction.law}: no stated limit is exceeded",
         meaning="An empirical law says nothing outside the conditions in which it was fitted.",
         action="Choose a law that covers the conditions, or take the friction as an assumption.",
+    )
+
+
+def stiffness_ranges(pair: GearPair, g: Geometry) -> Flag:
+    """The stiffness model is used inside the ranges of its fits."""
+    violations = stiffness_range_violations(pair, g)
+    return _flag(
+        key="stiffness_range",
+        name="Stiffness model inside its range",
+        state="warning" if violations else "ok",
+        value=float(len(violations)),
+        unit="1",
+        detail="; ".join(str(v) for v in violations)
+        or f"{pair.mesh.stiffness.model}: no stated limit is left",
+        meaning="The standard's stiffness and the deflection of the gear body are fits. Outside their range "
+        "the stiffness is an extrapolation.",
+        action='Take the stiffness from finite elements or a measurement (model "table"), or see how far the '
+        "results depend on it.",
     )
 
 

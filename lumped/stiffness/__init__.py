@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from lumped.stiffness import iso6336
 from lumped.stiffness.energy import energy
+from lumped.stiffness.energy import violations as energy_violations
 from lumped.stiffness.parabolic import parabolic
 from lumped.stiffness.rectangular import rectangular
 from lumped.stiffness.table import table
@@ -14,6 +16,7 @@ if TYPE_CHECKING:
     from lumped.gear_geometry import Geometry
     from lumped.parameters import GearPair
     from lumped.path_function import PathFunction
+    from lumped.validity import RangeViolation
 
 #: ``mesh.stiffness.model`` -> function (model parameters, pair, geometry) -> k_i(xi) [N/m].
 MODELS: dict[str, Callable[[Any, GearPair, Geometry], PathFunction]] = {
@@ -40,4 +43,34 @@ def pair_stiffness(pair: GearPair, geometry: Geometry) -> PathFunction:
     return MODELS[model.model](model, pair, geometry)
 
 
-__all__ = ["MODELS", "energy", "pair_stiffness", "parabolic", "rectangular", "table"]
+def stiffness_range_violations(pair: GearPair, geometry: Geometry) -> tuple[RangeViolation, ...]:
+    """Validity ranges that a gear pair leaves under its stiffness model.
+
+    They are returned, not warned about: ordinary gears leave the fit of the fillet foundation, and a warning
+    at every evaluation of a sweep would hide the others. The report lists them among the validity flags.
+
+    Parameters
+    ----------
+    pair, geometry : the gear pair and its geometry
+    """
+    model = pair.mesh.stiffness
+    found: tuple[RangeViolation, ...] = ()
+    if model.model == "energy":
+        found += energy_violations(pair, geometry)
+    standard = (
+        (model.model == "energy" and model.scale == "iso6336")
+        or (model.model == "rectangular" and model.pair_stiffness is None)
+        or (model.model == "parabolic" and (model.peak is None or model.end_ratio is None))
+    )
+    return found + iso6336.violations(pair, geometry) if standard else found
+
+
+__all__ = [
+    "MODELS",
+    "energy",
+    "pair_stiffness",
+    "parabolic",
+    "rectangular",
+    "stiffness_range_violations",
+    "table",
+]

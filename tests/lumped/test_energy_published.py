@@ -83,3 +83,36 @@ def test_deflection_of_a_published_gear_pair():
     force = 80e3 / (2000 * math.pi / 30) / profiles[0].base_radius
     # Theirs is the least of some 15 samples per mesh cycle, which misses the end of single contact: 0.5 %.
     assert (force / width * compliance).max() * 1e6 == pytest.approx(43.881, rel=5e-3)
+
+
+# ROSS 2.3.0 (petrobras/ross, GearElementTVMS, an implementation of H. Ma et al. 2014 with true fillets), run
+# for the gear of its documentation: 62 teeth, m 2 mm, b 20 mm, bore 35 mm, E 211 GPa, G 81.2 GPa, tip radius
+# of the rack 0.25 m/(1 - sin 20 deg). Pressure angle at the contact, then k_b, k_s, k_a, k_f [N/m] as it
+# gives them.
+ROSS = [
+    (0.2777380345253824, 2.9058556613e11, 5.6316833598e09, 2.8124045592e11, 8.0070936314e08),
+    (0.3490658503988659, 1.1777017855e10, 2.2936547345e09, 6.3527384460e10, 6.5103154076e08),
+    (0.42672233774374957, 9.9084633695e08, 1.0547146148e09, 1.6995806631e10, 4.5232589735e08),
+]
+
+
+@pytest.mark.parametrize(("angle", "k_b", "k_s", "k_a", "k_f"), ROSS)
+def test_components_of_an_independent_program(angle, k_b, k_s, k_a, k_f):
+    sine = math.sin(math.radians(20.0))
+    profile = ToothProfile(62, 2e-3, math.radians(20.0), 0.0, 1.25, 0.25 / (1.0 - sine))
+    modulus, shear_modulus, width = 211e9, 81.2e9, 20e-3
+    length = np.array([profile.base_radius * math.tan(angle)])
+    beam = beam_compliance(profile, length, modulus, 0.5 * modulus / shear_modulus - 1.0)
+    found = [width / part[0] for part in (beam.bending, beam.shear, beam.axial)]
+    assert found == pytest.approx([k_b, k_s, k_a], rel=1e-10)  # printed digits
+    # Its body formula differs in two inputs, not in the formula: the half tooth angle on the root circle is
+    # taken without the rack's tip clearance, and u is measured to the contact instead of to where the load
+    # crosses the centre line. With them the stiffness is the same.
+    fillet = 0.25 / (1.0 - sine)
+    tangent, cosine = math.tan(math.radians(20.0)), math.cos(math.radians(20.0))
+    theta = (0.5 * math.pi + 2.0 * tangent * (1.0 - fillet) + 2.0 * fillet / cosine) / 62
+    height, _, _, load_angle = (v[0] for v in profile.involute_points(length))
+    lever = (height - profile.root_radius) / (2.0 * profile.root_radius * theta)
+    l_, m_, p_, q_ = coefficients(profile.root_radius / 17.5e-3, theta)
+    shape = l_ * lever**2 + m_ * lever + p_ * (1.0 + q_ * math.tan(load_angle) ** 2)
+    assert modulus * width / (math.cos(load_angle) ** 2 * shape) == pytest.approx(k_f, rel=1e-10)

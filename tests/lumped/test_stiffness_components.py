@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from lumped import geometry, load_gear_pair
-from lumped.stiffness import pair_stiffness
-from lumped.stiffness.components import mesh_stiffness, stiffness_components
+from lumped import geometry, load_gear_pair, mesh_stiffness, preset_names, stiffness_components
+from lumped.stiffness import pair_stiffness, stiffness_range_violations
+from lumped.stiffness.energy import contact_softening
+from lumped.stiffness.iso_comparison import iso_comparison
 
 
 def test_components_add_up_to_the_pair_of_the_energy_model():
@@ -38,3 +39,67 @@ def test_parabola_of_the_default_end_ratio_has_isos_mean():
     data = mesh_stiffness(pair)
     assert data.attrs["mean"] == pytest.approx(data.attrs["iso_mean"], rel=1e-12)
     assert np.ptp(data.mesh_stiffness.values) > 0.0
+
+
+@pytest.mark.parametrize("name", preset_names())
+def test_difference_from_iso_splits_into_size_and_shape(name):
+    pair = load_gear_pair(name)
+    data = iso_comparison(pair)
+    np.testing.assert_allclose(data.mean_ratio, data.single_ratio * data.shape_ratio, rtol=1e-14)
+    own = mesh_stiffness(pair.with_(mesh__stiffness={"model": "energy"})).attrs
+    assert float(data.mean_ratio.sel(variant="as given")) == pytest.approx(
+        own["mean"] / own["iso_mean"], rel=1e-12
+    )
+    # The standard's straight line 0.75 eps + 0.25 follows the shape of the curve to a few per cent, so the
+    # difference between both methods is one of size.
+    assert float(data.shape_ratio.sel(variant="as given")) == pytest.approx(1.0, abs=0.03)
+
+
+@pytest.mark.parametrize("name", preset_names())
+def test_load_stiffens_the_contact_by_the_logarithm(name):
+    # 1/k falls by D ln(1600/100) at every position (D of contact_softening), whatever the position: seen in
+    # the largest stiffness, at one position for both loads but for its flat top.
+    pair = load_gear_pair(name)
+    g = geometry(pair)
+    data = iso_comparison(pair)
+    low, high = (
+        float(data.single_ratio.sel(variant=v)) * data.attrs["iso_single"] for v in ("100 N/mm", "1600 N/mm")
+    )
+    softening = contact_softening(pair.with_(mesh__stiffness={"model": "energy"}), g)
+    assert 1 / low - 1 / high == pytest.approx(softening * np.log(16.0), rel=1e-3)
+
+
+def test_size_differs_from_iso_where_the_standard_or_the_fit_says_so():
+    # The 16/24 teeth stand 57 % outside the fit of the foundation. Within the fit, at 50/50, the standard's
+    # one number lies between the energy method's at the ends of the standard's load range.
+    fzg = iso_comparison(load_gear_pair("fzg_c"))
+    assert [("foundation of the pinion" in text) for text in fzg.attrs["range_warnings"]] == [True, False]
+    blankenship = iso_comparison(load_gear_pair("kahraman_blankenship_50_50"))
+    assert blankenship.attrs["range_warnings"] == []
+    low, high = (float(blankenship.mean_ratio.sel(variant=v)) for v in ("100 N/mm", "1600 N/mm"))
+    assert low < 1.0 < high
+
+
+def test_bore_softens_and_solid_bodies_do_not_matter_without_one():
+    pair = load_gear_pair("kahraman_blankenship_50_50")
+    assert float(iso_comparison(pair).mean_ratio.sel(variant="solid bodies")) == float(
+        iso_comparison(pair).mean_ratio.sel(variant="as given")
+    )
+    bored = iso_comparison(pair.with_(pinion__bore=40.0, gear__bore=40.0)).mean_ratio
+    assert float(bored.sel(variant="as given")) < float(bored.sel(variant="solid bodies"))
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "laws"),
+    [
+        ({"model": "energy"}, ["fillet foundation of the pinion", "fillet foundation of the gear"]),
+        ({"model": "rectangular"}, ["ISO 6336-1 tooth stiffness"]),
+        ({"model": "parabolic", "peak": 3e8}, ["ISO 6336-1 tooth stiffness"]),
+        ({"model": "parabolic", "peak": 3e8, "end_ratio": 0.6}, []),
+        ({"model": "rectangular", "pair_stiffness": 3e8}, []),
+    ],
+)
+def test_only_the_ranges_of_the_model_in_use_are_reported(stiffness, laws):
+    # 16/24 teeth are too wide for the foundation's fit, 20 N m too little for the standard's load range.
+    pair = load_gear_pair("fzg_c").with_(mesh__stiffness=stiffness, operating__pinion_torque=20)
+    assert [v.law for v in stiffness_range_violations(pair, geometry(pair))] == laws

@@ -104,3 +104,16 @@ def test_the_worst_state_wins(pair):
     warned = validity.film_regime(pair.with_({"friction.composite_roughness": 2.0}))
     assert validity.worst_state([]) == "ok"
     assert validity.worst_state([calm, warned, calm]) == "warning"
+
+
+def test_a_stiffness_model_outside_its_fit_is_said():
+    # 16 teeth: half a tooth on the root circle spans 0.188 rad, fitted up to 0.12 rad (Sainsot et al. 2004).
+    wide = lumped.load_gear_pair("fzg_c").with_(mesh__stiffness={"model": "energy"})
+    flag = validity.stiffness_ranges(wide, lumped.geometry(wide))
+    assert (flag.state, flag.value) == ("warning", 2.0)
+    assert "fillet foundation of the pinion" in flag.detail
+    assert flag.action
+    # A constant given by the user stands on no fit.
+    own = wide.with_(mesh__stiffness={"model": "rectangular", "pair_stiffness": 3e8})
+    flag = validity.stiffness_ranges(own, lumped.geometry(own))
+    assert (flag.state, flag.value, flag.action) == ("ok", 0.0, "")
