@@ -1,5 +1,6 @@
 """Is the report complete, true to its JSON, the same every time, safe to open, and written whole?"""
 
+import dataclasses
 import json
 import re
 from html.parser import HTMLParser
@@ -158,3 +159,21 @@ def test_the_report_asks_before_work_whether_it_may_write(pair, tmp_path, monkey
     (tmp_path / "notes.txt").write_text("mine")
     with pytest.raises(ParameterError, match="--force"):
         reporting.report(pair, tmp_path, quick=True)
+
+
+def test_the_headline_states_the_largest_difference_also_when_it_is_within_its_tolerance(check):
+    from validation.reporting.verdict import finite_motions
+
+    widened = dataclasses.replace(
+        check,
+        agreements=tuple(
+            dataclasses.replace(
+                a,
+                relative_l2=0.4 if (a.quantity, a.fidelity) == ("y_g", "exact") else min(a.relative_l2, 0.3),
+                tolerance=dataclasses.replace(a.tolerance, limit=1.0),
+            )
+            for a in check.agreements
+        ),
+    )
+    assert widened.verdict == "confirmed"
+    assert "at most 40 %, in gear y" in finite_motions(widened)

@@ -27,10 +27,10 @@ from validation.reporting.results import Results
 #: Short names for table rows.
 NAMES = {
     "dte": "transmission error",
-    "x_p": "x, pinion",
-    "x_g": "x, gear",
-    "y_p": "y, pinion",
-    "y_g": "y, gear",
+    "x_p": "pinion x",
+    "x_g": "gear x",
+    "y_p": "pinion y",
+    "y_g": "gear y",
     "normal_load": "normal load",
     "friction_force": "friction force",
 }
@@ -161,19 +161,20 @@ def _metrics(check: CrossCheck) -> Table:
             Column("quantity", "quantity"),
             Column("fidelity", "multibody"),
             Column("relative_l2", "relative L2"),
-            Column("maximum_over_span", "largest difference"),
-            Column("rms_over_span", "rms difference"),
+            Column("maximum_over_span", "largest"),
+            Column("rms_over_span", "rms"),
             Column("mean_shift", "mean shift"),
-            Column("peak_to_peak_ratio", "peak-to-peak ratio"),
-            Column("sprague_geers_magnitude", "S-G magnitude"),
-            Column("sprague_geers_phase", "S-G phase"),
-            Column("sprague_geers_comprehensive", "S-G both"),
+            Column("peak_to_peak_ratio", "span ratio"),
+            Column("sprague_geers_magnitude", "S-G M"),
+            Column("sprague_geers_phase", "S-G P"),
+            Column("sprague_geers_comprehensive", "S-G C"),
         ),
         tuple(row(a) for a in check.agreements),
         note="Relative L2: norm of the difference over the norm of the lumped history. Largest, rms and mean "
         "shift are over the peak to peak of the lumped history. Sprague and Geers (2003, 2004): "
         "M = √(I_cc/I_rr) − 1, P = arccos(I_cr/√(I_cc I_rr))/π of the oscillation about the mean, "
-        "I_xy = ∫ x y dt; M > 0 where multibody is larger. Samples on a switch are left out: they belong to "
+        "I_xy = ∫ x y dt; C = √(M² + P²); M > 0 where multibody is larger. Span ratio: peak to peak over "
+        "peak to peak. Samples on a switch are left out: they belong to "
         "either side of the jump.",
     )
 

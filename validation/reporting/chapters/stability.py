@@ -134,7 +134,7 @@ def stability(results: Results) -> Chapter:
         ),
         Text(
             "The chart decides at its nodes. An instability tongue narrower than the chart's step can lie "
-            "between them; tongues that narrow have small growth rates and vanish with little damping."
+            "between them; tongues that narrow usually grow slowly and vanish with little damping."
         ),
         Picture(
             "multipliers",
