@@ -1,7 +1,7 @@
 """Independent multibody reference of a spur gear pair in exudyn, at two fidelities."""
 
-from multibody.attribution import attribution
 from multibody.balance import PowerBalance, power_balance
+from multibody.causes import attribution
 from multibody.drive import Drive
 from multibody.effects import EFFECTS
 from multibody.flow_map import FlowMap, monodromy, steady_state

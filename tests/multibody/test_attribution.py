@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import lumped
-from multibody.attribution import CAUSES, attribution
+from multibody.causes import CAUSES, attribution
 from multibody.effects import EFFECTS, active_effects, effect_flags
 
 JUMPS = lumped.load_gear_pair("nasa_28_28").with_(friction__law="coulomb", friction__coefficient=0.05)
