@@ -35,7 +35,7 @@ class Samples:
 
 
 def misfit(s: Samples, parameters: FloatArray) -> FloatArray:
-    """F - b - beta g N of every sample, (k,) [N]; parameters are beta, then the zero error b of each channel."""
+    """F - b - beta g N of every sample (k,) [N]; parameters: beta, then the zero error b of each channel."""
     zero = parameters[1:][s.channel] if parameters.size > 1 else 0.0
     return np.asarray(s.friction - zero - parameters[0] * s.shape * s.normal, dtype=np.float64)
 

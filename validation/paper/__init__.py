@@ -1,1 +1,27 @@
 """Reproduction of the paper: figures 2 to 7, claims with verdicts, errata by computation."""
+
+from validation.paper.claims import claims
+from validation.paper.errata import errata_chapter
+from validation.paper.figures.law_runs import law_runs
+from validation.paper.figures.record import FigureRecord
+from validation.paper.plots.errata import draw_errata
+from validation.paper.records import PAPER, Claim, ClaimsTable, ErrataChapter, Erratum, Evidence
+from validation.paper.reproduction import DRAW, PaperFigure, figure_records, paper_figures
+
+__all__ = [
+    "DRAW",
+    "PAPER",
+    "Claim",
+    "ClaimsTable",
+    "ErrataChapter",
+    "Erratum",
+    "Evidence",
+    "FigureRecord",
+    "PaperFigure",
+    "claims",
+    "draw_errata",
+    "errata_chapter",
+    "figure_records",
+    "law_runs",
+    "paper_figures",
+]

@@ -42,7 +42,7 @@ def errata_chapter(pair: GearPair) -> ErrataChapter:
     NumericalError : the pair has no periodic motion at its operating point
     """
     shown = pair.with_({"friction.law": "coulomb", "friction.coefficient": SHOWN_COEFFICIENT})
-    first, second, seventh, ninth = sign_errata(shown)
+    (first, second, seventh, ninth), histories = sign_errata(shown)
     return ErrataChapter(
         title="Errata of the paper, shown by computation",
         text=_TEXT,
@@ -63,6 +63,7 @@ def errata_chapter(pair: GearPair) -> ErrataChapter:
             *law_errata(pair),
             *film_errata(pair),
         ),
+        histories=histories,
     )
 
 

@@ -10,13 +10,13 @@ from lumped.friction import (
     benedict_kelley,
     contact_path,
     friction_path_function,
-    friction_settings,
     mean_coefficient,
     xu_kahraman,
 )
 from validation.paper import dimensions
 from validation.paper.errata_signs import multiplier_change
 from validation.paper.printed_laws import (
+    average_coefficient,
     law_ii_printed,
     law_iii_printed,
     law_iv_printed,
@@ -175,8 +175,7 @@ def derivative_residual(pair: GearPair, function: PathFunction, mu: float) -> fl
 
 def _erratum_19(pair: GearPair) -> Erratum:
     own = pair.with_({"friction.law": "smoothed_coulomb"})
-    path = contact_path(own)
-    mu = friction_settings(own).average(path)
+    mu = average_coefficient(own)
     printed, right = law_iv_printed(own), friction_path_function(own)
     effects = _effects(own, printed, "smoothed_coulomb")
     residual = [derivative_residual(own, f, mu) for f in (printed, right)]

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+import xarray as xr
 from scipy.optimize import linear_sum_assignment
 
 from lumped import GearPair, geometry
+from lumped.equations import PRINTED_EQUATIONS
 from validation.paper.records import Erratum, Evidence
 from validation.paper.response import Response, response, speed_drift
 
@@ -13,16 +15,31 @@ from validation.paper.response import Response, response, speed_drift
 DRIFT_CYCLES = 20
 
 
-def sign_errata(pair: GearPair) -> tuple[Erratum, ...]:
-    """Errata of equations 1, 2, 7 and 9.
+def sign_errata(pair: GearPair) -> tuple[tuple[Erratum, ...], xr.Dataset]:
+    """Errata of equations 1, 2, 7 and 9, and the motions behind them.
 
     Parameters
     ----------
     pair : a gear pair with enough friction to show them
+
+    Returns
+    -------
+    the errata, and dte, x_g, y_g [m] over variant ("repaired", "equation 1", ...) and phase (mesh cycles)
     """
     repaired = response(pair)
     steady = speed_drift(pair, cycles=DRIFT_CYCLES)
-    return tuple(_erratum(pair, number, repaired, steady) for number in (1, 2, 7, 9))
+    variants = {number: response(pair, as_printed=(number,)) for number in PRINTED_EQUATIONS}
+    errata = tuple(_erratum(pair, number, r, repaired, steady) for number, r in variants.items())
+    cycles = [repaired.cycle, *(r.cycle for r in variants.values())]
+    names = ["repaired", *(f"equation {number}" for number in variants)]
+    samples = repaired.cycle.sizes["time"]
+    return errata, xr.Dataset(
+        {
+            name: (("variant", "phase"), np.array([c[name].to_numpy() for c in cycles]), {"units": "m"})
+            for name in ("dte", "x_g", "y_g")
+        },
+        coords={"variant": names, "phase": np.arange(samples) / samples},
+    )
 
 
 def one_pair_efficiency(pair: GearPair, xi: float, mu: float, *, printed: bool) -> float:
@@ -52,8 +69,7 @@ _TERMS = {
 }
 
 
-def _erratum(pair: GearPair, number: int, repaired: Response, steady: float) -> Erratum:
-    printed = response(pair, as_printed=(number,))
+def _erratum(pair: GearPair, number: int, printed: Response, repaired: Response, steady: float) -> Erratum:
     drift = speed_drift(pair, as_printed=(number,), cycles=DRIFT_CYCLES)
     evidence = [*_balances(printed, repaired, drift, steady), *_effects(printed, repaired)]
     if number == 1:

@@ -12,7 +12,14 @@ from numpy.typing import NDArray
 
 from lumped import GearPair, PathFunction, geometry
 from lumped.film import film_thickness
-from lumped.friction import ContactPath, contact_path, friction_settings, xu_kahraman
+from lumped.friction import (
+    ContactPath,
+    contact_path,
+    friction_path_function,
+    friction_settings,
+    mean_coefficient,
+    xu_kahraman,
+)
 
 FloatArray = NDArray[np.float64]
 Law = Callable[[FloatArray], FloatArray]
@@ -21,6 +28,13 @@ Law = Callable[[FloatArray], FloatArray]
 _TOLERANCE = 1e-8
 #: Powers of ten of equation 21 as printed: of the film in um (a) and of the speed parameter U (d).
 PRINTED_FILM_EXPONENT, PRINTED_SPEED_EXPONENT = 8, -16
+
+
+def average_coefficient(pair: GearPair) -> float:
+    """mu_avg of laws I and IV: the pair's own coefficient, else the mean of law II over the path."""
+    if pair.friction.coefficient is not None:
+        return pair.friction.coefficient
+    return mean_coefficient(friction_path_function(pair, law="benedict_kelley"))
 
 
 def law_ii_level(path: ContactPath, xi: FloatArray) -> FloatArray:
@@ -74,8 +88,8 @@ def law_iii_printed(pair: GearPair, *, sliding_speed: bool = True, millimetres: 
 
 def law_iv_printed(pair: GearPair) -> PathFunction:
     """Law IV with the contact ratio sigma in the second numerator (equation 19 as printed), lengths in mm."""
-    path, settings = contact_path(pair), friction_settings(pair)
-    mu, sigma, phi = settings.average(path), geometry(pair).contact_ratio, settings.sharpness * 1e-3
+    path, mu = contact_path(pair), average_coefficient(pair)
+    sigma, phi = geometry(pair).contact_ratio, pair.friction.sharpness * 1e-3
 
     def law(xi: FloatArray) -> FloatArray:
         d = 1e3 * (xi - path.L_XP)

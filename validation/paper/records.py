@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
+import xarray as xr
+
 #: The paper that is reproduced.
 PAPER = (
     "A. F. Abbas Al-Zubaidi, Alternate sliding friction formulations of elasto-hydrodynamic of spur gears, "
@@ -77,12 +79,14 @@ class ErrataChapter:
     title, text : heading and introduction
     conditions : operating point and assumptions of the computations, name -> value with unit
     errata : one per row of the table
+    histories : dte, x_g and y_g over one mesh cycle, (variant, phase), "repaired" and each printed sign alone
     """
 
     title: str
     text: str
     conditions: Mapping[str, str]
     errata: tuple[Erratum, ...]
+    histories: xr.Dataset
 
     def equation(self, number: str) -> Erratum:
         """The erratum of an equation number as it stands in the table, e.g. "7" or "13b, 14"."""
@@ -92,8 +96,13 @@ class ErrataChapter:
         raise KeyError(number)
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain data for JSON."""
-        return asdict(self) | {"conditions": dict(self.conditions)}
+        """Plain data for JSON, without the histories."""
+        return {
+            "title": self.title,
+            "text": self.text,
+            "conditions": dict(self.conditions),
+            "errata": [asdict(erratum) for erratum in self.errata],
+        }
 
 
 @dataclass(frozen=True)

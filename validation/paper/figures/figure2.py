@@ -1,0 +1,163 @@
+"""Figure 2: friction coefficients of laws II and III in time, and mean coefficient of law V over speed."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from lumped import GearPair, geometry
+from lumped.friction import friction_path_function, mean_coefficient
+from validation.paper.figures.record import FigureRecord, number
+from validation.paper.operating_points import (
+    CALIBRATIONS,
+    FIGURE_2A,
+    SWITCH_SPEED,
+    TORQUE_2B,
+    second_pair,
+)
+
+FloatArray = NDArray[np.float64]
+
+_POINTS = 801
+_SPEEDS = np.concatenate(
+    [np.arange(250.0, 2200.0, 150.0), np.arange(2200.0, 3001.0, 20.0), np.arange(3150.0, 6001.0, 150.0)]
+)
+
+
+def friction_in_time(pair: GearPair) -> xr.Dataset:
+    """Figure 2a: mu of laws II and III of one tooth pair from A to D, for both gear pairs.
+
+    Parameters
+    ----------
+    pair : the first gear pair; the second one takes over its oil, roughness and law parameters
+
+    Returns
+    -------
+    Dataset over gears, law and point: mu, time [s], cycles (mesh cycles since A), denser around the pitch
+    point; over gears: contact_ratio, pitch (mesh cycles from A to P), mean_mu (gears, law)
+    """
+    columns: dict[str, list[FloatArray]] = {"mu": [], "time": [], "cycles": [], "mean_mu": []}
+    ratios, pitches, names = [], [], []
+    for gears in (pair, second_pair(pair)):
+        at = FIGURE_2A.of(gears)
+        g = geometry(at)
+        near = np.geomspace(5e-9, 1e-3, 80)
+        xi = np.linspace(g.L_XA, np.nextafter(g.L_XD, 0.0), _POINTS)  # a path function is zero from D on
+        xi = np.sort(np.concatenate([xi, g.L_XP - near, g.L_XP + near]))
+        laws = [friction_path_function(at, law=law) for law in ("benedict_kelley", "xu_kahraman")]
+        columns["mu"].append(np.array([law(xi) for law in laws]))
+        columns["mean_mu"].append(np.array([mean_coefficient(law) for law in laws]))
+        columns["cycles"].append((xi - g.L_XA) / g.base_pitch)
+        columns["time"].append(columns["cycles"][-1] * g.mesh_period)
+        ratios.append(g.contact_ratio)
+        pitches.append((g.L_XP - g.L_XA) / g.base_pitch)
+        names.append(f"{gears.pinion.teeth}/{gears.gear.teeth}")
+    return xr.Dataset(
+        {
+            "mu": (("gears", "law", "point"), np.array(columns["mu"]), {"units": "1"}),
+            "mean_mu": (("gears", "law"), np.array(columns["mean_mu"]), {"units": "1"}),
+            "time": (("gears", "point"), np.array(columns["time"]), {"units": "s"}),
+            "cycles": (("gears", "point"), np.array(columns["cycles"]), {"units": "1"}),
+            "contact_ratio": ("gears", ratios, {"units": "1"}),
+            "pitch": ("gears", pitches, {"units": "1", "long_name": "mesh cycles from A to P"}),
+        },
+        coords={"gears": names, "law": ["II", "III"]},
+    )
+
+
+def mean_over_speed(pair: GearPair) -> xr.Dataset:
+    """Figure 2b: mean of |mu| of laws II, III and V over pinion speed, for the calibrations of the regime
+    switch.
+
+    Returns
+    -------
+    Dataset over calibration, law and speed [rpm]: mean_mu; over calibration: viscosity [mPa s] and composite
+    roughness [um]
+    """
+    laws = {"II": "benedict_kelley", "III": "xu_kahraman", "V": "composite"}
+    table = np.empty((len(CALIBRATIONS), len(laws), _SPEEDS.size))
+    for i, (viscosity, roughness) in enumerate(CALIBRATIONS):
+        oil = pair.with_(
+            {
+                "lubricant": {"viscosity": viscosity},
+                "friction.composite_roughness": roughness,
+                # Two flanks alike: S is the roughness of each.
+                "pinion.roughness": roughness / math.sqrt(2.0),
+                "gear.roughness": roughness / math.sqrt(2.0),
+                "operating.pinion_torque": TORQUE_2B,
+            }
+        )
+        for k, speed in enumerate(_SPEEDS):
+            at = oil.with_({"operating.pinion_speed": float(speed)})
+            for j, law in enumerate(laws.values()):
+                table[i, j, k] = mean_coefficient(friction_path_function(at, law=law))
+    return xr.Dataset(
+        {
+            "mean_mu": (("calibration", "law", "speed"), table, {"units": "1"}),
+            "viscosity": ("calibration", [c[0] for c in CALIBRATIONS], {"units": "mPa s"}),
+            "composite_roughness": ("calibration", [c[1] for c in CALIBRATIONS], {"units": "um"}),
+        },
+        coords={
+            "law": list(laws),
+            "speed": ("speed", _SPEEDS, {"units": "rpm", "long_name": "pinion speed"}),
+            "calibration": [f"{v:g} mPa s, {r:g} µm" for v, r in CALIBRATIONS],
+        },
+    )
+
+
+def regime_switch(mean: xr.DataArray, ii: xr.DataArray, iii: xr.DataArray) -> tuple[float, float, float]:
+    """Speed [rpm], relative width and drop of the change from law II to law III in the mean of law V.
+
+    With the share s = (mean_V - mean_III)/(mean_II - mean_III), 1 below and 0 above the change: the highest
+    speed with s = 1/2, the distance between the highest speeds with s = 0.9 and s = 0.1 over it, and
+    mean_II/mean_III there. NaN where the change is not within the speeds.
+    """
+    speed = mean["speed"].to_numpy()
+    share = ((mean - iii) / (ii - iii)).to_numpy()
+
+    def last(level: float) -> float:
+        above = np.flatnonzero(share >= level)
+        if above.size == 0 or above[-1] == share.size - 1:
+            return float("nan")
+        k = int(above[-1])
+        part = (share[k] - level) / (share[k] - share[k + 1])
+        return float(speed[k] + part * (speed[k + 1] - speed[k]))
+
+    middle = last(0.5)
+    if not np.isfinite(middle):
+        return (float("nan"),) * 3
+    ratio = float(ii.interp(speed=middle) / iii.interp(speed=middle))
+    return middle, (last(0.1) - last(0.9)) / middle, ratio
+
+
+def figure2(pair: GearPair) -> FigureRecord:
+    """Figure 2 with its data and numbers."""
+    a, b = friction_in_time(pair), mean_over_speed(pair)
+    numbers: dict[str, str] = {}
+    for gears in a["gears"].to_numpy():
+        means = a["mean_mu"].sel(gears=gears)
+        numbers[f"{gears}: mean of II"] = number(float(means.sel(law="II")))
+        numbers[f"{gears}: mean of III"] = number(float(means.sel(law="III")))
+        numbers[f"{gears}: II over III"] = number(float(means.sel(law="II") / means.sel(law="III")))
+    for c in b["calibration"].to_numpy():
+        m = b["mean_mu"].sel(calibration=c)
+        speed, width, ratio = regime_switch(m.sel(law="V"), m.sel(law="II"), m.sel(law="III"))
+        numbers[f"{c}: switch at"] = number(speed, "rpm")
+        numbers[f"{c}: width of the switch"] = number(100 * width, "% of the speed")
+        numbers[f"{c}: drop of the mean"] = f"{number(ratio)} times"
+    return FigureRecord(
+        number="2",
+        title="Friction coefficients in time, and mean coefficient over speed",
+        text=(
+            f"(a) mu of laws II and III from A to D at {FIGURE_2A.torque:g} N m and {FIGURE_2A.speed:g} rpm; "
+            f"(b) mean of |mu| of the composite law V at {TORQUE_2B:g} N m. The place of the regime switch "
+            f"near {SWITCH_SPEED:g} rpm is not a prediction: composite roughness and viscosity are "
+            "calibrated to it, for two oils. That the switch is abrupt is. Law II grows without limit "
+            "towards the pitch point; it is held constant within 10 nm of it, and at most at its bound."
+        ),
+        numbers=numbers,
+        data={"friction_in_time": a, "mean_over_speed": b},
+    )

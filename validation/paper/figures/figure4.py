@@ -1,0 +1,46 @@
+"""Figure 4: total normal load and total friction force under laws I to IV."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from validation.paper.figures.record import FigureRecord, number
+from validation.paper.operating_points import FIGURE_4, LAWS
+from validation.paper.twins import agreement, total
+
+
+def total_forces(runs: xr.Dataset) -> xr.Dataset:
+    """Sums over the tooth pairs of normal load and friction force, (law, model, phase) [N]."""
+    return xr.Dataset({f"total_{name}": total(runs[name]) for name in ("normal_load", "friction_force")})
+
+
+def figure4(runs: xr.Dataset) -> FigureRecord:
+    """Figure 4 with its data and numbers; ``runs`` of ``law_runs``."""
+    data = total_forces(runs)
+    numbers: dict[str, str] = {}
+    for law, title in LAWS.items():
+        one = data.sel(law=law, model="lumped")
+        numbers[f"{title}: normal load, mean and peak to peak"] = (
+            f"{number(float(one['total_normal_load'].mean()))} and "
+            f"{number(float(np.ptp(one['total_normal_load'].to_numpy())), 'N')}"
+        )
+        numbers[f"{title}: friction force, peak to peak"] = number(
+            float(np.ptp(one["total_friction_force"].to_numpy())), "N"
+        )
+    if "multibody" in runs["model"]:
+        for name, value in agreement(runs.rename(law="variant"), ("normal_load", "friction_force")).items():
+            text = name.replace("_", " ")
+            numbers[f"multibody twin, {text}: rms difference, worst law"] = number(
+                100 * value, "% of the peak to peak"
+            )
+    return FigureRecord(
+        number="4",
+        title="Total normal load and friction force under laws I to IV",
+        text=(
+            f"Sum over the tooth pairs in contact over one mesh cycle at {FIGURE_4.torque:g} N m and "
+            f"{FIGURE_4.speed:g} rpm, lumped model and its multibody twin."
+        ),
+        numbers=numbers,
+        data={"total_forces": data},
+    )

@@ -1,0 +1,133 @@
+"""Figure 7: normal load and friction force per tooth pair, continuously labelled, beside measurements."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from lumped import GearPair, geometry
+from validation.measurements import Measurement, align, overlay, overlay_metrics, predict
+from validation.measurements.specification import PAIR_LABELS
+from validation.paper.figures.record import FigureRecord, number
+from validation.paper.operating_points import FIGURE_7, OperatingPoint
+from validation.paper.twins import agreement, continuous_labels, roll_angle, twins
+
+LAW = "xu_kahraman"
+_CYCLES = 3
+
+
+def pair_forces(pair: GearPair, point: OperatingPoint, *, with_multibody: bool = True) -> xr.Dataset:
+    """Normal load and friction force of pairs A, B, ... over three mesh cycles at one operating point.
+
+    Returns
+    -------
+    Dataset over model, label and cycles (mesh cycles since pair A was at A): normal_load, friction_force [N];
+    roll_angle [deg] over cycles; attributes with the agreement of the twins
+    """
+    at = point.of(pair).with_({"friction.law": LAW})
+    runs = twins({"III": at}, with_multibody=with_multibody)
+    places = geometry(at).pairs
+    samples = runs.sizes["phase"]
+    cycles = np.arange(_CYCLES * samples) / samples
+    found = {}
+    for name in ("normal_load", "friction_force"):
+        one = runs[name].isel(variant=0).transpose("model", "pair", "phase").to_numpy()
+        labelled = np.array([continuous_labels(model, _CYCLES) for model in one])
+        found[name] = (("model", "label", "cycles"), labelled, {"units": "N"})
+    attrs: dict[str, float] = {"speed_rpm": point.speed, "torque": point.torque}
+    if with_multibody:
+        for name, value in agreement(runs, ("normal_load", "friction_force")).items():
+            attrs[f"rms_difference_{name}"] = value
+    return xr.Dataset(
+        found | {"roll_angle": ("cycles", roll_angle(at, cycles), {"units": "deg"})},
+        coords={
+            "model": runs["model"],
+            "label": list(PAIR_LABELS[:places]),
+            "cycles": ("cycles", cycles, {"units": "1", "long_name": "mesh cycles since pair A was at A"}),
+        },
+        attrs=attrs,
+    )
+
+
+def measured_points(pair: GearPair, measurement: Measurement, *, bins: int = 48) -> xr.Dataset:
+    """A record of tooth-pair forces laid over law III at its operating point: bins and metrics by channel.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    measurement : the record
+    bins : points per passage
+    """
+    spec = measurement.spec
+    prediction = predict(
+        pair.with_({"friction.law": LAW}),
+        spec.pinion_speed,
+        spec.pinion_torque,
+        recurrence=spec.recurrence,
+    )
+    phase = align(measurement, prediction)
+    points = overlay(measurement, prediction, phase, bins=bins)
+    points = points.merge(overlay_metrics(measurement, prediction, phase), combine_attrs="override")
+    points["quantity"] = ("channel", [c.quantity for c in spec.channel])
+    points["label"] = ("channel", [c.pair or "" for c in spec.channel])
+    # Pair B follows A by one mesh cycle, C by two.
+    delay = [PAIR_LABELS.index(c.pair) if c.pair else 0 for c in spec.channel]
+    points["cycles"] = points["phase"] + xr.DataArray(delay, dims="channel")
+    return points.assign_attrs(
+        speed_rpm=spec.pinion_speed * 30.0 / math.pi, torque=spec.pinion_torque, shift=phase.shift
+    )
+
+
+def figure7(
+    pair: GearPair, measurements: Sequence[Measurement] = (), *, with_multibody: bool = True
+) -> FigureRecord:
+    """Figure 7 with its data and numbers.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    measurements : records to lay over it; each goes to the panel of its speed
+    with_multibody : also run the multibody twin
+    """
+    data = {
+        f"{point.speed:.0f}rpm": pair_forces(pair, point, with_multibody=with_multibody) for point in FIGURE_7
+    }
+    numbers: dict[str, str] = {}
+    for part in data.values():
+        speed, lumped = f"{part.attrs['speed_rpm']:g} rpm", part.sel(model="lumped")
+        for name in ("normal_load", "friction_force"):
+            text = name.replace("_", " ")
+            largest = float(np.abs(lumped[name]).max())
+            numbers[f"{speed}: largest {text} of a pair"] = number(largest, "N")
+            if with_multibody:
+                numbers[f"{speed}: multibody twin, total {text}: rms difference"] = number(
+                    100 * part.attrs[f"rms_difference_{name}"], "% of the peak to peak"
+                )
+    for j, measurement in enumerate(measurements):
+        points = measured_points(pair, measurement)
+        data[f"measured{j + 1}"] = points
+        for channel in points["channel"].to_numpy():
+            relative = 100 * float(points["relative_mean_absolute"].sel(channel=channel))
+            numbers[f"{measurement.spec.name}, {channel}: mean |measured - predicted|"] = number(
+                relative, "% of the peak to peak"
+            )
+    return FigureRecord(
+        number="7",
+        title="Normal load and friction force per tooth pair, law III",
+        text=(
+            f"Tooth pairs A and B followed through the mesh at {FIGURE_7[0].torque:g} N m, "
+            f"{FIGURE_7[0].speed:g} and {FIGURE_7[1].speed:g} rpm, law III, lumped model and its multibody "
+            "twin. "
+            + (
+                "Points: measured means per phase bin with their scatter."
+                if measurements
+                else "The measured values of the paper are not published as numbers; records given to this "
+                "figure are laid over it."
+            )
+        ),
+        numbers=numbers,
+        data=data,
+    )

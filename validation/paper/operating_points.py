@@ -1,0 +1,77 @@
+"""The paper's operating points and gear pairs, and what had to be assumed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from lumped import GearPair, load_gear_pair
+from lumped.friction import contact_path
+
+#: Friction laws in the paper's order: name in parameter files -> its number and name there.
+LAWS = {
+    "coulomb": "I Coulomb",
+    "benedict_kelley": "II Benedict-Kelley",
+    "xu_kahraman": "III Xu-Kahraman",
+    "smoothed_coulomb": "IV smoothed Coulomb",
+}
+#: The second gear pair of Fig. 2a.
+SECOND_PAIR = "nasa_art_25_31"
+#: Speed at which law V changes its regime in Fig. 2b [rpm].
+SWITCH_SPEED = 2500.0
+#: Two calibrations that meet it: viscosity [mPa s] and composite roughness [um].
+CALIBRATIONS = ((10.0, 0.144), (30.0, 0.333))
+
+
+@dataclass(frozen=True)
+class OperatingPoint:
+    """Torque [N m] and pinion speed [rpm] of a figure."""
+
+    torque: float
+    speed: float
+
+    def of(self, pair: GearPair) -> GearPair:
+        """The pair at this point."""
+        return pair.with_({"operating.pinion_torque": self.torque, "operating.pinion_speed": self.speed})
+
+
+FIGURE_2A = OperatingPoint(22.6, 1000.0)
+FIGURE_4 = OperatingPoint(56.5, 4875.0)
+FIGURE_7 = (OperatingPoint(79.1, 800.0), OperatingPoint(79.1, 4000.0))
+TORQUE_2B = FIGURE_2A.torque
+
+
+def second_pair(pair: GearPair) -> GearPair:
+    """The 25/31 pair with oil and flanks of the first one, so that Fig. 2a compares geometries only."""
+    other = load_gear_pair(SECOND_PAIR)
+    return other.with_(
+        {
+            "lubricant": pair.lubricant,
+            "friction": pair.friction,
+            "pinion.roughness": f"{pair.pinion.roughness!r} m",
+            "gear.roughness": f"{pair.gear.roughness!r} m",
+        }
+    )
+
+
+def conditions(pair: GearPair) -> dict[str, str]:
+    """What the paper does not give and this reproduction assumes, name -> value with unit."""
+    path = contact_path(pair)
+    b = pair.bearings.pinion
+    return {
+        "gear pair": pair.name,
+        "bearing stiffness (LOA, OLOA)": f"{b.loa_stiffness:.4g}, {b.oloa_stiffness:.4g} N/m",
+        "bearing damping ratio": f"{b.loa_damping_ratio:.4g}",
+        "mesh damping ratio": f"{pair.mesh.damping_ratio:.4g}",
+        "tooth-pair stiffness": pair.mesh.stiffness.model,
+        "viscosity": f"{1e3 * path.viscosity:.4g} mPa s",
+        "average roughness S": f"{1e6 * path.roughness:.4g} um",
+        "composite roughness": f"{1e6 * path.composite_roughness:.4g} um",
+        "upper bound of law II": f"{pair.friction.maximum:.4g}",
+        "sharpness of law IV": f"{1e-3 * pair.friction.sharpness:.4g} 1/mm",
+    }
+
+
+def rpm(pair: GearPair) -> float:
+    """Pinion speed [rpm]."""
+    return pair.operating.pinion_speed * 30.0 / math.pi
