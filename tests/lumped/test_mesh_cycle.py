@@ -85,6 +85,12 @@ def test_switches_hold_the_exit_and_the_pitch_point(cycle):
     assert (cycle.edges[0], cycle.edges[-1]) == (0.0, cycle.period)
 
 
+def test_the_pitch_point_is_a_switch_also_without_friction(nasa):
+    """Sliding reverses there whatever the law: results are one-sided at it."""
+    cycle = mesh_cycle(nasa.with_(friction__law="none"))
+    assert np.abs(cycle.switch_times - cycle.events["P"]).min() < 1e-12 * cycle.period
+
+
 def test_coefficients_are_continuous_between_switches(cycle):
     """Between switches nothing jumps: neighbours differ by no more than the step times a slope."""
     e, g = cycle.elements, cycle.geometry

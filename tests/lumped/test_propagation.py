@@ -135,6 +135,15 @@ class TestSteps:
         assert set(system.cycle.edges) <= set(edges)  # bit for bit: a step must not straddle a switch
         assert np.all(np.diff(edges) > 0)
 
+    @pytest.mark.parametrize("off", [-1e-14, -1e-15, 1e-15, 1e-14])
+    def test_outputs_beside_a_switch_do_not_move_it(self, nasa, off):
+        system = periodic_system(nasa, "absolute")
+        outputs = system.cycle.switch_times + off * system.period
+        edges = step_maps(system, np.zeros((12, 0)), outputs=outputs).edges
+        assert set(system.cycle.edges) <= set(edges)
+        # No step as short as a rounding is left between the two.
+        assert np.diff(edges).min() > 1e-13 * system.period
+
     def test_no_step_exceeds_the_angle(self, nasa):
         system = periodic_system(nasa.with_(operating__pinion_speed=300), "absolute")
         edges = step_maps(system, np.zeros((12, 0)), step_angle=0.3).edges

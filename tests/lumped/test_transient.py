@@ -9,6 +9,7 @@ import pytest
 from lumped import ParameterError, geometry, mesh_cycle, simulate, steady_state
 from lumped.equations import COORDINATES, static_deflection
 from lumped.solution import mean_mesh_stiffness
+from lumped.steady import sample_times
 
 STATES = (*COORDINATES, *(f"{n}_dot" for n in COORDINATES))
 
@@ -50,6 +51,29 @@ def test_samples_on_a_switch(coulomb_pair):
     assert np.ptp(steps) < 1e-12 * steps.mean()
     contacts = run["contact"].sum("pair").to_numpy()
     np.testing.assert_array_equal(contacts[:-1].reshape(5, 8), np.tile([2, 2, 2, 2, 1, 1, 1, 1], (5, 1)))
+
+
+def test_samples_at_the_very_bits_of_the_switches(coulomb_pair, monkeypatch):
+    """A grid that holds every switch bit for bit: none of its samples is lost between two segments."""
+    switches = mesh_cycle(coulomb_pair).switch_times
+
+    def with_switches(period, samples):
+        return np.union1d(sample_times(period, samples), switches)
+
+    plain = states(simulate(coulomb_pair, 2, samples_per_cycle=8))
+    monkeypatch.setattr("lumped.solution.sample_times", with_switches)
+    run = simulate(coulomb_pair, 2, samples_per_cycle=8)
+    assert run.sizes["time"] == 2 * (8 + switches.size) + 1
+    period = geometry(coulomb_pair).mesh_period
+    on_grid = np.abs(np.mod(run["time"].to_numpy() / period * 8 + 0.5, 1.0) - 0.5) < 1e-9
+    difference = np.abs(states(run)[on_grid] - plain) / np.abs(plain).max(axis=0)
+    assert difference.max() < 1e-7  # accuracy of the dense output
+    between = states(run)[~on_grid]
+    # Displacements move by no more than their rates allow since the sample before.
+    before = states(run)[np.flatnonzero(~on_grid) - 1]
+    steps = run["time"].to_numpy()[~on_grid] - run["time"].to_numpy()[np.flatnonzero(~on_grid) - 1]
+    fastest = np.abs(plain[:, 6:]).max(axis=0)
+    assert np.all(np.abs(between - before)[:, :6] <= 3 * fastest * steps[:, None] + 1e-12)
 
 
 def test_error_follows_the_tolerance(coulomb_pair):
