@@ -275,7 +275,7 @@ class TestFiles:
         problem(path, "file", allowed="UTF-8")
 
     def test_a_folder(self, tmp_path):
-        problem(tmp_path, "file", allowed="readable")
+        problem(tmp_path, "file", allowed="file")
 
     def test_a_huge_file(self, tmp_path):
         path = tmp_path / "pair.toml"
