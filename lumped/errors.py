@@ -31,9 +31,18 @@ class FieldProblem:
 _SHOWN_CHARACTERS = 60
 
 
+def quoted(value: object) -> str:
+    """Text of a value as code writes it, also of one that is nested deeper than Python counts."""
+    try:
+        return repr(value)
+    except RecursionError:
+        return "a value that is nested too deeply"
+
+
 def shown(value: object) -> str:
     """Text of a refused value, cut to a length that a message bears."""
-    text = value if isinstance(value, str) else repr(value)
+    text = value if isinstance(value, str) else quoted(value)
+    text = text.encode("utf-8", "backslashreplace").decode()  # half a surrogate pair cannot be printed
     if len(text) <= _SHOWN_CHARACTERS:
         return text
     return f"{text[:_SHOWN_CHARACTERS]}... ({len(text)} characters)"
@@ -62,6 +71,10 @@ class ParameterError(SpurcheckError, ValueError):
             lines = "\n".join(f"  - {p}" for p in problems)
             text = f"{head}{len(problems)} problems\n{lines}"
         super().__init__(text)
+
+    def __reduce__(self) -> tuple[type[ParameterError], tuple[list[FieldProblem], str]]:
+        """Pickle by the arguments, not by the text: worker processes send errors back."""
+        return type(self), (list(self.problems), self.source)
 
 
 def refuse(field: str, value: object, allowed: str, action: str) -> ParameterError:

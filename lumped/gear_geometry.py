@@ -81,7 +81,12 @@ def geometry(pair: GearPair) -> Geometry:
     ------
     ParameterError : the gears cannot mesh; never for a pair that was validated
     """
-    result, problems = _build(pair)
+    try:
+        result, problems = _build(pair)
+    except (OverflowError, ZeroDivisionError):
+        text = "module, tip diameters and centre_distance so far apart that their squares are no numbers"
+        problem = FieldProblem("basic_rack.module", text, "lengths of one gear pair", "Check their units.")
+        raise ParameterError([problem], pair.name) from None
     if problems:
         raise ParameterError(problems, pair.name)
     return result
@@ -203,6 +208,13 @@ def _problems(pair: GearPair, g: Geometry, forms: list[float], theoretical: floa
     def add(field: str, value: str, allowed: str, action: str) -> None:
         problems.append(FieldProblem(field, value, allowed, action))
 
+    if not math.isfinite(g.mesh_period):
+        add(
+            "operating.pinion_speed",
+            f"{g.omega_pinion:g} rad/s",
+            "a mesh period in seconds that is a number",
+            "Raise the speed.",
+        )
     if not 1.0 <= g.contact_ratio <= 3.0:
         add(
             "contact_ratio",

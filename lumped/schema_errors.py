@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
-from lumped.errors import FieldProblem, ParameterError, shown
+from lumped.errors import FieldProblem, ParameterError, quoted, shown
 from lumped.parameters import GearPair
 from lumped.units import Quantity
 
@@ -74,7 +74,10 @@ def unknown_key(path: str, known: list[str], part: str) -> FieldProblem:
     names = list(dict.fromkeys(known))
     allowed = "one of " + ", ".join(names) if names else "no key below a value"
     return FieldProblem(
-        shown(path), "unknown key", allowed, nearest(part, names) or "Remove the key, or correct its name."
+        shown(path) or "(empty)",
+        "unknown key",
+        allowed,
+        nearest(part, names) or "Remove the key, or correct its name.",
     )
 
 
@@ -90,7 +93,7 @@ def _problems(item: Any, data: Mapping[str, Any]) -> list[FieldProblem]:
             )
             for p in cause.problems
         ]
-    value = shown(repr(item.get("input")))
+    value = shown(quoted(item.get("input")))
     if kind == "quantity":
         return [FieldProblem(path, context["value"], context["allowed"], context["action"])]
     if kind == "extra_forbidden":

@@ -15,6 +15,7 @@ from pydantic import BaseModel, ValidationError
 from lumped.errors import FieldProblem, ParameterError, shown
 from lumped.parameters import GearPair
 from lumped.schema_errors import field_at, nearest, translated, unknown_key
+from lumped.text_file import read_text
 from lumped.units import Quantity, to_file
 
 #: Largest parameter file read, a bound against a wrong path rather than a limit of the format.
@@ -174,15 +175,7 @@ def _exists(path: Path) -> bool:
 
 def _read(path: Path) -> str:
     try:
-        if path.stat().st_size > MAX_FILE_BYTES:
-            raise ParameterError(
-                [
-                    FieldProblem(
-                        "file", shown(str(path)), f"<= {MAX_FILE_BYTES} bytes", "Is this a parameter file?"
-                    )
-                ]
-            )
-        return path.read_text(encoding="utf-8")
+        return read_text(path, MAX_FILE_BYTES)
     except FileNotFoundError:
         raise ParameterError(
             [

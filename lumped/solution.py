@@ -129,7 +129,7 @@ def initial_state(
         raise refuse("initial", initial, "'static', 'periodic' or 12 states", "Choose one of them.")
     try:
         state = np.array(initial, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         state = np.empty(0)
     if state.shape != (12,) or not np.isfinite(state).all():
         raise refuse(

@@ -7,7 +7,8 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from lumped.errors import refuse
+from lumped.errors import ParameterError, refuse, shown
+from lumped.text_file import read_text
 from lumped.units import to_si
 
 #: Column name -> (axis of the table, unit that its points get, unit of lumped.units for the conversion).
@@ -46,22 +47,25 @@ def read_stiffness_table(file: object, folder: str | Path = ".") -> dict[str, ob
         raise refuse("file", file, "the name of a CSV file", "Write the name as text.")
     path = Path(folder) / file
     try:
-        if path.stat().st_size > _MAX_BYTES:
-            raise refuse("file", path, f"<= {_MAX_BYTES} bytes", "Is this a stiffness table?")
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
+        text = read_text(path, _MAX_BYTES, "utf-8-sig")
+    except (OSError, ValueError) as error:
+        if isinstance(error, ParameterError):
+            raise
         raise refuse("file", path, "a readable CSV file", f"It cannot be read: {error}.") from None
     lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
     if not lines:
         raise refuse("file", path, _FORMAT, "The file is empty.")
-    rows = list(csv.reader(lines))
+    try:
+        rows = list(csv.reader(lines))
+    except csv.Error as error:
+        raise refuse("file", path, _FORMAT, f"It cannot be read: {error}.") from None
     names, units = _header(rows[0], path)
     try:
         columns = list(
             zip(*((float(row[0]), float(row[1])) for row in rows[1:] if len(row) == 2), strict=True)
         )
     except ValueError as error:
-        raise refuse("file", path, _FORMAT, f"A row is no pair of numbers: {error}.") from None
+        raise refuse("file", path, _FORMAT, f"A row is no pair of numbers: {shown(str(error))}.") from None
     if len(columns) != 2 or any(len(row) != 2 for row in rows[1:]):
         raise refuse("file", path, _FORMAT, "Give two columns and at least four rows.")
     values = dict(zip(names, columns, strict=True))
@@ -112,7 +116,7 @@ def _header(row: list[str], path: Path) -> tuple[list[str], list[str]]:
     names = [name for name, _ in found]
     known = len(row) == 2 and len(found) == 2 and "stiffness" in names and any(n in _AXES for n in names)
     if not known:
-        raise refuse("file", path, _FORMAT, f"The header is '{', '.join(row)}'.")
+        raise refuse("file", path, _FORMAT, f"The header is '{shown(', '.join(row))}'.")
     return names, [unit for _, unit in found]
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import ParameterError, refuse
+from lumped.text_file import read_text
 from validation.measurements.specification import (
     QUANTITIES,
     MeasurementSpec,
@@ -25,6 +26,7 @@ from validation.measurements.specification import (
 
 FloatArray = NDArray[np.float64]
 
+_MAX_BYTES = 2_000_000_000
 _HEADING = re.compile(r"^\s*(?P<name>.*?)\s*(?:[\[(](?P<unit>[^\])]*)[\])])?\s*$")
 
 
@@ -73,8 +75,10 @@ def load_measurement(source: str | Path | Mapping[str, Any], data: str | Path | 
         raise refuse("data", "", "the CSV file of the record", "Name it in the description.")
     path = Path(data) if data is not None else folder / spec.data
     try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
+        text = read_text(path, _MAX_BYTES, "utf-8-sig")
+    except ParameterError:
+        raise
+    except (OSError, ValueError) as error:
         raise refuse("data", str(path), "a readable UTF-8 CSV file", f"It cannot be read: {error}.") from None
     try:
         return parse_measurement(spec, text)
@@ -88,7 +92,10 @@ def parse_measurement(spec: MeasurementSpec, text: str) -> Measurement:
     first = next((j for j, line in enumerate(lines) if line.strip() and not line.startswith("#")), None)
     if first is None:
         raise refuse("data", "empty", "a line of headings and numbers", "Check the file.")
-    headings = next(csv.reader([lines[first]], delimiter=spec.delimiter))
+    try:
+        headings = next(csv.reader([lines[first]], delimiter=spec.delimiter))
+    except csv.Error as error:
+        raise refuse("data", "the line of headings", "names of columns", f"{error}.") from None
     columns = _columns(headings)
     wanted = [(c.column, f"channel.{c.name}.column") for c in spec.channel]
     if spec.abscissa.column is not None:

@@ -12,6 +12,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from lumped.errors import FieldProblem, ParameterError, refuse
 from lumped.section import Section
+from lumped.text_file import read_text
 from lumped.units import Quantity
 
 if TYPE_CHECKING:
@@ -46,6 +47,8 @@ QuantityName = Literal[
     "bearing_force_y_g",
 ]
 PAIR_LABELS = "ABCDEFGH"
+#: Largest description read: a bound against a wrong path.
+MAX_FILE_BYTES = 1_000_000
 
 
 class Abscissa(Section):
@@ -155,10 +158,12 @@ def read_specification(source: str | Path | Mapping[str, Any]) -> tuple[Measurem
         path = Path(source)
         folder, name = path.parent, str(path)
         try:
-            data = tomllib.loads(path.read_text(encoding="utf-8"))
+            data = tomllib.loads(read_text(path, MAX_FILE_BYTES))
+        except ParameterError:
+            raise
         except OSError as error:
             raise refuse("file", name, "a readable TOML file", f"It cannot be read: {error}.") from None
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        except (ValueError, RecursionError) as error:
             raise refuse("file", name, "well-formed TOML", f"The TOML is malformed: {error}.") from None
     try:
         return MeasurementSpec.model_validate(data), folder

@@ -9,11 +9,11 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from lumped.errors import FieldProblem, ParameterError, refuse, shown
+from lumped.errors import FieldProblem, ParameterError, quoted, refuse, shown
 from lumped.parameters import GearPair
 from lumped.schema_errors import unknown_key
 from lumped.serialise import load_gear_pair, preset_names
-from validation.studies.files import StoreError, read_bytes
+from lumped.text_file import read_text
 from validation.studies.schema import Axis, Design, Settings, Study
 
 #: Largest study file read: a bound against a wrong path; a list of a million values fits.
@@ -40,16 +40,13 @@ def load_study(source: str | Path | Mapping[str, Any] | Study, *, name: str = ""
         return _validated(_parsed(source, name or "study"), name or "study", Path())
     path = Path(source)
     try:
-        text = _text(path)
+        text = read_text(path, MAX_FILE_BYTES)
+    except ParameterError:
+        raise
     except (OSError, ValueError) as error:
-        reason = error if isinstance(error, StoreError) else f"It cannot be read: {error}."
-        raise refuse("study", path, "a readable UTF-8 TOML file", str(reason)) from None
+        allowed = "a readable UTF-8 TOML file"
+        raise refuse("study", shown(str(path)), allowed, f"It cannot be read: {error}.") from None
     return _validated(_parsed(text, str(path)), str(path), path.parent)
-
-
-def _text(path: Path) -> str:
-    # The user's own file may be a link; what it leads to must be an ordinary file all the same.
-    return read_bytes(path.resolve(strict=True), MAX_FILE_BYTES).decode("utf-8")
 
 
 def _parsed(text: str, source: str) -> dict[str, Any]:
@@ -121,7 +118,7 @@ def _translated(error: ValidationError) -> list[FieldProblem]:
             problems.setdefault(
                 path,
                 FieldProblem(
-                    path, shown(repr(item.get("input"))), _plainly(item["msg"]), "Correct the value."
+                    path, shown(quoted(item.get("input"))), _plainly(item["msg"]), "Correct the value."
                 ),
             )
     return list(problems.values())

@@ -216,7 +216,7 @@ def _lists(value: Any) -> Any:
 def _output_problems(study: Study) -> list[FieldProblem]:
     known = OUTPUTS[study.analysis]
     problems = [
-        FieldProblem(f"outputs.{j}", repr(name), "one of " + ", ".join(known), "Correct the name.")
+        FieldProblem(f"outputs.{j}", shown(repr(name)), "one of " + ", ".join(known), "Correct the name.")
         for j, name in enumerate(study.outputs)
         if name not in known
     ]

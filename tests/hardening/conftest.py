@@ -1,0 +1,239 @@
+"""Strategies for gear pairs, valid and hostile, and a watch against calls that do not end.
+
+The number of examples is multiplied by the environment variable SPURCHECK_FUZZ (default 1), for a long run.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import copy
+import math
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, settings
+from hypothesis import strategies as st
+
+from lumped import GearPair, load_gear_pair, preset_names
+from lumped.errors import ParameterError
+
+if sys.platform == "linux":
+    # A file without end, read whole, would take the machine down instead of failing a test.
+    import resource
+
+    resource.setrlimit(resource.RLIMIT_AS, (16 << 30, resource.getrlimit(resource.RLIMIT_AS)[1]))
+
+settings.register_profile(
+    "hardening",
+    deadline=None,  # the first call compiles; hangs are caught by `within`
+    max_examples=40 * int(os.environ.get("SPURCHECK_FUZZ", "1")),
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large],
+    print_blob=True,
+)
+settings.load_profile("hardening")
+
+
+class Hang(BaseException):
+    """Raised in a call that takes too long; no handler for errors catches it."""
+
+
+@pytest.fixture(scope="session")
+def within() -> Callable[[float], AbstractContextManager[None]]:
+    """Fail a block that takes longer than some seconds."""
+
+    @contextlib.contextmanager
+    def limit(seconds: float) -> Iterator[None]:
+        def expired(number: int, frame: Any) -> None:
+            raise Hang(f"longer than {seconds} s")
+
+        before = signal.signal(signal.SIGALRM, expired)
+        signal.setitimer(signal.ITIMER_REAL, seconds)
+        try:
+            yield
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            signal.signal(signal.SIGALRM, before)
+
+    return limit
+
+
+def log_range(low: float, high: float) -> st.SearchStrategy[float]:
+    """Numbers spread evenly over the decades from low to high."""
+    return st.floats(math.log10(low), math.log10(high)).map(lambda power: float(10.0**power))
+
+
+STIFFNESS = st.one_of(
+    st.just({"model": "rectangular"}),
+    st.builds(lambda k: {"model": "rectangular", "pair_stiffness": k}, log_range(1e6, 1e10)),
+    st.builds(
+        lambda k, ratio: {"model": "parabolic", "peak": k, "end_ratio": ratio},
+        log_range(1e6, 1e10),
+        st.floats(0.2, 1.0),
+    ),
+)
+FRICTION = st.one_of(
+    st.just({"law": "none"}),
+    st.builds(lambda mu: {"law": "coulomb", "coefficient": mu}, st.floats(0.0, 0.3)),
+    st.builds(lambda mu: {"law": "smoothed_coulomb", "coefficient": mu}, st.floats(0.0, 0.3)),
+    st.sampled_from([{"law": "benedict_kelley"}, {"law": "xu_kahraman"}, {"law": "composite"}]),
+)
+
+
+@st.composite
+def gear_pairs(draw: Callable[..., Any]) -> GearPair:
+    """Pairs that exist: tooth forms of everyday, everything else over many decades."""
+    module = draw(log_range(0.3, 30.0))
+    bearing = {
+        f"{direction}_{what}": draw(values)
+        for direction in ("loa", "oloa")
+        for what, values in (("stiffness", log_range(1e6, 1e10)), ("damping_ratio", st.floats(0.0, 0.2)))
+    }
+    gears = [
+        {
+            "teeth": draw(st.integers(20, 90)),
+            "face_width": module * draw(st.floats(2.0, 15.0)),
+            "profile_shift": draw(st.floats(0.0, 0.3)),
+            "roughness": draw(st.floats(0.05, 0.8)),
+            "bore": module * draw(st.floats(0.0, 8.0)),
+        }
+        for _ in range(2)
+    ]
+    return load_gear_pair(
+        {
+            "name": "drawn",
+            "basic_rack": {"module": module, "pressure_angle": draw(st.floats(20.0, 25.0))},
+            "pinion": gears[0],
+            "gear": gears[1],
+            "bearings": {"pinion": bearing, "gear": bearing},
+            "mesh": {
+                "stiffness": draw(STIFFNESS),
+                "damping_ratio": draw(st.floats(0.0, 0.3)),
+                "backlash": 0.02 * module,
+            },
+            "lubricant": {"viscosity": draw(st.floats(4.0, 50.0))},
+            "friction": draw(FRICTION),
+            "operating": {
+                "pinion_speed": draw(log_range(500.0, 20000.0)),
+                "pinion_torque": module**3 * draw(st.floats(0.2, 5.0)),
+            },
+        }
+    )
+
+
+def existing(draw_pair: st.SearchStrategy[GearPair]) -> st.SearchStrategy[GearPair]:
+    """Leave out the combinations that the schema refuses."""
+
+    @st.composite
+    def strategy(draw: Callable[..., Any]) -> GearPair:
+        from hypothesis import reject
+
+        try:
+            pair: GearPair = draw(draw_pair)
+        except ParameterError:
+            reject()
+        return pair
+
+    return strategy()
+
+
+@pytest.fixture(scope="session")
+def pairs() -> st.SearchStrategy[GearPair]:
+    """Strategy of valid gear pairs."""
+    return existing(gear_pairs())
+
+
+#: What no field expects: limits of numbers, text that looks like code, other types, other sizes.
+HOSTILE = st.one_of(
+    st.sampled_from(
+        [
+            None,
+            True,
+            0,
+            -1,
+            -0.0,
+            1e-320,
+            5e-324,
+            1e308,
+            -1e308,
+            math.nan,
+            math.inf,
+            -math.inf,
+            10**400,
+            2**63,
+            "",
+            " ",
+            "nan",
+            "inf mm",
+            "1e400 mm",
+            "1e999999999 mm",
+            "9**9**9**9 mm",
+            "10**(10**10) m",
+            "mm",
+            "1 mm/0",
+            "1 furlong",
+            "3 mm; import os",
+            "__import__('os').system('touch owned')",
+            "{{7*7}}",
+            "%s%n",
+            "<script>alert(1)</script>",
+            "../../etc/passwd",
+            "/dev/zero",
+            "\x00",
+            "\ud800",
+            "١ mm",
+            "1" * 5000,
+            "(" * 2000,
+            b"bytes",
+            object(),
+            [],
+            {},
+            [[]],
+            [1] * 1000,
+            {"a": {"b": {"c": 1}}},
+            {"model": "table", "file": "/dev/zero"},
+            {"model": "table", "file": "../../../etc/passwd"},
+            {"model": "nonsense"},
+            ["loa", None],
+        ]
+    ),
+    st.floats(),
+    st.integers(),
+    st.text(max_size=30),
+)
+
+
+@pytest.fixture(scope="session")
+def hostile_values() -> st.SearchStrategy[Any]:
+    """Strategy of values that hardly any field allows."""
+    return HOSTILE
+
+
+@pytest.fixture(scope="session")
+def hostile_mappings() -> st.SearchStrategy[dict[str, Any]]:
+    """Strategy of preset mappings with one to four entries replaced, removed or added."""
+    presets = [load_gear_pair(name).to_mapping() for name in preset_names()]
+
+    @st.composite
+    def mappings(draw: Callable[..., Any]) -> dict[str, Any]:
+        data = copy.deepcopy(draw(st.sampled_from(presets)))
+        for _ in range(draw(st.integers(1, 4))):
+            node = data
+            while True:
+                key = draw(st.sampled_from([*sorted(node, key=str), "new key"]))
+                inner = node.get(key)
+                if isinstance(inner, dict) and inner and draw(st.booleans()):
+                    node = inner
+                    continue
+                if draw(st.integers(0, 4)):
+                    node[key] = draw(HOSTILE)
+                else:
+                    node.pop(key, None)
+                break
+        return data
+
+    return mappings()

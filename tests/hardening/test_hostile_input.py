@@ -1,0 +1,236 @@
+"""Does any input do anything but give an answer or one clear refusal?"""
+
+from __future__ import annotations
+
+import math
+import pickle
+import string
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from lumped import GearPair, geometry, load_gear_pair, preset_names
+from lumped.errors import ParameterError, SpurcheckError
+from lumped.schema_errors import field_at
+from lumped.serialise import preset_text
+from validation.studies import Study, load_study
+
+SECONDS = 10.0
+STUDY = """name = "s"
+gear_pair = "nasa_28_28"
+analysis = "floquet"
+outputs = ["spectral_radius", "verdict"]
+design = { method = "sobol", samples = 16, seed = 3, sensitivity = true }
+settings = { rtol = 1e-9 }
+[[axes]]
+field = "speed_rpm"
+low = 500.0
+high = 9000.0
+spacing = "log"
+[[axes]]
+name = "width"
+field = ["pinion.face_width", "gear.face_width"]
+low = 5.0
+high = 9.0
+"""
+
+
+def accepted_or_refused(load, *arguments):
+    """The result, or None when it was refused with messages that a person can read."""
+    try:
+        return load(*arguments)
+    except ParameterError as error:
+        check_refusal(error)
+        return None
+
+
+def check_refusal(error):
+    assert error.problems
+    for problem in error.problems:
+        assert problem.field
+        assert problem.allowed
+        assert problem.action
+        assert len(str(problem)) < 3000
+
+
+def check_pair(pair):
+    """An accepted pair is finite, exists, and comes back from its own text."""
+    if pair is None:
+        return
+    assert isinstance(pair, GearPair)
+    assert all(math.isfinite(value) for value in vars(geometry(pair)).values())
+    assert load_gear_pair(pair.to_mapping()) == pair
+    hash(pair)
+
+
+@given(data=st.data())
+def test_hostile_mappings(within, hostile_mappings, data):
+    mapping = data.draw(hostile_mappings)
+    with within(SECONDS):
+        check_pair(accepted_or_refused(load_gear_pair, mapping))
+
+
+@given(data=st.data())
+def test_hostile_values_of_one_field(within, hostile_values, data):
+    pair = load_gear_pair("nasa_28_28")
+    path = data.draw(st.sampled_from(PATHS))
+    value = data.draw(hostile_values)
+    with within(SECONDS):
+        check_pair(accepted_or_refused(pair.with_, {path: value}))
+
+
+def _paths():
+    from lumped.serialise import leaf_paths
+
+    return [
+        *leaf_paths(load_gear_pair("fzg_c")),
+        "mesh.stiffness",
+        "pinion",
+        "",
+        "..",
+        "a.b.c",
+        "pinion.teeth.x",
+    ]
+
+
+PATHS = _paths()
+
+
+@given(
+    path=st.text(max_size=40)
+    | st.lists(st.sampled_from([p for q in PATHS for p in q.split(".")])).map(".".join)
+)
+def test_hostile_paths(within, path):
+    with within(SECONDS):
+        accepted_or_refused(field_at, path)
+
+
+@st.composite
+def broken(draw, texts):
+    """A text with a few characters, lines or blocks deleted, doubled, swapped or replaced."""
+    text = draw(st.sampled_from(texts))
+    for _ in range(draw(st.integers(1, 4))):
+        start = draw(st.integers(0, len(text)))
+        end = min(len(text), start + draw(st.sampled_from([0, 1, 1, 2, 5, 20, 200])))
+        new = draw(
+            st.sampled_from(
+                ["", text[start:end] * 2, "=", "[", "]", '"', '"""', "\n", "#", "\x00", "-", "e9", "é"]
+            )
+            | st.text(alphabet=string.printable, max_size=8)
+            | st.sampled_from(["[" * 3000, "{a=" * 3000, "9" * 5000, "a." * 3000, "[[axes]]\n" * 40])
+        )
+        text = text[:start] + new + text[end:]
+    return text
+
+
+@given(text=broken([preset_text(name) for name in preset_names()]))
+@settings(max_examples=2 * settings.get_profile("hardening").max_examples)
+def test_broken_parameter_files(within, tmp_path_factory, text):
+    file = tmp_path_factory.mktemp("toml") / "pair.toml"
+    file.write_text(text, encoding="utf-8", errors="surrogatepass", newline="")
+    with within(SECONDS):
+        check_pair(accepted_or_refused(load_gear_pair, file))
+
+
+@given(text=broken([STUDY]))
+@settings(max_examples=2 * settings.get_profile("hardening").max_examples)
+def test_broken_study_files(within, tmp_path_factory, text):
+    file = tmp_path_factory.mktemp("toml") / "study.toml"
+    file.write_text(text, encoding="utf-8", errors="surrogatepass", newline="")
+    with within(SECONDS):
+        study = accepted_or_refused(load_study, file)
+    if study is not None:
+        assert isinstance(study, Study)
+        assert load_study(study.to_toml()) == study
+
+
+@given(data=st.binary(max_size=300))
+def test_bytes_that_are_no_text(within, tmp_path_factory, data):
+    file = tmp_path_factory.mktemp("bytes") / "any.toml"
+    file.write_bytes(data)
+    with within(SECONDS):
+        accepted_or_refused(load_gear_pair, file)
+        accepted_or_refused(load_study, file)
+
+
+@given(data=st.data())
+def test_hostile_study_mappings(within, hostile_values, data):
+    study = load_study(STUDY).to_mapping()
+    for _ in range(data.draw(st.integers(1, 3))):
+        node = study
+        while isinstance(node, (dict, list)) and node:
+            keys = sorted(node, key=str) if isinstance(node, dict) else range(len(node))
+            key = data.draw(st.sampled_from(list(keys)))
+            if not isinstance(node[key], (dict, list)) or data.draw(st.booleans()):
+                node[key] = data.draw(hostile_values)
+                break
+            node = node[key]
+    with within(SECONDS):
+        accepted_or_refused(load_study, study)
+
+
+CSV = "# measured\nposition [mm], stiffness [N/um]\n8, 60\n10, 75\n14, 90\n18, 76\n22.5, 61\n"
+
+
+@given(text=broken([CSV]))
+@example(text="position [mm], stiffness [N/um]\n" + "1" * 200_000 + ", 2\n")
+@example(text='position [mm], stiffness [N/um]\n"' + "\n" * 5)
+def test_broken_stiffness_tables(within, tmp_path_factory, text):
+    folder = tmp_path_factory.mktemp("csv")
+    (folder / "curve.csv").write_text(text, encoding="utf-8", errors="surrogatepass", newline="")
+    data = load_gear_pair("nasa_28_28").to_mapping()
+    data["mesh"]["stiffness"] = {"model": "table", "file": str(folder / "curve.csv")}
+    with within(SECONDS):
+        check_pair(accepted_or_refused(load_gear_pair, data))
+
+
+HOSTILE_NUMBERS = [math.nan, math.inf, -1.0, 0.0, 1e308, "x", None, [], 10**400]
+
+
+@pytest.mark.parametrize("value", HOSTILE_NUMBERS, ids=lambda value: str(value)[:9])
+@pytest.mark.parametrize("argument", ["cycles", "samples_per_cycle", "initial", "rtol"])
+def test_hostile_arguments_of_simulate(within, argument, value):
+    from lumped import simulate
+
+    arguments = {"cycles": 1, "samples_per_cycle": 8} | {argument: value}
+    with within(60.0):
+        try:
+            result = simulate(load_gear_pair("nasa_28_28"), **arguments)
+        except (SpurcheckError, TypeError):
+            return
+    assert np.isfinite(result.dte).all()
+
+
+def test_a_refusal_survives_the_way_between_processes():
+    with pytest.raises(ParameterError) as caught:
+        load_gear_pair({"name": ""})
+    error = pickle.loads(pickle.dumps(caught.value))
+    assert (error.problems, error.source, str(error)) == (
+        caught.value.problems,
+        caught.value.source,
+        str(caught.value),
+    )
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes and devices")
+@pytest.mark.parametrize("kind", ["pipe", "zero", "folder", "loop"])
+def test_names_that_are_no_files(within, tmp_path, kind):
+    import os
+
+    name = tmp_path / "x.toml"
+    if kind == "pipe":
+        os.mkfifo(name)
+    elif kind == "zero":
+        name.symlink_to("/dev/zero")
+    elif kind == "folder":
+        name.mkdir()
+    else:
+        name.symlink_to(name)
+    data = load_gear_pair("nasa_28_28").to_mapping()
+    data["mesh"]["stiffness"] = {"model": "table", "file": str(name)}
+    for load, source in ((load_gear_pair, name), (load_study, name), (load_gear_pair, data)):
+        with within(SECONDS):
+            assert accepted_or_refused(load, source) is None
