@@ -11,7 +11,7 @@ from validation.measurements import predict, synthetic_measurement
 from validation.paper import DRAW, figure_records, law_runs, paper_figures
 from validation.paper.figures.figure2 import regime_switch
 from validation.paper.figures.figure7 import measured_points
-from validation.paper.operating_points import FIGURE_4, FIGURE_7
+from validation.paper.operating_points import FIGURE_4, FIGURE_7, second_pair
 from validation.paper.twins import agreement, continuous_labels, mesh_orders, roll_angle
 
 
@@ -42,6 +42,14 @@ def test_figure_2a_holds_the_laws_at_its_operating_point(pair, records):
         path.radius(xi),
     )
     np.testing.assert_allclose(data["mu"][[50, 200, 700]], expected, atol=1e-9)  # ten times the fit's error
+
+
+def test_figure_2a_compares_two_geometries_whichever_comes_first(pair):
+    for first, names in ((pair, ["28/28", "25/31"]), (load_gear_pair("nasa_art_25_31"), ["25/31", "28/28"])):
+        other = second_pair(first)
+        assert [f"{p.pinion.teeth}/{p.gear.teeth}" for p in (first, other)] == names
+        assert other.lubricant == first.lubricant
+        assert other.pinion.roughness == first.pinion.roughness
 
 
 def test_regime_switch_measures_a_known_change():

@@ -120,16 +120,27 @@ def _pairs(varied: Sensitivity, first: str, second: str) -> list[tuple[float, fl
     return list(zip(varied.numbers[first].tolist(), varied.numbers[second].tolist(), strict=True))
 
 
+#: Claim and verdict -> what explains it.
 _REMARKS = {
-    "regime change": "The speed itself is calibrated: composite roughness and viscosity were chosen to meet "
-    "it. What is reproduced is that the change is abrupt.",
-    "pitch point": "Both follow from the laws' form: III goes with |SR|^1.04, II with the logarithm of 1/v_s "
-    "up to its bound.",
-    "jumps": "Where a tooth pair takes up its stiffness at once, the friction force of every law also jumps "
-    "as pairs enter and leave; the claim is about the pitch point.",
-    "OLOA motion": "Off the line of action friction is the only excitation, so the motion follows the "
-    "coefficient.",
-    "second harmonic": "The spread follows the amplitudes, which are largest at the first order.",
+    ("regime change", "reproduced"): "The speed itself is calibrated: composite roughness and viscosity were "
+    "chosen to meet it. What is reproduced is that the change is abrupt.",
+    ("regime change", "not reproduced"): "The speed depends on composite roughness and viscosity, which are "
+    "calibrated for the 28/28 pair only.",
+    ("pitch point", "reproduced"): "Both follow from the laws' form: III goes with |SR|^1.04, II with the "
+    "logarithm of 1/v_s up to its bound.",
+    (
+        "jumps",
+        "reproduced",
+    ): "Where a tooth pair takes up its stiffness at once, the friction force of every law "
+    "also jumps as pairs enter and leave; the claim is about the pitch point.",
+    (
+        "OLOA motion",
+        "not reproduced",
+    ): "Off the line of action friction is the only excitation, so the motion follows the coefficient.",
+    (
+        "second harmonic",
+        "not reproduced",
+    ): "The spread follows the amplitudes, which are largest at another order.",
 }
 
 
@@ -137,7 +148,7 @@ def _text(rule: ClaimRule, value: float, verdict: ClaimVerdict, share: float | N
     parts = [f"{number(value, rule.unit)}; criterion: {rule.criterion}."]
     if rule.unpublished:
         parts.append(rule.unpublished)
-    parts.append(_REMARKS.get(rule.name, ""))
+    parts.append(_REMARKS.get((rule.name, verdict), ""))
     if share is not None:
         parts.append(f"Met in {100 * share:.0f} % of the samples of the assumptions.")
         if verdict != "cannot be judged" and 0.1 < share < 0.9:

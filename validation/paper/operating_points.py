@@ -15,8 +15,8 @@ LAWS = {
     "xu_kahraman": "III Xu-Kahraman",
     "smoothed_coulomb": "IV smoothed Coulomb",
 }
-#: The second gear pair of Fig. 2a.
-SECOND_PAIR = "nasa_art_25_31"
+#: The gear pairs of Fig. 2a.
+PAIRS_2A = ("nasa_art_25_31", "nasa_28_28")
 #: Speed at which law V changes its regime in Fig. 2b [rpm].
 SWITCH_SPEED = 2500.0
 #: Two calibrations that meet it: viscosity [mPa s] and composite roughness [um].
@@ -42,8 +42,12 @@ TORQUE_2B = FIGURE_2A.torque
 
 
 def second_pair(pair: GearPair) -> GearPair:
-    """The 25/31 pair with oil and flanks of the first one, so that Fig. 2a compares geometries only."""
-    other = load_gear_pair(SECOND_PAIR)
+    """The 25/31 pair with oil and flanks of the first one, so that Fig. 2a compares geometries only.
+
+    For a first pair of 25/31 teeth the 28/28 pair takes this place.
+    """
+    candidates = (load_gear_pair(name) for name in PAIRS_2A)
+    other = next(c for c in candidates if c.pinion.teeth != pair.pinion.teeth)
     return other.with_(
         {
             "lubricant": pair.lubricant,
