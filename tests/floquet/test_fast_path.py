@@ -90,6 +90,31 @@ def test_bound_is_not_idle() -> None:
         assert fast.errors[0] < 1e-8 * max(1.0, np.linalg.norm(fast.matrices[0]) ** 2)
 
 
+def test_declared_misfit_of_the_polynomials_enters_the_bound() -> None:
+    # w is wrong by e in norm: the bound must cover the effect when e is declared, and cannot when it is not.
+    rng = np.random.default_rng(6)
+    for _ in range(10):
+        system = random_system(rng)
+        e = 1e-6
+        direction = rng.normal(size=system.v.size)
+        direction /= np.sqrt(system.metric @ direction**2)
+        wrong = system.w.copy()
+        wrong[:, :, 0] += e * direction
+        declared = np.zeros((system.phases.size - 1, 2))
+        declared[:, 0] = e
+        # Energy coordinates depend on the mean of w: carry the exact result to those of the wrong system.
+        exact = fast_monodromies(system)
+        S = system.modal().state_matrix()
+        approximate = RankOneSystem(**{**system.__dict__, "w": wrong, "fit_errors": declared})
+        silent = RankOneSystem(**{**system.__dict__, "w": wrong})
+        P = np.linalg.solve(approximate.modal().state_matrix(), S)
+        moved = P @ exact.matrices[0] @ np.linalg.inv(P)
+        result = fast_monodromies(approximate)
+        distance = np.linalg.norm(result.matrices[0] - moved)
+        assert distance <= result.errors[0]
+        assert distance > fast_monodromies(silent).errors[0]
+
+
 def test_constant_coefficients() -> None:
     rng = np.random.default_rng(8)
     system = random_system(rng)
