@@ -75,7 +75,7 @@ def summarise(results: Results) -> Summary:
         f"At {results.operating_rpm:.5g} rpm and {pair.operating.pinion_torque:.4g} N m the lumped model "
         f"predicts a transmission error of {span} peak to peak and a mesh efficiency of {efficiency}; the "
         f"independent multibody model {_agreement(results.check)}; the motion is {here} {over_range}; the "
-        f"model is {validity}" + (f" ({', '.join(raised)})." if raised else ".")
+        f"model is {validity}" + (f" (in question: {', '.join(raised)})." if raised else ".")
     )
     return Summary(
         sentence,
