@@ -1,5 +1,6 @@
 """Does the command do what its help says, and refuse bad input with one message and the right exit code?"""
 
+import dataclasses
 import json
 import re
 import subprocess
@@ -187,8 +188,8 @@ def test_unknown_axes_are_refused():
 def test_report_from_the_command(tmp_path, monkeypatch):
     from validation.reporting import build, results
 
-    effort = results.Effort(
-        samples=64, cycles=6, sweep_speeds=4, chart_speeds=4, chart_dampings=2, chart_rtol=1e-6
+    effort = dataclasses.replace(
+        results.QUICK, samples=64, cycles=6, sweep_speeds=4, chart_speeds=4, chart_dampings=2, chart_rtol=1e-6
     )
     monkeypatch.setattr(build, "QUICK", effort)
     out = tmp_path / "out"

@@ -18,8 +18,8 @@ HOSTILE = '<script>alert("x")</script> & "Getriebe" \'1\''
 @pytest.fixture(scope="module", autouse=True)
 def tiny():
     """The quick report on even fewer points: these tests look at the folder, not at the physics."""
-    effort = results.Effort(
-        samples=64, cycles=6, sweep_speeds=4, chart_speeds=4, chart_dampings=2, chart_rtol=1e-6
+    effort = dataclasses.replace(
+        results.QUICK, samples=64, cycles=6, sweep_speeds=4, chart_speeds=4, chart_dampings=2, chart_rtol=1e-6
     )
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(build, "QUICK", effort)
