@@ -13,6 +13,7 @@ from validation.commands.parameter_files import init, presets, schema
 from validation.commands.report import report
 from validation.commands.simulate import simulate
 from validation.commands.stability import stability
+from validation.commands.sweep import sweep
 
 app = typer.Typer(
     name="spurcheck",
@@ -54,7 +55,7 @@ def paragraphs(text: str | None) -> str:
     return "\n\n".join(" ".join(block.split()) for block in blocks)
 
 
-for command in (report, presets, init, simulate, crosscheck, stability, schema):
+for command in (report, presets, init, simulate, crosscheck, stability, sweep, schema):
     app.command(help=paragraphs(command.__doc__))(command)
 app.callback(help=paragraphs(spurcheck.__doc__))(spurcheck)
 

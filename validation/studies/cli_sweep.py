@@ -1,15 +1,13 @@
-"""The command ``spurcheck sweep``: options, progress, summary, exit code."""
+"""What ``spurcheck sweep`` does: progress, summary, exit code."""
 
 from __future__ import annotations
 
 import os
-import sys
 import time
 from pathlib import Path
 from types import TracebackType
-from typing import Annotated, Self
+from typing import Self
 
-import typer
 from rich.console import Console
 from rich.markup import escape
 from rich.progress import (
@@ -33,34 +31,6 @@ OK, FAILED, REFUSED, STOPPED, INTERRUPTED = 0, 1, 2, 3, 130
 _PLAIN_SECONDS = 10.0
 
 
-def sweep_command(
-    study: Annotated[Path, typer.Argument(help="study file (TOML)")],
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="output folder; default: the study file's name")
-    ] = None,
-    resume: Annotated[bool, typer.Option(help="go on where an earlier run in that folder ended")] = False,
-    retry_failed: Annotated[bool, typer.Option(help="with --resume, compute failed cases again")] = False,
-    workers: Annotated[int | None, typer.Option(help="processes; default: one a core")] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(help="Dask scheduler, tcp://HOST:PORT, instead of --workers")
-    ] = None,
-    case_seconds: Annotated[float | None, typer.Option(help="longest time of a case [s]")] = None,
-    dry_run: Annotated[bool, typer.Option(help="check the study and count its cases only")] = False,
-) -> None:
-    """Compute every case of a study; resumable, in parallel, on this machine or a Dask cluster."""
-    code = sweep(
-        study,
-        output,
-        resume=resume,
-        retry_failed=retry_failed,
-        workers=workers,
-        scheduler=scheduler,
-        case_seconds=case_seconds,
-        dry_run=dry_run,
-    )
-    raise typer.Exit(code)
-
-
 def sweep(
     study_file: Path,
     output: Path | None = None,
@@ -72,8 +42,12 @@ def sweep(
     case_seconds: float | None = None,
     dry_run: bool = False,
     console: Console | None = None,
+    out: Console | None = None,
 ) -> int:
-    """Run ``spurcheck sweep`` and return its exit code (the constants of this module)."""
+    """Run ``spurcheck sweep`` and return its exit code (the constants of this module).
+
+    ``console`` takes progress and errors, ``out`` the summary; the other arguments are the command's.
+    """
     console = console or Console(stderr=True, highlight=False)
     # The folder's name never comes from inside the file.
     folder = output if output is not None else Path(study_file.stem + "-sweep")
@@ -96,16 +70,16 @@ def sweep(
                 progress=progress,
             )
     except ParameterError as error:
-        console.print(escape(str(error)), style="red")
+        console.print(f"[bold red]error:[/bold red] {escape(str(error))}", soft_wrap=True)
         return REFUSED
     except SpurcheckError as error:
-        console.print(escape(str(error)), style="red")
+        console.print(f"[bold red]error:[/bold red] {escape(str(error))}", soft_wrap=True)
         return STOPPED
     except KeyboardInterrupt:
         again = escape(f"Stopped. What was computed is in {folder}; run the same command with --resume.")
         console.print(again, style="yellow")
         return INTERRUPTED
-    print_summary(summary, console)
+    print_summary(summary, out or console)
     return FAILED if summary.failed else OK
 
 
@@ -181,8 +155,3 @@ def print_summary(summary: Summary, console: Console) -> None:
             f"({rate:.3g} cases/s) -> {summary.results}"
         )
     )
-
-
-if __name__ == "__main__":
-    typer.run(sweep_command)
-    sys.exit(0)

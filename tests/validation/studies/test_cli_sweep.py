@@ -6,7 +6,9 @@ import io
 
 import pytest
 from rich.console import Console
+from typer.testing import CliRunner
 
+from validation.cli import app
 from validation.studies import read_results
 from validation.studies.cli_sweep import FAILED, INTERRUPTED, OK, REFUSED, STOPPED, SweepProgress, sweep
 
@@ -80,16 +82,16 @@ def test_a_store_that_cannot_be_written_is_3(command, tmp_path):
     assert not (tmp_path / "elsewhere").exists()
 
 
-def test_ctrl_c_is_130_and_says_how_to_go_on(command, monkeypatch):
+def test_ctrl_c_is_130_and_says_how_to_go_on(command):
     def interrupt(self, done, total, failed):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(SweepProgress, "__call__", interrupt)
-    code, text = command()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(SweepProgress, "__call__", interrupt)
+        code, text = command()
     assert code == INTERRUPTED
     assert "--resume" in text
-    monkeypatch.undo()
-    assert command(resume=True, output="study-sweep")[0] == OK
+    assert command(resume=True)[0] == OK
 
 
 def test_dry_run_only_counts(command, tmp_path):
@@ -117,3 +119,13 @@ def test_progress_without_a_terminal_is_a_line_now_and_then(monkeypatch):
         progress(30, 120, 2)
     assert "30/120" in text.getvalue()
     assert "s left" in text.getvalue()
+
+
+def test_the_command_is_part_of_spurcheck(command):
+    arguments = ["sweep", "study.toml", "-o", "out", "--workers", "1"]
+    first = CliRunner().invoke(app, arguments)
+    assert first.exit_code == OK, first.output
+    assert "3 computed" in first.output
+    assert CliRunner().invoke(app, arguments).exit_code == REFUSED
+    again = CliRunner().invoke(app, [*arguments, "--resume"])
+    assert again.exit_code == OK, again.output

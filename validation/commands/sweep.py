@@ -1,0 +1,67 @@
+"""spurcheck sweep: many cases of one pair, in parallel, resumable, here or on a cluster."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from validation.commands.terminal import stderr, stdout
+
+
+def sweep(
+    study: Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Output folder; default: the study file's name + '-sweep'."),
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on where an earlier run in that folder ended.")
+    ] = False,
+    retry_failed: Annotated[
+        bool, typer.Option("--retry-failed", help="With --resume: compute the failed cases again.")
+    ] = False,
+    workers: Annotated[
+        int | None, typer.Option("--workers", help="Worker processes; default: one per core.")
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option("--scheduler", metavar="ADDRESS", help="Dask scheduler, tcp://HOST:PORT, to run on."),
+    ] = None,
+    case_seconds: Annotated[
+        float | None, typer.Option("--case-seconds", help="Longest time of a case in seconds.")
+    ] = None,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Check the study and count its cases.")] = False,
+) -> None:
+    """Compute every case of a study: a grid or samples of any parameters, one analysis per case.
+
+    What is computed is kept at once: after a kill, a full disk or a lost cluster the same command with
+    --resume goes on and gives the same result. A failed case is recorded and the sweep goes on. The results
+    are results.nc in the output folder (NetCDF, over the axes of the study).
+
+    The exit code is 1 when a case failed, 3 when the store or the workers failed, 130 when interrupted.
+
+    [bold]Examples[/bold]
+
+    spurcheck sweep study.toml --workers 8
+
+    spurcheck sweep study.toml --resume
+
+    spurcheck sweep study.toml --scheduler tcp://head:8786
+    """
+    from validation.studies.cli_sweep import sweep as run
+
+    code = run(
+        study,
+        output,
+        resume=resume,
+        retry_failed=retry_failed,
+        workers=workers,
+        scheduler=scheduler,
+        case_seconds=case_seconds,
+        dry_run=dry_run,
+        console=stderr(),
+        out=stdout(),
+    )
+    raise typer.Exit(code)
