@@ -150,6 +150,14 @@ def _write_data(results: Results, folder: Path) -> None:
         "stability_chart": results.chart,
         "cross_check_lumped": check.lumped.isel(time=samples),
     }
+    physics = {
+        "stiffness_components": results.mesh.components,
+        "static_transmission_error": results.mesh.curves,
+        "harris_map": results.mesh.harris,
+        "relief_map": results.mesh.relief,
+        "losses_by_law": results.mesh.losses,
+    }
+    datasets |= {name: data for name, data in physics.items() if data is not None}
     for fidelity, result in check.multibody.items():
         datasets[f"cross_check_{fidelity}"] = result.isel(time=samples)
     for name, dataset in datasets.items():

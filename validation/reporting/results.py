@@ -14,6 +14,7 @@ from lumped import GearPair, Geometry, NumericalError
 from lumped.averaged import Mode, modes
 from lumped.friction import friction_profile
 from validation.comparison import CrossCheck, crosscheck
+from validation.mesh_physics import MeshPhysics, mesh_physics
 from validation.metrics import FloatArray, MeshOrders, mesh_orders
 from validation.validity import Flag, speed_drift, validity_flags
 
@@ -34,6 +35,7 @@ class Effort:
     sweep_speeds : of the response over speed
     chart_speeds, chart_dampings : nodes of the stability chart
     chart_rtol : accuracy of the monodromy matrices in the chart
+    mesh_optimum : whether to search the best tip relief and solve the periodic motion of every law
     """
 
     samples: int
@@ -42,9 +44,18 @@ class Effort:
     chart_speeds: int
     chart_dampings: int
     chart_rtol: float
+    mesh_optimum: bool = False
 
 
-FULL = Effort(samples=512, cycles=40, sweep_speeds=240, chart_speeds=81, chart_dampings=13, chart_rtol=1e-8)
+FULL = Effort(
+    samples=512,
+    cycles=40,
+    sweep_speeds=240,
+    chart_speeds=81,
+    chart_dampings=13,
+    chart_rtol=1e-8,
+    mesh_optimum=True,
+)
 QUICK = Effort(samples=128, cycles=16, sweep_speeds=24, chart_speeds=16, chart_dampings=4, chart_rtol=1e-6)
 
 
@@ -56,6 +67,7 @@ class Results:
     geometry: Geometry
     effort: Effort
     profile: xr.Dataset
+    mesh: MeshPhysics
     motion: xr.Dataset
     orders: Mapping[str, MeshOrders]
     modes: tuple[Mode, ...]
@@ -120,6 +132,7 @@ def compute(pair: GearPair, effort: Effort, progress: Progress) -> Results:
         geometry=g,
         effort=effort,
         profile=profile,
+        mesh=mesh_physics(pair, motion, profile, quick=not effort.mesh_optimum),
         motion=motion,
         orders=orders,
         modes=found,

@@ -7,6 +7,8 @@ from collections.abc import Callable
 
 from validation.reporting.blocks import Chapter
 from validation.reporting.chapters.cross_check import cross_check
+from validation.reporting.chapters.losses import losses
+from validation.reporting.chapters.mesh_physics import mesh_physics
 from validation.reporting.chapters.parameters import parameters
 from validation.reporting.chapters.path_of_contact import path_of_contact
 from validation.reporting.chapters.provenance import provenance
@@ -20,7 +22,9 @@ CHAPTERS: tuple[Callable[[Results], Chapter], ...] = (
     scope,
     parameters,
     path_of_contact,
+    mesh_physics,
     steady_state,
+    losses,
     cross_check,
     stability,
     validity,

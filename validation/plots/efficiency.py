@@ -1,0 +1,137 @@
+"""Mesh losses: by friction law, along the path of contact, and over the mesh cycle."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from lumped import Geometry
+from validation.plots.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    RED,
+    legend,
+    legend_above,
+    mark_switches,
+    new_figure,
+    path_marks,
+    scaled,
+)
+
+
+def efficiency_figure(losses: xr.Dataset, chosen: str) -> Figure:
+    """Relative loss of the mesh by friction law: closed form, quasi-static, periodic motion.
+
+    Parameters
+    ----------
+    losses : ``mesh_efficiency``, ``mesh_efficiency_dynamic`` and ``mesh_efficiency_closed_form`` over ``law``
+    chosen : name of the pair's law
+    """
+    laws = [str(name) for name in losses["law"].to_numpy()]
+    figure, axes = new_figure(height=0.9 + 0.4 * max(len(laws), 2))
+    ax = axes[0, 0]
+    place = np.arange(len(laws))
+    series = (
+        ("mesh_efficiency_closed_form", "mean |µ| times closed form", "s", BLACK, -0.18),
+        ("mesh_efficiency", "quasi-static", "o", BLUE, 0.0),
+        ("mesh_efficiency_dynamic", "periodic motion", "D", RED, 0.18),
+    )
+    for name, label, marker, colour, shift in series:
+        loss = 100.0 * (1.0 - losses[name].to_numpy())
+        ax.plot(loss, place + shift, linestyle="none", marker=marker, markersize=5, color=colour, label=label)
+    titles = [str(title) for title in losses["law_title"].to_numpy()]
+    shown = [t + (" (used)" if n == chosen else "") for n, t in zip(laws, titles, strict=True)]
+    ax.set_yticks(place, shown)
+    ax.invert_yaxis()
+    ax.set_xlim(left=0.0)
+    ax.set_xlabel("loss of the mesh over input power [%]")
+    legend_above(ax, 3)
+    return figure
+
+
+def sliding_power_figure(
+    g: Geometry, quasi_static: xr.Dataset, periodic: xr.Dataset, instants: tuple[xr.Dataset, xr.Dataset]
+) -> Figure:
+    """Local sliding power of one pair over the path, and instantaneous efficiency over the mesh cycle.
+
+    Parameters
+    ----------
+    g : geometry of the pair
+    quasi_static, periodic : datasets of ``lumped.losses.sliding_power_along_path``
+    instants : datasets with ``instantaneous_efficiency`` over ``time``, quasi-static and periodic
+    """
+    figure, axes = new_figure(1, 2, height=2.9)
+    left, right = axes[0]
+    powers = [data["sliding_power"].to_numpy() for data in (quasi_static, periodic)]
+    factor, unit = scaled(*powers, unit="W")
+    looks = (("quasi-static", BLUE, "--"), ("periodic motion", RED, "-"))
+    for data, power, (label, colour, dashes) in zip((quasi_static, periodic), powers, looks, strict=True):
+        left.plot(
+            1e3 * data["xi"], power / factor, color=colour, linestyle=dashes, label=label, linewidth=1.2
+        )
+    left.set_xlabel("distance from X along the line of action [mm]")
+    left.set_ylabel(f"sliding power of one pair [{unit}]")
+    left.set_xlim(1e3 * g.L_XA, 1e3 * g.L_XD)
+    mark_switches(left, path_marks(g))
+    for data, (label, colour, dashes) in zip(instants, looks, strict=True):
+        right.plot(
+            data["time"] / g.mesh_period,
+            100.0 * data["instantaneous_efficiency"],
+            color=colour,
+            linestyle=dashes,
+            linewidth=1.2,
+            label=label,
+        )
+    right.axhline(100.0, color=GREY, linewidth=0.6)
+    right.set_xlim(0.0, 1.0)
+    right.set_xlabel("time [mesh cycles]")
+    right.set_ylabel("instantaneous efficiency [%]")
+    legend(right, loc="lower right")
+    return figure
+
+
+def film_figure(g: Geometry, profile: xr.Dataset, thresholds: tuple[float, ...]) -> Figure:
+    """Film thickness, and film parameter in its regimes, over the path of contact.
+
+    Parameters
+    ----------
+    g : geometry of the pair
+    profile : dataset of ``lumped.friction.friction_profile``
+    thresholds : film parameters at which the regime changes
+    """
+    figure, axes = new_figure(1, 2, height=2.8)
+    left, right = axes[0]
+    xi = 1e3 * profile["xi"].to_numpy()
+    left.plot(xi, 1e6 * profile["film_thickness"], color=GREEN)
+    left.set_ylabel("central film thickness [µm]")
+    left.set_ylim(0.0, 1.2 * 1e6 * float(profile["film_thickness"].max()))
+    parameter = profile["film_parameter"].to_numpy()
+    right.plot(xi, parameter, color=BLUE)
+    right.set_ylabel("film parameter [-]")
+    top = 1.25 * float(parameter.max())
+    right.set_ylim(0.0, top)
+    edges = (0.0, *thresholds, np.inf)
+    names = str(profile["regime"].attrs["flag_meanings"]).split(", ")
+    for index, name in enumerate(names):
+        low, high = edges[index], min(edges[index + 1], top)
+        if low >= top:
+            continue
+        right.axhspan(low, high, color=GREY, alpha=0.08 * index, linewidth=0)
+        right.annotate(
+            name,
+            (0.01, high),
+            xycoords=("axes fraction", "data"),
+            xytext=(0, -2),
+            va="top",
+            textcoords="offset points",
+            fontsize=7.5,
+            color="#404040",
+        )
+    for ax in (left, right):
+        ax.set_xlabel("distance from X along the line of action [mm]")
+        ax.set_xlim(xi[0], xi[-1])
+        mark_switches(ax, path_marks(g))
+    return figure
