@@ -1,0 +1,161 @@
+"""Do facts that hold for every gear pair hold for pairs drawn at random?"""
+
+from __future__ import annotations
+
+import math
+import warnings
+
+import numpy as np
+from hypothesis import event, given
+from hypothesis import strategies as st
+
+from floquet.gear_pair import gear_pair_multipliers, gear_pair_system
+from floquet.monodromy import monodromy
+from lumped import geometry, mesh_cycle, steady_state
+from lumped.errors import LawRangeWarning, SpurcheckError
+
+
+def quiet(function, *arguments, **options):
+    """Result of a computation whose friction law may be outside its range; None where it is refused."""
+    name = function.__name__
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LawRangeWarning)
+        try:
+            result = function(*arguments, **options)
+        except SpurcheckError as error:
+            event(f"{name} refused: {type(error).__name__}")
+            return None
+    event(f"{name} answered")
+    return result
+
+
+@given(data=st.data())
+def test_lengths_of_the_line_of_action(pairs, data):
+    g = geometry(data.draw(pairs))
+    # Every length is a few roundings of the centre distance.
+    close = {"rel_tol": 0.0, "abs_tol": 1e-12 * g.centre_distance}
+    assert math.isclose(g.L_XY, math.sin(g.operating_pressure_angle) * g.centre_distance, **close)
+    assert math.isclose(
+        math.hypot(g.L_XY, g.base_radius_pinion + g.base_radius_gear), g.centre_distance, **close
+    )
+    assert math.isclose(math.hypot(g.base_radius_gear, g.L_XY - g.L_XA), g.tip_radius_gear, **close)
+    assert math.isclose(math.hypot(g.base_radius_pinion, g.L_XD), g.tip_radius_pinion, **close)
+    assert math.isclose(g.L_XP * g.base_radius_gear, (g.L_XY - g.L_XP) * g.base_radius_pinion, **close)
+    assert math.isclose(g.L_XD - g.L_XA, g.contact_ratio * g.base_pitch, **close)
+    assert 0.0 <= g.L_XA < g.L_XP < g.L_XD <= g.L_XY
+
+
+@given(data=st.data())
+def test_contact_positions(pairs, data):
+    pair = data.draw(pairs)
+    g = geometry(pair)
+    cycle = quiet(mesh_cycle, pair)
+    if cycle is None:
+        return
+    times = np.linspace(0.0, g.mesh_period, 41)[:-1]
+    sample = cycle.sample(times)
+    # Positions of the pairs are a base pitch apart and move with the pinion's base circle.
+    expected = (
+        g.L_XA + np.arange(g.pairs)[::-1, None] * g.base_pitch + g.omega_pinion * g.base_radius_pinion * times
+    )
+    np.testing.assert_allclose(sample.position, expected, rtol=0, atol=1e-12 * g.centre_distance)
+    inside = (sample.position >= g.L_XA) & (sample.position <= g.L_XD)
+    edge = np.abs(sample.position - g.L_XD) < 1e-9 * g.base_pitch
+    assert (np.asarray(sample.contact, dtype=bool) == inside)[~edge].all()
+    assert (sample.stiffness[~inside & ~edge] == 0.0).all()
+    assert (sample.stiffness[inside & ~edge] > 0.0).all()
+
+
+@given(data=st.data())
+def test_friction_takes_power_and_efficiency_stays_below_1(pairs, data):
+    pair = data.draw(pairs)
+    run = quiet(steady_state, pair, samples_per_cycle=64)
+    if run is None:
+        return
+    power = run["friction_power_nominal"].to_numpy()
+    load = run["normal_load"].to_numpy()
+    pressed = load >= 0.0
+    # -mu N v with mu of the sign of v: not positive while the teeth press, up to the sign of a rounded zero.
+    assert (power[pressed] <= 0.0).all()
+    assert (power[~pressed] >= 0.0).all()
+    if pressed.all():
+        # The balance of powers is solved to the closure of the periodic motion.
+        assert run.attrs["mesh_efficiency"] <= 1.0 + 1e-9
+    for name in run.data_vars:
+        assert np.isfinite(run[name].to_numpy()).all(), name
+
+
+@given(data=st.data())
+def test_forces_on_the_two_bodies_cancel(pairs, data):
+    run = quiet(steady_state, data.draw(pairs), samples_per_cycle=64)
+    if run is None:
+        return
+    normal = run["normal_load"].to_numpy().sum(axis=0)
+    friction = run["friction_force"].to_numpy().sum(axis=0)
+    # Over a period the bearings carry the mean mesh force: momentum is periodic.
+    for name, force in (("x_p", normal), ("x_g", -normal), ("y_p", -friction), ("y_g", friction)):
+        bearing = run[f"bearing_force_{name}"].to_numpy()
+        # Means over 64 samples of jumping forces are means of the motion to the share of a sample.
+        scale = np.abs(normal).max() + np.abs(bearing).max()
+        assert abs(bearing.mean() - force.mean()) < scale * 4.0 / 64, name
+
+
+@given(data=st.data())
+def test_multipliers_come_in_conjugate_pairs_and_det_is_liouvilles(pairs, data):
+    pair = data.draw(pairs)
+    found = quiet(gear_pair_multipliers, pair)
+    if found is None:
+        return
+    values, errors = found.multipliers, found.multiplier_errors
+    for value, error in zip(values, errors, strict=True):
+        distance = np.abs(values - value.conjugate())
+        # Each conjugate is there to within the errors that the analysis itself states.
+        assert (distance <= error + errors + 1e-14).any()
+    matrix = quiet(monodromy, gear_pair_system(pair, "feedback"))
+    if matrix is not None:
+        sign, logarithm = np.linalg.slogdet(matrix.matrix)
+        if logarithm > -20.0:  # else the determinant is below the matrix's own error
+            assert sign > 0.0
+    assert found.liouville_residual < 1e-6
+
+
+@given(data=st.data())
+def test_swapping_the_gears_mirrors_the_geometry(pairs, data):
+    pair = data.draw(pairs)
+    g = geometry(pair)
+    mapping = pair.to_mapping()
+    mapping["pinion"], mapping["gear"] = mapping["gear"], mapping["pinion"]
+    mapping.pop("sources", None)
+    m = geometry(type(pair).model_validate(mapping))
+    close = {"rel_tol": 0.0, "abs_tol": 1e-12 * g.centre_distance}
+    assert math.isclose(m.L_XA, g.L_XY - g.L_XD, **close)
+    assert math.isclose(m.L_XD, g.L_XY - g.L_XA, **close)
+    assert math.isclose(m.L_XP, g.L_XY - g.L_XP, **close)
+    assert math.isclose(m.contact_ratio, g.contact_ratio, rel_tol=1e-9)
+    assert math.isclose(
+        m.omega_gear * m.base_radius_gear, m.omega_pinion * m.base_radius_pinion, rel_tol=1e-12
+    )
+
+
+@given(data=st.data())
+def test_a_pair_without_friction_and_with_equal_gears_runs_symmetrically(pairs, data):
+    pair = data.draw(pairs)
+    mapping = pair.to_mapping()
+    mapping["gear"] = dict(mapping["pinion"])
+    mapping["friction"] = {"law": "none"}
+    mapping.pop("sources", None)
+    same = quiet(type(pair).model_validate, mapping) if geometry_exists(mapping) else None
+    run = quiet(steady_state, same, samples_per_cycle=32) if same is not None else None
+    if run is None:
+        return
+    # Pinion and gear are pushed apart by the same force on equal masses and bearings.
+    scale = np.abs(run["x_p"].to_numpy()).max()
+    np.testing.assert_allclose(run["x_g"], -run["x_p"], rtol=0, atol=1e-9 * scale)
+    assert np.abs(run["y_p"].to_numpy()).max() == 0.0
+    assert math.isclose(run.attrs["mesh_efficiency"], 1.0, abs_tol=1e-9)
+
+
+def geometry_exists(mapping):
+    from lumped import load_gear_pair
+
+    return quiet(load_gear_pair, mapping) is not None
