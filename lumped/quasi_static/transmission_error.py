@@ -131,8 +131,7 @@ def static_transmission_error(
     result = share_load(stiffness, mesh.error, force[:, None])
     _check_reach(mesh, result.load, g.L_XA, g.L_XD, g.base_pitch)
     te = result.transmission_error
-    with np.errstate(invalid="ignore"):
-        share = np.where(force[:, None, None] > 0.0, result.load / force[:, None, None], 0.0)
+    share = result.load / np.where(force > 0.0, force, np.inf)[:, None, None]  # no load, no share
     axes = ("torque", "phase", "pair")
     return xr.Dataset(
         {

@@ -245,6 +245,18 @@ def test_hundred_curves_in_a_tenth_of_a_second():
     assert time.perf_counter() - began < 1.0  # asked for: a second; measured: 0.03 s
 
 
+def test_no_load_leaves_relief_without_shares_or_warnings():
+    # Sums of k_i e_i leave rounding in the loads of the pair that touches: no share may come of it.
+    pair = load_gear_pair("nasa_28_28").with_(mesh__stiffness={"model": "energy"})
+    data = static_transmission_error(pair, [0.0, 1.0])
+    assert not data["load_share"].sel(torque=0.0).any()
+    assert float(data["load_share"].sel(torque=1.0).sum("pair").min()) == pytest.approx(1.0, rel=1e-9)
+    # The unloaded error is the least relief among the pairs within reach.
+    assert data["transmission_error"].sel(torque=0.0).values == pytest.approx(
+        data["error"].min("pair").values, abs=1e-15
+    )
+
+
 def test_bad_input_is_refused():
     with pytest.raises(ParameterError, match="torques"):
         static_transmission_error(plain(), [-1.0])
