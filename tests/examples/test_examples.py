@@ -63,9 +63,8 @@ def test_05_the_best_relief_is_best_near_its_design_torque(example):
     labelled(module.draw(result))
     best = float(result["torque"][int(result["relieved"].argmin("torque"))])
     assert best == pytest.approx(result.attrs["design_torque"], rel=0.05)
-    # A perfect involute pair of constant compliance shape deflects in proportion to torque.
-    ratio = result["involute"] / result["torque"]
-    np.testing.assert_allclose(ratio, ratio[-1], rtol=1e-6)  # load sharing solved to rounding
+    # The contact's compliance falls with the logarithm of the load, so the error grows less than the torque.
+    assert (np.diff(result["involute"] / result["torque"]) < 0.0).all()
 
 
 def test_06_the_separating_pair_has_two_motions_and_the_linear_one(example):
