@@ -15,6 +15,8 @@ report: $(VENV)/.ready
 	$(BIN)/spurcheck report --output $(OUT) --force
 	@echo "Open $(OUT)/index.html"
 
+export OPENBLAS_NUM_THREADS ?= 1
+
 test: $(VENV)/.ready-test
 	$(BIN)/python -m pytest -n 2
 
