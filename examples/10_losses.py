@@ -33,7 +33,8 @@ def draw(result: xr.Dataset) -> Figure:
     axes.bar(place + 0.2, 100 * (1 - result["mesh_efficiency_dynamic"]), 0.4, label="periodic motion")
     axes.set_xticks(place, result["law_title"].values, rotation=15)
     axes.set(xlabel="friction law", ylabel="loss of the mesh over input power [%]")
-    axes.legend()
+    axes.margins(y=0.15)
+    axes.legend(ncols=2)
     return figure
 
 

@@ -1,0 +1,144 @@
+"""How fast are tooth stiffness, Harris map, relief optimum and losses?
+
+    pytest benchmarks/bench_mesh_physics.py
+
+Every fast route stands in one group with a baseline that does the same task the plain way, so that its factor
+is measured in the same run on the same machine: "scipy.quad per position" integrates each strain energy
+adaptively at each position; "brentq per position" solves the equilibrium of each position at each torque. The
+results of both must agree, which is checked before anything is timed.
+"""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+import lumped
+from lumped.losses import losses_of_laws, quasi_static_losses
+from lumped.quasi_static import mesh_positions, optimal_relief, static_transmission_error
+from lumped.stiffness import pair_stiffness
+from lumped.stiffness.contact import linear_hertz_compliance
+from lumped.stiffness.pair_compliance import pair_compliance, tooth_profile
+
+POSITIONS = 65
+CURVES = 100
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return lumped.load_gear_pair("nasa_28_28").with_(
+        mesh__stiffness={"model": "energy", "hertz": "linear"},
+        pinion__tip_relief=None,
+        gear__tip_relief=None,
+    )
+
+
+def plain_compliance(pair, g, xi):
+    """Bending, shear and compression of both teeth at one position, each by adaptive quadrature [m/N]."""
+    total = 0.0
+    for which, gear, length in (("pinion", pair.pinion, xi), ("gear", pair.gear, g.L_XY - xi)):
+        profile = tooth_profile(pair, which)
+        u_c, h_c, _, a = (float(v[0]) for v in profile.involute_points(np.array([length])))
+        modulus, cosine, sine = gear.youngs_modulus, np.cos(a), np.sin(a)
+        shear_modulus = modulus / (2.0 * (1.0 + gear.poisson_ratio))
+
+        def strain(u, h, slope, at=(u_c, h_c, cosine, sine), moduli=(modulus, shear_modulus)):
+            arm = at[2] * (at[0] - u) - at[3] * at[1]
+            bending = 1.5 * arm**2 / h**3 / moduli[0]
+            return (bending + 0.6 * at[2] ** 2 / h / moduli[1] + 0.5 * at[3] ** 2 / h / moduli[0]) * slope
+
+        def fillet(s, profile=profile, strain=strain):
+            u, h, slope = (float(v[0]) for v in profile.fillet_points(np.array([s])))
+            return strain(u, h, slope)
+
+        def flank(s, profile=profile, strain=strain):
+            u, h, slope, _ = (float(v[0]) for v in profile.involute_points(np.array([s])))
+            return strain(u, h, slope)
+
+        total += quad(fillet, *profile.fillet_range, epsrel=1e-10)[0]
+        total += quad(flank, profile.form_length, length, epsrel=1e-10)[0]
+    return total / g.face_width
+
+
+def positions(g):
+    return np.linspace(g.L_XA, g.L_XD, POSITIONS)
+
+
+@pytest.mark.benchmark(group="teeth at 65 positions")
+def test_gauss_on_all_positions(benchmark, pair):
+    g = lumped.geometry(pair)
+    found = benchmark(lambda: pair_compliance(pair, g, positions(g), hertz="linear"))
+    moduli = (pair.pinion.youngs_modulus, pair.gear.youngs_modulus)
+    ratios = (pair.pinion.poisson_ratio, pair.gear.poisson_ratio)
+    hertz = linear_hertz_compliance(moduli, ratios) / g.face_width
+    plain = plain_compliance(pair, g, positions(g)[7])
+    bodies = found.pinion.foundation + found.gear.foundation + hertz
+    assert 1 / found.stiffness[7] == pytest.approx(plain + bodies[7], rel=1e-8)  # quad at 1e-10 a piece
+
+
+@pytest.mark.benchmark(group="teeth at 65 positions")
+def test_baseline_scipy_quad_per_position(benchmark, pair):
+    g = lumped.geometry(pair)
+    run = lambda: [plain_compliance(pair, g, xi) for xi in positions(g)]  # noqa: E731
+    benchmark.pedantic(run, rounds=3, iterations=1, warmup_rounds=1)
+
+
+@pytest.mark.benchmark(group="k_i(xi) as a path function, to 1e-10")
+@pytest.mark.parametrize("hertz", ["linear", "weber_banaschek"])
+def test_path_function_of_one_pair(benchmark, pair, hertz):
+    one = pair.with_(mesh__stiffness={"model": "energy", "hertz": hertz})
+    g = lumped.geometry(one)
+    assert benchmark(lambda: pair_stiffness(one, g))(g.L_XP) > 0.0
+    assert benchmark.stats.stats.min < 0.1  # asked for: milliseconds
+
+
+@pytest.mark.benchmark(group="100 static transmission error curves, 256 positions each")
+def test_hundred_curves_at_once(benchmark, pair):
+    torques = np.linspace(1.0, 120.0, CURVES)
+    found = benchmark(lambda: static_transmission_error(pair, torques, extended=False))
+    plain = one_by_one(pair, torques[[3, 77]])
+    np.testing.assert_allclose(found["transmission_error"].values[[3, 77]], plain, rtol=1e-9)
+    assert benchmark.stats.stats.min < 1.0  # asked for: a second
+
+
+def one_by_one(pair, torques):
+    g = lumped.geometry(pair)
+    mesh = mesh_positions(pair, extended=False)
+    curves = []
+    for force in torques / g.base_radius_pinion:
+        curve = []
+        for k, e in zip(mesh.stiffness, mesh.error, strict=True):
+            near = np.isfinite(e)
+            k_near, e_near = k[near], e[near]
+
+            def balance(delta, k=k_near, e=e_near, force=force):
+                return float(k @ np.maximum(delta - e, 0.0)) - force
+
+            curve.append(
+                brentq(balance, e_near.min(), e_near.max() + 1.01 * force / k_near.min(), xtol=1e-16)
+            )
+        curves.append(curve)
+    return np.array(curves)
+
+
+@pytest.mark.benchmark(group="100 static transmission error curves, 256 positions each")
+def test_baseline_brentq_per_position(benchmark, pair):
+    torques = np.linspace(1.0, 120.0, CURVES)
+    benchmark.pedantic(lambda: one_by_one(pair, torques), rounds=1, iterations=1)
+
+
+@pytest.mark.benchmark(group="whole answers")
+def test_relief_optimum(benchmark, pair):
+    found = benchmark.pedantic(lambda: optimal_relief(pair), rounds=3, iterations=1, warmup_rounds=1)
+    assert found.peak_to_peak < found.unmodified
+
+
+@pytest.mark.benchmark(group="whole answers")
+def test_losses_quasi_static(benchmark, pair):
+    assert 0.9 < benchmark(lambda: quasi_static_losses(pair)).attrs["mesh_efficiency"] < 1.0
+
+
+@pytest.mark.benchmark(group="whole answers")
+def test_losses_of_all_laws_with_periodic_motion(benchmark, pair):
+    found = benchmark.pedantic(lambda: losses_of_laws(pair), rounds=3, iterations=1, warmup_rounds=1)
+    assert found.sizes["law"] == 5
