@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import os
 from importlib import metadata
 from typing import Annotated
 
@@ -62,6 +63,8 @@ app.callback(help=paragraphs(spurcheck.__doc__))(spurcheck)
 
 def main() -> None:
     """Entry point of the installed command."""
+    # Before numpy is imported: the matrices are small, threads inside BLAS only wait for each other.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     app()
 
 

@@ -55,6 +55,8 @@ class Agreement:
     quantity, unit, long_name : what is compared
     fidelity : "linear" or "exact"
     relative_l2 : L2 norm of the difference over that of the lumped history
+    remainder_l2 : the same after the predicted effect of the actual sliding velocity on the exact model
+        (``validation.sliding_effect``) is added to the lumped history
     maximum_over_span, rms_over_span, mean_shift : difference over the peak to peak of the lumped history:
         largest, root mean square, of the means (signed)
     peak_to_peak_ratio : multibody over lumped; None where the lumped history does not vary
@@ -67,6 +69,7 @@ class Agreement:
     long_name: str
     fidelity: Fidelity
     relative_l2: float
+    remainder_l2: float
     maximum_over_span: float
     rms_over_span: float
     mean_shift: float
@@ -220,8 +223,9 @@ def crosscheck(
         keep = off_switch_samples(pair, reference["time"].to_numpy())
         keep[:first] = False
         for quantity in quantities:
-            limit = tolerance(quantity, fidelity, shift, jumps, sliding)
-            agreements.append(_agreement(quantity, fidelity, result, reference, keep, limit))
+            limit = tolerance(quantity, fidelity, shift, jumps)
+            predicted = sliding.over(quantity, keep.size) if fidelity == "exact" else 0.0
+            agreements.append(_agreement(quantity, fidelity, result, reference, keep, limit, predicted))
             orders.append(_orders(quantity, fidelity, result, reference, compared, samples_per_cycle))
     return CrossCheck(
         pair=pair,
@@ -252,8 +256,10 @@ def _agreement(
     reference: xr.Dataset,
     keep: np.ndarray[tuple[int], np.dtype[np.bool_]],
     limit: Tolerance,
+    predicted: FloatArray | float,
 ) -> Agreement:
     a, b = (d[quantity].to_numpy()[..., keep] for d in (candidate, reference))
+    change = np.broadcast_to(predicted, reference[quantity].shape)[..., keep]
     if not (np.isfinite(a).all() and np.isfinite(b).all()):
         raise NumericalError(
             f"{quantity} is not finite at fidelity '{fidelity}'; lower the torque or the speed."
@@ -265,10 +271,12 @@ def _agreement(
         companion = reference[_COMPANION.get(quantity, quantity)].to_numpy()
         scale = max(float(np.abs(companion).max()), np.finfo(float).tiny)
         rms = float(np.sqrt(np.mean((a - b) ** 2))) / scale
-        l2, largest = rms, float(np.abs(a - b).max()) / scale
+        l2 = remainder = rms
+        largest = float(np.abs(a - b).max()) / scale
         shift = float(a.mean() - b.mean()) / scale
     else:
         l2, largest = metrics.relative_l2(a, b), metrics.maximum_over_span(a, b)
+        remainder = metrics.relative_l2(a - change, b)
         rms, shift = metrics.rms_over_span(a, b), metrics.mean_shift(a, b)
         ratio = metrics.peak_to_peak_ratio(a, b)
         if not metrics.is_constant(a):
@@ -279,6 +287,7 @@ def _agreement(
         long_name=long_name,
         fidelity=fidelity,
         relative_l2=l2,
+        remainder_l2=remainder,
         maximum_over_span=largest,
         rms_over_span=rms,
         mean_shift=shift,

@@ -7,6 +7,7 @@ forces change; off the line of action each gear answers them through its own bea
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,22 +15,26 @@ import xarray as xr
 
 from lumped import GearPair, geometry, mesh_elements
 from lumped.equations import structure
-from validation.metrics import FloatArray, relative_l2
+from validation.metrics import FloatArray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SlidingEffect:
-    """Predicted relative L2 differences; zero where there is no friction.
+    """Predicted changes over the mesh cycle, to be added to the lumped motion; empty without friction.
 
     Attributes
     ----------
-    friction_force : of the friction forces of the tooth pairs
-    y_p, y_g : of the motions off the line of action
+    changes : ``friction_force`` (pairs, k) [N], ``y_p`` and ``y_g`` (k,) [m], at the times of the motion
     """
 
-    friction_force: float = 0.0
-    y_p: float = 0.0
-    y_g: float = 0.0
+    changes: Mapping[str, FloatArray]
+
+    def over(self, quantity: str, length: int) -> FloatArray | float:
+        """Change of a quantity over whole cycles cut to ``length`` times; 0 where none is predicted."""
+        if quantity not in self.changes:
+            return 0.0
+        change = self.changes[quantity]
+        return np.resize(np.moveaxis(change, -1, 0), (length, *change.shape[:-1])).T
 
 
 def sliding_effect(pair: GearPair, cycle: xr.Dataset) -> SlidingEffect:
@@ -47,19 +52,15 @@ def sliding_effect(pair: GearPair, cycle: xr.Dataset) -> SlidingEffect:
     g, friction = geometry(pair), mesh_elements(pair).friction
     nominal = cycle["friction_force"].to_numpy()
     if not nominal.any():
-        return SlidingEffect()
+        return SlidingEffect({})
     velocity = cycle["sliding_velocity"].to_numpy()
     # The law is known as mu(xi), and xi - L_XP = v_s / (Omega_p + Omega_g) at nominal rotation.
     equivalent = np.clip(g.L_XP + velocity / (g.omega_pinion + g.omega_gear), g.L_XA, g.L_XD)
     actual = np.sign(velocity) * np.abs(friction(equivalent)) * cycle["normal_load"].to_numpy()
     time = cycle["time"].to_numpy()
-    y = _oloa_response(pair, nominal.sum(axis=0), time)
-    y_actual = _oloa_response(pair, actual.sum(axis=0), time)
-    return SlidingEffect(
-        friction_force=relative_l2(actual, nominal),
-        y_p=relative_l2(y_actual[0], y[0]),
-        y_g=relative_l2(y_actual[1], y[1]),
-    )
+    change = actual - nominal
+    y_p, y_g = _oloa_response(pair, change.sum(axis=0), time)
+    return SlidingEffect({"friction_force": change, "y_p": y_p, "y_g": y_g})
 
 
 def _oloa_response(pair: GearPair, force: FloatArray, time: FloatArray) -> tuple[FloatArray, FloatArray]:

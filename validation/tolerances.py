@@ -8,9 +8,8 @@ from types import MappingProxyType
 from typing import Literal
 
 from lumped import GearPair, geometry, mesh_elements
-from validation.sliding_effect import SlidingEffect
 
-Metric = Literal["maximum_over_span", "relative_l2"]
+Metric = Literal["maximum_over_span", "relative_l2", "remainder_l2"]
 Group = Literal["dte", "x", "y", "normal_load", "friction_force"]
 
 #: Quantity -> group that shares a tolerance.
@@ -81,9 +80,7 @@ def stiffness_jumps(pair: GearPair) -> bool:
     return float(stiffness(g.L_XA)) > _JUMP * max(largest, stiffness.mean())
 
 
-def tolerance(
-    quantity: str, fidelity: str, shift: float, jumps: bool, sliding: SlidingEffect | None = None
-) -> Tolerance:
+def tolerance(quantity: str, fidelity: str, shift: float, jumps: bool) -> Tolerance:
     """Limit for one quantity.
 
     Parameters
@@ -93,7 +90,6 @@ def tolerance(
     shift : mean distance by which wind-up and bearing deflection move the contact along the line of action,
         over the base pitch; the small parameter of every finite-motion effect
     jumps : whether the pair stiffness jumps at entry, see ``stiffness_jumps``
-    sliding : predicted effect of the actual sliding velocity, added to the limits of friction and y
     """
     group = GROUPS[quantity]
     if fidelity == "linear":
@@ -105,11 +101,7 @@ def tolerance(
         f"grows with that: {base:g} expected at {REFERENCE_SHIFT:g} with {kind} stiffness"
     )
     limit = base * shift / REFERENCE_SHIFT
-    predicted = getattr(sliding, quantity, 0.0)
-    if predicted:
-        limit += predicted
-        reason += (
-            f"; plus {predicted:.3g}, the first-order effect of friction at the actual sliding velocity, "
-            "predicted from the lumped motion"
-        )
+    if group in ("y", "friction_force"):
+        reason += "; what is left after the predicted effect of the actual sliding velocity is judged"
+        return Tolerance("remainder_l2", limit, reason)
     return Tolerance("relative_l2", limit, reason)

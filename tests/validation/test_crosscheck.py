@@ -80,11 +80,10 @@ def _with(agreements, fidelity, quantity, **changes):
 
 def test_verdict_follows_from_the_agreements(check):
     agreeing = tuple(
-        dataclasses.replace(a, relative_l2=0.5 * a.tolerance.limit, maximum_over_span=0.5 * a.tolerance.limit)
-        for a in check.agreements
+        dataclasses.replace(a, **{a.tolerance.metric: 0.5 * a.tolerance.limit}) for a in check.agreements
     )
     assert overall_verdict(agreeing) == "confirmed"
-    assert overall_verdict(_with(agreeing, "exact", "y_p", relative_l2=1.0)) == "bounded"
+    assert overall_verdict(_with(agreeing, "exact", "y_p", remainder_l2=1.0)) == "bounded"
     assert overall_verdict(_with(agreeing, "exact", "dte", relative_l2=1.01 * LOST)) == "not confirmed"
     assert overall_verdict(_with(agreeing, "linear", "x_p", maximum_over_span=1e-3)) == "not confirmed"
     assert overall_verdict([a for a in agreeing if a.fidelity == "linear"]) == "not confirmed"

@@ -19,12 +19,15 @@ def test_it_is_the_multibody_model_with_this_effect_alone(torque):
     nominal = lumped.simulate(pair, **settings)
     last = slice(-4 * 256 - 1, -1)
     for quantity in ("friction_force", "y_p", "y_g"):
-        observed = relative_l2(exact[quantity].to_numpy()[..., last], nominal[quantity].to_numpy()[..., last])
-        # First order in the effect, whose size is 2 % here, and friction acts back on the motion.
-        assert getattr(predicted, quantity) == pytest.approx(observed, rel=0.05)
+        seen, without = (d[quantity].to_numpy()[..., last] for d in (exact, nominal))
+        size = relative_l2(seen, without)
+        left = relative_l2(seen - predicted.over(quantity, 4 * 256), without)
+        # First order in the effect, whose size is 2 % or less here; friction acts back on the motion.
+        assert left < 0.1 * size
 
 
 def test_there_is_none_without_friction():
     pair = lumped.load_gear_pair("nasa_28_28").with_(friction__law="none")
     effect = sliding_effect(pair, lumped.steady_state(pair))
-    assert (effect.friction_force, effect.y_p, effect.y_g) == (0.0, 0.0, 0.0)
+    assert effect.changes == {}
+    assert effect.over("y_p", 512) == 0.0

@@ -69,7 +69,11 @@ def crosscheck(
         "verdict",
     )
     shown.columns[0].no_wrap = True
-    words = {"maximum_over_span": "max/span", "relative_l2": "rel. L2"}
+    words = {
+        "maximum_over_span": "max/span",
+        "relative_l2": "rel. L2",
+        "remainder_l2": "rel. L2 left",
+    }
     for a in check.agreements:
         verdict = "[green]within[/green]" if a.within else "[red]outside[/red]"
         limit = a.tolerance.limit
@@ -78,6 +82,10 @@ def crosscheck(
     console = stdout()
     console.print(shown)
     console.print("max/span: largest difference over the peak to peak of the lumped history", soft_wrap=True)
+    console.print(
+        "left: after the predicted effect of friction at the actual sliding velocity is added to the lumped history",
+        soft_wrap=True,
+    )
     console.print(f"[bold]{check.verdict}[/bold]: {MEANINGS[check.verdict]}", soft_wrap=True)
     if target is not None:
         _write(check, target)
