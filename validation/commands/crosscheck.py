@@ -83,7 +83,8 @@ def crosscheck(
     console.print(shown)
     console.print("max/span: largest difference over the peak to peak of the lumped history", soft_wrap=True)
     console.print(
-        "left: after the predicted effect of friction at the actual sliding velocity is added to the lumped history",
+        "left: after the predicted effect of friction at the actual sliding velocity is added "
+        "to the lumped history",
         soft_wrap=True,
     )
     console.print(f"[bold]{check.verdict}[/bold]: {MEANINGS[check.verdict]}", soft_wrap=True)
