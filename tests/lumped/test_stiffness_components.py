@@ -78,6 +78,8 @@ def test_size_differs_from_iso_where_the_standard_or_the_fit_says_so():
     assert blankenship.attrs["range_warnings"] == []
     low, high = (float(blankenship.mean_ratio.sel(variant=v)) for v in ("100 N/mm", "1600 N/mm"))
     assert low < 1.0 < high
+    # 150 N m on 75 mm and 20 mm: exactly the lower end of the standard's range.
+    assert low == pytest.approx(float(blankenship.mean_ratio.sel(variant="as given")), rel=1e-9)
 
 
 def test_bore_softens_and_solid_bodies_do_not_matter_without_one():

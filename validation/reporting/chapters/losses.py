@@ -9,7 +9,18 @@ from lumped.friction import contact_path
 from lumped.lubricant import dynamic_viscosity
 from lumped.viscosity import ZERO_CELSIUS
 from validation.plots.efficiency import efficiency_figure, film_figure, sliding_power_figure
-from validation.reporting.blocks import Block, Cell, Chapter, Column, Fact, Facts, Picture, Quantity, Table
+from validation.reporting.blocks import (
+    Block,
+    Cell,
+    Chapter,
+    Column,
+    Fact,
+    Facts,
+    Picture,
+    Quantity,
+    Table,
+    Text,
+)
 from validation.reporting.results import Results
 
 
@@ -63,6 +74,8 @@ def _losses(results: Results) -> list[Block]:
                 frozenset(own),
             ),
         ]
+    if by_law.attrs["left_out"]:
+        blocks.append(Text("Laws that this pair does not allow:", tuple(by_law.attrs["left_out"])))
     blocks += [
         Picture(
             "sliding_power",
