@@ -46,9 +46,7 @@ def test_benedict_kelley_is_bounded():
 
 @pytest.mark.parametrize("roughness", [1.13, 1.5, 30.0])
 def test_benedict_kelley_refuses_its_pole_in_roughness(roughness):
-    with pytest.raises(
-        ParameterError, match=r"roughness = .* um: allowed 0 <= S < 1.13 um .* smoother"
-    ):
+    with pytest.raises(ParameterError, match=r"roughness = .* um: allowed 0 <= S < 1.13 um .* smoother"):
         benedict_kelley(100, 10, 2, 10, roughness)
 
 
