@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.parameters import GearPair
 from lumped.solution import Initial
 from multibody import kernels as kn
+from multibody.drive import Drive, DriveTables, value_and_integral
 from multibody.integration import Segment
 from multibody.kinematics import MAX_PAIRS
 from multibody.model import ExudynModel
@@ -30,9 +31,10 @@ class PowerBalance:
 
     Attributes
     ----------
-    driving : work of the driving torque
+    driving : work of the driving torque, and of the motor where a drive has one
     braking : work taken by the brake
-    stored : increase of kinetic energy and of elastic energy in the bearings
+    stored : increase of kinetic energy and of elastic energy in the bearings and the motor's spring
+    coupling : dissipated in the damping of the motor's spring
     bearings : dissipated in the bearings
     friction : dissipated by sliding friction between the teeth
     mesh_damping : dissipated by the damping of the teeth
@@ -43,6 +45,7 @@ class PowerBalance:
     driving: float
     braking: float
     stored: float
+    coupling: float
     bearings: float
     friction: float
     mesh_damping: float
@@ -51,8 +54,8 @@ class PowerBalance:
     @property
     def residual(self) -> float:
         """Driving work that is not accounted for [J]."""
-        gone = self.braking + self.stored + self.bearings + self.friction
-        return self.driving - gone - self.mesh_damping - self.mesh_stiffness
+        lost = self.coupling + self.bearings + self.friction + self.mesh_damping
+        return self.driving - self.braking - self.stored - lost - self.mesh_stiffness
 
 
 def power_balance(
@@ -64,6 +67,7 @@ def power_balance(
     effects: Collection[str] | Mapping[str, bool] | None = None,
     rtol: float = 1e-8,
     friction_velocity: float | None = None,
+    drive: Drive | None = None,
 ) -> PowerBalance:
     """Energy ledger of a run; arguments as ``multibody.simulate``.
 
@@ -77,8 +81,9 @@ def power_balance(
         effects=effects,
         rtol=rtol,
         friction_velocity=friction_velocity,
+        drive=drive,
     )
-    work = np.zeros(6)
+    work = np.zeros(7)
 
     def visit(_number: int, segment: Segment) -> None:
         steps = np.diff(segment.times)[:, None]
@@ -86,13 +91,15 @@ def power_balance(
         powers = _powers(setup.model, t, *segment.at(t))
         work[:] += (0.5 * steps * _WEIGHTS).ravel() @ powers
 
-    start = _stored(setup.model, setup.q, setup.v)
-    q, v = setup.run(setup.edges(cycles), visit)
-    driving, braking, bearings, friction, damping, stiffness = (float(w) for w in work)
+    edges = setup.edges(cycles)
+    start = _stored(setup.model, 0.0, setup.q, setup.v)
+    q, v = setup.run(edges, visit)
+    driving, braking, bearings, friction, damping, stiffness, coupling = (float(w) for w in work)
     return PowerBalance(
         driving=driving,
         braking=braking,
-        stored=_stored(setup.model, q, v) - start,
+        stored=_stored(setup.model, float(edges[-1]), q, v) - start,
+        coupling=coupling,
         bearings=bearings,
         friction=friction,
         mesh_damping=damping,
@@ -106,20 +113,31 @@ def _speeds(model: ExudynModel, v: FloatArray) -> tuple[FloatArray, FloatArray]:
     return p[kn.OMEGA_P] - v[..., 2], p[kn.OMEGA_G] + v[..., 5]
 
 
-def _stored(model: ExudynModel, q: FloatArray, v: FloatArray) -> float:
+def _twist(drive: DriveTables, t: float, q: FloatArray, v: FloatArray) -> tuple[float, float, float]:
+    """Twist of the motor's spring and its rate, and the motor's speed beyond nominal [rad], [rad/s]."""
+    speed, angle = value_and_integral(drive.motor, t)
+    return float(drive.spring[2] + angle + q[2]), float(speed + v[2]), speed
+
+
+def _stored(model: ExudynModel, t: float, q: FloatArray, v: FloatArray) -> float:
     m = model.machine
     omega_p, omega_g = _speeds(model, v)
     kinetic = m.mass[0] * (v[0] ** 2 + v[1] ** 2) + m.mass[1] * (v[3] ** 2 + v[4] ** 2)
     kinetic += float(m.inertia[0] * omega_p**2 + m.inertia[1] * omega_g**2)
-    elastic = m.bearing_stiffness.ravel() @ q[[0, 1, 3, 4]] ** 2
+    elastic = float(m.bearing_stiffness.ravel() @ q[[0, 1, 3, 4]] ** 2)
+    if model.drive is not None:
+        elastic += float(model.drive.spring[0]) * _twist(model.drive, t, q, v)[0] ** 2
     return float(0.5 * (kinetic + elastic))
 
 
 def _powers(model: ExudynModel, t: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
-    """Driving, braking, bearing, friction, mesh damping and mesh stiffness power at n states, (n, 6) [W]."""
+    """Powers at n states, (n, 7) [W].
+
+    Driving, braking, bearings, friction, mesh damping, mesh stiffness, damping of the motor's spring.
+    """
     m = model.machine
     omega_p, omega_g = _speeds(model, v)
-    powers = np.zeros((t.size, 6))
+    powers = np.zeros((t.size, 7))
     powers[:, 0], powers[:, 1] = m.torque_pinion * omega_p, m.torque_gear * omega_g
     powers[:, 2] = v[:, [0, 1, 3, 4]] ** 2 @ m.bearing_damping.ravel()
     wrench, contacts = np.empty(6), np.empty((2 * MAX_PAIRS, kn.N_RECORD))
@@ -132,5 +150,22 @@ def _powers(model: ExudynModel, t: FloatArray, q: FloatArray, v: FloatArray) -> 
         pressed = c[c[:, kn.LOAD] != 0.0]
         damping = float(np.sum(pressed[:, kn.C] * pressed[:, kn.OVERLAP_RATE] ** 2))
         powers[i, 3] = c[:, kn.FRICTION_FORCE] @ c[:, kn.SLIDE]
+        if model.drive is not None:
+            powers[i, [0, 1, 6]] += _drive_powers(model, model.drive, t[i], q[i], v[i])
         powers[i, 4], powers[i, 5] = damping, c[:, kn.LOAD] @ c[:, kn.CLOSING] - damping
     return powers
+
+
+def _drive_powers(
+    model: ExudynModel, drive: DriveTables, t: float, q: FloatArray, v: FloatArray
+) -> tuple[float, float, float]:
+    """What a drive adds to the driving and the braking power, and what its spring's damping takes [W]."""
+    omega_p, omega_g = _speeds(model, v)
+    twist, twist_rate, speed = _twist(drive, t, q, v)
+    by_spring = float(drive.spring[0]) * twist + float(drive.spring[1]) * twist_rate
+    if drive.spring[0] == 0.0:  # no motor: neither spring nor damping acts
+        by_spring = twist_rate = 0.0
+    motor_power = by_spring * (float(model.machine.parameters[kn.OMEGA_P]) + speed)
+    driving = value_and_integral(drive.pinion, t)[0] * float(omega_p) + motor_power
+    braking = value_and_integral(drive.gear, t)[0] * float(omega_g)
+    return driving, braking, float(drive.spring[1]) * twist_rate**2

@@ -105,8 +105,8 @@ def _history(name: str, history: tuple[ArrayLike, ArrayLike] | None, default: fl
 
 
 @compiled
-def _at(table: FloatArray, t: float) -> tuple[float, float]:
-    """Value of column 1 at t and its integral from the first row on; constant outside."""
+def value_and_integral(table: FloatArray, t: float) -> tuple[float, float]:
+    """Value of a history (n, 2) at t and its integral from the first row on; constant outside."""
     last = table.shape[0] - 1
     if t <= table[0, 0]:
         return table[0, 1], table[0, 1] * (t - table[0, 0])
@@ -139,8 +139,8 @@ def drive_torques(
     angle, speed : the pinion's deviations from nominal rotation, in its running sense [rad], [rad/s]
     spring, motor, pinion, gear : see ``DriveTables``
     """
-    driving = _at(pinion, t)[0]
+    driving = value_and_integral(pinion, t)[0]
     if spring[0] > 0.0:
-        motor_speed, motor_angle = _at(motor, t)
+        motor_speed, motor_angle = value_and_integral(motor, t)
         driving += spring[0] * (spring[2] + motor_angle - angle) + spring[1] * (motor_speed - speed)
-    return driving, _at(gear, t)[0]
+    return driving, value_and_integral(gear, t)[0]

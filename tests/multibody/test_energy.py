@@ -7,6 +7,7 @@ import pytest
 
 import lumped
 import multibody
+from multibody import Drive
 
 PAIR = lumped.load_gear_pair("nasa_28_28").with_(friction__law="coulomb", friction__coefficient=0.08)
 
@@ -30,6 +31,34 @@ def test_power_balance_closes(options):
     assert balance.friction > 0
     assert balance.mesh_damping > 0
     assert balance.bearings > 0
+
+
+@pytest.mark.parametrize("fidelity", ["linear", "exact"])
+def test_power_balance_closes_with_a_motor_and_torque_histories(fidelity):
+    """A run-up behind a damped spring, both torques given as histories with kinks."""
+    period = lumped.geometry(PAIR).mesh_period
+    drive = Drive(
+        stiffness=5e3,
+        damping=5.0,
+        motor_speed=([0.0, 8 * period], [4000.0, 4875.0]),
+        pinion_torque=([0.0, 3 * period, 7 * period], [56.5, 30.0, 70.0]),
+        brake_torque=([0.0, 5 * period], [50.0, 60.0]),
+    )
+    balance = multibody.power_balance(PAIR, 10, drive=drive, fidelity=fidelity)
+    # As above; the parts that only a drive has are larger than what may be missing by orders.
+    assert abs(balance.residual) < 1e-8 * balance.driving
+    assert balance.coupling > 1e-4 * balance.driving
+    # The run-up from 4000 to 4875 rpm stores the rise of rotational energy, and a little in springs.
+    b = lumped.bodies(PAIR)
+    rise = 0.5 * (b.inertia_pinion + b.inertia_gear) * (4875**2 - 4000**2) * (np.pi / 30) ** 2
+    assert balance.stored == pytest.approx(rise, rel=0.1)
+
+
+def test_a_motor_without_a_spring_takes_no_part():
+    """Damping alone couples nothing: the core needs a spring, and the ledger must not count the damper."""
+    balance = multibody.power_balance(PAIR, 2, drive=Drive(damping=5.0))
+    assert balance.coupling == 0.0
+    assert abs(balance.residual) < 1e-8 * balance.driving
 
 
 @pytest.mark.parametrize(
