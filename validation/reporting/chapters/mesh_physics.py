@@ -68,7 +68,9 @@ def _stiffness(results: Results, found: MeshPhysics) -> list[Block]:
         rows: list[tuple[Cell, ...]] = []
         for part in compliance["component"].to_numpy():
             values = compliance.sel(component=part).to_numpy()
-            rows.append((str(part), *(Quantity(float(1.0 / values[i]), "N/m") for i in places.values())))
+            with np.errstate(divide="ignore"):  # a load across the tooth does not compress it
+                stiffness = 1.0 / values
+            rows.append((str(part), *(Quantity(float(stiffness[i]), "N/m") for i in places.values())))
         total = components["stiffness"].to_numpy()
         rows.append(("pair", *(Quantity(float(total[i]), "N/m") for i in places.values())))
         blocks.append(
