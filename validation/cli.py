@@ -10,6 +10,8 @@ from typing import Annotated
 import typer
 
 from validation.commands.crosscheck import crosscheck
+from validation.commands.figures import figures
+from validation.commands.measurement import measurement
 from validation.commands.parameter_files import init, presets, schema
 from validation.commands.report import report
 from validation.commands.simulate import simulate
@@ -56,7 +58,7 @@ def paragraphs(text: str | None) -> str:
     return "\n\n".join(" ".join(block.split()) for block in blocks)
 
 
-for command in (report, presets, init, simulate, crosscheck, stability, sweep, schema):
+for command in (report, presets, init, simulate, crosscheck, stability, sweep, figures, measurement, schema):
     app.command(help=paragraphs(command.__doc__))(command)
 app.callback(help=paragraphs(spurcheck.__doc__))(spurcheck)
 

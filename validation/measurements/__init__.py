@@ -1,6 +1,7 @@
 """Measurements beside predictions: import, alignment by mesh phase, overlay metrics, identification of mu."""
 
 from validation.measurements.alignment import Alignment, align, mesh_cycles
+from validation.measurements.evaluation import Evaluation, evaluate
 from validation.measurements.identification import Identification, identify_friction
 from validation.measurements.overlay import overlay, overlay_metrics
 from validation.measurements.prediction import Prediction, predict
@@ -11,11 +12,13 @@ from validation.measurements.synthetic import synthetic_measurement, write_measu
 
 __all__ = [
     "Alignment",
+    "Evaluation",
     "Identification",
     "Measurement",
     "MeasurementSpec",
     "Prediction",
     "align",
+    "evaluate",
     "identification_study",
     "identify_friction",
     "load_measurement",

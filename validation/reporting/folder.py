@@ -1,4 +1,4 @@
-"""A report folder is written whole or not at all."""
+"""A folder of results is written whole or not at all."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 from lumped.errors import ParameterError, refuse
@@ -16,8 +17,35 @@ from lumped.errors import ParameterError, refuse
 FORMAT = "spurcheck-report"
 
 
-def check_target(out: Path, *, force: bool) -> Path:
+@dataclass(frozen=True)
+class Kind:
+    """What a folder holds, by which an earlier one is recognised before it is replaced.
+
+    Attributes
+    ----------
+    file : JSON file that every folder of this kind has
+    format : its value of "format"
+    noun : for messages
+    """
+
+    file: str
+    format: str
+    noun: str
+
+
+REPORT = Kind("report.json", FORMAT, "report")
+FIGURES = Kind("figures.json", "spurcheck-figures", "set of figures")
+MEASUREMENT = Kind("measurement.json", "spurcheck-measurement", "evaluation of a record")
+
+
+def check_target(out: Path, *, force: bool, kind: Kind = REPORT) -> Path:
     """Return the absolute output folder after refusing one that must not be written.
+
+    Parameters
+    ----------
+    out : folder, new or empty
+    force : also accept one that holds earlier results of this kind
+    kind : what is to be written
 
     Raises
     ------
@@ -34,38 +62,38 @@ def check_target(out: Path, *, force: bool) -> Path:
                 "output",
                 out,
                 "a new or empty folder",
-                "It is not empty: choose another folder, or give --force to replace an earlier report.",
+                f"It is not empty: choose another folder, or give --force to replace an earlier {kind.noun}.",
             )
-        if not is_report(target):
+        if not is_report(target, kind):
             raise refuse(
                 "output",
                 out,
-                "a new or empty folder, or an earlier report",
+                f"a new or empty folder, or an earlier {kind.noun}",
                 "It holds something else, which --force does not delete: choose another folder.",
             )
     return target
 
 
-def is_report(folder: Path) -> bool:
-    """Whether a folder holds an earlier report, told by its report.json."""
+def is_report(folder: Path, kind: Kind = REPORT) -> bool:
+    """Whether a folder holds earlier results of a kind, told by its JSON file."""
     try:
-        data = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+        data = json.loads((folder / kind.file).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return False
-    return isinstance(data, dict) and data.get("format") == FORMAT
+    return isinstance(data, dict) and data.get("format") == kind.format
 
 
 @contextmanager
-def whole_folder(out: Path, *, force: bool) -> Iterator[Path]:
+def whole_folder(out: Path, *, force: bool, kind: Kind = REPORT) -> Iterator[Path]:
     """Give an empty folder beside ``out`` to write into, and put it in place of ``out`` at the end.
 
-    On any failure, interruption included, nothing is left behind and an earlier report stays as it was.
+    On any failure, interruption included, nothing is left behind and earlier results stay as they were.
 
     Raises
     ------
     ParameterError : see ``check_target``
     """
-    target = check_target(out, force=force)
+    target = check_target(out, force=force, kind=kind)
     created = _make_parents(target)
     try:
         try:
@@ -77,7 +105,7 @@ def whole_folder(out: Path, *, force: bool) -> Iterator[Path]:
         try:
             temporary.chmod(0o755)  # mkdtemp makes it private; a report is to be read
             yield temporary
-            _exchange(temporary, target, force=force)
+            _exchange(temporary, target, force=force, kind=kind)
         finally:
             shutil.rmtree(temporary, ignore_errors=True)
     except BaseException:
@@ -86,8 +114,8 @@ def whole_folder(out: Path, *, force: bool) -> Iterator[Path]:
         raise
 
 
-def _exchange(temporary: Path, target: Path, *, force: bool) -> None:
-    check_target(target, force=force)  # something may have appeared there meanwhile
+def _exchange(temporary: Path, target: Path, *, force: bool, kind: Kind) -> None:
+    check_target(target, force=force, kind=kind)  # something may have appeared there meanwhile
     if not target.exists():
         temporary.rename(target)
         return

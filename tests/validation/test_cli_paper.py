@@ -1,0 +1,103 @@
+"""Do figures and measurement write whole folders, refuse bad input, and find a friction that is known?"""
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+from validation.cli import app
+
+
+def run(*arguments):
+    result = CliRunner().invoke(app, list(map(str, arguments)), env={"COLUMNS": "200", "NO_COLOR": "1"})
+    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
+    return result
+
+
+def refused(*arguments):
+    result = run(*arguments)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert result.stderr.count("error:") == 1
+    return result.stderr
+
+
+@pytest.mark.parametrize("command", ["figures", "measurement"])
+def test_commands_explain_themselves_with_an_example(command):
+    text = run(command, "--help").stdout
+    assert "Example" in text
+    assert f"spurcheck {command}" in text
+
+
+def test_figures_writes_pictures_data_and_numbers(tmp_path):
+    out = tmp_path / "figures"
+    result = run("figures", "--figures", "4,3", "--no-multibody", "-o", out)
+    assert result.exit_code == 0, result.stderr
+    data = json.loads((out / "figures.json").read_text(encoding="utf-8"))
+    assert [entry["figure"] for entry in data["figures"]] == ["3", "4"]
+    for entry in data["figures"]:
+        assert entry["numbers"]
+        assert all((out / name).stat().st_size > 0 for name in entry["pictures"] + entry["data"])
+    assert "Coulomb" in result.stdout
+    # Replaced only when asked, and only by its own kind.
+    assert "--force" in refused("figures", "--figures", "3", "-o", out)
+    assert "does not delete" in refused("report", "-o", out, "--force")
+    assert run("figures", "--figures", "3", "--no-multibody", "-o", out, "--force").exit_code == 0
+    assert not (out / "figure4.svg").exists()
+
+
+@pytest.mark.parametrize("wanted", ["1", "2,8", "", "2;4"])
+def test_unknown_figures_are_refused_before_work(tmp_path, wanted):
+    assert "2, 3, 4, 5, 6, 7" in refused("figures", "--figures", wanted, "-o", tmp_path / "figures")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_failure_midway_leaves_no_figures_behind(tmp_path, monkeypatch):
+    def fail(folder, *_, **__):
+        (folder / "figure2.svg").write_text("half")
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("validation.paper.paper_figures", fail)
+    assert run("figures", "-o", tmp_path / "deep" / "figures").exit_code == 130
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.fixture(scope="module")
+def example(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("records") / "example"
+    changes = ("--set", "friction.law=coulomb", "--set", "friction.coefficient=0.05")
+    assert run("measurement", folder, *changes, "--example").exit_code == 0
+    return folder
+
+
+def test_measurement_identifies_the_friction_that_made_the_record(example, tmp_path):
+    out = tmp_path / "evaluation"
+    # Predicted with another law: the identified constant must not follow the prediction's friction.
+    result = run("measurement", example / "measurement.toml", "--identify", "mu", "-o", out)
+    assert result.exit_code == 0, result.stderr
+    data = json.loads((out / "measurement.json").read_text(encoding="utf-8"))
+    found = data["identified"][0]
+    # Five standard errors: a right estimate misses by more once in two million records.
+    assert abs(found["estimate"] - 0.05) < 5 * found["standard_error"]
+    assert found["high"] - found["low"] < 0.005  # 2 % noise leaves less than a tenth of mu
+    assert f"mu = {found['estimate']:.4g}" in result.stdout
+    # A law that stays far from 0.05 predicts friction badly and normal loads well.
+    assert data["metrics"]["normal_A"]["correlation"] > 0.99
+    assert data["metrics"]["friction_A"]["relative_rms"] > 0.2
+    assert {p.name for p in out.iterdir()} == {
+        "measurement.json",
+        "overlay.csv",
+        "overlay.nc",
+        "overlay.png",
+        "overlay.svg",
+    }
+
+
+def test_measurement_refuses_what_it_cannot_use(example, tmp_path):
+    assert "no.toml" in refused("measurement", tmp_path / "no.toml")
+    assert "xu_kahraman" in refused("measurement", example / "measurement.toml", "--identify", "sandpaper")
+    assert "--force" in refused("measurement", example, "--example")
+    (tmp_path / "notes.txt").write_text("mine")
+    assert "does not delete" in refused(
+        "measurement", example / "measurement.toml", "-o", tmp_path, "--force"
+    )
