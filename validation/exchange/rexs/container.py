@@ -1,0 +1,145 @@
+"""Opening and writing REXS files: XML, JSON, or one of them in a ZIP archive."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+import zlib
+from pathlib import Path, PurePosixPath, PureWindowsPath
+
+from lumped.errors import ParameterError, refuse, shown
+from lumped.text_file import read_text
+from validation.exchange.rexs.json_form import parse_json
+from validation.exchange.rexs.model import RexsModel, broken
+from validation.exchange.rexs.xml_form import parse_xml
+
+#: Largest file, and largest model in an archive [bytes]: models of whole gear units with tables of results
+#: have a few megabytes.
+MAX_BYTES = 32_000_000
+_MAX_MEMBERS = 10_000
+_MODELS = (".rexs", ".rexsj", ".rexs.xml", ".rexs.json")
+_PLAIN = (".xml", ".json")
+#: Suffix of a file to write -> its form; ".rexsz" and ".rexs.zip" hold the XML form.
+FORMS = {
+    ".rexs": "xml",
+    ".rexs.xml": "xml",
+    ".rexsj": "json",
+    ".rexs.json": "json",
+    ".rexsz": "zip",
+    ".rexs.zip": "zip",
+}
+
+
+def read_rexs(path: str | Path) -> RexsModel:
+    """Read a REXS file; its content, not its name, decides which form it has.
+
+    Parameters
+    ----------
+    path : XML, JSON or ZIP
+
+    Raises
+    ------
+    ParameterError : no such file, too large, an archive that is hostile or has not exactly one model, not a
+        REXS model, or one before version 1.4
+    """
+    path = Path(path)
+    try:
+        # latin-1 maps every byte to one character and back, so this is a bounded read of bytes.
+        data = read_text(path, MAX_BYTES, "latin-1").encode("latin-1")
+    except FileNotFoundError:
+        raise refuse("REXS file", shown(str(path)), "a file that exists", "Check the path.") from None
+    except (OSError, ValueError) as error:
+        if isinstance(error, ParameterError):
+            raise
+        reason = getattr(error, "strerror", None) or str(error)
+        raise refuse("REXS file", shown(str(path)), "a readable file", f"It is not: {reason}.") from None
+    if data[:2] == b"PK":
+        data = _unzipped(data, path.name)
+    model = _parsed(data, path.name)
+    _check_version(model)
+    return model
+
+
+def _parsed(data: bytes, file: str) -> RexsModel:
+    start = data.removeprefix(b"\xef\xbb\xbf").lstrip()[:1]
+    if start == b"{":
+        return parse_json(data, file)
+    if start == b"<" or data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return parse_xml(data, file)
+    raise broken(file, "it is neither XML nor JSON nor a ZIP archive")
+
+
+def _unzipped(data: bytes, file: str) -> bytes:
+    """Return the one model of an archive; nothing is ever written to disk."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            members = archive.infolist()
+            if len(members) > _MAX_MEMBERS:
+                raise broken(file, f"the archive has more than {_MAX_MEMBERS} members")
+            for member in members:
+                _check_member(member, file)
+            with archive.open(_model_in(members, file)) as stream:
+                content = stream.read(MAX_BYTES + 1)  # the size that the archive states may be a lie
+    except (zipfile.BadZipFile, NotImplementedError, EOFError, zlib.error, OSError) as error:
+        raise broken(file, f"the archive cannot be read: {error}") from None
+    if len(content) > MAX_BYTES:
+        raise broken(file, f"the model in the archive has more than {MAX_BYTES} bytes")
+    return content
+
+
+def _check_member(member: zipfile.ZipInfo, file: str) -> None:
+    name = member.filename
+    posix, windows = PurePosixPath(name), PureWindowsPath(name)
+    if posix.is_absolute() or windows.drive or windows.root or ".." in windows.parts:
+        raise broken(file, f"the archive has the member {shown(name)!r}, which leaves its folder")
+    if member.flag_bits & 0x1:
+        raise broken(file, f"the member {shown(name)!r} of the archive is encrypted")
+    if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        raise broken(file, f"the member {shown(name)!r} of the archive is not compressed by 'deflate'")
+
+
+def _model_in(members: list[zipfile.ZipInfo], file: str) -> zipfile.ZipInfo:
+    files = [
+        m
+        for m in members
+        if not m.is_dir()
+        and not m.filename.startswith("__MACOSX/")
+        and not PurePosixPath(m.filename).name.startswith("._")
+    ]
+    found = [m for m in files if m.filename.lower().endswith(_MODELS)]
+    found = found or [m for m in files if m.filename.lower().endswith(_PLAIN)]
+    if len(found) != 1:
+        raise broken(file, f"the archive has {len(found)} models instead of one")
+    return found[0]
+
+
+def _check_version(model: RexsModel) -> None:
+    parts = model.version.split(".")
+    numbers = [int(p) for p in parts if p.isascii() and p.isdecimal() and len(p) < 6]
+    if len(numbers) != len(parts) or not numbers:
+        raise broken(model.file, f"its version is {shown(model.version)!r}")
+    if numbers < [1, 4]:
+        raise broken(model.file, f"its version is {shown(model.version)}; export it as version 1.4 or later")
+
+
+def form_of(path: Path) -> str:
+    """Form of a file to write, from its suffix.
+
+    Raises
+    ------
+    ParameterError : a suffix that the specification does not have
+    """
+    for suffix, form in sorted(FORMS.items(), key=lambda item: -len(item[0])):
+        if path.name.lower().endswith(suffix):
+            return form
+    raise refuse("output", path, "a name ending in " + ", ".join(FORMS), "The suffix chooses the form.")
+
+
+def zipped(data: bytes, name: str) -> bytes:
+    """Put one file into an archive, with a fixed date so that equal models give equal bytes."""
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
+        member = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
+        member.compress_type = zipfile.ZIP_DEFLATED
+        archive.writestr(member, data)
+    return stream.getvalue()

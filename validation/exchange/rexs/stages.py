@@ -1,0 +1,149 @@
+"""The gear stages of a REXS file, and which of them spurcheck can model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from lumped.errors import ParameterError, refuse, whole_number
+from lumped.units import to_stated
+from validation.exchange.rexs.container import read_rexs
+from validation.exchange.rexs.model import Component, RexsModel, broken
+from validation.exchange.rexs.said import Said
+
+_STAGES = ("cylindrical_stage", "bevel_stage", "worm_stage")
+_GEARS = ("cylindrical_gear", "ring_gear", "bevel_gear", "worm_gear", "worm_wheel")
+#: Helix angles below this are what a program leaves of a zero [deg].
+_NO_HELIX = 1e-9
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One gear stage of a REXS file.
+
+    Attributes
+    ----------
+    number : 1, 2, ... in the order of the file; what ``stage`` of ``gear_pair_from_rexs`` means
+    component_id : id of the stage's component
+    name : as the file says
+    kind : component type
+    teeth : of its gears, where the file has them
+    reason : why spurcheck cannot model it, or ""
+    """
+
+    number: int
+    component_id: int
+    name: str
+    kind: str
+    teeth: tuple[int, ...]
+    reason: str = ""
+
+    @property
+    def usable(self) -> bool:
+        """Whether it is a spur stage of two external gears."""
+        return not self.reason
+
+    def __str__(self) -> str:
+        teeth = "/".join(map(str, self.teeth)) or "teeth not given"
+        verdict = f" - {self.reason}" if self.reason else ""
+        return f"{self.number}: {self.name or self.kind} ({teeth}){verdict}"
+
+
+def rexs_stages(path: str | Path) -> list[Stage]:
+    """List the gear stages of a REXS file, in its order.
+
+    Parameters
+    ----------
+    path : XML, JSON or ZIP form, version 1.4 or later
+
+    Raises
+    ------
+    ParameterError : the file cannot be read, see ``read_rexs``
+    """
+    return stages_of(read_rexs(path))
+
+
+def stages_of(model: RexsModel) -> list[Stage]:
+    """List the gear stages of a model."""
+    said = Said(model)
+    found = []
+    for number, component in enumerate(model.of_type(*_STAGES), 1):
+        gears = gears_of(model, component)
+        teeth = [_teeth(said, gear) for gear in gears]
+        reason = _reason(said, component, gears)
+        known = tuple(z for z in teeth if z is not None)
+        found.append(Stage(number, component.id, component.name, component.type, known, reason))
+    return found
+
+
+def gears_of(model: RexsModel, stage: Component) -> list[Component]:
+    """Return gear_1 and gear_2 of a stage, in this order."""
+    return [
+        gear
+        for role in ("gear_1", "gear_2")
+        for gear in model.related(stage, "stage", "stage", role, *_GEARS)
+    ]
+
+
+def chosen(model: RexsModel, number: int | None) -> tuple[Stage, list[str]]:
+    """Return the stage to import, and notes about the choice.
+
+    Raises
+    ------
+    ParameterError : there is none, it cannot be modelled, or several can and no number was given
+    """
+    stages = stages_of(model)
+    if not stages:
+        raise broken(model.file, "it has no gear stage")
+    listed = "; ".join(map(str, stages))
+    if number is not None:
+        picked = stages[whole_number("stage", number, 1, len(stages)) - 1]
+        if not picked.usable:
+            raise _unusable(model, str(picked.number), picked.reason)
+        return picked, []
+    usable = [stage for stage in stages if stage.usable]
+    if len(usable) > 1:
+        raise refuse("stage", "not given", f"one of {listed}", "Choose a stage by its number.")
+    if not usable:
+        reason = stages[0].reason if len(stages) == 1 else f"no stage can be modelled: {listed}"
+        raise _unusable(model, "1" if len(stages) == 1 else "not given", reason)
+    notes = [] if len(stages) == 1 else [f"stage {usable[0].number} is the only spur stage of: {listed}"]
+    return usable[0], notes
+
+
+def _unusable(model: RexsModel, number: str, reason: str) -> ParameterError:
+    return refuse(
+        "stage",
+        number,
+        "a cylindrical stage of two external spur gears",
+        f"{model.file}: {reason}.",
+    )
+
+
+def _teeth(said: Said, gear: Component) -> int | None:
+    text = gear.attributes.get("number_of_teeth")
+    try:
+        return None if text is None or text.value is None else int(str(text.value))
+    except ValueError:
+        return None
+
+
+def _reason(said: Said, stage: Component, gears: list[Component]) -> str:
+    """Why a stage cannot be modelled."""
+    if stage.type != "cylindrical_stage":
+        return f"a {stage.type.replace('_', ' ')}; only cylindrical spur stages can be modelled"
+    if said.model.related(stage, "assembly", "part", "assembly", "planetary_stage"):
+        return "part of a planetary stage, whose planets share the load; one pair alone cannot stand for it"
+    if any(gear.type == "ring_gear" or (_teeth(said, gear) or 0) < 0 for gear in gears):
+        return "an internal gear; the model is of two external gears"
+    if len(gears) != 2 or any(gear.type != "cylindrical_gear" for gear in gears):
+        return f"{len(gears)} gears in its 'stage' relation instead of two cylindrical gears"
+    for gear in gears:
+        helix = said.number(gear, "helix_angle_reference_diameter")
+        angle = 0.0 if helix is None else to_stated(helix.si, "deg")
+        if abs(angle) > _NO_HELIX:
+            return (
+                f"a helical stage, helix angle {angle:g} deg in {gear.label}; the plane model has neither "
+                "axial forces nor contact lines that run across the face width"
+            )
+    return ""
