@@ -2,7 +2,7 @@
 
 from floquet.chart import chart, load_chart, save_chart, scan
 from floquet.fast import FastMonodromy, FastMultipliers, fast_monodromies, fast_multipliers
-from floquet.gear_boundaries import Tongue, predicted_lines, stability_boundaries
+from floquet.gear_boundaries import predicted_lines, stability_boundaries
 from floquet.gear_pair import (
     GEAR_AXES,
     GearPairMultipliers,
@@ -16,6 +16,7 @@ from floquet.propagators import PROPAGATORS, Propagator
 from floquet.rank_one import ModalForm, RankOneSystem
 from floquet.spectrum import Spectrum
 from floquet.system import PeriodicSystem
+from floquet.tongues import Tongue
 
 __all__ = [
     "GEAR_AXES",

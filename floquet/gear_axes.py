@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
@@ -10,6 +11,7 @@ import numpy as np
 from floquet.system import FloatArray
 from lumped.errors import refuse
 from lumped.friction.along_path import mean_coefficient
+from lumped.gear_geometry import geometry
 from lumped.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.parameters import GearPair
 
@@ -95,6 +97,27 @@ def _friction(variation: GearVariation, value: float) -> GearVariation:
     return replace(variation, friction_mean=value)
 
 
+def _contact_ratio(variation: GearVariation, value: float) -> GearVariation:
+    """Set the contact ratio by both tip diameters; approach and recess keep their shares of the path.
+
+    The path of contact ends where the tip circles cut the line of action: r_ap^2 = r_bp^2 + L_XD^2 and
+    r_ag^2 = r_bg^2 + (L_XY - L_XA)^2.
+    """
+    pair = variation.pair
+    g = geometry(pair)
+    factor = value / g.contact_ratio
+    recess = g.L_XP + factor * (g.L_XD - g.L_XP)
+    approach = g.L_XY - g.L_XP + factor * (g.L_XP - g.L_XA)
+    tips = {
+        "pinion": math.hypot(g.base_radius_pinion, recess),
+        "gear": math.hypot(g.base_radius_gear, approach),
+    }
+    changes: dict[str, float | None] = {}
+    for name, radius in tips.items():
+        changes |= {f"{name}.addendum": None, f"{name}.tip_diameter": 2e3 * radius}
+    return replace(variation, pair=pair.with_(changes))
+
+
 def _variation(variation: GearVariation, value: float) -> GearVariation:
     return replace(variation, stiffness_variation=value)
 
@@ -107,6 +130,7 @@ GEAR_AXES: Mapping[str, GearAxis] = {
     "stiffness_variation": GearAxis(
         "1", "variation of mesh stiffness about its mean, 1 as given", _variation, 0.0, 2.0
     ),
+    "contact_ratio": GearAxis("1", "contact ratio, by the tip diameters", _contact_ratio, 1.0, 3.0),
     "bearing_stiffness": GearAxis(
         "N/m",
         "stiffness of all bearings, LOA and OLOA",
@@ -137,3 +161,24 @@ def vary(pair: GearPair, point: Mapping[str, float]) -> GearVariation:
     for name, value in point.items():
         variation = gear_axis(name).apply(variation, value)
     return variation
+
+
+def operating_value(pair: GearPair, name: str) -> float:
+    """Value that the pair itself has on an axis, in the units of the axis.
+
+    Raises
+    ------
+    ParameterError
+        Unknown name.
+    """
+    gear_axis(name)
+    loa = pair.bearings.pinion.loa_stiffness
+    return {
+        "speed_rpm": lambda: pair.operating.pinion_speed * 30.0 / math.pi,
+        "damping_ratio": lambda: pair.mesh.damping_ratio,
+        "friction_coefficient": lambda: mean_coefficient(mesh_cycle(pair).elements.friction),
+        "torque": lambda: pair.operating.pinion_torque,
+        "stiffness_variation": lambda: 1.0,
+        "contact_ratio": lambda: geometry(pair).contact_ratio,
+        "bearing_stiffness": lambda: loa,
+    }[name]()

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
@@ -15,27 +13,9 @@ from floquet.gear_block import gear_block
 from floquet.gear_chart import stability_chart
 from floquet.intervals import UnstableInterval, seeded_nodes, unstable_intervals
 from floquet.system import FloatArray
+from floquet.tongues import Tongue, label_tongue
 from lumped.errors import refuse
 from lumped.parameters import GearPair
-
-
-@dataclass(frozen=True, order=True)
-class Tongue:
-    """Label of a tongue: mesh frequency = (omega_i + sign omega_j)/order, modes numbered from 1.
-
-    i = j with sign +1 is a parametric resonance of one mode, i < j a combination resonance.
-    """
-
-    mode_i: int
-    mode_j: int
-    sign: int
-    order: int
-
-    def __str__(self) -> str:
-        if self.mode_i == self.mode_j:
-            return f"2w{self.mode_i}/{self.order}"
-        first, second = (self.mode_i, self.mode_j) if self.sign > 0 else (self.mode_j, self.mode_i)
-        return f"(w{first}{'+' if self.sign > 0 else '-'}w{second})/{self.order}"
 
 
 def predicted_lines(pair: GearPair, orders: int = 12) -> dict[Tongue, float]:
@@ -58,41 +38,16 @@ def predicted_lines(pair: GearPair, orders: int = 12) -> dict[Tongue, float]:
 
 
 def label_at(pair: GearPair, speed_rpm: float) -> tuple[Tongue, FloatArray]:
-    """Label the largest multiplier at a speed by its mode shape.
-
-    The monodromy matrix in energy coordinates (omega eta, eta') has two rows per mode of the mean system; the
-    energy of its leading eigenvector in each mode says which modes take part. One mode with more than 80 %
-    of the energy is a parametric resonance of that mode, otherwise the two strongest combine; sign and
-    order are those whose line is nearest in frequency.
+    """Label the largest multiplier at a speed by its mode shape, see `label_tongue`.
 
     Returns
     -------
-    label, and the (m,) shares of energy
+    label, and the (m,) shares of the modes of the mean system in the growing motion, by action
     """
     block = gear_block(pair.with_({"operating.pinion_speed": speed_rpm}))
-    omega = block.modal().omega
-    m = omega.size
-    values, vectors = np.linalg.eig(fast_monodromies(block).matrices[0])
-    x = np.abs(vectors[:, np.argmax(np.abs(values))]) ** 2
-    shares = x[:m] + x[m:]
-    shares = shares / shares.sum()
-    strongest = np.argsort(-shares)
-    if shares[strongest[0]] > 0.8:
-        i = j = int(strongest[0])
-        signs: tuple[int, ...] = (1,)
-    else:
-        i, j = sorted((int(strongest[0]), int(strongest[1])))
-        signs = (1, -1)
-    mesh = 2.0 * np.pi / block.period
-    best: tuple[float, Tongue] | None = None
-    for sign in signs:
-        ratio = (omega[j] + sign * omega[i]) / mesh
-        k = max(1, round(ratio))
-        distance = abs(ratio / k - 1.0)
-        if best is None or distance < best[0]:
-            best = (distance, Tongue(i + 1, j + 1, sign, k))
-    assert best is not None
-    return best[1], shares
+    matrix = fast_monodromies(block).matrices[0]
+    label, shares = label_tongue(matrix, block.modal().omega, 2.0 * np.pi / block.period)
+    return label, shares.total
 
 
 def stability_boundaries(

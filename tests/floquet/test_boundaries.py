@@ -7,8 +7,9 @@ import pytest
 from scipy.special import mathieu_a, mathieu_b
 
 from floquet import monodromy, predicted_lines, stability_boundaries, stability_chart
-from floquet.gear_boundaries import Tongue, label_at
+from floquet.gear_boundaries import label_at
 from floquet.intervals import seeded_nodes, unstable_intervals
+from floquet.tongues import Tongue
 from lumped import load_gear_pair
 from lumped.errors import ParameterError
 

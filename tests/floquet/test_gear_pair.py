@@ -12,7 +12,7 @@ from scipy.linalg import expm
 from floquet import gear_pair_multipliers, gear_pair_system, monodromy, stability_chart
 from floquet.gear_axes import GEAR_AXES, GearVariation, vary
 from floquet.gear_pair import mean_mesh_stiffness
-from lumped import load_gear_pair, periodic_system
+from lumped import geometry, load_gear_pair, periodic_system
 from lumped.errors import ParameterError
 
 LAWS = ["none", "coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"]
@@ -133,6 +133,22 @@ def test_friction_axis_sets_the_mean(pair) -> None:
         assert mean == pytest.approx(0.07, rel=0.01)
 
 
+def test_contact_ratio_axis_moves_both_tips(pair) -> None:
+    # Approach and recess grow alike, the centre distance stays; the path is contact ratio times base pitch.
+    before = geometry(pair)
+    for value in (1.2, 1.3, 1.45):
+        varied = vary(load_gear_pair("fzg_c"), {"contact_ratio": value}).pair
+        assert geometry(varied).contact_ratio == pytest.approx(value, rel=1e-12)
+        after = geometry(vary(pair, {"contact_ratio": value}).pair)
+        length = after.L_XD - after.L_XA
+        assert length == pytest.approx(value * before.base_pitch, rel=1e-12)
+        share = (after.L_XP - after.L_XA) / (after.L_XD - after.L_XA)
+        assert share == pytest.approx((before.L_XP - before.L_XA) / (before.L_XD - before.L_XA), rel=1e-12)
+        assert after.centre_distance == before.centre_distance
+    with pytest.raises(ParameterError, match="tip_diameter"):
+        vary(pair, {"contact_ratio": 2.5})
+
+
 def test_weak_friction_acts_linearly(pair) -> None:
     # Friction scales a pair's k_i and c_i in the q equation by 1 + s mu tan(alpha_i) (unity ratio, equal
     # inertias): a law of zero strength is no friction, and a weak one changes the multipliers linearly.
@@ -158,6 +174,7 @@ def test_every_axis_acts(pair) -> None:
     values = {
         "speed_rpm": [3000, 3100], "damping_ratio": [0.03, 0.04], "friction_coefficient": [0.05, 0.1],
         "torque": [50.0, 100.0], "stiffness_variation": [0.8, 1.0], "bearing_stiffness": [1e8, 2e8],
+        "contact_ratio": [1.5, 1.6],
     }  # fmt: skip
     assert set(values) == set(GEAR_AXES)
     for name, pair_of_values in values.items():
