@@ -44,7 +44,16 @@ def init(
     preset: Annotated[str, typer.Argument(help="Preset to start from.")] = DEFAULT_PAIR,
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="File to write; default PRESET.toml here. '-' prints it."),
+        typer.Option(
+            "--output", "-o", help="File to write; default PRESET.toml (or FILE.toml) here. '-' prints it."
+        ),
+    ] = None,
+    from_rexs: Annotated[
+        Path | None,
+        typer.Option("--from-rexs", metavar="FILE", help="Start from a spur stage of a REXS file instead."),
+    ] = None,
+    stage: Annotated[
+        int | None, typer.Option("--stage", metavar="N", help="Stage of the REXS file: 1 is the first.")
     ] = None,
     force: Force = False,
 ) -> None:
@@ -53,20 +62,29 @@ def init(
     Every value has its unit beside it, and its source at the end of the file. A bare number means that unit;
     text may carry any unit of the same kind, such as "200 lbf*in".
 
+    REXS is what FVA-Workbench, KISSsoft, MASTA, Romax and Bearinx exchange gear units in. What such a file
+    does not say is marked as assumed.
+
     [bold]Examples[/bold]
 
     spurcheck init
 
     spurcheck init nasa_28_28 -o my_pair.toml
+
+    spurcheck init --from-rexs gearbox.rexs --stage 2 -o my_pair.toml
     """
     from lumped.serialise import preset_text
     from validation.output import check_file, write_text
 
-    text = preset_text(preset)
+    text, name = preset_text(preset), preset
+    if from_rexs is not None or stage is not None:
+        from validation.commands.rexs_file import text_from_rexs
+
+        text, name = text_from_rexs(from_rexs, stage)
     if output is not None and str(output) == "-":
         typer.echo(text, nl=False)
         return
-    path = check_file(output or Path(f"{preset}.toml"), (".toml",), force=force)
+    path = check_file(output or Path(f"{name}.toml"), (".toml",), force=force)
     write_text(path, text)
     stderr().print(f"wrote {path}; next: spurcheck report {path} -o report", soft_wrap=True)
 

@@ -38,13 +38,12 @@ _FIXED: dict[str, Any] = {
 _TEMPERATURE, _VISCOSITY = 70.0, 10.0
 
 
-def completed(values: dict[str, Any], name: str) -> dict[str, Any]:
-    """Return a full parameter mapping from what a file says.
+def completed(values: dict[str, Any]) -> dict[str, Any]:
+    """Return a full parameter mapping, name and description apart, from what a file says.
 
     Parameters
     ----------
     values : field path -> value in file units
-    name : name of the pair
     """
     full = dict(values)
     for path, value in _FIXED.items():
@@ -56,7 +55,7 @@ def completed(values: dict[str, Any], name: str) -> dict[str, Any]:
         full.setdefault("lubricant.viscosity", _VISCOSITY)
     if "operating.pinion_torque" not in full:
         full["operating.pinion_torque"] = _torque(full)
-    return {"name": name, **nested(full)}
+    return nested(full)
 
 
 def _torque(full: dict[str, Any]) -> float:

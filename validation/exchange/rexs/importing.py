@@ -84,24 +84,30 @@ def _standard(model: RexsModel, picked: Stage) -> tuple[GearPair, Said]:
     read_operating_point(said, stage, pinion, gear)
     if said.problems:
         raise ParameterError(said.problems, model.file)
-    name = (stage.name or Path(model.file).stem)[:80]
-    pair = _validated(said, name)
+    pair = _validated(said, picked)
     read_reliefs(said, stage, {"pinion": pinion, "gear": gear}, geometry(pair))
     if said.problems:
         raise ParameterError(said.problems, model.file)
-    return with_sources(_validated(said, name), said), said
+    return with_sources(_validated(said, picked), said), said
 
 
-def _validated(said: Said, name: str) -> GearPair:
+def _validated(said: Said, stage: Stage) -> GearPair:
     """Validate; a refused value is reported with its place in the file."""
+    model = said.model
+    name = (stage.name.strip() or Path(model.file).stem)[:80]
+    written = f", written by {model.application[:200]}" if model.application else ""
+    description = f"stage {stage.number} of {model.file}{written}, REXS {model.version}"
     try:
-        return load_gear_pair(completed(said.values, name))
+        return load_gear_pair({"name": name, "description": description} | completed(said.values))
     except ParameterError as error:
+        known = said.sources
         problems = [
-            FieldProblem(p.field, f"{p.value} ({said.sources.get(p.field, ASSUMED)})", p.allowed, p.action)
+            FieldProblem(
+                p.field, f"{p.value} ({known[p.field]})" if p.field in known else p.value, p.allowed, p.action
+            )
             for p in error.problems
         ]
-        raise ParameterError(problems, said.model.file) from None
+        raise ParameterError(problems, model.file) from None
 
 
 def _note_assumptions(said: Said, pair: GearPair) -> None:

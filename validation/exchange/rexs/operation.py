@@ -55,12 +55,9 @@ def _read_backlash(
     """
     low = said.number(stage, "minimum_normal_backlash")
     high = said.number(stage, "maximum_normal_backlash")
-    mean = said.number(stage, "mean_normal_backlash")
-    if mean is None and (low is None or high is None):
+    if low is None or high is None:
         return
-    if mean is None and low is not None and high is not None:
-        mean = Reading(0.5 * (low.si + high.si), f"{low.where} and maximum, their mean")
-    assert mean is not None
+    mean = Reading(0.5 * (low.si + high.si), f"{low.where} and maximum, their mean")
     thinning = mean.si - _theoretical_backlash(said, pinion, gear, centre)
     where = mean.where + ("" if centre is None else ", without the share of the centre distance")
     said.put("mesh.backlash", derived_number(max(thinning, 0.0), "mm"), where)

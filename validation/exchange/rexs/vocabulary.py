@@ -79,7 +79,6 @@ ATTRIBUTES: dict[str, dict[str, Known]] = {
         "center_distance": _MM,
         "minimum_normal_backlash": _MM,
         "maximum_normal_backlash": _MM,
-        "mean_normal_backlash": Known("mm", since="2.0.0"),
         "temperature_lubricant": Known("C"),
         "operating_viscosity": Known("mm^2 / s"),
     },

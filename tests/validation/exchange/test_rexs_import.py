@@ -1,0 +1,243 @@
+"""Does the import take each value from its place, in its unit, and say where it is from?"""
+
+import math
+
+import pytest
+
+import lumped
+from lumped import ParameterError
+from validation.exchange import gear_pair_from_rexs, rexs_stages
+
+
+def _relief(kind, depth, start, at, shape="linear"):
+    return (
+        f'<component id="70" type="{kind}"><attribute id="shape_of_relief" unit="none">{shape}</attribute>'
+        f'<attribute id="{kind}_depth" unit="mm">{depth}</attribute>'
+        f'<attribute id="{kind}_datum_diameter" unit="mm">{start!r}</attribute>'
+        f'<attribute id="{kind}_evaluation_reference" unit="mm">{at!r}</attribute></component>'
+    )
+
+
+_ON_BOTH_FLANKS = "".join(
+    f'<relation id="{90 + i}" type="reference"><ref id="{flank}" role="origin"/>'
+    '<ref id="70" role="referenced"/></relation>'
+    for i, flank in enumerate((41, 42))
+)
+
+
+@pytest.mark.parametrize("version", ["1.4", "1.5", "1.6", "1.7", "2.0.0"])
+def test_a_hand_written_stage_is_read_value_by_value(xml, save, version):
+    modulus_unit = "MPa" if version == "2.0.0" else "N / mm^2"
+    mapping, _ = gear_pair_from_rexs(save(xml(version=version, modulus_unit=modulus_unit)))
+    pair = lumped.load_gear_pair(mapping)
+    assert pair.name == "first stage"
+    assert pair.description == f"stage 1 of model.rexs, written by by hand 1, REXS {version}"
+    assert (pair.pinion.teeth, pair.gear.teeth) == (20, 30)
+    assert mapping["basic_rack"]["module"] == 2.0
+    assert mapping["basic_rack"]["pressure_angle"] == 20.0
+    assert mapping["centre_distance"] == 50.2
+    assert mapping["pinion"]["tip_diameter"] == 44.2
+    assert (mapping["pinion"]["face_width"], mapping["gear"]["face_width"]) == (15.0, 14.0)
+    assert (mapping["pinion"]["profile_shift"], mapping["gear"]["profile_shift"]) == (0.1, 0.0)
+    assert mapping["gear"]["bore"] == 12.0
+    assert mapping["gear"]["youngs_modulus"] == 210.0
+    assert mapping["gear"]["density"] == 7800.0
+    # REXS has signs for speed and torque; here the pinion drives in its positive sense.
+    assert mapping["operating"]["pinion_speed"] == 1500.0
+    assert mapping["operating"]["pinion_torque"] == 42.5
+
+
+def test_every_value_has_its_place_in_the_file_or_is_marked_assumed(xml, save, leaves):
+    mapping, notes = gear_pair_from_rexs(save(xml()))
+    sources = mapping["sources"]
+    assert set(sources) == set(leaves(mapping)) - {"name"}
+    assert sources["pinion.teeth"] == "REXS model.rexs cylindrical_gear 21/number_of_teeth"
+    assert sources["operating.pinion_torque"] == "REXS model.rexs external_load 33/torque_around_u_axis"
+    for path in ("pinion.roughness", "friction.law", "bearings.gear.loa_stiffness", "lubricant.viscosity"):
+        assert sources[path] == "assumed"
+    assert all(s.startswith(("REXS model.rexs ", "assumed")) for s in sources.values())
+    assert any("friction.law" in note for note in notes)
+    assert any("does not say which gear drives" in note for note in notes)
+
+
+def test_json_with_the_second_gear_driving_and_the_speed_in_a_load_case(json_model, save_json):
+    mapping, notes = gear_pair_from_rexs(save_json(json_model))
+    assert (mapping["pinion"]["teeth"], mapping["gear"]["teeth"]) == (30, 20)
+    assert mapping["operating"]["pinion_torque"] == 12.0
+    assert mapping["operating"]["pinion_speed"] == 900.0
+    where = "REXS model.rexsj shaft 32/rotational_speed (load case 7)"
+    assert mapping["sources"]["operating.pinion_speed"] == where
+    assert not any("which gear drives" in note for note in notes)
+    assert mapping["sources"]["basic_rack.pressure_angle"] == "assumed"
+
+
+def test_speed_and_torque_that_the_file_does_not_have_are_assumed_aloud(json_model, save_json):
+    json_model["model"]["components"] = [c for c in json_model["model"]["components"] if c["id"] != 61]
+    json_model["model"]["relations"] = json_model["model"]["relations"][:1]
+    del json_model["model"]["load_spectrum"]
+    mapping, notes = gear_pair_from_rexs(save_json(json_model))
+    for key in ("pinion_speed", "pinion_torque"):
+        assert mapping["sources"][f"operating.{key}"].startswith("assumed")
+        assert any(f"operating.{key} is not in the file" in note for note in notes)
+    # F_t/(b m) = 20 N/mm^2 on the reference circle of 40 mm: 20 * 15 * 2 N * 20 mm = 12 N m.
+    assert mapping["operating"]["pinion_torque"] == 12.0
+
+
+@pytest.mark.parametrize("packed", ["model.rexsz", "model.rexs.zip", "model.zip"])
+def test_the_zipped_form_is_the_same_model(xml, save, leaves, packed):
+    plain, _ = gear_pair_from_rexs(save(xml()))
+    zipped, _ = gear_pair_from_rexs(save(xml(), packed, member="gearbox/model.rexs"))
+    assert leaves(zipped) == leaves(plain)
+
+
+def test_a_byte_order_mark_a_namespace_and_utf16_do_not_matter(xml, save, leaves):
+    plain = leaves(gear_pair_from_rexs(save(xml()))[0])
+    spaced = xml().replace("<model ", '<model xmlns="https://www.rexs.info" ')
+    utf16 = xml().replace('encoding="UTF-8"', 'encoding="UTF-16"').encode("utf-16")
+    for content in (b"\xef\xbb\xbf" + xml().encode(), spaced, utf16):
+        assert leaves(gear_pair_from_rexs(save(content))[0]) == plain
+
+
+def test_backlash_leaves_out_what_the_centre_distance_gives(xml, save):
+    stage = "".join(
+        f'<attribute id="{key}_normal_backlash" unit="mm">{value}</attribute>'
+        for key, value in (("minimum", 0.10), ("maximum", 0.16))
+    )
+    pair = lumped.load_gear_pair(gear_pair_from_rexs(save(xml(stage=stage)))[0])
+    # The geometry of the imported pair must have the mean of both limits as its whole normal backlash; the
+    # share of tooth thinning carries twelve digits.
+    assert lumped.geometry(pair).normal_backlash == pytest.approx(0.13e-3, rel=1e-10)
+    assert 0.0 < pair.mesh.backlash < 0.13e-3
+
+
+def test_oil_by_two_viscosities_and_the_temperature_of_the_casing(xml, save):
+    components = (
+        '<component id="71" type="lubricant">'
+        '<attribute id="viscosity_at_40_degree_celsius" unit="mm^2 / s">100</attribute>'
+        '<attribute id="viscosity_at_100_degree_celsius" unit="mm^2 / s">11</attribute>'
+        '<attribute id="density_at_15_degree_celsius" unit="kg / dm^3">0.88</attribute></component>'
+        '<component id="72" type="gear_casing"><attribute id="temperature_lubricant" unit="C">80</attribute>'
+        "</component>"
+    )
+    law = gear_pair_from_rexs(save(xml(components=components)))[0]["lubricant"]["viscosity_law"]
+    assert law["kinematic_viscosity_40"] == 100.0
+    assert law["kinematic_viscosity_100"] == 11.0
+    assert law["density"] == 880.0
+    assert law["temperature"] == 80.0
+
+
+@pytest.mark.parametrize(
+    ("name", "factor"),
+    [("arithmetic_average_roughness_flank", 1), ("averaged_peak_to_valley_height_flank", 6)],
+)
+def test_roughness_is_ra_or_a_sixth_of_rz(xml, save, name, factor):
+    gear = f'<attribute id="{name}" unit="mum">3</attribute>'
+    mapping, _ = gear_pair_from_rexs(save(xml(gear_1=gear)))
+    assert mapping["pinion"]["roughness"] == 3 / factor
+    assert ("ISO 6336-2" in mapping["sources"]["pinion.roughness"]) == (factor == 6)
+
+
+def test_the_dedendum_comes_from_the_tool_or_else_the_root_diameter(xml, save):
+    # d_f = m (z + 2 x - 2 h_fP*) = 2 (20 + 0.2 - 2.8) = 34.8 mm for h_fP* = 1.4
+    root = '<attribute id="root_diameter" unit="mm">34.8</attribute>'
+    mapping, _ = gear_pair_from_rexs(save(xml(gear_1=root)))
+    assert mapping["basic_rack"]["dedendum_coefficient"] == pytest.approx(1.4, rel=1e-12)  # one subtraction
+    tool = (
+        '<component id="73" type="rack_shaped_tool">'
+        '<attribute id="addendum_coefficient_reference_profile" unit="none">1.3</attribute>'
+        '<attribute id="tip_radius_factor" unit="none">0.25</attribute></component>'
+        '<component id="74" type="cylindrical_gear_manufacturing_settings"/>'
+    )
+    step = (
+        '<relation id="95" type="manufacturing_step" order="1"><ref id="41" role="workpiece"/>'
+        '<ref id="73" role="tool"/><ref id="74" role="manufacturing_settings"/></relation>'
+    )
+    rack = gear_pair_from_rexs(save(xml(gear_1=root, components=tool, relations=step)))[0]["basic_rack"]
+    assert rack["dedendum_coefficient"] == 1.3
+    assert rack["fillet_radius_coefficient"] == 0.25
+
+
+@pytest.mark.parametrize(("shape", "power"), [("linear", 1), ("parabolic", 2)])
+def test_tip_relief_becomes_a_roll_angle_and_an_amount_at_the_tip(xml, save, shape, power):
+    base, start, stated, tip = 40.0 * math.cos(math.radians(20.0)), 42.0, 43.5, 44.2
+    parts = {"components": _relief("tip_relief", 0.02, start, stated, shape), "relations": _ON_BOTH_FLANKS}
+    relief = gear_pair_from_rexs(save(xml(**parts)))[0]["pinion"]["tip_relief"]
+
+    def roll(diameter):  # of an involute: tan(alpha) with cos(alpha) = base/diameter
+        return math.tan(math.acos(base / diameter))
+
+    assert relief["shape"] == shape
+    assert relief["start_roll_angle"] == pytest.approx(math.degrees(roll(start)), rel=1e-11)
+    carried = ((roll(tip) - roll(start)) / (roll(stated) - roll(start))) ** power
+    assert relief["amount"] == pytest.approx(20.0 * carried, rel=1e-11)  # twelve digits are written
+
+
+def test_a_relief_that_the_model_has_no_place_for_is_left_out_with_a_note(xml, save):
+    parts = {
+        "components": _relief("tip_relief", 0.02, 42.0, 44.2, "exponential"),
+        "relations": _ON_BOTH_FLANKS,
+    }
+    mapping, notes = gear_pair_from_rexs(save(xml(**parts)))
+    assert "tip_relief" not in mapping["pinion"]
+    assert any("tip_relief 70 is left out" in note for note in notes)
+
+
+def test_values_that_cannot_be_assumed_are_asked_for_all_at_once(xml, save):
+    text = (
+        xml().replace('id="face_width"', 'id="custom_width"').replace('id="number_of_teeth"', 'id="custom_z"')
+    )
+    with pytest.raises(ParameterError) as refused:
+        gear_pair_from_rexs(save(text))
+    fields = {p.field.rpartition(" ")[2] for p in refused.value.problems}
+    assert fields == {"21/face_width", "22/face_width", "21/number_of_teeth", "22/number_of_teeth"}
+
+
+def test_a_refused_value_is_named_with_its_place(xml, save):
+    text = xml().replace(">44.2<", ">1<")
+    with pytest.raises(ParameterError, match=r"pinion.tip_diameter.*cylindrical_gear 21/tip_diameter"):
+        gear_pair_from_rexs(save(text))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (">50.2<", ">fifty<", "a finite number"),
+        (">50.2<", ">NaN<", "a finite number"),
+        (">50.2<", ">1e999<", "a finite number"),
+        ('unit="mm">50.2<', 'unit="kg">50.2<', "a number in mm"),
+    ],
+)
+def test_broken_values_are_refused(xml, save, old, new, message):
+    text = xml()
+    assert old in text
+    with pytest.raises(ParameterError, match=message):
+        gear_pair_from_rexs(save(text.replace(old, new, 1)))
+
+
+def test_gears_of_two_modules_are_refused(xml, save):
+    head, mark, tail = xml().partition('name="wheel"')
+    text = head + mark + tail.replace('unit="mm">2<', 'unit="mm">3<', 1)
+    with pytest.raises(ParameterError, match="Gears that mesh have one module"):
+        gear_pair_from_rexs(save(text))
+
+
+def test_asymmetric_teeth_are_refused(xml, save):
+    text = xml().replace('"deg">20<', '"deg">22<', 1)
+    with pytest.raises(ParameterError, match="only symmetric teeth"):
+        gear_pair_from_rexs(save(text))
+
+
+def test_a_unit_that_is_left_out_is_that_of_the_database(xml, save, leaves):
+    bare = xml().replace(' unit="mm"', "").replace(' unit="none"', ' unit=""')
+    assert leaves(gear_pair_from_rexs(save(bare))[0]) == leaves(gear_pair_from_rexs(save(xml()))[0])
+
+
+def test_a_later_version_than_was_checked_is_read_with_a_note(xml, save):
+    _, notes = gear_pair_from_rexs(save(xml(version="2.1.0")))
+    assert any("2.1.0" in note for note in notes)
+
+
+def test_stages_are_listed_with_what_can_be_done_with_them(xml, save):
+    (stage,) = rexs_stages(save(xml()))
+    assert (stage.number, stage.component_id, stage.name, stage.teeth) == (1, 10, "first stage", (20, 30))
+    assert stage.usable

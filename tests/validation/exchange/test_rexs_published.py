@@ -1,0 +1,100 @@
+"""Does the vocabulary agree with the published REXS database, and do written files fit its schemas?
+
+Set REXS_PUBLISHED to a folder with the published ``rexs_schema_<version>.xml``, ``rexs-file.xsd`` (both of
+the REXS API of the FVA) and ``rexs-schema.json`` (of the REXS API of Schaeffler). They are not part of this
+repository, so these tests are skipped without them.
+"""
+
+import json
+import os
+import xml.etree.ElementTree as ET
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from validation.exchange import write_rexs
+from validation.exchange.rexs.exporting import rexs_model
+from validation.exchange.rexs.vocabulary import ATTRIBUTES, NOT_TAKEN, VERSIONS, WRITTEN
+
+FOLDER = Path(os.environ.get("REXS_PUBLISHED", "no such folder"))
+if not FOLDER.is_dir():
+    pytest.skip("REXS_PUBLISHED is not set", allow_module_level=True)
+
+
+@cache
+def database(version):
+    root = ET.parse(FOLDER / f"rexs_schema_{version}.xml").getroot()
+    units = {u.get("id"): u.get("name") for u in root.find("units")}
+    kinds = {v.get("id"): v.get("name") for v in root.find("valueTypes")}
+    attributes = {}
+    for a in root.find("attributes"):
+        unit = a.get("unit")
+        attributes[a.get("attributeId")] = (units.get(unit, unit), kinds[a.get("valueType")], a)
+    owners = {}
+    for mapping in root.find("componentAttributeMappings"):
+        owners.setdefault(mapping.get("componentId"), set()).add(mapping.get("attributeId"))
+    components = {c.get("componentId") for c in root.find("components")}
+    relations = {
+        r.get("relationId"): (
+            r.get("orderRequired") == "true",
+            [
+                {(x.get("roleId"), x.get("componentId")) for x in combination}
+                for combination in r.find("allowedCombinations")
+            ],
+        )
+        for r in root.find("relations")
+    }
+    return attributes, owners, components, relations
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_every_line_of_the_vocabulary_is_in_the_database(version):
+    attributes, owners, components, _ = database(version)
+    assert set(NOT_TAKEN) <= components
+    for component, entries in ATTRIBUTES.items():
+        assert component in components
+        for key, known in entries.items():
+            there = key in owners.get(component, ())
+            assert there == known.of(version), (component, key)
+            if there:
+                unit, kind, _ = attributes[key]
+                assert kind == known.kind
+                assert unit == known.unit or (version, unit) == ("2.0.0", "MPa")
+
+
+@pytest.mark.parametrize("version", WRITTEN)
+def test_what_is_written_keeps_the_ranges_choices_and_relations_of_the_database(preset, version):
+    attributes, _, _, relations = database(version)
+    model = rexs_model(preset.with_(lubricant__viscosity_law={"iso_vg": 100, "temperature": 60}), version)
+    for component in model.components.values():
+        for key, attribute in component.attributes.items():
+            if key.startswith("custom_"):
+                continue
+            node = attributes[key][2]
+            choices = [c.get("value") for c in node.iter("enumValue")]
+            assert not choices or attribute.value in choices
+            if isinstance(attribute.value, float | int):
+                low, high = (float(node.get(k, s)) for k, s in (("rangeMin", "-inf"), ("rangeMax", "inf")))
+                assert low < attribute.value < high or (
+                    attribute.value == low and node.get("rangeMinIntervalOpen") == "false"
+                ), key
+    for relation in model.relations:
+        ordered, allowed = relations[relation.type]
+        assert (relation.order is not None) == ordered
+        assert {(role, model.components[i].type) for role, i in relation.refs} in allowed
+
+
+@pytest.mark.parametrize("version", WRITTEN)
+def test_the_xml_form_fits_the_published_schema(preset, tmp_path, version):
+    xmlschema = pytest.importorskip("xmlschema")
+    schema = xmlschema.XMLSchema(FOLDER / "rexs-file.xsd")
+    schema.validate(write_rexs(preset, tmp_path / "pair.rexs", version))
+
+
+@pytest.mark.parametrize("version", WRITTEN)
+def test_the_json_form_fits_the_published_schema(preset, tmp_path, version):
+    jsonschema = pytest.importorskip("jsonschema")
+    schema = json.loads((FOLDER / "rexs-schema.json").read_text(encoding="utf-8"))
+    path = write_rexs(preset, tmp_path / "pair.rexsj", version)
+    jsonschema.validate(json.loads(path.read_text(encoding="utf-8-sig")), schema)

@@ -1,0 +1,228 @@
+"""Are stages outside the model refused with the reason, and hostile files without harm?"""
+
+import io
+import tracemalloc
+import zipfile
+
+import pytest
+
+import lumped
+from lumped import ParameterError
+from validation.exchange import gear_pair_from_rexs, rexs_stages, write_rexs
+from validation.exchange.rexs import container
+from validation.exchange.rexs.xml_form import parse_xml
+
+
+def refused(path, stage=None):
+    with pytest.raises(ParameterError) as error:
+        gear_pair_from_rexs(path, stage)
+    return str(error.value)
+
+
+@pytest.mark.parametrize("helix", ["20", "-8.5", "0.001"])
+def test_a_helical_stage_is_refused_with_its_helix_angle(xml, save, helix):
+    message = refused(save(xml(helix=helix)))
+    assert f"helix angle {float(helix):g} deg" in message
+    assert "axial forces" in message
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ('id="22" type="cylindrical_gear"', 'id="22" type="ring_gear"', "internal gear"),
+        (">30</attribute>", ">-30</attribute>", "internal gear"),
+        ('type="cylindrical_stage"', 'type="bevel_stage"', "bevel stage"),
+        ('type="cylindrical_stage"', 'type="worm_stage"', "worm stage"),
+        ('type="gear_unit"', 'type="planetary_stage"', "planetary stage"),
+    ],
+)
+def test_other_kinds_of_stages_are_refused_with_the_reason(xml, save, old, new, reason):
+    text = xml()
+    assert old in text
+    assert reason in refused(save(text.replace(old, new)))
+
+
+_SECOND = {
+    "relations": '<relation id="80" type="stage"><ref id="11" role="stage"/><ref id="23" role="gear_1"/>'
+    '<ref id="24" role="gear_2"/></relation>',
+    "components": '<component id="11" type="cylindrical_stage" name="second stage"/>'
+    + "".join(
+        f'<component id="{i}" type="cylindrical_gear">'
+        f'<attribute id="number_of_teeth" unit="none">{z}</attribute>'
+        '<attribute id="normal_module" unit="mm">3</attribute>'
+        '<attribute id="helix_angle_reference_diameter" unit="deg">{beta}</attribute>'
+        '<attribute id="face_width" unit="mm">30</attribute></component>'
+        for i, z in ((23, 19), (24, 50))
+    ),
+}
+
+
+def two_stages(xml, beta):
+    return xml(relations=_SECOND["relations"], components=_SECOND["components"].replace("{beta}", beta))
+
+
+def test_of_several_spur_stages_one_has_to_be_chosen(xml, save):
+    path = save(two_stages(xml, "0"))
+    message = refused(path)
+    assert "1: first stage (20/30)" in message
+    assert "2: second stage (19/50)" in message
+    assert gear_pair_from_rexs(path, 2)[0]["gear"]["teeth"] == 50
+    assert gear_pair_from_rexs(path, 1)[0]["gear"]["teeth"] == 30
+    for number in (0, 3, True, 1.5):
+        assert "stage" in refused(path, number)
+
+
+def test_the_only_spur_stage_is_taken_with_a_note(xml, save):
+    path = save(two_stages(xml, "15"))
+    mapping, notes = gear_pair_from_rexs(path)
+    assert mapping["gear"]["teeth"] == 30
+    assert any("only spur stage" in note for note in notes)
+    assert "helix angle 15 deg" in refused(path, 2)
+    assert [stage.usable for stage in rexs_stages(path)] == [True, False]
+
+
+@pytest.mark.parametrize("version", ["1.0", "1.3", "0.9", "", "one", "1.4.x", "99999999999999999999.0"])
+def test_early_and_nonsensical_versions_are_refused(xml, save, version):
+    assert "version" in refused(save(xml(version=version)))
+
+
+def test_entities_are_refused_before_anything_is_expanded_or_fetched(xml, save, tmp_path):
+    secret = tmp_path / "secret.txt"
+    secret.write_text("20")
+    levels = "".join(f'<!ENTITY l{i} "{f"&l{i - 1};" * 10}">' for i in range(1, 12))
+    for declarations in (
+        f'<!ENTITY l0 "x">{levels}',
+        f'<!ENTITY l11 SYSTEM "{secret.as_uri()}">',
+        f'<!ENTITY % outside SYSTEM "{secret.as_uri()}"> %outside;',
+    ):
+        text = xml().replace("<model ", f"<!DOCTYPE model [{declarations}]>\n<model ")
+        text = text.replace(">50.2<", ">&l11;<")
+        assert "document type declaration" in refused(save(text))
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"   ",
+        b"no markup",
+        b"<model",
+        b"<html></html>",
+        b"<?xml version='1.0' encoding='klingon'?><model version='1.4'/>",
+        b"\xff\xfe<\x00",
+        b"{",
+        b"{}",
+        b"[1]",
+        b'{"model": []}',
+        b'{"model": {"version": "1.5", "components": 3, "relations": []}}',
+        b'{"model": {"version": "1.5", "components": [{"id": true}], "relations": []}}',
+        b'{"model": {"version": "1.5", "components": [], "relations": [], "date": NaN}}',
+        b'{"a":' * 100_000,
+        b'{"model": ' + b"9" * 10_000 + b"}",
+        b"<model version='1.4'><components><component id='1.5'/></components></model>",
+        b"<model version='1.4'><components><component id='1'/><component id='1'/></components></model>",
+        b"<model version='1.4'><relations><relation id='1' type='stage'><ref id='9' role='stage'/></relation>"
+        b"</relations></model>",
+        b"<model version='1.4'>" + b"<a>" * 100,
+        b"<model version='1.4'></model>",
+        b"PK\x03\x04 broken",
+    ],
+)
+def test_broken_files_are_refused_in_one_message(save, content):
+    assert refused(save(content)).startswith("REXS file = model.rexs: ")
+
+
+def test_places_that_are_no_file_are_refused(tmp_path):
+    assert "a file that exists" in refused(tmp_path / "none.rexs")
+    assert "ordinary file" in refused(tmp_path)
+    assert "ordinary file" in refused("/dev/zero")
+
+
+def test_tables_of_results_cost_no_memory(xml):
+    cells = "<c>1.0</c>" * 300_000
+    table = f'<attribute id="custom_table" unit="none"><array>{cells}</array></attribute>'
+    data = xml(gear_1=table).encode()
+    tracemalloc.start()
+    model = parse_xml(data, "model.rexs")
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert len(model.components) == 12
+    # Skipped cells leave nothing behind; an element tree of them would take more than ten times the text.
+    assert peak < len(data)
+
+
+def test_a_file_beyond_the_bound_is_refused(xml, save, monkeypatch):
+    path = save(xml())
+    monkeypatch.setattr(container, "MAX_BYTES", 1000)
+    assert "<= 1000 bytes" in refused(path)
+
+
+def archive(tmp_path, **members):
+    path = tmp_path / "model.rexsz"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as made:
+        for name, content in members.items():
+            made.writestr(name, content)
+    return path
+
+
+def test_a_zip_bomb_is_cut_off(tmp_path, monkeypatch):
+    path = archive(tmp_path, **{"model.rexs": b" " * 5_000_000})
+    monkeypatch.setattr(container, "MAX_BYTES", 1_000_000)
+    assert path.stat().st_size < 10_000
+    assert "more than 1000000 bytes" in refused(path)
+
+
+@pytest.mark.parametrize(
+    "name", ["../evil.txt", "/etc/evil", "a/../../evil", "C:\\evil", "\\\\host\\evil", "..\\evil"]
+)
+def test_members_that_leave_the_archive_are_refused(xml, tmp_path, name):
+    path = archive(tmp_path, **{"model.rexs": xml(), name: "x"})
+    assert "leaves its folder" in refused(path)
+    assert [p.name for p in tmp_path.iterdir()] == ["model.rexsz"]
+
+
+def test_an_archive_holds_exactly_one_model(xml, tmp_path):
+    assert "2 models" in refused(archive(tmp_path, **{"a.rexs": xml(), "b.rexsj": "{}"}))
+    assert "0 models" in refused(archive(tmp_path, **{"readme.txt": "x"}))
+    beside = {"__MACOSX/._a.rexs": b"\0", "a.rexs": xml(), "flanks.gde": ""}
+    assert gear_pair_from_rexs(archive(tmp_path, **beside))[0]["pinion"]["teeth"] == 20
+
+
+def test_encrypted_or_oddly_packed_archives_are_refused(xml, tmp_path):
+    data = bytearray(archive(tmp_path, **{"model.rexs": xml()}).read_bytes())
+    central = data.rindex(b"PK\x01\x02")
+    data[central + 8] |= 1  # general purpose flag, bit 0: encrypted
+    path = tmp_path / "locked.rexsz"
+    path.write_bytes(data)
+    assert "encrypted" in refused(path)
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_LZMA) as made:
+        made.writestr("model.rexs", xml())
+    path.write_bytes(stream.getvalue())
+    assert "not compressed by 'deflate'" in refused(path)
+
+
+@pytest.mark.parametrize(
+    ("record", "message"),
+    [
+        ("{", "broken"),
+        ("[]", "no mapping"),
+        ("[" * 100_000, "broken"),
+        ('{"name": "x"}', "problems"),
+        ('{"mesh": {"stiffness": {"model": "table", "file": "/etc/passwd"}}}', "names a file to read"),
+    ],
+)
+def test_a_tampered_record_is_refused_and_reads_no_file(xml, save, record, message):
+    text = record.replace('"', "&quot;")
+    stage = f'<attribute id="custom_spurcheck_parameters" unit="none">{text}</attribute>'
+    assert message in refused(save(xml(stage=stage)))
+
+
+def test_writing_refuses_what_it_cannot_write(tmp_path):
+    pair = lumped.load_gear_pair("fzg_c")
+    with pytest.raises(ParameterError, match="a name ending in"):
+        write_rexs(pair, tmp_path / "pair.txt")
+    for version in ("1.3", "2.0.0", "latest"):
+        with pytest.raises(ParameterError, match=r"one of 1\.4"):
+            write_rexs(pair, tmp_path / "pair.rexs", version)
+    assert list(tmp_path.iterdir()) == []
