@@ -57,7 +57,6 @@ def test_results_are_labelled() -> None:
 
 
 def test_netcdf_round_trip_loses_nothing(tmp_path: Path) -> None:
-    pytest.importorskip("h5py")  # the backend that h5netcdf needs and does not always bring
     result = chart(mathieu_point, {"a": [1.0, 2.0], "q": [0.1, 0.4]})
     save_chart(result, tmp_path / "chart.nc")
     again = load_chart(tmp_path / "chart.nc")
