@@ -1,6 +1,8 @@
 """Are stages outside the model refused with the reason, and hostile files without harm?"""
 
 import io
+import random
+import re
 import tracemalloc
 import zipfile
 
@@ -226,3 +228,50 @@ def test_writing_refuses_what_it_cannot_write(tmp_path):
         with pytest.raises(ParameterError, match=r"one of 1\.4"):
             write_rexs(pair, tmp_path / "pair.rexs", version)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("form", [".rexs", ".rexsj", ".rexsz"])
+def test_damaged_files_are_read_or_refused_but_nothing_else_happens(tmp_path, form):
+    seed = 20240501
+    dice = random.Random(seed)
+    whole = write_rexs(
+        lumped.load_gear_pair("nasa_28_28"), tmp_path / f"pair{form}", record=False
+    ).read_bytes()
+    words = (
+        b"0",
+        b"-1",
+        b"1e308",
+        b"1e-320",
+        b"null",
+        b'""',
+        b"[]",
+        b"NaN",
+        b"\xff",
+        b"\0",
+        b"<",
+        b"99999999999",
+    )
+    path = tmp_path / f"damaged{form}"
+    outcomes = set()
+    for _ in range(150):
+        data = bytearray(whole)
+        if dice.random() < 0.5:
+            data[dice.randrange(len(data))] = dice.randrange(256)
+        else:
+            numbers = list(re.finditer(rb'(?<=[>: "])-?\d+(\.\d+)?', whole)) or [re.match(b"PK", whole)]
+            place = dice.choice(numbers)
+            data[place.start() : place.end()] = dice.choice(words)
+        path.write_bytes(data)
+        try:
+            gear_pair_from_rexs(path)
+            outcomes.add("read")
+        except ParameterError:
+            outcomes.add("refused")
+    assert outcomes == {"read", "refused"}, seed
+
+
+def test_a_centre_distance_of_zero_is_refused(xml, save):
+    limits = "".join(
+        f'<attribute id="{key}_normal_backlash" unit="mm">0.1</attribute>' for key in ("minimum", "maximum")
+    )
+    assert "centre_distance" in refused(save(xml(stage=limits).replace(">50.2<", ">0<")))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import struct
 import zipfile
 import zlib
 from pathlib import Path, PurePosixPath, PureWindowsPath
@@ -80,7 +81,18 @@ def _unzipped(data: bytes, file: str) -> bytes:
                 _check_member(member, file)
             with archive.open(_model_in(members, file)) as stream:
                 content = stream.read(MAX_BYTES + 1)  # the size that the archive states may be a lie
-    except (zipfile.BadZipFile, NotImplementedError, EOFError, zlib.error, OSError) as error:
+    except ParameterError:
+        raise
+    except (
+        zipfile.BadZipFile,
+        zlib.error,
+        struct.error,
+        OSError,
+        EOFError,
+        ValueError,
+        RuntimeError,
+    ) as error:
+        # zipfile trusts the offsets of a damaged directory, so a bad seek is among what it raises.
         raise broken(file, f"the archive cannot be read: {error}") from None
     if len(content) > MAX_BYTES:
         raise broken(file, f"the model in the archive has more than {MAX_BYTES} bytes")

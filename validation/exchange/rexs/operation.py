@@ -66,7 +66,7 @@ def _read_backlash(
 def _theoretical_backlash(said: Said, pinion: Component, gear: Component, centre: Reading | None) -> float:
     module = said.number(pinion, "normal_module")
     teeth = [said.number(g, "number_of_teeth") for g in (pinion, gear)]
-    if centre is None or module is None or teeth[0] is None or teeth[1] is None:
+    if centre is None or centre.si <= 0.0 or module is None or teeth[0] is None or teeth[1] is None:
         return 0.0  # without a centre distance the pair is mounted free of backlash
     angle, shifts = _PRESSURE_ANGLE, 0.0
     for component in (pinion, gear):

@@ -11,6 +11,9 @@ from lumped.parameters import stated_unit
 from validation.exchange.rexs.model import Attribute, Component, RexsModel
 from validation.exchange.rexs.vocabulary import ATTRIBUTES, file_number, si_from_rexs
 
+#: Numbers beyond these are no measure of a gear in any unit, and products of them would overflow.
+_SMALLEST, _LARGEST = 1e-30, 1e30
+
 
 @dataclass(frozen=True)
 class Reading:
@@ -61,11 +64,12 @@ class Said:
             if isinstance(found.value, bool) or not isinstance(found.value, (str, int, float)):
                 raise ValueError
             value = float(found.value)
-            if not math.isfinite(value) or "_" in str(found.value):
+            sensible = value == 0.0 or _SMALLEST < abs(value) < _LARGEST  # false also for NaN
+            if not sensible or "_" in str(found.value):
                 raise ValueError
         except (ValueError, OverflowError):
             given = shown(str(found.value))
-            self.problems.append(FieldProblem(where, given, "a finite number", "Correct the file."))
+            self.problems.append(FieldProblem(where, given, "a finite number of a gear", "Correct the file."))
             return None
         known = ATTRIBUTES[component.type][attribute]
         if known.unit == "kW":  # power has no unit among the parameters
