@@ -211,8 +211,7 @@ def crosscheck(
             rtol=RTOL[fidelity],
             progress=part(done),
         )
-    g = lumped.geometry(pair)
-    shift = float(np.mean(np.abs(reference["theta_p"].to_numpy()))) * g.base_radius_pinion / g.base_pitch
+    shift = contact_shift(pair, reference)
     jumps = stiffness_jumps(pair)
     sliding = sliding_effect(pair, reference.isel(time=slice(-samples_per_cycle - 1, -1)))
     compared = min(COMPARED_CYCLES, cycles // 2)
@@ -225,7 +224,7 @@ def crosscheck(
         for quantity in quantities:
             limit = tolerance(quantity, fidelity, shift, jumps)
             predicted = sliding.over(quantity, keep.size) if fidelity == "exact" else 0.0
-            agreements.append(_agreement(quantity, fidelity, result, reference, keep, limit, predicted))
+            agreements.append(agreement(quantity, fidelity, result, reference, keep, limit, predicted))
             orders.append(_orders(quantity, fidelity, result, reference, compared, samples_per_cycle))
     return CrossCheck(
         pair=pair,
@@ -240,6 +239,12 @@ def crosscheck(
     )
 
 
+def contact_shift(pair: GearPair, motion: xr.Dataset) -> float:
+    """Mean shift of the contact by finite motions, over the base pitch, from a lumped motion."""
+    g = lumped.geometry(pair)
+    return float(np.mean(np.abs(motion["theta_p"].to_numpy()))) * g.base_radius_pinion / g.base_pitch
+
+
 def off_switch_samples(pair: GearPair, time: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     """Which times [s] (k,) lie clear of every switch of the nominal mesh cycle, starts of cycles included."""
     cycle = lumped.mesh_cycle(pair)
@@ -249,7 +254,7 @@ def off_switch_samples(pair: GearPair, time: FloatArray) -> np.ndarray[tuple[int
     return np.asarray(nearest > _SWITCH_MARGIN, dtype=np.bool_)
 
 
-def _agreement(
+def agreement(
     quantity: str,
     fidelity: Fidelity,
     candidate: xr.Dataset,
@@ -258,6 +263,20 @@ def _agreement(
     limit: Tolerance,
     predicted: FloatArray | float,
 ) -> Agreement:
+    """Compare one quantity of a multibody motion with the lumped one.
+
+    Parameters
+    ----------
+    quantity, fidelity : what is compared
+    candidate, reference : multibody and lumped motion at the same times
+    keep : (k,) which of these times count, see ``off_switch_samples``
+    limit : tolerance of the judged metric
+    predicted : change by the actual sliding velocity, see ``validation.sliding_effect``
+
+    Raises
+    ------
+    NumericalError : a history is not finite
+    """
     a, b = (d[quantity].to_numpy()[..., keep] for d in (candidate, reference))
     change = np.broadcast_to(predicted, reference[quantity].shape)[..., keep]
     if not (np.isfinite(a).all() and np.isfinite(b).all()):

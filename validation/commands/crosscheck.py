@@ -23,9 +23,20 @@ def crosscheck(
     output: Annotated[
         Path | None,
         typer.Option(
-            "--output", "-o", help="All metrics as .json, or the transmission errors as .png or .svg."
+            "--output",
+            "-o",
+            help="All metrics as .json, or the transmission errors as .png or .svg; with --grid the dataset "
+            "as .nc or .csv, or the heat map as .png or .svg.",
         ),
     ] = None,
+    grid: Annotated[
+        bool,
+        typer.Option(
+            "--grid",
+            help="Compare over all presets, friction laws, stiffness models, three speeds and two torques "
+            "instead of one pair; takes minutes.",
+        ),
+    ] = False,
     cycles: Annotated[int, typer.Option(help="Mesh cycles to run.")] = 40,
     samples: Annotated[int, typer.Option(help="Output times per mesh cycle.")] = 256,
     strict: Annotated[bool, typer.Option("--strict", help="Also fail on 'bounded'.")] = False,
@@ -49,7 +60,15 @@ def crosscheck(
     spurcheck crosscheck
 
     spurcheck crosscheck my_pair.toml --speed 4000 --strict -o agreement.json
+
+    spurcheck crosscheck --grid -o grid.nc
     """
+    if grid:
+        from validation.commands.crosscheck_grid import crosscheck_grid
+
+        given = {"PAIR": pair != opt.DEFAULT_PAIR, "--speed": speed, "--torque": torque, "--law": law}
+        crosscheck_grid(output, [k for k, v in (given | {"--set": settings}).items() if v], strict, force)
+        return
     from validation.comparison import MEANINGS
     from validation.comparison import crosscheck as run
     from validation.output import check_file

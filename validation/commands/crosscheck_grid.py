@@ -1,0 +1,143 @@
+"""spurcheck crosscheck --grid: the regression grid of both models."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from validation.commands.terminal import FAILED, progress_bar, stderr, stdout, table
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from validation.grid_summary import GridSummary
+
+
+def crosscheck_grid(output: Path | None, given: list[str], strict: bool, force: bool) -> None:
+    """Run the grid, print its table and the cause of the worst point, write the dataset or the heat map.
+
+    Parameters
+    ----------
+    output : file to write
+    given : options that name one pair and have no meaning here
+    strict : also fail on "bounded"
+    force : overwrite
+    """
+    from lumped.errors import refuse
+    from validation.comparison import MEANINGS
+    from validation.grid import Grid
+    from validation.grid import crosscheck_grid as run
+    from validation.grid_summary import explain, failures, summarise_grid
+    from validation.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
+
+    if given:
+        raise refuse("--grid", " ".join(given), "no options of a single pair", "The grid covers all presets.")
+    target = None if output is None else check_file(output, DATA_SUFFIXES + FIGURE_SUFFIXES, force=force)
+    with progress_bar("grid") as tell:
+        result = run(progress=lambda f: tell(0.95 * f, ""))
+        found = summarise_grid(result)
+        causes = None
+        if found.worst:
+            causes = explain(Grid(), found.worst, lambda f: tell(0.95 + 0.05 * f, "worst point"))
+    if target is not None:
+        _write(result, target)
+    console = stdout()
+    console.print(_table(result))
+    for line in _sentences(found, float(result.attrs["seconds"]), int(result.attrs["workers"])):
+        console.print(line, soft_wrap=True)
+    for point, reason in failures(result):
+        console.print(f"failed at {_named(point)}: {reason}", soft_wrap=True, markup=False)
+    if causes is not None:
+        _explain(found, causes)
+    console.print(f"[bold]{found.verdict}[/bold]: {MEANINGS[found.verdict]}", soft_wrap=True)
+    if target is not None:
+        stderr().print(f"wrote {target}", soft_wrap=True)
+    if found.verdict == "not confirmed" or (strict and found.verdict != "confirmed"):
+        raise typer.Exit(FAILED)
+
+
+def _table(result: xr.Dataset) -> object:
+    from validation.grid import COMPARED, SEPARATED, STICKING
+    from validation.grid_summary import law_of_torque
+    from validation.reporting.formatting import number
+
+    shown = table(
+        "multibody against lumped, compared points",
+        "pair",
+        "stiffness",
+        ">compared",
+        ">separate",
+        ">may stick",
+        ">failed",
+        ">linear, of limit",
+        ">exact DTE, max/span",
+        ">law of torque, off by",
+    )
+    for preset in result["preset"].to_numpy():
+        for stiffness in result["stiffness"].to_numpy():
+            part = result.sel(preset=preset, stiffness=stiffness)
+            status = part["status"]
+            counts = [int((status == state).sum()) for state in (COMPARED, SEPARATED, STICKING)]
+            linear = (part["difference"] / part["limit"]).sel(fidelity="linear").max()
+            dte = part["largest"].sel(fidelity="exact", quantity="dte").where(status == COMPARED).max()
+            departure = abs(law_of_torque(part) - 1.0).max()
+            shown.add_row(
+                str(preset),
+                str(stiffness),
+                *map(str, counts),
+                str(status.size - sum(counts)),
+                number(float(linear), 2),
+                number(float(dte), 3),
+                number(float(departure), 2),
+            )
+    return shown
+
+
+def _sentences(found: GridSummary, seconds: float, workers: int) -> list[str]:
+    from validation.grid import SCALING_TOLERANCE
+
+    return [
+        f"{found.points} points in {seconds:.0f} s on {workers} processes: {found.compared} compared; "
+        f"{found.separated} where the teeth separate and {found.sticking} where sliding may stick, beyond "
+        f"the lumped model and not judged at fidelity exact; {found.failed} failed.",
+        f"Linear: at most {found.linear:.2g} of the tolerance. Exact: {found.outside} points with a quantity "
+        f"outside its tolerance, at most {found.exact:.3g} times.",
+        f"Law of torque at {found.scaled} points with constant friction coefficient and smooth stiffness: "
+        f"off by at most {100 * found.scaling:.2g} % of {100 * SCALING_TOLERANCE:g} % allowed.",
+    ]
+
+
+def _explain(found: GridSummary, causes: xr.Dataset) -> None:
+    from validation.reporting.formatting import number
+
+    console = stdout()
+    console.print(
+        f"Worst: {_named(found.worst)}: largest difference of the transmission error "
+        f"{number(found.largest, 3)} of its peak to peak. What it comes from:",
+        soft_wrap=True,
+    )
+    shown = table("", "cause", ">alone", ">all but this")
+    for cause in causes["cause"].to_numpy():
+        at = causes.sel(cause=cause, quantity="dte")
+        shown.add_row(str(cause), number(float(at["alone"]), 3), number(float(at["without"]), 3))
+    console.print(shown)
+
+
+def _named(point: Mapping[str, str | float]) -> str:
+    return ", ".join(f"{axis} {value}" for axis, value in point.items())
+
+
+def _write(result: xr.Dataset, target: Path) -> None:
+    from validation.output import DATA_SUFFIXES, whole_file, write_dataset
+
+    if target.suffix.lower() in DATA_SUFFIXES:
+        write_dataset(result, target)
+        return
+    from validation.plots.grid import grid_figure
+    from validation.plots.style import save
+
+    with whole_file(target) as temporary:
+        save(grid_figure(result), temporary)

@@ -1,0 +1,117 @@
+"""What a regression grid says: verdict, worst point, what broke a rule, and why the worst point is worst."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+import multibody
+from validation.comparison import Verdict
+from validation.grid import AXES, COMPARED, SCALING_TOLERANCE, SEPARATED, STICKING, Grid
+from validation.tolerances import LOST
+
+
+@dataclass(frozen=True)
+class GridSummary:
+    """Verdict on a grid.
+
+    Attributes
+    ----------
+    verdict : "not confirmed": a quantity disagrees at fidelity "linear", the law of torque is broken where it
+        must hold, or the exact transmission error differs by more than ``tolerances.LOST``; "bounded": an
+        exact quantity exceeds its tolerance; else "confirmed"
+    points, compared, separated, sticking, failed : how many points there are, and what came of them
+    linear, exact : largest share of a tolerance that is used, over the compared points
+    outside : compared points with an exact quantity outside its tolerance
+    scaling : largest departure from the law of torque where it is judged; NaN where it is nowhere
+    scaled : points where it is judged
+    worst : coordinates of the largest exact DTE difference over peak to peak among the compared points
+    largest : that difference
+    """
+
+    verdict: Verdict
+    points: int
+    compared: int
+    separated: int
+    sticking: int
+    failed: int
+    linear: float
+    exact: float
+    outside: int
+    scaling: float
+    scaled: int
+    worst: Mapping[str, str | float]
+    largest: float
+
+
+def summarise_grid(result: xr.Dataset) -> GridSummary:
+    """Apply the rules to the dataset of ``crosscheck_grid``."""
+    status = result["status"]
+    compared = status == COMPARED
+    ran = compared | (status == STICKING)  # the equations must agree there all the same
+    usage = result["difference"] / result["limit"]
+    linear = float(usage.sel(fidelity="linear").where(ran).max())
+    exact = usage.sel(fidelity="exact").max("quantity").where(compared)
+    departure = abs(law_of_torque(result) - 1.0)
+    dte = result["largest"].sel(fidelity="exact", quantity="dte").where(compared)
+    lost = result["difference"].sel(fidelity="exact", quantity="dte").where(compared) > LOST
+    broken = bool((departure > SCALING_TOLERANCE).any()) or bool(lost.any()) or not linear <= 1.0
+    outside = int((exact > 1.0).sum())
+    worst: dict[str, str | float] = {}
+    if bool(compared.any()):
+        worst = {axis: place.item() for axis, place in _place(dte).items()}
+    return GridSummary(
+        verdict="not confirmed" if broken else "bounded" if outside else "confirmed",
+        points=int(status.size),
+        compared=int(compared.sum()),
+        separated=int((status == SEPARATED).sum()),
+        sticking=int((status == STICKING).sum()),
+        failed=int((~ran & (status != SEPARATED)).sum()),
+        linear=linear,
+        exact=float(exact.max()),
+        outside=outside,
+        scaling=float(departure.max()),
+        scaled=int(departure.notnull().sum()),
+        worst=worst,
+        largest=float(dte.max()),
+    )
+
+
+def law_of_torque(result: xr.Dataset) -> xr.DataArray:
+    """The ratios that are judged: both torques compared, coefficient constant, stiffness smooth."""
+    compared = result["status"] == COMPARED
+    following = compared.shift(torque=-1, fill_value=False)
+    return result["ratio"].where((result["ratio_judged"] != 0) & compared & following)
+
+
+def failures(result: xr.Dataset) -> list[tuple[dict[str, str | float], str]]:
+    """Coordinates and reason of every point where a model failed."""
+    found = []
+    for index in np.ndindex(result["status"].shape):
+        point = result["status"][index]
+        reason = str(point.item())
+        if reason not in (COMPARED, SEPARATED, STICKING):
+            found.append(({axis: point[axis].item() for axis in AXES}, reason))
+    return found
+
+
+def explain(
+    grid: Grid, point: Mapping[str, str | float], progress: Callable[[float], None] | None = None
+) -> xr.Dataset:
+    """Which finite-motion effect makes the difference at one point, see ``multibody.attribution``."""
+    pair = grid.pair(
+        str(point["preset"]),
+        str(point["law"]),
+        str(point["stiffness"]),
+        float(point["speed"]),
+        float(point["torque"]),
+    )
+    return multibody.attribution(pair, 10, progress=progress)
+
+
+def _place(values: xr.DataArray) -> dict[str, xr.DataArray]:
+    at = np.unravel_index(int(np.nanargmax(values.to_numpy())), values.shape)
+    return {str(axis): values[axis][i] for axis, i in zip(values.dims, at, strict=True)}
