@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import tomllib
 from collections.abc import Mapping
 from functools import cache
 from importlib import resources
@@ -15,7 +14,7 @@ from pydantic import BaseModel, ValidationError
 from lumped.errors import FieldProblem, ParameterError, shown
 from lumped.parameters import GearPair
 from lumped.schema_errors import field_at, nearest, translated, unknown_key
-from lumped.text_file import read_text
+from lumped.text_file import parse_toml, read_text
 from lumped.units import Quantity, to_file
 
 #: Largest parameter file read, a bound against a wrong path rather than a limit of the format.
@@ -204,8 +203,8 @@ def _read(path: Path) -> str:
 
 def _parsed(text: str, source: str) -> dict[str, Any]:
     try:
-        return tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
+        return parse_toml(text)
+    except (RecursionError, ValueError) as error:
         raise ParameterError(
             [FieldProblem("file", source, "well-formed TOML", f"The TOML is malformed: {error}.")]
         ) from None

@@ -17,7 +17,7 @@ _AXES = {
     "roll_angle": ("roll_angle_deg", "deg"),
     "phase": ("phase", "1"),
 }
-_HEADER = re.compile(r"^\s*(\w+)\s*(?:\[([^\]]*)\])?\s*$")
+_HEADER = re.compile(r"(\w+)\s*(?:\[([^\]]*)\])?")
 _FORMAT = "a header such as 'position [mm], stiffness [N/um]', then one row of two numbers per point"
 _MAX_BYTES = 10_000_000
 #: Largest stiffness of a spur gear mesh that is taken for real [N/m].
@@ -111,7 +111,7 @@ def check_stiffness_table(points: Sequence[float], stiffness: Sequence[float]) -
 
 
 def _header(row: list[str], path: Path) -> tuple[list[str], list[str]]:
-    matches = [_HEADER.match(cell) for cell in row]
+    matches = [_HEADER.fullmatch(cell.strip()) for cell in row]
     found = [(m.group(1).lower(), m.group(2) or "") for m in matches if m is not None]
     names = [name for name, _ in found]
     known = len(row) == 2 and len(found) == 2 and "stiffness" in names and any(n in _AXES for n in names)

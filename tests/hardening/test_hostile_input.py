@@ -16,6 +16,8 @@ from lumped import GearPair, geometry, load_gear_pair, preset_names
 from lumped.errors import ParameterError, SpurcheckError
 from lumped.schema_errors import field_at
 from lumped.serialise import preset_text
+from lumped.text_file import parse_toml
+from validation.measurements import load_measurement
 from validation.studies import Study, load_study
 
 SECONDS = 10.0
@@ -147,6 +149,21 @@ def test_broken_study_files(within, tmp_path_factory, text):
         assert load_study(study.to_toml()) == study
 
 
+@pytest.mark.parametrize("text", ["a" + ".a" * 400_000 + " = 1\n", "x = { " + "9." * 300_000 + "9 = 1 }\n"])
+def test_a_key_of_many_parts_is_refused_at_once(within, tmp_path, text):
+    # Reading a dotted key takes the square of its parts: these would take hours.
+    (tmp_path / "x.toml").write_text(text)
+    for load in (load_gear_pair, load_study, load_measurement):
+        with within(SECONDS):
+            assert accepted_or_refused(load, tmp_path / "x.toml") is None
+
+
+def test_dots_in_comments_and_numbers_are_no_keys(tmp_path):
+    dots = "# " + "." * 200 + "\n" + "# a" + ".a" * 200 + "\n"
+    numbers = "points = [" + ", ".join(["1.5"] * 200) + "]\n"
+    assert parse_toml(dots + numbers) == {"points": [1.5] * 200}
+
+
 @given(data=st.binary(max_size=300))
 def test_bytes_that_are_no_text(within, tmp_path_factory, data):
     file = tmp_path_factory.mktemp("bytes") / "any.toml"
@@ -177,6 +194,7 @@ CSV = "# measured\nposition [mm], stiffness [N/um]\n8, 60\n10, 75\n14, 90\n18, 7
 
 @given(text=broken([CSV]))
 @example(text="position [mm], stiffness [N/um]\n" + "1" * 200_000 + ", 2\n")
+@example(text="a" + " " * 100_000 + "b, stiffness [N/um]\n1, 2\n")
 @example(text='position [mm], stiffness [N/um]\n"' + "\n" * 5)
 def test_broken_stiffness_tables(within, tmp_path_factory, text):
     folder = tmp_path_factory.mktemp("csv")
@@ -234,3 +252,45 @@ def test_names_that_are_no_files(within, tmp_path, kind):
     for load, source in ((load_gear_pair, name), (load_study, name), (load_gear_pair, data)):
         with within(SECONDS):
             assert accepted_or_refused(load, source) is None
+
+
+RECORD = """# strain-gauge record
+roll [deg];N A [N];F A (kN)
+10,0;1500,0;0,050
+10,5;1510,0;0,051
+11,0;1520,0;0,052
+11,5;1530,0;0,053
+12,0;1540,0;0,054
+12,5;1550,0;0,055
+13,0;1560,0;0,056
+13,5;1570,0;0,057
+"""
+DESCRIPTION = """name = "record"
+source = "made up for a test"
+data = "record.csv"
+delimiter = ";"
+decimal = ","
+pinion_speed = 800
+pinion_torque = "79.1 N*m"
+abscissa = { kind = "roll_angle", column = "roll" }
+[[channel]]
+name = "normal"
+column = "N A"
+quantity = "normal_load"
+pair = "A"
+noise = 5.0
+"""
+
+
+@given(description=st.just(DESCRIPTION) | broken([DESCRIPTION]), record=broken([RECORD]))
+@example(description=DESCRIPTION, record="a" + " " * 20_000 + "b;c\n")
+@example(description=DESCRIPTION, record='"' + "x" * 200_000 + ";c\n")
+def test_broken_measurements(within, tmp_path_factory, description, record):
+    folder = tmp_path_factory.mktemp("record")
+    for name, text in (("record.toml", description), ("record.csv", record)):
+        (folder / name).write_text(text, encoding="utf-8", errors="surrogatepass", newline="")
+    with within(SECONDS):
+        measurement = accepted_or_refused(load_measurement, folder / "record.toml")
+    if measurement is not None:
+        assert np.isfinite(measurement.abscissa).all()
+        assert all(np.isfinite(values).all() for values in measurement.channels.values())

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import hashlib
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import islice
@@ -14,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.errors import ParameterError, refuse
+from lumped.errors import ParameterError, refuse, shown
 from lumped.text_file import read_text
 from validation.measurements.specification import (
     QUANTITIES,
@@ -27,7 +26,6 @@ from validation.measurements.specification import (
 FloatArray = NDArray[np.float64]
 
 _MAX_BYTES = 2_000_000_000
-_HEADING = re.compile(r"^\s*(?P<name>.*?)\s*(?:[\[(](?P<unit>[^\])]*)[\])])?\s*$")
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +100,8 @@ def parse_measurement(spec: MeasurementSpec, text: str) -> Measurement:
         wanted.insert(0, (spec.abscissa.column, "abscissa.column"))
     for column, field in wanted:
         if column not in columns:
-            raise refuse(field, column, "one of " + ", ".join(columns), "Correct the column's name.")
+            known = ", ".join(map(shown, columns))
+            raise refuse(field, shown(column), f"one of {known}", "Correct the column's name.")
     table = _numbers(spec, lines, first + 1, [columns[column][0] for column, _ in wanted])
     if table.shape[0] < 8:
         raise refuse("data", f"{table.shape[0]} rows", ">= 8 rows", "Check the file.")
@@ -128,11 +127,20 @@ def _columns(headings: list[str]) -> dict[str, tuple[int, str | None]]:
     """Name -> (place, unit in the heading), for headings such as ``normal A [N]``."""
     found: dict[str, tuple[int, str | None]] = {}
     for place, heading in enumerate(headings):
-        match = _HEADING.match(heading)
-        assert match is not None  # the pattern matches every text
-        found.setdefault(match["name"], (place, match["unit"]))
-        found.setdefault(heading.strip(), (place, match["unit"]))
+        name, unit = _name_and_unit(heading.strip())
+        found.setdefault(name, (place, unit))
+        found.setdefault(heading.strip(), (place, unit))
     return found
+
+
+def _name_and_unit(heading: str) -> tuple[str, str | None]:
+    """Split ``force A [N]`` or ``force A (N)``; in one pass, however many blanks there are."""
+    if heading.endswith(("]", ")")):
+        start = max(heading.rfind("]", 0, -1), heading.rfind(")", 0, -1)) + 1
+        opened = [at for at in (heading.find("[", start), heading.find("(", start)) if at >= 0]
+        if opened:
+            return heading[: min(opened)].strip(), heading[min(opened) + 1 : -1]
+    return heading, None
 
 
 def _numbers(spec: MeasurementSpec, lines: list[str], start: int, places: list[int]) -> FloatArray:
@@ -144,7 +152,7 @@ def _numbers(spec: MeasurementSpec, lines: list[str], start: int, places: list[i
         table = np.loadtxt(cells(), delimiter=spec.delimiter, usecols=places, ndmin=2, comments="#")
     except (ValueError, IndexError) as error:
         raise refuse(
-            "data", "a cell", "a finite number in every cell of a named column", f"{error}."
+            "data", "a cell", "a finite number in every cell of a named column", f"{shown(str(error))}."
         ) from None
     bad = np.argwhere(~np.isfinite(table))
     if bad.size:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import tomllib
+import re
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidationError, model_validator
 
-from lumped.errors import FieldProblem, ParameterError, refuse
+from lumped.errors import FieldProblem, ParameterError, quoted, refuse, shown
 from lumped.section import Section
-from lumped.text_file import read_text
+from lumped.text_file import parse_toml, read_text
 from lumped.units import Quantity
 
 if TYPE_CHECKING:
@@ -158,7 +158,7 @@ def read_specification(source: str | Path | Mapping[str, Any]) -> tuple[Measurem
         path = Path(source)
         folder, name = path.parent, str(path)
         try:
-            data = tomllib.loads(read_text(path, MAX_FILE_BYTES))
+            data = parse_toml(read_text(path, MAX_FILE_BYTES))
         except ParameterError:
             raise
         except OSError as error:
@@ -181,7 +181,8 @@ def _problems(error: ValidationError) -> list[FieldProblem]:
         if item["type"] == "quantity":
             found.append(FieldProblem(place, context["value"], context["allowed"], context["action"]))
         else:
-            found.append(FieldProblem(place, repr(item.get("input"))[:80], item["msg"], "Correct the value."))
+            value = shown(quoted(item.get("input")))
+            found.append(FieldProblem(shown(place), value, item["msg"], "Correct the value."))
     return found
 
 
@@ -190,6 +191,14 @@ def _registry() -> pint.UnitRegistry[Any]:
     import pint
 
     return pint.UnitRegistry()
+
+
+def _refuse_powers(text: str, field: str) -> None:
+    """Refuse text that would keep pint busy for ever: long, or a number to a power such as 9**9**9."""
+    if len(text) > 60 or re.search(r"\d[\s)]*(\*\*|\^|[⁰¹²³⁴⁵⁶⁷⁸⁹])", text):
+        raise refuse(
+            field, shown(text), "a unit such as N, mm or Hz", "Write the unit without powers of numbers."
+        )
 
 
 def si_factor(unit: str, si_unit: str, field: str) -> float:
@@ -206,6 +215,7 @@ def si_factor(unit: str, si_unit: str, field: str) -> float:
     ParameterError : no unit, another dimension, or an offset unit
     """
     registry = _registry()
+    _refuse_powers(unit, field)
     try:
         return float((1.0 * registry.Unit(unit)).to(si_unit).magnitude)
     except Exception as error:  # noqa: BLE001  (pint lets tokenizer and attribute errors through)
@@ -215,6 +225,7 @@ def si_factor(unit: str, si_unit: str, field: str) -> float:
 def sampling_rate(value: str | float) -> float:
     """Return a sampling rate in Hz; a bare number is in Hz."""
     if isinstance(value, str):
+        _refuse_powers(value, "abscissa.sampling_rate")
         try:
             rate = float(_registry().Quantity(value).to("Hz").magnitude)
         except Exception as error:  # noqa: BLE001  (as above)

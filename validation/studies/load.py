@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,7 @@ from lumped.errors import FieldProblem, ParameterError, quoted, refuse, shown
 from lumped.parameters import GearPair
 from lumped.schema_errors import unknown_key
 from lumped.serialise import load_gear_pair, preset_names
-from lumped.text_file import read_text
+from lumped.text_file import parse_toml, read_text
 from validation.studies.schema import Axis, Design, Settings, Study
 
 #: Largest study file read: a bound against a wrong path; a list of a million values fits.
@@ -51,7 +50,7 @@ def load_study(source: str | Path | Mapping[str, Any] | Study, *, name: str = ""
 
 def _parsed(text: str, source: str) -> dict[str, Any]:
     try:
-        return tomllib.loads(text)
+        return parse_toml(text)
     except (ValueError, RecursionError) as error:
         raise ParameterError(
             [FieldProblem("file", source, "well-formed TOML", f"The TOML is malformed: {error}.")]

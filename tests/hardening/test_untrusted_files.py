@@ -1,0 +1,85 @@
+"""Can a file that somebody else wrote run code, or write outside the output folder?"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+
+import pytest
+
+from lumped import load_gear_pair
+from lumped.errors import ParameterError
+from validation.studies import StoreError, load_study, run_sweep
+
+HOSTILE_NAMES = [
+    "../../outside",
+    "/tmp/outside",
+    "$(touch outside)",
+    "`touch outside`",
+    "__import__('os').system('touch outside')",
+    "{{ cycler.__init__.__globals__.os.system('touch outside') }}",
+    "<script>alert(1)</script>",
+    "a\x1b]0;owned\x07b",
+]
+
+
+def files_below(folder):
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
+
+
+def study(**changes):
+    data = {
+        "name": "s",
+        "gear_pair": "nasa_28_28",
+        "analysis": "geometry",
+        "outputs": ["contact_ratio"],
+        "axes": [{"field": "speed_rpm", "values": [1000, 2000]}],
+    }
+    return load_study(data | changes)
+
+
+@pytest.mark.parametrize("name", HOSTILE_NAMES)
+def test_text_in_a_study_is_only_text(tmp_path, monkeypatch, name):
+    monkeypatch.chdir(tmp_path)
+    pair = load_gear_pair("nasa_28_28").with_(name=name, description=name)
+    run_sweep(study(name=name, description=name, gear_pair=pair), tmp_path / "out")
+    assert files_below(tmp_path) == ["out/journal.bin", "out/results.nc", "out/study.toml"]
+
+
+@pytest.mark.parametrize("name", HOSTILE_NAMES)
+def test_an_axis_is_named_by_a_word(name):
+    with pytest.raises(ParameterError, match=r"axes\.0\.name"):
+        study(axes=[{"field": "speed_rpm", "name": name, "values": [1]}])
+
+
+@pytest.mark.parametrize(
+    "field",
+    [
+        "__class__",
+        "operating.__class__",
+        "model_config",
+        "with_",
+        "operating.pinion_speed.real",
+        "name",
+        "sources",
+    ],
+)
+def test_a_field_is_a_field_of_the_schema(field):
+    with pytest.raises(ParameterError, match="field"):
+        study(axes=[{"field": field, "values": [1]}])
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="symbolic links")
+@pytest.mark.parametrize(
+    "name", ["journal.bin", "results.nc", "study.toml", ".results.nc.part", ".study.toml.part"]
+)
+def test_links_in_the_output_folder_are_not_followed(tmp_path, name):
+    target = tmp_path / "precious"
+    target.write_text("do not touch")
+    out = tmp_path / "out"
+    out.mkdir()
+    os.symlink(target, out / name)
+    with contextlib.suppress(ParameterError, StoreError):
+        run_sweep(study(), out, resume=True)
+    assert target.read_text() == "do not touch"
