@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TypeVar
@@ -12,15 +13,13 @@ import numpy as np
 import numpy.typing as npt
 
 from floquet.kernels.eigen import spectra
-from floquet.kernels.taylor import propagate_points
+from floquet.kernels.taylor import Limits, Problem, propagate_points
 from floquet.multipliers import multipliers_with_bounds
 from floquet.rank_one import RankOneSystem
 from floquet.system import ComplexArray, FloatArray
 from lumped.errors import NumericalError, refuse
 
 _T = TypeVar("_T")
-
-_ANGLE = 5.0  # majorant exponent per step: about 35 terms at 1e-13, rounding amplified at most exp(5)
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +31,7 @@ class FastMonodromy:
     matrices : (N, 2m, 2m) in x = (omega eta, eta') of `ModalForm`
     errors : (N,) bound on the Frobenius norm of the error of each: majorant of the truncation, misfit of the
         polynomials, rounding
-    forced : (N, 2m) state at T from rest under the constant forcing
+    forced : (N, 2m) state at T from rest under the forcing
     """
 
     matrices: FloatArray
@@ -40,22 +39,95 @@ class FastMonodromy:
     forced: FloatArray
 
 
+@dataclass(frozen=True, eq=False)
+class Points:
+    """N variants of one system as the kernels take them: what is shared, and one row per variant.
+
+    Attributes
+    ----------
+    problem, limits : what the kernels share
+    periods, damping_factors, gain_factors : (N,), (N,), (N, Q)
+    threads : default one per core
+    """
+
+    problem: Problem
+    limits: Limits
+    periods: FloatArray
+    damping_factors: FloatArray
+    gain_factors: FloatArray
+    threads: int | None
+
+    @classmethod
+    def of(
+        cls,
+        system: RankOneSystem,
+        periods: npt.ArrayLike | None,
+        damping_factors: npt.ArrayLike,
+        gain_factors: npt.ArrayLike,
+        tolerance: float,
+        threads: int | None,
+        max_steps: int,
+    ) -> Points:
+        """Check and arrange the arguments of `fast_monodromies`."""
+        if system.v.size > 3:
+            raise refuse(
+                "coordinates", system.v.size, "at most 3", "Use floquet.monodromy for larger systems."
+            )
+        T = _own(system.period if periods is None else periods)
+        form = system.modal()
+        factors = np.ones((T.size, len(system.parts)))
+        if system.varied is not None:
+            factors[:, 1] = gain_factors
+        fit_errors = np.stack([part.fit_errors for part in system.parts])
+        # Longer steps have fewer terms per unit of time, but amplify rounding by exp(angle).
+        angle = min(max(math.log(tolerance) + 33.0, 5.0), 9.0)
+        return cls(
+            problem=Problem(
+                *map(_own, (system.phases, form.w, form.wd, form.f, form.fr, fit_errors)),
+                *map(_own, (form.C, form.omega, form.v, form.input)),
+            ),
+            limits=Limits(float(tolerance), angle, int(max_steps)),
+            periods=T,
+            damping_factors=_own(np.broadcast_to(np.asarray(damping_factors, dtype=float), T.shape)),
+            gain_factors=factors,
+            threads=threads,
+        )
+
+    def row_arguments(self, part: slice) -> tuple[Problem, FloatArray, FloatArray, FloatArray, Limits]:
+        """Leading arguments of a kernel for a slice of the variants."""
+        return (
+            self.problem, self.gain_factors[part], self.damping_factors[part], self.periods[part], self.limits
+        )  # fmt: skip
+
+    def refuse_failures(self, failures: Sequence[int]) -> None:
+        """Raise NumericalError for the first index that is not negative."""
+        bad = [index for index in failures if index >= 0]
+        if bad:
+            raise NumericalError(
+                f"period {self.periods[bad[0]]:g} s needs more than {self.limits.max_steps} Taylor steps, or "
+                "a step more terms than the kernel has. Raise max_steps, loosen the tolerance, or raise the "
+                "speed."
+            )
+
+
 def fast_monodromies(
     system: RankOneSystem,
     periods: npt.ArrayLike | None = None,
     damping_factors: npt.ArrayLike = 1.0,
+    gain_factors: npt.ArrayLike = 1.0,
     *,
     tolerance: float = 1e-13,
     threads: int | None = None,
     max_steps: int = 20_000,
 ) -> FastMonodromy:
-    """Monodromy matrices for many periods T and factors on wd.
+    """Monodromy matrices for many periods T and factors on wd and on the varied gains.
 
     Parameters
     ----------
     system : the system; its phases, w and wd are taken as independent of T
     periods : (N,) [s]; default the system's own
-    damping_factors : (N,) or scalar, factor on wd
+    damping_factors : (N,) or scalar, factor on wd (and on fr)
+    gain_factors : (N,) or scalar, factor on the gains ``system.varied``
     tolerance : largest neglected remainder of one step, in units of the energy norm
     threads : default one per core
     max_steps : steps per period at most
@@ -65,32 +137,15 @@ def fast_monodromies(
     NumericalError
         Too many steps or terms, or a result that is not finite.
     """
-    if system.v.size > 3:
-        raise refuse("coordinates", system.v.size, "at most 3", "Use floquet.monodromy for larger systems.")
-    T = _own(system.period if periods is None else periods)
-    factors = _own(np.broadcast_to(np.asarray(damping_factors, dtype=float), T.shape))
-    form = system.modal()
-    n = 2 * system.v.size
-    M, bound, forced = np.empty((T.size, n, n)), np.empty(T.size), np.empty((T.size, n))
-    pieces = system.phases.size - 1
-    f = _own(np.broadcast_to(form.forcing[None, :, None], (pieces, n // 2, 1)))
-    phases, fit_errors = _own(system.phases), _own(system.fit_errors)
-    degrees = (form.w.shape[2] - 1, form.wd.shape[2] - 1, 0)
+    points = Points.of(system, periods, damping_factors, gain_factors, tolerance, threads, max_steps)
+    n, N = 2 * system.v.size, points.periods.size
+    M, bound, forced = np.empty((N, n, n)), np.empty(N), np.empty((N, n))
 
     def run(part: slice) -> int:
-        failed = propagate_points(
-            phases, form.w, form.wd, f, degrees, fit_errors, factors[part], form.C, form.omega,
-            form.v, T[part], tolerance, _ANGLE, max_steps, M[part], bound[part], forced[part],
-        )  # fmt: skip
+        failed = propagate_points(*points.row_arguments(part), M[part], bound[part], forced[part])
         return -1 if failed < 0 else part.start + failed
 
-    failures = in_threads(run, T.size, threads)
-    bad = [index for index in failures if index >= 0]
-    if bad:
-        raise NumericalError(
-            f"period {T[bad[0]]:g} s needs more than {max_steps} Taylor steps, or a step more terms than the "
-            "kernel has. Raise max_steps, loosen the tolerance, or raise the speed."
-        )
+    points.refuse_failures(in_threads(run, N, threads))
     if not np.isfinite(M).all():
         raise NumericalError(
             "the state grows beyond floating point within one period; shorten the period (raise the speed)."
@@ -117,6 +172,7 @@ def fast_multipliers(
     system: RankOneSystem,
     periods: npt.ArrayLike | None = None,
     damping_factors: npt.ArrayLike = 1.0,
+    gain_factors: npt.ArrayLike = 1.0,
     *,
     tolerance: float = 1e-13,
     threads: int | None = None,
@@ -129,8 +185,9 @@ def fast_multipliers(
     `multipliers_with_bounds` decides.
     """
     flow = fast_monodromies(
-        system, periods, damping_factors, tolerance=tolerance, threads=threads, max_steps=max_steps
-    )
+        system, periods, damping_factors, gain_factors,
+        tolerance=tolerance, threads=threads, max_steps=max_steps,
+    )  # fmt: skip
     shape = flow.matrices.shape[:2]
     values, radii = np.empty(shape, dtype=complex), np.empty(shape)
     safe = np.empty(shape[0], dtype=bool)

@@ -104,9 +104,15 @@ def propagate_fixed(system: PeriodicSystem, method: Propagator, substeps: int) -
 
 
 def propagate(
-    system: PeriodicSystem, method: Propagator, rtol: float, max_substeps: int = 200_000
+    system: PeriodicSystem,
+    method: Propagator,
+    rtol: float,
+    max_substeps: int = 200_000,
+    scaling: FloatArray | None = None,
 ) -> Propagation:
     """Transition matrices of one period, each step accurate to rtol h/T of its own norm.
+
+    The norm is taken in the coordinates x_i / scaling_i, by default those of `PeriodicSystem.balancing`.
 
     Every step is taken once whole and once as two halves. Their difference, which is an estimate of the error
     of the whole step and so an overestimate (by 2^p - 1 where the method shows its order) of that of the
@@ -118,7 +124,7 @@ def propagate(
     NumericalError
         Non-finite A, or more than ``max_substeps`` steps are needed.
     """
-    d = system.balancing()
+    d = system.balancing() if scaling is None else scaling
     start, end = _initial_grid(system, method, d)
     done: list[tuple[FloatArray, FloatArray, FloatArray, FloatArray]] = []
     evaluations = 5 * (system.edges.size - 1)

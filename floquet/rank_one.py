@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -13,60 +14,120 @@ from lumped.errors import refuse
 
 
 @dataclass(frozen=True, eq=False)
+class Gains:
+    """Periodic gains and forcing on the pieces of one period; polynomials in powers of u in [-1, 1].
+
+    Attributes
+    ----------
+    w, wd : (P, m, d+1) feedback of v . z [1/s^2] and of v . z' [1/s], lowest power first
+    f, fr : (P, m, d+1) forcing f + fr/T, fr for what goes with a rate of change over the period
+    fit_errors : (P, 4) largest error of w, wd, f and fr on each piece, norm sqrt(sum metric e^2)
+    """
+
+    w: FloatArray
+    wd: FloatArray
+    f: FloatArray
+    fr: FloatArray
+    fit_errors: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Balance:
+    """A constant input whose amplitude is not given but follows from a mean over the periodic motion.
+
+    The input adds a ``input`` to the forcing; a is such that the mean over the period of f + fr/T - w (v . z)
+    - wd (v . z') is -known - a own, w, wd, f and fr being those of ``gains``, which have one row.
+
+    Attributes
+    ----------
+    input : (m,)
+    gains : one `Gains` for each of `RankOneSystem.parts`, (P, 1, d+1)
+    known, own : numbers, own not zero
+    """
+
+    input: FloatArray
+    gains: tuple[Gains, ...]
+    known: float
+    own: float
+
+
+@dataclass(frozen=True, eq=False)
 class RankOneSystem:
-    """z'' + D z' + L z + w(t) (v . z) + wd(t) (v . z') = f, periodic w and wd, m <= 3 coordinates.
+    """z'' + D z' + L z + w(t) (v . z) + wd(t) (v . z') = f(t), periodic w, wd and f, m <= 3 coordinates.
 
     Attributes
     ----------
     stiffness, damping : (m,) L [1/s^2] and D [1/s]
     v : (m,) how the coordinates feed back
     phases : (P+1,) ends of the pieces as parts of the period, switches among them
-    w, wd : (P, m, d+1) polynomials on each piece in powers of u in [-1, 1], w [1/s^2], wd [1/s]
-    forcing : (m,) constant f
-    fit_errors : (P, 2) largest error of w and wd on each piece, norm sqrt(sum metric e^2)
+    gains : w, wd and f
     period : T [s]
     metric : (m,) positive weights g (masses): diag(g) makes the mean feedback symmetric as nearly as can
         be, so that the energy of the mean system measures errors well
+    varied : a second set of gains that a chart adds, times a factor of its own for every point, as where the
+        friction coefficient goes up and down with speed; the system by itself has it with factor 1
+    balance : an input that forced motion needs, as the brake torque that holds a mean speed; no part of
+        `to_periodic_system`
     """
 
     stiffness: FloatArray
     damping: FloatArray
     v: FloatArray
     phases: FloatArray
-    w: FloatArray
-    wd: FloatArray
-    forcing: FloatArray
-    fit_errors: FloatArray
+    gains: Gains
     period: float
     metric: FloatArray
+    varied: Gains | None = None
+    balance: Balance | None = None
+
+    @property
+    def parts(self) -> tuple[Gains, ...]:
+        """The gains whose sum acts."""
+        return (self.gains,) if self.varied is None else (self.gains, self.varied)
+
+    @cached_property
+    def total(self) -> Gains:
+        """The sum of the parts, each with factor 1."""
+        w, wd, f, fr = (_added([getattr(part, key) for part in self.parts]) for key in ("w", "wd", "f", "fr"))
+        return Gains(w, wd, f, fr, np.sum([part.fit_errors for part in self.parts], axis=0))
 
     def to_periodic_system(self) -> PeriodicSystem:
         """Return the same system for the general engine, which checks the kernel independently."""
         m = self.v.size
         T = self.period
+        gains = self.total
 
-        def A(t: FloatArray) -> FloatArray:
+        def place(t: FloatArray) -> tuple[npt.NDArray[np.intp], FloatArray]:
             phase = t / T
             piece = np.clip(np.searchsorted(self.phases, phase, side="right") - 1, 0, self.phases.size - 2)
             low, high = self.phases[piece], self.phases[piece + 1]
-            u = (2.0 * phase - low - high) / (high - low)
+            return piece, (2.0 * phase - low - high) / (high - low)
+
+        def A(t: FloatArray) -> FloatArray:
+            piece, u = place(t)
             out = np.zeros((t.size, 2 * m, 2 * m))
             out[:, :m, m:] = np.eye(m)
             out[:, m:, :m] = -np.diag(self.stiffness)
             out[:, m:, m:] = -np.diag(self.damping)
-            out[:, m:, :m] -= _horner(self.w, piece, u)[:, :, None] * self.v
-            out[:, m:, m:] -= _horner(self.wd, piece, u)[:, :, None] * self.v
+            out[:, m:, :m] -= _horner(gains.w, piece, u)[:, :, None] * self.v
+            out[:, m:, m:] -= _horner(gains.wd, piece, u)[:, :, None] * self.v
             return out
 
-        return PeriodicSystem(A, T, tuple(self.phases[1:-1] * T), vectorized=True)
+        def b(t: FloatArray) -> FloatArray:
+            piece, u = place(t)
+            out = np.zeros((t.size, 2 * m))
+            out[:, m:] = _horner(gains.f, piece, u) + _horner(gains.fr, piece, u) / T
+            return out
+
+        return PeriodicSystem(A, T, tuple(self.phases[1:-1] * T), vectorized=True, b=b)
 
     def modal(self) -> ModalForm:
         """Return the system in modal coordinates of its time average, see `ModalForm`."""
-        g = self.metric
+        g, total = self.metric, self.total
         widths = np.diff(self.phases)
-        powers = np.arange(self.w.shape[2])
+        powers = np.arange(total.w.shape[2])
         moments = np.where(powers % 2 == 0, 1.0 / (powers + 1.0), 0.0)  # mean of u^j over [-1, 1]
-        mean = np.einsum("p,pmj,j->m", widths, self.w, moments)
+        mean = np.einsum("p,pmj,j->m", widths, total.w, moments)
         k = float(g @ (mean * self.v)) / float(self.v @ self.v) if (g * mean) @ self.v > 0 else 0.0
         K = np.diag(g * self.stiffness) + k * np.outer(self.v, self.v)
         squares, Phi = eigh(K, np.diag(g))
@@ -79,26 +140,30 @@ class RankOneSystem:
             )
         inverse = Phi.T * g
         # The reference feedback k g^-1 v v^T is part of omega^2; what is left of w stays time dependent.
-        w = self.w.copy()
-        w[:, :, 0] -= k * self.v / g
+        w = _stacked([part.w for part in self.parts])
+        w[0, :, :, 0] -= k * self.v / g
+        others = [_stacked([getattr(part, key) for part in self.parts]) for key in ("wd", "f", "fr")]
+        w, wd, f, fr = (np.ascontiguousarray(np.einsum("ab,qpbj->qpaj", inverse, x)) for x in (w, *others))
         return ModalForm(
             omega=np.sqrt(squares),
             C=inverse @ (self.damping[:, None] * Phi),
             v=Phi.T @ self.v,
-            w=np.ascontiguousarray(np.einsum("ab,pbj->paj", inverse, w)),
-            wd=np.ascontiguousarray(np.einsum("ab,pbj->paj", inverse, self.wd)),
-            forcing=inverse @ self.forcing,
+            w=w,
+            wd=wd,
+            f=f,
+            fr=fr,
+            input=np.zeros(self.v.size) if self.balance is None else inverse @ self.balance.input,
             shapes=Phi,
         )
 
 
 @dataclass(frozen=True, eq=False)
 class ModalForm:
-    """eta'' + C eta' + omega^2 eta + w (v . eta) + wd (v . eta') = f with z = shapes @ eta.
+    """eta'' + C eta' + omega^2 eta + w (v . eta) + wd (v . eta') = f + fr/T with z = shapes @ eta.
 
-    omega and shapes are the modes of the mean undamped frictionless system, orthonormal in the metric. In the
-    states x = (omega eta, eta') the squared norm is twice the energy of that system, the natural measure of
-    errors.
+    w, wd, f and fr are (Q, P, m, d+1), Q parts of `RankOneSystem.parts`. omega and shapes are the modes of
+    the mean undamped frictionless system, orthonormal in the metric. In the states x = (omega eta, eta') the
+    squared norm is twice the energy of that system, the natural measure of errors.
     """
 
     omega: FloatArray
@@ -106,7 +171,9 @@ class ModalForm:
     v: FloatArray
     w: FloatArray
     wd: FloatArray
-    forcing: FloatArray
+    f: FloatArray
+    fr: FloatArray
+    input: FloatArray
     shapes: FloatArray
 
     def state_matrix(self) -> FloatArray:
@@ -116,6 +183,16 @@ class ModalForm:
         out[:m, :m] = self.shapes / self.omega
         out[m:, m:] = self.shapes
         return out
+
+
+def _stacked(polys: list[FloatArray]) -> FloatArray:
+    """Polynomials (P, m, d+1) of several degrees as one array (Q, P, m, d+1)."""
+    degree = max(poly.shape[2] for poly in polys)
+    return np.stack([np.pad(poly, ((0, 0), (0, 0), (0, degree - poly.shape[2]))) for poly in polys])
+
+
+def _added(polys: list[FloatArray]) -> FloatArray:
+    return np.asarray(_stacked(polys).sum(axis=0))
 
 
 def _horner(poly: FloatArray, piece: npt.NDArray[np.intp], u: FloatArray) -> FloatArray:

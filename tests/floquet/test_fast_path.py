@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.linalg import expm
 
 from floquet import (
-    PeriodicSystem,
     RankOneSystem,
     fast_monodromies,
     fast_multipliers,
@@ -18,6 +19,7 @@ from floquet import (
 )
 from floquet.gear_axes import GearVariation
 from floquet.kernels.eigen import spectra
+from floquet.rank_one import Gains
 from lumped import load_gear_pair
 from lumped.errors import NumericalError, ParameterError
 
@@ -33,15 +35,21 @@ def random_system(rng: np.random.Generator) -> RankOneSystem:
     v = rng.normal(size=m)
     w = 0.3 * rng.normal(size=(pieces, m, degree + 1))
     w[:, :, 0] += rng.uniform(0.5, 2.0) * v / metric
+    wd = 0.05 * rng.normal(size=(pieces, m, int(rng.integers(1, 4))))
+    if rng.random() < 0.3:
+        wd = rng.uniform(0.0, 0.1) * w  # damping proportional to stiffness, a case of its own in the kernel
     return RankOneSystem(
         stiffness=rng.uniform(0.5, 4.0, m),
         damping=rng.uniform(-0.02, 0.2, m),
         v=v,
         phases=phases,
-        w=w,
-        wd=0.05 * rng.normal(size=(pieces, m, int(rng.integers(1, 4)))),
-        forcing=rng.normal(size=m),
-        fit_errors=np.zeros((pieces, 2)),
+        gains=Gains(
+            w=w,
+            wd=wd,
+            f=rng.normal(size=(pieces, m, int(rng.integers(1, 4)))),
+            fr=rng.normal(size=(pieces, m, int(rng.integers(1, 4)))),
+            fit_errors=np.zeros((pieces, 4)),
+        ),
         period=float(10.0 ** rng.uniform(-0.5, 1.5)),
         metric=metric,
     )
@@ -98,15 +106,15 @@ def test_declared_misfit_of_the_polynomials_enters_the_bound() -> None:
         e = 1e-6
         direction = rng.normal(size=system.v.size)
         direction /= np.sqrt(system.metric @ direction**2)
-        wrong = system.w.copy()
+        wrong = system.gains.w.copy()
         wrong[:, :, 0] += e * direction
-        declared = np.zeros((system.phases.size - 1, 2))
+        declared = np.zeros((system.phases.size - 1, 4))
         declared[:, 0] = e
         # Energy coordinates depend on the mean of w: carry the exact result to those of the wrong system.
         exact = fast_monodromies(system)
         S = system.modal().state_matrix()
-        approximate = RankOneSystem(**{**system.__dict__, "w": wrong, "fit_errors": declared})
-        silent = RankOneSystem(**{**system.__dict__, "w": wrong})
+        approximate = replace(system, gains=replace(system.gains, w=wrong, fit_errors=declared))
+        silent = replace(system, gains=replace(system.gains, w=wrong))
         P = np.linalg.solve(approximate.modal().state_matrix(), S)
         moved = P @ exact.matrices[0] @ np.linalg.inv(P)
         result = fast_monodromies(approximate)
@@ -118,33 +126,12 @@ def test_declared_misfit_of_the_polynomials_enters_the_bound() -> None:
 def test_constant_coefficients() -> None:
     rng = np.random.default_rng(8)
     system = random_system(rng)
-    still = RankOneSystem(**{**system.__dict__, "w": system.w[:1, :, :1], "wd": system.wd[:1, :, :1],
-                             "phases": np.array([0.0, 1.0]), "fit_errors": np.zeros((1, 2))})  # fmt: skip
+    first = (getattr(system.gains, key)[:1, :, :1] for key in ("w", "wd", "f", "fr"))
+    still = replace(system, gains=Gains(*first, np.zeros((1, 4))), phases=np.array([0.0, 1.0]))
     A = still.to_periodic_system().evaluate(np.array([0.4 * still.period]))[0]
     exact = in_energy_coordinates(still, expm(A * still.period))
     result = fast_monodromies(still)
     assert np.linalg.norm(result.matrices[0] - exact) <= result.errors[0] + 1e-12 * np.linalg.norm(exact)
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_forced_motion_equals_the_augmented_system(seed: int) -> None:
-    # x' = A x + b with constant b is the homogeneous system of (x, 1).
-    rng = np.random.default_rng(seed)
-    system = random_system(rng)
-    m = system.v.size
-    plain = system.to_periodic_system()
-
-    def augmented(t: np.ndarray) -> np.ndarray:
-        out = np.zeros((t.size, 2 * m + 1, 2 * m + 1))
-        out[:, : 2 * m, : 2 * m] = plain.evaluate(t)
-        out[:, m : 2 * m, 2 * m] = system.forcing
-        return out
-
-    extended = PeriodicSystem(augmented, system.period, plain.breakpoints, vectorized=True)
-    whole = monodromy(extended, rtol=1e-11)
-    expected = np.linalg.solve(system.modal().state_matrix(), whole.matrix[:-1, -1])
-    computed = fast_monodromies(system).forced[0]
-    assert np.linalg.norm(computed - expected) < 1e-8 * np.linalg.norm(expected)  # rtol 1e-11, other norm
 
 
 def test_many_points_equal_single_systems() -> None:
@@ -154,8 +141,8 @@ def test_many_points_equal_single_systems() -> None:
     factors = np.linspace(0.0, 2.0, 7)
     many = fast_monodromies(system, periods, factors, threads=2)
     for i in range(7):
-        changed = {"period": periods[i], "wd": factors[i] * system.wd}
-        one = fast_monodromies(RankOneSystem(**{**system.__dict__, **changed}))
+        scaled = replace(system.gains, wd=factors[i] * system.gains.wd)
+        one = fast_monodromies(replace(system, period=periods[i], gains=scaled))
         assert np.linalg.norm(many.matrices[i] - one.matrices[0]) <= many.errors[i] + one.errors[0]
 
 
@@ -215,6 +202,24 @@ def test_eigenvalue_kernel_against_lapack() -> None:
         assert np.median(radii) < 1e-8
 
 
+def test_varied_gains_add_with_their_factor() -> None:
+    # g times a second set of gains is the system whose gains are the sum.
+    rng = np.random.default_rng(12)
+    for _ in range(10):
+        system = random_system(rng)
+        extra = 0.2 * rng.normal(size=system.gains.w.shape)
+        zeros = [np.zeros_like(getattr(system.gains, key)) for key in ("wd", "f", "fr", "fit_errors")]
+        family = replace(system, varied=Gains(extra, *zeros))
+        g = float(rng.uniform(-1.0, 1.0))
+        many = fast_monodromies(family, [system.period], gain_factors=g)
+        summed = replace(system, gains=replace(system.gains, w=system.gains.w + g * extra))
+        # Other mean gains, other energy coordinates: compare in (z, z').
+        S = family.modal().state_matrix()
+        slow = monodromy(summed.to_periodic_system(), rtol=1e-11).matrix
+        exact = np.linalg.solve(S, slow @ S)
+        assert np.linalg.norm(many.matrices[0] - exact) <= many.errors[0] + 1e-9 * np.linalg.norm(exact)
+
+
 @pytest.mark.parametrize("kind", ["defective", "double", "diagonal", "zero", "rotation"])
 def test_eigenvalue_kernel_in_awkward_cases(kind: str) -> None:
     block = {
@@ -235,6 +240,6 @@ def test_limits_are_reported() -> None:
     system = random_system(np.random.default_rng(3))
     with pytest.raises(NumericalError, match="max_steps"):
         fast_monodromies(system, [1e4 * system.period], max_steps=50)
-    unstable = RankOneSystem(**{**system.__dict__, "stiffness": -5.0 - system.stiffness})
+    unstable = replace(system, stiffness=-5.0 - system.stiffness)
     with pytest.raises(ParameterError, match="statically stable"):
         fast_monodromies(unstable)

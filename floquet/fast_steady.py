@@ -1,0 +1,101 @@
+"""Periodic motion of rank-one feedback systems under forcing, for many points at once (compiled)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from floquet.fast import Points, in_threads
+from floquet.kernels.steady import Balance as KernelBalance
+from floquet.kernels.steady import periodic_points
+from floquet.rank_one import RankOneSystem
+from floquet.system import FloatArray
+from lumped.errors import NumericalError, whole_number
+
+
+@dataclass(frozen=True, eq=False)
+class FastPeriodicMotion:
+    """Periodic motion of N variants of one system.
+
+    Attributes
+    ----------
+    initial : (N, 2m) state (z, z') at t = 0
+    errors : (N,) bound on the norm of the error of ``initial`` in energy coordinates (`ModalForm`)
+    amplitude : (N,) of the input of `Balance`; 0 where the system has none
+    amplitude_errors : (N,) bound on its error
+    energy_norm : (N,) norm of ``initial`` in energy coordinates, to judge ``errors`` by
+    deflection : (N, S) v . z at the phases j/S of the period
+    """
+
+    initial: FloatArray
+    errors: FloatArray
+    amplitude: FloatArray
+    amplitude_errors: FloatArray
+    energy_norm: FloatArray
+    deflection: FloatArray
+
+
+def fast_periodic_motions(
+    system: RankOneSystem,
+    periods: npt.ArrayLike | None = None,
+    damping_factors: npt.ArrayLike = 1.0,
+    gain_factors: npt.ArrayLike = 1.0,
+    *,
+    samples: int = 64,
+    tolerance: float = 1e-12,
+    threads: int | None = None,
+    max_steps: int = 20_000,
+) -> FastPeriodicMotion:
+    """Periodic motions, stable or not, for many periods T and factors on wd and on the varied gains.
+
+    Nothing settles: x(0) solves (I - M) x(0) = x_rest(T), x_rest being the motion from rest.
+
+    Parameters
+    ----------
+    system : the system with its forcing
+    periods, damping_factors, gain_factors, tolerance, threads, max_steps : as in `fast_monodromies`
+    samples : S, how often per period v . z is returned; 0 to 65536
+
+    Raises
+    ------
+    NumericalError
+        Too many steps or terms, or a period at which a multiplier is so close to +1 that no periodic motion
+        can be told.
+    """
+    S = whole_number("samples", samples, 0, 65536)
+    points = Points.of(system, periods, damping_factors, gain_factors, tolerance, threads, max_steps)
+    n, N = 2 * system.v.size, points.periods.size
+    start, bound, amplitude, deflection = np.zeros((N, n)), np.zeros((N, 2)), np.zeros(N), np.zeros((N, S))
+    balance = _kernel_balance(system)
+
+    def run(part: slice) -> int:
+        failed = periodic_points(
+            *points.row_arguments(part), balance, start[part], bound[part], amplitude[part], deflection[part]
+        )
+        return -1 if failed < 0 else part.start + failed
+
+    points.refuse_failures(in_threads(run, N, threads))
+    singular = np.flatnonzero(~np.isfinite(bound[:, 0]))
+    if singular.size:
+        raise NumericalError(
+            f"no periodic motion can be told at period {points.periods[singular[0]]:g} s: a multiplier is "
+            "at +1 within the error. Change the period slightly, add damping or tighten the tolerance."
+        )
+    initial = start @ system.modal().state_matrix().T
+    size = np.linalg.norm(start, axis=1)
+    return FastPeriodicMotion(initial, bound[:, 0], amplitude, bound[:, 1], size, deflection)
+
+
+def _kernel_balance(system: RankOneSystem) -> KernelBalance:
+    balance = system.balance
+    if balance is None:
+        return KernelBalance(np.zeros((len(system.parts), system.phases.size - 1, 4, 1)), 0.0, 0.0)
+    rows = [[part.w, part.wd, part.f, part.fr] for part in balance.gains]
+    degree = max(poly.shape[2] for row in rows for poly in row)
+    psi = np.zeros((len(rows), system.phases.size - 1, 4, degree))
+    for q, row in enumerate(rows):
+        for j, poly in enumerate(row):
+            psi[q, :, j, : poly.shape[2]] = poly[:, 0]
+    return KernelBalance(psi, float(balance.known), float(balance.own))

@@ -1,0 +1,114 @@
+"""Eight numbers side by side as one value of compiled code: a row of columns in one vector register.
+
+The compiler does not turn loops of eight turns over possibly overlapping arrays into vector instructions, so
+the kernels say it themselves. ``load`` and ``store`` move array[index..., 0:8]; everything else works on
+registers. For kernels only: none of these can be called from Python.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from llvmlite import ir  # type: ignore[import-untyped]
+from numba.core import cgutils, types
+from numba.core.datamodel import models
+from numba.extending import intrinsic, register_model
+
+LANES = 8
+_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+_UNALIGNED = 8  # bytes that numpy arrays are sure to be aligned to
+_CONTRACT = ("contract",)  # a product and the sum it goes into may round once
+
+
+class _Lanes(types.Type):  # type: ignore[misc,unused-ignore]
+    def __init__(self) -> None:
+        super().__init__(name="Lanes8")
+
+
+_lanes = _Lanes()
+
+
+@register_model(_Lanes)
+class _LanesModel(models.PrimitiveModel):  # type: ignore[misc,unused-ignore]
+    def __init__(self, manager: Any, kind: Any) -> None:
+        super().__init__(manager, kind, _VECTOR)
+
+
+def _pointer(context: Any, builder: Any, kinds: Any, array: Any, index: Any) -> Any:
+    view = context.make_array(kinds[0])(context, builder, array)
+    parts = zip(cgutils.unpack_tuple(builder, index), kinds[1], strict=True)
+    where = [context.cast(builder, value, kind, types.intp) for value, kind in parts]
+    where.append(context.get_constant(types.intp, 0))
+    pointer = cgutils.get_item_pointer(context, builder, kinds[0], view, where)
+    return builder.bitcast(pointer, ir.PointerType(_VECTOR))
+
+
+def _splat(builder: Any, value: Any) -> Any:
+    blank = ir.Constant(_VECTOR, ir.Undefined)
+    first = builder.insert_element(blank, value, ir.Constant(ir.IntType(32), 0))
+    zeros = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
+    return builder.shuffle_vector(first, blank, zeros)
+
+
+@intrinsic
+def load(typing: Any, array: Any, index: Any) -> Any:
+    """load(array, (i, ...)): array[i, ..., 0:8]."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.load(_pointer(context, builder, signature.args, *args), align=_UNALIGNED)
+
+    return _lanes(array, index), code
+
+
+@intrinsic
+def store(typing: Any, array: Any, index: Any, value: Any) -> Any:
+    """store(array, (i, ...), x): array[i, ..., 0:8] = x."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        pointer = _pointer(context, builder, signature.args, args[0], args[1])
+        builder.store(args[2], pointer, align=_UNALIGNED)
+        return context.get_dummy_value()
+
+    return types.void(array, index, _lanes), code
+
+
+@intrinsic
+def zero(typing: Any) -> Any:
+    """zero(): eight zeros."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return ir.Constant(_VECTOR, [0.0] * LANES)
+
+    return _lanes(), code
+
+
+@intrinsic
+def scaled(typing: Any, factor: Any, x: Any) -> Any:
+    """scaled(factor, x): factor x."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.fmul(_splat(builder, args[0]), args[1], flags=_CONTRACT)
+
+    return _lanes(types.float64, _lanes), code
+
+
+@intrinsic
+def plus(typing: Any, factor: Any, x: Any, total: Any) -> Any:
+    """plus(factor, x, total): factor x + total."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        product = builder.fmul(_splat(builder, args[0]), args[1], flags=_CONTRACT)
+        return builder.fadd(product, args[2], flags=_CONTRACT)
+
+    return _lanes(types.float64, _lanes, _lanes), code
+
+
+@intrinsic
+def plus_square(typing: Any, x: Any, total: Any) -> Any:
+    """plus_square(x, total): x x + total, lane by lane."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        product = builder.fmul(args[0], args[0], flags=_CONTRACT)
+        return builder.fadd(product, args[1], flags=_CONTRACT)
+
+    return _lanes(_lanes, _lanes), code

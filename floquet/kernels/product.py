@@ -1,0 +1,89 @@
+"""The product of the steps of one period, and how their errors reach its end, compiled."""
+
+from __future__ import annotations
+
+import math
+
+import numba
+
+from floquet.kernels.lanes import LANES, load, plus, plus_square, store, zero
+from floquet.system import FloatArray
+
+FORCED = 6
+"""First of the two lanes that carry forced motion: under the forcing, and under the input."""
+_EPS = 2.220446049250313e-16
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _frobenius(rows: FloatArray, scratch: FloatArray) -> float:
+    """Norm of rows[:, 0:n]."""
+    n = rows.shape[0]
+    total = zero()
+    for i in range(n):
+        total = plus_square(load(rows, (i,)), total)
+    store(scratch, (0,), total)
+    square = 0.0
+    for lane in range(n):
+        square += scratch[0, lane]
+    return math.sqrt(square)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def multiply(left: FloatArray, right: FloatArray, out: FloatArray) -> None:
+    """Out = left[:, 0:n] @ right, all (n, LANES)."""
+    n = left.shape[0]
+    for i in range(n):
+        total = zero()
+        for q in range(n):
+            total = plus(left[i, q], load(right, (q,)), total)
+        store(out, (i,), total)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def carry(
+    steps: FloatArray, local: FloatArray, count: int, flow: FloatArray, weights: FloatArray, work: FloatArray
+) -> float:
+    """Product of the steps, its error bound and the weight with which each step's error reaches the end.
+
+    The first-order error is sum S_j E_j Q_j, S_j the product of the steps after step j and Q_j that of those
+    before it, bounded by sum |S_j| |E_j| |Q_j|.
+
+    Parameters
+    ----------
+    steps : (count, n, LANES), the columns from FORCED on are states at the end of the step from rest
+    local : (count,) bound on |E_j|
+    flow : (n, LANES), out: the product, with the states from rest in the columns from FORCED on
+    weights : (count, 2), out: |S_j|, and |Q_j|
+    work : (3, n, LANES) scratch
+
+    Returns
+    -------
+    bound on the Frobenius norm of the error of the product, rounding of the multiplications included
+    """
+    n = flow.shape[0]
+    product, scratch = work[0], work[1]
+    for i in range(n):
+        for lane in range(LANES):
+            flow[i, lane] = 1.0 if i == lane and lane < n else 0.0
+    for k in range(count):
+        weights[k, 1] = _frobenius(flow, scratch)
+        multiply(steps[k], flow, product)
+        for i in range(n):
+            store(flow, (i,), load(product, (i,)))
+            for lane in range(FORCED, LANES):
+                flow[i, lane] += steps[k, i, lane]
+    after = work[2]
+    for i in range(n):
+        for lane in range(LANES):
+            after[i, lane] = 1.0 if i == lane and lane < n else 0.0
+    total = 0.0
+    for k in range(count - 1, -1, -1):
+        weights[k, 0] = _frobenius(after, scratch)
+        # n eps |P| is the rounding of multiplying by this step.
+        local[k] += n * _EPS * _frobenius(steps[k], scratch)
+        total += weights[k, 0] * local[k] * weights[k, 1]
+        if k > 0:
+            multiply(after, steps[k], product)
+            for i in range(n):
+                store(after, (i,), load(product, (i,)))
+    return total

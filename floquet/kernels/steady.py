@@ -1,0 +1,258 @@
+"""Periodic motion of a rank-one feedback system under periodic forcing, for many points, compiled."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numba
+import numpy as np
+
+from floquet.kernels.lanes import LANES
+from floquet.kernels.majorant import enough_terms, norm, shift
+from floquet.kernels.product import FORCED, carry
+from floquet.kernels.taylor import (
+    Limits,
+    Piece,
+    Problem,
+    load_piece,
+    load_step,
+    scratch_for,
+    series,
+    start_from_rest,
+    steps_of_period,
+)
+from floquet.system import FloatArray
+
+
+class Balance(NamedTuple):
+    """A scalar condition on the motion, mean of psi0 - psi (v . eta) - psid (v . eta') + known + a own = 0.
+
+    It determines the amplitude a of the input of `Problem`.
+
+    Attributes
+    ----------
+    psi : (Q, P, 4, d+1) psi, psid, psi0 and its part that goes with a rate, polynomials like the gains
+    known, own : numbers; own = 0 means a = 0, no condition
+    """
+
+    psi: FloatArray
+    known: float
+    own: float
+
+
+@numba.njit(cache=True, error_model="numpy", nogil=True)
+def periodic_points(
+    problem: Problem,
+    gains: FloatArray,
+    damping_factor: FloatArray,
+    periods: FloatArray,
+    limits: Limits,
+    balance: Balance,
+    start: FloatArray,
+    bound: FloatArray,
+    amplitude: FloatArray,
+    deflection: FloatArray,
+) -> int:
+    """Periodic motion x(T) = x(0) at many points: (I - M) x(0) = state at T from rest.
+
+    Parameters
+    ----------
+    problem, gains, damping_factor, periods, limits : as in ``propagate_points``
+    balance : condition on the amplitude of the input
+    start : (N, 2m), out: x(0) in x = (omega eta, eta')
+    bound : (N, 2), out: bounds on the errors of x(0) and of the amplitude; inf where I - M may be singular
+    amplitude : (N,), out: of the input
+    deflection : (N, S), out: v . eta at S even phases j/S
+
+    Returns
+    -------
+    index of the first point that needs more than max_steps or MAX_TERMS, -1 if none
+    """
+    m = problem.v.size
+    n = 2 * m
+    piece = scratch_for(problem)
+    steps = np.empty((limits.max_steps, n, LANES))
+    local, layout = np.empty((limits.max_steps, 3)), np.empty((limits.max_steps, 3))
+    weights, work, flow = np.empty((limits.max_steps, 2)), np.zeros((3, n, LANES)), np.zeros((n, LANES))
+    closed = np.empty((n, n))
+    both, state = np.zeros((n, 2)), np.zeros((n, 2))
+    sampled = np.zeros((deflection.shape[1], 2))
+    for point in range(periods.size):
+        zeta, T = damping_factor[point], periods[point]
+        count = steps_of_period(problem, gains[point], zeta, T, limits, piece, steps, local, layout)
+        if count < 0:
+            return point
+        error = carry(steps, local[:, 0], count, flow, weights, work)
+        for i in range(n):
+            for j in range(n):
+                closed[i, j] = (1.0 if i == j else 0.0) - flow[i, j]
+        inverse, regular = _inverse(closed)
+        size = norm(inverse.ravel())
+        if not regular or not size * error < 1.0:
+            bound[point] = math.inf
+            continue
+        for i in range(n):
+            for c in range(2):
+                total = 0.0
+                for j in range(n):
+                    total += inverse[i, j] * flow[j, FORCED + c]
+                both[i, c] = state[i, c] = total
+        residual = _residuals(steps, local, weights, count, state)
+        # The exact map moves x(0) by at most the gap of the march and the residual; |(I - M)^-1| of the exact
+        # M turns that into an error.
+        sharpness = size / (1.0 - size * error)
+        errors = sharpness * np.array([norm(state[:, 0] - both[:, 0]), norm(state[:, 1] - both[:, 1])])
+        errors += sharpness * residual
+        state[:] = both
+        means = _sample(
+            problem, gains[point], zeta, T, limits, balance, piece, steps, layout, count, state, sampled
+        )
+        a = doubt = 0.0
+        if balance.own != 0.0:
+            below = balance.own - means[1]
+            a = -(balance.known - means[0]) / below
+            largest = 1.0
+            for k in range(count):
+                largest = max(largest, weights[k, 1])
+            # An error of x(0) grows at most by the largest |Q_k| on its way, and means[2] is what it can do.
+            doubt = means[2] * largest * (errors[0] + abs(a) * errors[1]) / abs(below)
+        for i in range(n):
+            start[point, i] = both[i, 0] + a * both[i, 1]
+        for j in range(sampled.shape[0]):
+            deflection[point, j] = sampled[j, 0] + a * sampled[j, 1]
+        amplitude[point] = a
+        bound[point, 0] = errors[0] + abs(a) * errors[1] + doubt * norm(both[:, 1])
+        bound[point, 1] = doubt
+    return -1
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _inverse(A: FloatArray) -> tuple[FloatArray, bool]:
+    """Inverse by Gauss-Jordan elimination with row pivots; False: singular."""
+    n = A.shape[0]
+    work, inverse = A.copy(), np.eye(n)
+    for k in range(n):
+        p = k
+        for i in range(k + 1, n):
+            if abs(work[i, k]) > abs(work[p, k]):
+                p = i
+        if work[p, k] == 0.0 or not math.isfinite(work[p, k]):
+            return inverse, False
+        for j in range(n):
+            work[k, j], work[p, j] = work[p, j], work[k, j]
+            inverse[k, j], inverse[p, j] = inverse[p, j], inverse[k, j]
+        factor = 1.0 / work[k, k]
+        for j in range(n):
+            work[k, j] *= factor
+            inverse[k, j] *= factor
+        for i in range(n):
+            if i != k:
+                factor = work[i, k]
+                for j in range(n):
+                    work[i, j] -= factor * work[k, j]
+                    inverse[i, j] -= factor * inverse[k, j]
+    return inverse, True
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _advance(step: FloatArray, state: FloatArray) -> None:
+    """Carry the motion under f (column 0) and under the input (column 1) over one step."""
+    n = state.shape[0]
+    following = np.empty((n, 2))
+    for i in range(n):
+        for c in range(2):
+            total = step[i, FORCED + c]
+            for q in range(n):
+                total += step[i, q] * state[q, c]
+            following[i, c] = total
+    state[:] = following
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _residuals(
+    steps: FloatArray, local: FloatArray, weights: FloatArray, count: int, state: FloatArray
+) -> FloatArray:
+    """March both motions through the period; return what the steps' errors add at its end."""
+    residual = np.zeros(2)
+    for k in range(count):
+        for c in range(2):
+            # local[:, 0] has the rounding of the product in it (`carry`).
+            residual[c] += weights[k, 0] * (local[k, 0] * norm(state[:, c]) + local[k, 1 + c])
+        _advance(steps[k], state)
+    return residual
+
+
+@numba.njit(cache=True, fastmath={"contract"}, error_model="numpy")
+def _sample(
+    problem: Problem,
+    gains: FloatArray,
+    zeta: float,
+    T: float,
+    limits: Limits,
+    balance: Balance,
+    piece: Piece,
+    steps: FloatArray,
+    layout: FloatArray,
+    count: int,
+    state: FloatArray,
+    sampled: FloatArray,
+) -> FloatArray:
+    """Sample v . eta of both motions (S, 2) and return the means of the balance for both.
+
+    The third number is the largest change of a mean per unit of error of the states.
+    """
+    n, samples, degree = state.shape[0], sampled.shape[0], balance.psi.shape[3]
+    balanced = balance.own != 0.0
+    nu, nu_rate = norm(problem.v / problem.omega), norm(problem.v)
+    psi, shifted = np.zeros((3, degree)), np.zeros((degree, 3))
+    c = np.zeros((piece.s.shape[0], 2))
+    means = np.zeros(3)
+    last, ratio, sample = -1, math.nan, 0
+    for k in range(count):
+        i, part, parts = int(layout[k, 0]), layout[k, 1], layout[k, 2]
+        begin = problem.phases[i]
+        width = (problem.phases[i + 1] - begin) / parts
+        begin += part * width
+        end = 1.0 if k == count - 1 else begin + width
+        if balanced or (sample < samples and sample < end * samples):
+            if i != last:
+                _, _, _, ratio = load_piece(problem, i, gains, zeta, T, piece)
+                psi[:] = 0.0
+                for q in range(gains.size):
+                    for j in range(degree):
+                        psi[0, j] += gains[q] * balance.psi[q, i, 0, j]
+                        psi[1, j] += gains[q] * zeta * balance.psi[q, i, 1, j]
+                        psi[2, j] += gains[q] * (balance.psi[q, i, 2, j] + zeta / T * balance.psi[q, i, 3, j])
+                last = i
+            h = width * T
+            load_step(problem, piece, -1.0 + 2.0 * part / parts, 2.0 / parts, h)
+            terms, _, _, _ = enough_terms(piece.a, piece.a.size - 1, limits.tolerance, piece.r)
+            start_from_rest(problem, piece, h)
+            series(problem.v, h * h * problem.input, piece, terms, ratio / h)
+            for j in range(terms + 2):
+                for column in range(2):
+                    total = piece.s[j, FORCED + column]
+                    for q in range(n):
+                        total += piece.s[j, q] * state[q, column]
+                    c[j, column] = total
+            while sample < samples and sample < end * samples:
+                tau = (sample / samples - begin) / width
+                for column in range(2):
+                    total = 0.0
+                    for j in range(terms, -1, -1):
+                        total = total * tau + c[j, column]
+                    sampled[sample, column] = total
+                sample += 1
+            if balanced:
+                shift(psi, -1.0 + 2.0 * part / parts, 2.0 / parts, shifted)
+                for e in range(degree):
+                    means[0] -= width * shifted[e, 2] / (e + 1.0)
+                    means[2] += width * (abs(shifted[e, 0]) * nu + abs(shifted[e, 1]) * nu_rate)
+                    for j in range(terms + 1):
+                        both = width / (e + j + 1.0)
+                        rate = both * shifted[e, 1] * (j + 1.0) / h
+                        for column in range(2):
+                            means[column] += both * shifted[e, 0] * c[j, column] + rate * c[j + 1, column]
+        _advance(steps[k], state)
+    return means
