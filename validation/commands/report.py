@@ -17,7 +17,16 @@ def report(
     output: Annotated[Path, typer.Option("--output", "-o", help="Folder to write, new or empty.")] = Path(
         "spurcheck-report"
     ),
-    quick: Annotated[bool, typer.Option("--quick", help="Coarser sampling, for a first look.")] = False,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Coarser sampling and no verification, for a first look.")
+    ] = False,
+    paper: Annotated[
+        bool | None,
+        typer.Option(
+            "--paper/--no-paper",
+            help="Compare with the paper (default, unless --quick): figures, claims, errata.",
+        ),
+    ] = None,
     speed: opt.Speed = None,
     torque: opt.Torque = None,
     law: opt.Law = None,
@@ -42,7 +51,7 @@ def report(
     check_target(output, force=force)
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
     with progress_bar("report") as tell:
-        written = write(gear_pair, output, force=force, quick=quick, progress=tell)
+        written = write(gear_pair, output, force=force, quick=quick, paper=paper, progress=tell)
     console = stdout()
     console.print(written.sentence, soft_wrap=True)
     console.print(f"\nreport: {written.folder / 'index.html'} ({written.seconds:.0f} s)", soft_wrap=True)

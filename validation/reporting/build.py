@@ -7,7 +7,7 @@ import json
 import resource
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -54,6 +54,7 @@ def report(
     *,
     force: bool = False,
     quick: bool = False,
+    paper: bool | None = None,
     progress: Progress | None = None,
 ) -> Report:
     """Write the verification report of a gear pair into a folder.
@@ -67,7 +68,8 @@ def report(
     pair : gear pair, preset name or parameter file
     out : folder, new or empty
     force : replace an earlier report in that folder
-    quick : coarser sampling, for a first look
+    quick : coarser sampling and no verification, for a first look
+    paper : compare with the paper: its figures, its claims, its errata, for this pair; default unless quick
     progress : called with the finished fraction and what is being done
 
     Raises
@@ -80,11 +82,12 @@ def report(
     gear_pair = load_gear_pair(pair)
     target = Path(out)
     with whole_folder(target, force=force) as folder:
-        results = compute(gear_pair, QUICK if quick else FULL, lambda f, text: tell(0.8 * f, text))
+        effort = replace(QUICK if quick else FULL, paper=not quick if paper is None else paper)
+        results = compute(gear_pair, effort, lambda f, text: tell(0.75 * f, text))
         computed = time.perf_counter()
         summary = summarise(results)
-        chapters = tuple(write(results) for write in CHAPTERS)
-        images = _draw(chapters, folder / "figures", lambda f: tell(0.8 + 0.17 * f, "figures"))
+        chapters = tuple(made for write in CHAPTERS if (made := write(results)) is not None)
+        images = _draw(chapters, folder / "figures", lambda f: tell(0.75 + 0.22 * f, "figures"))
         tell(0.97, "page and data")
         _write_data(results, folder / "data")
         data = document(results, summary, chapters, quick=quick)
@@ -148,6 +151,7 @@ def _write_data(results: Results, folder: Path) -> None:
         "friction_laws": results.profile,
         "speed_sweep": results.sweep,
         "stability_chart": results.chart,
+        "validity_map": results.validity,
         "cross_check_lumped": check.lumped.isel(time=samples),
     }
     physics = {
@@ -162,4 +166,7 @@ def _write_data(results: Results, folder: Path) -> None:
         datasets[f"cross_check_{fidelity}"] = result.isel(time=samples)
     for name, dataset in datasets.items():
         write_dataset(dataset, folder / f"{name}.nc")
+    if results.paper is not None:
+        for record in results.paper.figures:
+            record.write(folder / "paper")
     (folder / "parameters.toml").write_text(results.pair.to_toml(), encoding="utf-8")

@@ -10,13 +10,17 @@ import xarray as xr
 
 import lumped
 from floquet.gear_pair import GearPairMultipliers, gear_pair_multipliers, stability_chart
-from lumped import GearPair, Geometry, NumericalError
+from lumped import GearPair, Geometry, NumericalError, ParameterError
 from lumped.averaged import Mode, modes
 from lumped.friction import friction_profile
 from validation.comparison import CrossCheck, crosscheck
 from validation.mesh_physics import MeshPhysics, mesh_physics
 from validation.metrics import FloatArray, MeshOrders, mesh_orders
+from validation.reporting.paper_results import PaperResults, paper_results
+from validation.stability_margins import StabilityMargins, stability_margins
 from validation.validity import Flag, speed_drift, validity_flags
+from validation.validity_map import validity_map
+from validation.verification import Check, OrderCheck, Refinement, code_checks, order_checks, refinements
 
 Progress = Callable[[float, str], None]
 
@@ -35,7 +39,11 @@ class Effort:
     sweep_speeds : of the response over speed
     chart_speeds, chart_dampings : nodes of the stability chart
     chart_rtol : accuracy of the monodromy matrices in the chart
+    map_speeds, map_torques : points of the validity map
     mesh_optimum : whether to search the best tip relief and solve the periodic motion of every law
+    verify : whether to check the code against closed forms and to refine the solutions
+    paper : whether to reproduce the paper's figures, judge its claims and show its errata with this pair
+    claim_samples : samples of what the paper leaves open, for that
     """
 
     samples: int
@@ -44,19 +52,37 @@ class Effort:
     chart_speeds: int
     chart_dampings: int
     chart_rtol: float
+    map_speeds: int = 7
+    map_torques: int = 3
     mesh_optimum: bool = False
+    verify: bool = False
+    paper: bool = False
+    claim_samples: int = 8
 
 
 FULL = Effort(
     samples=512,
     cycles=40,
     sweep_speeds=240,
-    chart_speeds=81,
-    chart_dampings=13,
+    chart_speeds=121,
+    chart_dampings=33,
     chart_rtol=1e-8,
+    map_speeds=31,
+    map_torques=9,
     mesh_optimum=True,
+    verify=True,
+    claim_samples=64,
 )
 QUICK = Effort(samples=128, cycles=16, sweep_speeds=24, chart_speeds=16, chart_dampings=4, chart_rtol=1e-6)
+
+
+@dataclass(frozen=True)
+class Verification:
+    """Code and solution verification, see ``validation.verification``."""
+
+    code: tuple[Check, ...]
+    orders: tuple[OrderCheck, ...]
+    solution: tuple[Refinement, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +102,11 @@ class Results:
     multipliers: GearPairMultipliers
     chart: xr.Dataset
     flags: tuple[Flag, ...]
+    margins: StabilityMargins
+    validity: xr.Dataset
+    verification: Verification | None
+    paper: PaperResults | None
+    paper_refusal: str = ""
 
     @property
     def operating_rpm(self) -> float:
@@ -90,6 +121,12 @@ class Results:
 
 def compute(pair: GearPair, effort: Effort, progress: Progress) -> Results:
     """Compute everything for one pair.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    effort : how finely
+    progress : called with the finished fraction and what is being done
 
     Raises
     ------
@@ -122,8 +159,27 @@ def compute(pair: GearPair, effort: Effort, progress: Progress) -> Results:
         pair,
         chart_axes(pair, effort),
         rtol=effort.chart_rtol,
-        progress=lambda done, total: progress(0.45 + 0.5 * done / total, "stability chart"),
+        progress=lambda done, total: progress(0.45 + 0.15 * done / total, "stability chart"),
     )
+    progress(0.6, "stability margins")
+    margins = stability_margins(pair, speeds)
+    valid = validity_map(
+        pair,
+        *map_axes(pair, speeds, effort),
+        progress=lambda f: progress(0.65 + 0.1 * f, "validity over speed and torque"),
+    )
+    verification = None
+    if effort.verify:
+        progress(0.75, "verification")
+        verification = Verification(code_checks(pair), order_checks(), refinements(pair, effort.samples))
+    reproduced, refusal = None, ""
+    if effort.paper:
+        try:
+            reproduced = paper_results(
+                pair, effort.claim_samples, lambda f: progress(0.8 + 0.18 * f, "comparison with the paper")
+            )
+        except (NumericalError, ParameterError) as error:  # the paper's operating points may not suit a pair
+            refusal = str(error)
     g = lumped.geometry(pair)
     flags = validity_flags(pair, motion, multipliers)
     flags += (speed_drift(g, check.multibody["exact"]),)
@@ -141,6 +197,11 @@ def compute(pair: GearPair, effort: Effort, progress: Progress) -> Results:
         multipliers=multipliers,
         chart=chart,
         flags=flags,
+        margins=margins,
+        validity=valid,
+        verification=verification,
+        paper=reproduced,
+        paper_refusal=refusal,
     )
 
 
@@ -171,6 +232,15 @@ def chart_axes(pair: GearPair, effort: Effort) -> dict[str, FloatArray]:
         "speed_rpm": _with_point(speeds, _rpm(pair)),
         "damping_ratio": _with_point(dampings, pair.mesh.damping_ratio),
     }
+
+
+def map_axes(pair: GearPair, speeds: tuple[float, float], effort: Effort) -> tuple[FloatArray, FloatArray]:
+    """Speeds [rpm] and torques [N m] of the validity map; the operating point is a node."""
+    torque = pair.operating.pinion_torque
+    return (
+        _with_point(np.linspace(*speeds, effort.map_speeds), _rpm(pair)),
+        _with_point(torque * np.geomspace(0.2, 4.0, effort.map_torques), torque),
+    )
 
 
 def _rpm(pair: GearPair) -> float:

@@ -1,0 +1,85 @@
+"""Validity of the lumped model over speed and torque."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from validation.plots.style import BLACK, new_figure
+from validation.validity import LOAD_NOISE, REVERSAL_LIMITS
+from validation.validity_map import REGIMES
+
+#: Good, near a limit, beyond it, nothing there: told apart by lightness too, and hatched where bad.
+_STATES = ("#d5ecdf", "#f5d58a", "#c65d2e", "#b8b8b8")
+_REGIMES = ("#c65d2e", "#f5d58a", "#d5ecdf", "#8fc1e3")
+
+
+def validity_map_figure(data: xr.Dataset, point: tuple[float, float] | None = None) -> Figure:
+    """Contact, sliding and film over speed and torque, a panel each.
+
+    Parameters
+    ----------
+    data : of ``validation.validity_map.validity_map``
+    point : operating point (rpm, N m); None: not marked
+    """
+    figure, axes = new_figure(1, 3, height=3.5, sharey=True)
+    lowest, reversal = data["lowest_load"].to_numpy(), data["reversal"].to_numpy()
+    nothing = np.isnan(lowest)
+    contact = np.where(nothing, 3, np.where(lowest < -LOAD_NOISE, 2, 0))
+    sliding = np.select([nothing, reversal > REVERSAL_LIMITS[1], reversal > REVERSAL_LIMITS[0]], [3, 2, 1], 0)
+    panels = (
+        ("contact", contact, _STATES, ("kept", "", "lost", "no periodic motion")),
+        (
+            "direction of sliding",
+            sliding,
+            _STATES,
+            (
+                "kept",
+                f"reversed up to {100 * REVERSAL_LIMITS[1]:g} % of a base pitch",
+                "reversed farther",
+                "no periodic motion",
+            ),
+        ),
+        ("film, thinnest place", data["regime"].to_numpy(), _REGIMES, REGIMES),
+    )
+    for ax, (title, values, colours, names) in zip(axes[0], panels, strict=True):
+        _panel(ax, data, values, colours)
+        present = [k for k in range(4) if (values == k).any()]
+        ax.legend(
+            handles=[
+                Patch(facecolor=colours[k], edgecolor=BLACK, linewidth=0.4, label=names[k]) for k in present
+            ],
+            loc="upper center",
+            bbox_to_anchor=(0.5, -0.2),
+            frameon=False,
+            fontsize=8.0,
+        )
+        ax.set_title(title, fontsize=9.0)
+        ax.set_xlabel("pinion speed [rpm]")
+        if point is not None:
+            ax.plot(*point, "o", markersize=7, markerfacecolor="white", markeredgecolor=BLACK)
+    axes[0, 0].set_ylabel("pinion torque [N m]")
+    return figure
+
+
+def _panel(
+    ax: Axes,
+    data: xr.Dataset,
+    values: np.ndarray[tuple[int, ...], np.dtype[np.int64]],
+    colours: tuple[str, ...],
+) -> None:
+    ax.pcolormesh(
+        data["speed"].to_numpy(),
+        data["torque"].to_numpy(),
+        values,
+        cmap=ListedColormap(list(colours)),
+        norm=BoundaryNorm(np.arange(-0.5, 4.5), 4),
+        shading="nearest",
+        rasterized=True,
+    )
+    ax.set_yscale("log")
+    ax.grid(False)

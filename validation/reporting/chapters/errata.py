@@ -1,0 +1,60 @@
+"""Errata of the paper's print, each shown by computation with this gear pair."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from validation.paper import draw_errata
+from validation.reporting.blocks import Badge, Block, Cell, Chapter, Column, Fact, Facts, Picture, Table, Text
+from validation.reporting.results import Results
+
+
+def errata(results: Results) -> Chapter | None:
+    """Write the chapter; None where the comparison with the paper was not asked for."""
+    if results.paper is None:
+        return None
+    chapter = results.paper.errata
+    rows: list[tuple[Cell, ...]] = [
+        (e.equation, e.printed, e.repaired, Badge("misprint", e.verdict), e.text) for e in chapter.errata
+    ]
+    evidence: list[tuple[Cell, ...]] = [
+        (e.equation, v.quantity, v.printed, v.repaired, v.unit or "–", v.requirement or None)
+        for e in chapter.errata
+        for v in e.evidence
+    ]
+    blocks: list[Block] = [
+        Text(chapter.text),
+        Facts("conditions", tuple(Fact(name, name, value) for name, value in chapter.conditions.items())),
+        Table(
+            "errata",
+            "Misprints and their repair.",
+            (
+                Column("equation", "equation"),
+                Column("printed", "printed"),
+                Column("repaired", "repaired"),
+                Column("verdict", "the print is"),
+                Column("text", "what shows it"),
+            ),
+            tuple(rows),
+        ),
+        Picture(
+            "errata",
+            "Transmission error and motion of the gear along and off the line of action, repaired and with "
+            "each printed sign put back alone.",
+            partial(draw_errata, chapter),
+        ),
+        Table(
+            "evidence",
+            "The computations.",
+            (
+                Column("equation", "equation"),
+                Column("quantity", "quantity"),
+                Column("printed", "as printed"),
+                Column("repaired", "repaired"),
+                Column("unit", "unit"),
+                Column("requirement", "must hold"),
+            ),
+            tuple(evidence),
+        ),
+    ]
+    return Chapter("errata", "Errata of the paper", tuple(blocks))

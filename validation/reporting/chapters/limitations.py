@@ -1,0 +1,99 @@
+"""Assumptions and limitations: what the numbers rest on, with what this report found about each."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lumped.serialise import leaf_paths
+from validation.reporting.blocks import Badge, Cell, Chapter, Column, Table, Text
+from validation.reporting.chapters.parameters import is_assumed, source_of
+from validation.reporting.formatting import number
+from validation.reporting.results import Results
+from validation.validity import Flag
+
+
+def limitations(results: Results) -> Chapter:
+    """Write the chapter."""
+    table = Table(
+        "assumptions",
+        "What the lumped model assumes, and what this report found about it at the operating point.",
+        (
+            Column("assumption", "assumption"),
+            Column("consequence", "where it fails"),
+            Column("found", "found here"),
+            Column("state", "state"),
+        ),
+        tuple(_rows(results)),
+    )
+    outside = Text(
+        "Not covered by any model of this report:",
+        (
+            "Motions out of the plane: shaft tilt, misalignment, crowning, load across the face width.",
+            "Elastic blanks, shafts and housing beyond the bearing stiffness given; rotating imbalance.",
+            "Differences from tooth to tooth, and so everything slower than the mesh frequency: shaft "
+            "orders, hunting tooth.",
+            "Heat: the oil's viscosity is one value; wear, scuffing and strength are not computed.",
+            "The friction law is empirical. Models that agree with each other share it, so their agreement "
+            "says nothing about it; a measured record does (spurcheck measurement).",
+        ),
+    )
+    assumed, total = _assumed(results)
+    text = Text(
+        f"Verification asks whether the equations are solved right; validation, whether they are the right "
+        f"equations, and only measurements decide that. {assumed} of {total} parameter values of this pair "
+        "are assumed: no conclusion is firmer than these."
+    )
+    return Chapter("limitations", "Assumptions and limitations", (text, table, outside))
+
+
+def _assumed(results: Results) -> tuple[int, int]:
+    paths = [path for path in leaf_paths(results.pair) if path not in ("name", "description")]
+    return sum(is_assumed(source_of(results.pair, path)) for path in paths), len(paths)
+
+
+def _rows(results: Results) -> list[tuple[Cell, ...]]:
+    flags = {flag.key: flag for flag in results.flags}
+    rows: list[tuple[Cell, ...]] = []
+
+    def of_flag(key: str, assumption: str) -> None:
+        flag: Flag | None = flags.get(key)
+        if flag is not None:
+            rows.append((assumption, flag.meaning, flag.detail, Badge(flag.state)))
+
+    of_flag("contact_loss", "Teeth in contact stay in contact.")
+    of_flag("sliding_reversal", "Sliding has the direction of the nominal rotation.")
+    of_flag("torque_balance", "The torques balance friction, so the mean speed is constant.")
+    of_flag("film_parameter", "The friction law suits the lubrication regime.")
+    of_flag("friction_law_range", "The friction law is used inside the range of its fit.")
+    of_flag("stiffness_range", "The tooth stiffness is used inside the range of its fit.")
+    exact = results.check.of("exact")
+    largest = max(exact, key=lambda a: a.relative_l2)
+    rows.append(
+        (
+            "Vibration does not move the contact: position, lever and line of action are nominal.",
+            "Differences grow with torque; entry and exit of teeth shift with deflection.",
+            f"multibody model with finite motions differs by up to {number(100 * largest.relative_l2, 2)} % "
+            f"(relative L2), in {largest.quantity}",
+            Badge(results.check.verdict),
+        )
+    )
+    stiffness = results.pair.mesh.stiffness.model
+    factor = float(np.nanmax(results.motion["normal_load"].to_numpy())) / results.static_load
+    rows.append(
+        (
+            "The stiffness of a tooth pair depends on its position alone, not on its load.",
+            "Hertzian contact stiffens with load; light loads are softer.",
+            f"model “{stiffness}”; loads swing up to {number(factor, 3)} times the static load",
+            Badge("prediction", "by assumption"),
+        )
+    )
+    rows.append(
+        (
+            "Damping in the mesh is viscous, a constant ratio.",
+            "The ratio sets peaks at resonance and the width of tongues.",
+            f"ratio {results.pair.mesh.damping_ratio:g}; every tongue of the range closes at "
+            f"{number(results.margins.critical_damping, 3)}",
+            Badge("ok" if results.pair.mesh.damping_ratio > results.margins.critical_damping else "warning"),
+        )
+    )
+    return rows

@@ -1,0 +1,44 @@
+"""Solution verification: the numbers of this report against finer steps, tolerances and sampling."""
+
+from __future__ import annotations
+
+from validation.reporting.blocks import Badge, Cell, Chapter, Column, Table, Text
+from validation.reporting.results import Results
+
+
+def solution_verification(results: Results) -> Chapter | None:
+    """Write the chapter; None in a quick report."""
+    if results.verification is None:
+        return None
+    studies = results.verification.solution
+    passed = sum(s.passes for s in studies)
+    text = Text(
+        f"How large is the numerical error of this report's numbers? Every kind of solution was computed "
+        f"again at other resolutions: {passed} of {len(studies)} are within their limits. Marked: the "
+        "resolution that the report uses."
+    )
+    rows: list[tuple[Cell, ...]] = []
+    marked: set[int] = set()
+    for study in studies:
+        for level in study.levels:
+            if level.used:
+                marked.add(len(rows))
+            verdict = Badge("within" if study.passes else "outside") if level.used else None
+            limit = study.limit if level.used else None
+            rows.append((study.subject, level.setting, level.error, limit, verdict))
+    table = Table(
+        "refinement",
+        "Error at each resolution.",
+        (
+            Column("solution", "solution"),
+            Column("setting", "resolution"),
+            Column("error", "error"),
+            Column("limit", "limit"),
+            Column("verdict", "verdict"),
+        ),
+        tuple(rows),
+        marked=frozenset(marked),
+    )
+    what = Text("Errors and limits:", tuple(f"{s.subject}: {s.measure}; {s.reason}." for s in studies))
+    badge = Badge("confirmed" if passed == len(studies) else "not confirmed")
+    return Chapter("solution_verification", "Solution verification", (text, table, what), badge)

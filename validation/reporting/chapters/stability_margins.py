@@ -1,0 +1,127 @@
+"""Margins of stability: distance to the nearest tongue in speed and in damping."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from validation.plots.tongues import tongues_figure
+from validation.reporting.blocks import (
+    Block,
+    Cell,
+    Chapter,
+    Column,
+    Fact,
+    Facts,
+    Picture,
+    Quantity,
+    Table,
+    Text,
+)
+from validation.reporting.results import Results
+
+
+def stability_margins(results: Results) -> Chapter:
+    """Write the chapter."""
+    m = results.margins
+    low, high = m.speed_range
+    reach = f"{low:.5g} to {high:.5g} rpm"
+    nearest = m.nearest
+    facts = Facts(
+        "distances",
+        (
+            Fact(
+                "speed_margin",
+                "nearest unstable speed at this damping",
+                "none in the range" if m.speed_margin is None else Quantity(m.speed_margin, "rpm"),
+                f"distance from {m.rpm:.5g} rpm; range {reach}",
+            ),
+            Fact(
+                "nearest_tongue",
+                "nearest tongue without mesh damping",
+                "none in the range" if nearest is None else nearest.label,
+                "" if nearest is None else f"{nearest.lower:.5g} to {nearest.upper:.5g} rpm",
+            ),
+            Fact(
+                "nearest_tongue_distance",
+                "distance to it",
+                None if nearest is None else Quantity(nearest.distance(m.rpm), "rpm"),
+            ),
+            Fact(
+                "critical_damping",
+                "mesh damping ratio that closes every tongue",
+                m.critical_damping,
+                f"this pair has {m.damping:g}",
+            ),
+            Fact(
+                "damping_margin",
+                "margin in mesh damping ratio over the range",
+                m.damping - m.critical_damping,
+                "negative: some speed of the range is unstable",
+            ),
+            Fact(
+                "damping_at_speed",
+                "largest unstable mesh damping at this speed",
+                "none, not even 0" if m.damping_at_speed is None else m.damping_at_speed,
+            ),
+            Fact(
+                "friction_coefficient",
+                "friction coefficient held",
+                m.friction_coefficient,
+                "mean of the law over the path of contact",
+            ),
+            Fact(
+                "law_difference",
+                "largest effect of that on a multiplier",
+                m.law_difference,
+                "law against constant coefficient, in the middle of every tongue without mesh damping",
+            ),
+        ),
+    )
+    blocks: list[Block] = [
+        Text(
+            "A tongue is a range of speeds in which the periodic change of stiffness feeds a vibration: the "
+            "mesh frequency is near (ω_i ± ω_j)/k. The search over speed is seeded with every such line up "
+            "to k = 12, so thin tongues are met, and the edges are found by bisection. Bearings are damped "
+            "as given; mesh damping is varied."
+        ),
+        facts,
+    ]
+    if m.tongues:
+        rows: list[tuple[Cell, ...]] = [
+            (
+                t.label.replace("w", "ω"),
+                Quantity(t.lower, "rpm"),
+                Quantity(t.upper, "rpm"),
+                t.radius,
+                t.critical_damping,
+                m.damping - t.critical_damping,
+                Quantity(t.distance(m.rpm), "rpm"),
+            )
+            for t in m.tongues
+        ]
+        blocks += [
+            Picture(
+                "tongues",
+                "Tongues over pinion speed and mesh damping ratio (orange: unstable). Circle: operating "
+                "point; dashed: its damping. Narrow neighbours are labelled in the table only.",
+                partial(tongues_figure, m),
+            ),
+            Table(
+                "tongues_table",
+                "Every tongue without mesh damping, and the mesh damping that closes it.",
+                (
+                    Column("label", "mesh frequency"),
+                    Column("lower", "from"),
+                    Column("upper", "to"),
+                    Column("radius", "largest multiplier"),
+                    Column("critical_damping", "closed by damping"),
+                    Column("damping_margin", "margin in damping"),
+                    Column("distance", "distance in speed"),
+                ),
+                tuple(rows),
+                note="Closing dampings are read from a chart of 81 dampings and 65 speeds per tongue.",
+            ),
+        ]
+    else:
+        blocks.append(Text(f"Even without mesh damping no speed from {reach} is unstable."))
+    return Chapter("stability_margins", "Stability margins", tuple(blocks))

@@ -1,0 +1,81 @@
+"""Validity of the lumped model over speed and torque."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from validation.plots.validity_map import validity_map_figure
+from validation.reporting.blocks import Cell, Chapter, Column, Fact, Facts, Picture, Quantity, Table, Text
+from validation.reporting.results import Results
+from validation.validity import LOAD_NOISE, REVERSAL_LIMITS
+from validation.validity_map import REGIMES, STATES
+
+
+def validity_map(results: Results) -> Chapter:
+    """Write the chapter."""
+    data, pair = results.validity, results.pair
+    state, regime = data["state"].to_numpy(), data["regime"].to_numpy()
+    lowest, reversal = data["lowest_load"].to_numpy(), data["reversal"].to_numpy()
+    with np.errstate(invalid="ignore"):
+        shares = (
+            Fact("valid", "valid", float(np.mean(state == 0)), "share of the points"),
+            Fact("contact_lost", "contact lost", float(np.mean(lowest < -LOAD_NOISE))),
+            Fact(
+                "sliding_reversed",
+                "sliding reversed off the pitch point",
+                float(np.mean(reversal > REVERSAL_LIMITS[0])),
+                f"by more than {100 * REVERSAL_LIMITS[0]:g} % of a base pitch",
+            ),
+            Fact(
+                "no_motion", "no periodic motion", float(np.mean(state == STATES.index("no periodic motion")))
+            ),
+            *(
+                Fact(f"regime_{k}", f"film: {name}", float(np.mean(regime == k)))
+                for k, name in enumerate(REGIMES)
+            ),
+        )
+    torque, speed = data["torque"].to_numpy(), data["speed"].to_numpy()
+    here = int(np.argmin(np.abs(torque - pair.operating.pinion_torque)))
+    rows: list[tuple[Cell, ...]] = []
+    for row in sorted({0, here, torque.size - 1}):
+        spans = _spans(speed, state[row] == 0)
+        rows.append((Quantity(float(torque[row]), "N m"), spans or "nowhere"))
+    blocks = (
+        Text(
+            f"The checks of the chapter before, at {speed.size} speeds and {torque.size} torques, all else "
+            "as given. The equations are linear: without relief and errors of the teeth, contact loss "
+            "depends on speed alone. Film and sliding depend on both."
+        ),
+        Picture(
+            "validity_map",
+            "Where the lumped model holds, over pinion speed and torque. Left: do the teeth stay in contact? "
+            "Middle: does sliding keep its direction away from the pitch point? Right: lubrication regime at "
+            "the thinnest place of the path of contact. Circle: operating point.",
+            partial(validity_map_figure, data, (results.operating_rpm, pair.operating.pinion_torque)),
+        ),
+        Facts("shares", shares),
+        Table(
+            "valid_speeds",
+            "Speeds at which contact and sliding are as the model assumes, at three torques.",
+            (Column("torque", "pinion torque"), Column("speeds", "pinion speeds")),
+            tuple(rows),
+            note=f"Between neighbouring points, {speed[1] - speed[0]:.4g} rpm apart, the state may change "
+            "unseen.",
+        ),
+    )
+    return Chapter("validity_map", "Validity over speed and torque", blocks)
+
+
+def _spans(
+    speed: np.ndarray[tuple[int, ...], np.dtype[np.float64]],
+    good: np.ndarray[tuple[int, ...], np.dtype[np.bool_]],
+) -> str:
+    """Runs of good speeds in words."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(int), [0]])))
+    parts = []
+    for first, end in zip(edges[::2], edges[1::2], strict=True):
+        low, high = speed[first], speed[end - 1]
+        parts.append(f"{low:.5g} rpm" if low == high else f"{low:.5g} to {high:.5g} rpm")
+    return ", ".join(parts)

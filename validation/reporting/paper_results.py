@@ -1,0 +1,50 @@
+"""What the report's paper chapters are written from."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from lumped import GearPair, LawRangeWarning
+from validation.paper import (
+    ClaimsTable,
+    ErrataChapter,
+    FigureRecord,
+    claims,
+    errata_chapter,
+    figure_records,
+    law_runs,
+)
+
+
+@dataclass(frozen=True, eq=False)
+class PaperResults:
+    """The paper with this gear pair: figures 2 to 7, claims with verdicts, errata by computation."""
+
+    figures: tuple[FigureRecord, ...]
+    claims: ClaimsTable
+    errata: ErrataChapter
+
+
+def paper_results(pair: GearPair, samples: int, progress: Callable[[float], None]) -> PaperResults:
+    """Compute everything that the paper chapters show.
+
+    Parameters
+    ----------
+    pair : the gear pair; speeds, torques and laws are the paper's, those of the errata's effects the pair's
+    samples : of the Latin hypercube over what the paper does not give
+    progress : called with the finished fraction
+
+    Raises
+    ------
+    NumericalError : a model fails at an operating point of the paper
+    """
+    with warnings.catch_warnings():
+        # Laws are taken to the paper's operating points whether they suit them or not: that is what it did.
+        warnings.simplefilter("ignore", LawRangeWarning)
+        figures = figure_records(pair, progress=lambda f: progress(0.4 * f))
+        shown = errata_chapter(pair)
+        progress(0.5)
+        table = claims(pair, samples=samples, runs=law_runs(pair), progress=lambda f: progress(0.5 + 0.5 * f))
+    return PaperResults(figures, table, shown)

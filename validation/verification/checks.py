@@ -1,0 +1,108 @@
+"""What verification returns: numbers with the limits that they are judged by."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Check:
+    """A computed number against its exact value.
+
+    Attributes
+    ----------
+    key : stable name for programs
+    subject : the code that is checked
+    exact : what it must equal, and where that comes from
+    value : error, relative where not said otherwise
+    limit : largest error that passes
+    reason : why the limit is what it is
+    """
+
+    key: str
+    subject: str
+    exact: str
+    value: float
+    limit: float
+    reason: str
+
+    @property
+    def passes(self) -> bool:
+        """Whether the error is a number within its limit."""
+        return math.isfinite(self.value) and self.value <= self.limit
+
+
+@dataclass(frozen=True)
+class OrderCheck:
+    """Order of convergence of a method, observed and from theory.
+
+    Attributes
+    ----------
+    method : name
+    theory, observed : order
+    steps : coarse number of steps; the fine one is twice as large
+    error : relative, with the fine steps
+    tolerance : largest difference of the orders that passes
+    """
+
+    method: str
+    theory: int
+    observed: float
+    steps: int
+    error: float
+    tolerance: float = 0.3  # the next term of the error series at coarse steps
+
+    @property
+    def passes(self) -> bool:
+        """Whether the orders agree."""
+        return math.isfinite(self.observed) and abs(self.observed - self.theory) <= self.tolerance
+
+
+@dataclass(frozen=True)
+class Level:
+    """One resolution of a refinement.
+
+    Attributes
+    ----------
+    setting : the resolution in words
+    error : difference from the finest one, see ``Refinement.measure``
+    used : whether the report's numbers are computed with it
+    """
+
+    setting: str
+    error: float
+    used: bool = False
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """One solution of this gear pair at several resolutions.
+
+    Attributes
+    ----------
+    key : stable name for programs
+    subject : the solution
+    measure : what the error is of, and relative to what
+    levels : from coarse to fine
+    limit : largest error of the resolution that is used
+    reason : why the limit is what it is
+    """
+
+    key: str
+    subject: str
+    measure: str
+    levels: tuple[Level, ...]
+    limit: float
+    reason: str
+
+    @property
+    def error(self) -> float:
+        """Error of the resolution that is used."""
+        return next(level.error for level in self.levels if level.used)
+
+    @property
+    def passes(self) -> bool:
+        """Whether the used resolution is within its limit and refining has brought the error down to it."""
+        first, used = self.levels[0].error, self.error
+        return math.isfinite(used) and used <= self.limit and used <= max(first, self.limit)

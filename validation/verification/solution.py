@@ -1,0 +1,172 @@
+"""The solutions of this gear pair against finer ones: steps, tolerances, sampling."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+import lumped
+import multibody
+from floquet import gear_pair_system, monodromy
+from lumped import GearPair
+from lumped.periodic_system import LTVSystem, periodic_system
+from lumped.propagation import STAGES, STEP_ANGLE, step_maps
+from validation.verification.checks import Level, Refinement
+
+FloatArray = NDArray[np.float64]
+
+_SAMPLES = 64
+_CYCLES = 4
+
+
+def refinements(pair: GearPair, samples: int) -> tuple[Refinement, ...]:
+    """Refine every kind of solution that the report uses.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    samples : per mesh cycle of the report's periodic motion
+
+    Raises
+    ------
+    NumericalError : a model fails; the text says what to try
+    """
+    return (
+        _stages(pair),
+        _sampling(pair, samples),
+        _transient(pair),
+        _closure(pair),
+        _multibody(pair),
+        _monodromy(pair),
+    )
+
+
+def _periodic_state(system: LTVSystem, stages: int) -> FloatArray:
+    """State (10,) at the start of the periodic motion, bearings and mesh held, by a Gauss method."""
+    maps = step_maps(system, np.zeros((system.size, 0)), step_angle=STEP_ANGLE, stages=stages)
+    phi, forced = maps.over_all()
+    return np.asarray(np.linalg.solve(np.eye(system.size) - phi, forced[:, 0]), dtype=np.float64)
+
+
+def _stages(pair: GearPair) -> Refinement:
+    system = periodic_system(pair, "relative")
+    finest = _periodic_state(system, STAGES + 2)
+    scale = np.abs(finest[: system.size // 2]).max()
+    levels = []
+    for stages in range(1, STAGES + 1):
+        found = _periodic_state(system, stages)
+        error = float(np.abs(found - finest)[: system.size // 2].max() / scale)
+        levels.append(Level(f"Gauss, {stages} stages, order {2 * stages}", error, stages == STAGES))
+    return Refinement(
+        key="steady_state",
+        subject="periodic motion: order of the steps",
+        measure=f"displacements at the start of the cycle against {STAGES + 2} stages, over the largest",
+        levels=tuple(levels),
+        limit=1e-9,
+        reason="far below every difference that is discussed",
+    )
+
+
+def _sampling(pair: GearPair, samples: int) -> Refinement:
+    finest = 8 * samples
+    spans = {
+        count: float(np.ptp(lumped.steady_state(pair, samples_per_cycle=count)["dte"].to_numpy()))
+        for count in (samples // 4, samples, 2 * samples, finest)
+    }
+    return Refinement(
+        key="sampling",
+        subject="periodic motion: samples per mesh cycle",
+        measure=f"peak to peak of the transmission error against {finest} samples, relative",
+        levels=tuple(
+            Level(f"{count} samples", abs(span / spans[finest] - 1.0), count == samples)
+            for count, span in spans.items()
+            if count != finest
+        ),
+        limit=2e-3,
+        reason="a peak read off samples; three digits are shown",
+    )
+
+
+def _difference(run: FloatArray, finest: FloatArray) -> float:
+    return float(np.abs(run - finest).max() / np.ptp(finest))
+
+
+def _transient(pair: GearPair) -> Refinement:
+    def dte(rtol: float) -> FloatArray:
+        run = lumped.simulate(pair, _CYCLES, samples_per_cycle=_SAMPLES, rtol=rtol)
+        return np.asarray(run["dte"].to_numpy(), dtype=np.float64)
+
+    finest = dte(1e-12)
+    return Refinement(
+        key="transient",
+        subject=f"transient of the lumped model, {_CYCLES} mesh cycles from rest: tolerance",
+        measure="transmission error against rtol 1e-12, largest difference over the peak to peak",
+        levels=tuple(
+            Level(f"rtol {rtol:.0e}", _difference(dte(rtol), finest), rtol == 1e-10)
+            for rtol in (1e-6, 1e-8, 1e-10)
+        ),
+        limit=1e-7,
+        reason="errors of a step add up over the transient",
+    )
+
+
+def _closure(pair: GearPair) -> Refinement:
+    """The transient integrator, started in the periodic motion, must stay in it."""
+    levels = []
+    for rtol in (1e-6, 1e-8, 1e-10):
+        run = lumped.simulate(pair, 2, samples_per_cycle=_SAMPLES, rtol=rtol, initial="periodic")
+        dte = np.asarray(run["dte"].to_numpy(), dtype=np.float64)
+        error = _difference(dte[_SAMPLES : 2 * _SAMPLES], dte[:_SAMPLES])
+        levels.append(Level(f"rtol {rtol:.0e}", error, rtol == 1e-10))
+    return Refinement(
+        key="closure",
+        subject="periodic motion carried on by the transient integrator",
+        measure="second mesh cycle against the first, transmission error, largest difference over the peak "
+        "to peak",
+        levels=tuple(levels),
+        limit=1e-7,
+        reason="two independent integrators (Gauss collocation, DOP853) share only the equations",
+    )
+
+
+def _multibody(pair: GearPair) -> Refinement:
+    def dte(rtol: float) -> FloatArray:
+        run = multibody.simulate(
+            pair, _CYCLES, samples_per_cycle=_SAMPLES, rtol=rtol, initial="periodic", friction_velocity=None
+        )
+        return np.asarray(run["dte"].to_numpy(), dtype=np.float64)
+
+    finest = dte(1e-10)
+    return Refinement(
+        key="multibody",
+        subject=f"exact multibody model, {_CYCLES} mesh cycles: tolerance",
+        measure="transmission error against rtol 1e-10, largest difference over the peak to peak",
+        levels=tuple(
+            Level(f"rtol {rtol:.0e}", _difference(dte(rtol), finest), rtol == 1e-8)
+            for rtol in (1e-5, 1e-6, 1e-8)
+        ),
+        limit=1e-4,
+        reason="a hundredth of the smallest difference of the models that is discussed",
+    )
+
+
+def _monodromy(pair: GearPair) -> Refinement:
+    system = gear_pair_system(pair, "feedback")
+    finest = monodromy(system, 1e-10, method="gauss").matrix
+    size = float(np.linalg.norm(finest))
+
+    def error(rtol: float, method: str) -> float:
+        return float(np.linalg.norm(monodromy(system, rtol, method=method).matrix - finest)) / size
+
+    return Refinement(
+        key="monodromy",
+        subject="monodromy matrix: tolerance and method",
+        measure="matrix against rtol 1e-10 by Gauss collocation, relative to its norm",
+        levels=(
+            *(Level(f"rtol {rtol:.0e}, Gauss", error(rtol, "gauss")) for rtol in (1e-4, 1e-6)),
+            Level("rtol 1e-08, Gauss", error(1e-8, "gauss"), True),
+            Level("rtol 1e-08, Magnus of order 6", error(1e-8, "magnus6")),
+        ),
+        limit=1e-7,
+        reason="ten times what is asked for: the norm of the comparison is not the balanced one",
+    )
