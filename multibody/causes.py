@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 import numpy as np
 import xarray as xr
@@ -11,6 +11,7 @@ from lumped.parameters import GearPair
 from lumped.results import provenance
 from lumped.solution import Initial
 from multibody.effects import EFFECTS
+from multibody.flow_map import steady_state
 from multibody.simulation import simulate
 
 #: Rotations and centres together place the contact; one without the other is no motion of the machine, so the
@@ -31,6 +32,7 @@ def attribution(
     initial: Initial = "periodic",
     samples_per_cycle: int = 128,
     rtol: float = 1e-9,
+    periodic: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> xr.Dataset:
     """How much each finite-motion effect changes the motion.
@@ -39,6 +41,9 @@ def attribution(
     ----------
     pair : a validated gear pair
     cycles, initial, samples_per_cycle, rtol : of the runs, as ``multibody.simulate``
+    periodic : compare periodic motions instead, each with the brake torque that balances it
+        (``multibody.steady_state``; ``cycles`` and ``initial`` have no meaning then). In a run every effect
+        that changes the losses also lets the pair drift, which adds a shift of phase that grows with time
     progress : called with the finished fraction
 
     Returns
@@ -54,11 +59,17 @@ def attribution(
     for cause, names in CAUSES.items():
         cases[cause, "alone"], cases[cause, "without"] = set(names), every - set(names)
     options = {"initial": initial, "samples_per_cycle": samples_per_cycle, "rtol": rtol}
-    base = simulate(pair, cycles, effects=(), **options)  # type: ignore[arg-type]  # mixed types
+
+    def motion(effects: Collection[str]) -> xr.Dataset:
+        if periodic:
+            return steady_state(pair, effects=effects, samples_per_cycle=samples_per_cycle, rtol=rtol)
+        return simulate(pair, cycles, effects=effects, **options)  # type: ignore[arg-type]  # mixed types
+
+    base = motion(())
     labels = [*CAUSES, "all"]
     table = {kind: np.zeros((len(labels), len(_QUANTITIES))) for kind in ("alone", "without")}
     for number, ((cause, kind), effects) in enumerate(cases.items()):
-        run = simulate(pair, cycles, effects=effects, **options)  # type: ignore[arg-type]  # as above
+        run = motion(effects)
         for column, name in enumerate(_QUANTITIES):
             swing = float(np.ptp(base[name].to_numpy()))
             change = float(np.abs(run[name] - base[name]).max())
@@ -77,7 +88,7 @@ def attribution(
             )
         },
         coords={"cause": labels, "quantity": list(_QUANTITIES)},
-        attrs=provenance(pair, cycles=cycles, **options),
+        attrs=provenance(pair, cycles=1 if periodic else cycles, periodic=periodic, **options),
     )
     result.attrs["largest"] = labels[int(np.argmax(table["alone"][:-1, 0]))]
     return result

@@ -26,6 +26,8 @@ import lumped
 import multibody
 from lumped import GearPair
 from lumped.errors import LawRangeWarning, SpurcheckError, refuse
+from multibody.machine import machine
+from multibody.reversal import sticking
 from validation.comparison import FIDELITIES, QUANTITIES, agreement, contact_shift, off_switch_samples
 from validation.metrics import FloatArray
 from validation.sliding_effect import SlidingEffect, sliding_effect
@@ -212,11 +214,16 @@ def _point(pair: GearPair, samples: int) -> _Point:
                 found = agreement(quantity, fidelity, run, reference, keep, allowed, change)
                 judged[i, j], limit[i, j] = found.judged, allowed.limit
                 largest[i, j] = found.maximum_over_span
-            if run.attrs["friction_velocity"] > 0.0:
+            if fidelity == "exact" and (run.attrs["friction_velocity"] > 0.0 or may_stick(pair)):
                 status = STICKING
     except SpurcheckError as error:
         return _Point(str(error), load_min, time.perf_counter() - started)
     return _Point(status, load_min, time.perf_counter() - started, judged, limit, largest)
+
+
+def may_stick(pair: GearPair) -> bool:
+    """Whether friction may hold the teeth at zero sliding, which no first-order argument covers."""
+    return sticking(machine(pair, pair.operating.pinion_torque, pair.operating.pinion_torque)) >= 1.0
 
 
 def _sliding_effect(pair: GearPair, samples: int) -> SlidingEffect:

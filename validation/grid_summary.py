@@ -28,8 +28,9 @@ class GridSummary:
     outside : compared points with an exact quantity outside its tolerance
     scaling : largest departure from the law of torque where it is judged; NaN where it is nowhere
     scaled : points where it is judged
-    worst : coordinates of the largest exact DTE difference over peak to peak among the compared points
-    largest : that difference
+    worst : coordinates of the largest exact DTE difference over peak to peak, of all points where both models
+        ran, judged or not
+    largest, largest_judged : that difference, and the largest among the judged points
     """
 
     verdict: Verdict
@@ -45,6 +46,7 @@ class GridSummary:
     scaled: int
     worst: Mapping[str, str | float]
     largest: float
+    largest_judged: float
 
 
 def summarise_grid(result: xr.Dataset) -> GridSummary:
@@ -56,12 +58,12 @@ def summarise_grid(result: xr.Dataset) -> GridSummary:
     linear = float(usage.sel(fidelity="linear").where(ran).max())
     exact = usage.sel(fidelity="exact").max("quantity").where(compared)
     departure = abs(law_of_torque(result) - 1.0)
-    dte = result["largest"].sel(fidelity="exact", quantity="dte").where(compared)
+    dte = result["largest"].sel(fidelity="exact", quantity="dte").where(ran)
     lost = result["difference"].sel(fidelity="exact", quantity="dte").where(compared) > LOST
     broken = bool((departure > SCALING_TOLERANCE).any()) or bool(lost.any()) or not linear <= 1.0
     outside = int((exact > 1.0).sum())
     worst: dict[str, str | float] = {}
-    if bool(compared.any()):
+    if bool(ran.any()):
         worst = {axis: place.item() for axis, place in _place(dte).items()}
     return GridSummary(
         verdict="not confirmed" if broken else "bounded" if outside else "confirmed",
@@ -77,6 +79,7 @@ def summarise_grid(result: xr.Dataset) -> GridSummary:
         scaled=int(departure.notnull().sum()),
         worst=worst,
         largest=float(dte.max()),
+        largest_judged=float(dte.where(compared).max()),
     )
 
 
@@ -109,7 +112,7 @@ def explain(
         float(point["speed"]),
         float(point["torque"]),
     )
-    return multibody.attribution(pair, 10, progress=progress)
+    return multibody.attribution(pair, periodic=True, progress=progress)
 
 
 def _place(values: xr.DataArray) -> dict[str, xr.DataArray]:

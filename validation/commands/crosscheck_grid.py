@@ -105,6 +105,8 @@ def _sentences(found: GridSummary, seconds: float, workers: int) -> list[str]:
         f"the lumped model and not judged at fidelity exact; {found.failed} failed.",
         f"Linear: at most {found.linear:.2g} of the tolerance. Exact: {found.outside} points with a quantity "
         f"outside its tolerance, at most {found.exact:.3g} times.",
+        "Largest exact difference of the transmission error over its peak to peak: "
+        f"{found.largest_judged:.3g} where judged, {found.largest:.3g} anywhere.",
         f"Law of torque at {found.scaled} points with constant friction coefficient and smooth stiffness: "
         f"off by at most {100 * found.scaling:.2g} % of {100 * SCALING_TOLERANCE:g} % allowed.",
     ]
@@ -115,8 +117,7 @@ def _explain(found: GridSummary, causes: xr.Dataset) -> None:
 
     console = stdout()
     console.print(
-        f"Worst: {_named(found.worst)}: largest difference of the transmission error "
-        f"{number(found.largest, 3)} of its peak to peak. What it comes from:",
+        f"Worst: {_named(found.worst)}. What the difference of {number(found.largest, 3)} comes from:",
         soft_wrap=True,
     )
     shown = table("", "cause", ">alone", ">all but this")
