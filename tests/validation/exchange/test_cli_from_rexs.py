@@ -56,6 +56,12 @@ def test_a_wrong_call_is_refused_with_exit_code_2(options, message):
     assert message in result.stderr
 
 
+def test_the_number_of_the_stage_is_passed_on(xml, save):
+    result = run("init", "--from-rexs", save(xml()), "--stage", 2, "-o", "-")
+    assert result.exit_code == 2
+    assert "a whole number, 1 to 1" in result.stderr
+
+
 def test_a_helical_stage_is_refused_and_nothing_is_written(xml, save, tmp_path):
     result = run("init", "--from-rexs", save(xml(helix="20")), "-o", tmp_path / "pair.toml")
     assert result.exit_code == 2

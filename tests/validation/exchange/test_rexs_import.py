@@ -1,6 +1,7 @@
 """Does the import take each value from its place, in its unit, and say where it is from?"""
 
 import math
+import re
 
 import pytest
 
@@ -93,8 +94,10 @@ def test_the_zipped_form_is_the_same_model(xml, save, leaves, packed):
 def test_a_byte_order_mark_a_namespace_and_utf16_do_not_matter(xml, save, leaves):
     plain = leaves(gear_pair_from_rexs(save(xml()))[0])
     spaced = xml().replace("<model ", '<model xmlns="https://www.rexs.info" ')
+    prefixed = re.sub(r"<(/?)(?=[a-z])", r"<\1r:", xml())
+    prefixed = prefixed.replace("<r:model ", '<r:model xmlns:r="https://www.rexs.info" ')
     utf16 = xml().replace('encoding="UTF-8"', 'encoding="UTF-16"').encode("utf-16")
-    for content in (b"\xef\xbb\xbf" + xml().encode(), spaced, utf16):
+    for content in (b"\xef\xbb\xbf" + xml().encode(), spaced, prefixed, utf16):
         assert leaves(gear_pair_from_rexs(save(content))[0]) == plain
 
 
@@ -152,7 +155,9 @@ def test_the_dedendum_comes_from_the_tool_or_else_the_root_diameter(xml, save):
         '<relation id="95" type="manufacturing_step" order="1"><ref id="41" role="workpiece"/>'
         '<ref id="73" role="tool"/><ref id="74" role="manufacturing_settings"/></relation>'
     )
-    rack = gear_pair_from_rexs(save(xml(gear_1=root, components=tool, relations=step)))[0]["basic_rack"]
+    mapping, notes = gear_pair_from_rexs(save(xml(gear_1=root, components=tool, relations=step)))
+    assert not any("dedendum" in note for note in notes)
+    rack = mapping["basic_rack"]
     assert rack["dedendum_coefficient"] == 1.3
     assert rack["fillet_radius_coefficient"] == 0.25
 
@@ -241,3 +246,67 @@ def test_stages_are_listed_with_what_can_be_done_with_them(xml, save):
     (stage,) = rexs_stages(save(xml()))
     assert (stage.number, stage.component_id, stage.name, stage.teeth) == (1, 10, "first stage", (20, 30))
     assert stage.usable
+
+
+def test_relief_of_the_driven_gear_reaches_its_own_tip(xml, save):
+    relations = _ON_BOTH_FLANKS.replace('"41"', '"43"').replace('"42"', '"44"')
+    base, start, stated, tip = 60.0 * math.cos(math.radians(20.0)), 61.5, 62.5, 64.0  # z = 30, x = 0, m = 2
+    parts = {"components": _relief("tip_relief", 0.02, start, stated), "relations": relations}
+    relief = gear_pair_from_rexs(save(xml(**parts)))[0]["gear"]["tip_relief"]
+
+    def roll(diameter):
+        return math.tan(math.acos(base / diameter))
+
+    carried = (roll(tip) - roll(start)) / (roll(stated) - roll(start))
+    assert relief["amount"] == pytest.approx(20.0 * carried, rel=1e-11)  # twelve digits are written
+
+
+def test_the_speed_of_the_other_shaft_is_carried_over_by_the_ratio(xml, save):
+    speed = '<attribute id="rotational_speed" unit="1 / min">1500</attribute>'
+    text = xml().replace(speed.replace("1500", "-1500"), "")
+    text = text.replace(
+        '<component id="32" type="shaft"/>', f'<component id="32" type="shaft">{speed}</component>'
+    )
+    mapping, _ = gear_pair_from_rexs(save(text))
+    # 30 teeth at 1500 rpm drive 20 teeth at 2250 rpm; the conversion to SI rounds twice
+    assert mapping["operating"]["pinion_speed"] == pytest.approx(2250.0, rel=1e-14)
+
+
+def test_torque_from_power_over_speed(xml, save):
+    text = xml().replace(
+        '<attribute id="torque_around_u_axis" unit="N m">-42.5<', '<attribute id="power" unit="kW">3.5<'
+    )
+    pair = lumped.load_gear_pair(gear_pair_from_rexs(save(text))[0])
+    # 3500 W at 1500 rpm = 157.0796 rad/s
+    assert pair.operating.pinion_torque == pytest.approx(3500.0 / (50.0 * math.pi), rel=1e-14)
+
+
+def test_an_external_torque_on_a_shaft_with_two_gears_is_not_that_of_the_stage(xml, save):
+    refs = '<ref id="31" role="assembly"/><ref id="75" role="part"/>'
+    further = f'<relation id="85" type="assembly">{refs}</relation>'
+    components = '<component id="75" type="cylindrical_gear"/>'
+    mapping, notes = gear_pair_from_rexs(save(xml(relations=further, components=components)))
+    assert mapping["sources"]["operating.pinion_torque"].startswith("assumed")
+    assert any("operating.pinion_torque is not in the file" in note for note in notes)
+
+
+def test_operating_viscosity_is_kinematic(xml, save):
+    oil = (
+        '<component id="71" type="lubricant">'
+        '<attribute id="density_at_15_degree_celsius" unit="kg / dm^3">0.9</attribute></component>'
+    )
+    stage = '<attribute id="operating_viscosity" unit="mm^2 / s">20</attribute>'
+    mapping, _ = gear_pair_from_rexs(save(xml(components=oil, stage=stage)))
+    # 20 mm^2/s * 900 kg/m^3 = 18 mPa s, one multiplication
+    assert lumped.load_gear_pair(mapping).lubricant.viscosity == pytest.approx(18e-3, rel=1e-15)
+
+
+def test_other_units_of_the_same_kind_are_converted(xml, save):
+    text = xml().replace('unit="mm">50.2<', 'unit="mum">50200<')
+    text = text.replace('unit="deg">20<', f'unit="rad">{math.pi / 9!r}<').replace(
+        'unit="deg">0<', 'unit="°">0<'
+    )
+    mapping, _ = gear_pair_from_rexs(save(text))
+    pair = lumped.load_gear_pair(mapping)
+    assert mapping["centre_distance"] == 50.2
+    assert pair.basic_rack.pressure_angle == pytest.approx(math.pi / 9, rel=1e-15)  # one rounding

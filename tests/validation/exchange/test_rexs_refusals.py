@@ -103,35 +103,45 @@ def test_entities_are_refused_before_anything_is_expanded_or_fetched(xml, save, 
 
 
 @pytest.mark.parametrize(
-    "content",
+    ("content", "reason"),
     [
-        b"",
-        b"   ",
-        b"no markup",
-        b"<model",
-        b"<html></html>",
-        b"<?xml version='1.0' encoding='klingon'?><model version='1.4'/>",
-        b"\xff\xfe<\x00",
-        b"{",
-        b"{}",
-        b"[1]",
-        b'{"model": []}',
-        b'{"model": {"version": "1.5", "components": 3, "relations": []}}',
-        b'{"model": {"version": "1.5", "components": [{"id": true}], "relations": []}}',
-        b'{"model": {"version": "1.5", "components": [], "relations": [], "date": NaN}}',
-        b'{"a":' * 100_000,
-        b'{"model": ' + b"9" * 10_000 + b"}",
-        b"<model version='1.4'><components><component id='1.5'/></components></model>",
-        b"<model version='1.4'><components><component id='1'/><component id='1'/></components></model>",
-        b"<model version='1.4'><relations><relation id='1' type='stage'><ref id='9' role='stage'/></relation>"
-        b"</relations></model>",
-        b"<model version='1.4'>" + b"<a>" * 100,
-        b"<model version='1.4'></model>",
-        b"PK\x03\x04 broken",
+        (b"", "neither XML nor JSON"),
+        (b"   ", "neither XML nor JSON"),
+        (b"no markup", "neither XML nor JSON"),
+        (b"<model", "malformed"),
+        (b"<html></html>", "root element"),
+        (b"<?xml version='1.0' encoding='klingon'?><model version='1.4'/>", "unknown encoding"),
+        (b"\xff\xfe<\x00", "malformed"),
+        (b"{", "not of the form"),
+        (b"{}", "no 'model'"),
+        (b'{"model": []}', "not of the form"),
+        (b'{"model": {"version": "1.5", "components": 3, "relations": []}}', "not of the form"),
+        (b'{"model": {"version": "1.5", "components": [{"id": true}], "relations": []}}', "whole number"),
+        (b'{"model": {"version": "1.5", "components": [], "relations": [], "x": NaN}}', "NaN is no number"),
+        (b'{"a":' * 100_000, "nested too deeply"),
+        (b'{"model": ' + b"9" * 10_000 + b"}", "not of the form"),
+        (
+            b"<model version='1.4'><components><component id='1.5'/></components></model>",
+            "instead of a number",
+        ),
+        (
+            b"<model version='1.4'><components><component id='1'/><component id='1'/></components></model>",
+            "two components have the id 1",
+        ),
+        (
+            b"<model version='1.4'><relations><relation id='1' type='stage'><ref id='9' role='stage'/>"
+            b"</relation></relations></model>",
+            "component 9 is referred to",
+        ),
+        (b"<model version='1.4'>" + b"<a>" * 100 + b"</a>" * 100 + b"</model>", "nested deeper"),
+        (b"<model version='1.4'></model>", "no gear stage"),
+        (b"PK\x03\x04 broken", "archive cannot be read"),
     ],
 )
-def test_broken_files_are_refused_in_one_message(save, content):
-    assert refused(save(content)).startswith("REXS file = model.rexs: ")
+def test_broken_files_are_refused_in_one_message_with_the_reason(save, content, reason):
+    message = refused(save(content))
+    assert message.startswith("REXS file = model.rexs: ")
+    assert reason in message
 
 
 def test_places_that_are_no_file_are_refused(tmp_path):
@@ -171,11 +181,15 @@ def test_a_zip_bomb_is_cut_off(tmp_path, monkeypatch):
     path = archive(tmp_path, **{"model.rexs": b" " * 5_000_000})
     monkeypatch.setattr(container, "MAX_BYTES", 1_000_000)
     assert path.stat().st_size < 10_000
+    tracemalloc.start()
     assert "more than 1000000 bytes" in refused(path)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 4_000_000  # what is read at most, twice while it grows; the whole would take 5 MB and more
 
 
 @pytest.mark.parametrize(
-    "name", ["../evil.txt", "/etc/evil", "a/../../evil", "C:\\evil", "\\\\host\\evil", "..\\evil"]
+    "name", ["../evil.txt", "/etc/evil", "a/../../evil", "C:\\evil", "\\\\host\\evil", "\\evil", "..\\evil"]
 )
 def test_members_that_leave_the_archive_are_refused(xml, tmp_path, name):
     path = archive(tmp_path, **{"model.rexs": xml(), name: "x"})
@@ -196,7 +210,7 @@ def test_encrypted_or_oddly_packed_archives_are_refused(xml, tmp_path):
     data[central + 8] |= 1  # general purpose flag, bit 0: encrypted
     path = tmp_path / "locked.rexsz"
     path.write_bytes(data)
-    assert "encrypted" in refused(path)
+    assert "of the archive is encrypted" in refused(path)
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_LZMA) as made:
         made.writestr("model.rexs", xml())

@@ -59,7 +59,6 @@ class _Reader:
         self.load_cases: list[LoadCase] = []
         self._path: list[str] = []
         self._text: list[str] = []
-        self._table = False
         self._given: dict[str, str] = {}
         self._refs: list[tuple[str, int]] = []
         self._case: list[Component] = []
@@ -90,9 +89,7 @@ class _Reader:
         elif name == "component":
             self._begin_component(given)
         elif name == "attribute":
-            self._given, self._text, self._table = given, [], False
-        elif name in ("array", "matrix", "array_of_arrays"):
-            self._table = True
+            self._given, self._text = given, []
         elif name == "load_case":
             self._given, self._case = given, []
             self.load_cases.append(LoadCase(self._id(given), ()))
@@ -124,11 +121,11 @@ class _Reader:
         if "component" not in self._path or (in_spectrum and not in_case):
             return
         text = "".join(self._text).strip()
-        value = None if self._table or not text else text
-        attribute = Attribute(value, self._given.get("unit", ""))
+        attribute = Attribute(text or None, self._given.get("unit", ""))
         owners[-1].attributes[self._given.get("id", "")] = attribute
 
     def _characters(self, text: str) -> None:
+        # Text of an array or a matrix has another element as its parent.
         if self._path[-1] == "attribute":
             self._text.append(text)
 
