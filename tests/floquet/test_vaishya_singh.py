@@ -125,8 +125,8 @@ def test_zones_over_speed_and_damping() -> None:
         assert (chart.verdict.sel(damping_ratio=0.3) == 1).all()
         assert not (chart.verdict.sel(damping_ratio=0.0) == 1).any()
         assert (chart.verdict.sel(damping_ratio=0.01) == -1).any()
-    # Friction of one sign moves every tongue by sqrt(1 + mu tan alpha) = 3.6 %, here that around 2 omega; zones
-    # are known to a node (1 %).
+    # Friction of one sign moves every tongue by sqrt(1 + mu tan alpha) = 3.6 %, here that around 2 omega;
+    # zones are known to a node (1 %).
     unstable = [(c.verdict.sel(damping_ratio=0.0) == -1).values for c in (none, constant)]
     speed = none.speed_ratio.values
     moved = [speed[bad & (speed > 1.5)].mean() for bad in unstable]

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from floquet.gear_tongues import LabelledRegion
+
 
 @guarded
 def stability(
@@ -28,9 +30,16 @@ def stability(
             "--axis",
             metavar="NAME=FROM:TO:COUNT",
             help="One or two axes of the chart: speed_rpm, damping_ratio (mesh), friction_coefficient, "
-            "torque [N m], stiffness_variation, bearing_stiffness [N/m]. Default: speed and damping ratio.",
+            "torque [N m], stiffness_variation, contact_ratio, bearing_stiffness [N/m]. "
+            "Default: speed and damping ratio.",
         ),
     ] = None,
+    tongues: Annotated[
+        bool,
+        typer.Option(
+            "--tongues", help="Name the unstable regions of the chart, in a table and in the figure."
+        ),
+    ] = False,
     speed: opt.Speed = None,
     torque: opt.Torque = None,
     law: opt.Law = None,
@@ -64,7 +73,7 @@ def stability(
     shown.add_row("bound on its error", number(found.error, 2))
     shown.add_row("margin, 1 - largest multiplier", number(1.0 - found.spectral_radius))
     console.print(shown)
-    if target is not None or axes:
+    if target is not None or axes or tongues:
         grid = grid or _default_axes(gear_pair)
         with progress_bar("stability chart") as tell:
             chart = stability_chart(
@@ -76,11 +85,12 @@ def stability(
             f"{float(chart['spectral_radius'].max()):.6f}",
             soft_wrap=True,
         )
+        regions = _regions(chart, gear_pair) if tongues else None
         if target is not None:
             if target.suffix.lower() in DATA_SUFFIXES:
                 write_dataset(chart, target)
             else:
-                _draw(chart, grid, gear_pair, target)
+                _draw(chart, grid, gear_pair, target, regions)
             stderr().print(f"wrote {target}", soft_wrap=True)
     if found.verdict != "stable":
         raise typer.Exit(FAILED)
@@ -115,7 +125,38 @@ def _default_axes(gear_pair: object) -> dict[str, NDArray[np.float64]]:
     return chart_axes(gear_pair, FULL)
 
 
-def _draw(chart: object, grid: dict[str, NDArray[np.float64]], gear_pair: object, target: Path) -> None:
+def _regions(chart: object, gear_pair: object) -> list[LabelledRegion]:
+    """Name the unstable regions and print them."""
+    import xarray as xr
+
+    from floquet.gear_tongues import label_regions
+    from lumped import GearPair
+
+    assert isinstance(chart, xr.Dataset)
+    assert isinstance(gear_pair, GearPair)
+    regions = label_regions(gear_pair, chart)
+    names = list(map(str, chart["spectral_radius"].dims))
+    shown = table(
+        "unstable regions, by mode shape (w: natural frequencies)",
+        "tongue",
+        *(f">{name}" for name in names),
+        ">largest multiplier",
+        ">points",
+    )
+    for region in regions:
+        place = [f"{region.point[name]:.6g}" for name in names]
+        shown.add_row(str(region.label), *place, f"{region.radius:.6f}", str(region.nodes))
+    stdout().print(shown)
+    return regions
+
+
+def _draw(
+    chart: object,
+    grid: dict[str, NDArray[np.float64]],
+    gear_pair: object,
+    target: Path,
+    regions: list[LabelledRegion] | None,
+) -> None:
     import xarray as xr
 
     from lumped import GearPair
@@ -138,5 +179,16 @@ def _draw(chart: object, grid: dict[str, NDArray[np.float64]], gear_pair: object
     }
     x, y = grid
     point = (values[x], values[y]) if x in values and y in values else None
+    if regions is not None and "speed_rpm" in grid:
+        from floquet import predicted_lines
+        from validation.plots.tongue_chart import tongue_chart_figure
+
+        other = y if x == "speed_rpm" else x
+        if point is not None and x != "speed_rpm":
+            point = point[::-1]
+        lines = {str(tongue): speed for tongue, speed in predicted_lines(gear_pair).items()}
+        figure = tongue_chart_figure(chart, other, regions, lines, point=point)
+    else:
+        figure = stability_figure(chart, x, y, point)
     with whole_file(target) as temporary:
-        save(stability_figure(chart, x, y, point), temporary)
+        save(figure, temporary)

@@ -1,0 +1,84 @@
+"""Campbell diagram: frequencies over speed, orders of the mesh frequency, predicted tongues."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from validation.plots.style import BLACK, DASHES, GREY, LINES, RED, legend_above, new_figure
+from validation.plots.tongue_chart import crowded, mark_operating_range, pretty
+
+
+def campbell_figure(
+    diagram: xr.Dataset,
+    *,
+    operating_rpm: float | None = None,
+    operating_range: tuple[float, float] | None = None,
+    label_orders: int = 2,
+) -> Figure:
+    """Frequencies of the Floquet solutions and their growth over pinion speed.
+
+    Parameters
+    ----------
+    diagram : dataset of ``floquet.gear_campbell.campbell``
+    operating_rpm : operating speed, marked [rpm]
+    operating_range : speeds of operation [rpm]
+    label_orders : predicted lines up to this order are named
+    """
+    figure, axes = new_figure(2, 1, height=5.2, sharex=True, gridspec_kw={"height_ratios": [2.2, 1.0]})
+    top, bottom = axes[:, 0]
+    speed = diagram["speed_rpm"].to_numpy()
+    frequency = diagram["frequency"].to_numpy() / 1e3
+    ceiling = 1.12 * float(frequency.max())
+    for index, mode in enumerate(diagram["mode"].to_numpy()):
+        style = {"color": LINES[index], "linestyle": DASHES[index], "linewidth": 1.6}
+        top.plot(speed, frequency[:, index], label=f"mode {mode}", **style)
+        bottom.plot(speed, diagram["decay"].to_numpy()[:, index] / 1e3, **style)
+    for order, line in zip(
+        diagram["mesh_order"].to_numpy(), diagram["mesh_frequency"].to_numpy().T / 1e3, strict=True
+    ):
+        top.plot(speed, line, color=GREY, linewidth=0.8)
+        x = min(speed[-1], speed[-1] * ceiling / line[-1])
+        if x > speed[0]:
+            top.annotate(
+                f"{order}×", (x, min(line[-1], ceiling)), xytext=(-2, -8), textcoords="offset points",
+                ha="right", fontsize=7.5, color=GREY,
+            )  # fmt: skip
+    places: list[float] = []
+    lines = zip(*(diagram[name].to_numpy() for name in ("line_speed", "order", "label")), strict=True)
+    for place, order, label in sorted(lines, key=lambda line: (line[1], "-" in line[2], line[0])):
+        named = order <= label_orders and not crowded(place, places, speed[-1] - speed[0])
+        for ax in (top, bottom):
+            ax.axvline(place, color=RED, linewidth=0.8 if named else 0.3, alpha=0.5, zorder=0.5)
+        if named:
+            places.append(place)
+            bottom.annotate(
+                pretty(str(label)), (place, 1.0), xycoords=("data", "axes fraction"), xytext=(0, -2),
+                textcoords="offset points", rotation=90, ha="right", va="top", fontsize=7.0, color=RED,
+            )  # fmt: skip
+    unstable = diagram["decay"].to_numpy().min(axis=1) < 0.0
+    bottom.fill_between(
+        speed, 0, 1, where=unstable, transform=bottom.get_xaxis_transform(), color=RED, alpha=0.2, linewidth=0
+    )
+    bottom.axhline(0.0, color=BLACK, linewidth=0.8)
+    top.set_ylim(0.0, ceiling)
+    top.set_xlim(speed[0], speed[-1])
+    top.set_ylabel("frequency [kHz]")
+    bottom.set_ylabel("decay rate [1/ms]\n(< 0: unstable)")
+    bottom.set_xlabel("pinion speed [rpm]; red: predicted tongues (ω$_i$ ± ω$_j$)/k")
+    legend_above(top, 3)
+    if operating_rpm is not None and speed[0] <= operating_rpm <= speed[-1]:
+        for ax in (top, bottom):
+            ax.axvline(operating_rpm, color=BLACK, linewidth=1.0, linestyle="--")
+        top.annotate(
+            "operating point", (operating_rpm, 1.0), xycoords=("data", "axes fraction"), xytext=(3, -3),
+            textcoords="offset points", va="top", fontsize=8.0, rotation=90,
+        )  # fmt: skip
+    if operating_range is not None:
+        mark_operating_range(
+            top, (max(operating_range[0], speed[0]), min(operating_range[1], speed[-1])), lower=True
+        )
+    top.tick_params(labelbottom=False)
+    assert np.isfinite(frequency).all()
+    return figure
