@@ -36,8 +36,8 @@ def test_bearings_multiply_the_shift_of_entry():
     """Teeth enter late by half the wind-up q = delta + x_g - x_p; only both causes together see all of it.
 
     The entering gear tip meets the pinion where rho_g = L + delta - rho_p. With the contact's mean place
-    held that is (L - L_XY + delta)/2 after A, and the line of action has grown by L - L_XY = x_g - x_p. With the
-    nominal line (entry shift alone) only delta/2 is left; without entry shift, next to nothing.
+    held that is (L - L_XY + delta)/2 after A, and the line of action has grown by L - L_XY = x_g - x_p. With
+    the nominal line (entry shift alone) only delta/2 is left; without entry shift, next to nothing.
     """
     pair = lumped.load_gear_pair("fzg_c").with_(
         mesh__stiffness={"model": "parabolic"}, operating__pinion_speed=0.3 * 2170
