@@ -15,7 +15,9 @@ from validation.studies.record import Record, Status
 
 #: Aim of the time of a batch [s]; a killed run loses at most two batches under way a worker.
 BATCH_SECONDS = 0.5
-MAX_BATCH = 1000
+#: Batches a second that a scheduler is asked for at most: with many workers the batches last longer.
+BATCHES_PER_SECOND = 500.0
+MAX_BATCH = 10_000
 #: How often a case may kill its worker, alone on it, before it counts as failed.
 MAX_DEATHS = 2
 _CHECK_SECONDS = 2.0
@@ -137,6 +139,7 @@ class Dispatcher:
         """Cases of the next batch: by time, and small at the end so that all workers stay busy."""
         if self._seconds is None:
             return 1
-        by_time = int(BATCH_SECONDS / max(self._seconds, 1e-6))
-        share = self._left // (4 * max(self._pool.slots, 1))
+        slots = max(self._pool.slots, 1)
+        by_time = int(max(BATCH_SECONDS, slots / BATCHES_PER_SECOND) / max(self._seconds, 1e-6))
+        share = self._left // (4 * slots)
         return max(1, min(by_time, share, MAX_BATCH))
