@@ -141,7 +141,8 @@ def _draw(
     rpm = pair.operating.pinion_speed * 30.0 / np.pi
     phase = t / g.mesh_period
     figure.suptitle(
-        f"{pair.name}, {rpm:.4g} rpm, {pair.operating.pinion_torque:.4g} N m, mesh cycle {phase:.3f}"
+        f"{pair.name}, {rpm:.4g} rpm, {pair.operating.pinion_torque:.4g} N m, mesh cycle {phase:.3f}",
+        parse_math=False,  # a name is text, whatever it contains
     )
 
 

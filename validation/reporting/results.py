@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 import lumped
+import multibody
 from floquet.gear_pair import GearPairMultipliers, gear_pair_multipliers, stability_chart
 from lumped import GearPair, Geometry, NumericalError, ParameterError
 from lumped.averaged import Mode, modes
@@ -41,6 +42,7 @@ class Effort:
     chart_rtol : accuracy of the monodromy matrices in the chart
     map_speeds, map_torques : points of the validity map
     mesh_optimum : whether to search the best tip relief and solve the periodic motion of every law
+    attribution : whether to switch the finite-motion effects one at a time, to say why the models differ
     verify : whether to check the code against closed forms and to refine the solutions
     paper : whether to reproduce the paper's figures, judge its claims and show its errata with this pair
     claim_samples : samples of what the paper leaves open, for that
@@ -55,6 +57,7 @@ class Effort:
     map_speeds: int = 7
     map_torques: int = 3
     mesh_optimum: bool = False
+    attribution: bool = False
     verify: bool = False
     paper: bool = False
     claim_samples: int = 8
@@ -70,6 +73,7 @@ FULL = Effort(
     map_speeds=31,
     map_torques=9,
     mesh_optimum=True,
+    attribution=True,
     verify=True,
     claim_samples=64,
 )
@@ -99,6 +103,7 @@ class Results:
     modes: tuple[Mode, ...]
     sweep: xr.Dataset
     check: CrossCheck
+    causes: xr.Dataset | None
     multipliers: GearPairMultipliers
     chart: xr.Dataset
     flags: tuple[Flag, ...]
@@ -153,6 +158,7 @@ def compute(pair: GearPair, effort: Effort, progress: Progress) -> Results:
         cycles=effort.cycles,
         progress=lambda f: progress(0.2 + 0.25 * f, "cross-check against the multibody model"),
     )
+    causes = _causes(pair) if effort.attribution else None
     progress(0.45, "stability")
     multipliers = gear_pair_multipliers(pair)
     chart = stability_chart(
@@ -194,6 +200,7 @@ def compute(pair: GearPair, effort: Effort, progress: Progress) -> Results:
         modes=found,
         sweep=sweep,
         check=check,
+        causes=causes,
         multipliers=multipliers,
         chart=chart,
         flags=flags,
@@ -203,6 +210,14 @@ def compute(pair: GearPair, effort: Effort, progress: Progress) -> Results:
         paper=reproduced,
         paper_refusal=refusal,
     )
+
+
+def _causes(pair: GearPair) -> xr.Dataset | None:
+    """Why the exact model differs; None where it has no periodic motion near the lumped one."""
+    try:
+        return multibody.attribution(pair, periodic=True)
+    except NumericalError:
+        return None
 
 
 def speed_range(pair: GearPair, found: tuple[Mode, ...]) -> tuple[float, float]:

@@ -22,6 +22,7 @@ from validation.reporting.blocks import (
     Table,
     Text,
 )
+from validation.reporting.chapters.causes import causes, meshing_teeth
 from validation.reporting.results import Results
 
 #: Short names for table rows.
@@ -57,8 +58,10 @@ def cross_check(results: Results) -> Chapter:
             f"all of them, the exact model over the last {check.compared_cycles}, when it has settled to "
             "its own periodic motion."
         ),
+        meshing_teeth(results),
         _judged(check),
         _reasons(check),
+        *causes(results),
     ]
     for name in _SHOWN:
         unit = VARIABLES[name][1]
