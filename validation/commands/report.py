@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import guarded, progress_bar, stdout
+from validation.commands.terminal import FAILED, guarded, progress_bar, stdout
+
+if TYPE_CHECKING:
+    from validation.reporting.compare import Comparison
+
+#: Changes listed in the terminal.
+_MOST = 30
 
 
 @guarded
@@ -27,6 +33,18 @@ def report(
             help="Compare with the paper (default, unless --quick): figures, claims, errata.",
         ),
     ] = None,
+    compare: Annotated[
+        Path | None,
+        typer.Option(
+            "--compare",
+            metavar="OLD",
+            help="report.json of an earlier report, or its folder: show changes, exit 1 past tolerances.",
+        ),
+    ] = None,
+    tolerance: Annotated[
+        float, typer.Option("--tolerance", help="With --compare: relative change of a number that passes.")
+    ] = 1e-3,
+    strict: Annotated[bool, typer.Option("--strict", help="Exit 1 when any verdict fails.")] = False,
     speed: opt.Speed = None,
     torque: opt.Torque = None,
     law: opt.Law = None,
@@ -35,8 +53,9 @@ def report(
 ) -> None:
     """Write the verification report of a gear pair.
 
-    One folder: index.html (opens in any browser, without network), report.json (every number), figures (PNG
-    and SVG) and data (NetCDF). It says what the lumped model predicts, whether the multibody model agrees,
+    One folder: index.html (opens in any browser, without network), report.json (every number),
+    report.junit.xml (every verdict as a test case), summary.md, figures (PNG and SVG) and data (NetCDF). It
+    says what the lumped model predicts, whether the multibody model agrees,
     whether the motion is stable over speed, and where the model stops being valid.
 
     [bold]Examples[/bold]
@@ -44,6 +63,8 @@ def report(
     spurcheck report -o report
 
     spurcheck report my_pair.toml --speed "3000 rpm" --torque "500 lbf*in" -o report_3000
+
+    spurcheck report my_pair.toml -o new --compare old/report.json --tolerance 0.01
     """
     from validation.reporting import report as write
     from validation.reporting.folder import check_target
@@ -51,7 +72,40 @@ def report(
     check_target(output, force=force)
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
     with progress_bar("report") as tell:
-        written = write(gear_pair, output, force=force, quick=quick, paper=paper, progress=tell)
+        written = write(
+            gear_pair,
+            output,
+            force=force,
+            quick=quick,
+            paper=paper,
+            compare=compare,
+            tolerance=tolerance,
+            progress=tell,
+        )
     console = stdout()
     console.print(written.sentence, soft_wrap=True)
     console.print(f"\nreport: {written.folder / 'index.html'} ({written.seconds:.0f} s)", soft_wrap=True)
+    if written.comparison is not None:
+        _show_changes(written.comparison)
+    if strict:
+        for line in written.failures:
+            console.print(f"fails: {line}", soft_wrap=True, markup=False)
+    changed = written.comparison is not None and written.comparison.regressions
+    if changed or (strict and written.failures):
+        raise typer.Exit(FAILED)
+
+
+def _show_changes(comparison: Comparison) -> None:
+    from rich.markup import escape
+
+    console = stdout()
+    failed, changed = len(comparison.regressions), len(comparison.changes)
+    console.print(
+        f"\n{comparison.compared} values compared: {changed} changed, {failed} past tolerance",
+        soft_wrap=True,
+    )
+    for change in comparison.changes[:_MOST]:
+        mark = "[red]past tolerance[/red]" if change.fails else "within"
+        console.print(f"  {mark}  {escape(str(change))}", soft_wrap=True)
+    if len(comparison.changes) > _MOST:
+        console.print(f"  and {len(comparison.changes) - _MOST} more: see summary.md and report.json")

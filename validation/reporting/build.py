@@ -19,9 +19,15 @@ from validation.output import write_dataset
 from validation.plots import save
 from validation.reporting.blocks import Chapter, Picture, chapter_data, plain
 from validation.reporting.chapters import CHAPTERS
+from validation.reporting.chapters.changes import changes
+from validation.reporting.compare import TOLERANCE, Comparison, load_report
+from validation.reporting.compare import compare as compare_reports
 from validation.reporting.folder import FORMAT, whole_folder
+from validation.reporting.judged import failures
+from validation.reporting.junit import junit
 from validation.reporting.page import render
 from validation.reporting.results import FULL, QUICK, Results, compute
+from validation.reporting.summary import summary as markdown
 from validation.reporting.verdict import Summary, summarise
 
 Progress = Callable[[float, str], None]
@@ -39,13 +45,17 @@ class Report:
     folder : where it is
     sentence : its verdict in one sentence
     verdicts : chapter -> word of its verdict
+    failures : verdicts that are bad, one line each
     seconds : wall time
+    comparison : with an earlier report, where one was given
     """
 
     folder: Path
     sentence: str
     verdicts: dict[str, str]
+    failures: tuple[str, ...]
     seconds: float
+    comparison: Comparison | None = None
 
 
 def report(
@@ -55,13 +65,15 @@ def report(
     force: bool = False,
     quick: bool = False,
     paper: bool | None = None,
+    compare: str | Path | None = None,
+    tolerance: float = TOLERANCE,
     progress: Progress | None = None,
 ) -> Report:
     """Write the verification report of a gear pair into a folder.
 
     The folder gets ``index.html`` (self-contained: it needs no network and no other file), ``report.json``
-    (every number shown), ``figures/`` (PNG and SVG) and ``data/`` (NetCDF and the parameter file). It is
-    written whole or not at all.
+    (every number shown), ``report.junit.xml`` (every verdict as a test case), ``summary.md``, ``figures/``
+    (PNG and SVG) and ``data/`` (NetCDF and the parameter file). It is written whole or not at all.
 
     Parameters
     ----------
@@ -70,6 +82,8 @@ def report(
     force : replace an earlier report in that folder
     quick : coarser sampling and no verification, for a first look
     paper : compare with the paper: its figures, its claims, its errata, for this pair; default unless quick
+    compare : report.json of an earlier report, or its folder; the report then has a chapter of changes
+    tolerance : relative change of a number that passes, for that
     progress : called with the finished fraction and what is being done
 
     Raises
@@ -81,12 +95,20 @@ def report(
     tell = progress or (lambda fraction, text: None)
     gear_pair = load_gear_pair(pair)
     target = Path(out)
+    earlier = None if compare is None else load_report(compare)
+    if earlier is not None:
+        compare_reports(earlier, earlier, tolerance=tolerance)  # refuses a tolerance before any work
     with whole_folder(target, force=force) as folder:
         effort = replace(QUICK if quick else FULL, paper=not quick if paper is None else paper)
         results = compute(gear_pair, effort, lambda f, text: tell(0.75 * f, text))
         computed = time.perf_counter()
         summary = summarise(results)
         chapters = tuple(made for write in CHAPTERS if (made := write(results)) is not None)
+        comparison = None
+        if earlier is not None:
+            now = document(results, summary, chapters, quick=quick)
+            comparison = compare_reports(earlier, now, tolerance=tolerance)
+            chapters += (changes(comparison),)
         images = _draw(chapters, folder / "figures", lambda f: tell(0.75 + 0.22 * f, "figures"))
         tell(0.97, "page and data")
         _write_data(results, folder / "data")
@@ -102,9 +124,12 @@ def report(
         (folder / "report.json").write_text(text + "\n", encoding="utf-8")
         page = render(results.pair, summary, chapters, images, data)
         (folder / "index.html").write_text(page, encoding="utf-8")
+        (folder / "report.junit.xml").write_text(junit(data, comparison), encoding="utf-8")
+        (folder / "summary.md").write_text(markdown(data, comparison), encoding="utf-8")
     tell(1.0, "done")
     verdicts = {c.key: c.badge.state for c in chapters if c.badge is not None}
-    return Report(target, summary.sentence, verdicts, time.perf_counter() - started)
+    bad = tuple(f"{case.group}: {case.name}: {case.text}" for case in failures(data))
+    return Report(target, summary.sentence, verdicts, bad, time.perf_counter() - started, comparison)
 
 
 def document(

@@ -1,0 +1,241 @@
+"""Does the regression gate let through what may change, and stop what may not?"""
+
+import copy
+import json
+from xml.etree import ElementTree
+
+import pytest
+from typer.testing import CliRunner
+
+from lumped import ParameterError
+from validation.cli import app
+from validation.reporting import build
+from validation.reporting.compare import compare, load_report
+from validation.reporting.judged import failures
+from validation.reporting.junit import junit
+from validation.reporting.summary import summary
+
+HOSTILE = "a|b <b>x</b> `c` \x00 ]]> & # é"
+
+
+def state(word):
+    return {"state": word, "text": word}
+
+
+@pytest.fixture
+def document():
+    """The layout of report.json with one of everything."""
+    return {
+        "format": "spurcheck-report",
+        "format_version": 1,
+        "gear_pair": "pair",
+        "quick": False,
+        "verdict": "It holds.",
+        "answers": [
+            {"question": "Stable?", "verdict": state("stable"), "text": "yes", "chapter": "stability"},
+        ],
+        "chapters": {
+            "stability": {
+                "title": "Stability",
+                "verdict": state("stable"),
+                "margins": {
+                    "radius": {"label": "largest multiplier", "value": 0.8},
+                    "error": {"label": "bound on its error", "value": 1e-12},
+                    "nearest": {"label": "nearest", "value": {"value": 4000.0, "unit": "rpm"}},
+                },
+                "figures": ["chart"],
+                "text": [["words"]],
+            },
+            "cross_check": {
+                "title": "Cross-check",
+                "verdicts": [
+                    {"quantity": "dte", "fidelity": "linear", "value": 2e-9, "verdict": state("within")},
+                    {"quantity": "dte", "fidelity": "exact", "value": 0.02, "verdict": state("within")},
+                ],
+                "orders": [
+                    {"quantity": "dte", "order": 1, "lumped": {"value": 5e-6, "unit": "m"}},
+                    {"quantity": "load", "order": 1, "lumped": {"value": 300.0, "unit": "N"}},
+                ],
+            },
+            "provenance": {
+                "title": "Versions",
+                "made_from": {"parameters_sha256": {"label": "SHA", "value": "0" * 64}},
+                "versions": [{"name": "numpy", "version": "2.0"}],
+            },
+        },
+        "parameters": {"mesh": {"damping_ratio": 0.05}},
+        "timestamps": {"created": "2020"},
+    }
+
+
+def at(document, *path):
+    for key in path[:-1]:
+        document = document[key]
+    return document, path[-1]
+
+
+def test_a_report_is_unchanged_against_itself(document):
+    found = compare(document, copy.deepcopy(document))
+    assert found.changes == ()
+    # Every leaf above but labels, titles, versions, timestamps and texts: answers 1, stability 4, cross-check
+    # 2 * 4 + 2 * 3, hash 1, parameter 1.
+    assert found.compared == 21
+
+
+RADIUS = ("chapters", "stability", "margins", "radius", "value")
+BOUND = ("chapters", "stability", "margins", "error", "value")
+EXACT = ("chapters", "cross_check", "verdicts", 1, "value")
+LINEAR = ("chapters", "cross_check", "verdicts", 0, "value")
+AMPLITUDE = ("chapters", "cross_check", "orders", 0, "lumped", "value")
+VERDICT = ("chapters", "cross_check", "verdicts", 1, "verdict")
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "fails"),
+    [
+        (RADIUS, 0.8 * (1 + 0.9e-3), False),
+        (RADIUS, 0.8 * (1 + 1.2e-3), True),
+        (RADIUS, 0.8 * (1 - 1.2e-3), True),
+        (RADIUS, None, True),  # a number that is not finite is written as null
+        (BOUND, 1e-10, False),  # a hundred times rounding is rounding
+        (BOUND, 2e-9, True),
+        (BOUND, 1e-15, False),
+        (EXACT, 0.0202, True),
+        (LINEAR, 4e-9, False),  # nothing beside 0.02
+        (AMPLITUDE, 5.1e-6, True),  # something beside 300 of another unit
+        (VERDICT, state("outside"), True),
+        (("answers", 0, "verdict"), state("undecided"), True),
+        (("parameters", "mesh", "damping_ratio"), 0.06, False),
+        (("chapters", "provenance", "made_from", "parameters_sha256", "value"), "1" * 64, False),
+        (("chapters", "stability", "margins", "nearest", "value"), "none in the range", True),
+        (("chapters", "stability", "margins", "nearest", "value", "unit"), "rad/s", True),
+    ],
+)
+def test_what_may_change_and_what_may_not(document, path, value, fails):
+    new = copy.deepcopy(document)
+    place, key = at(new, *path)
+    place[key] = value
+    found = compare(document, new)
+    assert len(found.changes) == 1
+    assert bool(found.regressions) is fails
+
+
+def test_a_verdict_that_gets_better_passes(document):
+    old = copy.deepcopy(document)
+    old["answers"][0]["verdict"] = state("unstable")
+    found = compare(old, document)
+    assert [change.kind for change in found.changes] == ["verdict"]
+    assert not found.regressions
+
+
+def test_what_is_gone_fails_and_what_is_new_does_not(document):
+    fewer = copy.deepcopy(document)
+    del fewer["chapters"]["cross_check"]
+    gone = compare(document, fewer)
+    assert {change.kind for change in gone.regressions} == {"missing"}
+    assert len(gone.regressions) == 14
+    assert not compare(fewer, document).regressions
+
+
+def test_rows_are_matched_by_name_not_by_place(document):
+    new = copy.deepcopy(document)
+    new["chapters"]["cross_check"]["verdicts"].reverse()
+    assert compare(document, new).changes == ()
+
+
+def test_the_tolerance_is_the_users(document):
+    new = copy.deepcopy(document)
+    new["chapters"]["stability"]["margins"]["radius"]["value"] = 0.82
+    assert compare(document, new, tolerance=0.05).regressions == ()
+    assert "2.44 %" in str(compare(document, new).regressions[0])  # 0.02/0.82
+    with pytest.raises(ParameterError, match="--tolerance"):
+        compare(document, new, tolerance=-1.0)
+
+
+def test_junit_counts_and_carries_every_failure(document):
+    document["gear_pair"] = HOSTILE
+    new = copy.deepcopy(document)
+    new["chapters"]["cross_check"]["verdicts"][1]["verdict"] = state("outside")
+    comparison = compare(document, new)
+    root = ElementTree.fromstring(junit(new, comparison).encode())
+    assert root.get("failures") == "3"  # the verdict, the comparison, and the change in it
+    found = root.findall(".//testcase")
+    assert len(found) == int(root.get("tests")) == 6
+    assert {case.get("name") for case in found if case.find("failure") is not None} >= {"dte, exact"}
+    for suite in root.findall("testsuite"):
+        assert int(suite.get("tests")) == len(suite.findall("testcase"))
+        assert int(suite.get("failures")) == len(suite.findall("testcase/failure"))
+    assert len(failures(new)) == 1
+
+
+def test_markdown_shows_hostile_text_as_text(document):
+    document["gear_pair"] = HOSTILE
+    document["answers"][0]["text"] = HOSTILE
+    new = copy.deepcopy(document)
+    new["chapters"]["stability"]["margins"]["radius"]["value"] = 0.9
+    text = summary(new, compare(document, new))
+    assert "<b>" not in text.replace("\\<b", "")
+    rows = [line for line in text.splitlines() if line.startswith("|")]
+    for row in rows:
+        cells = row.replace("\\|", "").count("|") - 1
+        assert cells in (3, 5)
+    assert "1 past their tolerance" in text
+    assert "0.8 | 0.9" in text
+
+
+@pytest.mark.parametrize("content", ["", "[1]", "{}", '{"format": "spurcheck-report"}', "[" * 100_000])
+def test_files_that_are_no_report_are_refused(tmp_path, content):
+    path = tmp_path / "report.json"
+    path.write_text(content)
+    for source in (path, tmp_path):
+        with pytest.raises(ParameterError, match="--compare"):
+            load_report(source)
+    with pytest.raises(ParameterError):
+        load_report(tmp_path / "none.json")
+
+
+def run(*arguments):
+    result = CliRunner().invoke(app, list(map(str, arguments)), env={"COLUMNS": "200", "NO_COLOR": "1"})
+    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
+    return result
+
+
+def test_the_command_is_a_gate(tmp_path, monkeypatch):
+    import dataclasses
+
+    from validation.reporting import results
+
+    effort = dataclasses.replace(
+        results.QUICK, samples=64, cycles=6, sweep_speeds=4, chart_speeds=4, chart_dampings=2, map_speeds=2
+    )
+    monkeypatch.setattr(build, "QUICK", effort)
+    old = tmp_path / "old"
+    assert run("report", "--quick", "-o", old).exit_code == 0
+    assert {"report.junit.xml", "summary.md"} <= {p.name for p in old.iterdir()}
+    data = load_report(old)
+    key = data["chapters"]["steady_state"]["key_results"]["dte_peak_to_peak"]["value"]
+    key["value"] *= 1.01
+    other = tmp_path / "other.json"
+    other.write_text(json.dumps(data))
+    # Also where the earlier report is the one that is replaced.
+    result = run("report", "--quick", "-o", old, "--force", "--compare", old / "report.json")
+    assert result.exit_code == 0, result.stdout
+    assert "0 changed" in result.stdout
+    changed = run("report", "--quick", "-o", tmp_path / "new", "--compare", other)
+    assert changed.exit_code == 1
+    assert "steady_state/key_results/dte_peak_to_peak" in changed.stdout
+    page = (tmp_path / "new" / "index.html").read_text(encoding="utf-8")
+    assert "past tolerance" in page
+    root = ElementTree.parse(tmp_path / "new" / "report.junit.xml").getroot()
+    assert root.find(".//testsuite[@name='comparison']//failure") is not None
+    assert "dte\\_peak\\_to\\_peak" in (tmp_path / "new" / "summary.md").read_text(encoding="utf-8")
+
+
+def test_the_gate_reads_its_baseline_before_any_work(tmp_path, monkeypatch):
+    def no_work(*_):
+        raise AssertionError("work was done")
+
+    monkeypatch.setattr(build, "compute", no_work)
+    result = run("report", "--quick", "-o", tmp_path / "new", "--compare", tmp_path / "none.json")
+    assert result.exit_code == 2
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,52 @@
+"""Changes against an earlier report."""
+
+from __future__ import annotations
+
+from validation.reporting.blocks import Badge, Block, Cell, Chapter, Column, Table, Text
+from validation.reporting.compare import ERROR_GROWTH, Comparison
+
+_MOST = 500
+
+
+def changes(comparison: Comparison) -> Chapter:
+    """Write the chapter."""
+    failed = comparison.regressions
+    blocks: list[Block] = [
+        Text(
+            f"{comparison.compared} values were compared with an earlier report of {comparison.old_name}: "
+            f"{len(comparison.changes)} differ, {len(failed)} past their tolerance. Numbers may change by "
+            f"{100 * comparison.tolerance:g} %, numbers that measure a numerical error may grow "
+            f"{ERROR_GROWTH:g} times, verdicts may not get worse, and nothing may be gone. Texts, new "
+            "entries, changed parameters and settings are shown and do not count."
+        )
+    ]
+    if comparison.changes:
+        rows: list[tuple[Cell, ...]] = [
+            (
+                c.path,
+                c.kind,
+                c.old,
+                c.new,
+                None if c.size is None else 100 * c.size,
+                Badge("outside" if c.fails else "within"),
+            )
+            for c in comparison.changes[:_MOST]
+        ]
+        blocks.append(
+            Table(
+                "changes",
+                "What changed, the worst first.",
+                (
+                    Column("path", "value"),
+                    Column("kind", "kind"),
+                    Column("old", "before"),
+                    Column("new", "now"),
+                    Column("size_percent", "change [%]"),
+                    Column("verdict", "tolerance"),
+                ),
+                tuple(rows),
+                note="" if len(comparison.changes) <= _MOST else f"The first {_MOST} are shown.",
+            )
+        )
+    badge = Badge("violated", "past tolerance") if failed else Badge("ok", "within tolerance")
+    return Chapter("changes", "Changes", tuple(blocks), badge)

@@ -1,0 +1,278 @@
+"""What changed between two reports: every number, every verdict, every entry, by report.json alone."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from lumped.errors import ParameterError, refuse
+from lumped.text_file import read_text
+from validation.reporting.blocks import STATES
+from validation.reporting.folder import FORMAT, REPORT
+
+#: Relative change of a number that passes; numbers are compared as computed, not as shown.
+TOLERANCE = 1e-3
+#: Numbers that measure a numerical error change with every rounding; they may grow by this factor.
+ERROR_GROWTH = 10.0
+#: Errors below this are rounding, whatever they were before.
+ROUNDING = 1e-9
+#: Last parts of the paths of such numbers, and tables that hold nothing else.
+_ERRORS = frozenset(
+    {"error", "error_estimate", "liouville_residual", "unsettled", "law_difference", "bound", "closure"}
+)
+_ERROR_TABLES = frozenset({"code_verification/closed_forms", "solution_verification/refinement"})
+#: Size below which a number counts as zero beside the largest of its unit in its table column.
+_SMALL = 1e-4
+_MAX_BYTES = 100_000_000
+_LARGEST_TEXT = 60
+#: Blocks that repeat the input, or name the software, which is free to change.
+_SAID_ELSEWHERE = {("parameters", "parameters"), ("provenance", "versions")}
+#: First parts of the paths of what a report is made from.
+_INPUT = ("input/", "provenance/")
+
+Kind = Literal["number", "verdict", "text", "missing", "new", "parameter"]
+_TONES = {"good": 0, "plain": 0, "fair": 1, "bad": 2}
+
+
+@dataclass(frozen=True)
+class Change:
+    """One difference between two reports.
+
+    Attributes
+    ----------
+    path : place in report.json
+    kind : "number", "verdict", "text", "missing", "new" or "parameter"
+    old, new : values as text
+    size : relative change of a number; None for anything else
+    fails : whether it is past its tolerance
+    """
+
+    path: str
+    kind: Kind
+    old: str
+    new: str
+    size: float | None
+    fails: bool
+
+    def __str__(self) -> str:
+        size = "" if self.size is None else f" ({100 * self.size:.3g} %)"
+        return f"{self.path}: {self.old} -> {self.new}{size}"
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two reports beside each other.
+
+    Attributes
+    ----------
+    old_name : gear pair of the earlier report
+    tolerance : relative change of a number that passes
+    compared : number of values compared
+    changes : differences, those that fail first, numbers by size
+    """
+
+    old_name: str
+    tolerance: float
+    compared: int
+    changes: tuple[Change, ...]
+
+    @property
+    def regressions(self) -> tuple[Change, ...]:
+        """Changes past their tolerance."""
+        return tuple(change for change in self.changes if change.fails)
+
+
+def load_report(source: str | Path) -> dict[str, Any]:
+    """Read report.json, or the one of a report folder.
+
+    Raises
+    ------
+    ParameterError : no such file, or not a report
+    """
+    path = Path(source)
+    if path.is_dir():
+        path = path / REPORT.file
+    action = "Give the report.json of an earlier report."
+    try:
+        data = json.loads(read_text(path, _MAX_BYTES))
+    except ParameterError:
+        raise
+    except OSError as error:
+        raise refuse("--compare", source, "a readable report.json", f"{error.strerror}. {action}") from None
+    except (ValueError, RecursionError):
+        raise refuse("--compare", source, "a report.json", f"This is no JSON. {action}") from None
+    keys = ("answers", "chapters", "parameters")
+    if not isinstance(data, dict) or data.get("format") != FORMAT or any(k not in data for k in keys):
+        raise refuse("--compare", source, f'a JSON file of format "{FORMAT}"', action)
+    return data
+
+
+def compare(old: Mapping[str, Any], new: Mapping[str, Any], *, tolerance: float = TOLERANCE) -> Comparison:
+    """Compare two reports.
+
+    A number fails where it changes by more than the tolerance, relative to the larger of the two and to a
+    ten-thousandth of the largest number of its unit in its column; one that measures a numerical error fails
+    where it grows tenfold and beyond rounding. A verdict fails where it gets worse. An entry fails where it
+    is gone. Texts, new entries, changed parameters and settings are shown and do not fail.
+
+    Parameters
+    ----------
+    old, new : data of report.json
+    tolerance : relative change of a number that passes, 0 to 1
+
+    Raises
+    ------
+    ParameterError : the tolerance is out of range
+    """
+    if not 0.0 <= tolerance <= 1.0:
+        raise refuse("--tolerance", tolerance, "0 to 1", "0.001 lets numbers change by a tenth of a percent.")
+    before, after = dict(_leaves(old)), dict(_leaves(new))
+    scales = _scales(before)
+    changes = []
+    for path in before | after:
+        first, second = before.get(path), after.get(path)
+        if first != second or type(first) is not type(second):
+            change = _change(path, path in before, path in after, first, second, tolerance, scales)
+            if change is not None:
+                changes.append(change)
+    changes.sort(key=lambda c: (not c.fails, c.kind != "verdict", -(c.size or 0.0)))
+    return Comparison(
+        str(old.get("gear_pair", "")), tolerance, len(before.keys() & after.keys()), tuple(changes)
+    )
+
+
+@dataclass(frozen=True)
+class _State:
+    """Verdict at a leaf."""
+
+    state: str
+    text: str
+
+    @property
+    def rank(self) -> int:
+        return _TONES.get(STATES.get(self.state, "plain"), 0)
+
+
+@dataclass(frozen=True)
+class _Number:
+    """Number at a leaf."""
+
+    value: float
+    unit: str = ""
+
+
+Leaf = _Number | str | bool | None | _State
+
+
+def _leaves(document: Mapping[str, Any]) -> Iterator[tuple[str, Leaf]]:
+    """Paths and values of everything that a report says; the chapter of changes and versions are left out."""
+    for answer in document["answers"]:
+        yield f"answers/{answer['question']}", _State(answer["verdict"]["state"], answer["verdict"]["text"])
+    for key, chapter in document["chapters"].items():
+        if key == "changes":
+            continue
+        for name, block in chapter.items():
+            if name not in ("title", "text", "figures") and (key, name) not in _SAID_ELSEWHERE:
+                yield from _walk(f"{key}/{name}", block)
+    yield from _walk("input", document["parameters"])
+
+
+def _walk(path: str, value: Any) -> Iterator[tuple[str, Leaf]]:
+    if isinstance(value, dict):
+        if set(value) == {"state", "text"}:
+            yield path, _State(str(value["state"]), str(value["text"]))
+        elif set(value) == {"value", "unit"}:
+            number = value["value"]
+            yield path, None if number is None else _Number(float(number), str(value["unit"]))
+        elif set(value) == {"label", "value"}:
+            yield from _walk(path, value["value"])
+        else:
+            for key, item in value.items():
+                yield from _walk(f"{path}/{key}", item)
+    elif isinstance(value, list):
+        names = _row_names(value)
+        for name, item in zip(names, value, strict=True):
+            yield from _walk(f"{path}/{name}", item)
+    else:
+        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        yield path, _Number(float(value)) if is_number else value
+
+
+def _row_names(rows: list[Any]) -> list[str]:
+    """Names of a table's rows: as many of their leading words as tell them apart, else numbered."""
+    words = [[v for v in row.values() if isinstance(v, str)] if isinstance(row, dict) else [] for row in rows]
+    names = [""] * len(rows)
+    for count in (1, 2):
+        names = [", ".join(w[:_LARGEST_TEXT] for w in found[:count]) for found in words]
+        if len(set(names)) == len(names):
+            return names
+    seen: dict[str, int] = {}
+    for place, name in enumerate(names):
+        seen[name] = seen.get(name, 0) + 1
+        names[place] = f"{name} ({seen[name]})".strip()
+    return names
+
+
+def _scales(leaves: Mapping[str, Leaf]) -> dict[tuple[str, str, str], float]:
+    """Largest number of each unit in each column of each table."""
+    scales: dict[tuple[str, str, str], float] = {}
+    for path, leaf in leaves.items():
+        if isinstance(leaf, _Number):
+            column = (*_column(path), leaf.unit)
+            scales[column] = max(scales.get(column, 0.0), abs(leaf.value))
+    return scales
+
+
+def _column(path: str) -> tuple[str, str]:
+    parts = path.split("/")
+    return "/".join(parts[:2]), parts[-1]
+
+
+def _number_change(path: str, old: _Number, new: _Number, tolerance: float, scale: float) -> Change:
+    table, column = _column(path)
+    difference, largest = abs(new.value - old.value), max(abs(old.value), abs(new.value))
+    if column in _ERRORS or table in _ERROR_TABLES:
+        fails = new.value > max(ERROR_GROWTH * old.value, ROUNDING)
+        return Change(path, "number", _shown(old), _shown(new), difference / largest, fails)
+    size = difference / max(largest, _SMALL * scale)
+    return Change(path, "number", _shown(old), _shown(new), size, size > tolerance)
+
+
+def _change(
+    path: str,
+    was: bool,
+    is_: bool,
+    old: Leaf,
+    new: Leaf,
+    tolerance: float,
+    scales: Mapping[tuple[str, str, str], float],
+) -> Change | None:
+    if path.startswith(_INPUT):
+        return Change(path, "parameter", _shown(old), _shown(new), None, False)
+    if not is_:
+        return Change(path, "missing", _shown(old), "gone", None, True)
+    if not was:
+        return Change(path, "new", "not there", _shown(new), None, False)
+    if isinstance(old, _Number) and isinstance(new, _Number):
+        if old.unit != new.unit:
+            return Change(path, "text", _shown(old), _shown(new), None, True)
+        return _number_change(path, old, new, tolerance, scales.get((*_column(path), old.unit), 0.0))
+    if isinstance(old, _State) and isinstance(new, _State):
+        if old.state == new.state:
+            return None
+        return Change(path, "verdict", old.text, new.text, None, new.rank > old.rank)
+    # A number that is gone, or one where there was a word, is a change of what is said.
+    fails = isinstance(old, (_Number, _State)) or isinstance(new, (_Number, _State))
+    return Change(path, "text", _shown(old), _shown(new), None, fails)
+
+
+def _shown(value: Leaf) -> str:
+    if isinstance(value, _State):
+        return value.text
+    if isinstance(value, _Number):
+        return f"{value.value:.6g} {value.unit}".rstrip()
+    text = str(value)
+    return text if len(text) <= _LARGEST_TEXT else text[:_LARGEST_TEXT] + "…"
