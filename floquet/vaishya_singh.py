@@ -15,12 +15,14 @@ two cancel. Lengths of time are in parts of the mesh cycle, frequencies in units
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
+import xarray as xr
 
+from floquet.chart import scan
 from floquet.spectrum import Spectrum
 from floquet.system import ComplexArray, FloatArray, PeriodicSystem
 from lumped.errors import refuse
@@ -145,6 +147,42 @@ class CoulombGearPair:
         conditioned = 4.0 * rounding * (1.0 + float(np.linalg.norm(M)) / max(float(gap), 1e-300))
         error = min(float(np.sqrt(rounding)), conditioned)
         return Spectrum(values, np.full(2, error), 2.0 * np.pi / ratio)
+
+
+def stability_zones(
+    pair: CoulombGearPair, speed_ratios: npt.ArrayLike, damping_ratios: npt.ArrayLike
+) -> xr.Dataset:
+    """Stability zones over speed and damping: no friction, friction that reverses, friction that does not.
+
+    Parameters
+    ----------
+    pair : its contact ratio, pressure angle and coefficient are used
+    speed_ratios : mesh frequency over natural frequency
+    damping_ratios : zeta of the mean mesh
+
+    Returns
+    -------
+    Dataset as of `floquet.scan` over ``friction`` ("none", "reversing", "constant"), ``speed_ratio`` and
+    ``damping_ratio``
+    """
+    cases = {
+        "none": replace(pair, friction=0.0),
+        "reversing": replace(pair, sign="reversing"),
+        "constant": replace(pair, sign="constant"),
+    }
+    axes = {"speed_ratio": speed_ratios, "damping_ratio": damping_ratios}
+    charts: list[xr.Dataset] = []
+    for case in cases.values():
+
+        def evaluate(point: dict[str, float], case: CoulombGearPair = case) -> Spectrum:
+            return replace(case, damping_ratio=point["damping_ratio"]).spectrum(point["speed_ratio"])
+
+        charts.append(scan(evaluate, axes))
+    result: xr.Dataset = xr.concat(charts, dim="friction")
+    result = result.assign_coords(friction=np.array(list(cases), dtype=object))
+    result["speed_ratio"].attrs.update(units="1", long_name="mesh frequency over natural frequency")
+    result["damping_ratio"].attrs.update(units="1", long_name="mesh damping ratio")
+    return result
 
 
 def _positive(speed_ratio: float) -> float:
