@@ -5,6 +5,7 @@ from multibody.causes import attribution
 from multibody.drive import Drive
 from multibody.effects import EFFECTS
 from multibody.flow_map import FlowMap, monodromy, steady_state
+from multibody.reversal_convergence import reversal_convergence
 from multibody.simulation import simulate
 from multibody.sweep import speed_sweep
 
@@ -16,6 +17,7 @@ __all__ = [
     "attribution",
     "monodromy",
     "power_balance",
+    "reversal_convergence",
     "simulate",
     "speed_sweep",
     "steady_state",

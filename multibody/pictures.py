@@ -176,5 +176,5 @@ def _close_up(axes: Axes, pair: GearPair, now: xr.Dataset, largest: float) -> No
             )
     total, friction = (float(now[name].sum()) for name in ("normal_load", "friction_force"))
     axes.set_title(
-        f"forces on the gear: normal {total:.0f} N (red), friction {-friction:.0f} N (green)", fontsize=9
+        f"forces on the gear: normal {total:.0f} N (red), friction {round(-friction):d} N (green)", fontsize=9
     )

@@ -14,6 +14,7 @@ from validation.commands.figures import figures
 from validation.commands.measurement import measurement
 from validation.commands.parameter_files import init, presets, schema
 from validation.commands.report import report
+from validation.commands.reversal import reversal
 from validation.commands.simulate import simulate
 from validation.commands.stability import stability
 from validation.commands.sweep import sweep
@@ -58,7 +59,20 @@ def paragraphs(text: str | None) -> str:
     return "\n\n".join(" ".join(block.split()) for block in blocks)
 
 
-for command in (report, presets, init, simulate, crosscheck, stability, sweep, figures, measurement, schema):
+COMMANDS = (
+    report,
+    presets,
+    init,
+    simulate,
+    crosscheck,
+    reversal,
+    stability,
+    sweep,
+    figures,
+    measurement,
+    schema,
+)
+for command in COMMANDS:
     app.command(help=paragraphs(command.__doc__))(command)
 app.callback(help=paragraphs(spurcheck.__doc__))(spurcheck)
 

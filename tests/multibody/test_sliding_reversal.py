@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 import pytest
 
@@ -55,13 +53,20 @@ def test_sign_function_gets_stuck_and_says_so(monkeypatch):
 
 
 def test_solution_converges_as_the_sign_change_sharpens():
-    """79.1 N m, 800 rpm: each halving of v_reg moves the motion by less, at about first order."""
-    runs = [multibody.simulate(SLOW, 2, friction_velocity=v) for v in (8e-3, 4e-3, 2e-3, 1e-3, 5e-4)]
-    scale = {name: float(np.ptp(runs[-1][name].to_numpy())) for name in ("dte", "y_p")}
-    for name, size in scale.items():
-        steps = [float(np.abs(a[name] - b[name]).max()) / size for a, b in itertools.pairwise(runs)]
-        ratios = np.array(steps[:-1]) / steps[1:]
-        assert np.all(ratios > 1.2), (name, steps)
+    """79.1 N m, 800 rpm: each halving of the velocity moves the motion by less, at about first order."""
+    found = multibody.reversal_convergence(SLOW, 2, velocities=(8e-3, 4e-3, 2e-3, 1e-3, 5e-4))
+    for name in ("dte", "y_p"):
+        steps = found["change"].sel(quantity=name).to_numpy()
+        orders = found["order"].sel(quantity=name).to_numpy()[1:]
+        np.testing.assert_allclose(2.0**orders, steps[:-1] / steps[1:], rtol=1e-12)
+        assert np.all(orders > 0.26), (name, steps)  # a factor of 1.2 per halving
         # What is left below 0.5 mm/s: a geometric series with the last ratio; the default is smaller still.
-        assert steps[-1] / (ratios[-1] - 1) < 0.02
-    assert all(float(run["friction_power"].max()) <= 0.0 for run in runs)
+        assert steps[-1] / (2.0 ** orders[-1] - 1) < 0.02
+    with pytest.raises(lumped.ParameterError, match="velocities"):
+        multibody.reversal_convergence(SLOW, velocities=(1e-3, 2e-3))
+
+
+@pytest.mark.parametrize("velocity", [8e-3, 5e-4])
+def test_friction_takes_energy_however_sharp(velocity):
+    run = multibody.simulate(SLOW, 2, friction_velocity=velocity)
+    assert float(run["friction_power"].max()) <= 0.0
