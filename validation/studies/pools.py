@@ -150,7 +150,7 @@ class DaskPool:
                 "Install the extra: pip install 'spurcheck[cluster]'.",
             ) from None
         try:
-            self._client: Any = distributed.Client(address, timeout=_CONNECT_SECONDS)
+            self._client: Any = distributed.Client(address, timeout=_CONNECT_SECONDS, set_as_default=False)
             self._client.wait_for_workers(1, timeout=WORKER_WAIT)
         except (OSError, ValueError, TimeoutError) as error:
             raise refuse(
