@@ -230,7 +230,7 @@ def hostile_mappings() -> st.SearchStrategy[dict[str, Any]]:
                     node = inner
                     continue
                 if draw(st.integers(0, 4)):
-                    node[key] = draw(HOSTILE)
+                    node[key] = copy.deepcopy(draw(HOSTILE))
                 else:
                     node.pop(key, None)
                 break

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 import pickle
 import string
@@ -182,7 +183,7 @@ def test_hostile_study_mappings(within, hostile_values, data):
             keys = sorted(node, key=str) if isinstance(node, dict) else range(len(node))
             key = data.draw(st.sampled_from(list(keys)))
             if not isinstance(node[key], (dict, list)) or data.draw(st.booleans()):
-                node[key] = data.draw(hostile_values)
+                node[key] = copy.deepcopy(data.draw(hostile_values))  # or the next step changes the pool
                 break
             node = node[key]
     with within(SECONDS):

@@ -65,7 +65,10 @@ def test_a_failure_midway_leaves_no_figures_behind(tmp_path, monkeypatch):
 @pytest.fixture(scope="module")
 def example(tmp_path_factory):
     folder = tmp_path_factory.mktemp("records") / "example"
-    changes = ("--set", "friction.law=coulomb", "--set", "friction.coefficient=0.05")
+    # Speed and torque are not the preset's: the prediction must take them from the record.
+    values = {"law": "friction.law=coulomb", "mu": "friction.coefficient=0.05"}
+    values |= {"torque": "operating.pinion_torque=30", "speed": "operating.pinion_speed=4000"}
+    changes = [item for value in values.values() for item in ("--set", value)]
     assert run("measurement", folder, *changes, "--example").exit_code == 0
     return folder
 
@@ -83,6 +86,7 @@ def test_measurement_identifies_the_friction_that_made_the_record(example, tmp_p
     assert f"mu = {found['estimate']:.4g}" in result.stdout
     # A law that stays far from 0.05 predicts friction badly and normal loads well.
     assert data["metrics"]["normal_A"]["correlation"] > 0.99
+    assert data["metrics"]["normal_A"]["relative_rms"] < 0.05  # 2 % noise, and a law's small effect
     assert data["metrics"]["friction_A"]["relative_rms"] > 0.2
     assert {p.name for p in out.iterdir()} == {
         "measurement.json",

@@ -105,6 +105,7 @@ VERDICT = ("chapters", "cross_check", "verdicts", 1, "verdict")
         (AMPLITUDE, 5.1e-6, True),  # something beside 300 of another unit
         (VERDICT, state("outside"), True),
         (("answers", 0, "verdict"), state("undecided"), True),
+        (("answers", 0, "verdict"), state("confirmed"), False),  # other words for good
         (("parameters", "mesh", "damping_ratio"), 0.06, False),
         (("chapters", "provenance", "made_from", "parameters_sha256", "value"), "1" * 64, False),
         (("chapters", "stability", "margins", "nearest", "value"), "none in the range", True),
@@ -135,6 +136,19 @@ def test_what_is_gone_fails_and_what_is_new_does_not(document):
     assert {change.kind for change in gone.regressions} == {"missing"}
     assert len(gone.regressions) == 14
     assert not compare(fewer, document).regressions
+
+
+def test_a_number_is_small_beside_those_of_its_own_unit(document):
+    small = {"quantity": "x", "order": 1, "lumped": {"value": 1e-12, "unit": "m"}}
+    document["chapters"]["cross_check"]["orders"].append(small)
+    new = copy.deepcopy(document)
+    # 1e-13 m beside a ten-thousandth of 5e-6 m is 2e-4, below the tolerance.
+    new["chapters"]["cross_check"]["orders"][2]["lumped"]["value"] = 1.1e-12
+    assert not compare(document, new).regressions
+    # Beside 1e-12 m alone it is ten percent.
+    del document["chapters"]["cross_check"]["orders"][0]
+    del new["chapters"]["cross_check"]["orders"][0]
+    assert compare(document, new).regressions
 
 
 def test_rows_are_matched_by_name_not_by_place(document):

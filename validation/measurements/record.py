@@ -77,7 +77,9 @@ def load_measurement(source: str | Path | Mapping[str, Any], data: str | Path | 
     except ParameterError:
         raise
     except (OSError, ValueError) as error:
-        raise refuse("data", str(path), "a readable UTF-8 CSV file", f"It cannot be read: {error}.") from None
+        why = f"It cannot be read: {getattr(error, 'strerror', None) or error}."
+        # The end of a long path is the file's name.
+        raise refuse("data", str(path)[-200:], "a readable UTF-8 CSV file", why) from None
     try:
         return parse_measurement(spec, text)
     except ParameterError as error:
@@ -102,6 +104,8 @@ def parse_measurement(spec: MeasurementSpec, text: str) -> Measurement:
         if column not in columns:
             known = ", ".join(map(shown, columns))
             raise refuse(field, shown(column), f"one of {known}", "Correct the column's name.")
+    if not any(line.split("#")[0].strip() for line in islice(lines, first + 1, None)):
+        raise refuse("data", "0 rows", ">= 8 rows", "Check the file.")
     table = _numbers(spec, lines, first + 1, [columns[column][0] for column, _ in wanted])
     if table.shape[0] < 8:
         raise refuse("data", f"{table.shape[0]} rows", ">= 8 rows", "Check the file.")
