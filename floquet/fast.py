@@ -84,7 +84,7 @@ class Points:
         return cls(
             problem=Problem(
                 *map(_own, (system.phases, form.w, form.wd, form.f, form.fr, fit_errors)),
-                *map(_own, (form.C, form.omega, form.v, form.input)),
+                *map(_own, (form.C, form.omega, form.v, form.input, form.reference)),
             ),
             limits=Limits(float(tolerance), angle, int(max_steps)),
             periods=T,

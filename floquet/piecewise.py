@@ -94,6 +94,7 @@ def fit_pieces(
                 )
             good[:] = True
         if good.any():
+            _drop_powers(series, errors, 0.03 * allowed * sizes[:, None], good)
             misfits.append(errors[:, good].T)
             starts.append(centre[good] - half[good])
             fits.append(series[:, good])
@@ -115,6 +116,18 @@ def fit_pieces(
     power = _to_powers(np.concatenate(fits, axis=1)[:, order])
     polynomials = [_trimmed(p, float(size)) / root[:, None] for p, size in zip(power, sizes, strict=True)]
     return phases, polynomials, np.ascontiguousarray(np.concatenate(misfits)[order])
+
+
+def _drop_powers(
+    series: FloatArray, errors: FloatArray, room: FloatArray, good: npt.NDArray[np.bool_]
+) -> None:
+    """Set to zero the highest coefficients whose sum stays within the room, and count them as misfit."""
+    size = np.sqrt(np.square(series).sum(axis=3))  # (G, pieces, d+1); |T_n| <= 1
+    beyond = np.cumsum(size[:, :, ::-1], axis=2)[:, :, ::-1]
+    small = (beyond <= room[:, :, None]) & good[None, :, None]
+    small[:, :, 0] = False
+    errors += np.where(small, size, 0.0).sum(axis=2)
+    series[small] = 0.0
 
 
 def _to_powers(series: FloatArray) -> FloatArray:

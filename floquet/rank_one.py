@@ -139,11 +139,8 @@ class RankOneSystem:
                 "Use the general engine.",
             )
         inverse = Phi.T * g
-        # The reference feedback k g^-1 v v^T is part of omega^2; what is left of w stays time dependent.
-        w = _stacked([part.w for part in self.parts])
-        w[0, :, :, 0] -= k * self.v / g
-        others = [_stacked([getattr(part, key) for part in self.parts]) for key in ("wd", "f", "fr")]
-        w, wd, f, fr = (np.ascontiguousarray(np.einsum("ab,qpbj->qpaj", inverse, x)) for x in (w, *others))
+        polys = [_stacked([getattr(part, key) for part in self.parts]) for key in ("w", "wd", "f", "fr")]
+        w, wd, f, fr = (np.ascontiguousarray(np.einsum("ab,qpbj->qpaj", inverse, x)) for x in polys)
         return ModalForm(
             omega=np.sqrt(squares),
             C=inverse @ (self.damping[:, None] * Phi),
@@ -152,6 +149,8 @@ class RankOneSystem:
             wd=wd,
             f=f,
             fr=fr,
+            # The mean feedback k g^-1 v v^T is part of omega^2.
+            reference=inverse @ (k * self.v / g),
             input=np.zeros(self.v.size) if self.balance is None else inverse @ self.balance.input,
             shapes=Phi,
         )
@@ -159,7 +158,7 @@ class RankOneSystem:
 
 @dataclass(frozen=True, eq=False)
 class ModalForm:
-    """eta'' + C eta' + omega^2 eta + w (v . eta) + wd (v . eta') = f + fr/T with z = shapes @ eta.
+    """eta'' + C eta' + omega^2 eta + (w - reference) (v . eta) + wd (v . eta') = f + fr/T, z = shapes @ eta.
 
     w, wd, f and fr are (Q, P, m, d+1), Q parts of `RankOneSystem.parts`. omega and shapes are the modes of
     the mean undamped frictionless system, orthonormal in the metric. In the states x = (omega eta, eta') the
@@ -173,6 +172,7 @@ class ModalForm:
     wd: FloatArray
     f: FloatArray
     fr: FloatArray
+    reference: FloatArray
     input: FloatArray
     shapes: FloatArray
 

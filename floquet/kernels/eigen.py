@@ -200,6 +200,26 @@ def _condition_numbers(
         kappa[p] = math.sqrt(square) / gap if gap > 0.0 else math.inf
 
 
+@numba.njit(cache=True, error_model="numpy")
+def _join(values: ComplexArray, radii: FloatArray, scratch: FloatArray, group: npt.NDArray[np.int64]) -> None:
+    """Widen the radii of overlapping disks: a union of k disks apart from the others holds k eigenvalues."""
+    n = values.size
+    for i in range(n):
+        group[i] = i
+        scratch[i] = radii[i]
+    for i in range(n):
+        for j in range(i):
+            if group[i] != group[j] and abs(values[i] - values[j]) <= radii[i] + radii[j]:
+                old, new = group[i], group[j]
+                for k in range(n):
+                    if group[k] == old:
+                        group[k] = new
+    for i in range(n):
+        for j in range(n):
+            if j != i and group[i] == group[j]:
+                radii[i] = max(radii[i], abs(values[i] - values[j]) + scratch[j])
+
+
 @numba.njit(cache=True, error_model="numpy", nogil=True)
 def spectra(
     M: FloatArray, delta: FloatArray, values: ComplexArray, radii: FloatArray, safe: npt.NDArray[np.bool_]
@@ -216,12 +236,12 @@ def spectra(
     delta : (N,) bound on the 2-norm of the error of each
     values : (N, n), out
     radii : (N, n), out
-    safe : (N,), out: the disks are disjoint and the condition numbers well determined, so that each radius
-        is a bound for its own eigenvalue
+    safe : (N,), out: the condition numbers are well determined, so that each radius is a bound for its own
+        eigenvalue; where disks overlap it reaches around all of those that hang together
     """
     n = M.shape[1]
     A, B, product = np.empty((n, n)), np.empty((n, n, n)), np.empty((n, n))
-    kappa = np.empty(n)
+    kappa, group = np.empty(n), np.empty(n, dtype=np.int64)
     for point in range(M.shape[0]):
         square = 0.0
         for i in range(n):
@@ -240,8 +260,5 @@ def spectra(
         for i in range(n):
             # 1.01: relative error of the condition numbers.
             radii[point, i] = 1.01 * size * math.sqrt(kappa[i]) * total
-        for i in range(n):
-            for j in range(i):
-                gap = abs(values[point, i] - values[point, j])
-                ok = ok and gap > radii[point, i] + radii[point, j]
+        _join(values[point], radii[point], kappa, group)
         safe[point] = ok

@@ -20,18 +20,20 @@ MAX_TERMS = 64
 
 
 @numba.njit(cache=True, fastmath={"contract"}, error_model="numpy")
-def shift(poly: FloatArray, u: float, scale: float, out: FloatArray) -> None:
-    """Coefficients of tau -> poly(u + scale tau) by synthetic division; (m, d+1) lowest first -> (d+1, m)."""
-    degree = poly.shape[1] - 1
-    for r in range(poly.shape[0]):
-        for j in range(degree + 1):
-            out[j, r] = poly[r, j]
-        for j in range(degree):
-            for i in range(degree - 1, j - 1, -1):
+def shift(poly: FloatArray, degree: int, u: float, scale: float, out: FloatArray) -> None:
+    """Coefficients of tau -> poly(u + scale tau) by synthetic division, (degree+1, m) lowest first."""
+    m = poly.shape[1]
+    for j in range(degree + 1):
+        for r in range(m):
+            out[j, r] = poly[j, r]
+    for j in range(degree):
+        for i in range(degree - 1, j - 1, -1):
+            for r in range(m):
                 out[i, r] += u * out[i + 1, r]
-        factor = 1.0
-        for j in range(1, degree + 1):
-            factor *= scale
+    factor = 1.0
+    for j in range(1, degree + 1):
+        factor *= scale
+        for r in range(m):
             out[j, r] *= factor
 
 
@@ -42,6 +44,20 @@ def norm(row: FloatArray) -> float:
     for value in row:
         total += value * value
     return math.sqrt(total)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _enough_constant(a: float, tolerance: float, r: FloatArray) -> tuple[int, float, float, float]:
+    """`enough_terms` for degree 0: r_k = a^k/k!."""
+    size = 1.0
+    for k in range(MAX_TERMS):
+        r[k + 1] = r[k] * a / (k + 1)
+        size += r[k + 1]
+        theta = a / (k + 2)
+        tail = theta / (1.0 - theta) * r[k + 1]
+        if theta < 0.5 and tail <= tolerance:
+            return k + 1, tail, tail + r[k + 1], size
+    return -1, math.inf, math.inf, size
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -62,6 +78,9 @@ def enough_terms(
     for j in range(degree + 1):
         total += a[j]
     r[0] = 1.0
+    if degree == 0:
+        terms, tail, tail_f, size = _enough_constant(a[0], tolerance, r)
+        return terms, tail, tail_f, size
     size = 1.0
     for k in range(MAX_TERMS):
         value = 0.0
@@ -70,7 +89,8 @@ def enough_terms(
         r[k + 1] = value / (k + 1)
         size += r[k + 1]
         theta = total / (k + 2)
-        if theta < 0.5 and k >= degree:
+        # The newest value alone must pass before the others are looked at.
+        if theta < 0.5 and k >= degree and (degree + 1) * theta * r[k + 1] <= tolerance:
             largest = 0.0
             for j in range(degree + 1):
                 largest = max(largest, r[k + 1 - j])

@@ -16,7 +16,7 @@ _EPS = 2.220446049250313e-16
 
 @numba.njit(cache=True, error_model="numpy")
 def _frobenius(rows: FloatArray, scratch: FloatArray) -> float:
-    """Norm of rows[:, 0:n]."""
+    """Norm of rows[:, 0:n], by way of the first row of ``scratch``."""
     n = rows.shape[0]
     total = zero()
     for i in range(n):

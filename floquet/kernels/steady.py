@@ -205,7 +205,7 @@ def _sample(
     n, samples, degree = state.shape[0], sampled.shape[0], balance.psi.shape[3]
     balanced = balance.own != 0.0
     nu, nu_rate = norm(problem.v / problem.omega), norm(problem.v)
-    psi, shifted = np.zeros((3, degree)), np.zeros((degree, 3))
+    psi, shifted = np.zeros((degree, 3)), np.zeros((degree, 3))
     c = np.zeros((piece.s.shape[0], 2))
     means = np.zeros(3)
     last, ratio, sample = -1, math.nan, 0
@@ -221,15 +221,15 @@ def _sample(
                 psi[:] = 0.0
                 for q in range(gains.size):
                     for j in range(degree):
-                        psi[0, j] += gains[q] * balance.psi[q, i, 0, j]
-                        psi[1, j] += gains[q] * zeta * balance.psi[q, i, 1, j]
-                        psi[2, j] += gains[q] * (balance.psi[q, i, 2, j] + zeta / T * balance.psi[q, i, 3, j])
+                        psi[j, 0] += gains[q] * balance.psi[q, i, 0, j]
+                        psi[j, 1] += gains[q] * zeta * balance.psi[q, i, 1, j]
+                        psi[j, 2] += gains[q] * (balance.psi[q, i, 2, j] + zeta / T * balance.psi[q, i, 3, j])
                 last = i
             h = width * T
-            load_step(problem, piece, -1.0 + 2.0 * part / parts, 2.0 / parts, h)
-            terms, _, _, _ = enough_terms(piece.a, piece.a.size - 1, limits.tolerance, piece.r)
+            top = load_step(problem, piece, -1.0 + 2.0 * part / parts, 2.0 / parts, h, ratio)
+            terms, _, _, _ = enough_terms(piece.a, top, limits.tolerance, piece.r)
             start_from_rest(problem, piece, h)
-            series(problem.v, h * h * problem.input, piece, terms, ratio / h)
+            series(problem, piece, terms, h, ratio)
             for j in range(terms + 2):
                 for column in range(2):
                     total = piece.s[j, FORCED + column]
@@ -245,7 +245,7 @@ def _sample(
                     sampled[sample, column] = total
                 sample += 1
             if balanced:
-                shift(psi, -1.0 + 2.0 * part / parts, 2.0 / parts, shifted)
+                shift(psi, degree - 1, -1.0 + 2.0 * part / parts, 2.0 / parts, shifted)
                 for e in range(degree):
                     means[0] -= width * shifted[e, 2] / (e + 1.0)
                     means[2] += width * (abs(shifted[e, 0]) * nu + abs(shifted[e, 1]) * nu_rate)

@@ -21,6 +21,7 @@ from typing import NamedTuple
 
 import numba
 import numpy as np
+import numpy.typing as npt
 
 from floquet.kernels.lanes import LANES, load, plus, scaled, store, zero
 from floquet.kernels.majorant import MAX_TERMS, enough_terms, norm, shift
@@ -42,6 +43,7 @@ class Problem(NamedTuple):
     fit_error : (Q, P, 4) largest |error| of w, wd, f, fr by their polynomials on each piece
     C, omega, v : (m, m) [1/s], (m,) [rad/s], (m,)
     input : (m,) constant forcing whose motion from rest is carried beside that of f
+    reference : (m,) constant part of w that omega^2 already has, so that w - reference acts
     """
 
     phases: FloatArray
@@ -54,6 +56,7 @@ class Problem(NamedTuple):
     omega: FloatArray
     v: FloatArray
     input: FloatArray
+    reference: FloatArray
 
 
 class Limits(NamedTuple):
@@ -76,11 +79,13 @@ class Piece(NamedTuple):
 
     Attributes
     ----------
-    w, wd, f : (m, d+1)
-    ws, wds, fs : (d+1, m)
+    w, wd, f : (d+1, m) over the piece
+    ws, wds, fs : the same over one step
+    degrees : of w, wd, f on this piece
     a, r : majorant
     Z, s, sd : (terms, m, LANES), (terms, LANES): coefficients of eta, v . eta and its derivative
     hC, h2_omega2 : (m, m), (m,)
+    sizes : |v/omega|, |v| and max omega + |C|
     """
 
     w: FloatArray
@@ -89,6 +94,7 @@ class Piece(NamedTuple):
     ws: FloatArray
     wds: FloatArray
     fs: FloatArray
+    degrees: npt.NDArray[np.int64]
     a: FloatArray
     r: FloatArray
     Z: FloatArray
@@ -96,6 +102,7 @@ class Piece(NamedTuple):
     sd: FloatArray
     hC: FloatArray
     h2_omega2: FloatArray
+    sizes: FloatArray
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -105,13 +112,62 @@ def scratch_for(problem: Problem) -> Piece:
     dw, dd = problem.w.shape[3], problem.wd.shape[3]
     df = max(problem.f.shape[3], problem.fr.shape[3])
     return Piece(
-        np.zeros((m, dw)), np.zeros((m, dd)), np.zeros((m, df)),
         np.zeros((dw, m)), np.zeros((dd, m)), np.zeros((df, m)),
-        np.zeros(max(dw, dd)), np.zeros(MAX_TERMS + 2),
+        np.zeros((dw, m)), np.zeros((dd, m)), np.zeros((df, m)),
+        np.zeros(3, dtype=np.int64), np.zeros(max(dw, dd)), np.zeros(MAX_TERMS + 2),
         np.zeros((MAX_TERMS + 2, m, LANES)),
         np.zeros((MAX_TERMS + 2, LANES)), np.zeros((MAX_TERMS + 2, LANES)),
         np.zeros((m, m)), np.zeros(m),
+        np.array([norm(problem.v / problem.omega), norm(problem.v),
+                  problem.omega.max() + norm(problem.C.ravel())]),
     )  # fmt: skip
+
+
+# What follows runs for every step of every point: no slices and no array expressions, which would allocate or
+# count references.
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _degree(poly: FloatArray) -> int:
+    for j in range(poly.shape[0] - 1, 0, -1):
+        for r in range(poly.shape[1]):
+            if poly[j, r] != 0.0:
+                return j
+    return 0
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _row(poly: FloatArray, j: int) -> float:
+    """Norm of poly[j]."""
+    total = 0.0
+    for r in range(poly.shape[1]):
+        total += poly[j, r] * poly[j, r]
+    return math.sqrt(total)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _change(poly: FloatArray, reference: FloatArray) -> float:
+    """Norm of poly[0] - reference."""
+    total = 0.0
+    for r in range(poly.shape[1]):
+        total += (poly[0, r] - reference[r]) ** 2
+    return math.sqrt(total)
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _add(polys: FloatArray, part: int, i: int, factor: float, out: FloatArray) -> None:
+    """Add factor times polys[part, i] (m, d+1) to out (d+1, m)."""
+    if factor != 0.0:
+        for r in range(polys.shape[2]):
+            for j in range(polys.shape[3]):
+                out[j, r] += factor * polys[part, i, r, j]
+
+
+@numba.njit(cache=True, error_model="numpy")
+def _clear(poly: FloatArray) -> None:
+    for j in range(poly.shape[0]):
+        for r in range(poly.shape[1]):
+            poly[j, r] = 0.0
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -126,103 +182,113 @@ def load_piece(
     the same for all powers and coordinates, else nan
     """
     m = problem.v.size
-    nu, nu_rate = norm(problem.v / problem.omega), norm(problem.v)
-    piece.w[:] = 0.0
-    piece.wd[:] = 0.0
-    piece.f[:] = 0.0
+    nu, nu_rate, calm = piece.sizes[0], piece.sizes[1], piece.sizes[2]
+    _clear(piece.w)
+    _clear(piece.wd)
+    _clear(piece.f)
     error = error_f = 0.0
     for part in range(problem.w.shape[0]):
         g = gains[part]
+        _add(problem.w, part, i, g, piece.w)
+        _add(problem.wd, part, i, g * zeta, piece.wd)
+        _add(problem.f, part, i, g, piece.f)
+        _add(problem.fr, part, i, g * zeta / T, piece.f)
+        fit = problem.fit_error
+        error += abs(g) * (fit[part, i, 0] * nu + fit[part, i, 1] * abs(zeta) * nu_rate)
+        error_f += abs(g) * (fit[part, i, 2] + fit[part, i, 3] * abs(zeta) / T)
+    dw, dd = _degree(piece.w), _degree(piece.wd)
+    piece.degrees[0], piece.degrees[1], piece.degrees[2] = dw, dd, _degree(piece.f)
+    size_w = _change(piece.w, problem.reference)
+    for j in range(1, dw + 1):
+        size_w += _row(piece.w, j)
+    size_wd = 0.0
+    for j in range(dd + 1):
+        size_wd += _row(piece.wd, j)
+    rate = calm + size_w * nu + size_wd * nu_rate
+    above = below = 0.0
+    common = min(dw, dd)
+    for j in range(common + 1):
         for r in range(m):
-            for j in range(problem.w.shape[3]):
-                piece.w[r, j] += g * problem.w[part, i, r, j]
-            for j in range(problem.wd.shape[3]):
-                piece.wd[r, j] += g * zeta * problem.wd[part, i, r, j]
-            for j in range(problem.f.shape[3]):
-                piece.f[r, j] += g * problem.f[part, i, r, j]
-            for j in range(problem.fr.shape[3]):
-                piece.f[r, j] += g * zeta / T * problem.fr[part, i, r, j]
-        fit = problem.fit_error[part, i]
-        error += abs(g) * (fit[0] * nu + fit[1] * abs(zeta) * nu_rate)
-        error_f += abs(g) * (fit[2] + fit[3] * abs(zeta) / T)
-    size_w = size_wd = 0.0
-    for j in range(piece.w.shape[1]):
-        size_w += norm(piece.w[:, j])
-    for j in range(piece.wd.shape[1]):
-        size_wd += norm(piece.wd[:, j])
-    rate = problem.omega.max() + norm(problem.C.ravel()) + size_w * nu + size_wd * nu_rate
-    ratio = math.nan
-    if piece.w.shape[1] == piece.wd.shape[1] and size_w > 0.0:
-        above = below = 0.0
+            above += piece.w[j, r] * piece.wd[j, r]
+            below += piece.w[j, r] * piece.w[j, r]
+    ratio = above / below if below > 0.0 else 0.0
+    distance = 0.0
+    for j in range(max(dw, dd) + 1):
         for r in range(m):
-            for j in range(piece.w.shape[1]):
-                above += piece.w[r, j] * piece.wd[r, j]
-                below += piece.w[r, j] * piece.w[r, j]
-        ratio = above / below
-        distance = 0.0
-        for r in range(m):
-            for j in range(piece.w.shape[1]):
-                distance += abs(piece.wd[r, j] - ratio * piece.w[r, j])
-        if distance <= _PROPORTIONAL * size_wd:
-            error += distance * nu_rate
-        else:
-            ratio = math.nan
+            w = piece.w[j, r] if j <= dw else 0.0
+            wd = piece.wd[j, r] if j <= dd else 0.0
+            distance += abs(wd - ratio * w)
+    if distance <= _PROPORTIONAL * size_wd:
+        piece.degrees[1] = 0
+        error += distance * nu_rate
+    else:
+        ratio = math.nan
     return rate, error, error_f, ratio
 
 
 @numba.njit(cache=True, error_model="numpy")
-def load_step(problem: Problem, piece: Piece, u: float, du: float, h: float) -> None:
-    """Write the gains over one step of length h, which starts at u and covers du, and their majorant a."""
+def load_step(problem: Problem, piece: Piece, u: float, du: float, h: float, ratio: float) -> int:
+    """Write the gains over one step of length h, which starts at u and covers du, and their majorant a.
+
+    Returns the degree of a.
+    """
     m = problem.v.size
-    nu, nu_rate = norm(problem.v / problem.omega), norm(problem.v)
+    nu, nu_rate, calm = piece.sizes[0], piece.sizes[1], piece.sizes[2]
+    merged = not math.isnan(ratio)
+    dw, dd, df = piece.degrees[0], piece.degrees[1], piece.degrees[2]
     for q in range(m):
         piece.h2_omega2[q] = (h * problem.omega[q]) ** 2
         for p in range(m):
             piece.hC[q, p] = h * problem.C[q, p]
-    shift(piece.w, u, du, piece.ws)
-    shift(piece.wd, u, du, piece.wds)
-    shift(piece.f, u, du, piece.fs)
-    piece.a[:] = 0.0
-    piece.a[0] = h * (problem.omega.max() + norm(problem.C.ravel()))
-    for j in range(piece.w.shape[1]):
-        piece.a[j] += h * norm(piece.ws[j]) * nu
+    shift(piece.w, dw, u, du, piece.ws)
+    shift(piece.f, df, u, du, piece.fs)
+    for j in range(piece.a.size):
+        piece.a[j] = 0.0
+    piece.a[0] = h * calm
+    if not merged:
+        shift(piece.wd, dd, u, du, piece.wds)
+        for j in range(dd + 1):
+            piece.a[j] += h * _row(piece.wds, j) * nu_rate
+            for q in range(m):
+                piece.wds[j, q] *= h
+    for j in range(dw + 1):
+        if merged:
+            piece.a[j] += h * _row(piece.ws, j) * abs(ratio) * nu_rate
+        if j == 0:
+            piece.a[0] += h * _change(piece.ws, problem.reference) * nu
+        else:
+            piece.a[j] += h * _row(piece.ws, j) * nu
         for q in range(m):
             piece.ws[j, q] *= h * h
-    for j in range(piece.wd.shape[1]):
-        piece.a[j] += h * norm(piece.wds[j]) * nu_rate
-        for q in range(m):
-            piece.wds[j, q] *= h
-    for j in range(piece.f.shape[1]):
+    for j in range(df + 1):
         for q in range(m):
             piece.fs[j, q] *= h * h
+    return int(dw if merged else max(dw, dd))
 
 
 @numba.njit(cache=True, fastmath={"contract"}, error_model="numpy")
-def series(v: FloatArray, input: FloatArray, piece: Piece, terms: int, ratio: float) -> None:
+def series(problem: Problem, piece: Piece, terms: int, h: float, ratio: float) -> None:
     """Fill Z[k] (m, LANES), the Taylor coefficients in step time, k = 2..terms+1, from Z[0] and Z[1].
 
-    ``input`` is in step time, as are the gains. With wd = ratio w (in step time) the two convolutions merge
-    into one with s + ratio s'.
+    With wd = ratio w the two convolutions merge into one with s + (ratio/h) s'.
     """
-    m = v.size
+    v, m = problem.v, problem.v.size
     Z, s, sd, w, wd, f = piece.Z, piece.s, piece.sd, piece.ws, piece.wds, piece.fs
     merged = not math.isnan(ratio)
-    dw, dd, df = w.shape[0] - 1, wd.shape[0] - 1, f.shape[0] - 1
+    dw, dd, df = piece.degrees[0], piece.degrees[1], piece.degrees[2]
     for k in range(2):
         total = zero()
         for r in range(m):
             total = plus(v[r], load(Z, (k, r)), total)
         store(s, (k,), total)
     for k in range(terms):
-        derivative = scaled(k + 1.0, load(s, (k + 1,)))
-        if merged:
-            store(sd, (k,), plus(ratio, derivative, load(s, (k,))))
-        else:
-            store(sd, (k,), derivative)
+        here, derivative = load(s, (k,)), scaled(k + 1.0, load(s, (k + 1,)))
+        store(sd, (k,), plus(ratio / h, derivative, here) if merged else derivative)
         factor = -1.0 / ((k + 1.0) * (k + 2.0))
         new = zero()
         for r in range(m):
             total = scaled(piece.h2_omega2[r], load(Z, (k, r)))
+            total = plus(-h * h * problem.reference[r], here, total)
             for q in range(m):
                 total = plus((k + 1.0) * piece.hC[r, q], load(Z, (k + 1, q)), total)
             if merged:
@@ -238,7 +304,7 @@ def series(v: FloatArray, input: FloatArray, piece: Piece, terms: int, ratio: fl
             if k <= df:
                 Z[k + 2, r, FORCED] -= factor * f[k, r]
                 if k == 0:
-                    Z[2, r, FORCED + 1] -= factor * input[r]
+                    Z[2, r, FORCED + 1] -= factor * h * h * problem.input[r]
                 total = load(Z, (k + 2, r))
             new = plus(v[r], total, new)
         store(s, (k + 2,), new)
@@ -298,8 +364,7 @@ def steps_of_period(
     """
     m = problem.v.size
     count = 0
-    calm = problem.omega.max() + norm(problem.C.ravel())
-    degree = piece.a.size - 1
+    calm, size_input = piece.sizes[2], norm(problem.input)
     for i in range(problem.phases.size - 1):
         length = (problem.phases[i + 1] - problem.phases[i]) * T
         rate, misfit, misfit_f, ratio = load_piece(problem, i, gains, zeta, T, piece)
@@ -309,7 +374,7 @@ def steps_of_period(
             if count + parts - part > limits.max_steps:
                 return -1
             h, du = length / parts, 2.0 / parts
-            load_step(problem, piece, -1.0 + du * part, du, h)
+            degree = load_step(problem, piece, -1.0 + du * part, du, h, ratio)
             terms, tail, tail_f, size = enough_terms(piece.a, degree, limits.tolerance, piece.r)
             if terms < 0:
                 # The polynomials vary too much within the step: begin the piece again with half of it.
@@ -318,7 +383,7 @@ def steps_of_period(
                 part = 0
                 continue
             start_from_rest(problem, piece, h)
-            series(problem.v, h * h * problem.input, piece, terms, ratio / h)
+            series(problem, piece, terms, h, ratio)
             end_of_step(problem, piece, terms, h, steps[count])
             # Every coefficient is a sum of at most 2 d + 2 m + 4 rounded products of size r_k.
             rounding = _EPS * (2.0 * degree + 2.0 * m + 8.0) * size
@@ -327,13 +392,13 @@ def steps_of_period(
             for j in range(degree + 1):
                 growth += piece.a[j]
             size_f = 0.0
-            for j in range(piece.f.shape[1]):
-                size_f += norm(piece.fs[j])
+            for j in range(piece.degrees[2] + 1):
+                size_f += _row(piece.fs, j)
             size_f /= h  # fs holds h^2 f
             spread = h * math.exp(growth)
             local[count, 0] = tail + rounding + misfit * spread
             local[count, 1] = (tail_f + rounding + misfit * spread) * size_f + misfit_f * spread
-            local[count, 2] = (tail_f + rounding + misfit * spread) * h * norm(problem.input)
+            local[count, 2] = (tail_f + rounding + misfit * spread) * h * size_input
             layout[count, 0], layout[count, 1], layout[count, 2] = i, part, parts
             count += 1
             part += 1

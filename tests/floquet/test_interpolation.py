@@ -1,0 +1,102 @@
+"""Is an interpolated chart the direct one, within its bounds, and does it say when it cannot be?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from floquet import gear_block, stability_chart
+from floquet.fast import fast_monodromies, fast_multipliers
+from floquet.gear_axes import GearVariation
+from floquet.gear_friction import friction_factors
+from floquet.interpolation import interpolant, interpolated_multipliers
+from lumped import load_gear_pair
+from lumped.errors import NumericalError, ParameterError
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return load_gear_pair("nasa_28_28")
+
+
+def test_error_falls_to_the_tolerance_and_is_bounded(pair) -> None:
+    block = gear_block(pair)
+    T = block.period * np.array([0.5, 1.7])
+    turns = block.modal().omega.max() * (T[1] - T[0])
+
+    def flow(t: np.ndarray, z: np.ndarray):
+        return fast_monodromies(block, t, z)
+
+    rng = np.random.default_rng(5)
+    t, z = rng.uniform(*T, 60), rng.uniform(0.0, 2.0, 60)
+    exact = flow(t, z)
+    for tolerance in (1e-4, 1e-7, 1e-10):
+        series = interpolant(flow, (T[0], T[1]), (0.0, 2.0), turns, tolerance)
+        found = np.array([series(t[i : i + 1], z[i : i + 1])[0, 0] for i in range(60)])
+        error = np.linalg.norm(found - exact.matrices, axis=(1, 2)).max()
+        size = np.linalg.norm(exact.matrices, axis=(1, 2)).max()
+        assert error <= series.error + exact.errors.max()
+        assert error < 10 * tolerance * size
+
+
+def test_multipliers_at_many_speeds_and_dampings(pair) -> None:
+    block = gear_block(pair)
+    T = block.period * np.linspace(0.2, 8.0, 41)  # three bands
+    z = np.linspace(0.0, 2.0, 7)
+
+    def flow(t: np.ndarray, f: np.ndarray):
+        return fast_monodromies(block, t, f)
+
+    result, nodes = interpolated_multipliers(flow, T, z, float(block.modal().omega.max()), 1e-11)
+    direct = fast_multipliers(block, np.repeat(T, 7), np.tile(z, 41))
+    distance = np.abs(result.multipliers[:, :, None] - direct.multipliers[:, None, :]).min(axis=2)
+    assert (distance <= result.errors + direct.errors.max(axis=1, keepdims=True)).all()
+    assert distance.max() < 1e-9
+    assert nodes < 40_000  # a million points would be 25 times as many
+
+
+@pytest.mark.parametrize(
+    ("law", "axes"),
+    [
+        ("coulomb", {"speed_rpm": np.linspace(900, 15000, 9), "damping_ratio": np.linspace(0, 0.08, 5)}),
+        ("coulomb", {"damping_ratio": [0.0, 0.05], "speed_rpm": [4000.0, 2500.0, 17000.0]}),
+        ("coulomb", {"friction_coefficient": [0.0, 0.05, 0.1], "speed_rpm": [2000.0, 9000.0]}),
+        ("xu_kahraman", {"speed_rpm": [1500.0, 5000.0, 16000.0], "damping_ratio": [0.01, 0.04]}),
+        ("smoothed_coulomb", {"speed_rpm": [1500.0, 5000.0, 16000.0]}),
+        ("coulomb", {"speed_rpm": [3000.0, 9000.0], "torque": [30.0, 90.0], "damping_ratio": [0.02, 0.03]}),
+    ],
+)
+def test_chart_agrees_with_the_direct_one(pair, law: str, axes: dict[str, object]) -> None:
+    here = pair.with_(friction__law=law)
+    direct, fast = stability_chart(here, axes), stability_chart(here, axes, method="chebyshev")
+    difference = np.abs(direct.spectral_radius - fast.spectral_radius)
+    assert (difference <= direct.error + fast.error).all()
+    # 1e-6: both carry the bound of the fit of mu, 1e-10 of the gain, over up to 100 rad.
+    assert fast.error.max() < 1e-6
+    assert (direct.verdict == fast.verdict).all()
+
+
+def test_laws_whose_switches_move_are_refused(pair) -> None:
+    moving = pair.with_(friction__law="benedict_kelley")
+    with pytest.raises(ParameterError, match="benedict_kelley"):
+        stability_chart(moving, {"speed_rpm": [2000.0, 8000.0]}, method="chebyshev")
+    with pytest.raises(ParameterError, match="speed_rpm"):
+        stability_chart(pair, {"damping_ratio": [0.0, 0.1]}, method="chebyshev")
+
+
+def test_friction_factors_are_the_laws_own_power_of_speed(pair) -> None:
+    # Law III goes with the entraining velocity to the power b6 = -0.100601 (equation 18); a constant given
+    # coefficient does not change at all; law II is no single factor.
+    speeds = np.array([500.0, 2000.0, 20000.0])
+    own = pair.operating.pinion_speed * 30 / np.pi
+    law_3 = friction_factors(GearVariation(pair.with_(friction__law="xu_kahraman")), speeds)
+    assert law_3 == pytest.approx((speeds / own) ** -0.100601, rel=1e-11)
+    given = pair.with_(friction__law="coulomb", friction__coefficient=0.06)
+    assert (friction_factors(GearVariation(given), speeds) == 1.0).all()
+    assert friction_factors(GearVariation(pair.with_(friction__law="benedict_kelley")), speeds) is None
+
+
+def test_too_long_a_range_is_refused(pair) -> None:
+    block = gear_block(pair)
+    with pytest.raises(NumericalError, match="nodes"):
+        interpolant(lambda t, z: fast_monodromies(block, t, z), (1e-3, 2e-3), (0.0, 1.0), 1e6, 1e-8)
