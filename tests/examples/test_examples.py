@@ -2,8 +2,11 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
+import floquet
 import lumped
+from validation.studies import load_study, read_results, run_sweep
 
 
 def labelled(figure):
@@ -126,3 +129,72 @@ def test_10_loss_of_small_friction_is_the_published_loss_factor(example):
     # Vibration moves the loss of these gears, far below resonance, by less than a hundredth.
     quiet, shaken = 1 - result["mesh_efficiency"], 1 - result["mesh_efficiency_dynamic"]
     np.testing.assert_allclose(shaken, quiet, rtol=1e-2)
+
+
+def test_11_models_differ_by_the_square_of_the_torque(example):
+    module = example(11)
+    result = module.compute()
+    labelled(module.draw(result))
+    # Finite motions enter as deflection times force; contact loss, which does not, is switched off.
+    for name in ("dte", "x_p", "y_p"):
+        assert result.attrs[name] == pytest.approx(2.0, abs=0.05)
+
+
+def test_12_tongues_stand_at_the_predicted_speeds(example):
+    module = example(12)
+    result = module.compute()
+    labelled(module.draw(result))
+    assert {"2w3/2", "2w3/5", "2w3/4"} <= set(result["label"].values)
+    # The line is that of the averaged system; a variation of half the stiffness moves the tongue a little.
+    peak = result["peak"].isel(damping_ratio=0)
+    assert float(np.abs(peak / result["predicted"] - 1.0).max()) < 0.03
+    width = (result["upper"] - result["lower"]).to_numpy()
+    # Damping narrows every tongue.
+    assert (np.diff(width, axis=1)[np.isfinite(np.diff(width, axis=1))] < 0.0).all()
+
+
+def test_13_half_a_period_each_needs_no_damping(example):
+    module = example(13)
+    result = module.compute()
+    labelled(module.draw(result))
+    quiet = result.attrs["quiet_contact_ratio"]
+    # Both half periods return the mode, so there is no tongue. Exact for one mode; the mode's shapes at one
+    # and at two tooth pairs differ only by how much the bearings move.
+    assert float(result["critical_damping"].sel(contact_ratio=quiet)) < 1e-3
+    # One degree of freedom on rigid bearings: twice the stiffness, so 1 + 1/(1 + sqrt 2).
+    assert quiet == pytest.approx(1.0 + 1.0 / (1.0 + np.sqrt(2.0)), rel=0.01)
+    assert float(result["critical_damping"].max()) > 0.02
+
+
+def test_14_sensitivities_are_the_slopes_of_a_chart(example):
+    module = example(14)
+    result = module.compute()
+    labelled(module.draw(result))
+    pair = lumped.load_gear_pair("nasa_28_28").with_(
+        operating__pinion_speed=16000.0, friction__law="coulomb", friction__coefficient=0.05
+    )
+    steps = {"speed_rpm": 1.0, "damping_ratio": 1e-5}
+    for name, step in steps.items():
+        row = result.sel(parameter=name)
+        near = [float(row["value"]) - step, float(row["value"]) + step]
+        radius = floquet.stability_chart(pair, {name: near}, rtol=1e-12)["spectral_radius"].to_numpy()
+        # Central differences over 6e-5 and 2e-4 of the value: errors of the order of their squares.
+        assert float(row["derivative"]) == pytest.approx(np.diff(radius)[0] / (2.0 * step), rel=1e-5)
+
+
+def test_15_the_true_coefficient_lies_in_its_interval(example):
+    module = example(15)
+    result = module.compute()
+    labelled(module.draw(result))
+    (found,) = result.evaluation.found
+    # Three standard errors: a right interval misses by this much once in 370 noise seeds; the seed is fixed.
+    assert abs(found.estimate - result.truth) < 3.0 * found.standard_error
+    assert found.standard_error < 0.01 * result.truth
+
+
+def test_16_the_cluster_gives_the_file_of_one_process(example, tmp_path):
+    module = example(16)
+    result = module.compute()
+    labelled(module.draw(result))
+    run_sweep(load_study(module.STUDY), tmp_path / "alone")
+    xr.testing.assert_identical(result, read_results(tmp_path / "alone").load())

@@ -1,0 +1,41 @@
+"""
+Tongues of instability over speed and damping
+=============================================
+
+A stiffness that varies with the mesh frequency drives a mode where that frequency is (omega_i + omega_j)/k.
+How wide are those ranges of speed, and how much damping closes them?
+"""
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+import floquet
+import lumped
+
+
+def compute() -> xr.Dataset:
+    """Boundaries of the tongues of the 28/28 pair with constant friction coefficient."""
+    pair = lumped.load_gear_pair("nasa_28_28").with_(friction__law="coulomb", friction__coefficient=0.05)
+    damping = np.geomspace(1e-3, 0.03, 16)
+    found = floquet.stability_boundaries(pair, (5000.0, 20000.0), {"damping_ratio": damping}, nodes=200)
+    lines = {str(tongue): speed for tongue, speed in floquet.predicted_lines(pair).items()}
+    return found.assign(predicted=("tongue", [lines[str(label)] for label in found["label"].values]))
+
+
+def draw(result: xr.Dataset) -> Figure:
+    """Shade each tongue, with the predicted speed as a dashed line."""
+    figure = Figure(figsize=(7, 4), layout="constrained")
+    axes = figure.add_subplot()
+    for row in range(result.sizes["tongue"]):
+        tongue = result.isel(tongue=row)
+        axes.fill_betweenx(tongue["damping_ratio"] * 100, tongue["lower"], tongue["upper"], alpha=0.5)
+        axes.axvline(float(tongue["predicted"]), color="0.5", linewidth=0.8, linestyle="--")
+        place = (float(tongue["peak"][0]), 100 * float(result["damping_ratio"][0]))
+        axes.annotate(str(tongue["label"].item()), place, (0, 4), textcoords="offset points", ha="center")
+    axes.set(xlabel="pinion speed [rpm]", ylabel="mesh damping ratio [%]", yscale="log")
+    return figure
+
+
+if __name__ == "__main__":
+    draw(compute()).savefig("tongues.png", dpi=150)
