@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 from joblib import Parallel, delayed
 
 from floquet.monodromy import monodromy
@@ -15,6 +15,9 @@ from floquet.propagators import Propagator
 from floquet.spectrum import Spectrum
 from floquet.system import FloatArray, PeriodicSystem
 from lumped.errors import NumericalError, refuse
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Axes = Mapping[str, npt.ArrayLike]
 Progress = Callable[[int, int], None]
@@ -116,6 +119,8 @@ def chart_dataset(
     Dataset with spectral_radius, error, verdict (1 stable, 0 undecided, -1 unstable) over the axes, and
     multipliers, multiplier_errors over the axes and ``multiplier``
     """
+    import xarray as xr
+
     shape = tuple(values.size for values in grid.values())
     dims = tuple(grid)
     count = multipliers.shape[-1]
@@ -200,6 +205,8 @@ def save_chart(dataset: xr.Dataset, path: str | Path) -> None:
 
 def load_chart(path: str | Path) -> xr.Dataset:
     """Read a chart written by `save_chart`."""
+    import xarray as xr
+
     with xr.open_dataset(path, engine="h5netcdf") as opened:
         dataset = opened.load()
     names: Sequence[str] = [str(n)[:-5] for n in dataset.data_vars if str(n).endswith("_real")]

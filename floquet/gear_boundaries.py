@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from floquet.chart import Progress, checked_axes
 from floquet.fast import fast_monodromies
@@ -16,6 +17,9 @@ from floquet.system import FloatArray
 from floquet.tongues import Tongue, label_tongue
 from lumped.errors import refuse
 from lumped.parameters import GearPair
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def predicted_lines(pair: GearPair, orders: int = 12) -> dict[Tongue, float]:
@@ -130,6 +134,8 @@ def _dataset(
     values: FloatArray,
     has_axis: bool,
 ) -> xr.Dataset:
+    import xarray as xr
+
     tongues = sorted(found)
     shape = (len(tongues), values.size)
     numbers = {key: np.full(shape, np.nan) for key in ("lower", "upper", "peak", "peak_radius")}

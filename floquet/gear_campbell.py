@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 from scipy.optimize import linear_sum_assignment
 
 from floquet.chart import checked_axes
@@ -16,6 +17,9 @@ from floquet.system import ComplexArray, FloatArray
 from floquet.tongues import mode_shares
 from lumped.errors import refuse
 from lumped.parameters import GearPair
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def campbell(
@@ -49,6 +53,8 @@ def campbell(
     ParameterError
         Speeds that are not increasing.
     """
+    import xarray as xr
+
     speeds = checked_axes({"speed_rpm": speeds_rpm})["speed_rpm"]
     if speeds.size > 1 and (np.diff(speeds) <= 0.0).any():
         raise refuse("speeds_rpm", "unsorted", "increasing speeds", "Sort them.")
@@ -139,6 +145,8 @@ def multiplier_paths(pair: GearPair, name: str, values: npt.ArrayLike, *, rtol: 
     -------
     Dataset over the axis and ``path``: complex ``multipliers``, paths in the order of the first point
     """
+    import xarray as xr
+
     points = checked_axes({name: values})[name]
     axis = gear_axis(name)
     paths: list[ComplexArray] = []

@@ -6,10 +6,10 @@ import math
 from collections.abc import Callable, Mapping
 from functools import partial
 from itertools import product
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from floquet.chart import Axes, Progress, chart_dataset, checked_axes, scan
 from floquet.fast import FastMonodromy, fast_monodromies, fast_multipliers
@@ -24,6 +24,9 @@ from floquet.system import ComplexArray, FloatArray
 from lumped.errors import refuse
 from lumped.parameters import GearPair
 from lumped.periodic_system import periodic_system
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _INNER = ("speed_rpm", "damping_ratio", "friction_coefficient")
 _REFERENCE_DAMPING = 1.0

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from floquet.chart import Axes, Progress, checked_axes
 from floquet.gear_chart import stability_chart
 from lumped.errors import refuse
 from lumped.friction import LAWS
 from lumped.parameters import GearPair
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def friction_effect(
@@ -49,6 +52,8 @@ def friction_effect(
     ParameterError
         Unknown law, or an unusable axis.
     """
+    import xarray as xr
+
     grid = checked_axes(axes)
     for law in (*laws, reference):
         if law not in LAWS:

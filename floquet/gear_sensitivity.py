@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from floquet.gear_axes import GEAR_AXES, gear_axis, operating_value, vary
 from floquet.gear_multipliers import gear_pair_multipliers, gear_pair_system, oloa_exponents
@@ -14,6 +14,9 @@ from floquet.system import FloatArray, PeriodicSystem
 from lumped.errors import NumericalError
 from lumped.parameters import GearPair
 from lumped.periodic_system import periodic_system
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 # Differences of the coefficients, of order 4: truncation (5e-3)^4 relative, below 1e-9; the friction laws are
 # fitted within 1e-10, which makes 2e-8. Smaller steps would magnify that misfit beyond what rtol allows.
@@ -52,6 +55,8 @@ def gear_sensitivities(
     NumericalError
         The largest multiplier is nearly defective, or a switch passes another one at this very point.
     """
+    import xarray as xr
+
     names = list(GEAR_AXES if parameters is None else parameters)
     axes = [gear_axis(name) for name in names]
     whole = gear_pair_multipliers(pair, rtol)

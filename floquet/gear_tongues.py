@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 from scipy import ndimage
 
 from floquet.chart import Progress
@@ -19,6 +19,9 @@ from floquet.system import FloatArray
 from floquet.tongues import ModeShares, Tongue, label_tongue, tongue_tip
 from lumped.errors import refuse
 from lumped.parameters import GearPair
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 # From a tenth of what tongues of steel gears need to what no gear mesh reaches.
 _DAMPING = (0.0, 3e-4, 6e-4, 1.2e-3, 2.5e-3, 5e-3, 1e-2, 2e-2, 4e-2, 8e-2, 0.16, 0.32)
@@ -63,6 +66,8 @@ def critical_damping(
     ParameterError
         Unusable range, or a ladder that is not increasing.
     """
+    import xarray as xr
+
     ladder = np.asarray(damping_ratios, dtype=float)
     if ladder.ndim != 1 or ladder.size < 2 or not (np.diff(ladder) > 0).all():
         raise refuse("damping_ratios", damping_ratios, "an increasing list", "Sort the ratios.")

@@ -16,16 +16,18 @@ two cancel. Lengths of time are in parts of the mesh cycle, frequencies in units
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from floquet.chart import scan
 from floquet.spectrum import Spectrum
 from floquet.system import ComplexArray, FloatArray, PeriodicSystem
 from lumped.errors import refuse
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FrictionSign = Literal["reversing", "constant"]
 _EPS = float(np.finfo(np.float64).eps)
@@ -165,6 +167,8 @@ def stability_zones(
     Dataset as of `floquet.scan` over ``friction`` ("none", "reversing", "constant"), ``speed_ratio`` and
     ``damping_ratio``
     """
+    import xarray as xr
+
     cases = {
         "none": replace(pair, friction=0.0),
         "reversing": replace(pair, sign="reversing"),

@@ -5,15 +5,18 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import control
 import numpy as np
-import xarray as xr
 
 from lumped.errors import NumericalError, refuse
 from lumped.parameters import GearPair
 from lumped.path_function import FloatArray
 from lumped.periodic_system import Form, LTVSystem, periodic_system
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 #: Gauss-Legendre rule per smooth segment of the average, exact to degree 47.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
@@ -131,6 +134,8 @@ def frequency_response(pair: GearPair, frequencies: Sequence[float] | FloatArray
     -------
     xarray.Dataset over ``frequency`` [Hz]: complex receptances ``dte``, ``x_p``, ``x_g`` [m/(N m)]
     """
+    import xarray as xr
+
     f = np.asarray(frequencies, dtype=float)
     if f.ndim != 1 or f.size == 0 or not (np.isfinite(f).all() and (f > 0).all()):
         raise refuse("frequencies", f"shape {f.shape}", "positive frequencies in Hz", "Give a list of them.")

@@ -7,16 +7,18 @@ import platform
 from collections.abc import Mapping
 from functools import cache
 from importlib import metadata
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from lumped.equations import COORDINATES
 from lumped.gear_geometry import geometry
 from lumped.parameters import GearPair
 from lumped.path_function import FloatArray
 from lumped.periodic_system import LTVSystem
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 #: Variable -> (dimensions, unit, plain name). Every model of the pair returns these.
 VARIABLES: dict[str, tuple[tuple[str, ...], str, str]] = {
@@ -82,6 +84,8 @@ def labelled(time: FloatArray, values: Mapping[str, FloatArray], attributes: Map
     values : variable name -> array of the dimensions in ``VARIABLES``; pair 0 is the one ahead
     attributes : of the dataset
     """
+    import xarray as xr
+
     variables: dict[str, xr.DataArray] = {}
     for name, (dims, unit, long_name) in VARIABLES.items():
         if name in values:

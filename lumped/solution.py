@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numbers
 from collections.abc import Callable, Collection
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.integrate import DOP853
 
@@ -21,6 +20,9 @@ from lumped.path_function import FloatArray, PathFunction
 from lumped.periodic_system import LTVSystem, periodic_system
 from lumped.results import dataset, provenance
 from lumped.steady import PeriodicSolution, periodic_solution, sample_times
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Progress = Callable[[float], None]
 Initial = Literal["static", "periodic"]

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from lumped.errors import NumericalError, refuse, shown
 from lumped.parameters import GearPair
@@ -15,6 +14,9 @@ from lumped.periodic_system import periodic_system
 from lumped.results import provenance, response
 from lumped.solution import Progress, balance_attributes
 from lumped.steady import periodic_solution, sample_times
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def speed_sweep(
@@ -75,6 +77,8 @@ def speed_sweep(
 def _sweep_dataset(
     pair: GearPair, speeds: FloatArray, table: dict[str, FloatArray], periodic: Any
 ) -> xr.Dataset:
+    import xarray as xr
+
     result = xr.Dataset(attrs=provenance(pair) | {"model": "lumped"})
     result["speed"] = xr.DataArray(speeds, dims="speed", attrs={"units": "rpm", "long_name": "pinion speed"})
     for name, values in table.items():

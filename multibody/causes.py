@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from lumped.parameters import GearPair
 from lumped.results import provenance
@@ -13,6 +13,9 @@ from lumped.solution import Initial
 from multibody.effects import EFFECTS
 from multibody.flow_map import steady_state
 from multibody.simulation import simulate
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 #: Rotations and centres together place the contact; one without the other is no motion of the machine, so the
 #: two switches count as one cause.
@@ -54,6 +57,8 @@ def attribution(
     difference; the attribute ``largest`` names the cause that changes the transmission error most. A
     quantity that does not move without effects (y_p without friction) is NaN.
     """
+    import xarray as xr
+
     every = set(EFFECTS)
     cases: dict[tuple[str, str], set[str]] = {("all", "alone"): every, ("all", "without"): set()}
     for cause, names in CAUSES.items():

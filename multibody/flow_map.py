@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from lumped.errors import NumericalError
@@ -25,6 +25,9 @@ from multibody.model import build
 from multibody.records import from_lumped_state, to_lumped_state
 from multibody.setup import CALL_LIMIT, Fidelity, Setup, prepare
 from multibody.simulation import record
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]

@@ -7,9 +7,9 @@ it.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from matplotlib.animation import PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -20,6 +20,9 @@ from lumped.errors import refuse
 from lumped.gear_geometry import geometry
 from lumped.parameters import GearPair
 from multibody.outline import gear_outline
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FloatArray = NDArray[np.float64]
 _FACES, _EDGES = ("#c9d7e8", "#e8dcc3"), ("#37587f", "#7d6433")

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from lumped.results import labelled
@@ -14,6 +13,9 @@ from multibody import kernels as kn
 from multibody.integration import Segment
 from multibody.kinematics import MAX_PAIRS
 from multibody.model import ExudynModel
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FloatArray = NDArray[np.float64]
 
@@ -124,6 +126,8 @@ class Recorder:
 
     def dataset(self, attributes: Mapping[str, Any]) -> xr.Dataset:
         """Return everything recorded under the lumped model's names."""
+        import xarray as xr
+
         p, per_pair = self.model.machine.parameters, dict(self.pairs)
         back = per_pair.pop("normal_load_back")
         values = self._motion() | per_pair

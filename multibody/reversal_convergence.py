@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from lumped.errors import refuse
@@ -14,6 +14,9 @@ from lumped.parameters import GearPair
 from lumped.results import provenance
 from lumped.solution import Initial
 from multibody.simulation import simulate
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FloatArray = NDArray[np.float64]
 
@@ -51,6 +54,8 @@ def reversal_convergence(
     ParameterError : velocities that do not fall, or arguments out of range
     NumericalError : a run fails; the text says what to try
     """
+    import xarray as xr
+
     values = np.asarray(velocities, dtype=float)
     falling = values.ndim == 1 and values.size > 1 and np.all(np.diff(values) < 0.0)
     if not falling or not values[-1] > 0.0:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import refuse
@@ -16,6 +16,9 @@ from multibody.drive import Drive
 from multibody.integration import Segment
 from multibody.records import Recorder
 from multibody.setup import Fidelity, Setup, prepare
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FloatArray = NDArray[np.float64]
 Progress = Callable[[float], None]

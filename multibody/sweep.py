@@ -7,9 +7,9 @@ on where it came from. A sweep that carries the state on finds both branches and
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from lumped.errors import refuse
@@ -18,6 +18,9 @@ from lumped.results import provenance
 from multibody.records import to_lumped_state
 from multibody.setup import Fidelity, prepare
 from multibody.simulation import record
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FloatArray = NDArray[np.float64]
 
@@ -62,6 +65,8 @@ def speed_sweep(
     ------
     ParameterError, NumericalError : as ``multibody.simulate``
     """
+    import xarray as xr
+
     speeds = np.asarray(list(speeds_rpm), dtype=float)
     if settle < 0 or cycles < 1:
         raise refuse("settle, cycles", (settle, cycles), ">= 0 and >= 1", "Run whole cycles.")

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from lumped import film
 from lumped.errors import ParameterError
@@ -21,6 +20,8 @@ from lumped.friction.registry import LAWS
 from lumped.path_function import PathFunction
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from lumped.gear_geometry import Geometry
     from lumped.parameters import GearPair
 
@@ -47,6 +48,8 @@ def friction_profile(
     ``range_warnings``, one text per left validity range; ``left_out``, laws that this pair does not allow
     and why.
     """
+    import xarray as xr
+
     path, settings = contact_path(pair, geometry), friction_settings(pair)
     functions: dict[str, PathFunction] = {}
     left_out: list[str] = []

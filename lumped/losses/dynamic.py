@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from lumped.errors import ParameterError, refuse
 from lumped.friction import LAWS
@@ -15,6 +14,8 @@ from lumped.losses.quasi_static import quasi_static_losses
 from lumped.losses.sharing import Sharing
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from lumped.parameters import GearPair
 
 
@@ -40,6 +41,8 @@ def dynamic_losses(pair: GearPair, solution: xr.Dataset) -> xr.Dataset:
     ------
     ParameterError : the dataset has no friction power
     """
+    import xarray as xr
+
     if "friction_power_nominal" not in solution:
         raise refuse(
             "solution",
@@ -85,6 +88,8 @@ def sliding_power_along_path(solution: xr.Dataset) -> xr.Dataset:
     xarray.Dataset over ``xi`` [m], increasing: sliding_power [W] (>= 0 where friction opposes sliding) and
     normal_load [N]
     """
+    import xarray as xr
+
     name = "friction_power_nominal" if "friction_power_nominal" in solution else "friction_power"
     touching = solution["contact"].to_numpy().ravel() > 0.0
     xi = solution["position"].to_numpy().ravel()[touching]
@@ -123,6 +128,8 @@ def losses_of_laws(
     xarray.Dataset over ``law``: mesh_efficiency, power_loss [W], mean_coefficient (quasi-static), and
     mesh_efficiency_dynamic; attribute ``left_out``, laws that the pair does not allow and why
     """
+    import xarray as xr
+
     names = [name for name in LAWS if name != "none"] if laws is None else list(laws)
     rows: dict[str, dict[str, float]] = {}
     left_out: list[str] = []

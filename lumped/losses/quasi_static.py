@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from lumped.friction import friction_path_function
 from lumped.gear_geometry import Geometry, geometry
@@ -18,6 +17,8 @@ from lumped.results import labelled, provenance
 from lumped.steady import sample_times
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from lumped.parameters import GearPair
 
 

@@ -10,10 +10,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize
 
@@ -23,6 +22,9 @@ from lumped.parameters import GearPair
 from lumped.path_function import FloatArray
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.transmission_error import MeshPositions, mesh_positions
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Shape = Literal["linear", "parabolic"]
 
@@ -79,6 +81,8 @@ def relief_map(
     -------
     xarray.Dataset : ``peak_to_peak`` [m] over ``amount`` [m] and ``length`` [m]
     """
+    import xarray as xr
+
     amount, length = np.atleast_1d(np.asarray(amounts, float)), np.atleast_1d(np.asarray(lengths, float))
     g, bare, force = _prepared(pair, torque, phases)
     path = g.L_XD - g.L_XA

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import NumericalError, refuse
@@ -22,6 +22,9 @@ from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.tooth_error import corner_gap, relief_error
 from lumped.stiffness import pair_stiffness
 from lumped.stiffness.energy import contact_softening
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 #: Pairs are followed this fraction of a base pitch beyond A and D, where deflection lets them touch.
 REACH = 0.45
@@ -119,6 +122,8 @@ def static_transmission_error(
     ParameterError : a negative torque, or a relief that starts outside the active flank
     NumericalError : contact reaches further beyond the path than the pairs are followed
     """
+    import xarray as xr
+
     torque = np.atleast_1d(
         np.asarray(pair.operating.pinion_torque if torques is None else torques, dtype=float)
     )

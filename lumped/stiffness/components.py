@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from lumped.gear_geometry import geometry
 from lumped.stiffness import iso6336, pair_stiffness
 from lumped.stiffness.pair_compliance import Contact, pair_compliance
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from lumped.parameters import GearPair
 
 
@@ -31,6 +32,8 @@ def stiffness_components(pair: GearPair, points: int = 201, hertz: Contact = "we
     carry ISO 6336-1's single stiffness times face width, ``iso_single_stiffness`` [N/m], and the quadrature
     error
     """
+    import xarray as xr
+
     g = geometry(pair)
     found = pair_compliance(pair, g, np.linspace(g.L_XA, g.L_XD, points), hertz=hertz)
     parts = ("bending", "shear", "axial", "foundation")
@@ -80,6 +83,8 @@ def mesh_stiffness(pair: GearPair, samples: int = 512) -> xr.Dataset:
     ``mesh_stiffness`` [N/m]; the attribute ``mean`` is the exact mean and ``iso_mean`` ISO 6336-1's c_gamma
     times face width [N/m]
     """
+    import xarray as xr
+
     g = geometry(pair)
     curve = pair_stiffness(pair, g)
     phase = (np.arange(samples) + 0.5) / samples

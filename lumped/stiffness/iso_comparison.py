@@ -16,7 +16,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from lumped.gear_geometry import geometry
 from lumped.path_function import FloatArray
@@ -25,6 +24,8 @@ from lumped.stiffness.energy import energy_curve, violations
 from lumped.stiffness.pair_compliance import Contact
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from lumped.gear_geometry import Geometry
     from lumped.parameters import GearPair
 
@@ -50,6 +51,8 @@ def iso_comparison(pair: GearPair) -> xr.Dataset:
     ParameterError : the rack cannot cut these teeth
     NumericalError : the strain energy did not converge
     """
+    import xarray as xr
+
     g = geometry(pair)
     single = iso6336.pair_single_stiffness(pair)
     to_si = iso6336.SI * g.face_width
