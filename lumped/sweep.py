@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from lumped.errors import NumericalError, refuse, shown
+from lumped.gear_geometry import geometry
 from lumped.parameters import GearPair
 from lumped.path_function import FloatArray
 from lumped.periodic_system import periodic_system
@@ -38,8 +39,9 @@ def speed_sweep(
     Returns
     -------
     xarray.Dataset over ``speed`` [rpm]: peak-to-peak and root mean square (about the mean) of the
-    transmission error and the translations, largest and smallest normal load of a pair in contact, mesh
-    efficiency. A speed without periodic motion is NaN with ``periodic`` False.
+    transmission error and the translations, largest and smallest normal load of a pair in contact,
+    ``sliding_reversal``, largest distance from the pitch point at which a loaded pair slides against its
+    nominal direction, and mesh efficiency. A speed without periodic motion is NaN with ``periodic`` False.
 
     Raises
     ------
@@ -50,7 +52,8 @@ def speed_sweep(
     names = ("dte", "x_p", "x_g", "y_p", "y_g")
     table = {f"{n}_{kind}": np.full(speeds.size, np.nan) for n in names for kind in ("peak_to_peak", "rms")}
     table |= {
-        n: np.full(speeds.size, np.nan) for n in ("normal_load_max", "normal_load_min", "mesh_efficiency")
+        n: np.full(speeds.size, np.nan)
+        for n in ("normal_load_max", "normal_load_min", "sliding_reversal", "mesh_efficiency")
     }
     periodic = np.zeros(speeds.size, dtype=bool)
     for j, at in enumerate(pairs):
@@ -70,8 +73,17 @@ def speed_sweep(
             table[f"{name}_rms"][j] = np.std(run[name])
         loads = run["normal_load"][run["contact"] > 0]
         table["normal_load_max"][j], table["normal_load_min"][j] = loads.max(), loads.min()
+        table["sliding_reversal"][j] = _reversal(run, geometry(at).L_XP)
         table["mesh_efficiency"][j] = balance_attributes(at, solution)["mesh_efficiency"]
     return _sweep_dataset(pair, speeds, table, periodic)
+
+
+def _reversal(run: Mapping[str, FloatArray], pitch_point: float) -> float:
+    """Largest distance from the pitch point at which a loaded pair slides backwards [m], or 0."""
+    distance = run["position"] - pitch_point
+    loaded = (run["contact"] > 0) & (run["normal_load"] > 0)
+    backwards = loaded & (run["sliding_velocity"] * np.sign(distance) < 0.0)
+    return float(np.where(backwards, np.abs(distance), 0.0).max())
 
 
 def _sweep_dataset(
