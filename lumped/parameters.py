@@ -76,8 +76,14 @@ class OperatingPoint(Section):
     )
 
 
+#: Fields that a file may give in another form -> the field that is kept.
+STORED_AS = {"basic_rack.diametral_pitch": "basic_rack.module"}
+
+
 def _sources_in(value: object) -> object:
-    return tuple(sorted(value.items())) if isinstance(value, dict) else value
+    if not isinstance(value, dict):
+        return value
+    return tuple(sorted((STORED_AS.get(path, path), text) for path, text in value.items()))
 
 
 Sources = Annotated[
@@ -108,8 +114,10 @@ class GearPair(Section):
     @model_validator(mode="after")
     def _must_exist(self) -> GearPair:
         from lumped.gear_geometry import check_geometry
+        from lumped.schema_errors import check_sources
 
         check_geometry(self)
+        check_sources(self)
         return self
 
     def to_mapping(self) -> dict[str, Any]:
@@ -146,10 +154,13 @@ def stated_unit(path: str) -> str | None:
     """Return the stated unit of a field by dotted path, or None where the field has none."""
     from lumped.schema_errors import field_at
 
-    for marker in field_at(path).metadata:
+    info = field_at(path)
+    for marker in info.metadata:
         if isinstance(marker, Quantity):
             return marker.unit
-    return None
+    # A quantity that may also be a word has its unit in the JSON Schema alone.
+    extra = info.json_schema_extra
+    return str(extra["unit"]) if isinstance(extra, dict) and "unit" in extra else None
 
 
 __all__ = [

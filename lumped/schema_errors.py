@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from functools import lru_cache
 from types import UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
@@ -49,6 +51,27 @@ def field_at(path: str) -> FieldInfo:
         models = models_in(info.annotation)
     assert info is not None  # "".split(".") has one part, which is unknown
     return info
+
+
+def check_sources(pair: GearPair) -> None:
+    """Refuse sources of fields that do not exist: a misspelt path would leave its value without a source.
+
+    Raises
+    ------
+    ParameterError : all such paths; the nearest field is suggested
+    """
+    wrong = [problem for path, _ in pair.sources for problem in _source_problems(path)]
+    if wrong:
+        raise ParameterError(wrong)
+
+
+@lru_cache(maxsize=1024)  # every variation of a pair has the same paths
+def _source_problems(path: str) -> tuple[FieldProblem, ...]:
+    try:
+        field_at(path)
+    except ParameterError as error:
+        return tuple(replace(problem, field=f"sources.{problem.field}") for problem in error.problems)
+    return ()
 
 
 def models_in(annotation: Any) -> list[type[BaseModel]]:

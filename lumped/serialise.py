@@ -12,7 +12,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from lumped.errors import FieldProblem, ParameterError, shown
-from lumped.parameters import GearPair
+from lumped.parameters import STORED_AS, GearPair
 from lumped.schema_errors import field_at, nearest, translated, unknown_key
 from lumped.text_file import parse_toml, read_text
 from lumped.units import Quantity, to_file
@@ -25,8 +25,6 @@ _ALTERNATIVES = (
     ("gear.addendum", "gear.tip_diameter"),
     ("lubricant.viscosity", "lubricant.viscosity_law"),
 )
-#: Inputs that the schema keeps under another name.
-_STORED_AS = {"basic_rack.diametral_pitch": "basic_rack.module"}
 
 
 @cache
@@ -124,7 +122,7 @@ def varied(pair: GearPair, changes: Mapping[str, Any]) -> GearPair:
         for known in [key for key in sources if any(key == p or key.startswith(f"{p}.") for p in outdated)]:
             del sources[known]
         if path not in ("name", "description", "sources") and value is not None:
-            sources[_STORED_AS.get(path, path)] = "varied by the user"
+            sources[STORED_AS.get(path, path)] = "varied by the user"
     return _validated(data, f"{pair.name} varied")
 
 
@@ -137,7 +135,7 @@ def _assign(data: dict[str, Any], path: str, value: Any) -> None:
             raise ParameterError([unknown_key(path, list(node), part)])
         node = inner
     if value is None:
-        if path not in _STORED_AS:
+        if path not in STORED_AS:
             field_at(path)  # a name that does not exist is an error also where nothing is set
         node.pop(leaf, None)
     else:

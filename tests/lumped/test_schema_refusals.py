@@ -377,3 +377,29 @@ class TestGeometryThatCannotExist:
 def test_quantity_text_names_its_range(factor):
     assert Quantity("mm", above=0, at_most=factor).allowed == f"> 0 mm and <= {factor:g} mm"
     assert Quantity("1").allowed == "any finite number"
+
+
+@pytest.mark.parametrize(
+    ("path", "suggestion"),
+    [
+        ("mesh.dampin_ratio", "damping_ratio"),
+        ("bearings.pinon", "pinion"),
+        ("operating.pinion_speed.rpm", "Remove"),
+        ("", "Remove"),
+    ],
+)
+def test_a_source_of_a_field_that_does_not_exist_is_refused(nasa, path, suggestion):
+    data = nasa.to_mapping()
+    data["sources"] = {**data["sources"], path: "measured"}
+    problem(data, f"sources.{path or '(empty)'}", value="unknown key", action=suggestion)
+
+
+def test_a_source_may_name_what_the_file_gives(nasa):
+    data = nasa.to_mapping()
+    data["basic_rack"] = {**data["basic_rack"], "diametral_pitch": 8}
+    del data["basic_rack"]["module"]
+    data["sources"] = {"basic_rack.diametral_pitch": "drawing", "mesh.stiffness.pair_stiffness": "test"}
+    assert dict(load_gear_pair(data).sources) == {
+        "basic_rack.module": "drawing",
+        "mesh.stiffness.pair_stiffness": "test",
+    }

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic_core import PydanticCustomError
 
+from lumped.parameters import stated_unit
 from lumped.units import UNITS, Quantity, to_file, to_si, to_stated
 
 # A correctly rounded conversion is exact to half a unit in the last place of the float it gives.
@@ -141,3 +142,9 @@ def test_writing_and_reading_keeps_every_bit(unit, value):
 def test_stated_value_is_shown_as_it_was_given(unit, stated):
     # Offset units lose the digits that the offset swallows: 273.15 against 1e-6 leaves 5e-14 absolute.
     assert to_stated(to_si(stated, unit), unit) == pytest.approx(stated, rel=4 * ULP, abs=1e-13)
+
+
+def test_a_field_that_may_be_a_word_has_its_unit_too():
+    assert stated_unit("operating.brake_torque") == "N*m"
+    assert stated_unit("mesh.damping_ratio") == "1"
+    assert stated_unit("friction.law") is None
