@@ -220,8 +220,9 @@ def steady_state(
     Returns
     -------
     xarray.Dataset as of ``simulate`` over one cycle; the attributes carry ``brake_torque`` and
-    ``pinion_torque`` [N m] that hold the mean speed, ``mesh_efficiency`` = T_g Omega_g / (T_p Omega_p), and
-    ``error_estimate``, the relative error of the dynamic transmission error
+    ``pinion_torque`` [N m] that hold the mean speed, ``mesh_efficiency`` = T_g Omega_g / (T_p Omega_p),
+    ``error_estimate``, the relative error of the dynamic transmission error, and ``spectral_radius``, the
+    largest modulus of the Floquet multipliers: above 1 the motion is unstable, and a pair leaves it
 
     Raises
     ------
@@ -232,7 +233,12 @@ def steady_state(
     solution = periodic_solution(pair, times, system=system)
     attributes = provenance(pair, samples_per_cycle=samples_per_cycle, as_printed=tuple(as_printed))
     attributes |= balance_attributes(pair, solution)
-    attributes |= {"model": "lumped", "closure": solution.closure, "error_estimate": solution.error}
+    attributes |= {
+        "model": "lumped",
+        "closure": solution.closure,
+        "error_estimate": solution.error,
+        "spectral_radius": solution.spectral_radius,
+    }
     return dataset(pair, system, times, solution.states, attributes)
 
 

@@ -27,6 +27,8 @@ class PeriodicSolution:
     pinion_torque, brake_torque : mean torques that hold the mean speed [N m]
     closure : largest mismatch of state and state one cycle later, relative to the largest state of its kind
     error : estimate of the largest relative error of the dynamic transmission error
+    spectral_radius : largest modulus of the Floquet multipliers, the rigid rotation taken out; above 1 the
+        motion is unstable, and a pair leaves it
     """
 
     system: LTVSystem
@@ -36,6 +38,7 @@ class PeriodicSolution:
     brake_torque: float
     closure: float
     error: float
+    spectral_radius: float
 
 
 def periodic_solution(
@@ -90,7 +93,30 @@ def periodic_solution(
         brake_torque=float(weights[2]),
         closure=closure,
         error=error,
+        spectral_radius=relative_spectral_radius(system, maps.over_all()[0]),
     )
+
+
+def relative_spectral_radius(system: LTVSystem, phi: FloatArray) -> float:
+    """Largest modulus of the multipliers of a 12-state map without its rigid rotation.
+
+    Nothing depends on the rotations but through q = r_bp theta_p - r_bg theta_g, so with S from the 12 states
+    to those of q and the translations, S phi = phi_rel S; any right inverse R of S gives phi_rel = S phi R.
+
+    Parameters
+    ----------
+    system : the 12-state system
+    phi : (12, 12) map of the states over one mesh cycle
+    """
+    to_relative = np.zeros((5, 6))
+    to_relative[0, :2] = system.structure.deflection[:2]
+    to_relative[1:, 2:] = np.eye(4)
+    back = np.zeros((6, 5))
+    back[0, 0] = 1.0 / system.structure.deflection[0]
+    back[2:, 1:] = np.eye(4)
+    twice = np.eye(2)
+    relative = np.kron(twice, to_relative) @ phi @ np.kron(twice, back)
+    return float(np.abs(np.linalg.eigvals(relative)).max())
 
 
 def _bordered(

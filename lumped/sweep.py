@@ -41,7 +41,8 @@ def speed_sweep(
     xarray.Dataset over ``speed`` [rpm]: peak-to-peak and root mean square (about the mean) of the
     transmission error and the translations, largest and smallest normal load of a pair in contact,
     ``sliding_reversal``, largest distance from the pitch point at which a loaded pair slides against its
-    nominal direction, and mesh efficiency. A speed without periodic motion is NaN with ``periodic`` False.
+    nominal direction, mesh efficiency, and ``spectral_radius``, above 1 where the motion is unstable. A speed
+    without periodic motion is NaN with ``periodic`` False.
 
     Raises
     ------
@@ -53,7 +54,13 @@ def speed_sweep(
     table = {f"{n}_{kind}": np.full(speeds.size, np.nan) for n in names for kind in ("peak_to_peak", "rms")}
     table |= {
         n: np.full(speeds.size, np.nan)
-        for n in ("normal_load_max", "normal_load_min", "sliding_reversal", "mesh_efficiency")
+        for n in (
+            "normal_load_max",
+            "normal_load_min",
+            "sliding_reversal",
+            "mesh_efficiency",
+            "spectral_radius",
+        )
     }
     periodic = np.zeros(speeds.size, dtype=bool)
     for j, at in enumerate(pairs):
@@ -75,6 +82,7 @@ def speed_sweep(
         table["normal_load_max"][j], table["normal_load_min"][j] = loads.max(), loads.min()
         table["sliding_reversal"][j] = _reversal(run, geometry(at).L_XP)
         table["mesh_efficiency"][j] = balance_attributes(at, solution)["mesh_efficiency"]
+        table["spectral_radius"][j] = solution.spectral_radius
     return _sweep_dataset(pair, speeds, table, periodic)
 
 
@@ -94,7 +102,13 @@ def _sweep_dataset(
     result = xr.Dataset(attrs=provenance(pair) | {"model": "lumped"})
     result["speed"] = xr.DataArray(speeds, dims="speed", attrs={"units": "rpm", "long_name": "pinion speed"})
     for name, values in table.items():
-        unit = "1" if name == "mesh_efficiency" else "N" if name.startswith("normal") else "m"
+        unit = (
+            "1"
+            if name in ("mesh_efficiency", "spectral_radius")
+            else "N"
+            if name.startswith("normal")
+            else "m"
+        )
         attrs = {
             "units": unit,
             "long_name": name.replace("_", " ").replace("dte", "transmission error"),

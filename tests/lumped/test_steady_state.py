@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from lumped import NumericalError, geometry, load_gear_pair, periodic_system, simulate, steady_state
+from lumped import (
+    NumericalError,
+    geometry,
+    load_gear_pair,
+    periodic_system,
+    simulate,
+    speed_sweep,
+    steady_state,
+)
 from lumped.propagation import step_maps
 from lumped.steady import _bordered, periodic_solution, sample_times
 
@@ -193,3 +201,32 @@ def test_presets_have_a_periodic_motion(name):
     assert 0.98 < run.attrs["mesh_efficiency"] < 1.0
     assert run.attrs["error_estimate"] < 1e-6
     assert all(np.isfinite(run[v].to_numpy()).all() for v in run)
+
+
+@pytest.mark.parametrize("name", ["nasa", "unequal", "high_contact"])
+def test_an_unstable_periodic_motion_says_so(name, request):
+    """Undamped pairs have unstable speeds; the transient leaves the periodic motion exactly there.
+
+    A disturbance grows over a cycle by the largest multiplier in the end, so over many cycles by its power.
+    """
+    pair = request.getfixturevalue(name).with_(mesh__damping_ratio=0.0, friction__law="none")
+    speeds = np.linspace(3000.0, 20000.0, 69)
+    radii = speed_sweep(pair, speeds, samples_per_cycle=8)["spectral_radius"].to_numpy()
+    worst = int(np.argmax(radii))
+    assert radii[worst] > 1.01
+    assert radii.min() < 1.0
+    for place in (worst, int(np.argmin(radii))):
+        at = pair.with_(operating__pinion_speed=float(speeds[place]))
+        motion = steady_state(at, samples_per_cycle=8)
+        assert motion.attrs["spectral_radius"] == radii[place]
+        start = np.array([float(motion[n][0]) for n in list(motion)[:12]])
+        start[2:4] += 1e-6, -1e-6
+        run = simulate(at, 200, samples_per_cycle=8, initial=start)
+        rest = run["x_p"].to_numpy()[:-1].reshape(200, 8) - motion["x_p"].to_numpy()
+        size = np.abs(rest).max(axis=1)
+        if place == worst:
+            # Windows of 20 cycles see the envelope; whatever else was excited has died away by the first.
+            growth = (size[180:].max() / size[80:100].max()) ** (1.0 / 100.0)
+            assert growth == pytest.approx(radii[place], rel=2e-3)
+        else:
+            assert size[-1] < 1e-3 * size[0]
