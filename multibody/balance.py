@@ -17,8 +17,7 @@ from lumped.solution import Initial
 from multibody import kernels as kn
 from multibody.drive import Drive, DriveTables, value_and_integral
 from multibody.integration import Segment
-from multibody.kinematics import MAX_PAIRS
-from multibody.model import ExudynModel
+from multibody.model import ExudynModel, contact_state
 from multibody.setup import Fidelity, prepare
 
 FloatArray = NDArray[np.float64]
@@ -140,12 +139,9 @@ def _powers(model: ExudynModel, t: FloatArray, q: FloatArray, v: FloatArray) -> 
     powers = np.zeros((t.size, 7))
     powers[:, 0], powers[:, 1] = m.torque_pinion * omega_p, m.torque_gear * omega_g
     powers[:, 2] = v[:, [0, 1, 3, 4]] ** 2 @ m.bearing_damping.ravel()
-    wrench, contacts = np.empty(6), np.empty((2 * MAX_PAIRS, kn.N_RECORD))
+    _, contacts, counts = contact_state(model, t, q, v)
     for i in range(t.size):
-        count = model.core(
-            t[i], q[i], v[i], model.parameters, model.flags, m.table, m.offsets, wrench, contacts
-        )
-        c = contacts[:count]
+        c = contacts[i, : counts[i]]
         # A contact that does not press stores and dissipates nothing.
         pressed = c[c[:, kn.LOAD] != 0.0]
         damping = float(np.sum(pressed[:, kn.C] * pressed[:, kn.OVERLAP_RATE] ** 2))

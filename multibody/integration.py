@@ -142,10 +142,8 @@ def _run(
         raise _failure(model, start, stop) from error
     if not finished:
         raise _failure(model, start, stop)
-    rows = [np.asarray(system.GetSensorStoredData(number)) for number in model.sensors]
-    times = rows[0][:, 0]
-    states_q = np.hstack([rows[0][:, 1:], rows[2][:, 1:]])
-    states_v = np.hstack([rows[1][:, 1:], rows[3][:, 1:]])
+    position, velocity = (np.asarray(system.GetSensorStoredData(number)) for number in model.sensors)
+    times, states_q, states_v = position[:, 0], position[:, 1:], velocity[:, 1:]
     if not (np.isfinite(states_q).all() and np.isfinite(states_v).all()):
         budget.reason = "not finite"
         raise _failure(model, start, stop)

@@ -100,6 +100,57 @@ def signed_friction(
 
 
 @compiled
+def mesh_position(
+    t: float, q: FloatArray, p: FloatArray, flags: int, flank: float
+) -> tuple[float, float, float, float, float, float]:
+    """Line of action of one side of the teeth, and where they stand on it.
+
+    Parameters
+    ----------
+    t, q, p, flags : as ``contact_forces``
+    flank : +1 drive, -1 coast
+
+    Returns
+    -------
+    (ex, ey, length, delta, rho, xi) : unit vector e from X to Y and length [m] of the line of action; overlap
+        [m]; flank distance rho_p [m] of one tooth pair from X, with which ``engaged`` finds the pairs in
+        contact, and the same pair's position [m] on the path of contact, where the element laws are read. The
+        other pairs follow at whole pitches
+    """
+    rp, rg = p[RADIUS_P], p[RADIUS_G]
+    tau = min(max(t, p[T_LOW]), p[T_HIGH])
+    turn_p, turn_g = -p[OMEGA_P] * tau, p[OMEGA_G] * tau
+    moving = (flags & MOVING_LINE) != 0
+    px, py, gx, gy = p[CENTRE_PX], p[CENTRE_PY], p[CENTRE_GX], p[CENTRE_GY]
+    if moving:
+        px, py, gx, gy = px + q[0], py + q[1], gx + q[3], gy + q[4]
+    chi_p, chi_g = (p[CHI_P], p[CHI_G]) if flank > 0.0 else (p[CHI_P_BACK], p[CHI_G_BACK])
+    ex, ey, length, psi = line_of_action(px, py, gx, gy, rp + rg, flank)
+    first, delta = mesh_phase(
+        psi, length, turn_p + q[2], turn_g + q[5], rp, rg, p[PITCH], chi_p, chi_g, flank
+    )
+    beyond = delta  # excess of rho_p + rho_g over the length, which places the contact point
+    if not moving:
+        delta += ex * (q[0] - q[3]) + ey * (q[1] - q[4])
+    if not flags & ROTATION_PHASE:
+        first, beyond = mesh_phase(psi, length, turn_p, turn_g, rp, rg, p[PITCH], chi_p, chi_g, flank)
+    xi = first + 0.5 * (p[L_XY] - length - beyond)
+    rho = xi + 0.5 * (length - p[L_XY] + delta) if flags & ENTRY_SHIFT else xi
+    return ex, ey, length, delta, rho, xi
+
+
+@compiled
+def engaged(rho: float, delta: float, length: float, p: FloatArray, flags: int, arms: FloatArray) -> int:
+    """Find the tooth pairs in contact: on the actual flanks, or on the nominal path without entry shift.
+
+    ``rho`` is from ``mesh_position``; the rest as ``kinematics.pairs_in_contact``.
+    """
+    if flags & ENTRY_SHIFT:
+        return pairs_in_contact(rho, delta, length, p[PITCH], p[TIP_P], p[TIP_G], arms)
+    return pairs_in_contact(rho, 0.0, p[L_XY], p[PITCH], p[L_XD], p[L_XY] - p[L_XA], arms)
+
+
+@compiled
 def contact_forces(
     t: float,
     q: FloatArray,
@@ -121,7 +172,7 @@ def contact_forces(
     flags : effect switches, a sum of bits
     table, offsets : the element laws, see ``law``
     wrench : (6,) receives (Fx, Fy, M) of pinion and gear [N, N m]
-    contacts : (2 MAX_PAIRS, N_RECORD) receives the records, drive flank first
+    contacts : (2 MAX_PAIRS, N_RECORD) receives the records, drive flank first; back sides only when pressed
 
     Returns
     -------
@@ -129,49 +180,32 @@ def contact_forces(
     """
     wrench[:] = 0.0
     rp, rg = p[RADIUS_P], p[RADIUS_G]
-    tau = min(max(t, p[T_LOW]), p[T_HIGH])
-    turn_p, turn_g = -p[OMEGA_P] * tau, p[OMEGA_G] * tau
-    phi_p, phi_g = turn_p + q[2], turn_g + q[5]
     omega_p, omega_g = v[2] - p[OMEGA_P], v[5] + p[OMEGA_G]
-    moving, rotating = (flags & MOVING_LINE) != 0, (flags & ROTATION_PHASE) != 0
-    unilateral = (flags & CONTACT_LOSS) != 0
-    px, py, gx, gy = p[CENTRE_PX], p[CENTRE_PY], p[CENTRE_GX], p[CENTRE_GY]
-    if moving:
-        px, py, gx, gy = px + q[0], py + q[1], gx + q[3], gy + q[4]
     vx, vy = v[0] - v[3], v[1] - v[4]
+    unilateral = (flags & CONTACT_LOSS) != 0
     arms = np.empty((MAX_PAIRS, 2))
     count = 0
     for side in range(2 if flags & BACK_SIDE else 1):
         flank = DRIVE if side == 0 else COAST
-        chi_p, chi_g = (p[CHI_P], p[CHI_G]) if side == 0 else (p[CHI_P_BACK], p[CHI_G_BACK])
-        ex, ey, length, psi = line_of_action(px, py, gx, gy, rp + rg, flank)
-        first, delta = mesh_phase(psi, length, phi_p, phi_g, rp, rg, p[PITCH], chi_p, chi_g, flank)
-        beyond = delta  # excess of rho_p + rho_g over the length, which places the contact point
-        if not moving:
-            delta += ex * (q[0] - q[3]) + ey * (q[1] - q[4])
-        if not rotating:
-            first, beyond = mesh_phase(psi, length, turn_p, turn_g, rp, rg, p[PITCH], chi_p, chi_g, flank)
+        ex, ey, length, delta, rho, _ = mesh_position(t, q, p, flags, flank)
         if not math.isfinite(delta):
             return -1
-        xi_first = first + 0.5 * (p[L_XY] - length - beyond)
-        if flags & ENTRY_SHIFT:
-            start = xi_first + 0.5 * (length - p[L_XY] + delta)
-            pairs = pairs_in_contact(start, delta, length, p[PITCH], p[TIP_P], p[TIP_G], arms)
-        else:
-            pairs = pairs_in_contact(xi_first, 0.0, p[L_XY], p[PITCH], p[L_XD], p[L_XY] - p[L_XA], arms)
+        pairs = engaged(rho, delta, length, p, flags, arms)
         rate = overlap_rate(ex, ey, vx, vy, omega_p, omega_g, rp, rg, flank)
         # d(psi)/dt = s n . (v_g - v_p)/L, from differentiating e.
-        psi_rate = (ey * vx - ex * vy) / length if moving else 0.0
-        wp, wg = (omega_p, omega_g) if rotating else (-p[OMEGA_P], p[OMEGA_G])
+        psi_rate = (ey * vx - ex * vy) / length if flags & MOVING_LINE else 0.0
+        wp, wg = (omega_p, omega_g) if flags & ROTATION_PHASE else (-p[OMEGA_P], p[OMEGA_G])
         xi_rate = 0.5 * flank * (rp * (psi_rate - wp) - rg * (psi_rate - wg))
         for i in range(pairs):
             xi = 0.5 * (arms[i, 0] - arms[i, 1] + p[L_XY])
             arm_p = 0.5 * (arms[i, 0] - arms[i, 1] + length)
             arm_g = length - arm_p
             error, error_slope = law(table, offsets, ERROR, xi)
+            pressed, pressing = delta - error, rate - error_slope * xi_rate
+            if side == 1 and unilateral and pressed <= 0.0:
+                continue
             stiffness = law(table, offsets, STIFFNESS, xi)[0]
             damping = law(table, offsets, DAMPING, xi)[0]
-            pressed, pressing = delta - error, rate - error_slope * xi_rate
             normal = stiffness * pressed + damping * pressing
             if unilateral and (pressed <= 0.0 or normal < 0.0):
                 normal = 0.0
@@ -188,3 +222,30 @@ def contact_forces(
     for i in range(6):
         total += wrench[i]
     return count if math.isfinite(total) else -1
+
+
+@compiled
+def contact_forces_over(
+    times: FloatArray,
+    q: FloatArray,
+    v: FloatArray,
+    p: FloatArray,
+    flags: int,
+    table: FloatArray,
+    offsets: IntArray,
+    wrenches: FloatArray,
+    contacts: FloatArray,
+) -> IntArray:
+    """``contact_forces`` at n states; returns the numbers of contacts (n,).
+
+    Parameters
+    ----------
+    times : (n,) [s]
+    q, v, wrenches : (n, 6)
+    contacts : (n, 2 MAX_PAIRS, N_RECORD)
+    p, flags, table, offsets : as ``contact_forces``
+    """
+    counts = np.empty(times.size, np.int64)
+    for i in range(times.size):
+        counts[i] = contact_forces(times[i], q[i], v[i], p, flags, table, offsets, wrenches[i], contacts[i])
+    return counts

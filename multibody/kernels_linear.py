@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from multibody import kernels as kn
 from multibody._jit import compiled
 from multibody.kernels import FloatArray, IntArray, law
@@ -68,3 +70,22 @@ def linear_forces(
     for i in range(6):
         total += wrench[i]
     return count if math.isfinite(total) else -1
+
+
+@compiled
+def linear_forces_over(
+    times: FloatArray,
+    q: FloatArray,
+    v: FloatArray,
+    p: FloatArray,
+    flags: int,
+    table: FloatArray,
+    offsets: IntArray,
+    wrenches: FloatArray,
+    contacts: FloatArray,
+) -> IntArray:
+    """``linear_forces`` at n states; arguments as ``kernels.contact_forces_over``."""
+    counts = np.empty(times.size, np.int64)
+    for i in range(times.size):
+        counts[i] = linear_forces(times[i], q[i], v[i], p, flags, table, offsets, wrenches[i], contacts[i])
+    return counts

@@ -8,7 +8,7 @@ speed about each body's own centre of mass adds no inertia terms in the plane.
 
 from __future__ import annotations
 
-import math
+import struct
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -19,16 +19,21 @@ from numpy.typing import NDArray
 
 from multibody import kernels as kn
 from multibody.drive import DriveTables, drive_torques
-from multibody.kernels import contact_forces
-from multibody.kernels_linear import linear_forces
+from multibody.kernels import IntArray, contact_forces, contact_forces_over
+from multibody.kernels_linear import linear_forces, linear_forces_over
 from multibody.kinematics import MAX_PAIRS
 from multibody.machine import Machine
 
 FloatArray = NDArray[np.float64]
 #: (t, q, v, parameters, flags, table, offsets, wrench, contacts) -> number of contacts or -1
 ForceCore = Callable[..., int]
+#: The same at n states: (times, q, v, parameters, flags, table, offsets, wrenches, contacts) -> numbers
+ForceCoreOver = Callable[..., IntArray]
 
-FIDELITIES: dict[str, ForceCore] = {"linear": linear_forces, "exact": contact_forces}
+FIDELITIES: dict[str, tuple[ForceCore, ForceCoreOver]] = {
+    "linear": (linear_forces, linear_forces_over),
+    "exact": (contact_forces, contact_forces_over),
+}
 
 
 @dataclass
@@ -66,21 +71,22 @@ class ExudynModel:
     Attributes
     ----------
     machine : the numbers it was built from
-    core, flags : force core and effect switches
+    fidelity, flags : which force core, and its effect switches
     system : exudyn MainSystem
     container : exudyn SystemContainer (must stay alive; also holds the renderer)
-    sensors : numbers of the sensors that store coordinates and velocities: pinion, gear
+    sensors : numbers of the sensors that store coordinates and velocities of both gears at every step
+    nodes : numbers of the nodes of pinion and gear
     drive : torques beyond the constant ones
     parameters : the core's parameter vector, may be changed between runs
     budget : counter of force evaluations
     """
 
     machine: Machine
-    core: ForceCore
+    fidelity: str
     flags: int
     container: exu.SystemContainer
     system: exu.MainSystem
-    sensors: tuple[int, int, int, int]
+    sensors: tuple[int, int]
     nodes: tuple[int, int]
     drive: DriveTables | None
     parameters: FloatArray
@@ -110,31 +116,29 @@ def build(
     nodes = tuple(_add_gear(system, ground, machine, i, centres[i], torques[i]) for i in range(2))
     parameters = p.copy()
     budget = CallBudget(call_limit)
-    system.AddObject(
+    mesh = system.AddObject(
         items.ObjectGenericODE2(
             nodeNumbers=list(nodes),
             massMatrix=np.zeros((6, 6)),
             forceUserFunction=_force_function(
-                machine, FIDELITIES[fidelity], flags, parameters, budget, drive
+                machine, FIDELITIES[fidelity][0], flags, parameters, budget, drive
             ),
         )
     )
-    kinds = (exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t)
-    sensors = tuple(
+    position, velocity = (
         system.AddSensor(
-            items.SensorNode(nodeNumber=node, outputVariableType=kind, storeInternal=True, writeToFile=False)
+            items.SensorBody(bodyNumber=mesh, outputVariableType=kind, storeInternal=True, writeToFile=False)
         )
-        for node in nodes
-        for kind in kinds
+        for kind in (exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t)
     )
     system.Assemble()
     return ExudynModel(
         machine=machine,
-        core=FIDELITIES[fidelity],
+        fidelity=fidelity,
         flags=flags,
         container=container,
         system=system,
-        sensors=(sensors[0], sensors[1], sensors[2], sensors[3]),
+        sensors=(int(position), int(velocity)),
         nodes=(nodes[0], nodes[1]),
         drive=drive,
         parameters=parameters,
@@ -152,22 +156,23 @@ def _add_gear(
 ) -> int:
     """Add one gear: node, rigid body, bearing to ground, torque; returns the node."""
     node = system.AddNode(items.NodeRigidBody2D(referenceCoordinates=[*centre, 0.0]))
-    body = system.AddObject(
+    system.AddObject(
         items.ObjectRigidBody2D(
             mass=float(machine.mass[which]), inertia=float(machine.inertia[which]), nodeNumber=node
         )
     )
-    at_body = system.AddMarker(items.MarkerBodyPosition(bodyNumber=body))
+    # Markers on nodes and coordinates cost exudyn half of what markers on bodies do.
+    at_node = system.AddMarker(items.MarkerNodePosition(nodeNumber=node))
     at_ground = system.AddMarker(items.MarkerBodyPosition(bodyNumber=ground, localPosition=[*centre, 0.0]))
     system.AddObject(
         items.ObjectConnectorCartesianSpringDamper(
-            markerNumbers=[at_ground, at_body],
+            markerNumbers=[at_ground, at_node],
             stiffness=[*machine.bearing_stiffness[which].tolist(), 0.0],
             damping=[*machine.bearing_damping[which].tolist(), 0.0],
         )
     )
-    frame = system.AddMarker(items.MarkerBodyRigid(bodyNumber=body))
-    system.AddLoad(items.LoadTorqueVector(markerNumber=frame, loadVector=[0.0, 0.0, torque]))
+    angle = system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=2))
+    system.AddLoad(items.LoadCoordinate(markerNumber=angle, load=torque))
     return int(node)
 
 
@@ -179,17 +184,22 @@ def _force_function(
     budget: CallBudget,
     drive: DriveTables | None,
 ) -> Callable[..., FloatArray]:
-    """Return the user function of the contact object; it writes into its own buffers."""
-    q, v, wrench = np.empty(6), np.empty(6), np.empty(6)
+    """Return the user function of the contact object; it writes into its own buffers.
+
+    It is called some thousand times per mesh cycle, so the two lists it gets are packed into one buffer,
+    twice as fast as by assignment to arrays.
+    """
+    buffer = bytearray(struct.calcsize("12d"))
+    q, v = np.frombuffer(buffer).reshape(2, 6)
+    wrench = np.empty(6)
     contacts = np.empty((2 * MAX_PAIRS, kn.N_RECORD))
-    table, offsets = machine.table, machine.offsets
+    table, offsets, pack = machine.table, machine.offsets, struct.Struct("12d").pack_into
 
     def forces(
         _system: exu.MainSystem, t: float, _item: int, coordinates: list[float], rates: list[float]
     ) -> FloatArray:
         budget.calls += 1
-        q[:] = coordinates
-        v[:] = rates
+        pack(buffer, 0, *coordinates, *rates)
         if core(t, q, v, p, flags, table, offsets, wrench, contacts) < 0:
             budget.reason = "not finite"
             raise _Stop
@@ -210,6 +220,28 @@ def add_drive(drive: DriveTables, t: float, q: FloatArray, v: FloatArray, wrench
     wrench[5] -= braking
 
 
+def contact_state(
+    model: ExudynModel, times: FloatArray, q: FloatArray, v: FloatArray
+) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Evaluate the force core at given states, without exudyn.
+
+    Parameters
+    ----------
+    times : (n,) [s]
+    q, v : (n, 6) coordinates and velocities
+
+    Returns
+    -------
+    (wrenches, contacts, counts) : (n, 6) contact wrench of pinion and gear [N, N m]; contact records
+        (n, 2 MAX_PAIRS, kernels.N_RECORD), of which the first counts (n,) are valid
+    """
+    m = model.machine
+    wrenches, contacts = np.empty((times.size, 6)), np.zeros((times.size, 2 * MAX_PAIRS, kn.N_RECORD))
+    core_over = FIDELITIES[model.fidelity][1]
+    counts = core_over(times, q, v, model.parameters, model.flags, m.table, m.offsets, wrenches, contacts)
+    return wrenches, contacts, counts
+
+
 def accelerations(model: ExudynModel, times: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
     """Accelerations from Newton's and Euler's laws at given states, without exudyn.
 
@@ -223,21 +255,13 @@ def accelerations(model: ExudynModel, times: FloatArray, q: FloatArray, v: Float
     (n, 6) second derivatives of the coordinates
     """
     m = model.machine
-    wrench, contacts = np.empty(6), np.empty((2 * MAX_PAIRS, kn.N_RECORD))
-    force = np.empty_like(q)
-    for i, t in enumerate(times):
-        model.core(t, q[i], v[i], model.parameters, model.flags, m.table, m.offsets, wrench, contacts)
-        if model.drive is not None:
-            add_drive(model.drive, t, q[i], v[i], wrench)
-        force[i] = wrench
+    force = contact_state(model, times, q, v)[0]
+    if model.drive is not None:
+        for i, t in enumerate(times):
+            add_drive(model.drive, t, q[i], v[i], force[i])
     planes = [0, 1, 3, 4]
     force[:, planes] -= m.bearing_stiffness.ravel() * q[:, planes] + m.bearing_damping.ravel() * v[:, planes]
     force[:, 2] -= m.torque_pinion
     force[:, 5] -= m.torque_gear
     inertia = np.array([m.mass[0], m.mass[0], m.inertia[0], m.mass[1], m.mass[1], m.inertia[1]], dtype=float)
     return np.asarray(force / inertia, dtype=np.float64)
-
-
-def is_finite(values: FloatArray) -> bool:
-    """True when no entry is NaN or infinite."""
-    return bool(math.isfinite(float(np.sum(values))))

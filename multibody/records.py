@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from lumped.results import labelled
 from multibody import kernels as kn
 from multibody.integration import Segment
-from multibody.kinematics import MAX_PAIRS
-from multibody.model import ExudynModel
+from multibody.model import ExudynModel, contact_state
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -93,20 +92,8 @@ class Recorder:
 
     def _contacts(self, low: int, high: int) -> None:
         """Evaluate the contacts at output times low ... high - 1 and sort them into the pairs' slots."""
-        model, machine, wrench = self.model, self.model.machine, np.empty(6)
-        contacts, count = np.zeros((high - low, 2 * MAX_PAIRS, kn.N_RECORD)), np.zeros(high - low, dtype=int)
-        for i in range(high - low):
-            count[i] = model.core(
-                self.time[low + i],
-                self.q[low + i],
-                self.v[low + i],
-                model.parameters,
-                model.flags,
-                machine.table,
-                machine.offsets,
-                wrench,
-                contacts[i],
-            )
+        machine, part = self.model.machine, slice(low, high)
+        _, contacts, count = contact_state(self.model, self.time[part], self.q[part], self.v[part])
         p, slots = machine.parameters, machine.pairs
         for j in range(int(count.max(initial=0))):
             found = np.flatnonzero(j < count)

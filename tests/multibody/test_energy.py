@@ -117,8 +117,8 @@ def test_newtons_law_gives_exudyns_accelerations():
         getattr(system.systemData, name)(values, configuration=exu.ConfigurationType.Initial)
     system.SolveDynamic(s)
     rows = [np.asarray(system.GetSensorStoredData(n))[1:] for n in (*model.sensors, *sensors)]
-    q, v = (np.hstack([rows[i][:, 1:], rows[i + 2][:, 1:]]) for i in (0, 1))
-    a = np.hstack([rows[4][:, 1:], rows[5][:, 1:]])
+    q, v = rows[0][:, 1:], rows[1][:, 1:]
+    a = np.hstack([rows[2][:, 1:], rows[3][:, 1:]])
     expected = accelerations(model, rows[0][:, 0], q, v)
     # Same numbers from the same states; rounding of large opposing forces only.
     np.testing.assert_allclose(a, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
