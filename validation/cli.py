@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from validation.commands.crosscheck import crosscheck
+from validation.commands.export import export
 from validation.commands.figures import figures
 from validation.commands.measurement import measurement
 from validation.commands.parameter_files import init, presets, schema
@@ -64,6 +65,7 @@ COMMANDS = (
     presets,
     init,
     simulate,
+    export,
     crosscheck,
     reversal,
     stability,

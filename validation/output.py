@@ -1,4 +1,4 @@
-"""Result files: NetCDF or CSV of a dataset, each written whole or not at all."""
+"""Result files: NetCDF, CSV or MATLAB files of a dataset, each written whole or not at all."""
 
 from __future__ import annotations
 
@@ -14,11 +14,12 @@ import numpy as np
 import xarray as xr
 
 from lumped.errors import refuse
+from validation.exchange.matlab import mat_contents, save_mat
 
-DATA_SUFFIXES = (".nc", ".csv")
+DATA_SUFFIXES = (".nc", ".csv", ".mat")
 FIGURE_SUFFIXES = (".png", ".svg")
 #: Dimensions that become columns of a CSV file; all others become rows.
-_COLUMN_DIMENSIONS = ("pair", "multiplier", "law")
+COLUMN_DIMENSIONS = ("pair", "multiplier", "law")
 
 
 def check_file(path: Path, suffixes: tuple[str, ...], *, force: bool) -> Path:
@@ -77,10 +78,12 @@ def write_text(path: Path, text: str) -> None:
 
 
 def write_dataset(result: xr.Dataset, path: Path) -> None:
-    """Write a dataset as NetCDF or CSV, by suffix, whole."""
+    """Write a dataset as NetCDF, CSV or MATLAB file, by suffix, whole."""
     with whole_file(path) as temporary:
         if path.suffix.lower() == ".csv":
             _write_csv(result, temporary)
+        elif path.suffix.lower() == ".mat":
+            save_mat(mat_contents(result), temporary)
         else:
             _write_netcdf(result, temporary)
 
@@ -121,14 +124,14 @@ def _attribute(value: Any) -> Any:
 def _write_csv(result: xr.Dataset, path: Path) -> None:
     """One row per point of the axes, one column per variable (and tooth pair, multiplier or law)."""
     ready = _real(result)
-    axes = [str(d) for d in ready.sizes if d not in _COLUMN_DIMENSIONS]
+    axes = [str(d) for d in ready.sizes if d not in COLUMN_DIMENSIONS]
     grid = np.meshgrid(*(ready[d].to_numpy() for d in axes), indexing="ij")
     columns: list[tuple[str, Any]] = [
         (f"{d} [{ready[d].attrs.get('units', '1')}]", v.ravel()) for d, v in zip(axes, grid, strict=True)
     ]
     for name, variable in ready.data_vars.items():
         unit = variable.attrs.get("units", "1")
-        others = [str(d) for d in variable.dims if d in _COLUMN_DIMENSIONS]
+        others = [str(d) for d in variable.dims if d in COLUMN_DIMENSIONS]
         wide = variable.expand_dims({d: ready[d] for d in axes if d not in variable.dims}).transpose(
             *others, *axes
         )

@@ -21,7 +21,9 @@ def simulate(
     output: Annotated[
         Path | None,
         typer.Option(
-            "--output", "-o", help="Result file: .nc (NetCDF), .csv, .png or .svg; the suffix chooses."
+            "--output",
+            "-o",
+            help="Result file: .nc (NetCDF), .csv, .mat (MATLAB), .png or .svg; the suffix chooses.",
         ),
     ] = None,
     model: Annotated[Model, typer.Option(help="Which model to run.")] = "lumped",

@@ -22,7 +22,7 @@ def stability(
     pair: opt.PairArgument = opt.DEFAULT_PAIR,
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="Chart as .nc, .csv, .png or .svg; the suffix chooses."),
+        typer.Option("--output", "-o", help="Chart as .nc, .csv, .mat, .png or .svg; the suffix chooses."),
     ] = None,
     axes: Annotated[
         list[str] | None,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from validation.exchange.commented_toml import parameter_text
     from validation.exchange.linear_model import scipy_state_space, write_state_space
-    from validation.exchange.results import write_results
+    from validation.exchange.results import read_netcdf, write_results
     from validation.exchange.rexs.exporting import write_rexs
     from validation.exchange.rexs.importing import gear_pair_from_rexs
     from validation.exchange.rexs.stages import Stage, rexs_stages
@@ -20,6 +20,7 @@ _HOMES = {
     "Stage": "validation.exchange.rexs.stages",
     "gear_pair_from_rexs": "validation.exchange.rexs.importing",
     "parameter_text": "validation.exchange.commented_toml",
+    "read_netcdf": "validation.exchange.results",
     "rexs_stages": "validation.exchange.rexs.stages",
     "scipy_state_space": "validation.exchange.linear_model",
     "write_results": "validation.exchange.results",
@@ -31,6 +32,7 @@ __all__ = [
     "Stage",
     "gear_pair_from_rexs",
     "parameter_text",
+    "read_netcdf",
     "rexs_stages",
     "scipy_state_space",
     "write_results",

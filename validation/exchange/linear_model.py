@@ -1,8 +1,9 @@
-"""The averaged gear pair as a linear model for python-control, SciPy and MATLAB."""
+"""The averaged gear pair as a linear model for python-control, SciPy, NumPy and MATLAB."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import scipy.signal
@@ -11,8 +12,10 @@ from lumped.averaged import averaged_state_space
 from lumped.errors import refuse
 from lumped.parameters import GearPair
 from lumped.periodic_system import Form
-from validation.exchange.results import write_mat
-from validation.output import check_file
+from validation.exchange.matlab import save_mat
+from validation.output import check_file, whole_file
+
+STATE_SPACE_SUFFIXES = (".mat", ".npz")
 
 
 def scipy_state_space(pair: GearPair, form: Form = "relative") -> scipy.signal.StateSpace:
@@ -40,19 +43,22 @@ def scipy_state_space(pair: GearPair, form: Form = "relative") -> scipy.signal.S
 def write_state_space(
     pair: GearPair, path: str | Path, form: Form = "relative", *, force: bool = False
 ) -> Path:
-    """Write the time-averaged pair as a MATLAB file: ``sys = ss(A, B, C, D)`` there.
+    """Write the time-averaged pair as a file of its matrices.
+
+    ``sys = ss(A, B, C, D)`` in MATLAB; ``control.ss(f["A"], f["B"], f["C"], f["D"])`` or
+    ``scipy.signal.StateSpace(...)`` of the same four in Python, with ``f = numpy.load(path)``.
 
     Parameters
     ----------
     pair : a validated gear pair
-    path : .mat file
+    path : .mat (MATLAB 5) or .npz (NumPy, without pickled objects)
     form : "relative" (10 states) or "feedback" (6 states)
     force : overwrite an existing file
 
     Returns
     -------
     Path that was written; besides A, B, C, D it holds the names ``inputs`` [N m], ``outputs`` [m], ``states``
-    as cell arrays, ``gear_pair`` and ``parameters`` (TOML)
+    (cell arrays in MATLAB), ``gear_pair`` and ``parameters`` (TOML)
 
     Raises
     ------
@@ -60,24 +66,27 @@ def write_state_space(
     """
     if form not in ("relative", "feedback"):
         raise refuse("form", form, "relative or feedback", "The rigid rotation has no steady response.")
-    path = check_file(Path(path), (".mat",), force=force)
+    path = check_file(Path(path), STATE_SPACE_SUFFIXES, force=force)
     plant = averaged_state_space(pair, form)
+    matlab = path.suffix.lower() == ".mat"
 
-    def cells(names: list[str]) -> np.ndarray[tuple[int], np.dtype[np.object_]]:
-        return np.array(names, dtype=object)
+    def names(labels: list[str]) -> np.ndarray[tuple[int], np.dtype[Any]]:
+        return np.array(labels, dtype=object if matlab else np.str_)
 
-    write_mat(
-        {
-            "A": plant.A,
-            "B": plant.B,
-            "C": plant.C,
-            "D": plant.D,
-            "inputs": cells(plant.input_labels),
-            "outputs": cells(plant.output_labels),
-            "states": cells(plant.state_labels),
-            "gear_pair": pair.name,
-            "parameters": pair.to_toml(),
-        },
-        path,
-    )
+    contents = {
+        "A": plant.A,
+        "B": plant.B,
+        "C": plant.C,
+        "D": plant.D,
+        "inputs": names(plant.input_labels),
+        "outputs": names(plant.output_labels),
+        "states": names(plant.state_labels),
+        "gear_pair": pair.name,
+        "parameters": pair.to_toml(),
+    }
+    with whole_file(path) as temporary:
+        if matlab:
+            save_mat(contents, temporary)
+        else:
+            np.savez(temporary, **contents)
     return path

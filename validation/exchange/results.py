@@ -1,22 +1,13 @@
-"""Results for other programs: CSV, NetCDF and MATLAB files of a labelled dataset."""
+"""Results for other programs: CSV, NetCDF and MATLAB files of a labelled dataset, and back from NetCDF."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-import scipy.io
 import xarray as xr
 
-from lumped.errors import refuse
-from validation.output import check_file, whole_file, write_dataset
-
-SUFFIXES = (".csv", ".nc", ".mat")
-#: Longest name of a MATLAB variable.
-_LONGEST_NAME = 63
+from lumped.errors import refuse, shown
+from validation.output import COLUMN_DIMENSIONS, DATA_SUFFIXES, check_file, write_dataset
 
 
 def write_results(result: xr.Dataset, path: str | Path, *, force: bool = False) -> Path:
@@ -24,9 +15,10 @@ def write_results(result: xr.Dataset, path: str | Path, *, force: bool = False) 
 
     Parameters
     ----------
-    result : for example of ``lumped.simulate``; units stay SI
-    path : file to write; .csv (one row per point of the axes), .nc (NetCDF 4) or .mat (MATLAB 5: one array
-        per variable and axis, with the structs ``units``, ``long_names``, ``dimensions`` and ``attributes``)
+    result : for example of ``lumped.simulate``; units stay as they are labelled
+    path : file to write; .csv (one row per point of the axes, see ``one_table``), .nc (NetCDF 4) or .mat
+        (MATLAB 5: one array per variable and axis, with the structs ``units``, ``long_names``, ``dimensions``
+        and ``attributes``)
     force : overwrite an existing file
 
     Returns
@@ -37,47 +29,56 @@ def write_results(result: xr.Dataset, path: str | Path, *, force: bool = False) 
     ------
     ParameterError : an unknown suffix, an existing file without ``force``, or a name MATLAB cannot have
     """
-    path = check_file(Path(path), SUFFIXES, force=force)
-    if path.suffix.lower() == ".mat":
-        write_mat(mat_contents(result), path)
-    else:
-        write_dataset(result, path)
+    path = check_file(Path(path), DATA_SUFFIXES, force=force)
+    if path.suffix.lower() == ".csv":
+        result, _ = one_table(result)
+    write_dataset(result, path)
     return path
 
 
-def mat_contents(result: xr.Dataset) -> dict[str, Any]:
-    """Return the variables of the MATLAB file of a dataset.
+def one_table(result: xr.Dataset) -> tuple[xr.Dataset, tuple[str, ...]]:
+    """Return what fits into one table, that over the axes with the most points, and what does not.
+
+    A sweep, for example, has outputs over its axes, and beside them error texts over its failures.
 
     Parameters
     ----------
     result : any labelled dataset
 
+    Returns
+    -------
+    the dataset of the table, with the coordinates that are no axes as columns; names of what was left out
+    """
+    loose = result.reset_coords([name for name in result.coords if name not in result.sizes])
+
+    def axes(name: object) -> set[object]:
+        return set(loose[name].dims) - set(COLUMN_DIMENSIONS)
+
+    largest = max(loose.data_vars, key=lambda name: loose[name].size, default=None)
+    kept = axes(largest) if largest is not None else set()
+    left_out = [name for name in loose.data_vars if not axes(name) <= kept]
+    table = loose.drop_vars(left_out)
+    return table.drop_dims(set(table.sizes) - kept - set(COLUMN_DIMENSIONS)), tuple(map(str, left_out))
+
+
+def read_netcdf(path: str | Path) -> xr.Dataset:
+    """Read a result file that spurcheck wrote.
+
+    Parameters
+    ----------
+    path : .nc file
+
     Raises
     ------
-    ParameterError : a variable whose name MATLAB cannot have
+    ParameterError : no such file, or no NetCDF 4 file
     """
-    contents: dict[str, Any] = {}
-    about: dict[str, dict[str, Any]] = {"units": {}, "long_names": {}, "dimensions": {}}
-    for key, variable in result.variables.items():
-        name = str(key)
-        contents[name] = np.asarray(variable.to_numpy())
-        about["units"][name] = str(variable.attrs.get("units", "1"))
-        about["long_names"][name] = str(variable.attrs.get("long_name", name))
-        about["dimensions"][name] = ", ".join(map(str, variable.dims))
-    taken = sorted(about.keys() & contents.keys())
-    bad = [n for n in contents if not re.fullmatch(r"[A-Za-z]\w*", n, re.ASCII) or len(n) > _LONGEST_NAME]
-    if taken or bad:
-        allowed = "letters, digits, underscores; none of " + ", ".join(about)
-        raise refuse("variable", ", ".join(taken + bad), allowed, "Rename it with Dataset.rename.")
-    attributes = {
-        str(key): value if isinstance(value, (int, float)) else str(value)
-        for key, value in result.attrs.items()
-        if re.fullmatch(r"[A-Za-z]\w*", str(key), re.ASCII) and len(str(key)) <= _LONGEST_NAME
-    }
-    return {**contents, **about, "attributes": attributes}
-
-
-def write_mat(contents: Mapping[str, Any], path: Path) -> None:
-    """Write a MATLAB 5 file, whole. Vectors become columns, as MATLAB has them."""
-    with whole_file(path) as temporary:
-        scipy.io.savemat(temporary, dict(contents), appendmat=False, long_field_names=True, oned_as="column")
+    path = Path(path)
+    if not path.is_file():
+        raise refuse("result", shown(str(path)), "a file that exists", "Check the path.")
+    try:
+        # Times are seconds from the start, not dates.
+        with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as opened:
+            return opened.load()
+    except (OSError, ValueError, KeyError, RuntimeError) as error:
+        reason = f"It cannot be read ({shown(str(error))})."
+        raise refuse("result", shown(str(path)), "a NetCDF file that spurcheck wrote", reason) from None

@@ -54,7 +54,7 @@ def test_files_are_not_overwritten_and_names_not_mangled(result, tmp_path):
     path = write_results(result, tmp_path / "run.mat")
     with pytest.raises(ParameterError, match="--force"):
         write_results(result, path)
-    with pytest.raises(ParameterError, match=r"\.csv, \.nc, \.mat"):
+    with pytest.raises(ParameterError, match=r"\.nc, \.csv, \.mat"):
         write_results(result, tmp_path / "run.xlsx")
     for name in ("2nd", "a b", "units", "x" * 64):
         with pytest.raises(ParameterError, match="letters, digits"):

@@ -1,0 +1,166 @@
+"""Does ``spurcheck export`` write what other programs read, and refuse what it cannot write?"""
+
+import csv
+import tomllib
+
+import control
+import numpy as np
+import pytest
+import scipy.io
+import scipy.signal
+import xarray as xr
+from typer.testing import CliRunner
+
+import lumped
+from lumped.averaged import averaged_state_space
+from validation.cli import app
+from validation.exchange import gear_pair_from_rexs
+from validation.studies import load_study, run_sweep
+
+
+@pytest.fixture
+def command(tmp_path, monkeypatch):
+    """Run the command in a folder of its own; gives exit code and output without line breaks."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments):
+        ran = CliRunner().invoke(app, list(arguments))
+        assert ran.exception is None or isinstance(ran.exception, SystemExit)
+        return ran.exit_code, " ".join(ran.output.split())
+
+    return run
+
+
+@pytest.mark.parametrize(
+    "suffix", [".rexs", ".rexsj", ".rexsz", ".rexs.xml", ".rexs.json", ".rexs.zip", ".REXS"]
+)
+def test_a_pair_comes_back_from_rexs(command, tmp_path, suffix):
+    code, text = command("export", "fzg_c", "--speed", "1234", "-o", f"pair{suffix}")
+    assert (code, f"wrote pair{suffix}" in text) == (0, True)
+    mapping, _ = gear_pair_from_rexs(tmp_path / f"pair{suffix}")
+    expected = lumped.load_gear_pair("fzg_c").with_(operating__pinion_speed="1234 rpm").to_mapping()
+    back = lumped.load_gear_pair(mapping).to_mapping()
+    assert all(back[key] == expected[key] for key in (back | expected) if key != "sources")
+
+
+def test_the_version_of_rexs_can_be_chosen(command, tmp_path):
+    assert command("export", "nasa_28_28", "-o", "pair.rexs", "--rexs-version", "1.4")[0] == 0
+    assert '<model version="1.4"' in (tmp_path / "pair.rexs").read_text("utf-8-sig")
+
+
+@pytest.mark.parametrize(("form", "size"), [("relative", 10), ("feedback", 6)])
+def test_the_linear_model_opens_in_python_control_scipy_and_matlab(command, tmp_path, form, size):
+    expected = averaged_state_space(lumped.load_gear_pair("nasa_28_28"), form)
+    for name in ("model.npz", "model.mat"):
+        assert command("export", "nasa_28_28", "--form", form, "-o", name)[0] == 0
+    with np.load(tmp_path / "model.npz", allow_pickle=False) as file:
+        f = dict(file)
+    plant = control.ss(f["A"], f["B"], f["C"], f["D"], inputs=list(f["inputs"]), outputs=list(f["outputs"]))
+    assert plant.nstates == size
+    assert plant.input_labels == expected.input_labels
+    assert list(f["states"]) == expected.state_labels
+    parameters = lumped.load_gear_pair(tomllib.loads(str(f["parameters"])))
+    assert parameters == lumped.load_gear_pair("nasa_28_28")
+    m = scipy.io.loadmat(tmp_path / "model.mat", simplify_cells=True)
+    model = scipy.signal.StateSpace(m["A"], m["B"], m["C"], m["D"])
+    for matrix in "ABCD":
+        np.testing.assert_array_equal(getattr(plant, matrix), getattr(expected, matrix))
+        np.testing.assert_array_equal(getattr(model, matrix), getattr(expected, matrix))
+
+
+@pytest.mark.parametrize("suffix", ["nc", "csv", "mat"])
+def test_simulate_writes_what_the_suffix_says(command, tmp_path, suffix):
+    assert command("simulate", "--cycles", "2", "--samples", "16", "-o", f"run.{suffix}")[0] == 0
+    expected = lumped.simulate(lumped.load_gear_pair("nasa_28_28"), 2, samples_per_cycle=16)
+    if suffix == "nc":
+        with xr.open_dataset(tmp_path / "run.nc", engine="h5netcdf") as run:
+            dte = run.dte.to_numpy()
+    elif suffix == "mat":
+        dte = scipy.io.loadmat(tmp_path / "run.mat", simplify_cells=True)["dte"]
+    else:
+        with (tmp_path / "run.csv").open() as file:
+            dte = [float(row["dte [m]"]) for row in csv.DictReader(file)]
+    np.testing.assert_array_equal(dte, expected.dte)
+
+
+def test_a_result_file_becomes_csv_and_mat(command, tmp_path):
+    assert command("simulate", "--cycles", "2", "--samples", "16", "-o", "run.nc")[0] == 0
+    for name in ("again.csv", "again.mat", "again.nc"):
+        assert command("export", "run.nc", "-o", name)[0] == 0
+    assert command("simulate", "--cycles", "2", "--samples", "16", "-o", "run.csv")[0] == 0
+    assert (tmp_path / "again.csv").read_text() == (tmp_path / "run.csv").read_text()
+    read = scipy.io.loadmat(tmp_path / "again.mat", simplify_cells=True)
+    with xr.open_dataset(tmp_path / "run.nc", engine="h5netcdf") as run:
+        np.testing.assert_array_equal(read["normal_load"], run.normal_load)
+
+
+AXES = [
+    {"field": "operating.pinion_torque", "name": "torque", "low": 10.0, "high": 90.0},
+    {"field": "centre_distance", "low": 88.0, "high": 89.4},  # below 88.9 mm the teeth wedge
+]
+
+
+@pytest.mark.parametrize("method", ["grid", "sobol"])
+def test_a_sweep_becomes_one_table_with_its_axes_and_says_what_is_left_out(command, tmp_path, method):
+    grid = method == "grid"
+    study = {
+        "name": "table",
+        "gear_pair": "nasa_28_28",
+        "analysis": "geometry",
+        "outputs": ["contact_ratio"],
+        "design": {"method": method} | ({} if grid else {"samples": 4}),
+        "axes": [axis | ({"count": 2} if grid else {}) for axis in AXES],
+    }
+    assert run_sweep(load_study(study), "sweep").failed > 0
+    code, text = command("export", "sweep/results.nc", "-o", "table.csv")
+    assert code == 0
+    assert "failure_message" in text
+    with (tmp_path / "table.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 4
+    with xr.open_dataset("sweep/results.nc", engine="h5netcdf") as result:
+        for row in rows:
+            at = (
+                result.sel(
+                    torque=float(row["torque [N*m]"]), centre_distance=float(row["centre_distance [mm]"])
+                )
+                if grid
+                else result.sel(case=int(row["case [1]"]))
+            )
+            assert float(row["torque [N*m]"]) == float(at.torque)
+            assert float(row["centre_distance [mm]"]) == float(at.centre_distance)
+            np.testing.assert_array_equal(float(row["contact_ratio [1]"]), at.contact_ratio)
+            assert int(row["status [1]"]) == int(at.status)
+    assert command("export", "sweep/results.nc", "-o", "all.mat")[0] == 0
+    everything = scipy.io.loadmat("all.mat", simplify_cells=True)
+    assert "wedge" in str(np.atleast_1d(everything["failure_message"])[0])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (["nasa_28_28", "-o", "pair.xlsx"], ".rexs, .rexs.xml"),
+        (["nasa_28_28", "-o", "pair"], ".rexs, .rexs.xml"),
+        (["nasa_28_28", "-o", "missing/pair.rexs"], "Make the folder"),
+        (["nasa_28_28", "-o", "old.rexs"], "--force"),
+        (["nasa_28_28", "-o", "old.npz"], "--force"),
+        (["nasa_28_28", "-o", "p.rexs", "--rexs-version", "2.0"], "1.4, 1.5, 1.6, 1.7"),
+        (["nasa_28_28", "-o", "p.rexs", "--form", "feedback"], "--form"),
+        (["nasa_28_28", "-o", "p.mat", "--rexs-version", "1.7"], "--rexs-version"),
+        (["nonsense", "-o", "p.rexs"], "nonsense"),
+        (["none.nc", "-o", "run.csv"], "exists"),
+        (["old.nc", "-o", "run.csv"], "cannot be read"),
+        (["old.nc", "-o", "run.rexs"], ".nc, .csv, .mat"),
+        (["old.nc", "--speed", "4000", "-o", "run.csv"], "--speed"),
+    ],
+)
+def test_what_cannot_be_written_is_refused_and_nothing_is_left_behind(command, tmp_path, arguments, reason):
+    for name in ("old.rexs", "old.npz", "old.nc"):
+        (tmp_path / name).write_text("precious")
+    code, text = command("export", *arguments)
+    assert code == 2
+    assert reason in text
+    assert "Traceback" not in text
+    assert {p.name: p.read_text() for p in tmp_path.iterdir()} == dict.fromkeys(
+        ["old.rexs", "old.npz", "old.nc"], "precious"
+    )
