@@ -1,4 +1,8 @@
-"""Masses, inertias and the effective mesh mass of a gear pair."""
+"""Masses, inertias and the effective mesh mass of a gear pair.
+
+Sources: solid discs, elementary; the effective mass 1/m_e = r_bp^2/J_p + r_bg^2/J_g closes the equations on
+r_bp theta_p - r_bg theta_g (docs/theory/equations.md).
+"""
 
 from __future__ import annotations
 

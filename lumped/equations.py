@@ -1,4 +1,4 @@
-"""The repaired equations of motion of the 6-DOF model, as forces (model.md, eqs. 1 to 9).
+"""The repaired equations of motion of the 6-DOF model, as forces (docs/theory/equations.md, eqs. 1 to 9).
 
 The printed signs of eqs. 1, 2, 7 and 9 can be put back one at a time, to show what each does.
 """

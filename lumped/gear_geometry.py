@@ -1,4 +1,8 @@
-"""Geometry of a spur gear pair: circles, line of action, contact ratio; and whether the pair can exist."""
+"""Geometry of a spur gear pair: circles, line of action, contact ratio; and whether the pair can exist.
+
+Sources: ISO 21771 for the circles, the operating pressure angle, the contact ratio and the backlash; the
+points A to D of the line of action as in docs/theory/equations.md, "Frame".
+"""
 
 from __future__ import annotations
 
@@ -71,7 +75,7 @@ class Geometry:
 
 
 def geometry(pair: GearPair) -> Geometry:
-    """Return the geometry of a gear pair (model.md, Frame; ISO 21771 for the profile shift).
+    """Return the geometry of a gear pair.
 
     Parameters
     ----------

@@ -1,4 +1,7 @@
-"""One mesh cycle: where each tooth pair is, when the coefficients switch, and what they are in between."""
+"""One mesh cycle: where each tooth pair is, when the coefficients switch, and what they are in between.
+
+Sources: Abbas Al-Zubaidi 2008, eqs. 5a and 5b; docs/theory/equations.md, "Frame".
+"""
 
 from __future__ import annotations
 
@@ -41,7 +44,7 @@ class PairState:
 
 @dataclass(frozen=True, eq=False)
 class MeshCycle:
-    """The mesh cycle of a gear pair at nominal rotation; t = 0 is pair n at A (model.md, Frame)."""
+    """The mesh cycle of a gear pair at nominal rotation; t = 0 is pair n at A."""
 
     geometry: Geometry
     elements: MeshElements

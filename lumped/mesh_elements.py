@@ -1,4 +1,7 @@
-"""The element laws of one tooth pair that every model of the pair shares: k, c, mu and e over the path."""
+"""The element laws of one tooth pair that every model of the pair shares: k, c, mu and e over the path.
+
+Sources: Abbas Al-Zubaidi 2008, eqs. 3 and 4; damping c_i = 2 zeta sqrt(k_i m_e), as He, Cho and Singh 2008.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +27,7 @@ _DAMPING_TOLERANCE_FROM_ZERO = 1e-7
 class MeshElements:
     """Element laws of one tooth pair over xi in [L_XA, L_XD]; zero outside.
 
-    N = k (delta - e) + c (delta' - e'), F = mu N (model.md, eqs. 3 and 4).
+    N = k (delta - e) + c (delta' - e'), F = mu N (docs/theory/equations.md, eqs. 3 and 4).
 
     Attributes
     ----------

@@ -2,6 +2,9 @@
 
 Stiffness, damping, friction coefficient and tooth error all reach the equations in this one form, so that
 the lumped model, the Floquet kernels and the multibody contact element read the same numbers.
+
+Sources: piecewise Chebyshev approximation, error read off the tail: Trefethen, Approximation Theory and
+Approximation Practice, 2013.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""The gear pair as a linear system with periodic coefficients, x' = A(t) x + b(t)."""
+"""The gear pair as a linear system with periodic coefficients, x' = A(t) x + b(t).
+
+Sources: Abbas Al-Zubaidi 2008, eqs. 1 to 9, repaired and derived in docs/theory/equations.md.
+"""
 
 from __future__ import annotations
 
@@ -127,7 +130,7 @@ def periodic_system(
     as_printed: Collection[int] = (),
     cycle: MeshCycle | None = None,
 ) -> LTVSystem:
-    """Return the gear pair as a linear time-varying periodic system (model.md, eqs. 1 to 9).
+    """Return the gear pair as a linear time-varying periodic system (docs/theory/equations.md, eqs. 1 to 9).
 
     Parameters
     ----------

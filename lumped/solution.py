@@ -1,4 +1,7 @@
-"""Solutions of the lumped model as labelled results: transient and periodic motion."""
+"""Solutions of the lumped model as labelled results: transient and periodic motion.
+
+Sources: docs/theory/equations.md, "Periodic motion and the brake torque".
+"""
 
 from __future__ import annotations
 
@@ -39,7 +42,7 @@ def simulate(
     as_printed: Collection[int] = (),
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Transient of the 6-DOF linear time-varying model (model.md, eqs. 1 to 9).
+    """Transient of the 6-DOF linear time-varying model (docs/theory/equations.md, eqs. 1 to 9).
 
     Each smooth segment between two switch times is integrated on its own (scipy's DOP853), so no step
     straddles a jump.

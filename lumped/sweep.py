@@ -1,4 +1,7 @@
-"""Periodic motion of a gear pair over pinion speed."""
+"""Periodic motion of a gear pair over pinion speed.
+
+Sources: docs/theory/equations.md, "Periodic motion and the brake torque".
+"""
 
 from __future__ import annotations
 

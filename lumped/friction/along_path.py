@@ -1,4 +1,8 @@
-"""mu_i(xi) of a gear pair: the friction laws over the path of contact, as numbers the equations use."""
+"""mu_i(xi) of a gear pair: the friction laws over the path of contact, as numbers the equations use.
+
+Sources: each law names its own; the sign convention is that of docs/theory/equations.md, "Normal load and
+friction".
+"""
 
 from __future__ import annotations
 

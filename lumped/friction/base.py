@@ -1,4 +1,7 @@
-"""What every friction law shares: the contact along the path, the law's settings, the registry record."""
+"""What every friction law shares: the contact along the path, the law's settings, the registry record.
+
+Sources: kinematics of the contact, Abbas Al-Zubaidi 2008, eqs. 5 and 11 to 15 with the repairs of the errata.
+"""
 
 from __future__ import annotations
 

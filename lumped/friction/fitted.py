@@ -1,4 +1,8 @@
-"""A friction law as a path function, and mu_avg of laws I and IV from law II's."""
+"""A friction law as a path function, and mu_avg of laws I and IV from law II's.
+
+Sources: piecewise Chebyshev fits (Trefethen, Approximation Theory and Approximation Practice, 2013); the mean
+coefficient after Abbas Al-Zubaidi 2008, eq. 10.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The friction laws side by side over the path of contact, for tables and figures."""
+"""The friction laws side by side over the path of contact, for tables and figures.
+
+Sources: each law names its own (Abbas Al-Zubaidi 2008, eqs. 10 to 21).
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Sliding loss of a spur mesh after Anderson and Loewenthal."""
+"""Sliding loss of a spur mesh after Anderson and Loewenthal.
+
+Sources: Anderson and Loewenthal, NASA TP-1622, 1980.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Mesh efficiency and sliding power of a dynamic solution, and of all friction laws side by side."""
+"""Mesh efficiency and sliding power of a dynamic solution, and of all friction laws side by side.
+
+Sources: power balance of docs/theory/equations.md, "Periodic motion and the brake torque".
+"""
 
 from __future__ import annotations
 

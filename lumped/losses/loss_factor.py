@@ -1,4 +1,7 @@
-"""Tooth loss factor H_v: the sliding loss over mu times the transmitted power."""
+"""Tooth loss factor H_v: the sliding loss over mu times the transmitted power.
+
+Sources: Ohlendorf 1958; docs/theory/mesh_physics.md, "Losses".
+"""
 
 from __future__ import annotations
 

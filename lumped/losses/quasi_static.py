@@ -1,4 +1,7 @@
-"""Mesh efficiency without vibration: pairs share the load, friction enters the torque balance."""
+"""Mesh efficiency without vibration: pairs share the load, friction enters the torque balance.
+
+Sources: docs/theory/mesh_physics.md, "Losses".
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Static load sharing among tooth pairs: linear springs with initial gaps, solved exactly."""
+"""Static load sharing among tooth pairs: linear springs with initial gaps, solved exactly.
+
+Sources: docs/theory/mesh_physics.md, "Load sharing and static transmission error".
+"""
 
 from __future__ import annotations
 

@@ -4,6 +4,8 @@ The linear model keeps every pair in contact over a fixed interval. With relief 
 load: a pair takes part where delta(T) - e_i > 0. There its stiffness is k_i and its unloaded error e_i;
 elsewhere it carries nothing. Contact before A and behind D is left out: the linear model's path of contact is
 A to D.
+
+Sources: docs/theory/mesh_physics.md, "Load sharing and static transmission error".
 """
 
 from __future__ import annotations

@@ -4,6 +4,8 @@ Both gears get the same tip relief, given by its amount and its length along the
 on the pinion and from A on the gear. With one constant stiffness per pair the best linear relief is known:
 amount F/k, the deflection of a single pair, over the whole length of double contact; it makes the
 transmission error constant at the design torque.
+
+Sources: Harris 1958 for the relief of constant transmission error; docs/theory/mesh_physics.md.
 """
 
 from __future__ import annotations

@@ -3,6 +3,8 @@
 Errors are lengths along the line of action, positive where material is missing, so that the teeth come too
 late to touch. Relief is given per gear over its roll angle, L/r_b for a contact at the length L on the base
 tangent.
+
+Sources: docs/theory/mesh_physics.md, "Load sharing and static transmission error".
 """
 
 from __future__ import annotations

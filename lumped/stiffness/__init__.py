@@ -1,4 +1,7 @@
-"""Tooth-pair stiffness over the path of contact: one small module per model, and their registry."""
+"""Tooth-pair stiffness over the path of contact: one small module per model, and their registry.
+
+Sources: each model names its own.
+"""
 
 from __future__ import annotations
 

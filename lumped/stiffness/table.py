@@ -1,4 +1,7 @@
-"""Tabulated stiffness: interpolation of a pair's curve, or of a total curve shared out to the pairs."""
+"""Tabulated stiffness: interpolation of a pair's curve, or of a total curve shared out to the pairs.
+
+Sources: monotone piecewise cubics, Fritsch and Carlson, SIAM Journal on Numerical Analysis 17 (1980) 238-246.
+"""
 
 from __future__ import annotations
 

@@ -106,7 +106,7 @@ def test_stiffness_variation_keeps_the_mean(pair, factor: float) -> None:
     ratio = 2.0  # double against single contact with the rectangular model
     full = np.ptp(k) / factor if factor else 0.0
     if factor:
-        single = mean / 1.6380  # contact ratio 1.638 pairs on average (model.md)
+        single = mean / 1.6380  # contact ratio 1.638 pairs on average
         assert full == pytest.approx((ratio - 1) * single, rel=1e-3)  # contact ratio given to 4 digits
     else:
         assert np.ptp(k) < 1e-9 * mean

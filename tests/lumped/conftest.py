@@ -98,7 +98,7 @@ def edited(nasa):
 
 @pytest.fixture(scope="session")
 def written_out():
-    """Function: accelerations of model.md eqs. 1 to 9, typed in here from the page, one line per equation."""
+    """Function: accelerations of eqs. 1 to 9 (docs/theory/equations.md), typed in here, one line each."""
 
     def accelerations(pair, geometry, masses, t, state, elements, torque, brake):
         """Elements are k, c, mu, e over xi; state is theta_p, theta_g, x_p, x_g, y_p, y_g and rates."""

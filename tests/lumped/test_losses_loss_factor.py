@@ -25,7 +25,7 @@ def test_closed_form_is_the_integral(name):
     [
         # GEARpie's report of the FZG C14 gears prints H_V (Ohlendorf) = 0.1986
         ("fzg_c", 0.1986, 5e-5),
-        # 28/28, 20 deg, standard addendum: eps_1 = eps_2 = 1.6380/2 (model.md), so
+        # 28/28, 20 deg, standard addendum: eps_1 = eps_2 = 1.6380/2, so
         # H_v = pi 2/28 (1 - 1.6380 + 1.6380^2/2) = 0.15787; 5e-5 in 1.6380 moves it by 7e-6
         ("nasa_28_28", 0.15787, 1e-5),
     ],

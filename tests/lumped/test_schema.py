@@ -156,9 +156,9 @@ class TestVariations:
             nasa.with_(centre_distance=93.0)
 
 
-def test_disc_defaults_are_those_of_the_model_page(nasa):
+def test_disc_defaults_are_those_of_solid_steel(nasa):
     b = bodies(nasa)
-    # model.md: J = 3.06e-4 kg m^2, m = 0.309 kg, three digits printed.
+    # J = pi rho b r^4/2 = 3.06e-4 kg m^2, m = 0.309 kg, three digits printed.
     assert b.mass_pinion == pytest.approx(0.309, abs=5e-4)
     assert b.inertia_pinion == pytest.approx(3.06e-4, abs=5e-7)
 
