@@ -27,7 +27,25 @@ class Geometry:
     X and Y are the tangent points of the line of action on the pinion's and the gear's base circle; A, B, P,
     C, D are start of contact, lowest point of single contact, pitch point, highest point of single contact
     and end of contact. B and C are the pitch-spaced counterparts of D and A also when the contact ratio is 2
-    or more. Lengths are measured from X along the line of action [m].
+    or more.
+
+    Attributes
+    ----------
+    base_pitch : of both gears, lambda [m]
+    contact_ratio : (L_XD - L_XA)/base_pitch [-]
+    base_radius_pinion, base_radius_gear : r_bp, r_bg [m]
+    reference_radius_pinion, reference_radius_gear : half the module times the number of teeth [m]
+    operating_radius_pinion, operating_radius_gear : of the pitch circles at this centre distance [m]
+    tip_radius_pinion, tip_radius_gear : [m]
+    root_radius_pinion, root_radius_gear : [m]
+    form_radius_pinion, form_radius_gear : where the involute starts above the rack's fillet [m]
+    centre_distance : [m]
+    operating_pressure_angle : [rad]
+    normal_backlash : along the line of action [m]
+    face_width : common to both gears [m]
+    L_XA, L_XB, L_XP, L_XC, L_XD, L_XY : from X along the line of action [m]
+    omega_pinion, omega_gear : nominal speeds [rad/s]
+    mesh_period : T_m [s]
     """
 
     base_pitch: float

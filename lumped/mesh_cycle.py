@@ -44,7 +44,13 @@ class PairState:
 
 @dataclass(frozen=True, eq=False)
 class MeshCycle:
-    """The mesh cycle of a gear pair at nominal rotation; t = 0 is pair n at A."""
+    """The mesh cycle of a gear pair at nominal rotation; t = 0 is pair n at A.
+
+    Attributes
+    ----------
+    geometry : of the pair
+    elements : stiffness, damping, friction coefficient and error of a tooth pair over the path
+    """
 
     geometry: Geometry
     elements: MeshElements

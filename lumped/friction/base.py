@@ -159,8 +159,8 @@ class FrictionLaw:
     ----------
     name : as in parameter files
     title : for tables and legends
-    signed : (xi, path, settings) -> signed mu, vectorised over xi
-    switches : (path, settings) -> positions where mu jumps or has a kink
+    signed : (xi [m], path, settings) -> signed mu [-], vectorised over xi
+    switches : (path, settings) -> positions where mu jumps or has a kink [m]
     ranges : validity ranges of the law's arguments
     parts : for a law made of others, (xi, path, settings) -> pairs of a law and where it is in force
     """

@@ -55,12 +55,12 @@ def ohlendorf(
 
 
 def addendum_contact_ratios(g: Geometry) -> tuple[float, float]:
-    """eps_1 = (L_XD - L_XP)/p of the pinion's addendum and eps_2 = (L_XP - L_XA)/p of the gear's."""
+    """eps_1 = (L_XD - L_XP)/p of the pinion's addendum and eps_2 = (L_XP - L_XA)/p of the gear's [-]."""
     return (g.L_XD - g.L_XP) / g.base_pitch, (g.L_XP - g.L_XA) / g.base_pitch
 
 
 def ohlendorf_of(pair: GearPair) -> float:
-    """Ohlendorf's loss factor of a gear pair, see ``ohlendorf``."""
+    """Ohlendorf's loss factor of a gear pair [-], see ``ohlendorf``."""
     return ohlendorf(pair.pinion.teeth, pair.gear.teeth, *addendum_contact_ratios(geometry(pair)))
 
 

@@ -66,7 +66,13 @@ def iso_14179_mean_coefficient(
 
 
 def iso_14179_of(pair: GearPair, oil_factor: float = 1.0) -> float:
-    """Mean friction coefficient of a gear pair at its operating point, see ``iso_14179_mean_coefficient``."""
+    """Mean friction coefficient of a gear pair at its operating point [-], see ``iso_14179_mean_coefficient``.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    oil_factor : X_L of the standard [-]
+    """
     g, path = geometry(pair), contact_path(pair)
     return float(
         iso_14179_mean_coefficient(
@@ -84,6 +90,11 @@ def iso_14179_mesh_loss(pair: GearPair, oil_factor: float = 1.0) -> float:
     """Load-dependent loss of the mesh after ISO/TR 14179-2, P_VZP = P mu_mz H_v [W].
 
     With the exact loss factor of equal load sharing, which is Ohlendorf's wherever his closed form holds.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    oil_factor : X_L of the standard [-]
     """
     power = pair.operating.pinion_torque * pair.operating.pinion_speed
     return power * iso_14179_of(pair, oil_factor) * loss_factor(pair, "uniform")
