@@ -66,7 +66,7 @@ def iso_14179_mean_coefficient(
 
 
 def iso_14179_of(pair: GearPair, oil_factor: float = 1.0) -> float:
-    """Mean friction coefficient of a gear pair at its operating point [-], see ``iso_14179_mean_coefficient``.
+    """Mean friction coefficient of a pair at its operating point [-], see ``iso_14179_mean_coefficient``.
 
     Parameters
     ----------
