@@ -36,7 +36,8 @@ def test_figures_writes_pictures_data_and_numbers(tmp_path):
     data = json.loads((out / "figures.json").read_text(encoding="utf-8"))
     assert [entry["figure"] for entry in data["figures"]] == ["3", "4"]
     for entry in data["figures"]:
-        assert entry["numbers"]
+        assert all(isinstance(one["value"], float) for one in entry["numbers"].values())
+        assert {one["unit"] for one in entry["numbers"].values()} <= {"", "N"}
         assert all((out / name).stat().st_size > 0 for name in entry["pictures"] + entry["data"])
     assert "Coulomb" in result.stdout
     # Replaced only when asked, and only by its own kind.

@@ -151,6 +151,38 @@ def test_a_number_is_small_beside_those_of_its_own_unit(document):
     assert compare(document, new).regressions
 
 
+def test_a_row_with_its_own_unit_is_judged_by_its_own_numbers(document):
+    # A drift of 7e5 % as printed stands beside one of rounding, and beside other rows of the same unit.
+    document["chapters"]["errata"] = {
+        "title": "Errata",
+        "evidence": [
+            {"quantity": "drift of 2", "printed": 7e5, "repaired": 2e-10, "unit": "%"},
+            {"quantity": "drift of 1", "printed": 1.6, "repaired": 2e-10, "unit": "%"},
+            {"quantity": "residual", "printed": 0.0, "repaired": 3e-15, "unit": "mm"},
+        ],
+    }
+
+    def failing(row, key, value):
+        new = copy.deepcopy(document)
+        new["chapters"]["errata"]["evidence"][row][key] = value
+        return [change.path for change in compare(document, new).regressions]
+
+    assert failing(1, "printed", 1.603) == ["errata/evidence/drift of 1/printed"]
+    assert failing(1, "printed", 1.601) == []  # below a tenth of a percent
+    assert failing(1, "repaired", 3e-10) == []  # nothing beside 1.6
+    assert failing(2, "printed", 5e-14) == []  # rounding, whatever it stands beside
+    assert failing(2, "printed", 1e-5) == ["errata/evidence/residual/printed"]
+
+
+def test_remarks_are_no_results(document):
+    new = copy.deepcopy(document)
+    chapter = new["chapters"]["stability"]
+    chapter |= {"captions": {"chart": "words"}, "tables": {"a": {"caption": "words", "note": "more"}}}
+    chapter["margins"]["radius"]["note"] = "stable below 1"
+    assert compare(document, new).changes == ()
+    assert compare(new, document).changes == ()
+
+
 def test_rows_are_matched_by_name_not_by_place(document):
     new = copy.deepcopy(document)
     new["chapters"]["cross_check"]["verdicts"].reverse()

@@ -1,14 +1,17 @@
 """Are the report's verification, margins, map and paper chapters complete, and can their verdicts fail?"""
 
+import copy
 import dataclasses
 import itertools
+import json
 import math
 
 import numpy as np
 import pytest
 
-from validation.reporting import results
+from validation.reporting import build, results
 from validation.reporting.chapters import CHAPTERS
+from validation.reporting.compare import compare
 from validation.reporting.verdict import summarise
 from validation.stability_margins import stability_margins
 from validation.validity import film_regime
@@ -88,6 +91,57 @@ def test_claims_are_shown_with_their_number_of_samples(chapters, computed):
     assert len(table.rows) == len(computed.paper.claims.claims)
     assert any(f"{EFFORT.claim_samples} samples" in getattr(b, "text", "") for b in chapters["paper"].blocks)
     assert len(_table(chapters["errata"], "errata").rows) == len(computed.paper.errata.errata)
+
+
+def _numbers(value, path=()):
+    """Paths of the numbers in report.json's data."""
+    if isinstance(value, dict):
+        for key, item in value.items():
+            yield from _numbers(item, (*path, key))
+    elif isinstance(value, list):
+        for place, item in enumerate(value):
+            yield from _numbers(item, (*path, place))
+    elif isinstance(value, float):
+        yield path, value
+
+
+@pytest.fixture(scope="module")
+def document(computed, chapters):
+    return build.document(computed, summarise(computed), tuple(chapters.values()), quick=False)
+
+
+@pytest.mark.parametrize(
+    ("table", "least"),
+    # Claims have a value, two percentiles and a share each; figure 4 three numbers a law and two twins.
+    [("paper/claims", 40), ("paper/claim_details", 15), ("errata/evidence", 100)]
+    + [(f"paper/figure{n}", least) for n, least in ((2, 12), (3, 8), (4, 14), (5, 16), (6, 8), (7, 8))],
+)
+def test_the_gate_sees_every_number_of_the_paper_chapters(document, table, least):
+    chapter, key = table.split("/")
+    seen = 0
+    for path, value in _numbers(document["chapters"][chapter][key]):
+        if abs(value) < 1e-4:  # what may count as zero beside others
+            continue
+        new = copy.deepcopy(document)
+        node = new["chapters"][chapter][key]
+        for part in path[:-1]:
+            node = node[part]
+        node[path[-1]] = 1.01 * value
+        found = compare(document, new)
+        assert len(found.regressions) == 1, (path, value)
+        seen += 1
+    assert seen >= least
+
+
+def test_every_number_of_the_page_is_in_the_data(document, chapters):
+    # Facts carry numbers in their notes, figures in their captions, tables in their notes.
+    told = json.dumps(document, ensure_ascii=False)
+    for chapter in chapters.values():
+        for block in chapter.blocks:
+            words = [getattr(block, "caption", ""), getattr(block, "note", "")]
+            words += [fact.note for fact in getattr(block, "items", ()) if hasattr(fact, "note")]
+            for text in words:
+                assert json.dumps(text, ensure_ascii=False)[1:-1] in told
 
 
 def test_one_failing_check_turns_the_chapter(computed):

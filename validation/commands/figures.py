@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -86,7 +87,7 @@ def figures(
         shown.columns[0].no_wrap = False
         shown.columns[1].no_wrap = False
         for name, value in one.record.numbers.items():
-            shown.add_row(name, value)
+            shown.add_row(name, str(value))
         console.print(shown)
     console.print(f"figures: {output}", soft_wrap=True)
 
@@ -112,7 +113,10 @@ def _entry(one: PaperFigure) -> dict[str, object]:
         "figure": record.number,
         "title": record.title,
         "text": record.text,
-        "numbers": dict(record.numbers),
+        "numbers": {
+            name: {"value": one.value if math.isfinite(one.value) else None, "unit": one.unit}
+            for name, one in record.numbers.items()
+        },
         "pictures": [path.name for path in one.pictures],
         "data": [path.name for path in one.data],
     }

@@ -12,10 +12,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from lumped import GearPair, PathFunction, geometry, steady_state
+from lumped import GearPair, PathFunction, geometry
 from lumped.friction import contact_path, friction_path_function, mean_coefficient
 from validation.paper.operating_points import FIGURE_2A, FIGURE_7, LAWS, TORQUE_2B, second_pair
 from validation.paper.twins import mesh_orders, total
+from validation.periodic import periodic_cycle
 
 FloatArray = NDArray[np.float64]
 
@@ -87,14 +88,21 @@ def pitch_jumps(pair: GearPair) -> dict[str, float]:
 
 
 def law_cycles(pair: GearPair, samples: int = 128) -> xr.Dataset:
-    """Lumped periodic motion under laws I to IV, (law, [pair,] phase); lighter than ``law_runs``."""
-    names = ["dte", "x_p", "y_p", "normal_load", "friction_force", "contact"]
-    rows = []
-    for law in LAWS:
-        run = steady_state(pair.with_({"friction.law": law}), samples_per_cycle=samples)
-        phase = np.arange(samples) / samples
-        rows.append(run[names].drop_vars("time").rename(time="phase").assign_coords(phase=phase))
-    return xr.concat(rows, dim=xr.DataArray(list(LAWS), dims="law", name="law"), combine_attrs="drop")
+    """Lumped periodic motion under laws I to IV, lighter than ``law_runs``.
+
+    Returns
+    -------
+    Dataset over law, [pair,] phase (mesh cycles): dte, x_p, y_p, normal_load, friction_force, contact; over
+    law: spectral_radius
+    """
+    runs = [periodic_cycle(pair.with_({"friction.law": law}), samples) for law in LAWS]
+    dims = {1: ("law", "phase"), 2: ("law", "pair", "phase")}
+    found = {}
+    for name in ("dte", "x_p", "y_p", "normal_load", "friction_force", "contact"):
+        values = np.array([run.values[name] for run in runs])
+        found[name] = (dims[values.ndim - 1], values)
+    found["spectral_radius"] = (("law",), np.array([run.spectral_radius for run in runs]))
+    return xr.Dataset(found, coords={"law": list(LAWS), "phase": np.arange(samples) / samples})
 
 
 def load_spread(cycles: xr.Dataset) -> tuple[float, float]:
@@ -140,7 +148,15 @@ def mean_iii(pair: GearPair) -> tuple[float, ...]:
     )
 
 
-def fig7_peaks(pair: GearPair) -> tuple[float, float]:
-    """Largest normal load and friction force of a tooth pair at Fig. 7's faster point, law III [N]."""
-    run = steady_state(FIGURE_7[1].of(pair).with_({"friction.law": "xu_kahraman"}), samples_per_cycle=128)
-    return float(run["normal_load"].max()), float(np.abs(run["friction_force"]).max())
+def fig7_peaks(pair: GearPair) -> tuple[float, float, float, float]:
+    """The motion of Fig. 7's faster point under law III in four numbers.
+
+    Largest normal load and friction force of a tooth pair [N], smallest load of a pair in contact over the
+    static load, largest multiplier.
+    """
+    at = FIGURE_7[1].of(pair).with_({"friction.law": "xu_kahraman"})
+    run = periodic_cycle(at, 128)
+    normal, friction = run.values["normal_load"], run.values["friction_force"]
+    static = at.operating.pinion_torque / geometry(at).base_radius_pinion
+    lowest = float(normal[run.values["contact"] > 0].min()) / static
+    return float(normal.max()), float(np.abs(friction).max()), lowest, run.spectral_radius

@@ -9,6 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Literal
+
+from validation.periodic import UNSTABLE
+from validation.validity import LOAD_NOISE
 
 Numbers = Mapping[str, float]
 
@@ -22,7 +26,10 @@ class ClaimRule:
     name, statement, definition, unit, criterion : as in ``Claim``
     value : number from the claim numbers of ``sensitivity.measure``
     holds : whether the criterion is met
-    details : further numbers, name -> (key or function, unit)
+    details : further numbers, name -> (function, unit)
+    otherwise : why it comes out otherwise where the criterion is not met
+    figure : "4" or "7" where the number is of the motion in that figure, which must then be stable and in
+        contact; "" where it is of the laws alone
     unpublished : why the claim cannot be judged from what was published; "" where it can
     """
 
@@ -34,7 +41,26 @@ class ClaimRule:
     value: Callable[[Numbers], float]
     holds: Callable[[Numbers], bool]
     details: Mapping[str, tuple[Callable[[Numbers], float], str]]
+    otherwise: str = ""
+    figure: Literal["", "4", "7"] = ""
     unpublished: str = ""
+
+    def unusable(self, numbers: Numbers) -> str:
+        """Why the motion that the number is of does not count; "" where it does or none is needed."""
+        if not self.figure:
+            return ""
+        radius, load = numbers[f"radius_{self.figure}"], numbers[f"min_load_{self.figure}"]
+        if radius > UNSTABLE:
+            return (
+                f"The periodic motion of Fig. {self.figure} is unstable here (largest multiplier "
+                f"{radius:.3g}): a gear pair would leave it."
+            )
+        if load < -LOAD_NOISE:
+            return (
+                f"The teeth separate in the motion of Fig. {self.figure} here (smallest load {load:.2g} of "
+                "the static load), so the lumped model does not hold."
+            )
+        return ""
 
 
 def _key(name: str, factor: float = 1.0) -> Callable[[Numbers], float]:
@@ -56,6 +82,8 @@ RULES: tuple[ClaimRule, ...] = (
         value=_key("mean_ratio"),
         holds=lambda n: n["mean_ratio"] >= 2.0,
         details={},
+        otherwise="Law II falls with speed and viscosity (14), law III grows with roughness (18): "
+        "with this oil and these flanks they come closer.",
     ),
     ClaimRule(
         name="pitch point",
@@ -67,23 +95,34 @@ RULES: tuple[ClaimRule, ...] = (
         value=_key("iii_at_pitch"),
         holds=lambda n: n["iii_at_pitch"] <= 0.2 and n["ii_at_pitch"] > 1.0,
         details={"II at the pitch point over its largest value elsewhere": (_key("ii_at_pitch"), "times")},
+        otherwise="Law II meets its upper bound away from the pitch point too, or law III changes its sign "
+        "over more than 0.01 mesh cycles: the further numbers say which.",
     ),
     ClaimRule(
-        name="regime change",
-        statement="The mean friction coefficient of the composite law changes abruptly near 2500 rpm.",
+        name="abrupt regime change",
+        statement="The mean friction coefficient of the composite law changes abruptly over speed.",
+        definition="range of speeds over which the middle 80 % of the path of contact changes from II to III "
+        "at 22.6 N m (Fig. 2b), over the speed at which half has changed",
+        unit="% of the speed",
+        criterion="at most 20 % of the speed, and mean of II at least 1.2 times mean of III there",
+        value=_key("switch_width", 100.0),
+        holds=lambda n: n["switch_width"] <= 0.2 and n["switch_drop"] >= 1.2,
+        details={"mean of II over mean of III there": (_key("switch_drop"), "times")},
+        otherwise="The change is as narrow as the film parameter is even along the path, and as deep as the "
+        "two laws differ at that speed: the further numbers say which is missing.",
+    ),
+    ClaimRule(
+        name="speed of the regime change",
+        statement="The regime changes near 2500 rpm.",
         definition="speed at which half of the path of contact has changed from II to III at 22.6 N m (Fig. "
         "2b)",
         unit="rpm",
-        criterion="2000 to 3000 rpm, 10 to 90 % of the path within 20 % of the speed, mean falls at least "
-        "1.2 times",
+        criterion="2000 to 3000 rpm",
         value=_key("switch_speed"),
-        holds=lambda n: (
-            2000.0 <= n["switch_speed"] <= 3000.0 and n["switch_width"] <= 0.2 and n["switch_drop"] >= 1.2
-        ),
-        details={
-            "width, 10 to 90 % of the path": (_key("switch_width", 100.0), "% of the speed"),
-            "mean of II over mean of III there": (_key("switch_drop"), "times"),
-        },
+        holds=lambda n: 2000.0 <= n["switch_speed"] <= 3000.0,
+        details={},
+        unpublished="Composite roughness and viscosity decide the speed, and the paper gives neither. The "
+        "28/28 preset is calibrated to meet 2500 rpm, so its agreement is no evidence.",
     ),
     ClaimRule(
         name="jumps",
@@ -102,6 +141,8 @@ RULES: tuple[ClaimRule, ...] = (
             "jump of III": (_key("jump_xu_kahraman"), "of the peak to peak"),
             "jump of IV": (_key("jump_smoothed_coulomb"), "of the peak to peak"),
         },
+        otherwise="The bound of law II makes its jump smaller, or the sharpness of law IV makes its change "
+        "a jump: the further numbers say which.",
     ),
     ClaimRule(
         name="normal load",
@@ -113,6 +154,9 @@ RULES: tuple[ClaimRule, ...] = (
         value=_key("load_spread", 100.0),
         holds=lambda n: n["load_spread"] <= 0.05,
         details={"rms over the mesh cycle": (_key("load_spread_rms", 100.0), "% of the mean load")},
+        otherwise="Friction enters the mesh stiffness with mu tan(alpha); near a resonance that is enough to "
+        "change the load by more.",
+        figure="4",
     ),
     ClaimRule(
         name="LOA motion and DTE",
@@ -127,6 +171,9 @@ RULES: tuple[ClaimRule, ...] = (
             "x_p": (_key("rms_x_p", 100.0), "% of the peak to peak"),
             "DTE": (_key("rms_dte", 100.0), "% of the peak to peak"),
         },
+        otherwise="Friction enters the mesh stiffness with mu tan(alpha); near a resonance that is enough to "
+        "change the motion by more.",
+        figure="4",
     ),
     ClaimRule(
         name="OLOA motion",
@@ -138,6 +185,9 @@ RULES: tuple[ClaimRule, ...] = (
         value=_key("rms_y_p", 100.0),
         holds=lambda n: n["rms_y_p"] <= 0.05,
         details={},
+        otherwise="Off the line of action friction is the only excitation, so the motion is as large as the "
+        "coefficient, and the laws' coefficients differ several times.",
+        figure="4",
     ),
     ClaimRule(
         name="second harmonic",
@@ -155,6 +205,9 @@ RULES: tuple[ClaimRule, ...] = (
             "x_p, spread over mean amplitude": (_key("relative_order_x_p"), "mesh order"),
             "DTE, spread over mean amplitude": (_key("relative_order_dte"), "mesh order"),
         },
+        otherwise="The spread follows the amplitudes, which are largest at another mesh order: the laws "
+        "differ by a factor of friction, not by an order of their own.",
+        figure="4",
     ),
     ClaimRule(
         name="8 % discrepancy",
@@ -169,6 +222,7 @@ RULES: tuple[ClaimRule, ...] = (
             "x_p alone": (_key("mean_absolute_x_p", 100.0), "% of the peak to peak"),
             "y_p alone": (_key("mean_absolute_y_p", 100.0), "% of the peak to peak"),
         },
+        figure="4",
         unpublished="The paper says neither between which curves nor relative to what the 8 % are; readings "
         "that are equally natural differ by an order of magnitude.",
     ),
@@ -187,8 +241,8 @@ RULES: tuple[ClaimRule, ...] = (
             "the same at 800 rpm with R in millimetres": (_key("mean_iii_slow", 1000.0**-0.390958), "1"),
         },
         unpublished="The measured forces are not published as numbers, so nothing can be identified from "
-        "them. Law III predicts a mean several times larger with R in metres and several times smaller with "
-        "R in millimetres.",
+        "them. What law III predicts with R in metres (value) and in millimetres (further numbers) stands "
+        "beside the 0.004.",
     ),
     ClaimRule(
         name="3 % error",
@@ -200,7 +254,8 @@ RULES: tuple[ClaimRule, ...] = (
         value=_key("peak_friction"),
         holds=lambda n: True,
         details={"largest normal load of a pair": (_key("peak_normal"), "N")},
-        unpublished="The measured forces are not published as numbers, and the assumptions alone move the "
-        "predicted friction by far more than 3 %.",
+        figure="7",
+        unpublished="The measured forces are not published as numbers. The assumptions alone move the "
+        "predicted friction by more than 3 %: see its 5 and 95 % values.",
     ),
 )

@@ -8,6 +8,8 @@ from typing import Any, Literal
 
 import xarray as xr
 
+from validation.paper.figures.record import Number
+
 #: The paper that is reproduced.
 PAPER = (
     "A. F. Abbas Al-Zubaidi, Alternate sliding friction formulations of elasto-hydrodynamic of spur gears, "
@@ -119,8 +121,11 @@ class Claim:
     criterion : when the statement counts as reproduced
     verdict : "reproduced", "not reproduced" or "cannot be judged"
     text : one or two sentences on the outcome
-    details : further numbers, name -> value with unit as text
-    share : share of samples of the assumptions in which the criterion holds; None where it was not sampled
+    reason : why it is not reproduced or cannot be judged, in plain words; "" where it is reproduced
+    details : further numbers
+    share : share of the usable samples of the assumptions in which the criterion holds; None where none was
+        sampled or usable
+    usable : samples in which the motion behind the number is stable and in contact
     low, high : 5th and 95th percentile of the number over these samples
     """
 
@@ -132,8 +137,10 @@ class Claim:
     criterion: str
     verdict: ClaimVerdict
     text: str
-    details: Mapping[str, str] = field(default_factory=dict)
+    reason: str = ""
+    details: Mapping[str, Number] = field(default_factory=dict)
     share: float | None = None
+    usable: int = 0
     low: float | None = None
     high: float | None = None
 

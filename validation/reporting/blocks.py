@@ -174,6 +174,10 @@ def plain(value: Cell) -> Any:
     return value
 
 
+#: Keys of a chapter's data that hold no results: words, and which figures there are.
+REMARKS = ("text", "figures", "captions", "tables")
+
+
 def chapter_data(chapter: Chapter) -> dict[str, Any]:
     """Everything a chapter shows, as JSON data."""
     data: dict[str, Any] = {"title": chapter.title}
@@ -181,14 +185,20 @@ def chapter_data(chapter: Chapter) -> dict[str, Any]:
         data["verdict"] = plain(chapter.badge)
     for block in chapter.blocks:
         if isinstance(block, Facts):
-            data[block.key] = {
-                fact.key: {"label": fact.label, "value": plain(fact.value)} for fact in block.items
-            }
+            data[block.key] = {fact.key: _fact_data(fact) for fact in block.items}
         elif isinstance(block, Table):
             keys = [column.key for column in block.columns]
             data[block.key] = [dict(zip(keys, map(plain, row), strict=True)) for row in block.rows]
+            about = {"caption": block.caption} | ({"note": block.note} if block.note else {})
+            data.setdefault("tables", {})[block.key] = about
         elif isinstance(block, Picture):
             data.setdefault("figures", []).append(block.key)
+            data.setdefault("captions", {})[block.key] = block.caption
         else:
             data.setdefault("text", []).append([block.text, *block.items])
     return data
+
+
+def _fact_data(fact: Fact) -> dict[str, Any]:
+    data: dict[str, Any] = {"label": fact.label, "value": plain(fact.value)}
+    return data | {"note": fact.note} if fact.note else data

@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 from lumped.errors import ParameterError, refuse
 from lumped.text_file import read_text
-from validation.reporting.blocks import STATES
+from validation.reporting.blocks import REMARKS, STATES
 from validation.reporting.folder import FORMAT, REPORT
 
 #: Relative change of a number that passes; numbers are compared as computed, not as shown.
@@ -24,7 +24,7 @@ _ERRORS = frozenset(
     {"error", "error_estimate", "liouville_residual", "unsettled", "law_difference", "bound", "closure"}
 )
 _ERROR_TABLES = frozenset({"code_verification/closed_forms", "solution_verification/refinement"})
-#: Size below which a number counts as zero beside the largest of its unit in its table column.
+#: Size below which a number counts as zero beside the largest of its unit in its table, or of its column.
 _SMALL = 1e-4
 _MAX_BYTES = 100_000_000
 _LARGEST_TEXT = 60
@@ -114,9 +114,10 @@ def compare(old: Mapping[str, Any], new: Mapping[str, Any], *, tolerance: float 
     """Compare two reports.
 
     A number fails where it changes by more than the tolerance, relative to the larger of the two and to a
-    ten-thousandth of the largest number of its unit in its column; one that measures a numerical error fails
-    where it grows tenfold and beyond rounding. A verdict fails where it gets worse. An entry fails where it
-    is gone. Texts, new entries, changed parameters and settings are shown and do not fail.
+    ten-thousandth of the largest number of its unit in its table, without a unit in its column. Where a row
+    states the unit of its numbers each stands for itself. One that measures a numerical error fails where it
+    grows tenfold and beyond rounding. A verdict fails where it gets worse. An entry fails where it is gone.
+    Texts, new entries, changed parameters and settings are shown and do not fail.
 
     Parameters
     ----------
@@ -158,10 +159,11 @@ class _State:
 
 @dataclass(frozen=True)
 class _Number:
-    """Number at a leaf."""
+    """Number at a leaf; ``alone``: its row states its unit, so its column holds other things."""
 
     value: float
     unit: str = ""
+    alone: bool = False
 
 
 Leaf = _Number | str | bool | None | _State
@@ -175,30 +177,32 @@ def _leaves(document: Mapping[str, Any]) -> Iterator[tuple[str, Leaf]]:
         if key == "changes":
             continue
         for name, block in chapter.items():
-            if name not in ("title", "text", "figures") and (key, name) not in _SAID_ELSEWHERE:
+            if name not in ("title", *REMARKS) and (key, name) not in _SAID_ELSEWHERE:
                 yield from _walk(f"{key}/{name}", block)
     yield from _walk("input", document["parameters"])
 
 
-def _walk(path: str, value: Any) -> Iterator[tuple[str, Leaf]]:
+def _walk(path: str, value: Any, unit: str | None = None) -> Iterator[tuple[str, Leaf]]:
+    """Leaves below a value; ``unit`` is that of plain numbers where their row states one."""
     if isinstance(value, dict):
         if set(value) == {"state", "text"}:
             yield path, _State(str(value["state"]), str(value["text"]))
         elif set(value) == {"value", "unit"}:
             number = value["value"]
             yield path, None if number is None else _Number(float(number), str(value["unit"]))
-        elif set(value) == {"label", "value"}:
+        elif {"label", "value"} <= set(value) <= {"label", "value", "note"}:
             yield from _walk(path, value["value"])
         else:
+            own = value.get("unit")
             for key, item in value.items():
-                yield from _walk(f"{path}/{key}", item)
+                yield from _walk(f"{path}/{key}", item, own if isinstance(own, str) else None)
     elif isinstance(value, list):
         names = _row_names(value)
         for name, item in zip(names, value, strict=True):
             yield from _walk(f"{path}/{name}", item)
     else:
         is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        yield path, _Number(float(value)) if is_number else value
+        yield path, _Number(float(value), unit or "", unit is not None) if is_number else value
 
 
 def _row_names(rows: list[Any]) -> list[str]:
@@ -217,13 +221,19 @@ def _row_names(rows: list[Any]) -> list[str]:
 
 
 def _scales(leaves: Mapping[str, Leaf]) -> dict[tuple[str, str, str], float]:
-    """Largest number of each unit in each column of each table."""
+    """Largest number of each kind, see ``_kind``."""
     scales: dict[tuple[str, str, str], float] = {}
     for path, leaf in leaves.items():
         if isinstance(leaf, _Number):
-            column = (*_column(path), leaf.unit)
-            scales[column] = max(scales.get(column, 0.0), abs(leaf.value))
+            kind = _kind(path, leaf)
+            scales[kind] = max(scales.get(kind, 0.0), abs(leaf.value))
     return scales
+
+
+def _kind(path: str, number: _Number) -> tuple[str, str, str]:
+    """What tells the numbers that this one may be small beside: table and unit, or table and column."""
+    table, column = _column(path)
+    return (table, "", number.unit) if number.unit not in ("", "1") else (table, column, "")
 
 
 def _column(path: str) -> tuple[str, str]:
@@ -237,8 +247,14 @@ def _number_change(path: str, old: _Number, new: _Number, tolerance: float, scal
     if column in _ERRORS or table in _ERROR_TABLES:
         fails = new.value > max(ERROR_GROWTH * old.value, ROUNDING)
         return Change(path, "number", _shown(old), _shown(new), difference / largest, fails)
-    size = difference / max(largest, _SMALL * scale)
-    return Change(path, "number", _shown(old), _shown(new), size, size > tolerance)
+    if old.alone:
+        # A unit that a row states is chosen for reading: what is rounding in it is nothing.
+        size = difference / largest
+        fails = size > tolerance and largest > ROUNDING
+    else:
+        size = difference / max(largest, _SMALL * scale)
+        fails = size > tolerance
+    return Change(path, "number", _shown(old), _shown(new), size, fails)
 
 
 def _change(
@@ -259,7 +275,7 @@ def _change(
     if isinstance(old, _Number) and isinstance(new, _Number):
         if old.unit != new.unit:
             return Change(path, "text", _shown(old), _shown(new), None, True)
-        return _number_change(path, old, new, tolerance, scales.get((*_column(path), old.unit), 0.0))
+        return _number_change(path, old, new, tolerance, scales.get(_kind(path, old), 0.0))
     if isinstance(old, _State) and isinstance(new, _State):
         if old.state == new.state:
             return None

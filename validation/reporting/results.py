@@ -75,7 +75,7 @@ FULL = Effort(
     mesh_optimum=True,
     attribution=True,
     verify=True,
-    claim_samples=64,
+    claim_samples=100,
 )
 QUICK = Effort(samples=128, cycles=16, sweep_speeds=24, chart_speeds=16, chart_dampings=4, chart_rtol=1e-6)
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from lumped import GearPair, geometry
 from lumped.friction import friction_path_function, mean_coefficient
-from validation.paper.figures.record import FigureRecord, number
+from validation.paper.figures.record import FigureRecord, Number
 from validation.paper.operating_points import (
     CALIBRATIONS,
     FIGURE_2A,
@@ -136,18 +136,18 @@ def regime_switch(mean: xr.DataArray, ii: xr.DataArray, iii: xr.DataArray) -> tu
 def figure2(pair: GearPair) -> FigureRecord:
     """Figure 2 with its data and numbers."""
     a, b = friction_in_time(pair), mean_over_speed(pair)
-    numbers: dict[str, str] = {}
+    numbers: dict[str, Number] = {}
     for gears in a["gears"].to_numpy():
         means = a["mean_mu"].sel(gears=gears)
-        numbers[f"{gears}: mean of II"] = number(float(means.sel(law="II")))
-        numbers[f"{gears}: mean of III"] = number(float(means.sel(law="III")))
-        numbers[f"{gears}: II over III"] = number(float(means.sel(law="II") / means.sel(law="III")))
+        numbers[f"{gears}: mean of II"] = Number(float(means.sel(law="II")))
+        numbers[f"{gears}: mean of III"] = Number(float(means.sel(law="III")))
+        numbers[f"{gears}: II over III"] = Number(float(means.sel(law="II") / means.sel(law="III")))
     for c in b["calibration"].to_numpy():
         m = b["mean_mu"].sel(calibration=c)
         speed, width, ratio = regime_switch(m.sel(law="V"), m.sel(law="II"), m.sel(law="III"))
-        numbers[f"{c}: switch at"] = number(speed, "rpm")
-        numbers[f"{c}: width of the switch"] = number(100 * width, "% of the speed")
-        numbers[f"{c}: drop of the mean"] = f"{number(ratio)} times"
+        numbers[f"{c}: switch at"] = Number(speed, "rpm")
+        numbers[f"{c}: width of the switch"] = Number(100 * width, "% of the speed")
+        numbers[f"{c}: drop of the mean"] = Number(ratio, "times")
     return FigureRecord(
         number="2",
         title="Friction coefficients in time, and mean coefficient over speed",

@@ -7,7 +7,7 @@ import xarray as xr
 
 from lumped import GearPair, geometry
 from lumped.friction import friction_path_function, mean_coefficient
-from validation.paper.figures.record import FigureRecord, number
+from validation.paper.figures.record import FigureRecord, Number
 from validation.paper.operating_points import FIGURE_4, LAWS
 
 _POINTS = 801
@@ -46,9 +46,9 @@ def figure3(pair: GearPair) -> FigureRecord:
     """Figure 3 with its data and numbers."""
     data = normalised_laws(FIGURE_4.of(pair))
     near = data["normalised_mu"].sel(cycles=data.attrs["pitch"] + 0.01, method="nearest")
-    numbers = {f"{LAWS[law]}: mean of |mu|": number(float(data["mean_mu"].sel(law=law))) for law in LAWS}
+    numbers = {f"{LAWS[law]}: mean of |mu|": Number(float(data["mean_mu"].sel(law=law))) for law in LAWS}
     numbers |= {
-        f"{LAWS[law]}: |mu|/mean at 0.01 mesh cycles past P": number(float(near.sel(law=law))) for law in LAWS
+        f"{LAWS[law]}: |mu|/mean at 0.01 mesh cycles past P": Number(float(near.sel(law=law))) for law in LAWS
     }
     return FigureRecord(
         number="3",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from validation.paper.figures.record import FigureRecord, number
+from validation.paper.figures.record import FigureRecord, Number
 from validation.paper.operating_points import FIGURE_4, LAWS
 from validation.paper.twins import agreement, total
 
@@ -18,20 +18,17 @@ def total_forces(runs: xr.Dataset) -> xr.Dataset:
 def figure4(runs: xr.Dataset) -> FigureRecord:
     """Figure 4 with its data and numbers; ``runs`` of ``law_runs``."""
     data = total_forces(runs)
-    numbers: dict[str, str] = {}
+    numbers: dict[str, Number] = {}
     for law, title in LAWS.items():
         one = data.sel(law=law, model="lumped")
-        numbers[f"{title}: normal load, mean and peak to peak"] = (
-            f"{number(float(one['total_normal_load'].mean()))} and "
-            f"{number(float(np.ptp(one['total_normal_load'].to_numpy())), 'N')}"
-        )
-        numbers[f"{title}: friction force, peak to peak"] = number(
-            float(np.ptp(one["total_friction_force"].to_numpy())), "N"
-        )
+        load, friction = (one[name].to_numpy() for name in ("total_normal_load", "total_friction_force"))
+        numbers[f"{title}: normal load, mean"] = Number(float(load.mean()), "N")
+        numbers[f"{title}: normal load, peak to peak"] = Number(float(np.ptp(load)), "N")
+        numbers[f"{title}: friction force, peak to peak"] = Number(float(np.ptp(friction)), "N")
     if "multibody" in runs["model"]:
         for name, value in agreement(runs.rename(law="variant"), ("normal_load", "friction_force")).items():
             text = name.replace("_", " ")
-            numbers[f"multibody twin, {text}: rms difference, worst law"] = number(
+            numbers[f"multibody twin, {text}: rms difference, worst law"] = Number(
                 100 * value, "% of the peak to peak"
             )
     return FigureRecord(

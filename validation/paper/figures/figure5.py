@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from validation.paper.figures.record import FigureRecord, number
+from validation.paper.figures.record import FigureRecord, Number
 from validation.paper.operating_points import FIGURE_4, LAWS
 from validation.paper.twins import agreement, mesh_orders
 
@@ -19,23 +19,23 @@ def histories_and_orders(runs: xr.Dataset, names: tuple[str, ...]) -> xr.Dataset
     return xr.Dataset(found)
 
 
-def motion_numbers(runs: xr.Dataset, data: xr.Dataset, names: tuple[str, ...]) -> dict[str, str]:
+def motion_numbers(runs: xr.Dataset, data: xr.Dataset, names: tuple[str, ...]) -> dict[str, Number]:
     """Peak to peak of each law, spread of the laws by mesh order, agreement of the twins."""
-    numbers: dict[str, str] = {}
+    numbers: dict[str, Number] = {}
     for name in names:
         lumped = data.sel(model="lumped")
         for law, title in LAWS.items():
             span = float(np.ptp(lumped[name].sel(law=law).to_numpy()))
-            numbers[f"{title}: {name}, peak to peak"] = number(1e6 * span, "um")
+            numbers[f"{title}: {name}, peak to peak"] = Number(1e6 * span, "µm")
         amplitude = lumped[f"{name}_amplitude"]
         spread = amplitude.max("law") - amplitude.min("law")
         for order in (1, 2, 3):
-            numbers[f"spread of the laws in {name} at mesh order {order}"] = number(
+            numbers[f"spread of the laws in {name} at mesh order {order}"] = Number(
                 1e9 * float(spread.sel(order=order)), "nm"
             )
     if "multibody" in runs["model"]:
         for name, value in agreement(runs.rename(law="variant"), names).items():
-            numbers[f"multibody twin, {name}: rms difference, worst law"] = number(
+            numbers[f"multibody twin, {name}: rms difference, worst law"] = Number(
                 100 * value, "% of the peak to peak"
             )
     return numbers

@@ -11,7 +11,7 @@ import xarray as xr
 from lumped import GearPair, geometry
 from validation.measurements import Measurement, align, overlay, overlay_metrics, predict
 from validation.measurements.specification import PAIR_LABELS
-from validation.paper.figures.record import FigureRecord, number
+from validation.paper.figures.record import FigureRecord, Number
 from validation.paper.operating_points import FIGURE_7, OperatingPoint
 from validation.paper.twins import agreement, continuous_labels, roll_angle, twins
 
@@ -95,15 +95,15 @@ def figure7(
     data = {
         f"{point.speed:.0f}rpm": pair_forces(pair, point, with_multibody=with_multibody) for point in FIGURE_7
     }
-    numbers: dict[str, str] = {}
+    numbers: dict[str, Number] = {}
     for part in data.values():
         speed, lumped = f"{part.attrs['speed_rpm']:g} rpm", part.sel(model="lumped")
         for name in ("normal_load", "friction_force"):
             text = name.replace("_", " ")
             largest = float(np.abs(lumped[name]).max())
-            numbers[f"{speed}: largest {text} of a pair"] = number(largest, "N")
+            numbers[f"{speed}: largest {text} of a pair"] = Number(largest, "N")
             if with_multibody:
-                numbers[f"{speed}: multibody twin, total {text}: rms difference"] = number(
+                numbers[f"{speed}: multibody twin, total {text}: rms difference"] = Number(
                     100 * part.attrs[f"rms_difference_{name}"], "% of the peak to peak"
                 )
     for j, measurement in enumerate(measurements):
@@ -111,7 +111,7 @@ def figure7(
         data[f"measured{j + 1}"] = points
         for channel in points["channel"].to_numpy():
             relative = 100 * float(points["relative_mean_absolute"].sel(channel=channel))
-            numbers[f"{measurement.spec.name}, {channel}: mean |measured - predicted|"] = number(
+            numbers[f"{measurement.spec.name}, {channel}: mean |measured - predicted|"] = Number(
                 relative, "% of the peak to peak"
             )
     return FigureRecord(

@@ -10,6 +10,19 @@ import numpy as np
 import xarray as xr
 
 
+@dataclass(frozen=True)
+class Number:
+    """A value with its unit; "" where it has none. As text it has three figures."""
+
+    value: float
+    unit: str = ""
+
+    def __str__(self) -> str:
+        size = abs(self.value)
+        text = "none" if not np.isfinite(size) else f"{self.value:.{'3g' if size < 1000 else '0f'}}"
+        return text if self.unit in ("", "1") else f"{text} {self.unit}"
+
+
 @dataclass(frozen=True, eq=False)
 class FigureRecord:
     """A reproduced figure.
@@ -18,14 +31,14 @@ class FigureRecord:
     ----------
     number : of the figure in the paper
     title, text : caption
-    numbers : what can be read off it, name -> value with unit
+    numbers : what can be read off it
     data : labelled data by part of the figure
     """
 
     number: str
     title: str
     text: str
-    numbers: Mapping[str, str]
+    numbers: Mapping[str, Number]
     data: Mapping[str, xr.Dataset]
 
     def write(self, folder: Path) -> tuple[Path, ...]:
@@ -48,9 +61,3 @@ class FigureRecord:
                 table.to_csv(path, index=False, float_format="%.9g", lineterminator="\n")
                 files.append(path)
         return tuple(files)
-
-
-def number(value: float, unit: str = "") -> str:
-    """A value to three figures with its unit."""
-    text = "none" if not np.isfinite(value) else f"{value:.3g}" if abs(value) < 1000 else f"{value:.0f}"
-    return text if unit in ("", "1") else f"{text} {unit}"

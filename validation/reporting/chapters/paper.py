@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 
-from validation.paper import DRAW, PAPER
-from validation.reporting.blocks import Badge, Block, Cell, Chapter, Column, Picture, Table, Text
+from validation.paper import DRAW, PAPER, ClaimsTable
+from validation.reporting.blocks import Badge, Block, Cell, Chapter, Column, Picture, Quantity, Table, Text
 from validation.reporting.results import Results
 
 
@@ -30,17 +31,15 @@ def paper(results: Results) -> Chapter | None:
             "roughness, oil) is this pair's."
         ),
         Text(f"Of {len(table.claims)} claims: {words}. {table.text}"),
-        _claims(results),
-        Text(
-            "What each outcome means:",
-            tuple(f"{claim.name}: {claim.text}" for claim in table.claims),
-        ),
+        _claims(table),
+        _definitions(table),
         Text(
             f"The Latin hypercube has {table.samples} samples (seed {table.seed}, {table.failed} without a "
-            "periodic motion) over:",
+            f"periodic motion); a share of them has a standard error of at most "
+            f"{50.0 / math.sqrt(table.samples):.2g} percentage points. It covers:",
             tuple(f"{name}: {span}" for name, span in table.ranges.items()),
         ),
-        _details(results),
+        _details(table),
     ]
     for record in results.paper.figures:
         blocks.append(
@@ -50,7 +49,9 @@ def paper(results: Results) -> Chapter | None:
                 partial(DRAW[record.number], record),
             )
         )
-        numbers: list[tuple[Cell, ...]] = [(name, value) for name, value in record.numbers.items()]
+        numbers: list[tuple[Cell, ...]] = [
+            (name, Quantity(one.value, one.unit or "1")) for name, one in record.numbers.items()
+        ]
         blocks.append(
             Table(
                 f"figure{record.number}",
@@ -62,13 +63,11 @@ def paper(results: Results) -> Chapter | None:
     return Chapter("paper", title, tuple(blocks))
 
 
-def _claims(results: Results) -> Table:
-    assert results.paper is not None
+def _claims(table: ClaimsTable) -> Table:
     rows: list[tuple[Cell, ...]] = [
         (
             c.name,
             c.statement,
-            c.definition,
             c.value,
             c.unit if c.unit not in ("", "1") else "–",
             c.criterion,
@@ -76,8 +75,9 @@ def _claims(results: Results) -> Table:
             c.high,
             None if c.share is None else 100 * c.share,
             Badge(c.verdict),
+            c.reason or "–",
         )
-        for c in results.paper.claims.claims
+        for c in table.claims
     ]
     return Table(
         "claims",
@@ -85,7 +85,6 @@ def _claims(results: Results) -> Table:
         (
             Column("name", "claim"),
             Column("statement", "the paper says"),
-            Column("definition", "number"),
             Column("value", "value"),
             Column("unit", "unit"),
             Column("criterion", "reproduced if"),
@@ -93,6 +92,7 @@ def _claims(results: Results) -> Table:
             Column("high", "95 %"),
             Column("share_percent", "met in [%]"),
             Column("verdict", "verdict"),
+            Column("reason", "why not"),
         ),
         tuple(rows),
         note="5 %, 95 %: percentiles of the number over the samples of the assumptions; met in: share of the "
@@ -100,12 +100,27 @@ def _claims(results: Results) -> Table:
     )
 
 
-def _details(results: Results) -> Table:
-    assert results.paper is not None
+def _definitions(table: ClaimsTable) -> Table:
+    rows: list[tuple[Cell, ...]] = [(c.name, c.definition, c.usable, c.text) for c in table.claims]
+    return Table(
+        "claim_definitions",
+        "How each number is defined, in how many samples its motion is stable and in contact, and what the "
+        "outcome means.",
+        (
+            Column("name", "claim"),
+            Column("definition", "number"),
+            Column("usable", "samples"),
+            Column("text", "outcome"),
+        ),
+        tuple(rows),
+    )
+
+
+def _details(table: ClaimsTable) -> Table:
     rows: list[tuple[Cell, ...]] = [
-        (claim.name, name, value)
-        for claim in results.paper.claims.claims
-        for name, value in claim.details.items()
+        (claim.name, name, Quantity(one.value, one.unit or "1"))
+        for claim in table.claims
+        for name, one in claim.details.items()
     ]
     return Table(
         "claim_details",
