@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from lumped.mesh_elements import mesh_elements
 from lumped.parameters import GearPair
 from lumped.path_function import PathFunction
 from multibody import kernels as kn
+from multibody.events import event_table
 from multibody.kinematics import DRIVE, line_of_action, mesh_phase, wrap
 
 FloatArray = NDArray[np.float64]
@@ -39,6 +41,7 @@ class Machine:
     pairs : slots of tooth pairs, floor(contact ratio) + 1
     period : mesh cycle [s]
     switches : phases of the mesh cycle in [0, 1) at which the nominal element laws jump or have a kink
+    events : (n, 2) what makes the contact force jump or bend in finite motion, see ``events.event_table``
     """
 
     parameters: FloatArray
@@ -53,6 +56,21 @@ class Machine:
     pairs: int
     period: float
     switches: FloatArray
+    events: FloatArray
+
+    @cached_property
+    def bodies(self) -> FloatArray:
+        """Constant coefficients of the bodies' equations of motion, (4, 6).
+
+        Rows: inertia, bearing stiffness, bearing damping, constant load of the coordinates (x_p, y_p, phi_p,
+        x_g, y_g, phi_g). The pinion turns clockwise, so its driving torque is negative; the brake's acts
+        against the gear.
+        """
+        rows = np.zeros((4, 2, 3))
+        rows[0, :, :2], rows[0, :, 2] = self.mass[:, None], self.inertia
+        rows[1, :, :2], rows[2, :, :2] = self.bearing_stiffness, self.bearing_damping
+        rows[3, :, 2] = -self.torque_pinion, -self.torque_gear
+        return rows.reshape(4, 6)
 
     def with_parameter(self, place: int, value: float) -> Machine:
         """Copy with one entry of ``parameters`` changed."""
@@ -126,6 +144,7 @@ def machine(pair: GearPair, torque_pinion: float, torque_gear: float) -> Machine
         pairs=math.floor((tip_p - l_xa) / pitch) + 1,
         period=pitch / (omega_p * r_p),
         switches=switch_phases(laws, l_xa, tip_p, pitch),
+        events=event_table(*laws, pitch),
     )
 
 

@@ -254,14 +254,9 @@ def accelerations(model: ExudynModel, times: FloatArray, q: FloatArray, v: Float
     -------
     (n, 6) second derivatives of the coordinates
     """
-    m = model.machine
     force = contact_state(model, times, q, v)[0]
     if model.drive is not None:
         for i, t in enumerate(times):
             add_drive(model.drive, t, q[i], v[i], force[i])
-    planes = [0, 1, 3, 4]
-    force[:, planes] -= m.bearing_stiffness.ravel() * q[:, planes] + m.bearing_damping.ravel() * v[:, planes]
-    force[:, 2] -= m.torque_pinion
-    force[:, 5] -= m.torque_gear
-    inertia = np.array([m.mass[0], m.mass[0], m.inertia[0], m.mass[1], m.mass[1], m.inertia[1]], dtype=float)
-    return np.asarray(force / inertia, dtype=np.float64)
+    inertia, stiffness, damping, load = model.machine.bodies
+    return np.asarray((force + load - stiffness * q - damping * v) / inertia, dtype=np.float64)
