@@ -5,16 +5,20 @@ Sources: docs/theory/equations.md, "Periodic motion and the brake torque".
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from lumped.errors import NumericalError, refuse, shown
+from lumped.friction import friction_path_function
 from lumped.gear_geometry import geometry
+from lumped.mesh_cycle import MeshCycle
+from lumped.mesh_elements import MeshElements, mesh_elements
 from lumped.parameters import GearPair
 from lumped.path_function import FloatArray
-from lumped.periodic_system import periodic_system
+from lumped.periodic_system import LTVSystem, periodic_system
 from lumped.results import provenance, response
 from lumped.solution import Progress, balance_attributes
 from lumped.steady import periodic_solution, sample_times
@@ -66,8 +70,7 @@ def speed_sweep(
         )
     }
     periodic = np.zeros(speeds.size, dtype=bool)
-    for j, at in enumerate(pairs):
-        system = periodic_system(at, "absolute")
+    for j, (at, system) in enumerate(zip(pairs, _systems(pairs), strict=True)):
         times = sample_times(system.period, samples_per_cycle)
         try:
             solution = periodic_solution(at, times, system=system, estimate_error=False)
@@ -87,6 +90,18 @@ def speed_sweep(
         table["mesh_efficiency"][j] = balance_attributes(at, solution)["mesh_efficiency"]
         table["spectral_radius"][j] = solution.spectral_radius
     return _sweep_dataset(pair, speeds, table, periodic)
+
+
+def _systems(pairs: Iterable[GearPair]) -> Iterator[LTVSystem]:
+    """Systems of pairs that differ in speed alone: of the element laws only friction changes with it."""
+    elements: MeshElements | None = None
+    for at in pairs:
+        g = geometry(at)
+        if elements is None:
+            elements = mesh_elements(at)
+        else:
+            elements = replace(elements, friction=friction_path_function(at, g))
+        yield periodic_system(at, "absolute", cycle=MeshCycle(g, elements))
 
 
 def _reversal(run: Mapping[str, FloatArray], pitch_point: float) -> float:
