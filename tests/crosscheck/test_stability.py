@@ -53,28 +53,36 @@ def test_rigid_rotation_is_a_double_one_and_left_out():
 
 @pytest.mark.slow
 def test_exact_flow_map_approaches_floquet_with_falling_torque():
-    """Deflections change the geometry in proportion to torque, and the map with it: 16 times less at T/16."""
-    difference = []
-    for torque in (56.5, 56.5 / 4, 56.5 / 16):
-        pair = SMOOTH.with_(operating__pinion_torque=torque)
+    """Deflections change the geometry in proportion to torque, and the map with it: d = c T - b T^2 + ...
+
+    Measured over T: 0.01173, 0.01226, 0.01239, 0.01243 at T ... T/64, so b T/c is 6 % at T. That is why the
+    plain ratio is 15.1 between T and T/16, and 15.8 between T/4 and T/64.
+    """
+    share = 0.25 ** np.arange(4)
+    d = np.empty(4)
+    for j, part in enumerate(share):
+        pair = SMOOTH.with_(operating__pinion_torque=56.5 * float(part))
         result = multibody.monodromy(pair, effects={"contact_loss": False})
         assert result.closure < 1e-7
-        difference.append(
-            balanced_difference(result.matrix, floquet_matrix(pair), lumped.geometry(pair).mesh_period)
-        )
-    # At full torque the next order still adds some per cent.
-    assert difference[0] / difference[1] == pytest.approx(4, rel=0.1)
-    assert difference[1] / difference[2] == pytest.approx(4, rel=0.05)
-    assert difference[0] < 0.03
+        d[j] = balanced_difference(result.matrix, floquet_matrix(pair), lumped.geometry(pair).mesh_period)
+    assert d[1] / d[3] == pytest.approx(16.0, rel=0.02)
+    # With the term in T^2 taken out of neighbours, what is left falls 16 times at T/16 to one in a thousand.
+    first_order = (16.0 * d[1:] - d[:-1]) / 3.0
+    assert first_order[0] / first_order[2] == pytest.approx(16.0, rel=1e-3)
+    assert d[0] < 0.013
 
 
 def growth(pair, cycles, size):
-    """Rate per cycle at which a perturbed exact run leaves the periodic one, and both runs."""
+    """A perturbed exact run beside the periodic one.
+
+    Returns the rate per cycle at which it leaves (or approaches) it along the least stable direction, that of
+    the multibody model's own flow map, and both runs.
+    """
     result = multibody.monodromy(pair)
-    values, left = np.linalg.eig(result.matrix.T)
-    column = left[:, np.argmax(np.abs(values))]
-    _, right = np.linalg.eig(result.matrix)
-    direction = np.real(result.lift @ right[:, np.argmax(np.abs(np.linalg.eigvals(result.matrix)))])
+    values, right = np.linalg.eig(result.matrix)
+    least = np.argmax(np.abs(values))
+    left = np.linalg.inv(right)[least]
+    direction = np.real(result.lift @ right[:, least])
     direction *= size * np.abs(result.state[2]) / np.abs(direction[2])
     names = lumped.periodic_system(pair, "absolute").state_names
     runs = [
@@ -82,28 +90,47 @@ def growth(pair, cycles, size):
         for state in (result.state, result.state + direction)
     ]
     states = [np.stack([run[name].to_numpy()[::8] for name in names], axis=1) for run in runs]
-    amplitude = np.abs((states[1] - states[0]) @ result.read.T @ column)
+    amplitude = np.abs((states[1] - states[0]) @ result.read.T @ left)
     rate = np.polyfit(np.arange(2, 18), np.log(amplitude[2:18]), 1)[0]
-    return rate, runs
+    return rate, np.log(result.spectral_radius), runs
 
 
 @pytest.mark.slow
 def test_inside_the_main_tongue_a_perturbation_grows_at_the_floquet_rate_and_then_separates():
+    """Measured: 0.18593 per cycle, predicted 0.18321, 1.5 % less; the own flow map says 0.18593."""
     predicted = np.log(floquet.gear_pair_multipliers(TONGUE).spectral_radius)
     assert predicted > 0.15
-    rate, (periodic, perturbed) = growth(TONGUE, 60, 1e-4)
+    rate, own, (periodic, perturbed) = growth(TONGUE, 60, 1e-4)
     assert rate == pytest.approx(predicted, rel=0.02)
-    # The unperturbed run stays pressed; the perturbed one saturates where the teeth begin to separate.
+    assert rate == pytest.approx(own, rel=1e-3)
+    # The unperturbed run stays pressed; in the perturbed one the teeth begin to separate, and it grows no
+    # more: ten more cycles would multiply it by six.
     assert float(periodic["overlap"].min()) > 0
     assert float(perturbed["overlap"].min()) < 0
-    swing = np.ptp(perturbed["dte"].to_numpy()[-80:])
-    assert swing < 10 * float(np.abs(periodic["dte"]).mean())
+    swing = [
+        float(np.ptp(perturbed["dte"].to_numpy()[rows])) for rows in (slice(-160, -80), slice(-80, None))
+    ]
+    assert swing[1] < 1.3 * swing[0]
+    assert swing[1] > 5.0 * float(np.ptp(periodic["dte"].to_numpy()))
+
+
+@pytest.mark.slow
+def test_growth_comes_closer_to_floquet_with_falling_torque():
+    """The 1.5 % are finite motion: a quarter of the torque, a quarter of the difference."""
+    off = []
+    for part in (1.0, 0.25):
+        pair = TONGUE.with_(operating__pinion_torque=56.5 * part)
+        predicted = np.log(floquet.gear_pair_multipliers(pair).spectral_radius)
+        off.append(np.log(multibody.monodromy(pair).spectral_radius) / predicted - 1.0)
+    assert off[0] / off[1] == pytest.approx(4.0, rel=0.1)
 
 
 @pytest.mark.slow
 def test_outside_the_tongue_it_decays_at_the_floquet_rate():
+    """Measured: -0.046514 per cycle, predicted -0.046506."""
     pair = TONGUE.with_(operating__pinion_speed=24000)
     predicted = np.log(floquet.gear_pair_multipliers(pair).spectral_radius)
     assert predicted < 0
-    rate, _ = growth(pair, 20, 1e-2)
-    assert rate == pytest.approx(predicted, rel=0.02)
+    rate, own, _ = growth(pair, 20, 1e-2)
+    assert rate == pytest.approx(predicted, rel=1e-3)
+    assert rate == pytest.approx(own, rel=1e-3)
