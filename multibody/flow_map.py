@@ -40,6 +40,8 @@ _STEP = {"linear": 1.0, "exact": 1e-3}
 _CLOSED = 10.0
 #: ... and accepts this much where it stops falling before.
 _ACCEPTED = 1e-5
+#: Steps without a smaller mismatch before the iteration is given up.
+_PATIENCE = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,9 +137,14 @@ class Orbit:
 def find_orbit(pair: GearPair, setup: Setup, iterations: int = 40) -> Orbit:
     """Periodic motion near the initial state of ``setup``, with the brake torque as unknown.
 
-    Newton's method with the monodromy matrix of the lumped model instead of the own one, which differs by a
-    few per cent: the mismatch falls by that factor per step, at one mesh cycle each. What it converges to
-    does not depend on the matrix.
+    Broyden's method: it starts from the monodromy matrix of the lumped model, which differs from the own one
+    by a few per cent, and much where friction holds the teeth for a time; each step, at one mesh cycle,
+    corrects it along the way it went. What it converges to does not depend on the matrix.
+
+    References
+    ----------
+    C. G. Broyden, "A class of methods for solving nonlinear simultaneous equations", Math. Comp. 19 (1965)
+    577-593.
 
     Raises
     ------
@@ -147,18 +154,23 @@ def find_orbit(pair: GearPair, setup: Setup, iterations: int = 40) -> Orbit:
     state, machine = to_lumped_state(setup.q, setup.v), setup.machine
     system = periodic_system(pair, "absolute")
     maps = step_maps(system, np.stack([system.torque_pinion, system.torque_gear], axis=1))
-    matrix, forced = maps.over_all()
+    transition, forced = maps.over_all()
+    matrix = _bordered(transition, forced[:, 2], machine, scale)
     best, age = Orbit(state, machine, Flow(setup, machine), np.inf), 0
+    change = np.zeros(13)
     for step in range(iterations + 1):
         flow = Flow(setup, machine)
-        mismatch = flow(state) - state
-        closure = float(np.abs(mismatch / scale).max())
+        mismatch = np.append((flow(state) - state) / scale, 0.0)
+        closure = float(np.abs(mismatch).max())
         if closure < best.closure:
             best, age = Orbit(state, machine, flow, closure), step
-        if closure < _CLOSED * setup.rtol or step - age > 3:
+        if closure < _CLOSED * setup.rtol or step - age > _PATIENCE:
             break
-        change, torque = _newton(matrix, forced[:, 2], mismatch, machine, scale)
-        state, machine = state + change, replace(machine, torque_gear=machine.torque_gear + torque)
+        if step > 0:  # Broyden: along the last change the matrix must explain all of the mismatch left
+            matrix -= np.outer(mismatch, change) / (change @ change)
+        change = np.linalg.solve(matrix, mismatch)
+        state = state + change[:12] * scale
+        machine = replace(machine, torque_gear=machine.torque_gear * (1.0 + float(change[12])))
     if iterations > 0 and not best.closure < _ACCEPTED:
         raise NumericalError(
             f"No periodic multibody motion near the lumped one (mismatch {best.closure:.1e}): the pair may "
@@ -246,22 +258,15 @@ def _differences(flow: Flow, state: FloatArray, steps: FloatArray) -> FloatArray
     return np.stack(columns, axis=1)
 
 
-def _newton(
-    full: FloatArray,
-    by_torque: FloatArray,
-    mismatch: FloatArray,
-    machine: Machine,
-    scale: FloatArray,
-) -> tuple[FloatArray, float]:
-    """One step of the bordered Newton iteration: closes the cycle, the rigid rotation held."""
+def _bordered(full: FloatArray, by_torque: FloatArray, machine: Machine, scale: FloatArray) -> FloatArray:
+    """I - map, (13, 13), bordered by the brake torque as unknown and the rigid rotation as held; scaled."""
     p = machine.parameters
     matrix = np.zeros((13, 13))
     matrix[:12, :12] = (np.eye(12) - full) * scale / scale[:, None]
     matrix[:12, 12] = -by_torque * machine.torque_gear / scale
     rigid = machine.inertia / np.array([p[kn.RADIUS_P], p[kn.RADIUS_G]])
     matrix[12, :2] = rigid * scale[:2] / (rigid * scale[:2]).max()
-    step = np.linalg.solve(matrix, np.append(mismatch / scale, 0.0))
-    return step[:12] * scale, float(step[12] * machine.torque_gear)
+    return matrix
 
 
 def _relative(machine: Machine) -> tuple[FloatArray, FloatArray]:
