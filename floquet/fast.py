@@ -15,7 +15,8 @@ import numpy.typing as npt
 from floquet.kernels.eigen import spectra
 from floquet.kernels.taylor import Limits, Problem, propagate_points
 from floquet.multipliers import multipliers_with_bounds
-from floquet.rank_one import RankOneSystem
+from floquet.packing import own, packed
+from floquet.rank_one import Coarsening, RankOneSystem
 from floquet.system import ComplexArray, FloatArray
 from lumped.errors import NumericalError, refuse
 
@@ -73,22 +74,20 @@ class Points:
             raise refuse(
                 "coordinates", system.v.size, "at most 3", "Use floquet.monodromy for larger systems."
             )
-        T = _own(system.period if periods is None else periods)
-        form = system.modal()
-        factors = np.ones((T.size, len(system.parts)))
-        if system.varied is not None:
-            factors[:, 1] = gain_factors
-        fit_errors = np.stack([part.fit_errors for part in system.parts])
+        T = own(system.period if periods is None else periods)
+        parts = len(system.parts)
+        factors = np.ones((T.size, parts))
+        given = np.asarray(gain_factors, dtype=float)
+        factors[:, 1:] = given if given.ndim == 2 else np.broadcast_to(given, T.shape)[:, None]
+        zeta = own(np.broadcast_to(np.asarray(damping_factors, dtype=float), T.shape))
+        _within(system.coarsening, T, zeta, factors)
         # Longer steps have fewer terms per unit of time, but amplify rounding by exp(angle).
         angle = min(max(math.log(tolerance) + 33.0, 5.0), 9.0)
         return cls(
-            problem=Problem(
-                *map(_own, (system.phases, form.w, form.wd, form.f, form.fr, fit_errors)),
-                *map(_own, (form.C, form.omega, form.v, form.input, form.reference)),
-            ),
+            problem=packed(system),
             limits=Limits(float(tolerance), angle, int(max_steps)),
             periods=T,
-            damping_factors=_own(np.broadcast_to(np.asarray(damping_factors, dtype=float), T.shape)),
+            damping_factors=zeta,
             gain_factors=factors,
             threads=threads,
         )
@@ -127,7 +126,7 @@ def fast_monodromies(
     system : the system; its phases, w and wd are taken as independent of T
     periods : (N,) [s]; default the system's own
     damping_factors : (N,) or scalar, factor on wd (and on fr)
-    gain_factors : (N,) or scalar, factor on the gains ``system.varied``
+    gain_factors : (N,) or scalar, factor on the gains ``system.varied``, or (N, Q-1), one for each set
     tolerance : largest neglected remainder of one step, in units of the energy norm
     threads : default one per core
     max_steps : steps per period at most
@@ -201,9 +200,17 @@ def fast_multipliers(
     return FastMultipliers(values, radii, flow.errors)
 
 
-def _own(values: npt.ArrayLike) -> FloatArray:
-    """Copy as a contiguous, writable array: other kinds would each make the kernel compile once more."""
-    return np.array(values, dtype=float, ndmin=1, order="C")
+def _within(coarsening: Coarsening | None, T: FloatArray, zeta: FloatArray, factors: FloatArray) -> None:
+    """Refuse variants for which the bounds of a coarsened system do not hold."""
+    if coarsening is None:
+        return
+    given = [T.max(), np.abs(zeta).max(), *np.abs(factors[:, 1:]).max(axis=0)]
+    most = [coarsening.period, coarsening.damping, *coarsening.factors]
+    for name, value, limit in zip(
+        ("periods", "damping_factors", *["gain_factors"] * len(given)), given, most, strict=False
+    ):
+        if value > limit * (1.0 + 1e-12):
+            raise refuse(name, f"{value:g}", f"at most {limit:g}", "Coarsen the system for a wider range.")
 
 
 def in_threads(run: Callable[[slice], _T], size: int, threads: int | None = None) -> list[_T]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,7 +21,11 @@ from lumped.periodic_system import LTVSystem, periodic_system
 
 
 def gear_block(
-    source: GearPair | GearVariation, rtol: float = 1e-11, *, friction_apart: bool = False
+    source: GearPair | GearVariation,
+    rtol: float = 1e-11,
+    *,
+    friction_apart: bool = False,
+    friction_level: float | None = None,
 ) -> RankOneSystem:
     """Return (q, x_p, x_g) of a gear pair: z'' + D z' + L z + w (v . z) + wd (v . z') = f.
 
@@ -39,12 +44,15 @@ def gear_block(
     rtol : error of the fitted polynomials relative to the largest gain; it becomes part of the error bounds
     friction_apart : whether what is proportional to mu becomes the ``varied`` part of the system, so that a
         factor on mu costs nothing
+    friction_level : with friction apart, a constant |mu| that changes sign at the pitch point; mu less this,
+        and this, become two ``varied`` parts, so that mu may also rise and fall as a whole
     """
     variation = GearVariation(source) if isinstance(source, GearPair) else source
     system = periodic_system(variation.pair, "feedback", cycle=variation.cycle())
     per_load = -(system.structure.normal / system.structure.mass) @ system.reduction.T
     metric = 1.0 / np.abs(per_load)
-    sampler = _Sampler(system, variation.stiffness_variation, friction_apart)
+    levels = ([0.0] if friction_level is None else [0.0, friction_level]) if friction_apart else []
+    sampler = _Sampler(system, variation.stiffness_variation, levels)
     # The fourth row, the rigid rotation over m_e, is weighed like q.
     phases, fitted, errors = fit_pieces(
         sampler, system.cycle.edges / system.period, np.append(metric, metric[0]), rtol=rtol
@@ -67,7 +75,7 @@ def gear_block(
         gains=blocks[0],
         period=system.period,
         metric=metric,
-        varied=blocks[1] if friction_apart else None,
+        varied=tuple(blocks[1:]),
         balance=balance,
     )
 
@@ -106,10 +114,11 @@ class _Sampler:
     """What the mesh does to (q, x_p, x_g) and to the rigid rotation R/m_e, as `fit_pieces` asks for it.
 
     Gains in this order: feedback of deflection and of its rate by normal loads (with their friction, unless
-    it is apart), the same by friction apart, forcing by the unloaded error and its rate likewise.
+    it is apart), the same by each part of friction, forcing by the unloaded error and its rate likewise. The
+    parts of friction are mu less the sum of the ``levels``, and each level but the first, which is zero.
     """
 
-    def __init__(self, system: LTVSystem, factor: float, friction_apart: bool) -> None:
+    def __init__(self, system: LTVSystem, factor: float, levels: Sequence[float]) -> None:
         s, self.cycle = system.structure, system.cycle
         g = self.cycle.geometry
         rows = np.zeros((4, 6))
@@ -118,7 +127,8 @@ class _Sampler:
         rows[3, :2] = s.mass[:2] / np.array([g.base_radius_pinion, g.base_radius_gear]) / effective
         self.normal = rows @ (s.normal / s.mass)
         self.arm = np.stack([rows @ (s.friction_arm[:, i] / s.mass) for i in (0, 1)])
-        self.parts = 2 if friction_apart else 1
+        self.levels = levels
+        self.parts = 1 + len(levels)
         self.factor = factor
         self.mean = mean_mesh_stiffness(system)
         e = self.cycle.elements
@@ -146,10 +156,13 @@ class _Sampler:
                 continue
             c = np.where(touch[:, None], self.c(xi), 0.0) * np.sqrt(f)
             k = k * f
-            friction = self.mu(xi)[..., None] * (self.arm[0] + xi[..., None] * self.arm[1])
-            rows = [np.broadcast_to(self.normal, (*xi.shape, 4)), friction]
-            if self.parts == 1:
-                rows = [rows[0] + friction]
+            mu, arm = self.mu(xi)[..., None], self.arm[0] + xi[..., None] * self.arm[1]
+            rows = [np.broadcast_to(self.normal, (*xi.shape, 4))]
+            if self.levels:
+                sign = np.sign(xi - g.L_XP)[..., None]
+                rows += [(mu - sum(self.levels) * sign) * arm, *(s * sign * arm for s in self.levels[1:])]
+            else:
+                rows[0] = rows[0] + mu * arm
             loads = [k, c]
             if self.has_error:
                 loads += [k * self.e(xi), c * self.rate(xi) * g.base_pitch]

@@ -3,33 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from floquet.chart import Axes, Progress, chart_dataset, checked_axes, scan
-from floquet.fast import FastMonodromy, fast_monodromies, fast_multipliers
-from floquet.gear_axes import GearVariation, gear_axis, vary
-from floquet.gear_block import gear_block
-from floquet.gear_friction import depends_on_speed, friction_factors
-from floquet.gear_multipliers import gear_pair_multipliers, oloa_exponents
-from floquet.interpolation import interpolated_multipliers
+from floquet.gear_axes import gear_axis, vary
+from floquet.gear_multipliers import gear_pair_multipliers
+from floquet.gear_plane import Plane, plane_multipliers
 from floquet.propagators import Propagator
 from floquet.spectrum import Spectrum
 from floquet.system import ComplexArray, FloatArray
 from lumped.errors import refuse
 from lumped.parameters import GearPair
-from lumped.periodic_system import periodic_system
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _INNER = ("speed_rpm", "damping_ratio", "friction_coefficient")
-_REFERENCE_DAMPING = 1.0
 _ROWS = 65_536
 
 
@@ -137,7 +131,8 @@ def _taylor_chart(
     for index in product(*(range(grid[name].size) for name in outer)):
         where = dict(zip(outer, index, strict=True))
         point = {name: float(grid[name][i]) for name, i in where.items()}
-        found = _inner_points(pair, point, flat, math.prod(inner_shape), rtol, threads, report, interpolate)
+        plane = Plane(pair, point, flat, math.prod(inner_shape))
+        found = plane_multipliers(plane, rtol, threads, report, interpolate)
         key = tuple(where.get(name, slice(None)) for name in names)
         for target, source in zip((values, errors), found, strict=True):
             target[key] = source.reshape(*inner_shape, 10)
@@ -168,121 +163,3 @@ def _sorted_in_place(values: ComplexArray, errors: FloatArray) -> tuple[FloatArr
 def _is_slow(name: str, grid: Mapping[str, FloatArray]) -> bool:
     """A friction axis that is zero throughout has no reference to scale."""
     return name == "friction_coefficient" and float(grid[name].max()) == 0.0
-
-
-def _inner_points(
-    pair: GearPair,
-    point: Mapping[str, float],
-    flat: Mapping[str, FloatArray],
-    count: int,
-    rtol: float,
-    threads: int | None,
-    report: Callable[[int], None],
-    interpolate: bool,
-) -> tuple[ComplexArray, FloatArray]:
-    """Multipliers (count, 10) and their bounds over the fast axes at one point of the others."""
-    reference = {name: float(flat[name].max()) for name in flat if name != "speed_rpm"}
-    if "damping_ratio" in reference:
-        reference["damping_ratio"] = _REFERENCE_DAMPING
-    fixed = {**point, **reference}
-    damping = flat["damping_ratio"] / _REFERENCE_DAMPING if "damping_ratio" in flat else np.ones(count)
-    friction = np.ones(count)
-    if "friction_coefficient" in flat:
-        friction = flat["friction_coefficient"] / reference["friction_coefficient"]
-    variation = vary(pair, fixed)
-    own = np.array([variation.pair.operating.pinion_speed * 30.0 / np.pi])
-    speeds = flat.get("speed_rpm", np.broadcast_to(own, (count,)))
-    unique, which = np.unique(speeds, return_inverse=True)
-    factors = friction_factors(variation, unique)
-    if interpolate:
-        if factors is None:
-            raise refuse(
-                "method",
-                "chebyshev",
-                f'"taylor" for law {variation.pair.friction.law}, whose switches move with speed',
-                "Use the direct method, or a law that speed only scales.",
-            )
-        found = _interpolated_points(variation, own[0] / unique, which, damping, friction, rtol, threads)
-        report(count)
-        return found
-    if factors is not None:
-        found = _block_points(variation, own[0] / speeds, damping, friction * factors[which], rtol, threads)
-        report(count)
-        return found
-    values, errors = np.empty((count, 10), dtype=complex), np.empty((count, 10))
-    for i, rpm in enumerate(unique):
-        part = np.flatnonzero(which == i)
-        there = vary(pair, {**fixed, "speed_rpm": float(rpm)})
-        values[part], errors[part] = _block_points(
-            there, np.ones(part.size), damping[part], friction[part], rtol, threads
-        )
-        report(part.size)
-    return values, errors
-
-
-def _block_points(
-    variation: GearVariation,
-    period_factors: FloatArray,
-    damping: FloatArray,
-    friction: FloatArray,
-    rtol: float,
-    threads: int | None,
-) -> tuple[ComplexArray, FloatArray]:
-    """Multipliers (k, 10) and bounds of one pair with these factors on its period, damping and friction."""
-    apart = bool((friction != 1.0).any())
-    block = gear_block(variation, rtol=min(1e-9, 0.1 * rtol), friction_apart=apart)
-    periods = block.period * period_factors
-    result = fast_multipliers(block, periods, damping, friction, tolerance=2e-3 * rtol, threads=threads)
-    exponents = oloa_exponents(periodic_system(variation.pair, "relative"))
-    angle = exponents[None, :] * periods[:, None]
-    oloa = np.exp(angle)
-    oloa_errors = 4e-16 * (1.0 + np.abs(angle)) * np.abs(oloa)  # rounding of the exponent
-    return (
-        np.concatenate([result.multipliers, oloa], axis=1),
-        np.concatenate([result.errors, oloa_errors], axis=1),
-    )
-
-
-def _interpolated_points(
-    variation: GearVariation,
-    period_factors: FloatArray,
-    which: npt.NDArray[np.intp],
-    damping: FloatArray,
-    friction: FloatArray,
-    rtol: float,
-    threads: int | None,
-) -> tuple[ComplexArray, FloatArray]:
-    """`_block_points` by interpolation over periods and over damping or friction, whichever varies.
-
-    ``which`` says for each point which of the (unique) period factors it has.
-    """
-    by_friction = bool(np.ptp(friction) > 0.0)
-    other, column = np.unique(friction if by_friction else damping, return_inverse=True)
-    fixed = float(damping[0] if by_friction else friction[0])
-    own_rpm = variation.pair.operating.pinion_speed * 30.0 / np.pi
-    apart = by_friction or fixed != 1.0 or depends_on_speed(variation.pair)
-    block = gear_block(variation, rtol=min(1e-11, 1e-3 * rtol), friction_apart=apart)
-    form = block.modal()
-
-    def flow(periods: FloatArray, parameters: FloatArray) -> FastMonodromy:
-        unique, index = np.unique(periods, return_inverse=True)
-        scale = friction_factors(variation, own_rpm * block.period / unique)
-        assert scale is not None  # the caller found it at the speeds of the chart
-        here = scale[index] * (parameters if by_friction else fixed)
-        zeta = np.full(periods.size, fixed) if by_friction else parameters
-        return fast_monodromies(
-            block, periods, zeta, here, tolerance=max(1e-5 * rtol, 1e-14), threads=threads
-        )
-
-    result, _ = interpolated_multipliers(
-        flow, block.period * period_factors, other, float(form.omega.max()), 1e-3 * rtol, threads
-    )
-    exponents = oloa_exponents(periodic_system(variation.pair, "relative"))
-    angle = exponents[None, :] * (block.period * period_factors)[:, None]
-    oloa = np.exp(angle)
-    oloa_errors = 4e-16 * (1.0 + np.abs(angle)) * np.abs(oloa)  # rounding of the exponent
-    at = which * other.size + column
-    return (
-        np.concatenate([result.multipliers[at], oloa[which]], axis=1),
-        np.concatenate([result.errors[at], oloa_errors[which]], axis=1),
-    )

@@ -52,6 +52,23 @@ class Balance:
 
 
 @dataclass(frozen=True, eq=False)
+class Coarsening:
+    """What joining pieces (`floquet.coarsening`) did to the flow, and for which variants that holds.
+
+    Attributes
+    ----------
+    errors : (P,) bound on the error of the transition matrix over each piece, energy norm
+    period, damping : largest period [s] and largest factor on wd
+    factors : (Q-1,) largest |factor| on each varied part
+    """
+
+    errors: FloatArray
+    period: float
+    damping: float
+    factors: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
 class RankOneSystem:
     """z'' + D z' + L z + w(t) (v . z) + wd(t) (v . z') = f(t), periodic w, wd and f, m <= 3 coordinates.
 
@@ -64,10 +81,12 @@ class RankOneSystem:
     period : T [s]
     metric : (m,) positive weights g (masses): diag(g) makes the mean feedback symmetric as nearly as can
         be, so that the energy of the mean system measures errors well
-    varied : a second set of gains that a chart adds, times a factor of its own for every point, as where the
-        friction coefficient goes up and down with speed; the system by itself has it with factor 1
+    varied : one or more further sets of gains that a chart adds, each times a factor of its own for every
+        point, as where the friction coefficient goes up and down with speed; the system by itself has them
+        with factor 1
     balance : an input that forced motion needs, as the brake torque that holds a mean speed; no part of
         `to_periodic_system`
+    coarsening : where pieces have been joined, what that costs; such a system has no forcing
     """
 
     stiffness: FloatArray
@@ -77,13 +96,14 @@ class RankOneSystem:
     gains: Gains
     period: float
     metric: FloatArray
-    varied: Gains | None = None
+    varied: Gains | tuple[Gains, ...] = ()
     balance: Balance | None = None
+    coarsening: Coarsening | None = None
 
     @property
     def parts(self) -> tuple[Gains, ...]:
         """The gains whose sum acts."""
-        return (self.gains,) if self.varied is None else (self.gains, self.varied)
+        return (self.gains, *((self.varied,) if isinstance(self.varied, Gains) else self.varied))
 
     @cached_property
     def total(self) -> Gains:

@@ -201,6 +201,33 @@ def _condition_numbers(
 
 
 @numba.njit(cache=True, error_model="numpy")
+def _disks(values: ComplexArray, kappa: FloatArray, size: float, radii: FloatArray) -> None:
+    """Radii by Gershgorin's theorem for diag(values) + F, |F_ij| <= f_ij = size sqrt(kappa_i kappa_j).
+
+    R_i = sum_j f_ij. Where every |lambda_i - lambda_j| is at least 2 (R_i + R_j), scaling the i-th coordinate
+    by tau = max_j 2 f_ij/|lambda_i - lambda_j| leaves disk i apart from the others and shrinks its radius to
+    f_ii + tau (R_i - f_ii): hardly more than the first order, size kappa_i.
+    """
+    n = values.size
+    total = 0.0
+    for i in range(n):
+        total += math.sqrt(kappa[i])
+    for i in range(n):
+        root = math.sqrt(kappa[i])
+        own, full = size * kappa[i], size * root * total
+        tau = 0.0
+        for j in range(n):
+            if j != i:
+                gap = abs(values[i] - values[j])
+                other = math.sqrt(kappa[j])
+                if gap < 2.0 * (full + size * other * total):
+                    tau = 1.0
+                elif gap * tau < 2.0 * size * root * other:
+                    tau = 2.0 * size * root * other / gap
+        radii[i] = own + tau * (full - own)
+
+
+@numba.njit(cache=True, error_model="numpy")
 def _join(values: ComplexArray, radii: FloatArray, scratch: FloatArray, group: npt.NDArray[np.int64]) -> None:
     """Widen the radii of overlapping disks: a union of k disks apart from the others holds k eigenvalues."""
     n = values.size
@@ -227,8 +254,7 @@ def spectra(
     """Eigenvalues of N matrices, each with a disk that holds as many exact ones, when M is wrong by delta.
 
     With left and right eigenvectors scaled to |x_i| = |y_i| = sqrt(kappa_i) the entries of Y^H E X are at
-    most delta sqrt(kappa_i kappa_j), so Gershgorin's theorem gives the radii delta sqrt(kappa_i) sum_j
-    sqrt(kappa_j).
+    most delta sqrt(kappa_i kappa_j), from which Gershgorin's theorem gives the radii (`_disks`).
 
     Parameters
     ----------
@@ -250,15 +276,11 @@ def spectra(
                 square += A[i, j] * A[i, j]
         ok = _eigenvalues(A, values[point])
         _condition_numbers(M[point], values[point], B, product, kappa)
-        total = 0.0
         for i in range(n):
             # Rounding of the recurrence: a condition number is worthless once it nears 1/sqrt(eps).
             ok = ok and kappa[i] < 1e6
-            total += math.sqrt(kappa[i])
-        # Backward error of the QR iteration, as for LAPACK's.
-        size = delta[point] + 4.0 * n * _EPS * math.sqrt(square)
-        for i in range(n):
-            # 1.01: relative error of the condition numbers.
-            radii[point, i] = 1.01 * size * math.sqrt(kappa[i]) * total
+        # Backward error of the QR iteration, as for LAPACK's. 1.01: relative error of the condition numbers.
+        size = 1.01 * (delta[point] + 4.0 * n * _EPS * math.sqrt(square))
+        _disks(values[point], kappa, size, radii[point])
         _join(values[point], radii[point], kappa, group)
         safe[point] = ok

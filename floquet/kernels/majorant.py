@@ -12,14 +12,17 @@ from __future__ import annotations
 import math
 
 import numba
+import numpy as np
 
 from floquet.system import FloatArray
 
 MAX_TERMS = 64
 """Largest Taylor degree."""
+_INVERSE = 1.0 / np.arange(1, MAX_TERMS + 3)
+_INVERSE = np.concatenate([[np.inf], _INVERSE])
 
 
-@numba.njit(cache=True, fastmath={"contract"}, error_model="numpy")
+@numba.njit(cache=True, fastmath={"contract"}, error_model="numpy", _nrt=False)
 def shift(poly: FloatArray, degree: int, u: float, scale: float, out: FloatArray) -> None:
     """Coefficients of tau -> poly(u + scale tau) by synthetic division, (degree+1, m) lowest first."""
     m = poly.shape[1]
@@ -37,7 +40,7 @@ def shift(poly: FloatArray, degree: int, u: float, scale: float, out: FloatArray
             out[j, r] *= factor
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(cache=True, error_model="numpy", _nrt=False)
 def norm(row: FloatArray) -> float:
     """Euclidean norm."""
     total = 0.0
@@ -46,7 +49,7 @@ def norm(row: FloatArray) -> float:
     return math.sqrt(total)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(cache=True, error_model="numpy", _nrt=False)
 def _enough_constant(a: float, tolerance: float, r: FloatArray) -> tuple[int, float, float, float]:
     """`enough_terms` for degree 0: r_k = a^k/k!."""
     size = 1.0
@@ -60,7 +63,7 @@ def _enough_constant(a: float, tolerance: float, r: FloatArray) -> tuple[int, fl
     return -1, math.inf, math.inf, size
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(cache=True, fastmath={"contract"}, error_model="numpy", _nrt=False)
 def enough_terms(
     a: FloatArray, degree: int, tolerance: float, r: FloatArray
 ) -> tuple[int, float, float, float]:
@@ -84,11 +87,11 @@ def enough_terms(
     size = 1.0
     for k in range(MAX_TERMS):
         value = 0.0
-        for j in range(min(degree, k) + 1):
+        for j in range(min(degree, k), -1, -1):  # the newest last: the older ones need not wait for it
             value += a[j] * r[k - j]
-        r[k + 1] = value / (k + 1)
+        r[k + 1] = value * _INVERSE[k + 1]
         size += r[k + 1]
-        theta = total / (k + 2)
+        theta = total * _INVERSE[k + 2]
         # The newest value alone must pass before the others are looked at.
         if theta < 0.5 and k >= degree and (degree + 1) * theta * r[k + 1] <= tolerance:
             largest = 0.0

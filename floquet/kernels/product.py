@@ -14,7 +14,7 @@ FORCED = 6
 _EPS = 2.220446049250313e-16
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(cache=True, error_model="numpy", _nrt=False)
 def _frobenius(rows: FloatArray, scratch: FloatArray) -> float:
     """Norm of rows[:, 0:n], by way of the first row of ``scratch``."""
     n = rows.shape[0]
@@ -28,7 +28,7 @@ def _frobenius(rows: FloatArray, scratch: FloatArray) -> float:
     return math.sqrt(square)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(cache=True, error_model="numpy", _nrt=False)
 def multiply(left: FloatArray, right: FloatArray, out: FloatArray) -> None:
     """Out = left[:, 0:n] @ right, all (n, LANES)."""
     n = left.shape[0]
@@ -39,19 +39,27 @@ def multiply(left: FloatArray, right: FloatArray, out: FloatArray) -> None:
         store(out, (i,), total)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(cache=True, error_model="numpy", _nrt=False)
 def carry(
-    steps: FloatArray, local: FloatArray, count: int, flow: FloatArray, weights: FloatArray, work: FloatArray
+    steps: FloatArray,
+    local: FloatArray,
+    layout: FloatArray,
+    count: int,
+    flow: FloatArray,
+    weights: FloatArray,
+    work: FloatArray,
 ) -> float:
     """Product of the steps, its error bound and the weight with which each step's error reaches the end.
 
     The first-order error is sum S_j E_j Q_j, S_j the product of the steps after step j and Q_j that of those
-    before it, bounded by sum |S_j| |E_j| |Q_j|.
+    before it, bounded by sum |S_j| |E_j| |Q_j|. The error of a piece that is no step's has the S of its last
+    and the Q of its first step.
 
     Parameters
     ----------
     steps : (count, n, LANES), the columns from FORCED on are states at the end of the step from rest
     local : (count,) bound on |E_j|
+    layout : (count, 4) as from ``steps_of_period``
     flow : (n, LANES), out: the product, with the states from rest in the columns from FORCED on
     weights : (count, 2), out: |S_j|, and |Q_j|
     work : (3, n, LANES) scratch
@@ -82,6 +90,8 @@ def carry(
         # n eps |P| is the rounding of multiplying by this step.
         local[k] += n * _EPS * _frobenius(steps[k], scratch)
         total += weights[k, 0] * local[k] * weights[k, 1]
+        if layout[k, 1] == layout[k, 2] - 1.0:
+            total += weights[k, 0] * layout[k, 3] * weights[k - int(layout[k, 1]), 1]
         if k > 0:
             multiply(after, steps[k], product)
             for i in range(n):

@@ -73,7 +73,7 @@ def periodic_points(
     n = 2 * m
     piece = scratch_for(problem)
     steps = np.empty((limits.max_steps, n, LANES))
-    local, layout = np.empty((limits.max_steps, 3)), np.empty((limits.max_steps, 3))
+    local, layout = np.empty((limits.max_steps, 3)), np.empty((limits.max_steps, 4))
     weights, work, flow = np.empty((limits.max_steps, 2)), np.zeros((3, n, LANES)), np.zeros((n, LANES))
     closed = np.empty((n, n))
     both, state = np.zeros((n, 2)), np.zeros((n, 2))
@@ -83,7 +83,7 @@ def periodic_points(
         count = steps_of_period(problem, gains[point], zeta, T, limits, piece, steps, local, layout)
         if count < 0:
             return point
-        error = carry(steps, local[:, 0], count, flow, weights, work)
+        error = carry(steps, local[:, 0], layout, count, flow, weights, work)
         for i in range(n):
             for j in range(n):
                 closed[i, j] = (1.0 if i == j else 0.0) - flow[i, j]
@@ -210,7 +210,7 @@ def _sample(
     means = np.zeros(3)
     last, ratio, sample = -1, math.nan, 0
     for k in range(count):
-        i, part, parts = int(layout[k, 0]), layout[k, 1], layout[k, 2]
+        i, part, parts = int(layout[k, 0]), int(layout[k, 1]), int(layout[k, 2])
         begin = problem.phases[i]
         width = (problem.phases[i + 1] - begin) / parts
         begin += part * width
@@ -226,7 +226,7 @@ def _sample(
                         psi[j, 2] += gains[q] * (balance.psi[q, i, 2, j] + zeta / T * balance.psi[q, i, 3, j])
                 last = i
             h = width * T
-            top = load_step(problem, piece, -1.0 + 2.0 * part / parts, 2.0 / parts, h, ratio)
+            top = load_step(problem, piece, part, parts, h, ratio)
             terms, _, _, _ = enough_terms(piece.a, top, limits.tolerance, piece.r)
             start_from_rest(problem, piece, h)
             series(problem, piece, terms, h, ratio)

@@ -29,7 +29,6 @@ from floquet.kernels.product import FORCED, carry
 from floquet.system import FloatArray
 
 _EPS = 2.220446049250313e-16
-_PROPORTIONAL = 1e-13
 
 
 class Problem(NamedTuple):
@@ -38,9 +37,15 @@ class Problem(NamedTuple):
     Attributes
     ----------
     phases : (P+1,) ends of the pieces as parts of the period, 0 to 1
-    w, wd, f, fr : (Q, P, m, d+1) coefficients in powers of the piece's u in [-1, 1], lowest first; the
-        damping factor zeta multiplies wd, and the forcing is f + (zeta/T) fr
+    w, wd : (Q, P, d+1, LANES) coefficients in powers of the piece's tau in [0, 1], lowest first, coordinates
+        in the first lanes; the damping factor zeta multiplies wd
+    f, fr : (Q, P, m, d+1) in powers of u = 2 tau - 1; the forcing is f + (zeta/T) fr
+    degrees : (P, 2) of w and wd
+    sizes : (Q, P, 2) bounds on the norms of w and wd over the piece, without the reference
+    ratios : (P,) rho where wd = rho w for all parts, else nan
+    unequal : (Q, P) bound on the norm of wd - rho w there
     fit_error : (Q, P, 4) largest |error| of w, wd, f, fr by their polynomials on each piece
+    flow_error : (P,) bound on what the error of the transition matrix over each piece has besides
     C, omega, v : (m, m) [1/s], (m,) [rad/s], (m,)
     input : (m,) constant forcing whose motion from rest is carried beside that of f
     reference : (m,) constant part of w that omega^2 already has, so that w - reference acts
@@ -51,7 +56,12 @@ class Problem(NamedTuple):
     wd: FloatArray
     f: FloatArray
     fr: FloatArray
+    degrees: npt.NDArray[np.int64]
+    sizes: FloatArray
+    ratios: FloatArray
+    unequal: FloatArray
     fit_error: FloatArray
+    flow_error: FloatArray
     C: FloatArray
     omega: FloatArray
     v: FloatArray
@@ -79,12 +89,12 @@ class Piece(NamedTuple):
 
     Attributes
     ----------
-    w, wd, f : (d+1, m) over the piece
-    ws, wds, fs : the same over one step
+    w, wd : (d+1, LANES) over the piece; f : (d+1, m)
+    ws, wds, fs : the same over one step, times h^2, h and h^2
     degrees : of w, wd, f on this piece
     a, r : majorant
-    Z, s, sd : (terms, m, LANES), (terms, LANES): coefficients of eta, v . eta and its derivative
-    hC, h2_omega2 : (m, m), (m,)
+    Z, s, sd : (terms, 3, LANES), (terms, LANES): coefficients of eta, v . eta and its derivative
+    v, hC, h2_omega2, h2_reference : (3,), (3, 3), (3,), (3,)
     sizes : |v/omega|, |v| and max omega + |C|
     """
 
@@ -100,8 +110,10 @@ class Piece(NamedTuple):
     Z: FloatArray
     s: FloatArray
     sd: FloatArray
+    v: FloatArray
     hC: FloatArray
     h2_omega2: FloatArray
+    h2_reference: FloatArray
     sizes: FloatArray
 
 
@@ -109,15 +121,17 @@ class Piece(NamedTuple):
 def scratch_for(problem: Problem) -> Piece:
     """Allocate the scratch of one thread."""
     m = problem.v.size
-    dw, dd = problem.w.shape[3], problem.wd.shape[3]
+    dw, dd = problem.w.shape[2], problem.wd.shape[2]
     df = max(problem.f.shape[3], problem.fr.shape[3])
+    v = np.zeros(3)
+    v[:m] = problem.v
     return Piece(
-        np.zeros((dw, m)), np.zeros((dd, m)), np.zeros((df, m)),
-        np.zeros((dw, m)), np.zeros((dd, m)), np.zeros((df, m)),
+        np.zeros((dw, LANES)), np.zeros((dd, LANES)), np.zeros((df, m)),
+        np.zeros((dw, LANES)), np.zeros((dd, LANES)), np.zeros((df, m)),
         np.zeros(3, dtype=np.int64), np.zeros(max(dw, dd)), np.zeros(MAX_TERMS + 2),
-        np.zeros((MAX_TERMS + 2, m, LANES)),
+        np.zeros((MAX_TERMS + 2, 3, LANES)),
         np.zeros((MAX_TERMS + 2, LANES)), np.zeros((MAX_TERMS + 2, LANES)),
-        np.zeros((m, m)), np.zeros(m),
+        v, np.zeros((3, 3)), np.zeros(3), np.zeros(3),
         np.array([norm(problem.v / problem.omega), norm(problem.v),
                   problem.omega.max() + norm(problem.C.ravel())]),
     )  # fmt: skip
@@ -127,50 +141,45 @@ def scratch_for(problem: Problem) -> Piece:
 # count references.
 
 
-@numba.njit(cache=True, error_model="numpy")
-def _degree(poly: FloatArray) -> int:
-    for j in range(poly.shape[0] - 1, 0, -1):
-        for r in range(poly.shape[1]):
-            if poly[j, r] != 0.0:
-                return j
-    return 0
-
-
-@numba.njit(cache=True, error_model="numpy")
-def _row(poly: FloatArray, j: int) -> float:
-    """Norm of poly[j]."""
+@numba.njit(cache=True, error_model="numpy", _nrt=False)
+def _row(poly: FloatArray, j: int, m: int) -> float:
+    """Norm of poly[j, 0:m]."""
     total = 0.0
-    for r in range(poly.shape[1]):
+    for r in range(m):
         total += poly[j, r] * poly[j, r]
     return math.sqrt(total)
 
 
-@numba.njit(cache=True, error_model="numpy")
-def _change(poly: FloatArray, reference: FloatArray) -> float:
-    """Norm of poly[0] - reference."""
-    total = 0.0
-    for r in range(poly.shape[1]):
-        total += (poly[0, r] - reference[r]) ** 2
-    return math.sqrt(total)
+@numba.njit(cache=True, error_model="numpy", _nrt=False)
+def _summed(
+    polys: FloatArray, i: int, degree: int, weights: FloatArray, factor: float, out: FloatArray
+) -> None:
+    """Out = factor * sum of weights[q] polys[q, i], row by row."""
+    for j in range(degree + 1):
+        total = zero()
+        for q in range(weights.size):
+            total = plus(factor * weights[q], load(polys, (q, i, j)), total)
+        store(out, (j,), total)
 
 
-@numba.njit(cache=True, error_model="numpy")
-def _add(polys: FloatArray, part: int, i: int, factor: float, out: FloatArray) -> None:
-    """Add factor times polys[part, i] (m, d+1) to out (d+1, m)."""
-    if factor != 0.0:
-        for r in range(polys.shape[2]):
-            for j in range(polys.shape[3]):
-                out[j, r] += factor * polys[part, i, r, j]
+@numba.njit(cache=True, error_model="numpy", _nrt=False)
+def _part_of(poly: FloatArray, degree: int, part: int, parts: int, factor: float, out: FloatArray) -> None:
+    """Out = factor times poly in the time of one of so many equal parts, by synthetic division."""
+    if parts == 1:
+        for j in range(degree + 1):
+            store(out, (j,), scaled(factor, load(poly, (j,))))
+        return
+    for j in range(degree + 1):
+        store(out, (j,), load(poly, (j,)))
+    for j in range(degree):
+        for i in range(degree - 1, j - 1, -1):
+            store(out, (i,), plus(part / parts, load(out, (i + 1,)), load(out, (i,))))
+    for j in range(degree + 1):
+        store(out, (j,), scaled(factor, load(out, (j,))))
+        factor /= parts
 
 
-@numba.njit(cache=True, error_model="numpy")
-def _clear(poly: FloatArray) -> None:
-    for j in range(poly.shape[0]):
-        for r in range(poly.shape[1]):
-            poly[j, r] = 0.0
-
-
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(cache=True, error_model="numpy", _nrt=False)
 def load_piece(
     problem: Problem, i: int, gains: FloatArray, zeta: float, T: float, piece: Piece
 ) -> tuple[float, float, float, float]:
@@ -181,54 +190,35 @@ def load_piece(
     bound on |A| per unit time, bound on its error, bound on the error of f, and the ratio wd/w where it is
     the same for all powers and coordinates, else nan
     """
-    m = problem.v.size
     nu, nu_rate, calm = piece.sizes[0], piece.sizes[1], piece.sizes[2]
-    _clear(piece.w)
-    _clear(piece.wd)
-    _clear(piece.f)
-    error = error_f = 0.0
-    for part in range(problem.w.shape[0]):
-        g = gains[part]
-        _add(problem.w, part, i, g, piece.w)
-        _add(problem.wd, part, i, g * zeta, piece.wd)
-        _add(problem.f, part, i, g, piece.f)
-        _add(problem.fr, part, i, g * zeta / T, piece.f)
-        fit = problem.fit_error
-        error += abs(g) * (fit[part, i, 0] * nu + fit[part, i, 1] * abs(zeta) * nu_rate)
-        error_f += abs(g) * (fit[part, i, 2] + fit[part, i, 3] * abs(zeta) / T)
-    dw, dd = _degree(piece.w), _degree(piece.wd)
-    piece.degrees[0], piece.degrees[1], piece.degrees[2] = dw, dd, _degree(piece.f)
-    size_w = _change(piece.w, problem.reference)
-    for j in range(1, dw + 1):
-        size_w += _row(piece.w, j)
-    size_wd = 0.0
-    for j in range(dd + 1):
-        size_wd += _row(piece.wd, j)
-    rate = calm + size_w * nu + size_wd * nu_rate
-    above = below = 0.0
-    common = min(dw, dd)
-    for j in range(common + 1):
-        for r in range(m):
-            above += piece.w[j, r] * piece.wd[j, r]
-            below += piece.w[j, r] * piece.w[j, r]
-    ratio = above / below if below > 0.0 else 0.0
-    distance = 0.0
-    for j in range(max(dw, dd) + 1):
-        for r in range(m):
-            w = piece.w[j, r] if j <= dw else 0.0
-            wd = piece.wd[j, r] if j <= dd else 0.0
-            distance += abs(wd - ratio * w)
-    if distance <= _PROPORTIONAL * size_wd:
-        piece.degrees[1] = 0
-        error += distance * nu_rate
-    else:
-        ratio = math.nan
-    return rate, error, error_f, ratio
+    rho, fit = problem.ratios[i], problem.fit_error
+    piece.degrees[0], piece.degrees[1] = problem.degrees[i, 0], problem.degrees[i, 1]
+    piece.degrees[2] = piece.f.shape[0] - 1
+    _summed(problem.w, i, piece.degrees[0], gains, 1.0, piece.w)
+    if math.isnan(rho):
+        _summed(problem.wd, i, piece.degrees[1], gains, zeta, piece.wd)
+    rate, error, error_f = calm, 0.0, 0.0
+    for j in range(piece.f.shape[0]):
+        for r in range(piece.f.shape[1]):
+            piece.f[j, r] = 0.0
+    for q in range(gains.size):
+        g = abs(gains[q])
+        rate += g * (problem.sizes[q, i, 0] * nu + abs(zeta) * problem.sizes[q, i, 1] * nu_rate)
+        error += g * (fit[q, i, 0] * nu + fit[q, i, 1] * abs(zeta) * nu_rate)
+        if not math.isnan(rho):
+            error += g * abs(zeta) * problem.unequal[q, i] * nu_rate
+        error_f += g * (fit[q, i, 2] + fit[q, i, 3] * abs(zeta) / T)
+        for r in range(piece.f.shape[1]):
+            for j in range(problem.f.shape[3]):
+                piece.f[j, r] += gains[q] * problem.f[q, i, r, j]
+            for j in range(problem.fr.shape[3]):
+                piece.f[j, r] += gains[q] * zeta / T * problem.fr[q, i, r, j]
+    return rate, error, error_f, zeta * rho
 
 
-@numba.njit(cache=True, error_model="numpy")
-def load_step(problem: Problem, piece: Piece, u: float, du: float, h: float, ratio: float) -> int:
-    """Write the gains over one step of length h, which starts at u and covers du, and their majorant a.
+@numba.njit(cache=True, error_model="numpy", _nrt=False)
+def load_step(problem: Problem, piece: Piece, part: int, parts: int, h: float, ratio: float) -> int:
+    """Write the gains over one of the steps of length h into which a piece is cut, and their majorant a.
 
     Returns the degree of a.
     """
@@ -236,81 +226,95 @@ def load_step(problem: Problem, piece: Piece, u: float, du: float, h: float, rat
     nu, nu_rate, calm = piece.sizes[0], piece.sizes[1], piece.sizes[2]
     merged = not math.isnan(ratio)
     dw, dd, df = piece.degrees[0], piece.degrees[1], piece.degrees[2]
+    change = 0.0
+    _part_of(piece.w, dw, part, parts, h * h, piece.ws)
     for q in range(m):
         piece.h2_omega2[q] = (h * problem.omega[q]) ** 2
+        piece.h2_reference[q] = -h * h * problem.reference[q]
+        change += (piece.ws[0, q] + piece.h2_reference[q]) ** 2
         for p in range(m):
             piece.hC[q, p] = h * problem.C[q, p]
-    shift(piece.w, dw, u, du, piece.ws)
-    shift(piece.f, df, u, du, piece.fs)
-    for j in range(piece.a.size):
-        piece.a[j] = 0.0
-    piece.a[0] = h * calm
-    if not merged:
-        shift(piece.wd, dd, u, du, piece.wds)
-        for j in range(dd + 1):
-            piece.a[j] += h * _row(piece.wds, j) * nu_rate
-            for q in range(m):
-                piece.wds[j, q] *= h
-    for j in range(dw + 1):
-        if merged:
-            piece.a[j] += h * _row(piece.ws, j) * abs(ratio) * nu_rate
-        if j == 0:
-            piece.a[0] += h * _change(piece.ws, problem.reference) * nu
-        else:
-            piece.a[j] += h * _row(piece.ws, j) * nu
-        for q in range(m):
-            piece.ws[j, q] *= h * h
+    shift(piece.f, df, -1.0 + 2.0 * part / parts, 2.0 / parts, piece.fs)
     for j in range(df + 1):
         for q in range(m):
             piece.fs[j, q] *= h * h
-    return int(dw if merged else max(dw, dd))
+    for j in range(piece.a.size):
+        piece.a[j] = 0.0
+    # ws holds h^2 w and wds h wd.
+    piece.a[0] = h * calm + math.sqrt(change) * nu / h
+    for j in range(dw + 1):
+        size = _row(piece.ws, j, m) / h
+        if j > 0:
+            piece.a[j] = size * nu
+        if merged:
+            piece.a[j] += size * abs(ratio) * nu_rate
+    if merged:
+        return int(dw)
+    _part_of(piece.wd, dd, part, parts, h, piece.wds)
+    for j in range(dd + 1):
+        piece.a[j] += _row(piece.wds, j, m) * nu_rate
+    return int(max(dw, dd))
 
 
-@numba.njit(cache=True, fastmath={"contract"}, error_model="numpy")
+@numba.njit(cache=True, fastmath={"contract"}, error_model="numpy", _nrt=False)
 def series(problem: Problem, piece: Piece, terms: int, h: float, ratio: float) -> None:
-    """Fill Z[k] (m, LANES), the Taylor coefficients in step time, k = 2..terms+1, from Z[0] and Z[1].
+    """Fill Z[k] (3, LANES), the Taylor coefficients in step time, k = 2..terms+1, from Z[0] and Z[1].
 
-    With wd = ratio w the two convolutions merge into one with s + (ratio/h) s'.
+    With wd = ratio w the two convolutions merge into one with s + (ratio/h) s'. All three coordinates side by
+    side, and the newest values last in every sum: what is older need not wait for them.
     """
-    v, m = problem.v, problem.v.size
+    v, C, o, ref = piece.v, piece.hC, piece.h2_omega2, piece.h2_reference
     Z, s, sd, w, wd, f = piece.Z, piece.s, piece.sd, piece.ws, piece.wds, piece.fs
     merged = not math.isnan(ratio)
+    lag = ratio / h if merged else 0.0
     dw, dd, df = piece.degrees[0], piece.degrees[1], piece.degrees[2]
-    for k in range(2):
-        total = zero()
-        for r in range(m):
-            total = plus(v[r], load(Z, (k, r)), total)
-        store(s, (k,), total)
+    x0, x1, x2 = load(Z, (0, 0)), load(Z, (0, 1)), load(Z, (0, 2))
+    y0, y1, y2 = load(Z, (1, 0)), load(Z, (1, 1)), load(Z, (1, 2))
+    here = plus(v[2], x2, plus(v[1], x1, scaled(v[0], x0)))
+    there = plus(v[2], y2, plus(v[1], y1, scaled(v[0], y0)))
     for k in range(terms):
-        here, derivative = load(s, (k,)), scaled(k + 1.0, load(s, (k + 1,)))
-        store(sd, (k,), plus(ratio / h, derivative, here) if merged else derivative)
-        factor = -1.0 / ((k + 1.0) * (k + 2.0))
-        new = zero()
-        for r in range(m):
-            total = scaled(piece.h2_omega2[r], load(Z, (k, r)))
-            total = plus(-h * h * problem.reference[r], here, total)
-            for q in range(m):
-                total = plus((k + 1.0) * piece.hC[r, q], load(Z, (k + 1, q)), total)
-            if merged:
-                for i in range(min(dw, k) + 1):
-                    total = plus(w[i, r], load(sd, (k - i,)), total)
-            else:
-                for i in range(min(dw, k) + 1):
-                    total = plus(w[i, r], load(s, (k - i,)), total)
-                for i in range(min(dd, k) + 1):
-                    total = plus(wd[i, r], load(sd, (k - i,)), total)
-            total = scaled(factor, total)
-            store(Z, (k + 2, r), total)
-            if k <= df:
+        c = k + 1.0
+        rate = scaled(c, there)
+        t0, t1, t2 = scaled(o[0], x0), scaled(o[1], x1), scaled(o[2], x2)
+        t0, t1, t2 = plus(ref[0], here, t0), plus(ref[1], here, t1), plus(ref[2], here, t2)
+        if merged:
+            for i in range(min(dw, k), 0, -1):
+                old = load(sd, (k - i,))
+                t0, t1, t2 = plus(w[i, 0], old, t0), plus(w[i, 1], old, t1), plus(w[i, 2], old, t2)
+            rate = plus(lag * c, there, here)
+            t0, t1, t2 = plus(w[0, 0], rate, t0), plus(w[0, 1], rate, t1), plus(w[0, 2], rate, t2)
+        else:
+            for i in range(min(dw, k), 0, -1):
+                old = load(s, (k - i,))
+                t0, t1, t2 = plus(w[i, 0], old, t0), plus(w[i, 1], old, t1), plus(w[i, 2], old, t2)
+            for i in range(min(dd, k), 0, -1):
+                old = load(sd, (k - i,))
+                t0, t1, t2 = plus(wd[i, 0], old, t0), plus(wd[i, 1], old, t1), plus(wd[i, 2], old, t2)
+            t0, t1, t2 = plus(w[0, 0], here, t0), plus(w[0, 1], here, t1), plus(w[0, 2], here, t2)
+            t0, t1, t2 = plus(wd[0, 0], rate, t0), plus(wd[0, 1], rate, t1), plus(wd[0, 2], rate, t2)
+        store(s, (k,), here)
+        store(sd, (k,), rate)
+        t0 = plus(c * C[0, 2], y2, plus(c * C[0, 1], y1, plus(c * C[0, 0], y0, t0)))
+        t1 = plus(c * C[1, 2], y2, plus(c * C[1, 1], y1, plus(c * C[1, 0], y0, t1)))
+        t2 = plus(c * C[2, 2], y2, plus(c * C[2, 1], y1, plus(c * C[2, 0], y0, t2)))
+        factor = -1.0 / (c * (c + 1.0))
+        x0, x1, x2 = y0, y1, y2
+        y0, y1, y2 = scaled(factor, t0), scaled(factor, t1), scaled(factor, t2)
+        store(Z, (k + 2, 0), y0)
+        store(Z, (k + 2, 1), y1)
+        store(Z, (k + 2, 2), y2)
+        if k <= df:
+            for r in range(problem.v.size):
                 Z[k + 2, r, FORCED] -= factor * f[k, r]
                 if k == 0:
                     Z[2, r, FORCED + 1] -= factor * h * h * problem.input[r]
-                total = load(Z, (k + 2, r))
-            new = plus(v[r], total, new)
-        store(s, (k + 2,), new)
+            y0, y1, y2 = load(Z, (k + 2, 0)), load(Z, (k + 2, 1)), load(Z, (k + 2, 2))
+        here, there = there, plus(v[2], y2, plus(v[1], y1, scaled(v[0], y0)))
+    store(s, (terms,), here)
+    store(s, (terms + 1,), there)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(cache=True, error_model="numpy", _nrt=False)
 def start_from_rest(problem: Problem, piece: Piece, h: float) -> None:
     """Unit initial states x = (omega eta, eta') in the first 2m columns, rest in the others."""
     m = problem.v.size
@@ -321,22 +325,27 @@ def start_from_rest(problem: Problem, piece: Piece, h: float) -> None:
         piece.Z[1, q, m + q] = h
 
 
-@numba.njit(cache=True, fastmath={"contract"}, error_model="numpy")
+@numba.njit(cache=True, fastmath={"contract"}, error_model="numpy", _nrt=False)
 def end_of_step(problem: Problem, piece: Piece, terms: int, h: float, out: FloatArray) -> None:
     """Energy coordinates at the end of the step, (2m, LANES), summed from the smallest terms on."""
     m = problem.v.size
     for q in range(m):
-        position, rate = zero(), scaled(terms + 1.0, load(piece.Z, (terms + 1, q)))
+        # Even and odd powers apart: two chains of additions instead of one.
+        last = terms + 1
+        position, rate = load(piece.Z, (last, q)), scaled(float(last), load(piece.Z, (last, q)))
+        other, other_rate = zero(), zero()
         for k in range(terms, 0, -1):
             x = load(piece.Z, (k, q))
-            position = plus(1.0, x, position)
-            rate = plus(float(k), x, rate)
-        position = plus(1.0, load(piece.Z, (0, q)), position)
+            if (last - k) % 2 == 0:
+                position, rate = plus(1.0, x, position), plus(float(k), x, rate)
+            else:
+                other, other_rate = plus(1.0, x, other), plus(float(k), x, other_rate)
+        position = plus(1.0, load(piece.Z, (0, q)), plus(1.0, other, position))
         store(out, (q,), scaled(problem.omega[q], position))
-        store(out, (m + q,), scaled(1.0 / h, rate))
+        store(out, (m + q,), scaled(1.0 / h, plus(1.0, other_rate, rate)))
 
 
-@numba.njit(cache=True, error_model="numpy")
+@numba.njit(cache=True, error_model="numpy", _nrt=False)
 def steps_of_period(
     problem: Problem,
     gains: FloatArray,
@@ -356,7 +365,8 @@ def steps_of_period(
     steps : (max_steps, 2m, LANES), out: transition matrix, and states from rest under f and
         under the input in the columns from FORCED on
     local : (max_steps, 3), out: bounds on the errors of the matrix and of both states from rest
-    layout : (max_steps, 3), out: piece, number of the step in it, number of steps in it
+    layout : (max_steps, 4), out: piece, number of the step in it, number of steps in it, and the bound on
+        what the error of the piece has besides those of its steps
 
     Returns
     -------
@@ -373,8 +383,8 @@ def steps_of_period(
         while part < parts:
             if count + parts - part > limits.max_steps:
                 return -1
-            h, du = length / parts, 2.0 / parts
-            degree = load_step(problem, piece, -1.0 + du * part, du, h, ratio)
+            h = length / parts
+            degree = load_step(problem, piece, part, parts, h, ratio)
             terms, tail, tail_f, size = enough_terms(piece.a, degree, limits.tolerance, piece.r)
             if terms < 0:
                 # The polynomials vary too much within the step: begin the piece again with half of it.
@@ -393,13 +403,14 @@ def steps_of_period(
                 growth += piece.a[j]
             size_f = 0.0
             for j in range(piece.degrees[2] + 1):
-                size_f += _row(piece.fs, j)
+                size_f += _row(piece.fs, j, m)
             size_f /= h  # fs holds h^2 f
             spread = h * math.exp(growth)
             local[count, 0] = tail + rounding + misfit * spread
             local[count, 1] = (tail_f + rounding + misfit * spread) * size_f + misfit_f * spread
             local[count, 2] = (tail_f + rounding + misfit * spread) * h * size_input
             layout[count, 0], layout[count, 1], layout[count, 2] = i, part, parts
+            layout[count, 3] = problem.flow_error[i]
             count += 1
             part += 1
     return count
@@ -432,7 +443,7 @@ def propagate_points(
     n = 2 * problem.v.size
     piece = scratch_for(problem)
     steps = np.empty((limits.max_steps, n, LANES))
-    local, layout = np.empty((limits.max_steps, 3)), np.empty((limits.max_steps, 3))
+    local, layout = np.empty((limits.max_steps, 3)), np.empty((limits.max_steps, 4))
     weights, work, flow = np.empty((limits.max_steps, 2)), np.zeros((3, n, LANES)), np.zeros((n, LANES))
     for point in range(periods.size):
         count = steps_of_period(
@@ -440,7 +451,7 @@ def propagate_points(
         )
         if count < 0:
             return point
-        bound[point] = carry(steps, local[:, 0], count, flow, weights, work)
+        bound[point] = carry(steps, local[:, 0], layout, count, flow, weights, work)
         for i in range(n):
             forced[point, i] = flow[i, FORCED]
             for j in range(n):

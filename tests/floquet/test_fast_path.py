@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.linalg import expm
+from scipy.linalg import eig, expm
+from scipy.optimize import linear_sum_assignment
 
 from floquet import (
     RankOneSystem,
@@ -172,7 +173,7 @@ def test_random_gear_pairs_against_the_general_engine() -> None:
         {"bearing_stiffness": [5e7, 4e8], "speed_rpm": [6000.0, 12000.0]},
     ],
 )
-@pytest.mark.parametrize("law", ["coulomb", "xu_kahraman", "composite"])
+@pytest.mark.parametrize("law", ["coulomb", "benedict_kelley", "xu_kahraman", "composite"])
 def test_charts_of_both_routes_agree(law: str, axes: dict[str, list[float]]) -> None:
     pair = load_gear_pair("nasa_28_28").with_(friction__law=law)
     fast = stability_chart(pair, axes)
@@ -180,8 +181,7 @@ def test_charts_of_both_routes_agree(law: str, axes: dict[str, list[float]]) -> 
     assert fast.spectral_radius.dims == slow.spectral_radius.dims == tuple(axes)
     difference = np.abs(fast.spectral_radius - slow.spectral_radius)
     assert (difference <= fast.error + slow.error).all()
-    # 1e-6: misfit bound of mu(xi), 1e-10 of the gain, over up to 100 rad per cycle, times the conditioning.
-    assert fast.error.max() < 1e-6
+    assert fast.error.max() < 1e-8  # rtol = 1e-10 over up to 100 rad per cycle, times the conditioning
     assert (fast.verdict == slow.verdict).all()
 
 
@@ -200,6 +200,63 @@ def test_eigenvalue_kernel_against_lapack() -> None:
         assert (distance <= radii)[safe].all()
         # Not idle: for random matrices the condition numbers are moderate.
         assert np.median(radii) < 1e-8
+
+
+def near_defective(rng: np.random.Generator, gap: float) -> np.ndarray:
+    """6 x 6 with two eigenvalues this far apart that nearly share an eigenvector, as at a tongue's edge."""
+    core = np.diag(rng.uniform(-0.9, 0.9, 6))
+    core[:2, :2] = [[0.8, 1.0], [0.0, 0.8 + gap]]
+    Q = np.linalg.qr(rng.normal(size=(6, 6)))[0]
+    return np.asarray(Q @ core @ Q.T)
+
+
+@pytest.mark.parametrize("gap", [1e-2, 1e-4, 3e-5])
+def test_every_disk_holds_as_many_eigenvalues_as_it_says(gap: float) -> None:
+    # Overlapping disks are widened around all that hang together: then each computed eigenvalue can be
+    # matched with an exact one in its own disk, one to one, which nearest distances alone would not show.
+    rng = np.random.default_rng(17)
+    overlapping = 0
+    for _ in range(200):
+        M = near_defective(rng, gap)
+        delta = float(10.0 ** rng.uniform(-12, -7))
+        values, radii = np.empty((1, 6), dtype=complex), np.empty((1, 6))
+        safe = np.empty(1, dtype=bool)
+        spectra(M[None], np.array([delta]), values, radii, safe)
+        if not safe[0]:
+            continue
+        E = rng.normal(size=(6, 6))
+        # The direction that moves the pair most, and a random one.
+        left, _, right = np.linalg.svd(M - 0.8 * np.eye(6))
+        E = (
+            np.outer(left[:, -1], right[-1]) * delta
+            if rng.random() < 0.5
+            else E * delta / np.linalg.norm(E, 2)
+        )
+        exact = np.linalg.eigvals(M + E)
+        distance = np.abs(values[0][:, None] - exact[None, :])
+        rows, columns = linear_sum_assignment(np.where(distance <= radii[0][:, None], 0.0, 1.0))
+        assert (distance[rows, columns] <= radii[0]).all()
+        pairs = np.abs(values[0][:, None] - values[0]) <= radii[0][:, None] + radii[0]
+        overlapping += int(pairs.sum() > 6)
+    assert overlapping > 5 or gap > 1e-3
+
+
+def test_separate_disks_are_of_first_order() -> None:
+    # Well separated, each eigenvalue moves by at most kappa delta to first order when M changes by delta, and
+    # a perturbation that does so exists: y x^H/(|x||y|).
+    rng = np.random.default_rng(18)
+    delta = 1e-9
+    M = rng.normal(size=(40, 6, 6))
+    values, radii = np.empty((40, 6), dtype=complex), np.empty((40, 6))
+    safe = np.empty(40, dtype=bool)
+    spectra(M, np.full(40, delta), values, radii, safe)
+    for i in range(40):
+        lam, left, right = eig(M[i], left=True)
+        kappa = 1.0 / np.abs((left.conj() * right).sum(axis=0))
+        order = [int(np.argmin(np.abs(lam - v))) for v in values[i]]
+        if np.abs(lam[:, None] - lam + 10 * np.eye(6)).min() > 0.05:
+            assert (radii[i] <= 1.03 * delta * kappa[order]).all()  # 1.01, and the second order
+            assert (radii[i] >= delta * kappa[order] * (1.0 - 1e-6)).all()
 
 
 def test_varied_gains_add_with_their_factor() -> None:

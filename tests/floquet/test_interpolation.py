@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 
 from floquet import gear_block, stability_chart
-from floquet.fast import fast_monodromies, fast_multipliers
-from floquet.gear_axes import GearVariation
-from floquet.gear_friction import friction_factors
+from floquet.fast import FastMonodromy, fast_monodromies, fast_multipliers
 from floquet.interpolation import interpolant, interpolated_multipliers
 from lumped import load_gear_pair
 from lumped.errors import NumericalError, ParameterError
@@ -58,11 +56,13 @@ def test_multipliers_at_many_speeds_and_dampings(pair) -> None:
 @pytest.mark.parametrize(
     ("law", "axes"),
     [
-        ("coulomb", {"speed_rpm": np.linspace(900, 15000, 9), "damping_ratio": np.linspace(0, 0.08, 5)}),
+        ("coulomb", {"speed_rpm": np.linspace(900, 15000, 90), "damping_ratio": [0.0, 0.03, 0.08]}),
         ("coulomb", {"damping_ratio": [0.0, 0.05], "speed_rpm": [4000.0, 2500.0, 17000.0]}),
         ("coulomb", {"friction_coefficient": [0.0, 0.05, 0.1], "speed_rpm": [2000.0, 9000.0]}),
         ("xu_kahraman", {"speed_rpm": [1500.0, 5000.0, 16000.0], "damping_ratio": [0.01, 0.04]}),
-        ("smoothed_coulomb", {"speed_rpm": [1500.0, 5000.0, 16000.0]}),
+        ("smoothed_coulomb", {"speed_rpm": np.linspace(1500.0, 16000.0, 70)}),
+        ("benedict_kelley", {"speed_rpm": np.linspace(1500.0, 16000.0, 70), "damping_ratio": [0.01, 0.04]}),
+        ("composite", {"speed_rpm": np.linspace(1500.0, 16000.0, 70), "damping_ratio": [0.01, 0.04]}),
         ("coulomb", {"speed_rpm": [3000.0, 9000.0], "torque": [30.0, 90.0], "damping_ratio": [0.02, 0.03]}),
     ],
 )
@@ -76,24 +76,54 @@ def test_chart_agrees_with_the_direct_one(pair, law: str, axes: dict[str, object
     assert (direct.verdict == fast.verdict).all()
 
 
-def test_laws_whose_switches_move_are_refused(pair) -> None:
-    moving = pair.with_(friction__law="benedict_kelley")
-    with pytest.raises(ParameterError, match="benedict_kelley"):
-        stability_chart(moving, {"speed_rpm": [2000.0, 8000.0]}, method="chebyshev")
+def test_interpolation_needs_speeds(pair) -> None:
     with pytest.raises(ParameterError, match="speed_rpm"):
         stability_chart(pair, {"damping_ratio": [0.0, 0.1]}, method="chebyshev")
 
 
-def test_friction_factors_are_the_laws_own_power_of_speed(pair) -> None:
-    # Law III goes with the entraining velocity to the power b6 = -0.100601 (equation 18); a constant given
-    # coefficient does not change at all; law II is no single factor.
-    speeds = np.array([500.0, 2000.0, 20000.0])
-    own = pair.operating.pinion_speed * 30 / np.pi
-    law_3 = friction_factors(GearVariation(pair.with_(friction__law="xu_kahraman")), speeds)
-    assert law_3 == pytest.approx((speeds / own) ** -0.100601, rel=1e-11)
-    given = pair.with_(friction__law="coulomb", friction__coefficient=0.06)
-    assert (friction_factors(GearVariation(given), speeds) == 1.0).all()
-    assert friction_factors(GearVariation(pair.with_(friction__law="benedict_kelley")), speeds) is None
+@pytest.mark.parametrize("scale", [1e-9, 1e-6, 1e-3])
+def test_disturbed_matrices_are_covered(pair, scale: float) -> None:
+    # Noise that no polynomial can follow, unlike a smooth error: at the nodes it is part of the declared
+    # errors; between them only the check at other points can see it.
+    block = gear_block(pair)
+    T = block.period * np.array([0.8, 1.2])
+    turns = block.modal().omega.max() * (T[1] - T[0])
+
+    def flow(t: np.ndarray, z: np.ndarray, declared: bool = True) -> FastMonodromy:
+        clean = fast_monodromies(block, t, z)
+        noise = np.random.default_rng(abs(hash((t.tobytes(), z.tobytes()))) % 2**32)
+        E = noise.normal(size=clean.matrices.shape)
+        E *= scale / np.linalg.norm(E, axis=(1, 2))[:, None, None]
+        return FastMonodromy(clean.matrices + E, clean.errors + scale * declared, clean.forced)
+
+    t, z = np.random.default_rng(2).uniform(*T, 40), np.linspace(0.0, 1.0, 40)
+    exact = fast_monodromies(block, t, z).matrices
+    for declared in (True, False):
+        # Wanted no better than the noise allows: its coefficients do not decay.
+        series = interpolant(
+            lambda t, z, d=declared: flow(t, z, d), (T[0], T[1]), (0.0, 1.0), turns, 300 * scale
+        )
+        found = np.array([series(t[i : i + 1], z[i : i + 1])[0, 0] for i in range(40)])
+        assert np.linalg.norm(found - exact, axis=(1, 2)).max() <= series.error
+
+
+def test_feature_between_the_nodes_is_seen(pair) -> None:
+    # The values at the nodes are those of the smooth flow, so the coefficients decay as they should; a bump
+    # between them is found by the comparison at other points only.
+    block = gear_block(pair)
+    T = block.period * np.array([0.8, 1.2])
+    turns = block.modal().omega.max() * (T[1] - T[0])
+    asked: list[int] = []
+
+    def flow(t: np.ndarray, z: np.ndarray) -> FastMonodromy:
+        clean = fast_monodromies(block, t, z)
+        asked.append(t.size)
+        bump = 0.1 if len(asked) > 1 and t.size == 24 else 0.0
+        return FastMonodromy(clean.matrices + bump, clean.errors, clean.forced)
+
+    series = interpolant(flow, (T[0], T[1]), (0.0, 1.0), turns, 1e-8)
+    assert asked[-1] == 24
+    assert series.error >= 0.1 * 6  # Frobenius norm of a 6 x 6 matrix of 0.1
 
 
 def test_too_long_a_range_is_refused(pair) -> None:
