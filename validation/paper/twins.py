@@ -9,19 +9,20 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import multibody
-from lumped import GearPair, geometry, steady_state
+from lumped import GearPair, NumericalError, geometry, steady_state
 from validation import metrics
-from validation.paper.operating_points import rpm
+from validation.paper.figures.record import Number
+from validation.periodic import UNSTABLE
 
 FloatArray = NDArray[np.float64]
 
 MODELS = ("lumped", "multibody")
 VARIABLES = ("dte", "x_p", "x_g", "y_p", "y_g", "normal_load", "friction_force", "contact")
-#: Below this pinion speed the actual sliding velocity reverses many times around the pitch point, and
-#: friction that switches at once would chatter there [rpm].
-SLOW = 2000.0
-#: Sliding velocity over which friction changes its sign below ``SLOW`` [m/s].
-FRICTION_VELOCITY = 5e-3
+
+
+#: A number that says how periodic the twin's motion is, and the unit of differences.
+SETTLED = "multibody twin, change over one more cycle"
+SPAN = "% of the peak to peak"
 
 
 def twins(
@@ -31,49 +32,58 @@ def twins(
     cycles: int = 20,
     with_multibody: bool = True,
 ) -> xr.Dataset:
-    """Periodic motion of several variants in both models.
+    """Periodic motion of several variants in both models, each with the brake torque that balances it.
 
-    The multibody model starts in the lumped model's periodic motion and runs until its own transient has died
-    out; its last cycle is kept.
+    A free run under the lumped model's torques would drift in speed: the two models lose different power, and
+    after some cycles a phase that has slipped by a hundredth of a cycle looks like another motion. Where the
+    multibody model has no periodic motion near the lumped one, its last cycle of a free run stands instead.
 
     Parameters
     ----------
     variants : name -> pair, all of the same geometry and speed
     samples : per mesh cycle
-    cycles : mesh cycles of the multibody runs
+    cycles : mesh cycles of a free run
     with_multibody : without it only the lumped model is computed
 
     Returns
     -------
-    Dataset over variant, model, pair (tooth pair, 0 is ahead) and phase (mesh cycles) with ``VARIABLES`` and,
-    for the multibody twin, unsettled (variant): change of the DTE over the last two cycles over its peak to
-    peak
+    Dataset over variant, model, pair (tooth pair, 0 is ahead) and phase (mesh cycles) with ``VARIABLES``;
+    over variant: spectral_radius, largest multiplier of the lumped motion; and, for the multibody twin,
+    unsettled: change of the DTE over one more mesh cycle over its peak to peak
     """
     models = MODELS if with_multibody else MODELS[:1]
     rows: list[xr.Dataset] = []
     unsettled: list[float] = []
+    radii: list[float] = []
     for pair in variants.values():
         lumped = steady_state(pair, samples_per_cycle=samples)
+        radii.append(float(lumped.attrs["spectral_radius"]))
         both = [_cycle(lumped, samples)]
         if with_multibody:
-            run = multibody.simulate(
-                pair,
-                cycles,
-                samples_per_cycle=samples,
-                initial="periodic",
-                friction_velocity=FRICTION_VELOCITY if rpm(pair) < SLOW else 0.0,
-            )
-            both.append(_cycle(run.isel(time=slice(-samples - 1, -1)), samples))
-            before = run["dte"].to_numpy()[-2 * samples - 1 : -samples - 1]
-            last = both[1]["dte"].to_numpy()
-            unsettled.append(float(np.abs(last - before).max() / np.ptp(last)))
+            run, change = _twin(pair, samples, cycles)
+            both.append(_cycle(run, samples))
+            unsettled.append(change)
         rows.append(xr.concat(both, dim=xr.DataArray(list(models), dims="model", name="model")))
     names = xr.DataArray(list(variants), dims="variant", name="variant")
     result = xr.concat(rows, dim=names)
+    text = "largest Floquet multiplier of the lumped motion"
+    result["spectral_radius"] = ("variant", radii, {"units": "1", "long_name": text})
     if with_multibody:
-        text = "change of the multibody DTE over the last two cycles, over its peak to peak"
+        text = "change of the multibody DTE over one more mesh cycle, over its peak to peak"
         result["unsettled"] = ("variant", unsettled, {"units": "1", "long_name": text})
     return result
+
+
+def _twin(pair: GearPair, samples: int, cycles: int) -> tuple[xr.Dataset, float]:
+    """One mesh cycle of the multibody model, and the change over one more, see ``twins``."""
+    try:
+        run = multibody.steady_state(pair, samples_per_cycle=samples)
+        return run, float(run.attrs["closure"])
+    except NumericalError:
+        run = multibody.simulate(pair, cycles, samples_per_cycle=samples, initial="periodic")
+        dte = run["dte"].to_numpy()
+        last, before = dte[-samples - 1 : -1], dte[-2 * samples - 1 : -samples - 1]
+        return run.isel(time=slice(-samples - 1, -1)), float(np.abs(last - before).max() / np.ptp(last))
 
 
 def _cycle(data: xr.Dataset, samples: int) -> xr.Dataset:
@@ -103,6 +113,25 @@ def agreement(result: xr.Dataset, names: Sequence[str]) -> dict[str, float]:
             for v in result["variant"].to_numpy()
         )
     return found
+
+
+def quality(result: xr.Dataset) -> tuple[dict[str, Number], str]:
+    """How far the motions may be trusted: numbers, and a warning where one is unstable.
+
+    Parameters
+    ----------
+    result : of ``twins``
+    """
+    radius = float(result["spectral_radius"].max())
+    numbers = {"largest Floquet multiplier": Number(radius)}
+    if "unsettled" in result:
+        numbers[SETTLED] = Number(100.0 * float(result["unsettled"].max()), SPAN)
+    warning = (
+        f" Warning: a motion shown here is unstable (largest multiplier {radius:.3g}); a pair would leave it."
+        if radius > UNSTABLE
+        else ""
+    )
+    return numbers, warning
 
 
 def total(values: xr.DataArray) -> xr.DataArray:

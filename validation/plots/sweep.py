@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from validation.periodic import UNSTABLE
 from validation.plots.style import BLUE, GREY, LINES, RED, legend_above, new_figure, scaled
 
 
@@ -15,6 +16,8 @@ def sweep_figure(
     sweep: xr.Dataset, operating_rpm: float, static_load: float, resonances_rpm: Sequence[float] = ()
 ) -> Figure:
     """Peak to peak of the transmission error, and largest and smallest tooth load, over pinion speed.
+
+    Crosses mark unstable motions.
 
     Parameters
     ----------
@@ -29,6 +32,9 @@ def sweep_figure(
     values = sweep["dte_peak_to_peak"].to_numpy()
     factor, unit = scaled(values, unit="m")
     top.plot(speed, values / factor, color=BLUE)
+    unstable = sweep["spectral_radius"].to_numpy() > UNSTABLE
+    if unstable.any():
+        top.plot(speed[unstable], values[unstable] / factor, "x", color=RED, markersize=4.5)
     top.set_ylabel(f"transmission error,\npeak to peak [{unit}]")
     top.set_ylim(bottom=0.0)
     low = sweep["normal_load_min"].to_numpy() / static_load

@@ -19,10 +19,11 @@ TOLERANCE = 1e-3
 ERROR_GROWTH = 10.0
 #: Errors below this are rounding, whatever they were before.
 ROUNDING = 1e-9
-#: Last parts of the paths of such numbers, and tables that hold nothing else.
+#: Names of such numbers: column, fact or end of a row's name; and tables that hold nothing else.
 _ERRORS = frozenset(
     {"error", "error_estimate", "liouville_residual", "unsettled", "law_difference", "bound", "closure"}
 )
+_ERROR_ROWS = ("change over one more cycle",)
 _ERROR_TABLES = frozenset({"code_verification/closed_forms", "solution_verification/refinement"})
 #: Size below which a number counts as zero beside the largest of its unit in its table, or of its column.
 _SMALL = 1e-4
@@ -244,7 +245,8 @@ def _column(path: str) -> tuple[str, str]:
 def _number_change(path: str, old: _Number, new: _Number, tolerance: float, scale: float) -> Change:
     table, column = _column(path)
     difference, largest = abs(new.value - old.value), max(abs(old.value), abs(new.value))
-    if column in _ERRORS or table in _ERROR_TABLES:
+    row = path.rpartition("/")[0]
+    if column in _ERRORS or table in _ERROR_TABLES or row.endswith(_ERROR_ROWS):
         fails = new.value > max(ERROR_GROWTH * old.value, ROUNDING)
         return Change(path, "number", _shown(old), _shown(new), difference / largest, fails)
     if old.alone:

@@ -70,10 +70,14 @@ def summarise(results: Results) -> Summary:
         "violated": "not valid here",
     }[state]
     verdict = results.multipliers.verdict
-    here = "stable here and" if verdict == "stable" else f"{verdict} here and stable"
+    stands = verdict == "stable"
+    here = "stable here and" if stands else f"{verdict} here and stable"
+    says = "predicts" if stands else f"has an {verdict} periodic motion with"
+    if not stands:
+        predicted = f"No motion that a pair would keep: this periodic motion is {verdict}. {predicted}"
     sentence = (
         f"At {results.operating_rpm:.5g} rpm and {pair.operating.pinion_torque:.4g} N m the lumped model "
-        f"predicts a transmission error of {span} peak to peak and a mesh efficiency of {efficiency}; the "
+        f"{says} a transmission error of {span} peak to peak and a mesh efficiency of {efficiency}; the "
         f"independent multibody model {_agreement(results.check)}; the motion is {here} {over_range}; the "
         f"model is {validity}" + (f" (in question: {', '.join(raised)})." if raised else ".")
     )
@@ -82,7 +86,7 @@ def summarise(results: Results) -> Summary:
         (
             Answer(
                 "What does the model predict?",
-                Badge("prediction"),
+                Badge("prediction") if stands else Badge(verdict),
                 predicted,
                 "steady_state",
             ),

@@ -7,7 +7,7 @@ import xarray as xr
 
 from validation.paper.figures.record import FigureRecord, Number
 from validation.paper.operating_points import FIGURE_4, LAWS
-from validation.paper.twins import agreement, total
+from validation.paper.twins import agreement, quality, total
 
 
 def total_forces(runs: xr.Dataset) -> xr.Dataset:
@@ -31,13 +31,14 @@ def figure4(runs: xr.Dataset) -> FigureRecord:
             numbers[f"multibody twin, {text}: rms difference, worst law"] = Number(
                 100 * value, "% of the peak to peak"
             )
+    trust, warning = quality(runs)
     return FigureRecord(
         number="4",
         title="Total normal load and friction force under laws I to IV",
         text=(
             f"Sum over the tooth pairs in contact over one mesh cycle at {FIGURE_4.torque:g} N m and "
-            f"{FIGURE_4.speed:g} rpm, lumped model and its multibody twin."
+            f"{FIGURE_4.speed:g} rpm, lumped model and its multibody twin.{warning}"
         ),
-        numbers=numbers,
+        numbers=numbers | trust,
         data={"total_forces": data},
     )

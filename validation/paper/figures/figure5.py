@@ -7,7 +7,7 @@ import xarray as xr
 
 from validation.paper.figures.record import FigureRecord, Number
 from validation.paper.operating_points import FIGURE_4, LAWS
-from validation.paper.twins import agreement, mesh_orders
+from validation.paper.twins import agreement, mesh_orders, quality
 
 MOTIONS = {"x_p": "LOA displacement of the pinion", "y_p": "OLOA displacement of the pinion"}
 
@@ -51,7 +51,7 @@ def figure5(runs: xr.Dataset) -> FigureRecord:
         text=(
             "Pinion displacements over one mesh cycle and their amplitudes by mesh order at "
             f"{FIGURE_4.torque:g} N m and {FIGURE_4.speed:g} rpm, laws I to IV, lumped model and its "
-            "multibody twin."
+            f"multibody twin.{quality(runs)[1]}"
         ),
         numbers=motion_numbers(runs, data, names),
         data={"motions": data},

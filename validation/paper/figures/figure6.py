@@ -7,6 +7,7 @@ import xarray as xr
 from validation.paper.figures.figure5 import histories_and_orders, motion_numbers
 from validation.paper.figures.record import FigureRecord
 from validation.paper.operating_points import FIGURE_4
+from validation.paper.twins import quality
 
 
 def figure6(runs: xr.Dataset) -> FigureRecord:
@@ -17,7 +18,7 @@ def figure6(runs: xr.Dataset) -> FigureRecord:
         title="Dynamic transmission error",
         text=(
             f"DTE over one mesh cycle and its amplitudes by mesh order at {FIGURE_4.torque:g} N m and "
-            f"{FIGURE_4.speed:g} rpm, laws I to IV, lumped model and its multibody twin."
+            f"{FIGURE_4.speed:g} rpm, laws I to IV, lumped model and its multibody twin.{quality(runs)[1]}"
         ),
         numbers=motion_numbers(runs, data, ("dte",)),
         data={"transmission_error": data},

@@ -13,7 +13,8 @@ from validation.measurements import Measurement, align, overlay, overlay_metrics
 from validation.measurements.specification import PAIR_LABELS
 from validation.paper.figures.record import FigureRecord, Number
 from validation.paper.operating_points import FIGURE_7, OperatingPoint
-from validation.paper.twins import agreement, continuous_labels, roll_angle, twins
+from validation.paper.twins import SETTLED, SPAN, agreement, continuous_labels, roll_angle, twins
+from validation.periodic import UNSTABLE
 
 LAW = "xu_kahraman"
 _CYCLES = 3
@@ -38,9 +39,11 @@ def pair_forces(pair: GearPair, point: OperatingPoint, *, with_multibody: bool =
         labelled = np.array([continuous_labels(model, _CYCLES) for model in one])
         found[name] = (("model", "label", "cycles"), labelled, {"units": "N"})
     attrs: dict[str, float] = {"speed_rpm": point.speed, "torque": point.torque}
+    attrs["spectral_radius"] = float(runs["spectral_radius"].max())
     if with_multibody:
         for name, value in agreement(runs, ("normal_load", "friction_force")).items():
             attrs[f"rms_difference_{name}"] = value
+        attrs["unsettled"] = float(runs["unsettled"].max())
     return xr.Dataset(
         found | {"roll_angle": ("cycles", roll_angle(at, cycles), {"units": "deg"})},
         coords={
@@ -104,15 +107,21 @@ def figure7(
             numbers[f"{speed}: largest {text} of a pair"] = Number(largest, "N")
             if with_multibody:
                 numbers[f"{speed}: multibody twin, total {text}: rms difference"] = Number(
-                    100 * part.attrs[f"rms_difference_{name}"], "% of the peak to peak"
+                    100 * part.attrs[f"rms_difference_{name}"], SPAN
                 )
+        numbers[f"{speed}: largest Floquet multiplier"] = Number(part.attrs["spectral_radius"])
+        if with_multibody:
+            numbers[f"{speed}: {SETTLED}"] = Number(100 * part.attrs["unsettled"], SPAN)
+    unstable = [
+        f"{d.attrs['speed_rpm']:g} rpm" for d in data.values() if d.attrs["spectral_radius"] > UNSTABLE
+    ]
     for j, measurement in enumerate(measurements):
         points = measured_points(pair, measurement)
         data[f"measured{j + 1}"] = points
         for channel in points["channel"].to_numpy():
             relative = 100 * float(points["relative_mean_absolute"].sel(channel=channel))
             numbers[f"{measurement.spec.name}, {channel}: mean |measured - predicted|"] = Number(
-                relative, "% of the peak to peak"
+                relative, SPAN
             )
     return FigureRecord(
         number="7",
@@ -121,6 +130,7 @@ def figure7(
             f"Tooth pairs A and B followed through the mesh at {FIGURE_7[0].torque:g} N m, "
             f"{FIGURE_7[0].speed:g} and {FIGURE_7[1].speed:g} rpm, law III, lumped model and its multibody "
             "twin. "
+            + (f"Warning: unstable at {', '.join(unstable)}; a pair would leave it. " if unstable else "")
             + (
                 "Points: measured means per phase bin with their scatter."
                 if measurements

@@ -23,6 +23,7 @@ from validation.reporting.blocks import (
     Text,
 )
 from validation.reporting.chapters.causes import causes, meshing_teeth
+from validation.reporting.chapters.steady_state import unstable_warning
 from validation.reporting.results import Results
 
 #: Short names for table rows.
@@ -52,6 +53,7 @@ def cross_check(results: Results) -> Chapter:
     keep = off_switch_samples(results.pair, check.lumped["time"].to_numpy())
     models = {str(fidelity): result for fidelity, result in check.multibody.items()}
     blocks: list[Block] = [
+        *unstable_warning(results),
         Text(
             f"The verdict is “{check.verdict}”: {MEANINGS[check.verdict]}. Each model starts from the "
             f"periodic motion and runs for {check.cycles} mesh cycles; the linear model is compared over "

@@ -6,6 +6,7 @@ from functools import partial
 
 from validation.paper import draw_errata
 from validation.reporting.blocks import Badge, Block, Cell, Chapter, Column, Fact, Facts, Picture, Table, Text
+from validation.reporting.chapters.steady_state import unstable_warning
 from validation.reporting.results import Results
 
 
@@ -23,6 +24,7 @@ def errata(results: Results) -> Chapter | None:
         for v in e.evidence
     ]
     blocks: list[Block] = [
+        *unstable_warning(results),
         Text(chapter.text),
         Facts("conditions", tuple(Fact(name, name, value) for name, value in chapter.conditions.items())),
         Table(

@@ -21,12 +21,15 @@ from validation.reporting.blocks import (
     Table,
     Text,
 )
+from validation.reporting.chapters.steady_state import unstable_warning
 from validation.reporting.results import Results
 
 
 def losses(results: Results) -> Chapter:
     """Write the chapter."""
-    return Chapter("losses", "Losses and film", (*_losses(results), *_film(results)))
+    return Chapter(
+        "losses", "Losses and film", (*unstable_warning(results), *_losses(results), *_film(results))
+    )
 
 
 def _losses(results: Results) -> list[Block]:

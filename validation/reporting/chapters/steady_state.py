@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
+from lumped import bodies
 from lumped.results import VARIABLES
 from validation import plots
+from validation.periodic import UNSTABLE
 from validation.reporting.blocks import (
+    Badge,
     Block,
     Cell,
     Chapter,
@@ -31,6 +36,12 @@ def steady_state(results: Results) -> Chapter:
     facts = Facts(
         "key_results",
         (
+            Fact(
+                "stability",
+                "this periodic motion is",
+                Badge(results.multipliers.verdict),
+                f"largest multiplier {results.multipliers.spectral_radius:.4g}",
+            ),
             Fact(
                 "dte_peak_to_peak",
                 "transmission error, peak to peak",
@@ -71,6 +82,7 @@ def steady_state(results: Results) -> Chapter:
         tuple(rows),
     )
     blocks: list[Block] = [
+        *unstable_warning(results),
         facts,
         Picture(
             "transmission_error",
@@ -102,8 +114,11 @@ def steady_state(results: Results) -> Chapter:
 
 def _over_speed(results: Results) -> list[Block]:
     sweep = results.sweep
-    places = [mode.resonant_speed for mode in results.modes if _moves_mesh(mode.shape)]
+    off = off_line_modes(results)
+    places = [mode.resonant_speed for k, mode in enumerate(results.modes) if k not in off]
     speed = sweep["speed"].to_numpy()
+    unstable = sweep["spectral_radius"].to_numpy() > UNSTABLE  # False where there is no periodic motion
+    reached = np.where(unstable, np.nan, sweep["dte_peak_to_peak"].to_numpy())
     lost = speed[~sweep["periodic"].to_numpy().astype(bool)]
     low = sweep["normal_load_min"].to_numpy()
     with np.errstate(invalid="ignore"):
@@ -113,7 +128,8 @@ def _over_speed(results: Results) -> list[Block]:
             "speed_sweep",
             "Periodic motion over pinion speed. Dotted: speeds at which the mesh frequency meets a natural "
             "frequency of the averaged pair. Where the smallest load is negative the teeth would separate "
-            "and the lumped model is not valid.",
+            "and the lumped model is not valid."
+            + (" Crosses: unstable motions, which a pair leaves." if unstable.any() else ""),
             lambda: plots.sweep_figure(sweep, results.operating_rpm, results.static_load, places),
         ),
         Facts(
@@ -123,10 +139,14 @@ def _over_speed(results: Results) -> list[Block]:
                 Fact("speed_high", "highest speed", Quantity(float(speed[-1]), "rpm")),
                 Fact("speeds", "speeds computed", int(speed.size)),
                 Fact("share_separating", "share of the speeds with negative loads", share),
+                Fact("share_unstable", "share of the speeds with an unstable motion", float(unstable.mean())),
                 Fact(
                     "speed_of_largest",
                     "speed of the largest transmission error",
-                    Quantity(float(speed[int(np.nanargmax(sweep["dte_peak_to_peak"].to_numpy()))]), "rpm"),
+                    Quantity(float(speed[int(np.nanargmax(reached))]), "rpm")
+                    if np.isfinite(reached).any()
+                    else None,
+                    "among stable motions" if unstable.any() else "",
                 ),
             ),
         ),
@@ -144,9 +164,9 @@ def _over_speed(results: Results) -> list[Block]:
             Quantity(mode.natural_frequency, "Hz"),
             mode.damping_ratio,
             Quantity(mode.resonant_speed, "rpm"),
-            "along the line of action" if _moves_mesh(mode.shape) else "off the line of action",
+            "off the line of action" if k in off else "along the line of action",
         )
-        for mode in results.modes
+        for k, mode in enumerate(results.modes)
     ]
     blocks.append(
         Table(
@@ -164,5 +184,34 @@ def _over_speed(results: Results) -> list[Block]:
     return blocks
 
 
-def _moves_mesh(shape: dict[str, float]) -> bool:
-    return max(abs(shape[name]) for name in ("q", "x_p", "x_g")) > max(abs(shape[n]) for n in ("y_p", "y_g"))
+def unstable_warning(results: Results) -> tuple[Text, ...]:
+    """What a chapter on the periodic motion says first where that motion is not stable."""
+    found = results.multipliers
+    if found.verdict == "stable":
+        return ()
+    return (
+        Text(
+            f"Warning: the periodic motion at the operating point is {found.verdict} (largest multiplier "
+            f"{found.spectral_radius:.4g}). What follows is a solution of the equations that a gear pair "
+            "leaves at the smallest disturbance: not a prediction of what it does."
+        ),
+    )
+
+
+def off_line_modes(results: Results) -> frozenset[int]:
+    """Places in ``results.modes`` of the two modes off the line of action.
+
+    Friction drives y_p and y_g but they do not act back, so two modes are those of the bearings alone: the
+    nearest to sqrt(K/m). Shapes cannot tell, since equal gears have a third mode of that very frequency.
+    """
+    b, bearings = bodies(results.pair), results.pair.bearings
+    found: set[int] = set()
+    for stiffness, mass in (
+        (bearings.pinion.oloa_stiffness, b.mass_pinion),
+        (bearings.gear.oloa_stiffness, b.mass_gear),
+    ):
+        frequency = math.sqrt(stiffness / mass) / (2.0 * math.pi)
+        free = [k for k in range(len(results.modes)) if k not in found]
+        if free:
+            found.add(min(free, key=lambda k: abs(results.modes[k].natural_frequency - frequency)))
+    return frozenset(found)
