@@ -23,14 +23,19 @@ def sweep(
         bool, typer.Option("--retry-failed", help="With --resume: compute the failed cases again.")
     ] = False,
     workers: Annotated[
-        int | None, typer.Option("--workers", help="Worker processes; default: one per core.")
+        int | None, typer.Option("--workers", help="Worker processes of this machine; default: one per core.")
     ] = None,
     scheduler: Annotated[
         str | None,
-        typer.Option("--scheduler", metavar="ADDRESS", help="Dask scheduler, tcp://HOST:PORT, to run on."),
+        typer.Option(
+            "--scheduler", metavar="tcp://HOST:PORT", help="Run on the Dask cluster of this scheduler."
+        ),
     ] = None,
     case_seconds: Annotated[
-        float | None, typer.Option("--case-seconds", help="Longest time of a case in seconds.")
+        float | None,
+        typer.Option(
+            "--case-seconds", help="Longest time of a case in seconds; a longer one is ended and recorded."
+        ),
     ] = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Check the study and count its cases.")] = False,
 ) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from validation.studies.schema import Settings, Study
 
 Values = dict[str, float]
+_LOADED = {"multibody": "multibody", "floquet": "floquet.gear_pair"}
 _VERDICT = {"stable": 1.0, "undecided": 0.0, "unstable": -1.0}
 
 
@@ -45,6 +47,10 @@ class Evaluator:
         """Return the evaluator of a study."""
         fields = tuple(axis.field for axis in study.axes)
         return Evaluator(study.gear_pair, fields, study.analysis, study.outputs, study.settings)
+
+    def prepare(self) -> None:
+        """Load what the analysis needs, so that the first case takes no longer than the others."""
+        import_module(_LOADED.get(self.analysis, "lumped"))
 
     def variation(self, values: tuple[AxisValue, ...]) -> GearVariation:
         """Return the pair with the axes' values; the plain fields change at once, so they need only fit

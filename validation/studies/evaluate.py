@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 import platform
-import signal
 import threading
 import time
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import metadata
-from types import FrameType
 
 from lumped.errors import LawRangeWarning, ParameterError, SpurcheckError
 from validation.studies.analyses import Evaluator
@@ -38,10 +35,6 @@ class Batch:
     versions: str
 
 
-class _TimeLimit(BaseException):
-    """Raised inside a case that takes too long; not an Exception, so that no analysis swallows it."""
-
-
 @cache
 def versions() -> str:
     """Versions that decide the last bit of a result."""
@@ -59,28 +52,28 @@ def evaluate_batch(
     ----------
     evaluator : what to do
     cases : number and values of the axes of each
-    limit : longest time of a case [s]; acts on the main thread of a process on systems with interval timers
+    limit : longest time of a case [s]
     """
+    if limit is not None:
+        from validation.studies.case_process import evaluate_within
+
+        return Batch(evaluate_within(evaluator, cases, limit), versions())
     with _ONE_AT_A_TIME:
-        records = tuple(evaluate(evaluator, case, values, limit) for case, values in cases)
+        records = tuple(evaluate(evaluator, case, values) for case, values in cases)
     return Batch(records, versions())
 
 
-def evaluate(
-    evaluator: Evaluator, case: int, values: tuple[AxisValue, ...], limit: float | None = None
-) -> Record:
-    """Evaluate one case; see ``evaluate_batch``."""
+def evaluate(evaluator: Evaluator, case: int, values: tuple[AxisValue, ...]) -> Record:
+    """Evaluate one case; whatever it raises becomes its record."""
     start = time.perf_counter()
 
     def record(status: Status, outputs: tuple[float, ...] = (), message: str = "") -> Record:
         return Record(case, status, time.perf_counter() - start, outputs, message[:MAX_MESSAGE])
 
     try:
-        with warnings.catch_warnings(record=True) as caught, _time_limit(limit):
+        with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             outputs = evaluator(values)
-    except _TimeLimit:
-        return record(Status.TIME_LIMIT, message=f"longer than {limit:g} s")
     except ParameterError as error:
         return record(Status.REFUSED, message=str(error))
     except SpurcheckError as error:
@@ -94,23 +87,3 @@ def evaluate(
     if outside:
         return record(Status.OUTSIDE_LAW_RANGE, outputs, outside[0])
     return record(Status.OK, outputs)
-
-
-@contextlib.contextmanager
-def _time_limit(seconds: float | None) -> Iterator[None]:
-    """Raise ``_TimeLimit`` in the block after some time, where the system and the thread allow it."""
-    main = threading.current_thread() is threading.main_thread()
-    if seconds is None or not main or not hasattr(signal, "setitimer"):
-        yield
-        return
-
-    def expired(number: int, frame: FrameType | None) -> None:
-        raise _TimeLimit
-
-    before = signal.signal(signal.SIGALRM, expired)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, before)

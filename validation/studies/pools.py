@@ -69,7 +69,10 @@ class SerialPool:
     def submit(self, work: Work, *arguments: Any) -> Future[Batch]:
         """Run the batch now."""
         future: Future[Batch] = Future()
-        future.set_result(work(*arguments))
+        try:
+            future.set_result(work(*arguments))
+        except Exception as error:  # noqa: BLE001  (as an executor does)
+            future.set_exception(error)
         return future
 
     def check(self) -> None:
@@ -79,7 +82,10 @@ class SerialPool:
         """Nothing to do."""
 
     def close(self) -> None:
-        """Nothing to do."""
+        """End the process of cases with a time limit."""
+        from validation.studies.case_process import end_idle
+
+        end_idle()
 
 
 def _worker_start(parent: int) -> None:

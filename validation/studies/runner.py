@@ -94,8 +94,8 @@ def run_sweep(
     scheduler : address of a Dask scheduler, instead of ``workers``
     resume : go on where an earlier run of the same study in that folder ended
     retry_failed : with ``resume``, also compute the failed cases again
-    case_seconds : longest time of a case [s]; on a cluster it acts where a worker runs its tasks on its
-        main thread
+    case_seconds : longest time of a case [s]; with it, processes of their own evaluate the cases, and are
+        killed when one is late
     progress : called with (computed, to compute, failed)
 
     Returns

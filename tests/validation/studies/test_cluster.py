@@ -98,3 +98,21 @@ def test_no_scheduler_is_refused(study, tmp_path, monkeypatch):
         run_sweep(study, tmp_path / "out", scheduler="tcp://127.0.0.1:9")
     with pytest.raises(ParameterError, match="running scheduler"):
         run_sweep(study, tmp_path / "out", resume=True, scheduler="nonsense://x")
+
+
+def test_the_time_limit_holds_on_threads_of_a_worker(study, make_study, tmp_path, undisturbed):
+    # 100000 mesh cycles of the multibody model take minutes.
+    endless = make_study(
+        analysis="multibody",
+        outputs=["dte_rms"],
+        settings={"cycles": 100_000},
+        axes=[{"field": "operating.pinion_speed", "values": [2000, 3000]}],
+    )
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=2, protocol="tcp", dashboard_address=None, silence_logs=50
+    ) as cluster:
+        address = cluster.scheduler_address
+        summary = run_sweep(endless, tmp_path / "endless", scheduler=address, case_seconds=2.0)
+        assert dict(summary.statuses) == {Status.TIME_LIMIT: 2}
+        plain = run_sweep(study, tmp_path / "plain", scheduler=address, case_seconds=60.0)
+    assert plain.results.read_bytes() == undisturbed

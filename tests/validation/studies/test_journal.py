@@ -132,6 +132,41 @@ def test_after_damage_appending_goes_on(journal):
     assert path.read_bytes() == data
 
 
+@pytest.mark.parametrize("tail", [1, 7, 5000])
+def test_opening_cuts_off_a_damaged_tail_however_long(journal, tail):
+    key, path, written = journal
+    data = path.read_bytes()
+    # What a torn block leaves: zeros, and the start of a record whose rest never reached the disk.
+    path.write_bytes(data + (b"\0" * tail + encode(written[0], key.outputs, key.seed)[:-1])[:tail])
+    _, result = read(path, key)
+    assert result.damaged_bytes == tail
+    Journal(path, key, result.end).close()
+    assert path.read_bytes() == data
+
+
+@pytest.mark.parametrize("kept", [0, 1, 100])
+def test_a_write_that_fails_in_the_middle_leaves_nothing_of_itself(journal, monkeypatch, kept):
+    key, path, written = journal
+    data = path.read_bytes()
+
+    def full(descriptor, block):
+        monkeypatch.setattr("validation.studies.journal.os.write", failing)
+        return write(descriptor, bytes(block)[:kept])
+
+    def failing(descriptor, block):
+        raise OSError(28, "No space left on device")
+
+    with Journal(path, key, len(data)) as file:
+        write = os.write
+        monkeypatch.setattr("validation.studies.journal.os.write", full)
+        with pytest.raises(StoreError, match="No space left"):
+            file.append(written * 10)
+        assert path.read_bytes() == data
+        monkeypatch.undo()
+        file.append(written[:1])  # and the next write stands where the failed one would have stood
+    assert path.read_bytes() == data + encode(written[0], key.outputs, key.seed)
+
+
 def test_a_damaged_header_is_repaired(journal):
     key, path, written = journal
     data = path.read_bytes()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-import time
 import warnings
 from types import SimpleNamespace
 
@@ -103,18 +102,6 @@ def test_a_law_outside_its_range_is_flagged(study, tmp_path, replace_analysis):
     summary = run_sweep(study, tmp_path / "out")
     assert dict(summary.statuses)[Status.OUTSIDE_LAW_RANGE] == 96
     assert int(read_results(tmp_path / "out").contact_ratio.notnull().sum()) == 96
-
-
-def test_a_case_that_does_not_end_is_stopped(study, tmp_path, replace_analysis):
-    def analysis(variation, settings):
-        while speed_of(variation) == 500.0:
-            time.sleep(0.01)
-        return constant()
-
-    replace_analysis(analysis)
-    summary = run_sweep(study, tmp_path / "out", case_seconds=0.05)
-    assert dict(summary.statuses)[Status.TIME_LIMIT] == 3 * 4  # 500 rpm: 3 widths, 4 distances that exist
-    assert "0.05 s" in dict(summary.failures)[1]
 
 
 def test_processes_give_the_same_bytes(study, tmp_path, undisturbed):

@@ -1,0 +1,109 @@
+"""Does every case give one record, whichever batches are lost when workers die?"""
+
+from __future__ import annotations
+
+from collections import Counter
+from concurrent.futures import Future
+
+import pytest
+
+from validation.studies.cases import case_list
+from validation.studies.dispatch import Dispatcher
+from validation.studies.evaluate import Batch, versions
+from validation.studies.record import Record, Status
+
+
+class Died(Exception):
+    """What a batch raises whose worker died."""
+
+
+class ScriptedPool:
+    """A pool whose batches end in the order and way that a test says.
+
+    Parameters
+    ----------
+    deadly : case -> how often it kills its worker
+    dies_together : whether the other batches under way die with it
+    unfinished : whether these others are then not even marked as ended
+    """
+
+    died = (Died,)
+
+    def __init__(self, deadly, dies_together, unfinished=False, slots=3):
+        self.deadly, self.dies_together, self.unfinished = Counter(deadly), dies_together, unfinished
+        self.slots = slots
+        self.under_way: list[tuple[Future[Batch], list[int]]] = []
+        self.restarts = 0
+        self.submitted: list[list[int]] = []
+
+    def submit(self, work, evaluator, batch, limit):
+        future: Future[Batch] = Future()
+        cases = [case for case, _ in batch]
+        self.submitted.append(cases)
+        self.under_way.append((future, cases))
+        if len(self.under_way) == 2 * self.slots or len(self.submitted) > 20:
+            self.advance()
+        return future
+
+    def advance(self):
+        """End the batch that was submitted last, and a deadly one with all others if they die together."""
+        future, cases = self.under_way.pop()
+        killers = [case for case in cases if self.deadly[case] > 0]
+        if not killers:
+            future.set_result(Batch(tuple(Record(c, Status.OK, 1e-3, (1.0, 2.0)) for c in cases), versions()))
+            return
+        self.deadly[killers[0]] -= 1
+        future.set_exception(Died())
+        if self.dies_together:
+            for other, _ in self.under_way:
+                if not self.unfinished:
+                    other.set_exception(Died())
+            self.under_way.clear()
+
+    def check(self):
+        self.advance()
+
+    def restart(self):
+        self.restarts += 1
+
+
+@pytest.fixture
+def statuses(study, monkeypatch):
+    """Dispatch the first 60 cases to a pool; status by case, each case once."""
+    monkeypatch.setattr("validation.studies.dispatch._CHECK_SECONDS", 0.0)
+
+    def run(pool):
+        found: dict[int, Status] = {}
+        for records in Dispatcher(pool, case_list(study)).records(iter(range(60)), 60):
+            for record in records:
+                assert record.case not in found
+                found[record.case] = record.status
+        assert sorted(found) == list(range(60))
+        return found
+
+    return run
+
+
+POOLS = pytest.mark.parametrize(
+    ("together", "unfinished"), [(True, False), (True, True), (False, False)], ids=["all", "cut off", "one"]
+)
+
+
+@POOLS
+def test_batches_lost_with_a_worker_are_computed_again(statuses, together, unfinished):
+    pool = ScriptedPool({5: 1, 30: 1}, together, unfinished)
+    assert set(statuses(pool).values()) == {Status.OK}
+    assert pool.restarts >= 2
+    sent = Counter(case for batch in pool.submitted for case in batch)
+    assert sent[5] == 2
+    assert sum(sent.values()) > 60
+
+
+@POOLS
+def test_a_case_has_failed_when_it_killed_its_worker_twice_alone_on_it(statuses, together, unfinished):
+    pool = ScriptedPool({5: 99, 30: 2}, together, unfinished)
+    found = statuses(pool)
+    # Case 30 killed a worker once among others and once alone: it gets its second chance.
+    assert {case for case, status in found.items() if status is Status.WORKER_DIED} == {5}
+    # Once beside other batches, which says nothing for sure, then twice alone.
+    assert sum(5 in batch for batch in pool.submitted) == 3
