@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from lumped import MeshCycle
-from validation.plots.style import BLACK, DASHES, LINES, legend_above, mark_switches, new_figure, scaled
+from validation.plots.style import BLACK, DASHES, LINES, legend, mark_switches, new_figure, scaled
 
 
 def stiffness_figure(cycle: MeshCycle, points: int = 801) -> Figure:
@@ -37,5 +37,6 @@ def stiffness_figure(cycle: MeshCycle, points: int = 801) -> Figure:
     ax.set_ylim(bottom=0.0)
     ax.set_xlabel("time [mesh cycles]")
     ax.set_ylabel(f"stiffness [{unit}]")
-    legend_above(ax, len(k) + 1)
+    # Above the letters of the switches, which stand on the axes.
+    legend(ax, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=len(k) + 1, borderaxespad=1.7)
     return figure

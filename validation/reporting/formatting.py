@@ -57,4 +57,6 @@ def cell(value: Cell, digits: int = 4) -> str:
         return "yes" if value else "no"
     if isinstance(value, float):
         return number(value, digits)
+    if isinstance(value, int):
+        return str(value).replace("-", _MINUS)
     return str(value)

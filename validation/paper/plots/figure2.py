@@ -27,9 +27,19 @@ def _friction(ax: Axes, record: FigureRecord) -> None:
                 one["cycles"], one["mu"].sel(law=law), color=colour, linestyle=dash, label=f"{law}, {gears}"
             )
         ax.axvline(float(one["pitch"]), color=GREY, linewidth=0.6, linestyle=dash, zorder=0.5)
+        ax.annotate(
+            f"P, {gears}",
+            (float(one["pitch"]), 0.0),
+            xycoords=("data", "axes fraction"),
+            xytext=(-3 if dash != "-" else 3, 3),
+            textcoords="offset points",
+            ha="right" if dash != "-" else "left",
+            fontsize=7.5,
+            color=GREY,
+        )
     ax.axhline(0.0, color=GREY, linewidth=0.6)
     ax.set_xlim(0.0, float(data["contact_ratio"].max()))
-    ax.set_xlabel("(a) time since A [mesh cycles]; grey: pitch point")
+    ax.set_xlabel("(a) time since A [mesh cycles]")
     ax.set_ylabel("friction coefficient [-]")
     legend(ax, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2)
 

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from validation.paper.figures.record import FigureRecord
 from validation.paper.operating_points import LAWS
 from validation.paper.plots.shared import LAW_LOOK
-from validation.plots.style import GREY, legend_above, mark_switches, new_figure
+from validation.plots.style import GREY, legend, mark_switches, new_figure
 
 
 def draw_figure3(record: FigureRecord) -> Figure:
@@ -27,21 +27,11 @@ def draw_figure3(record: FigureRecord) -> Figure:
         ax.axhline(0.0, color=GREY, linewidth=0.6)
         ax.axvline(pitch, color=GREY, linewidth=0.6, linestyle=(0, (2, 2)), zorder=0.5)
     whole, close = axes[0]
-    mark_switches(whole, {"B": end - 1.0, "C": 1.0}, letters=False)
-    for name, place in (("A", 0.0), ("B", end - 1.0), ("P", pitch), ("C", 1.0), ("D", end)):
-        whole.annotate(
-            name,
-            (place, 0.0),
-            xycoords=("data", "axes fraction"),
-            xytext=(2, 2),
-            textcoords="offset points",
-            color=GREY,
-            fontsize=8.0,
-        )
+    mark_switches(whole, {"A": 0.0, "B": end - 1.0, "P": pitch, "C": 1.0, "D": end})
     whole.set_xlim(0.0, end)
     whole.set_xlabel("$t/t_c$ [mesh cycles since A]")
     whole.set_ylabel("µ / mean of |µ| [-]")
-    legend_above(whole, 2)
+    legend(whole, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=1.7)
     close.set_xlim(pitch - 0.03, pitch + 0.03)
     close.set_xlabel("close-up of the pitch point P")
     return figure

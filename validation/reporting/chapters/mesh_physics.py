@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from lumped import GearPair
+from lumped.quasi_static import OptimalRelief
 from validation.mesh_physics import CURVES, MeshPhysics
 from validation.plots.harris_map import harris_figure, relief_figure
 from validation.plots.load_sharing import load_sharing_figure
@@ -98,9 +99,9 @@ def _stiffness(results: Results, found: MeshPhysics) -> list[Block]:
                 "Potential-energy stiffness over that of ISO 6336-1, method B.",
                 (
                     Column("variant", "assumption"),
-                    Column("mean_ratio", "mean mesh stiffness"),
+                    Column("mean_ratio", "mean mesh stiffness, ratio"),
                     Column("single_ratio", "size: largest pair stiffness over c'"),
-                    Column("shape_ratio", "shape over the path"),
+                    Column("shape_ratio", "shape over the path, ratio"),
                 ),
                 tuple(
                     (str(name), *(float(iso[key].sel(variant=name)) for key in iso.data_vars))
@@ -213,18 +214,25 @@ def _loaded_mesh(results: Results, found: MeshPhysics) -> list[Block]:
                     Fact(
                         "start_pinion",
                         "its start on the pinion",
-                        Quantity(float(np.degrees(best.start_roll_angle_pinion)), "deg"),
+                        Quantity(float(np.degrees(best.start_roll_angle_pinion)), "°"),
                         "roll angle",
                     ),
                     Fact(
                         "start_gear",
                         "its start on the gear",
-                        Quantity(float(np.degrees(best.start_roll_angle_gear)), "deg"),
+                        Quantity(float(np.degrees(best.start_roll_angle_gear)), "°"),
                         "roll angle",
                     ),
-                    Fact("peak_to_peak", "peak to peak with it", Quantity(best.peak_to_peak, "m")),
+                    Fact("peak_to_peak", "peak to peak with it", *_remaining(best)),
                     Fact("unmodified", "peak to peak without relief", Quantity(best.unmodified, "m")),
                 ),
             )
         )
     return blocks
+
+
+def _remaining(best: OptimalRelief) -> tuple[Quantity, str]:
+    """Peak to peak with the best relief: what is rounding beside that without relief is zero."""
+    if best.peak_to_peak < 1e-6 * best.unmodified:
+        return Quantity(0.0, "m"), "below a millionth of that without relief"
+    return Quantity(best.peak_to_peak, "m"), ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 from lumped import GearPair, bodies, mesh_elements
 from lumped.parameters import stated_unit
@@ -28,7 +29,8 @@ def parameters(results: Results) -> Chapter:
         unit = stated_unit(path) or ""
         shown = ", ".join(f"{v:g}" for v in value) if isinstance(value, list) else value
         flag = Badge("warning", "assumed") if is_assumed(source) else ""
-        rows.append((path, shown, "" if unit == "1" or isinstance(value, str) else unit, source, flag))
+        worded = unit == "1" or isinstance(value, str)
+        rows.append((path, shown, "" if worded else unit_text(unit), source, flag))
     table = Table(
         "parameters",
         f"Parameters of {pair.name}. {len(assumed)} of {len(rows)} values are assumed.",
@@ -83,6 +85,15 @@ def parameters(results: Results) -> Chapter:
         ),
     )
     return Chapter("parameters", "Parameters", (table, Text("What follows from the parameters:"), derived))
+
+
+_EXPONENTS = str.maketrans("123456789", "¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def unit_text(unit: str) -> str:
+    """A unit of the parameter file as it is printed: ``kg*m**2`` as kg m²."""
+    text = re.sub(r"\*\*(\d)", lambda power: power[1].translate(_EXPONENTS), unit).replace("*", " ")
+    return {"um": "µm", "deg": "°", "degC": "°C"}.get(text, text)
 
 
 def source_of(pair: GearPair, path: str) -> str:

@@ -41,7 +41,8 @@ def validity_map(results: Results) -> Chapter:
     rows: list[tuple[Cell, ...]] = []
     for row in sorted({0, here, torque.size - 1}):
         spans = _spans(speed, state[row] == 0)
-        rows.append((Quantity(float(torque[row]), "N m"), spans or "nowhere"))
+        share = float(np.mean(state[row] == 0))
+        rows.append((Quantity(float(torque[row]), "N m"), share, spans or "nowhere"))
     blocks = (
         Text(
             f"The checks of the chapter before, at {speed.size} speeds and {torque.size} torques, all else "
@@ -59,7 +60,11 @@ def validity_map(results: Results) -> Chapter:
         Table(
             "valid_speeds",
             "Speeds at which contact and sliding are as the model assumes, at three torques.",
-            (Column("torque", "pinion torque"), Column("speeds", "pinion speeds")),
+            (
+                Column("torque", "pinion torque"),
+                Column("share", "share of the speeds"),
+                Column("speeds", "pinion speeds"),
+            ),
             tuple(rows),
             note=f"Between neighbouring points, {speed[1] - speed[0]:.4g} rpm apart, the state may change "
             "unseen.",
