@@ -66,7 +66,7 @@ def averaged_state_space(pair: GearPair, form: Form = "relative") -> control.Sta
         inputs=list(INPUTS),
         outputs=list(OUTPUTS),
         states=list(system.state_names),
-        name=pair.name,
+        name=pair.name.replace(".", "_"),  # python-control refuses a dot
     )
 
 

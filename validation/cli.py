@@ -12,6 +12,7 @@ import typer
 from validation.commands.crosscheck import crosscheck
 from validation.commands.export import export
 from validation.commands.figures import figures
+from validation.commands.interactive import interactive
 from validation.commands.measurement import measurement
 from validation.commands.parameter_files import init, presets, schema
 from validation.commands.report import report
@@ -69,6 +70,7 @@ COMMANDS = (
     crosscheck,
     reversal,
     stability,
+    interactive,
     sweep,
     figures,
     measurement,

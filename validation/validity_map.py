@@ -102,14 +102,22 @@ def _motion(pair: GearPair, motion: xr.Dataset) -> tuple[float, float]:
     return float(load[contact].min()) / static, distance / g.base_pitch
 
 
+def validity_state(lowest_load: FloatArray, reversal: FloatArray) -> NDArray[np.int64]:
+    """Index into ``STATES`` from the smallest load over the static load and the reversal over the base pitch.
+
+    NaN stands for a point without a periodic motion.
+    """
+    state = np.zeros(lowest_load.shape, dtype=np.int64)
+    state[reversal > REVERSAL_LIMITS[0]] = 1
+    state[(reversal > REVERSAL_LIMITS[1]) | (lowest_load < -LOAD_NOISE)] = 2
+    state[np.isnan(lowest_load)] = 3
+    return state
+
+
 def _dataset(
     pair: GearPair, speed: FloatArray, torque: FloatArray, found: dict[str, FloatArray]
 ) -> xr.Dataset:
-    lowest, reversal = found["lowest_load"], found["reversal"]
-    state = np.zeros(lowest.shape, dtype=np.int64)
-    state[reversal > REVERSAL_LIMITS[0]] = 1
-    state[(reversal > REVERSAL_LIMITS[1]) | (lowest < -LOAD_NOISE)] = 2
-    state[np.isnan(lowest)] = 3
+    state = validity_state(found["lowest_load"], found["reversal"])
     dims = ("torque", "speed")
     names = {
         "lowest_load": "smallest normal load of a pair in contact over the static load",

@@ -74,3 +74,10 @@ def test_the_rigid_form_and_bad_frequencies_are_refused(symmetric):
         averaged_state_space(symmetric, "absolute")
     with pytest.raises(ParameterError, match="frequencies"):
         frequency_response(symmetric, [0.0])
+
+
+def test_a_dot_in_the_name_of_a_pair_is_no_matter(symmetric):
+    """python-control reads a dot in a system's name as that of a subsystem, and refuses it."""
+    named = symmetric.with_(name="stage 1.5")
+    assert averaged_state_space(named).name == "stage 1_5"
+    assert modes(named) == modes(symmetric)

@@ -77,10 +77,13 @@ def test_the_parameter_file_in_the_folder_reproduces_the_pair(written, hostile):
     assert lumped.load_gear_pair(written.folder / "data" / "parameters.toml") == hostile
 
 
-def test_the_page_needs_neither_network_nor_scripts(page):
+def test_the_page_needs_neither_network_nor_scripts(page, written):
     assert "script" not in page.tags
     assert "link" not in page.tags
-    assert all(link.startswith(("#", "data:")) for link in page.links)
+    others = [link for link in page.links if not link.startswith(("#", "data:"))]
+    assert others == ["interactive.html"]
+    assert (written.folder / "interactive.html").is_file()
+    assert (written.folder / "data" / "interactive.nc").is_file()
     assert all(link[1:] in page.ids for link in page.links if link.startswith("#"))
 
 

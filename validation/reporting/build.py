@@ -23,6 +23,7 @@ from validation.reporting.chapters.changes import changes
 from validation.reporting.compare import TOLERANCE, Comparison, load_report
 from validation.reporting.compare import compare as compare_reports
 from validation.reporting.folder import FORMAT, whole_folder
+from validation.reporting.interactive import write_interactive
 from validation.reporting.judged import failures
 from validation.reporting.junit import junit
 from validation.reporting.page import render
@@ -71,9 +72,10 @@ def report(
 ) -> Report:
     """Write the verification report of a gear pair into a folder.
 
-    The folder gets ``index.html`` (self-contained: it needs no network and no other file), ``report.json``
-    (every number shown), ``report.junit.xml`` (every verdict as a test case), ``summary.md``, ``figures/``
-    (PNG and SVG) and ``data/`` (NetCDF and the parameter file). It is written whole or not at all.
+    The folder gets ``index.html`` (self-contained: it needs no network and no other file),
+    ``interactive.html`` (charts to explore), ``report.json`` (every number shown), ``report.junit.xml``
+    (every verdict as a test case), ``summary.md``, ``figures/`` (PNG and SVG) and ``data/`` (NetCDF and the
+    parameter file). It is written whole or not at all.
 
     Parameters
     ----------
@@ -113,6 +115,7 @@ def report(
         tell(0.97, "page and data")
         _write_data(results, folder / "data")
         data = document(results, summary, chapters, quick=quick)
+        data["interactive_page"] = write_interactive(results, folder)
         created = datetime.now(UTC).isoformat(timespec="seconds")
         seconds = {"compute": computed - started, "all": time.perf_counter() - started}
         data["timestamps"] = {

@@ -1,0 +1,168 @@
+"""Does the page show the data file's values in a real browser, by mouse, slider and keyboard?"""
+
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.slow
+VERDICTS = {1: "stable", 0: "undecided", -1: "unstable"}
+NODES = [(0, 0, 0), (1, 3, 12), (2, 5, 30), (0, 2, 20)]
+AXES = ["bearing_factor", "friction_coefficient"]
+
+
+@pytest.fixture
+def page(browser, written):
+    return browser.open(written)
+
+
+def chart(data, key):
+    return data[f"spectral_radius_over_{key}"].transpose(key, "damping_ratio", "speed_rpm").to_numpy()
+
+
+def six_digits(values):
+    return [None if np.isnan(v) else float(f"{v:.6g}") for v in np.asarray(values, dtype=float)]
+
+
+@pytest.mark.parametrize(
+    ("size", "dark"), [((1280, 900), False), ((1280, 900), True), ((390, 844), False), ((320, 640), False)]
+)
+def test_it_loads_without_a_word_on_the_console_and_without_network(browser, written, size, dark):
+    page = browser.open(written, size, dark=dark)
+    page.drawn("stability-plot", "1")
+    assert page.console() == []
+    assert [url for url in page.requests() if not url.startswith("data:")] == [written.as_uri()]
+    width, window = page.run("return [document.documentElement.scrollWidth, innerWidth]")
+    assert window == size[0]
+    assert width <= window  # nothing to scroll sideways
+
+
+def test_its_policy_refuses_network_and_foreign_scripts(page):
+    outcome = page.driver.execute_async_script(
+        "const done = arguments[0], found = [];"
+        "addEventListener('securitypolicyviolation', e => {"
+        "  found.push(e.effectiveDirective); if (found.length === 3) done(found.sort()); });"
+        "fetch('http://127.0.0.1:9/').catch(() => {});"
+        "new Image().src = 'http://127.0.0.1:9/a.png';"
+        "const s = document.createElement('script'); s.textContent = 'window.owned = 1';"
+        "document.body.append(s);"
+    )
+    assert outcome == ["connect-src", "img-src", "script-src-elem"]
+    assert page.run("return window.owned") is None
+    page.console()
+
+
+@pytest.mark.parametrize("key", AXES)
+@pytest.mark.parametrize(("k", "i", "j"), NODES)
+def test_hover_over_the_chart_shows_the_data_file(page, data, key, k, i, j):
+    page.choose("axis", AXES.index(key))
+    page.choose("slice", k)
+    page.drawn("stability-plot", "1")
+    speed, damping = float(data["speed_rpm"][j]), float(data["damping_ratio"][i])
+    # Half a step inside where the node lies on the edge of the axes.
+    x = np.clip(speed, *(data["speed_rpm"].to_numpy()[[0, -1]] + [20, -20]))
+    y = np.clip(damping, *(data["damping_ratio"].to_numpy()[[0, -1]] + [1e-3, -1e-3]))
+    lines = page.hover("stability-plot", float(x), float(y))
+    verdict = VERDICTS[int(data[f"verdict_over_{key}"].to_numpy()[k, i, j])]
+    assert lines == [
+        f"{speed:.6g} rpm",
+        f"damping ratio {damping:.6g}",
+        f"largest multiplier {chart(data, key)[k, i, j]:.6f}",
+        verdict,
+    ]
+
+
+def test_hover_over_the_cut_shows_the_data_file(page, data):
+    own = int(np.argmin(np.abs(data["bearing_factor"].to_numpy() - 1.0)))
+    i, j = int(np.argmin(np.abs(data["damping_ratio"].to_numpy() - 0.016))), 17
+    value = chart(data, "bearing_factor")[own, i, j]
+    lines = page.hover("stability-plot", float(data["speed_rpm"][j]), float(value), "yaxis2")
+    assert lines == [f"{float(data['speed_rpm'][j]):.6g} rpm", f"largest multiplier {value:.6f}"]
+
+
+@pytest.mark.parametrize("key", AXES)
+def test_the_slider_shows_every_slice_of_the_data_file(page, data, key):
+    page.choose("axis", AXES.index(key))
+    values = chart(data, key)
+    assert len({values[k].tobytes() for k in range(3)}) == 3  # else the slider could be stuck unseen
+    for k in range(3):
+        page.choose("slice", k)
+        page.choose("damping", 1)
+        shown = page.drawn("stability-plot", "plot.data[0].z.map(row => Array.from(row))")
+        np.testing.assert_array_equal(np.float32(shown), np.float32(np.round(values[k], 6)))
+        cut = page.run("return Array.from(document.getElementById('stability-plot').data[5].y)")
+        np.testing.assert_array_equal(np.float32(cut), np.float32(np.round(values[k, 1], 6)))
+        dots = page.run("const p = document.getElementById('stability-plot').data[2]; return [p.x, p.y]")
+        unstable = data[f"verdict_over_{key}"].to_numpy()[k] != 1
+        rows, columns = np.nonzero(unstable)
+        assert dots[0] == six_digits(data["speed_rpm"].to_numpy()[columns])
+        assert dots[1] == six_digits(data["damping_ratio"].to_numpy()[rows])
+        assert f"{float(data[key][k]):.4g}" in page.text("slice-value")
+    assert unstable.any()
+
+
+def test_a_law_shows_its_response_of_the_data_file(page, data):
+    panels = {"y": "dte_peak_to_peak", "y2": "y_p_peak_to_peak", "y3": "lowest_load"}
+    for index, law in enumerate(data["law"].to_numpy()):
+        page.choose("law", index)
+        one = data.sel(law=law)
+        for axis, variable in panels.items():
+            shown = page.drawn(
+                "sweep-plot",
+                f"plot.data.filter(t => t.yaxis === '{axis}' && t.mode === 'lines').at(-1).y",
+            )
+            factor = 1.0 if variable == "lowest_load" else 1e6
+            assert shown == six_digits(factor * one[variable].to_numpy()), (law, variable)
+
+
+@pytest.mark.parametrize(
+    ("axis", "variable", "text"),
+    [
+        ("yaxis", "dte_peak_to_peak", "transmission error {} µm"),
+        ("yaxis2", "y_p_peak_to_peak", "off line of action {} µm"),
+        ("yaxis3", "lowest_load", "lowest load {}"),
+    ],
+)
+def test_hover_over_the_response_shows_the_data_file(page, data, axis, variable, text):
+    page.choose("law", 1)
+    page.drawn("sweep-plot", "1")
+    value = float(data[variable].isel(law=1)[5]) * (1.0 if variable == "lowest_load" else 1e6)
+    lines = page.hover("sweep-plot", float(data["speed"][5]), value, axis)
+    assert lines[0] == f"{float(data['speed'][5]):.6g} rpm"
+    shown = text.format(f"{value:.6g}")
+    assert lines[1].replace("−", "-") == shown
+
+
+def test_flags_of_the_strip_are_those_of_the_data_file(page, data):
+    """Law I has speeds where the teeth separate; the strip and the text say the same."""
+    index = list(data["law"].to_numpy()).index("coulomb")
+    page.choose("law", index)
+    one = data.isel(law=index)
+    rows = {
+        "instability": one["spectral_radius"] > 1.0,
+        "separation": one["lowest_load"] < -1e-4,
+        "reversal": one["reversal"] > 0.02,
+    }
+    for name, expected in rows.items():
+        shown = page.drawn(
+            "sweep-plot",
+            "plot.data.filter(t => t.yaxis === 'y4')"
+            f".flatMap(t => t.x.filter((_, i) => t.y[i] === '{name}'))",
+        )
+        assert sorted(shown) == six_digits(data["speed"].to_numpy()[expected.to_numpy()]), name
+    assert bool(rows["separation"].any())
+    j = int(np.argmax(rows["separation"].to_numpy()))
+    page.choose("sweep-speed", j)
+    assert "Model violated" in page.text("sweep-text")
+
+
+def test_the_multibody_point_is_where_the_data_file_has_it(page, data):
+    """The stand-in is the lumped motion itself, so the point must lie on the curve of the pair's law."""
+    own = data.sel(law="xu_kahraman")
+    j = int(np.argmin(np.abs(data["speed"].to_numpy() - 4875.0)))
+    for axis, variable in (("y", "dte_peak_to_peak"), ("y2", "y_p_peak_to_peak")):
+        marks = page.drawn(
+            "sweep-plot",
+            f"plot.data.filter(t => t.name === 'multibody model' && t.yaxis === '{axis}')"
+            ".map(t => [t.x, t.y])",
+        )
+        assert marks == [[[4875], six_digits(1e6 * data[f"multibody_{variable}"].to_numpy())]]
+        assert marks[0][1][0] == pytest.approx(1e6 * float(own[variable][j]), rel=1e-5)  # six digits shown

@@ -1,0 +1,231 @@
+"""Can the page be used by keyboard alone, and without a mouse, colours or scripts?"""
+
+import itertools
+
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.slow
+
+RIGHT, LEFT, UP, DOWN = "\ue014", "\ue012", "\ue013", "\ue015"
+PAGE_UP, HOME, END, TAB = "\ue00e", "\ue011", "\ue010", "\ue004"
+ORDER = [
+    "skip", "axis", "slice", "damping", "speed", "Zoom in", "Zoom out", "Show all", "Operating point",
+    "stability", "law", "sweep-speed", "Zoom in", "Zoom out", "Show all", "Operating point", "sweep",
+]  # fmt: skip
+
+
+@pytest.fixture
+def page(browser, written):
+    return browser.open(written)
+
+
+def sentence(data, k, i, j):
+    speed, damping = float(data["speed_rpm"][j]), float(data["damping_ratio"][i])
+    factor = float(data["bearing_factor"][k])
+    radius = data["spectral_radius_over_bearing_factor"].to_numpy()[k, i, j]
+    word = {1: "stable", -1: "unstable"}[int(data["verdict_over_bearing_factor"][k, i, j])]
+    return (
+        f"Cursor: {speed:.6g} rpm, mesh damping ratio {damping:.6g}, bearing stiffness factor {factor:.4g}: "
+        f"largest multiplier {radius:.6f}, {word}."
+    )
+
+
+def start(data):
+    """Indices of the operating point on the chart."""
+    place = {"bearing_factor": 1.0, "damping_ratio": 0.016, "speed_rpm": 4875.0}
+    return [int(np.argmin(np.abs(data[name].to_numpy() - value))) for name, value in place.items()]
+
+
+def test_arrows_move_the_cursor_and_the_text_says_its_value(page, data):
+    k, i, j = start(data)
+    assert page.text("stability-text") == sentence(data, k, i, j)
+    page.focus("stability")
+    for key, (dk, di, dj) in {
+        RIGHT: (0, 0, 1), DOWN: (0, -1, 0), LEFT: (0, 0, -1), UP: (0, 1, 0), PAGE_UP: (1, 0, 0),
+    }.items():  # fmt: skip
+        page.press(key)
+        k, i, j = k + dk, i + di, j + dj
+        assert page.text("stability-text") == sentence(data, k, i, j)
+    page.press(END)
+    assert page.text("stability-text") == sentence(data, k, i, data.sizes["speed_rpm"] - 1)
+    page.press(RIGHT, PAGE_UP, PAGE_UP)  # the ends are ends
+    k = data.sizes["bearing_factor"] - 1
+    assert page.text("stability-text") == sentence(data, k, i, data.sizes["speed_rpm"] - 1)
+    page.press(HOME, *[DOWN] * 8)
+    assert page.text("stability-text") == sentence(data, k, 0, 0)
+
+
+def test_the_cursor_meets_an_unstable_node(page, data):
+    unstable = np.argwhere(data["verdict_over_bearing_factor"].to_numpy() == -1)
+    k, i, j = map(int, unstable[len(unstable) // 2])
+    for name, value in (("slice", k), ("damping", i), ("speed", j)):
+        page.choose(name, value)
+    assert page.text("stability-text") == sentence(data, k, i, j)
+    assert page.text("stability-text").endswith("unstable.")
+    lines = page.drawn("stability-plot", "plot.layout.shapes.map(s => [s.yref, s.x0, s.y0])")
+    assert ["y domain", float(f"{data['speed_rpm'].values[j]:.6g}"), 0] in lines
+    assert ["y", 0, float(f"{data['damping_ratio'].values[i]:.6g}")] in lines
+
+
+def test_native_sliders_answer_to_keys_and_say_their_value(page, data):
+    k, _, _ = start(data)
+    page.focus("slice")
+    page.press(RIGHT)
+    value = f"{float(data['bearing_factor'][k + 1]):.4g}"
+    assert page.text("slice-value") == value
+    assert page.run("return document.getElementById('slice').getAttribute('aria-valuetext')") == value
+    page.press(LEFT)
+    assert page.text("slice-value") == "1 (this pair)"
+
+
+def test_tab_goes_through_controls_and_charts_in_reading_order(page):
+    met = []
+    for _ in ORDER:
+        page.press(TAB)
+        met.append(page.run("const e = document.activeElement; return e.id || e.className || e.textContent"))
+        outline = page.run("return getComputedStyle(document.activeElement).outlineStyle")
+        assert outline != "none", met[-1]
+    assert met == ORDER
+
+
+def test_keys_and_buttons_zoom_and_the_window_follows_the_cursor(page, data):
+    speeds = data["speed_rpm"].to_numpy()
+    whole = [float(f"{speeds[0]:.6g}"), float(f"{speeds[-1]:.6g}")]
+
+    def window():
+        return page.drawn("stability-plot", "plot._fullLayout.xaxis.range")
+
+    assert window() == whole
+    page.focus("stability")
+    page.press("+", "+")
+    low, high = window()
+    assert high - low == pytest.approx(0.25 * (whole[1] - whole[0]))
+    assert low <= 4875.0 <= high
+    page.choose("slice", 0)
+    assert window() == [low, high]  # another slice keeps the zoom
+    page.press(END)
+    low, high = window()
+    assert high == whole[1]
+    assert high - low == pytest.approx(0.25 * (whole[1] - whole[0]))
+    page.press("0")
+    assert window() == whole
+    page.run("document.querySelector('#stability-buttons button').click()")
+    assert window()[1] - window()[0] == pytest.approx(0.5 * (whole[1] - whole[0]))
+
+
+def test_a_click_moves_the_cursor(page, data):
+    k, _, _ = start(data)
+    i, j = 4, 9
+    page.hover("stability-plot", float(data["speed_rpm"][j]), float(data["damping_ratio"][i]))
+    page.click()
+    assert page.text("stability-text") == sentence(data, k, i, j)
+
+
+def test_the_response_chart_answers_to_keys(page, data):
+    page.focus("sweep")
+    page.press(RIGHT, UP)
+    law = list(data["law"].to_numpy()).index("xu_kahraman") - 1
+    j = int(np.argmin(np.abs(data["speed"].to_numpy() - 4875.0))) + 1
+    text = page.text("sweep-text")
+    assert text.startswith(
+        f"Cursor: {float(data['speed'][j]):.6g} rpm, friction law II, Benedict and Kelley: "
+    )
+    one = data.isel(law=law, speed=j)
+    assert f"transmission error {1e6 * float(one['dte_peak_to_peak']):.4g} µm" in text
+    assert f"lowest tooth load {float(one['lowest_load']):.3g} of" in text
+
+
+def test_every_control_has_a_name_and_room_for_a_finger(browser, written):
+    page = browser.open(written, (390, 844))
+    controls = page.run(
+        "return Array.from(document.querySelectorAll('input, select, button'), e => {"
+        "  const box = e.getBoundingClientRect();"
+        "  return [(e.labels?.[0] ?? e).textContent.trim(), box.height, box.left, box.right]; })"
+    )
+    assert len(controls) == 14
+    for name, height, left, right in controls:
+        assert name
+        assert height >= 24  # WCAG 2.2, 2.5.8 target size
+        assert 0 <= left < right <= 390
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_text_has_contrast(browser, written, dark):
+    """WCAG 2.1, 1.4.3: 4.5 to 1, for the text of the page and of the charts."""
+    page = browser.open(written, dark=dark)
+    pairs = page.run(
+        """
+        const behind = e => { for (; e; e = e.parentElement) {
+            const c = getComputedStyle(e).backgroundColor; if (!/, 0\\)$/.test(c)) return c; } };
+        const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT), found = [];
+        while (walker.nextNode()) {
+            const e = walker.currentNode.parentElement, text = walker.currentNode.data.trim();
+            if (!text || !e.getClientRects().length || e.closest('script')) continue;
+            const style = getComputedStyle(e);
+            found.push([e.closest('svg') ? style.fill : style.color, behind(e), text]);
+        }
+        return found;"""
+    )
+    assert len(pairs) > 60
+    for ink, paper, text in pairs:
+        assert contrast(ink, paper) >= 4.5, (text, ink, paper)
+
+
+def luminance(colour):
+    parts = colour.strip().removeprefix("#")
+    rgb = (
+        [int(parts[k : k + 2], 16) for k in (0, 2, 4)]
+        if colour.startswith("#")
+        else [float(v) for v in colour[colour.index("(") + 1 : -1].split(",")[:3]]
+    )
+    linear = [v / 12.92 if v <= 0.04045 else ((v + 0.055) / 1.055) ** 2.4 for v in (c / 255 for c in rgb)]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(one, other):
+    high, low = sorted((luminance(one), luminance(other)), reverse=True)
+    return (high + 0.05) / (low + 0.05)
+
+
+def test_the_colours_rise_in_lightness_and_step_at_the_limit(page):
+    """In grey, and with any colour vision, lighter is larger; unstable is apart from all that is stable."""
+    chart = page.run(
+        "const t = document.getElementById('stability-plot').data[0]; return [t.colorscale, t.zmin, t.zmax]"
+    )
+    (scale, low, high) = chart
+    shades = [luminance(colour) for _, colour in scale]
+    assert shades == sorted(shades)
+    limit = (1.0 - low) / (high - low)
+    places = [place for place, _ in scale]
+    assert places == sorted(places)
+    edge = next(n for n, (a, b) in enumerate(itertools.pairwise(places)) if a == b == pytest.approx(limit))
+    assert contrast(scale[edge][1], scale[edge + 1][1]) > 1.5
+
+
+def test_without_scripts_the_page_is_its_tables(browser, written, data):
+    page = browser.open(written, scripts=False)
+    document = page.driver.execute_cdp_cmd("DOM.getDocument", {"depth": -1})
+    query = {"nodeId": document["root"]["nodeId"]}
+    seen = page.driver.execute_cdp_cmd("DOM.querySelectorAll", {**query, "selector": "noscript table"})
+    assert len(seen["nodeIds"]) == 3
+    for selector in ("#stability", "#law"):
+        node = page.driver.execute_cdp_cmd("DOM.querySelector", {**query, "selector": selector})
+        with pytest.raises(Exception, match="box model"):  # not displayed, so it has none
+            page.driver.execute_cdp_cmd("DOM.getBoxModel", {"nodeId": node["nodeId"]})
+    table = page.driver.execute_cdp_cmd("DOM.getOuterHTML", {"nodeId": seen["nodeIds"][2]})["outerHTML"]
+    first = data.sel(law="xu_kahraman").isel(speed=0)
+    for value in (float(first["speed"]), 1e6 * float(first["dte_peak_to_peak"])):
+        assert f"<td>{value:.4g}</td>" in table or f"<td>{value:.5g}</td>" in table
+
+
+def test_a_hostile_name_is_only_text(browser, hostile, attack):
+    page = browser.open(hostile)
+    assert page.console() == []
+    name, description = attack
+    assert page.run("return document.title") == f"Interactive charts: {name}"
+    assert page.run("return document.querySelector('h1').textContent") == name
+    assert page.run("return document.querySelector('h1 + p').textContent") == description
+    assert page.run("return document.images.length") == 0
+    assert page.run("return document.scripts.length") == 3  # data, Plotly, the page's own
+    assert [url for url in page.requests() if not url.startswith("data:")] == [hostile.as_uri()]

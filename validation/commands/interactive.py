@@ -1,0 +1,45 @@
+"""spurcheck interactive: stability chart and response over speed to hover, zoom and slice."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from validation.commands import options as opt
+from validation.commands.terminal import guarded, progress_bar, stderr
+
+
+@guarded
+def interactive(
+    pair: opt.PairArgument = opt.DEFAULT_PAIR,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="Page to write, .html; its numbers go beside it as .nc.")
+    ] = Path("interactive.html"),
+    speed: opt.Speed = None,
+    torque: opt.Torque = None,
+    law: opt.Law = None,
+    settings: opt.Settings = None,
+    force: opt.Force = False,
+) -> None:
+    """Write a page to explore stability over speed and damping, and the response over speed.
+
+    One HTML file that opens in any browser, without network: point at a chart for values, zoom, move the
+    sliders, or use the keyboard alone. Every number of it is also written as NetCDF.
+
+    [bold]Examples[/bold]
+
+    spurcheck interactive -o page.html
+
+    spurcheck interactive my_pair.toml --set mesh.damping_ratio=0.02 -o low_damping.html
+    """
+    from validation.interactive import write_interactive_page
+    from validation.output import check_file
+
+    check_file(output, (".html",), force=force)
+    data = check_file(output.with_suffix(".nc"), (".nc",), force=force)
+    gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
+    with progress_bar("interactive page") as tell:
+        write_interactive_page(gear_pair, output, data=data, progress=tell)
+    stderr().print(f"wrote {output} and {data}", soft_wrap=True)

@@ -1,0 +1,155 @@
+"""The interactive page as one HTML file that needs no network, and the data file beside it."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from collections.abc import Callable
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from lumped import GearPair, load_gear_pair
+from validation.interactive.payload import LAW_NAMES, payload, script_json
+from validation.interactive.results import FINE, PageResults, Sampling, compute
+from validation.output import write_dataset, write_text
+
+#: Parts of the page's own script, in this order.
+_SCRIPTS = ("data.js", "chart.js", "stability.js", "sweep.js", "start.js")
+
+
+def write_interactive_page(
+    pair: GearPair | str | Path,
+    path: str | Path,
+    *,
+    data: str | Path | None = None,
+    sampling: Sampling = FINE,
+    multibody: xr.Dataset | None = None,
+    progress: Callable[[float, str], None] | None = None,
+) -> Path:
+    """Write the interactive page of a gear pair and, as NetCDF, every number on it.
+
+    Parameters
+    ----------
+    pair : gear pair, preset name or parameter file
+    path : the page, ``.html``; an earlier one is replaced
+    data : the data file, ``.nc``; default beside the page, with its name
+    sampling : how finely
+    multibody : motion of the multibody model at the operating point, see ``compute``
+    progress : called with the finished fraction and what is being done
+
+    Returns
+    -------
+    path of the page
+
+    Raises
+    ------
+    ParameterError : a refused parameter
+    NumericalError : a computation fails; the text says what to try
+    """
+    page = Path(path)
+    values = page.with_suffix(".nc") if data is None else Path(data)
+    results = compute(load_gear_pair(pair), sampling, multibody=multibody, progress=progress)
+    write_dataset(results.dataset(), values)
+    write_text(page, render(results, values.name))
+    return page
+
+
+def render(results: PageResults, data_name: str) -> str:
+    """Return the page as text.
+
+    Its security policy names the page's own scripts by their hashes: nothing else may run or be loaded.
+
+    Parameters
+    ----------
+    results : content
+    data_name : name of the data file, for the text
+    """
+    environment = Environment(
+        loader=PackageLoader("validation.interactive", "templates"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    folder = files("validation.interactive") / "templates"
+    own = "\n".join((folder / name).read_text(encoding="utf-8") for name in _SCRIPTS)
+    scripts = [plotly(), f'(() => {{\n"use strict";\n{own}}})();']
+    pair = results.pair
+    return environment.get_template("page.html").render(
+        pair=pair,
+        rpm=pair.operating.pinion_speed * 30.0 / np.pi,
+        law=LAW_NAMES.get(pair.friction.law, pair.friction.law),
+        found=results.found,
+        slices=results.stability.values(),
+        step=float(np.diff(next(iter(results.stability.values())).chart["speed_rpm"]).max()),
+        unstable=unstable_speeds,
+        response=_response_rows(results),
+        missing={LAW_NAMES.get(law, law): reason for law, reason in results.missing.items()},
+        data_name=data_name,
+        policy="script-src " + " ".join(map(_hash, scripts)),
+        scripts=[Markup(_safe(script)) for script in scripts],
+        css=Markup((folder / "page.css").read_text(encoding="utf-8")),
+        json=Markup(script_json(payload(results))),
+    )
+
+
+def plotly() -> str:
+    """Plotly's script, out of the installed package."""
+    return (files("plotly") / "package_data" / "plotly.min.js").read_text(encoding="utf-8")
+
+
+def _hash(script: str) -> str:
+    digest = hashlib.sha256(script.encode("utf-8")).digest()
+    return f"'sha256-{base64.b64encode(digest).decode('ascii')}'"
+
+
+def _safe(script: str) -> str:
+    """Return a script of ours or Plotly's after checking that nothing in it ends the script element.
+
+    Raises
+    ------
+    ValueError : it does
+    """
+    lower = script.lower()
+    if "</script" in lower or "<!--" in lower:
+        raise ValueError("a script holds text that would end its element")
+    return script
+
+
+def unstable_speeds(chart: xr.Dataset, key: str, index: int, damping: float) -> str:
+    """Speeds of a slice that are not stable at a damping ratio, in words."""
+    row = chart.isel({key: index}).sel(damping_ratio=damping, method="nearest")
+    bad = row["verdict"].to_numpy() != 1
+    speed = row["speed_rpm"].to_numpy()
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], bad.astype(int), [0]])))
+    spans = [
+        f"{speed[a]:.5g}" if b - a == 1 else f"{speed[a]:.5g} to {speed[b - 1]:.5g}"
+        for a, b in zip(edges[::2], edges[1::2], strict=True)
+    ]
+    return ", ".join(spans) or "none"
+
+
+def _response_rows(results: PageResults, most: int = 16) -> list[dict[str, Any]]:
+    """Rows of the response of the pair's law, at a few speeds, for readers without scripts."""
+    sweep = results.sweep.isel(law=results.own_law)
+    step = max(1, -(-sweep.sizes["speed"] // most))
+    rows = sweep.isel(speed=slice(None, None, step))
+    return [
+        {
+            "speed": f"{float(rows['speed'][i]):.5g}",
+            "dte": f"{1e6 * float(rows['dte_peak_to_peak'][i]):.4g}",
+            "oloa": f"{1e6 * float(rows['y_p_peak_to_peak'][i]):.4g}",
+            "load": f"{float(rows['lowest_load'][i]):.3g}",
+            "state": rows["validity"]
+            .attrs["long_name"]
+            .removeprefix("0 to 3: ")
+            .split(", ")[int(rows["validity"][i])],
+        }
+        for i in range(rows.sizes["speed"])
+    ]

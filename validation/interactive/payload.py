@@ -1,0 +1,131 @@
+"""Content of the interactive page as JSON: numbers rounded to what the page shows, units, plain names."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from validation.interactive.results import PageResults
+from validation.interactive.slices import Slices
+from validation.plots.tongue_chart import pretty
+from validation.validity import LOAD_NOISE, REVERSAL_LIMITS
+from validation.validity_map import STATES
+
+#: Decimals of a largest multiplier, and significant digits of everything else.
+DECIMALS, DIGITS = 6, 6
+
+LAW_NAMES: Mapping[str, str] = {
+    "none": "no friction",
+    "coulomb": "I, Coulomb",
+    "benedict_kelley": "II, Benedict and Kelley",
+    "xu_kahraman": "III, Xu and Kahraman",
+    "smoothed_coulomb": "IV, smoothed Coulomb",
+    "composite": "V, composite",
+}
+
+
+def payload(results: PageResults) -> dict[str, Any]:
+    """Return what the page's script reads.
+
+    Numbers are rounded here, so that the page shows the digits of the data file; arrays of the charts are
+    little-endian in base64: float32 for the largest multiplier, int8 for the verdict (1 stable, 0 undecided,
+    -1 unstable).
+    """
+    pair = results.pair
+    return {
+        "point": {
+            "speed": pair.operating.pinion_speed * 30.0 / np.pi,
+            "damping": pair.mesh.damping_ratio,
+        },
+        "stability": [_slices(slices) for slices in results.stability.values()],
+        "sweep": _sweep(results),
+        "limits": {"load": LOAD_NOISE, "reversal": list(REVERSAL_LIMITS)},
+    }
+
+
+def script_json(data: Any) -> str:
+    """JSON that may stand inside a script element: no character of it can end the element or open another.
+
+    Raises
+    ------
+    ValueError : a number is not finite
+    """
+    text = json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
+    return text.replace("&", r"\u0026").replace("<", r"\u003c").replace(">", r"\u003e")
+
+
+def _slices(slices: Slices) -> dict[str, Any]:
+    chart, key = slices.chart, slices.key
+    radius = np.round(chart["spectral_radius"].to_numpy(), DECIMALS).astype("<f4")
+    return {
+        "key": key,
+        "name": chart[key].attrs["long_name"],
+        "values": _numbers(chart[key]),
+        "own": slices.own,
+        "speed": _numbers(chart["speed_rpm"]),
+        "damping": _numbers(chart["damping_ratio"]),
+        "radius": _base64(radius),
+        "verdict": _base64(chart["verdict"].to_numpy().astype(np.int8)),
+        "tongues": [
+            [
+                {
+                    "name": pretty(str(region.label)),
+                    "speed": _number(region.point["speed_rpm"]),
+                    "damping": _number(region.point["damping_ratio"]),
+                }
+                for region in regions
+            ]
+            for regions in slices.tongues
+        ],
+    }
+
+
+def _sweep(results: PageResults) -> dict[str, Any]:
+    sweep, points = results.sweep, results.multibody
+    micrometres = {"dte": "dte_peak_to_peak", "oloa": "y_p_peak_to_peak"}
+    laws = []
+    for index, law in enumerate(map(str, sweep["law"].to_numpy())):
+        one = sweep.isel(law=index)
+        laws.append(
+            {
+                "key": law,
+                "name": LAW_NAMES.get(law, law),
+                "note": results.notes[index],
+                **{name: _numbers(1e6 * one[variable].to_numpy()) for name, variable in micrometres.items()},
+                "load": _numbers(one["lowest_load"]),
+                "reversal": _numbers(one["reversal"]),
+                "radius": _numbers(one["spectral_radius"]),
+                "state": one["validity"].to_numpy().tolist(),
+            }
+        )
+    return {
+        "speed": _numbers(sweep["speed"]),
+        "laws": laws,
+        "own": results.own_law,
+        "states": list(STATES),
+        "resonances": _numbers(results.resonances),
+        "multibody": None
+        if points is None
+        else {
+            "speed": _numbers(points["multibody_speed"]),
+            **{n: _numbers(1e6 * points[f"multibody_{v}"].to_numpy()) for n, v in micrometres.items()},
+        },
+    }
+
+
+def _number(value: float) -> float | None:
+    """A number to ``DIGITS`` significant digits; None where it is not finite."""
+    return float(f"{value:.{DIGITS}g}") if np.isfinite(value) else None
+
+
+def _numbers(values: ArrayLike) -> list[float | None]:
+    return [_number(float(value)) for value in np.asarray(values, dtype=float).ravel()]
+
+
+def _base64(values: NDArray[Any]) -> str:
+    return base64.b64encode(np.ascontiguousarray(values).tobytes()).decode("ascii")

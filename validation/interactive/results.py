@@ -1,0 +1,206 @@
+"""What the interactive page shows, computed once: stability slices, response of every friction law."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+import lumped
+from floquet.gear_pair import GearPairMultipliers, gear_pair_multipliers
+from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError
+from lumped.averaged import modes
+from lumped.friction import LAWS, law_range_violations
+from lumped.results import provenance
+from validation.interactive.slices import SLICES, Slices
+from validation.reporting.results import FULL, chart_axes, speed_range
+from validation.validity_map import STATES, validity_state
+
+FloatArray = NDArray[np.float64]
+Progress = Callable[[float, str], None]
+
+
+@dataclass(frozen=True)
+class Sampling:
+    """How finely the page samples.
+
+    Attributes
+    ----------
+    speeds, dampings : nodes of the stability charts
+    slices : values of their third parameter
+    sweep_speeds : of the response over speed
+    """
+
+    speeds: int = 101
+    dampings: int = 17
+    slices: int = 7
+    sweep_speeds: int = 61
+
+
+FINE = Sampling()
+COARSE = Sampling(speeds=16, dampings=4, slices=3, sweep_speeds=8)
+
+
+@dataclass(frozen=True, eq=False)
+class PageResults:
+    """Content of the page.
+
+    Attributes
+    ----------
+    pair : the gear pair
+    found : Floquet multipliers at the operating point
+    stability : third parameter -> its charts
+    sweep : response over (law, speed): dte_peak_to_peak, y_p_peak_to_peak [m]; lowest_load over the static
+        load; reversal over the base pitch; validity, index into ``validation.validity_map.STATES``;
+        spectral_radius, above 1 where the motion is unstable
+    own_law : index of the pair's law in the sweep
+    notes : for each law of the sweep, where it is used outside its range; empty where it is not
+    missing : law -> why it is not in the sweep
+    resonances : speeds at which the mesh frequency meets a natural frequency of the averaged pair [rpm]
+    multibody : one or more points of the multibody model over ``multibody_speed``, or None
+    """
+
+    pair: GearPair
+    found: GearPairMultipliers
+    stability: dict[str, Slices]
+    sweep: xr.Dataset
+    own_law: int
+    notes: tuple[str, ...]
+    missing: dict[str, str]
+    resonances: tuple[float, ...]
+    multibody: xr.Dataset | None
+
+    def dataset(self) -> xr.Dataset:
+        """Every number of the page; the charts carry ``_over_`` and their third parameter in their names."""
+        parts = [
+            slices.chart.rename({name: f"{name}_over_{key}" for name in slices.chart.data_vars})
+            for key, slices in self.stability.items()
+        ]
+        parts += [self.sweep] + ([] if self.multibody is None else [self.multibody])
+        merged = xr.merge([part.drop_attrs(deep=False) for part in parts], join="exact")
+        return merged.assign_attrs(provenance(self.pair) | {"title": f"interactive page of {self.pair.name}"})
+
+
+def compute(
+    pair: GearPair,
+    sampling: Sampling = FINE,
+    *,
+    multibody: xr.Dataset | None = None,
+    progress: Progress | None = None,
+) -> PageResults:
+    """Compute the content of the page.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    sampling : how finely
+    multibody : motion of the multibody model at the operating point over whole mesh cycles (``dte`` and
+        ``y_p`` over ``time``), to be shown beside the lumped response; None: not shown
+    progress : called with the finished fraction and what is being done
+
+    Raises
+    ------
+    NumericalError : the stability chart or the response with the pair's own law fails
+    """
+    tell = progress or (lambda fraction, text: None)
+    try:
+        found = modes(pair)
+    except NumericalError:  # an overdamped mode has no natural frequency
+        found = ()
+    rpm = pair.operating.pinion_speed * 30.0 / np.pi
+    # Resonances are wider the faster the pair runs, so steps grow with the root of speed.
+    low, high = speed_range(pair, found)
+    speeds = np.linspace(low**0.5, high**0.5, sampling.sweep_speeds) ** 2
+    speeds[np.argmin(np.abs(speeds - rpm))] = rpm
+    grid = chart_axes(pair, replace(FULL, chart_speeds=sampling.speeds, chart_dampings=sampling.dampings))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LawRangeWarning)  # the page says it beside the law
+        stability = {}
+        for done, (key, make) in enumerate(SLICES.items()):
+            tell(0.6 * done / len(SLICES), "stability over a third parameter")
+            stability[key] = make(pair, grid, sampling.slices)
+        tell(0.6, "response of every friction law")
+        sweeps, missing = _law_sweeps(pair, speeds, lambda f: tell(0.6 + 0.4 * f, "response over speed"))
+        notes = tuple("; ".join(map(str, law_range_violations(pair, law))) for law in sweeps)
+        multipliers = gear_pair_multipliers(pair)
+    laws = xr.DataArray(
+        np.array(list(sweeps), dtype=object), dims="law", name="law", attrs={"long_name": "friction law"}
+    )
+    return PageResults(
+        pair=pair,
+        found=multipliers,
+        stability=stability,
+        sweep=xr.concat(list(sweeps.values()), laws),
+        own_law=list(sweeps).index(pair.friction.law),
+        notes=notes,
+        missing=missing,
+        resonances=tuple(mode.resonant_speed for mode in found),
+        multibody=None if multibody is None else _points(pair, multibody),
+    )
+
+
+def _law_sweeps(
+    pair: GearPair, speeds: FloatArray, tell: Callable[[float], None]
+) -> tuple[dict[str, xr.Dataset], dict[str, str]]:
+    """Response of every law that this pair admits, and the reason for every other."""
+    sweeps, missing = {}, {}
+    for done, law in enumerate(LAWS):
+        try:
+            sweeps[law] = _sweep(pair.with_({"friction.law": law}), speeds)
+        except (ParameterError, NumericalError) as error:
+            if law == pair.friction.law:
+                raise
+            missing[law] = str(error)
+        tell((done + 1) / len(LAWS))
+    return sweeps, missing
+
+
+def _sweep(pair: GearPair, speeds: FloatArray) -> xr.Dataset:
+    """Response with the pair's own law."""
+    g = lumped.geometry(pair)
+    found = lumped.speed_sweep(pair, speeds, samples_per_cycle=96)
+    static = pair.operating.pinion_torque / g.base_radius_pinion
+    lowest, reversal = found["normal_load_min"].to_numpy(), found["sliding_reversal"].to_numpy()
+    lowest, reversal = lowest / static, reversal / g.base_pitch
+    values = {
+        "dte_peak_to_peak": found["dte_peak_to_peak"].to_numpy(),
+        "y_p_peak_to_peak": found["y_p_peak_to_peak"].to_numpy(),
+        "lowest_load": lowest,
+        "reversal": reversal,
+        "validity": validity_state(lowest, reversal),
+        "spectral_radius": found["spectral_radius"].to_numpy(),
+    }
+    labels = {name: {"units": unit, "long_name": text} for name, (unit, text) in _LABELS.items()}
+    return xr.Dataset(
+        {name: ("speed", array, labels[name]) for name, array in values.items()},
+        coords={"speed": ("speed", speeds, {"units": "rpm", "long_name": "pinion speed"})},
+    )
+
+
+#: Variable of the sweep -> unit, plain name.
+_LABELS = {
+    "dte_peak_to_peak": ("m", "transmission error, peak to peak"),
+    "y_p_peak_to_peak": ("m", "pinion vibration off the line of action, peak to peak"),
+    "lowest_load": ("1", "smallest normal load of a pair in contact over the static load"),
+    "reversal": ("1", "largest distance of reversed sliding from the pitch point over the base pitch"),
+    "validity": ("1", "0 to 3: " + ", ".join(STATES)),
+    "spectral_radius": ("1", "largest multiplier of the periodic motion, unstable above 1"),
+}
+
+
+def _points(pair: GearPair, motion: xr.Dataset) -> xr.Dataset:
+    """Response of the multibody model at the operating speed."""
+    rpm = pair.operating.pinion_speed * 30.0 / np.pi
+    points = xr.Dataset(
+        coords={"multibody_speed": ("multibody_speed", [rpm], {"units": "rpm", "long_name": "pinion speed"})}
+    )
+    for name, variable in (("dte_peak_to_peak", "dte"), ("y_p_peak_to_peak", "y_p")):
+        unit, text = _LABELS[name]
+        value = float(np.ptp(motion[variable].to_numpy()))
+        attrs = {"units": unit, "long_name": f"{text}, multibody model"}
+        points[f"multibody_{name}"] = ("multibody_speed", [value], attrs)
+    return points
