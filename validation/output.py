@@ -17,7 +17,7 @@ from lumped.errors import refuse
 from validation.exchange.matlab import mat_contents, save_mat
 
 DATA_SUFFIXES = (".nc", ".csv", ".mat")
-FIGURE_SUFFIXES = (".png", ".svg")
+FIGURE_SUFFIXES = (".png", ".svg", ".pdf")
 #: Dimensions that become columns of a CSV file; all others become rows.
 COLUMN_DIMENSIONS = ("pair", "multiplier", "law")
 

@@ -1,4 +1,4 @@
-"""spurcheck stability: Floquet multipliers and a stability chart."""
+"""spurcheck stability: Floquet multipliers, stability charts and the views beside them."""
 
 from __future__ import annotations
 
@@ -8,37 +8,74 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import FAILED, guarded, progress_bar, stderr, stdout, table
+from validation.commands.terminal import FAILED, guarded, stderr, stdout, table
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from floquet.gear_tongues import LabelledRegion
+    from floquet.gear_pair import GearPairMultipliers
+    from lumped import GearPair
+
+_LARGEST_COUNT = 5000
 
 
 @guarded
 def stability(
     pair: opt.PairArgument = opt.DEFAULT_PAIR,
     output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", help="Chart as .nc, .csv, .mat, .png or .svg; the suffix chooses."),
+        list[Path] | None,
+        typer.Option(
+            "--output",
+            "-o",
+            help="Result file, as often as needed: .nc, .csv or .mat for data, .png, .svg or .pdf for the "
+            "figure; the suffix chooses.",
+        ),
     ] = None,
+    view: Annotated[
+        str,
+        typer.Option(
+            help="What to show: chart (spectral radius over axes), boundaries (tongues traced over speed and "
+            "one more axis), campbell (frequencies over speed), paths (multipliers in the complex "
+            "plane along one axis), laws (difference chart of two friction laws), zones (one degree of "
+            "freedom with Coulomb friction, Vaishya and Singh)."
+        ),
+    ] = "chart",
     axes: Annotated[
         list[str] | None,
         typer.Option(
             "--axis",
             metavar="NAME=FROM:TO:COUNT",
-            help="One or two axes of the chart: speed_rpm, damping_ratio (mesh), friction_coefficient, "
-            "torque [N m], stiffness_variation, contact_ratio, bearing_stiffness [N/m]. "
-            "Default: speed and damping ratio.",
+            help="Axis: speed_rpm, damping_ratio (mesh), friction_coefficient, torque [N m], "
+            "stiffness_variation, contact_ratio, bearing_stiffness [N/m]. Give it twice for a chart. "
+            "Default of a chart: speed and damping ratio.",
         ),
     ] = None,
     tongues: Annotated[
         bool,
         typer.Option(
-            "--tongues", help="Name the unstable regions of the chart, in a table and in the figure."
+            "--tongues",
+            help="Name the unstable regions of the chart by mode pair and order; over speed and damping also "
+            "trace them and find the damping that closes each.",
         ),
+    ] = False,
+    operating_range: Annotated[
+        str | None,
+        typer.Option("--operating-range", metavar="FROM:TO", help="Speeds of operation in rpm, marked."),
+    ] = None,
+    against: Annotated[
+        str, typer.Option("--against", metavar="LAW", help="View laws: the law to compare with.")
+    ] = "none",
+    method: Annotated[
+        str,
+        typer.Option(
+            help="How a chart is computed: auto (the faster of the next two), taylor (every point), "
+            "chebyshev (interpolated between nodes, with checked error), or gauss, magnus6, dop853, ... as a "
+            "slow, independent check."
+        ),
+    ] = "auto",
+    multipliers: Annotated[
+        bool, typer.Option("--multipliers", help="Keep all ten multipliers of every chart point in the data.")
     ] = False,
     speed: opt.Speed = None,
     torque: opt.Torque = None,
@@ -55,45 +92,59 @@ def stability(
 
     spurcheck stability -o chart.png
 
-    spurcheck stability my_pair.toml --axis speed_rpm=1000:20000:80 --axis friction_coefficient=0:0.1:6 -o
-    chart.nc
+    spurcheck stability my_pair.toml --axis speed_rpm=500:20000:1000 --axis damping_ratio=0.002:0.05:1000
+    --tongues --operating-range 3000:8000 -o chart.nc -o chart.pdf
+
+    spurcheck stability --view boundaries --axis friction_coefficient=0:0.2:9 -o boundaries.nc
+
+    spurcheck stability --view laws --law composite --against coulomb -o difference.png
     """
-    from floquet.gear_pair import gear_pair_multipliers, stability_chart
-    from validation.output import DATA_SUFFIXES, write_dataset
+    from floquet.gear_pair import gear_pair_multipliers
+    from validation.commands.stability_views import VIEWS, Request, show
+    from validation.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
+
+    if view not in VIEWS:
+        from lumped.errors import refuse
+
+        raise refuse("--view", view, ", ".join(VIEWS), "For example --view campbell.")
+    targets = [check_file(path, DATA_SUFFIXES + FIGURE_SUFFIXES, force=force) for path in output or []]
+    grid = _grid(axes or [])
+    speeds = None if operating_range is None else _range(operating_range)
+    gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
+    request = Request(gear_pair, grid, speeds, tongues, against, method, multipliers, targets)
+    request.check(view)
+    found = gear_pair_multipliers(gear_pair)
+    _print_point(gear_pair, found)
+    if targets or axes or tongues or view != "chart":
+        show(view, request)
+        for target in targets:
+            stderr().print(f"wrote {target}", soft_wrap=True)
+    if found.verdict != "stable":
+        raise typer.Exit(FAILED)
+
+
+def _print_point(pair: GearPair, found: GearPairMultipliers) -> None:
     from validation.reporting.formatting import number
 
-    target = opt.figure_or_data(output, force=force)
-    gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
-    grid = dict(map(_axis, axes or []))
-    found = gear_pair_multipliers(gear_pair)
-    console = stdout()
-    shown = table(f"{gear_pair.name}: operating point", "quantity", ">value")
+    shown = table(f"{pair.name}: operating point", "quantity", ">value")
     shown.add_row("verdict", f"[bold]{found.verdict}[/bold]")
     shown.add_row("largest multiplier", f"{found.spectral_radius:.8f}")
     shown.add_row("bound on its error", number(found.error, 2))
     shown.add_row("margin, 1 - largest multiplier", number(1.0 - found.spectral_radius))
-    console.print(shown)
-    if target is not None or axes or tongues:
-        grid = grid or _default_axes(gear_pair)
-        with progress_bar("stability chart") as tell:
-            chart = stability_chart(
-                gear_pair, grid, rtol=1e-8, progress=lambda done, total: tell(done / total, "")
-            )
-        stable = chart["verdict"].to_numpy() == 1
-        console.print(
-            f"{int(stable.sum())} of {stable.size} chart points are stable; largest multiplier "
-            f"{float(chart['spectral_radius'].max()):.6f}",
-            soft_wrap=True,
-        )
-        regions = _regions(chart, gear_pair) if tongues else None
-        if target is not None:
-            if target.suffix.lower() in DATA_SUFFIXES:
-                write_dataset(chart, target)
-            else:
-                _draw(chart, grid, gear_pair, target, regions)
-            stderr().print(f"wrote {target}", soft_wrap=True)
-    if found.verdict != "stable":
-        raise typer.Exit(FAILED)
+    stdout().print(shown)
+
+
+def _grid(texts: list[str]) -> dict[str, NDArray[np.float64]]:
+    """Axes by name; refuses a name that comes twice."""
+    from lumped.errors import refuse
+
+    grid: dict[str, NDArray[np.float64]] = {}
+    for text in texts:
+        name, values = _axis(text)
+        if name in grid:
+            raise refuse("--axis", text, "an axis that is not there yet", f"{name} is given twice.")
+        grid[name] = values
+    return grid
 
 
 def _axis(text: str) -> tuple[str, NDArray[np.float64]]:
@@ -107,88 +158,33 @@ def _axis(text: str) -> tuple[str, NDArray[np.float64]]:
     parts = values.split(":")
     try:
         low, high, count = float(parts[0]), float(parts[1]), int(parts[2])
-        good = separator == "=" and len(parts) == 3 and 2 <= count <= 2000 and np.isfinite([low, high]).all()
+        good = separator == "=" and len(parts) == 3 and 2 <= count <= _LARGEST_COUNT
+        good = good and bool(np.isfinite([low, high]).all())
     except (ValueError, IndexError):
         good = False
     if not good or low == high:
-        allowed = "NAME=FROM:TO:COUNT with different ends and a count from 2 to 2000"
+        allowed = f"NAME=FROM:TO:COUNT with different ends and a count from 2 to {_LARGEST_COUNT}"
         raise refuse("--axis", text, allowed, "For example --axis speed_rpm=1000:20000:80.")
-    gear_axis(name.strip())  # refuses an unknown name
-    return name.strip(), np.linspace(low, high, count)
+    found = np.linspace(min(low, high), max(low, high), count)
+    gear_axis(name.strip()).check(name.strip(), found)
+    return name.strip(), found
 
 
-def _default_axes(gear_pair: object) -> dict[str, NDArray[np.float64]]:
-    from lumped import GearPair
-    from validation.reporting.results import FULL, chart_axes
-
-    assert isinstance(gear_pair, GearPair)
-    return chart_axes(gear_pair, FULL)
-
-
-def _regions(chart: object, gear_pair: object) -> list[LabelledRegion]:
-    """Name the unstable regions and print them."""
-    import xarray as xr
-
-    from floquet.gear_tongues import label_regions
-    from lumped import GearPair
-
-    assert isinstance(chart, xr.Dataset)
-    assert isinstance(gear_pair, GearPair)
-    regions = label_regions(gear_pair, chart)
-    names = list(map(str, chart["spectral_radius"].dims))
-    shown = table(
-        "unstable regions, by mode shape (w: natural frequencies)",
-        "tongue",
-        *(f">{name}" for name in names),
-        ">largest multiplier",
-        ">points",
-    )
-    for region in regions:
-        place = [f"{region.point[name]:.6g}" for name in names]
-        shown.add_row(str(region.label), *place, f"{region.radius:.6f}", str(region.nodes))
-    stdout().print(shown)
-    return regions
-
-
-def _draw(
-    chart: object,
-    grid: dict[str, NDArray[np.float64]],
-    gear_pair: object,
-    target: Path,
-    regions: list[LabelledRegion] | None,
-) -> None:
-    import xarray as xr
-
-    from lumped import GearPair
+def _range(text: str) -> tuple[float, float]:
+    """Range of speeds [rpm] written FROM:TO."""
     from lumped.errors import refuse
-    from validation.output import whole_file
-    from validation.plots import save, stability_figure
 
-    assert isinstance(chart, xr.Dataset)
-    assert isinstance(gear_pair, GearPair)
-    if len(grid) != 2:
+    parts = text.split(":")
+    try:
+        low, high = map(float, parts)
+        good = 0.0 < low < high < float("inf")
+    except ValueError:
+        good = False
+    if not good:
         raise refuse(
-            "--output", target, "a chart of two axes for a figure", "Give two axes, or write .nc or .csv."
+            "--operating-range",
+            text,
+            "FROM:TO in rpm, 0 < FROM < TO",
+            "For example --operating-range 3000:8000.",
         )
-    values = {
-        "speed_rpm": gear_pair.operating.pinion_speed * 9.549296585513721,
-        "damping_ratio": gear_pair.mesh.damping_ratio,
-        "torque": gear_pair.operating.pinion_torque,
-        "stiffness_variation": 1.0,
-        "bearing_stiffness": gear_pair.bearings.pinion.loa_stiffness,
-    }
-    x, y = grid
-    point = (values[x], values[y]) if x in values and y in values else None
-    if regions is not None and "speed_rpm" in grid:
-        from floquet import predicted_lines
-        from validation.plots.tongue_chart import tongue_chart_figure
-
-        other = y if x == "speed_rpm" else x
-        if point is not None and x != "speed_rpm":
-            point = point[::-1]
-        lines = {str(tongue): speed for tongue, speed in predicted_lines(gear_pair).items()}
-        figure = tongue_chart_figure(chart, other, regions, lines, point=point)
-    else:
-        figure = stability_figure(chart, x, y, point)
-    with whole_file(target) as temporary:
-        save(figure, temporary)
+    return low, high

@@ -6,8 +6,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from validation.plots.labels import WHITE_BOX, label_above
 from validation.plots.style import BLACK, DASHES, GREY, LINES, RED, legend_above, new_figure
-from validation.plots.tongue_chart import crowded, mark_operating_range, pretty
+from validation.plots.tongue_chart import mark_operating_range
 
 
 def campbell_figure(
@@ -45,18 +46,11 @@ def campbell_figure(
                 f"{order}×", (x, min(line[-1], ceiling)), xytext=(-2, -8), textcoords="offset points",
                 ha="right", fontsize=7.5, color=GREY,
             )  # fmt: skip
-    places: list[float] = []
-    lines = zip(*(diagram[name].to_numpy() for name in ("line_speed", "order", "label")), strict=True)
-    for place, order, label in sorted(lines, key=lambda line: (line[1], "-" in line[2], line[0])):
-        named = order <= label_orders and not crowded(place, places, speed[-1] - speed[0])
+    lines = list(zip(*(diagram[name].to_numpy() for name in ("line_speed", "order", "label")), strict=True))
+    named = [(float(x), str(label), order) for x, order, label in lines if order <= label_orders]
+    for x, order, _ in lines:
         for ax in (top, bottom):
-            ax.axvline(place, color=RED, linewidth=0.8 if named else 0.3, alpha=0.5, zorder=0.5)
-        if named:
-            places.append(place)
-            bottom.annotate(
-                pretty(str(label)), (place, 1.0), xycoords=("data", "axes fraction"), xytext=(0, -2),
-                textcoords="offset points", rotation=90, ha="right", va="top", fontsize=7.0, color=RED,
-            )  # fmt: skip
+            ax.axvline(x, color=RED, linewidth=0.8 if order <= label_orders else 0.3, alpha=0.5, zorder=0.5)
     unstable = diagram["decay"].to_numpy().min(axis=1) < 0.0
     bottom.fill_between(
         speed, 0, 1, where=unstable, transform=bottom.get_xaxis_transform(), color=RED, alpha=0.2, linewidth=0
@@ -64,6 +58,9 @@ def campbell_figure(
     bottom.axhline(0.0, color=BLACK, linewidth=0.8)
     top.set_ylim(0.0, ceiling)
     top.set_xlim(speed[0], speed[-1])
+    # Sums grow more easily than differences, which only friction makes unstable.
+    weights = [1.0 / order - ("-" in label) for _, label, order in named]
+    label_above(bottom, [label for _, label, _ in named], [x for x, _, _ in named], weights)
     top.set_ylabel("frequency [kHz]")
     bottom.set_ylabel("decay rate [1/ms]\n(< 0: unstable)")
     bottom.set_xlabel("pinion speed [rpm]; red: predicted tongues (ω$_i$ ± ω$_j$)/k")
@@ -73,7 +70,7 @@ def campbell_figure(
             ax.axvline(operating_rpm, color=BLACK, linewidth=1.0, linestyle="--")
         top.annotate(
             "operating point", (operating_rpm, 1.0), xycoords=("data", "axes fraction"), xytext=(3, -3),
-            textcoords="offset points", va="top", fontsize=8.0, rotation=90,
+            textcoords="offset points", va="top", fontsize=8.0, rotation=90, bbox=WHITE_BOX,
         )  # fmt: skip
     if operating_range is not None:
         mark_operating_range(

@@ -8,6 +8,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
+from validation.plots.labels import WHITE_BOX
 from validation.plots.style import BLACK, GREY, RED, new_figure
 
 
@@ -19,7 +20,7 @@ def multiplier_paths_figure(paths: xr.Dataset, operating: float | None = None) -
     paths : dataset of ``floquet.gear_campbell.multiplier_paths``
     operating : value of the parameter at the operating point, marked
     """
-    figure, axes = new_figure(1, 2, height=3.6, gridspec_kw={"width_ratios": [1.0, 1.25]})
+    figure, axes = new_figure(1, 2, height=4.0, gridspec_kw={"width_ratios": [1.0, 1.25]})
     left, right = axes[0]
     name = str(paths["multipliers"].dims[0])
     parameter, values = paths[name].to_numpy(), paths["multipliers"].to_numpy()
@@ -39,14 +40,16 @@ def multiplier_paths_figure(paths: xr.Dataset, operating: float | None = None) -
     reach = 1.08 * max(1.0, float(np.abs(values).max()))
     left.set_xlim(-reach, reach)
     left.set_ylim(-reach, reach)
-    left.set_aspect("equal")
+    left.set_aspect("equal", anchor="N")
     left.set_xlabel("real part [-]")
     left.set_ylabel("imaginary part [-]")
     attrs = paths[name].attrs
     unit = attrs.get("units", "1")
     text = f"{attrs.get('long_name', name)} [{'-' if unit == '1' else unit}]"
-    bar = figure.colorbar(ScalarMappable(norm, drawn.get_cmap()), ax=left, location="bottom", shrink=0.9)
-    bar.set_label(text, fontsize=8.0)
+    bar = figure.colorbar(
+        ScalarMappable(norm, drawn.get_cmap()), ax=[left, right], location="bottom", shrink=0.6, aspect=45
+    )
+    bar.set_label(f"colour of the paths: {text}; circles: where they start", fontsize=8.0)
     bar.ax.tick_params(labelsize=8.0)
     right.axhline(1.0, color=BLACK, linewidth=1.0)
     right.set_xlim(parameter[0], parameter[-1])
@@ -58,5 +61,6 @@ def multiplier_paths_figure(paths: xr.Dataset, operating: float | None = None) -
         right.annotate(
             "operating point", (operating, 0.02), xycoords=("data", "axes fraction"), xytext=(3, 0),
             textcoords="offset points", fontsize=8.0, rotation=90, va="bottom",
+            bbox=WHITE_BOX,
         )  # fmt: skip
     return figure

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import matplotlib as mpl
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
+from numpy.typing import NDArray
 
+from validation.plots.labels import WHITE_BOX
 from validation.plots.style import BLACK, RED, new_figure
 
-#: Blue for fast decay to white at the boundary; what is unstable gets a colour of its own, and hatching.
+#: Blue for fast decay to white at the boundary.
 _STABLE = LinearSegmentedColormap.from_list("decay", ["#08519c", "#6baed6", "#f7fbff"])
+UNSTABLE = "#f2a26b"
+"""Fill of what is unstable: orange, of a grey between the blues of what is stable."""
 
 
 def stability_figure(chart: xr.Dataset, x: str, y: str, point: tuple[float, float] | None) -> Figure:
@@ -24,46 +32,110 @@ def stability_figure(chart: xr.Dataset, x: str, y: str, point: tuple[float, floa
     """
     figure, axes = new_figure(height=3.4)
     ax = axes[0, 0]
-    radius = chart["spectral_radius"].transpose(y, x).to_numpy()
-    xs, ys = chart[x].to_numpy(), chart[y].to_numpy()
-    low = float(np.nanmin(radius))
-    norm = Normalize(min(low, 0.999), 1.0)
-    mesh = ax.pcolormesh(
-        xs, ys, np.minimum(radius, 1.0), cmap=_STABLE, norm=norm, shading="nearest", rasterized=True
-    )
-    unstable = radius > 1.0
-    if unstable.any():
-        ax.contourf(xs, ys, radius, levels=[1.0, np.inf], colors=[RED], alpha=0.75)
-        ax.contour(xs, ys, radius, levels=[1.0], colors=[BLACK], linewidths=1.0)
-    if point is not None:
-        ax.plot(
-            *point,
-            marker="o",
-            markersize=8,
-            markerfacecolor="white",
-            markeredgecolor=BLACK,
-            markeredgewidth=1.6,
-        )
-        ax.annotate(
-            "operating point",
-            point,
-            xytext=(8, 6),
-            textcoords="offset points",
-            fontsize=8.5,
-            bbox={"boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "none", "alpha": 0.85},
-        )
-    bar = figure.colorbar(mesh, ax=ax, pad=0.01)
-    bar.set_label("spectral radius [-]; unstable above 1 (orange)", fontsize=8.5)
-    bar.outline.set_linewidth(0.5)
-    ax.set_xlabel(_label(chart, x))
-    ax.set_ylabel(_label(chart, y))
+    radius = chart["spectral_radius"].transpose(y, x).sortby([x, y])
+    xs, ys, values = radius[x].to_numpy(), radius[y].to_numpy(), radius.to_numpy()
+    low = float(np.nanmin(values))
+    drawn = field(ax, xs, ys, np.minimum(values, 1.0), Normalize(min(low, 0.999), 1.0), _STABLE)
     ax.set_xlim(xs[0], xs[-1])
     ax.set_ylim(ys[0], ys[-1])
+    mark_unstable(ax, xs, ys, values)
+    if point is not None:
+        mark_operating_point(ax, point)
+    bar = figure.colorbar(drawn, ax=ax, pad=0.01)
+    bar.set_label("spectral radius [-]; unstable above 1 (hatched)", fontsize=8.5)
+    bar.outline.set_linewidth(0.5)
+    ax.set_xlabel(axis_label(chart, x))
+    ax.set_ylabel(axis_label(chart, y))
     ax.grid(False)
     return figure
 
 
-def _label(chart: xr.Dataset, name: str) -> str:
+def stability_line_figure(chart: xr.Dataset, x: str, value: float | None) -> Figure:
+    """Spectral radius along one axis of a chart.
+
+    Parameters
+    ----------
+    chart : dataset of ``floquet.stability_chart`` over exactly the axis ``x``
+    x : its name
+    value : of the operating point; None: not marked
+    """
+    figure, axes = new_figure(height=2.9)
+    ax = axes[0, 0]
+    radius = chart["spectral_radius"].sortby(x)
+    xs, values = radius[x].to_numpy(), radius.to_numpy()
+    ax.plot(xs, values, color="#08519c", linewidth=1.2)
+    ax.axhline(1.0, color=BLACK, linewidth=0.8)
+    ax.fill_between(xs, 1.0, np.maximum(values, 1.0), color=UNSTABLE, linewidth=0.0)
+    if value is not None and xs[0] <= value <= xs[-1]:
+        ax.axvline(value, color=BLACK, linewidth=1.0, linestyle="--")
+        ax.annotate(
+            "operating point", (value, 0.03), xycoords=("data", "axes fraction"), xytext=(3, 0),
+            textcoords="offset points", fontsize=8.0, rotation=90, va="bottom", bbox=WHITE_BOX,
+        )  # fmt: skip
+    ax.set_xlim(xs[0], xs[-1])
+    ax.set_xlabel(axis_label(chart, x))
+    ax.set_ylabel("spectral radius [-], unstable above 1")
+    return figure
+
+
+def field(
+    ax: Axes,
+    xs: NDArray[np.float64],
+    ys: NDArray[np.float64],
+    values: NDArray[np.float64],
+    norm: Normalize,
+    colours: mpl.colors.Colormap | str,
+) -> AxesImage | QuadMesh:
+    """Draw values (y, x) at their nodes: an image on an even grid, however large, or else a mesh of cells."""
+    even = all(v.size > 1 and np.allclose(np.diff(v), (v[-1] - v[0]) / (v.size - 1)) for v in (xs, ys))
+    if not even:
+        return ax.pcolormesh(
+            xs, ys, values, cmap=colours, norm=norm, shading="nearest", rasterized=True, zorder=0
+        )
+    dx, dy = 0.5 * (xs[1] - xs[0]), 0.5 * (ys[1] - ys[0])
+    return ax.imshow(
+        values,
+        cmap=colours,
+        norm=norm,
+        extent=(xs[0] - dx, xs[-1] + dx, ys[0] - dy, ys[-1] + dy),
+        origin="lower",
+        aspect="auto",
+    )
+
+
+def mark_unstable(
+    ax: Axes, xs: NDArray[np.float64], ys: NDArray[np.float64], radius: NDArray[np.float64]
+) -> None:
+    """Fill, hatch and edge the region of radius (y, x) above 1."""
+    if xs.size < 2 or ys.size < 2 or not (radius > 1.0).any():
+        return
+    with mpl.rc_context({"hatch.color": RED, "hatch.linewidth": 0.7}):
+        ax.contourf(xs, ys, radius, levels=[1.0, np.inf], colors=[UNSTABLE], hatches=["////"])
+    ax.contour(xs, ys, radius, levels=[1.0], colors=[BLACK], linewidths=1.0)
+
+
+def mark_operating_point(ax: Axes, point: tuple[float, float]) -> None:
+    """Circle at the point and its name beside it, on the side where there is room; nothing when outside."""
+    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+    if not (left <= point[0] <= right and bottom <= point[1] <= top):
+        return
+    ax.plot(
+        *point, marker="o", markersize=8, markerfacecolor="white", markeredgecolor=BLACK,
+        markeredgewidth=1.6, clip_on=False, zorder=5,
+    )  # fmt: skip
+    east = point[0] < 0.5 * (left + right)
+    height = (point[1] - bottom) / (top - bottom)
+    north = height < 0.5
+    # Below the bar of the operating range, which runs along the upper edge.
+    shift = 7 if north else -7 if height < 0.9 else -22
+    ax.annotate(
+        "operating point", point, xytext=(8 if east else -8, shift), textcoords="offset points",
+        ha="left" if east else "right", va="bottom" if north else "top", fontsize=8.5, bbox=WHITE_BOX,
+    )  # fmt: skip
+
+
+def axis_label(chart: xr.Dataset, name: str) -> str:
+    """Plain name and unit of an axis of a chart."""
     attrs = chart[name].attrs
     unit = attrs.get("units", "1")
     return f"{attrs.get('long_name', name)} [{'-' if unit == '1' else unit}]"

@@ -148,8 +148,9 @@ def path_marks(g: Geometry) -> dict[str, float]:
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a figure as SVG or PNG, by suffix; the same figure gives the same bytes, without dates."""
+    """Write a figure as SVG, PDF or PNG, by suffix; the same figure gives the same bytes, without dates."""
     suffix = path.suffix.lower().removeprefix(".")
-    metadata: dict[str, Any] = {"Date": None} if suffix == "svg" else {"Software": None}
+    dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None, "ModDate": None}}
+    metadata: dict[str, Any] = dates.get(suffix, {"Software": None})
     with mpl.rc_context(_RC):
         figure.savefig(path, format=suffix, dpi=_PNG_DPI, metadata=metadata)

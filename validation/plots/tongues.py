@@ -4,48 +4,39 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from validation.plots.style import BLACK, GREY, RED, new_figure
+from validation.plots.labels import label_above
+from validation.plots.stability import UNSTABLE, mark_operating_point
+from validation.plots.style import GREY, RED, new_figure
+from validation.plots.tongue_chart import mark_operating_range
 from validation.stability_margins import StabilityMargins
 
 
-def tongues_figure(margins: StabilityMargins) -> Figure:
+def tongues_figure(margins: StabilityMargins, operating_range: tuple[float, float] | None = None) -> Figure:
     """Edges of every tongue from zero mesh damping to the damping that closes it.
 
     Parameters
     ----------
     margins : of ``validation.stability_margins.stability_margins``
+    operating_range : speeds of operation [rpm]
     """
-    figure, axes = new_figure(height=3.0)
+    figure, axes = new_figure(height=3.2)
     ax = axes[0, 0]
-    low, high = margins.speed_range
-    labelled: list[float] = []
-    for tongue in sorted(margins.tongues, key=lambda t: -t.critical_damping):
-        ax.fill_betweenx(tongue.damping, tongue.left, tongue.right, color=RED, alpha=0.75, linewidth=0.8)
-        tip = 0.5 * (tongue.left[-1] + tongue.right[-1])
-        if any(abs(tip - other) < 0.07 * (high - low) for other in labelled):
-            continue  # the table has them all
-        labelled.append(float(tip))
-        ax.annotate(
-            tongue.label.replace("w", "ω"),
-            (tip, tongue.damping[-1]),
-            xytext=(0, 3),
-            textcoords="offset points",
-            ha="center",
-            va="bottom",
-            fontsize=8.0,
-        )
-    ax.axhline(margins.damping, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)))
-    ax.plot(
-        margins.rpm,
-        margins.damping,
-        "o",
-        markersize=7,
-        markerfacecolor="white",
-        markeredgecolor=BLACK,
-        markeredgewidth=1.4,
-    )
-    ax.set_xlim(low, high)
+    ax.set_xlim(*margins.speed_range)
     ax.set_ylim(0.0, 1.25 * max(margins.critical_damping, margins.damping, 1e-3))
+    for tongue in margins.tongues:
+        ax.fill_betweenx(
+            tongue.damping, tongue.left, tongue.right, color=UNSTABLE, edgecolor=RED, linewidth=1.0
+        )
+    label_above(
+        ax,
+        [t.label for t in margins.tongues],
+        [t.tip_speed for t in margins.tongues],
+        [t.critical_damping for t in margins.tongues],
+    )
+    ax.axhline(margins.damping, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)))
+    mark_operating_point(ax, (margins.rpm, margins.damping))
+    if operating_range is not None:
+        mark_operating_range(ax, operating_range)
     ax.set_xlabel("pinion speed [rpm]")
     ax.set_ylabel("mesh damping ratio [-]")
     return figure

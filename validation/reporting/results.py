@@ -10,7 +10,7 @@ import xarray as xr
 
 import lumped
 import multibody
-from floquet.gear_pair import GearPairMultipliers, gear_pair_multipliers, stability_chart
+from floquet.gear_pair import GearPairMultipliers, gear_pair_multipliers
 from lumped import GearPair, Geometry, NumericalError, ParameterError
 from lumped.averaged import Mode, modes
 from lumped.friction import friction_profile
@@ -18,6 +18,7 @@ from validation.comparison import CrossCheck, crosscheck
 from validation.mesh_physics import MeshPhysics, mesh_physics
 from validation.metrics import FloatArray, MeshOrders, mesh_orders
 from validation.reporting.paper_results import PaperResults, paper_results
+from validation.stability_charts import dense_chart
 from validation.stability_margins import StabilityMargins, stability_margins
 from validation.validity import Flag, speed_drift, validity_flags
 from validation.validity_map import validity_map
@@ -67,8 +68,8 @@ FULL = Effort(
     samples=512,
     cycles=40,
     sweep_speeds=240,
-    chart_speeds=121,
-    chart_dampings=33,
+    chart_speeds=401,
+    chart_dampings=81,
     chart_rtol=1e-8,
     map_speeds=31,
     map_torques=9,
@@ -161,11 +162,11 @@ def compute(pair: GearPair, effort: Effort, progress: Progress) -> Results:
     causes = _causes(pair) if effort.attribution else None
     progress(0.45, "stability")
     multipliers = gear_pair_multipliers(pair)
-    chart = stability_chart(
+    chart = dense_chart(
         pair,
         chart_axes(pair, effort),
         rtol=effort.chart_rtol,
-        progress=lambda done, total: progress(0.45 + 0.15 * done / total, "stability chart"),
+        progress=lambda f: progress(0.45 + 0.15 * f, "stability chart"),
     )
     progress(0.6, "stability margins")
     margins = stability_margins(pair, speeds)

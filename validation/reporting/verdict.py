@@ -9,7 +9,6 @@ import numpy as np
 from validation.comparison import CrossCheck
 from validation.reporting.blocks import Badge
 from validation.reporting.chapters.cross_check import NAMES
-from validation.reporting.chapters.stability import margins
 from validation.reporting.formatting import number, quantity
 from validation.reporting.results import Results
 from validation.validity import worst_state
@@ -53,15 +52,7 @@ def summarise(results: Results) -> Summary:
         f"{number(float(load.max()) / results.static_load, 3)} times the static load, mesh efficiency "
         f"{efficiency}."
     )
-    m = margins(results.chart, results.operating_rpm, pair.mesh.damping_ratio)
-    speeds = results.chart["speed_rpm"].to_numpy()
-    reach = f"{speeds[0]:.0f} to {speeds[-1]:.0f} rpm"
-    everywhere = m.stable_speeds == m.speeds
-    over_range = (
-        f"at all {m.speeds} speeds from {reach}"
-        if everywhere
-        else f"at {m.stable_speeds} of {m.speeds} speeds from {reach}"
-    )
+    over_range = _stable_speeds(results)
     state = worst_state(results.flags)
     raised = [flag.name.lower() for flag in results.flags if flag.state != "ok"]
     validity = {
@@ -112,6 +103,17 @@ def summarise(results: Results) -> Summary:
             ),
         ),
     )
+
+
+def _stable_speeds(results: Results) -> str:
+    low, high = results.margins.speed_range
+    reach = f"at all speeds from {low:.0f} to {high:.0f} rpm"
+    unstable = results.margins.unstable_here
+    if not unstable.size:
+        return reach
+    width = float(np.sum(unstable[:, 1] - unstable[:, 0]))
+    ranges = "one range" if len(unstable) == 1 else f"{len(unstable)} ranges"
+    return f"{reach} but {ranges}, {quantity(width, 'rpm', 3)} wide in all"
 
 
 def _agreement(check: CrossCheck) -> str:

@@ -18,6 +18,7 @@ from validation.reporting.blocks import (
     Text,
 )
 from validation.reporting.results import Results
+from validation.stability_margins import ORDERS
 
 
 def stability_margins(results: Results) -> Chapter:
@@ -60,7 +61,7 @@ def stability_margins(results: Results) -> Chapter:
             ),
             Fact(
                 "damping_at_speed",
-                "largest unstable mesh damping at this speed",
+                "mesh damping ratio above which this speed is stable",
                 "none, not even 0" if m.damping_at_speed is None else m.damping_at_speed,
             ),
             Fact(
@@ -81,8 +82,9 @@ def stability_margins(results: Results) -> Chapter:
         Text(
             "A tongue is a range of speeds in which the periodic change of stiffness feeds a vibration: the "
             "mesh frequency is near (ω_i ± ω_j)/k. The search over speed is seeded with every such line up "
-            "to k = 12, so thin tongues are met, and the edges are found by bisection. Bearings are damped "
-            "as given; mesh damping is varied."
+            f"to k = {ORDERS}, so thin tongues are met. Edges, and the damping that closes a tongue, are "
+            "roots of the largest multiplier minus one, not nodes of a chart. Bearings are damped as given; "
+            "mesh damping is varied."
         ),
         facts,
     ]
@@ -94,6 +96,7 @@ def stability_margins(results: Results) -> Chapter:
                 Quantity(t.upper, "rpm"),
                 t.radius,
                 t.critical_damping,
+                Quantity(t.tip_speed, "rpm"),
                 m.damping - t.critical_damping,
                 Quantity(t.distance(m.rpm), "rpm"),
             )
@@ -115,11 +118,11 @@ def stability_margins(results: Results) -> Chapter:
                     Column("upper", "to"),
                     Column("radius", "largest multiplier"),
                     Column("critical_damping", "closed by damping"),
+                    Column("tip_speed", "closes at"),
                     Column("damping_margin", "margin in damping"),
                     Column("distance", "distance in speed"),
                 ),
                 tuple(rows),
-                note="Closing dampings are read from a chart of 81 dampings and 65 speeds per tongue.",
             ),
         ]
     else:

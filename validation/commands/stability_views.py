@@ -1,0 +1,292 @@
+"""The views of ``spurcheck stability``: what each computes, prints, draws and writes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from floquet import predicted_lines, stability_boundaries
+from floquet.gear_axes import GEAR_AXES, operating_value
+from floquet.gear_campbell import campbell, multiplier_paths
+from floquet.gear_friction_effect import friction_effect
+from floquet.gear_tongues import LabelledRegion, label_regions
+from lumped import GearPair
+from lumped.errors import refuse
+from lumped.friction import LAWS
+from validation.commands.terminal import progress_bar, stdout, table
+from validation.coulomb_zones import coulomb_gear_pair, zones
+from validation.output import DATA_SUFFIXES, whole_file, write_dataset
+from validation.plots.boundaries import boundaries_figure
+from validation.plots.campbell import campbell_figure
+from validation.plots.friction_effect import friction_effect_figure
+from validation.plots.multiplier_paths import multiplier_paths_figure
+from validation.plots.stability import stability_figure, stability_line_figure
+from validation.plots.style import save
+from validation.plots.tongue_chart import mark_operating_range, tongue_chart_figure
+from validation.plots.tongues import tongues_figure
+from validation.plots.zones import zones_figure
+from validation.reporting.results import FULL, chart_axes
+from validation.stability_charts import METHODS, dense_chart
+from validation.stability_margins import StabilityMargins, margins_dataset, stability_margins
+
+FloatArray = NDArray[np.float64]
+View = tuple[xr.Dataset, Callable[[], Figure]]
+"""What is written as data, and the figure."""
+
+_DAMPING_AXES = {"speed_rpm", "damping_ratio"}
+_LINE = 401
+_LARGEST_DIFFERENCE = 250_000
+
+
+@dataclass(frozen=True, eq=False)
+class Request:
+    """What the command line asks for."""
+
+    pair: GearPair
+    axes: Mapping[str, FloatArray]
+    operating_range: tuple[float, float] | None
+    tongues: bool
+    against: str
+    method: str
+    multipliers: bool
+    targets: list[Path]
+
+    def check(self, view: str) -> None:
+        """Refuse what cannot be shown, before any work.
+
+        Raises
+        ------
+        ParameterError : number of axes, method or law that the view cannot take
+        """
+        counts, text = VIEWS[view][1:]
+        if self.axes and len(self.axes) not in counts:
+            raise refuse("--axis", ", ".join(self.axes), f"{text} for --view {view}", "Change the axes.")
+        if view == "campbell" and self.axes and "speed_rpm" not in self.axes:
+            raise refuse(
+                "--axis", ", ".join(self.axes), "speed_rpm for --view campbell", "Frequencies are over speed."
+            )
+        if self.method not in METHODS:
+            raise refuse("--method", self.method, ", ".join(METHODS), "Leave it out to have it chosen.")
+        if self.against not in LAWS:
+            raise refuse("--against", self.against, ", ".join(LAWS), "Choose among these.")
+        if view == "laws" and self.against == self.pair.friction.law:
+            raise refuse(
+                "--against", self.against, "another law than that of the pair", "Choose it by --law."
+            )
+        figures = [path for path in self.targets if path.suffix.lower() not in DATA_SUFFIXES]
+        if figures and view == "chart" and len(self.axes) > 2:
+            raise refuse(
+                "--output", figures[0], "a chart of one or two axes for a figure", "Write .nc or .csv."
+            )
+
+    def axis(self, name: str, count: int = _LINE) -> tuple[str, FloatArray]:
+        """Return the one axis asked for; else ``name`` over the range of the report's chart."""
+        if self.axes:
+            return next(iter(self.axes.items()))
+        values = chart_axes(self.pair, FULL)[name]
+        return name, np.linspace(values[0], values[-1], count)
+
+    def value(self, name: str) -> float:
+        """Value of the operating point on an axis."""
+        return operating_value(self.pair, name)
+
+
+def show(view: str, request: Request) -> None:
+    """Compute a view, print what it says in numbers, and write it to every target."""
+    data, draw = VIEWS[view][0](request)
+    figure: Figure | None = None
+    for target in request.targets:
+        if target.suffix.lower() in DATA_SUFFIXES:
+            write_dataset(data, target)
+            continue
+        figure = figure or draw()
+        with whole_file(target) as temporary:
+            save(figure, temporary)
+
+
+def _chart(request: Request) -> View:
+    pair = request.pair
+    grid = dict(request.axes) or chart_axes(pair, FULL)
+    with progress_bar("stability chart") as tell:
+        chart = dense_chart(
+            pair, grid, method=request.method, multipliers=request.multipliers, progress=lambda f: tell(f, "")
+        )
+    stable = chart["verdict"].to_numpy() == 1
+    stdout().print(
+        f"{int(stable.sum())} of {stable.size} chart points are stable; largest multiplier "
+        f"{float(chart['spectral_radius'].max()):.6f}; largest bound on an error "
+        f"{float(chart['error'].max()):.1e}, method {chart.attrs['method']}",
+        soft_wrap=True,
+    )
+    traced: StabilityMargins | None = None
+    regions: list[LabelledRegion] = []
+    if request.tongues and set(grid) == _DAMPING_AXES:
+        traced = _traced(pair, grid["speed_rpm"])
+        edges = margins_dataset(traced).rename(damping_ratio="tongue_damping", lower="tongue_lower",
+                                               upper="tongue_upper")  # fmt: skip
+        data = chart.merge(edges, combine_attrs="override")
+    else:
+        data = chart
+        regions = _regions(chart, pair) if request.tongues else []
+
+    def draw() -> Figure:
+        names = list(grid)
+        if len(names) == 1:
+            figure = stability_line_figure(chart, names[0], request.value(names[0]))
+        elif request.tongues and "speed_rpm" in grid:
+            (other,) = (name for name in names if name != "speed_rpm")
+            lines = {str(tongue): rpm for tongue, rpm in predicted_lines(pair).items()}
+            point = (request.value("speed_rpm"), request.value(other))
+            return tongue_chart_figure(
+                chart, other, traced.tongues if traced else regions, lines, point=point,
+                operating_range=request.operating_range,
+            )  # fmt: skip
+        else:
+            x, y = sorted(names, key=lambda name: name != "speed_rpm")  # speed runs to the right
+            figure = stability_figure(chart, x, y, (request.value(x), request.value(y)))
+        if request.operating_range is not None and "speed_rpm" in grid:
+            mark_operating_range(figure.axes[0], request.operating_range)
+        return figure
+
+    return data, draw
+
+
+def _traced(pair: GearPair, speeds: FloatArray) -> StabilityMargins:
+    """Trace the tongues over a range of speeds, and print them by falling critical damping."""
+    with progress_bar("tongues") as tell:
+        found = stability_margins(pair, (float(speeds.min()), float(speeds.max())))
+        tell(1.0, "")
+    shown = table(
+        "tongues without mesh damping, and what closes them (rpm; w: natural frequencies)",
+        "tongue", ">from", ">to", ">multiplier", ">critical damping", ">closes at",
+    )  # fmt: skip
+    for tongue in sorted(found.tongues, key=lambda t: -t.critical_damping):
+        shown.add_row(
+            tongue.label, f"{tongue.lower:.1f}", f"{tongue.upper:.1f}", f"{tongue.radius:.6f}",
+            f"{tongue.critical_damping:.6f}", f"{tongue.tip_speed:.1f}",
+        )  # fmt: skip
+    stdout().print(shown)
+    stdout().print(
+        f"Friction is held at its mean, {found.friction_coefficient:.4f}. Above a mesh damping ratio of "
+        f"{found.critical_damping:.6f} every speed is stable; this pair has {found.damping:g}.",
+        soft_wrap=True,
+    )
+    return found
+
+
+def _regions(chart: xr.Dataset, pair: GearPair) -> list[LabelledRegion]:
+    """Name the unstable regions of a chart, and print them."""
+    regions = label_regions(pair, chart)
+    names = list(map(str, chart["spectral_radius"].dims))
+    shown = table(
+        "unstable regions, by mode shape (w: natural frequencies)",
+        "tongue",
+        *(f">{name}" for name in names),
+        ">largest multiplier",
+        ">points",
+    )
+    for region in regions:
+        place = [f"{region.point[name]:.6g}" for name in names]
+        shown.add_row(str(region.label), *place, f"{region.radius:.6f}", str(region.nodes))
+    stdout().print(shown)
+    return regions
+
+
+def _boundaries(request: Request) -> View:
+    pair = request.pair
+    ends = chart_axes(pair, FULL)["speed_rpm"][[0, -1]]
+    grid = dict(request.axes)
+    speeds = grid.pop("speed_rpm", ends)
+    name, values = next(iter(grid.items()), ("damping_ratio", None))
+    if name == "damping_ratio":
+        traced = _traced(pair, speeds)
+        return margins_dataset(traced), lambda: tongues_figure(traced, request.operating_range)
+    with progress_bar("boundaries") as tell:
+        found = stability_boundaries(
+            pair,
+            (float(speeds.min()), float(speeds.max())),
+            {name: values} if values is not None else None,
+            progress=lambda done, total: tell(done / total, ""),
+        )
+    shown = table(
+        f"tongues over {GEAR_AXES[name].long_name}", "tongue", ">values", ">from, rpm", ">to, rpm",
+        ">largest multiplier",
+    )  # fmt: skip
+    for row in range(found.sizes["tongue"]):
+        part = found.isel(tongue=row)
+        shown.add_row(
+            str(part["label"].item()), str(int(part["present"].sum())), f"{float(part['lower'].min()):.1f}",
+            f"{float(part['upper'].max()):.1f}", f"{float(part['peak_radius'].max()):.6f}",
+        )  # fmt: skip
+    stdout().print(shown)
+    return found, lambda: boundaries_figure(found, name, request.operating_range)
+
+
+def _campbell(request: Request) -> View:
+    _, speeds = request.axis("speed_rpm")
+    diagram = campbell(request.pair, speeds)
+    return diagram, lambda: campbell_figure(
+        diagram, operating_rpm=request.value("speed_rpm"), operating_range=request.operating_range
+    )
+
+
+def _paths(request: Request) -> View:
+    name, values = request.axis("speed_rpm")
+    if name == "speed_rpm":
+        # Multipliers turn with the period, so that even steps of speed lose them where it is low.
+        low, high = values.min(), values.max()
+        by_period = 1.0 / np.linspace(1.0 / low, 1.0 / high, _LINE)[1:-1]
+        values = np.unique(np.concatenate([values, by_period]))
+    paths = multiplier_paths(request.pair, name, values)
+    return paths, lambda: multiplier_paths_figure(paths, request.value(name))
+
+
+def _laws(request: Request) -> View:
+    pair = request.pair
+    grid = dict(request.axes) or chart_axes(pair, FULL)
+    points = int(np.prod([values.size for values in grid.values()]))
+    if points > _LARGEST_DIFFERENCE:
+        raise refuse(
+            "points of the difference chart", points, f"at most {_LARGEST_DIFFERENCE}", "Lower the counts."
+        )
+    law = pair.friction.law
+    with progress_bar("difference of two friction laws") as tell:
+        effect = friction_effect(
+            pair, grid, [law], reference=request.against, rtol=1e-8,
+            progress=lambda done, total: tell(done / total, ""),
+        )  # fmt: skip
+    change = effect["growth_change"].to_numpy()
+    flips = effect["verdict_change"].to_numpy()
+    stdout().print(
+        f"law {law} against {request.against}: growth per mesh cycle changes by {change.min():+.3e} to "
+        f"{change.max():+.3e}; {int((flips == -1).sum())} points lose and {int((flips == 1).sum())} gain "
+        f"stability, of {change.size}",
+        soft_wrap=True,
+    )
+    x, y = sorted(grid, key=lambda name: name != "speed_rpm")
+    return effect, lambda: friction_effect_figure(effect, law, x, y, (request.value(x), request.value(y)))
+
+
+def _zones(request: Request) -> View:
+    found = zones(coulomb_gear_pair(request.pair, request.value("friction_coefficient")))
+    unstable = (found["spectral_radius"] > 1.0 + 1e-9).mean(("damping_ratio", "speed_ratio"))
+    for case, share in zip(found["friction"].to_numpy(), unstable.to_numpy(), strict=True):
+        stdout().print(f"friction {case}: unstable at {100.0 * float(share):.2f} % of the points")
+    return found, lambda: zones_figure(found)
+
+
+VIEWS: Mapping[str, tuple[Callable[[Request], View], tuple[int, ...], str]] = {
+    "chart": (_chart, (1, 2, 3, 4, 5, 6, 7), "any axes"),
+    "boundaries": (_boundaries, (1, 2), "speed_rpm and one more axis, or that one alone"),
+    "campbell": (_campbell, (1,), "one axis, speed_rpm,"),
+    "paths": (_paths, (1,), "one axis"),
+    "laws": (_laws, (2,), "two axes"),
+    "zones": (_zones, (), "no axis"),
+}
+"""View -> how it is made, how many axes it takes, and that in words."""
