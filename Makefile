@@ -1,6 +1,8 @@
 # make report   set up .venv if needed and write the verification report of the default gear pair to report/
 # make test     set up .venv if needed and run the tests
 # make lint     ruff and mypy --strict
+# make package-check   build sdist and wheel, install and try the wheel on every Python 3.11 or later found here
+# make docs     set up .venv if needed and build the documentation to build/docs; warnings are errors
 # PYTHON=python3.12 chooses the interpreter, VENV=path another environment.
 
 PYTHON ?= python3
@@ -11,7 +13,7 @@ OUT ?= report
 export OPENBLAS_NUM_THREADS ?= 1
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: report test lint clean
+.PHONY: report test lint docs package-check clean
 
 report: $(VENV)/.ready
 	$(BIN)/spurcheck report --output $(OUT) --force
@@ -24,6 +26,10 @@ lint: $(VENV)/.ready-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+docs: $(VENV)/.ready-docs
+	MPLBACKEND=Agg $(BIN)/python -m sphinx -W --keep-going -q -b html docs build/docs
+	@echo "Open build/docs/index.html"
 
 $(VENV)/.ready: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(0 if sys.version_info >= (3, 11) else "spurcheck needs Python 3.11 or later: make PYTHON=python3.12 ...")'
@@ -40,5 +46,12 @@ $(VENV)/.ready-dev: $(VENV)/.ready-test
 	@$(PIP) --editable ".[dev]"
 	@touch $@
 
+$(VENV)/.ready-docs: $(VENV)/.ready
+	@$(PIP) --editable ".[docs]"
+	@touch $@
+
+package-check:
+	.ci/package-check
+
 clean:
-	rm -rf .venv build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache
+	rm -rf .venv build dist docs/_generated docs/gallery *.egg-info .pytest_cache .mypy_cache .ruff_cache

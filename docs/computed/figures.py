@@ -1,0 +1,107 @@
+"""Curves of the theory pages: friction and film, multipliers and tongues, where the linear model ends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+import xarray as xr
+
+import floquet
+import lumped
+from computed.agreement import torque_series
+from computed.diagrams import svg
+from floquet.gear_campbell import multiplier_paths
+from lumped import GearPair
+from lumped.friction import friction_profile
+from validation.plots.multiplier_paths import multiplier_paths_figure
+from validation.plots.path_of_contact import friction_laws_figure, path_figure
+from validation.plots.stability import stability_figure
+from validation.plots.style import BLUE, DASHES, GREY, LINES, RED, legend, new_figure
+
+
+def _pair() -> GearPair:
+    return lumped.load_gear_pair("nasa_28_28")
+
+
+@cache
+def _profile() -> xr.Dataset:
+    return friction_profile(_pair())
+
+
+def friction_laws() -> str:
+    """All laws along the path of contact."""
+    return svg(friction_laws_figure(lumped.geometry(_pair()), _profile(), _pair().friction.law))
+
+
+def film() -> str:
+    """Velocities and film parameter along the path of contact."""
+    return svg(path_figure(lumped.geometry(_pair()), _profile()))
+
+
+def multipliers() -> str:
+    """Paths of the multipliers through the main tongue of a lightly damped pair."""
+    pair, speeds = _pair().with_(mesh__damping_ratio=0.01), np.linspace(16000.0, 20000.0, 161)
+    return svg(multiplier_paths_figure(multiplier_paths(pair, "speed_rpm", speeds)))
+
+
+def tongues() -> str:
+    """Stability chart over speed and mesh damping."""
+    pair = _pair().with_(friction__law="coulomb", friction__coefficient=0.05)
+    axes = {"speed_rpm": np.linspace(2000.0, 20000.0, 361), "damping_ratio": np.linspace(0.002, 0.06, 59)}
+    point = (4875.0, pair.mesh.damping_ratio)
+    return svg(stability_figure(floquet.stability_chart(pair, axes), "speed_rpm", "damping_ratio", point))
+
+
+def torque_law() -> str:
+    """Differences of the models over torque, with the slopes that theory gives."""
+    series = torque_series()
+    figure, axes = new_figure(1, 2, height=3.0)
+    left, right = axes[0]
+    torque = series["torque"].to_numpy()
+    for j, name in enumerate(("dte", "x_p", "y_p")):
+        left.loglog(torque, 1e6 * series[name], "os^"[j], color=LINES[j], label=name)
+    last = 1e6 * float(series["dte"][0])
+    left.loglog(torque, last * (torque / torque[0]) ** 2, color=GREY, lw=0.9, label="slope 2")
+    left.set(xlabel="pinion torque [N m]", ylabel="largest difference [µm]")
+    right.loglog(torque, series["monodromy"], "o", color=BLUE, label="monodromy matrix")
+    first = float(series["monodromy"][-1])
+    right.loglog(torque, first * torque / torque[-1], color=GREY, lw=0.9, label="slope 1")
+    right.set(xlabel="pinion torque [N m]", ylabel="relative difference [-]")
+    for ax in (left, right):
+        legend(ax)
+    return svg(figure)
+
+
+def validity() -> str:
+    """Smallest normal load in contact and reach of reversed sliding over speed, at two mesh dampings."""
+    figure, axes = new_figure(1, 2, height=3.0)
+    left, right = axes[0]
+    speeds = np.linspace(600.0, 9000.0, 85)
+    g = lumped.geometry(_pair())
+    static = _pair().operating.pinion_torque / g.base_radius_pinion
+    for j, damping in enumerate((0.02, 0.05)):
+        sweep = lumped.speed_sweep(_pair().with_(mesh__damping_ratio=damping), speeds, samples_per_cycle=512)
+        style = {"color": LINES[j], "linestyle": DASHES[j], "label": f"mesh damping {100 * damping:g} %"}
+        left.plot(speeds, sweep["normal_load_min"] / static, **style)
+        right.plot(speeds, 1e3 * sweep["sliding_reversal"], **style)
+    left.axhline(0.0, color=RED, lw=0.9)
+    left.text(3000.0, -0.9, "below 0 the teeth\nwould separate", color=RED, fontsize=8.5, va="top")
+    left.set(xlabel="pinion speed [rpm]", ylabel="smallest load of a pair over\nthe static mesh force [-]")
+    right.set(
+        xlabel="pinion speed [rpm]", ylabel="sliding reversed up to this far\nfrom the pitch point [mm]"
+    )
+    for ax in (left, right):
+        legend(ax)
+    return svg(figure)
+
+
+FILES: dict[str, Callable[[], str]] = {
+    "friction_laws.svg": friction_laws,
+    "film.svg": film,
+    "multipliers.svg": multipliers,
+    "tongues.svg": tongues,
+    "torque_law.svg": torque_law,
+    "validity.svg": validity,
+}

@@ -1,0 +1,41 @@
+"""Tables and numbers in Markdown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from validation.reporting.formatting import number
+
+Cell = str | float | int | bool | None
+
+
+class CheckFailed(RuntimeError):
+    """A number that the site is about to show is outside its limit."""
+
+
+def text(cell: Cell) -> str:
+    """A cell as one line in which nothing is markup by accident."""
+    if isinstance(cell, bool):
+        return "yes" if cell else "no"
+    if isinstance(cell, float):
+        return number(cell, 3)
+    if cell is None:
+        return "–"
+    return " ".join(str(cell).split()).replace("|", "\\|").replace("*", "\\*").replace("<", "&lt;")
+
+
+def table(columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> str:
+    """A Markdown table."""
+    lines = [columns, ["---"] * len(columns), *([text(c) for c in row] for row in rows)]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
+
+
+def must_pass(name: str, passes: bool) -> None:
+    """Stop the build where a check fails.
+
+    Raises
+    ------
+    CheckFailed : always, where ``passes`` is false
+    """
+    if not passes:
+        raise CheckFailed(f"{name} fails; run the tests.")

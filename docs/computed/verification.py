@@ -1,0 +1,67 @@
+"""Closed forms, laws of mechanics, orders of convergence, refinement of every kind of solution."""
+
+from __future__ import annotations
+
+import lumped
+from computed.markdown import must_pass, table
+from lumped import GearPair
+from validation import floquet_verification
+from validation.verification import code_checks, order_checks, refinements
+
+_SAMPLES = 256
+
+
+def _pair() -> GearPair:
+    return lumped.load_gear_pair("nasa_28_28")
+
+
+def closed_forms() -> str:
+    """Errors against exact values."""
+    checks = code_checks(_pair())
+    for check in checks:
+        must_pass(check.key, check.passes)
+    return table(
+        ("what is checked", "what it must equal", "error", "limit", "why this limit"),
+        [(c.subject, c.exact, c.value, c.limit, c.reason) for c in checks],
+    )
+
+
+def orders() -> str:
+    """Observed orders of convergence."""
+    checks = order_checks()
+    for check in checks:
+        must_pass(check.method, check.passes)
+    return table(
+        ("method", "order by theory", "observed", "coarse steps", "error with twice as many"),
+        [(f"`{c.method}`", c.theory, c.observed, c.steps, c.error) for c in checks],
+    )
+
+
+def refinement() -> str:
+    """Solutions against finer ones."""
+    rows = []
+    for r in refinements(_pair(), _SAMPLES):
+        must_pass(r.key, r.passes)
+        for level in r.levels:
+            subject, measure = (r.subject, r.measure) if level is r.levels[0] else ("", "")
+            rows.append((subject, measure, level.setting + (" (used)" if level.used else ""), level.error))
+    return table(("solution", "measure", "level", "error"), rows)
+
+
+def floquet() -> str:
+    """All numbers of the verification of the Floquet engine."""
+    rows = []
+    for function in floquet_verification.CHECKS:
+        for c in function():
+            must_pass(c.name, c.passed)
+            bounds = f"≤ {c.high:g}" if c.low == 0.0 else f"{c.low:g} to {c.high:g}"
+            rows.append((c.name, c.value, bounds, c.meaning))
+    return table(("check", "number", "must be", "meaning"), rows)
+
+
+FILES = {
+    "closed_forms.md": closed_forms,
+    "orders.md": orders,
+    "refinement.md": refinement,
+    "floquet.md": floquet,
+}

@@ -1,0 +1,60 @@
+"""Equations as MathML, which browsers draw by themselves: pages need neither network nor script."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from docutils import nodes
+from docutils.utils.math import MathError
+from docutils.utils.math.latex2mathml import tex2mathml
+from sphinx.application import Sphinx
+from sphinx.errors import ExtensionError
+from sphinx.writers.html5 import HTML5Translator
+
+_TAG = re.compile(r"\\tag\{([^}]*)\}")
+#: A dotted or barred symbol with an index, which docutils takes for limits below and above an operator.
+_ACCENTED = re.compile(
+    r"<munderover>\s*(<mi>[^<]*</mi>)\s*(<m[inr]\w*>(?:[^<]*|(?:\s*<m[ino]>[^<]*</m[ino]>)*\s*)</m\w+>)\s*"
+    r"(<mo[^>]*>[˙¨ˉ]</mo>)\s*</munderover>"
+)
+
+
+def mathml(latex: str, *, block: bool) -> str:
+    """MathML of an equation.
+
+    Raises
+    ------
+    ExtensionError : a command that has no MathML here
+    """
+    try:
+        found = str(tex2mathml(latex, as_block=block))
+    except MathError as error:
+        raise ExtensionError(f"No MathML for {latex!r}: {error}") from None
+    found = _ACCENTED.sub(r"<msub><mover>\1\3</mover>\2</msub>", found)
+    # Chromium draws an accent through its letter where the font has no table of accent heights.
+    return found.replace('<mover accent="true">', "<mover>")
+
+
+def _inline(self: HTML5Translator, node: nodes.math) -> None:
+    self.body.append(mathml(node.astext(), block=False))
+    raise nodes.SkipNode
+
+
+def _block(self: HTML5Translator, node: nodes.math_block) -> None:
+    latex = node.astext()
+    number = _TAG.search(latex)
+    tag = f'<span class="equation-number">({number.group(1)})</span>' if number else ""
+    body = mathml(_TAG.sub("", latex).strip(), block=True)
+    # The frame scrolls, by keyboard too, where an equation is wider than a phone.
+    self.body.append(
+        f'<div class="equation"><div class="scroll" tabindex="0" role="math">{body}</div>{tag}</div>\n'
+    )
+    raise nodes.SkipNode
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register the renderer."""
+    app.add_html_math_renderer("mathml", inline_renderers=(_inline, None), block_renderers=(_block, None))
+    app.config.html_math_renderer = "mathml"
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

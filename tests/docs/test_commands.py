@@ -1,0 +1,151 @@
+"""Does everything that the documentation tells a reader to type do what it says?"""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import tomllib
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+import yaml
+from typer.main import get_command
+from typer.testing import CliRunner
+
+import lumped
+from validation.cli import app
+from validation.exchange import write_results, write_rexs
+from validation.measurements import MeasurementSpec
+
+#: Commands that take longer than a few seconds or need a cluster: only their arguments are checked. That
+#: reports are written and compared is tested in tests/validation.
+NOT_RUN = re.compile(r"spurcheck (report|figures) |--grid|--scheduler")
+#: Commands that are meant to be refused.
+REFUSED = re.compile(r"pinion\.teeth=3$")
+COMMAND = get_command(app)
+CLUSTER = "docs/how_to/cluster.md"
+
+
+def parsed(line: str) -> None:
+    """Let the command's own parser read a line; it raises a usage error for what it does not know."""
+    name, *arguments = shlex.split(line)[1:]
+    command = COMMAND.commands[name]
+    command.make_context(name, arguments)
+
+
+def inline_commands(page: Path, blocks) -> list[str]:
+    """Commands in running text, and those of workflow files."""
+    text = page.read_text(encoding="utf-8")
+    found = re.findall(r"`(spurcheck [a-z][^`\n]*)`", re.sub(r"^```.*?^```$", "", text, flags=re.M | re.S))
+    for block in blocks(page):
+        if block.language == "yaml":
+            steps = [step for job in yaml.safe_load(block.text)["jobs"].values() for step in job["steps"]]
+            runs = [step["run"].replace("${{ matrix.pair }}", "mypair") for step in steps if "run" in step]
+            found += [run for run in runs if run.startswith("spurcheck")]
+    return [line for line in found if "COMMAND" not in line]
+
+
+def test_commands_in_running_text_are_understood(page, blocks):
+    for line in inline_commands(page, blocks):
+        try:
+            parsed(line)
+        except Exception as error:
+            if type(error).__name__ != "MissingParameter":  # prose may name a command without its arguments
+                raise
+
+
+def test_the_parser_refuses_what_does_not_exist():
+    for line in (
+        "spurcheck report --no-such-option",
+        "spurcheck simulate --cycles many",
+        "spurcheck nothing",
+    ):
+        with pytest.raises((Exception, KeyError)):
+            parsed(line)
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::lumped.LawRangeWarning")
+def test_a_page_works_from_top_to_bottom(page, blocks, root, tmp_path, monkeypatch):
+    """Blocks run in order, in one folder and one Python session, as a reader would."""
+    monkeypatch.chdir(tmp_path)
+    prepare(tmp_path, blocks(root / CLUSTER))
+    session: dict[str, object] = {}
+    for block in blocks(page):
+        if block.language == "sh":
+            for line in block.commands:
+                run(line, root)
+        elif block.language == "python":
+            exec(compile(block.text, str(page), "exec"), session)
+
+
+def prepare(folder: Path, cluster) -> None:
+    """What pages take for granted: the reader's parameter file, his gear program's file, his study."""
+    pair = lumped.load_gear_pair("nasa_28_28")
+    (folder / "mypair.toml").write_text(pair.to_toml())
+    (folder / "my_pair.toml").write_text(pair.to_toml())
+    write_rexs(pair, folder / "gearbox.rexs")
+    write_results(lumped.simulate(pair, cycles=1), folder / "run.nc")
+    (study,) = (b.text for b in cluster if b.text.startswith("# study.toml"))
+    (folder / "study.toml").write_text(study)
+
+
+def run(line: str, root: Path) -> None:
+    """Run one line; what is not the program's own is checked as far as this machine allows."""
+    program, *arguments = shlex.split(line)
+    if program == "spurcheck":
+        parsed(line)
+        if NOT_RUN.search(line):
+            return
+        force = ["--force"] if arguments[0] in ("init", "simulate", "stability", "export") else []
+        result = CliRunner().invoke(app, arguments + force)
+        expected = 2 if REFUSED.search(line) else 0
+        assert result.exit_code == expected, f"{line}\n{result.output}\n{result.exception!r}"
+    elif program == "make":
+        subprocess.run(["make", "-n", *arguments], cwd=root, check=True, capture_output=True)
+    elif program in ("python", "pytest"):
+        module = "-m" in arguments
+        target = arguments[arguments.index("-m") + 1] if module else next(a for a in arguments if "/" in a)
+        assert find_spec(target) if module else (root / target.split("::")[0]).exists(), line
+    else:
+        assert program in (".", "git", "cd", "pip", "ruff", "mypy", ".ci/run") or program.startswith(
+            "REXS_PUBLISHED="
+        ), f"nobody checks {line!r}"
+
+
+def test_the_stiffness_table_of_the_guide_is_read(blocks, root, tmp_path):
+    page = blocks(root / "docs/how_to/stiffness_tables.md")
+    (table,) = (b.text for b in page if "stiffness [N/um]" in b.text)
+    (section,) = (b.text for b in page if b.language == "toml")
+    (tmp_path / "curve.csv").write_text(table)
+    data = lumped.load_gear_pair("nasa_28_28").to_mapping()
+    data["mesh"] |= tomllib.loads(section)["mesh"]
+    data["mesh"]["stiffness"]["file"] = str(tmp_path / "curve.csv")
+    pair = lumped.load_gear_pair(data)
+    # The printed peak, 90.4 N/um at 15.2 mm, in SI.
+    assert max(pair.mesh.stiffness.stiffness) == pytest.approx(90.4e6)
+
+
+def test_the_record_of_the_guide_is_valid(blocks, root):
+    page = blocks(root / "docs/how_to/measured_data.md")
+    (text,) = (b.text for b in page if b.language == "toml")
+    spec = MeasurementSpec.model_validate(tomllib.loads(text))
+    assert spec.channel[0].quantity == "normal_load"
+
+
+def test_the_design_of_the_guide_is_valid(blocks, root):
+    from validation.studies import load_study
+
+    page = [b.text for b in blocks(root / CLUSTER) if b.language == "toml"]
+    study, design = (tomllib.loads(text) for text in page)
+    study["axes"] = study["axes"][:1]  # indices need numbers that can be sampled
+    study["axes"][0].pop("count", None)
+    assert load_study(study | design).design.sensitivity
+
+
+def test_shell_blocks_are_found(blocks, root):
+    """An extraction that finds nothing would pass every page."""
+    readme = [line for b in blocks(root / "README.md") if b.language == "sh" for line in b.commands]
+    assert any(line.startswith("spurcheck report") for line in readme)

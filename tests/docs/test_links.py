@@ -1,0 +1,77 @@
+"""Does every link, path and name on the pages lead somewhere?"""
+
+from __future__ import annotations
+
+import importlib
+import re
+from pathlib import Path
+
+_LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
+_PATH = re.compile(
+    r"\b(?:tests|docs|examples|benchmarks|lumped|multibody|floquet|validation)/[\w/.-]+\.(?:py|md|toml)"
+)
+_TEST = re.compile(r"`(test_\w+\.py)`")
+_NAME = re.compile(r"`((?:lumped|multibody|floquet|validation)(?:\.\w+)+)")
+_INCLUDE = re.compile(r"^```\{(?:include|figure)\} (\S+)", re.MULTILINE)
+
+
+def slug(heading: str) -> str:
+    """Anchor of a heading as GitHub and MyST make it."""
+    plain = re.sub(r"[`*_]|\[([^\]]*)\]\([^)]*\)", r"\1", heading).strip().lower()
+    return re.sub(r"\s", "-", re.sub(r"[^\w\s-]", "", plain))
+
+
+def anchors(page: Path) -> set[str]:
+    text = page.read_text(encoding="utf-8")
+    labels = set(re.findall(r"^\(([\w-]+)\)=$", text, re.M))
+    return {slug(heading) for heading in re.findall(r"^#+ (.+)$", text, re.M)} | labels
+
+
+def test_links_inside_the_repository_resolve(page):
+    for target in _LINK.findall(page.read_text(encoding="utf-8")):
+        if re.match(r"[a-z]+:", target):
+            continue
+        place, _, anchor = target.partition("#")
+        path = (page.parent / place).resolve() if place else page
+        if path.name == "index.rst" and path.parent.name == "gallery":  # written by the build
+            continue
+        assert path.exists(), f"{target} in {page}"
+        if anchor and path.suffix == ".md":
+            assert anchor in anchors(path), f"{target} in {page}"
+
+
+def test_files_that_are_named_exist(page, root):
+    text = page.read_text(encoding="utf-8")
+    for name in _PATH.findall(text):
+        assert (root / name).exists(), f"{name} in {page}"
+    for name in _TEST.findall(text):
+        assert list((root / "tests").rglob(name)), f"{name} in {page}"
+
+
+def test_python_names_exist(page):
+    for name in _NAME.findall(page.read_text(encoding="utf-8")):
+        parts = name.split(".")
+        found: object = importlib.import_module(parts[0])
+        for i, part in enumerate(parts[1:], start=2):
+            if not hasattr(found, part):
+                found = importlib.import_module(".".join(parts[:i]))
+            else:
+                found = getattr(found, part)
+
+
+def test_included_files_are_written_by_the_build_or_exist(page, root):
+    computed = (root / "docs" / "computed").glob("*.py")
+    written = {name for path in computed for name in re.findall(r'"(\w+\.(?:md|svg))":', path.read_text())}
+    for target in _INCLUDE.findall(page.read_text(encoding="utf-8")):
+        if "_generated/" in target:
+            assert target.split("/")[-1] in written, f"{target} in {page}"
+        else:
+            assert (page.parent / target).exists(), f"{target} in {page}"
+
+
+def test_the_checks_see_what_is_broken(tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text("# A title, with `code`\n(label)=\n")
+    assert anchors(page) == {"a-title-with-code", "label"}
+    assert _LINK.findall("[a](b.md#c) ![d](e.png)") == ["b.md#c", "e.png"]
+    assert _NAME.findall("`lumped.simulate(pair)`") == ["lumped.simulate"]

@@ -1,0 +1,76 @@
+"""Do the site's own extensions write what they should? The build itself treats warnings as errors."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("sphinx", reason="the docs extra is not installed")
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs"))
+
+from computed.markdown import CheckFailed, must_pass, table
+from computed.schema import parameters
+from docutils import nodes
+from extensions.docstrings import rewritten
+from extensions.mathml import mathml
+from extensions.scripts import pieces
+from sphinx.errors import ExtensionError
+
+
+def test_a_failing_check_stops_the_build():
+    must_pass("order", True)
+    with pytest.raises(CheckFailed, match="order"):
+        must_pass("order", False)
+
+
+def test_table_cells_are_not_markup():
+    assert table(("a", "b"), [("x|y*z", None)]).splitlines()[2] == r"| x\|y\*z | – |"
+
+
+def test_fields_of_a_docstring():
+    text = ["Do it.", "", "Parameters", "----------", "a, b : length |x| [m],", "    positive", "", "Raises"]
+    text += ["------", "ValueError : never", "", "Returns", "-------", "the ``x_`` of `y`"]
+    assert rewritten(text) == [
+        "Do it.",
+        "",
+        "",
+        r":param a: length \|x\| [m], positive",
+        r":param b: length \|x\| [m], positive",
+        ":raises ValueError: never",
+        ":returns: the ``x_`` of ``y``",
+        "",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Ω_p r_bp", "Ω[p] r[bp]"),
+        ("4 M^k x", "4 M{k} x"),
+        ("V_s^b6", "V[s]{b6}"),
+        ("r_bg/r_bp", "r[bg]/r[bp]"),
+        ("r_{k+1}", "r[k+1]"),
+        ("θ̇_p", "θ̇[p]"),
+        ("mesh_efficiency", "mesh_efficiency"),
+        ("2w_i/k", "2w[i]/k"),
+    ],
+)
+def test_symbols_in_text(text, expected):
+    marks = {nodes.subscript: "[{}]", nodes.superscript: "{{{}}}"}
+    shown = "".join(marks.get(type(n), "{}").format(n.astext()) for n in pieces(text))
+    assert shown == expected
+
+
+def test_equations_keep_the_index_beside_a_dotted_symbol():
+    found = mathml(r"\dot x_p", block=True)
+    assert "<msub><mover>" in found
+    assert "munderover" not in found
+    with pytest.raises(ExtensionError, match="nosuchcommand"):
+        mathml(r"\nosuchcommand", block=True)
+
+
+def test_the_parameter_reference_states_unit_range_and_default():
+    rows = [line for line in parameters().splitlines() if line.startswith("| `pinion_speed`")]
+    assert rows == ["| `pinion_speed` | nominal speed of the pinion | rpm | > 0, ≤ 200000 | required |"]
