@@ -23,7 +23,7 @@ from multibody import kernels as kn
 from multibody.machine import Machine
 from multibody.model import build
 from multibody.records import from_lumped_state, to_lumped_state
-from multibody.setup import CALL_LIMIT, Fidelity, Setup, prepare
+from multibody.setup import Fidelity, Setup, prepare
 from multibody.simulation import record
 
 if TYPE_CHECKING:
@@ -231,7 +231,7 @@ class Flow:
     """State (12,) -> state after one mesh cycle."""
 
     def __init__(self, setup: Setup, machine: Machine) -> None:
-        model = build(machine, setup.fidelity, setup.model.flags, CALL_LIMIT)
+        model = build(machine, setup.fidelity, setup.model.flags, setup.model.budget.limit)
         self.setup = replace(setup, model=model)
         self.edges = setup.edges(1)
 

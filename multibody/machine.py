@@ -72,6 +72,23 @@ class Machine:
         rows[3, :, 2] = -self.torque_pinion, -self.torque_gear
         return rows.reshape(4, 6)
 
+    @property
+    def vibrations_per_cycle(self) -> float:
+        """Swings of the fastest natural mode in one mesh cycle, with every pair at its largest stiffness.
+
+        The mesh acts along the nominal line of action, without friction and damping.
+        """
+        inertia, bearings, _, _ = self.bodies
+        rows = self.table[self.offsets[kn.STIFFNESS] : self.offsets[kn.STIFFNESS + 1]]
+        middle = 0.5 * (rows[:, 0] + rows[:, 1])
+        places = np.concatenate([rows[:, 0], middle, rows[:, 1]])
+        largest = max(abs(kn.law(self.table, self.offsets, kn.STIFFNESS, xi)[0]) for xi in places)
+        p = self.parameters
+        mesh = np.array([1.0, 0.0, -p[kn.RADIUS_P], -1.0, 0.0, -p[kn.RADIUS_G]])
+        stiffness = self.pairs * largest * np.outer(mesh, mesh) + np.diag(bearings)
+        squares = np.linalg.eigvalsh(stiffness / np.sqrt(np.outer(inertia, inertia)))
+        return float(np.sqrt(squares[-1]) * self.period / (2.0 * np.pi))
+
     def with_parameter(self, place: int, value: float) -> Machine:
         """Copy with one entry of ``parameters`` changed."""
         parameters = self.parameters.copy()

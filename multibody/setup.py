@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -27,8 +27,11 @@ from multibody.reversal import friction_velocity as choose_friction_velocity
 FloatArray = NDArray[np.float64]
 Fidelity = Literal["linear", "exact"]
 
-#: Force evaluations allowed in one interval; an ordinary mesh cycle takes one to three thousand.
-CALL_LIMIT = 400_000
+#: Force evaluations allowed in one interval; more in proportion where a mesh cycle has more vibrations of the
+#: fastest mode than this. One takes some 500 at rtol 1e-8, and an ordinary mesh cycle has some five.
+CALL_LIMIT, _ORDINARY_VIBRATIONS = 400_000, 80
+#: Most vibrations in a mesh cycle: up to half a million force evaluations, a second or two.
+_MOST_VIBRATIONS = 500
 #: exudyn has one absolute tolerance for coordinates and rates. It is set for the rates: this share of a
 #: static deflection per mesh cycle, times rtol. Much smaller, a rate that is zero when an impact starts
 #: would have to be found to the last bit; the coordinates are the rates' integrals and no less accurate for
@@ -108,9 +111,11 @@ def prepare(
     if fidelity == "linear" and effects:
         raise refuse("effects", effects, "none at fidelity 'linear'", "Use fidelity='exact'.")
     flags = effect_flags(effects) if fidelity == "exact" else 0
+    numbers = machine(pair, pair.operating.pinion_torque, pair.operating.pinion_torque)
+    call_limit = _call_limit(pair, numbers)
     system = periodic_system(pair, "absolute")
     balance = periodic_solution(pair, np.zeros(1), system=system, estimate_error=False)
-    numbers = machine(pair, balance.pinion_torque, balance.brake_torque)
+    numbers = replace(numbers, torque_pinion=balance.pinion_torque, torque_gear=balance.brake_torque)
     velocity, reason = _friction_velocity(numbers, flags, friction_velocity)
     numbers = numbers.with_parameter(kn.V_REG, velocity)
     static, _ = from_lumped_state(initial_state(pair, system, "static", balance))
@@ -142,7 +147,7 @@ def prepare(
         / (balance.pinion_torque * numbers.parameters[kn.OMEGA_P]),
     }
     return Setup(
-        model=build(numbers, fidelity, flags, CALL_LIMIT, tables),
+        model=build(numbers, fidelity, flags, call_limit, tables),
         q=q,
         v=v,
         fidelity=fidelity,
@@ -150,6 +155,21 @@ def prepare(
         atol=rtol * _ATOL_SHARE * deflection / numbers.period,
         attributes=attributes,
     )
+
+
+def _call_limit(pair: GearPair, numbers: Machine) -> int:
+    """Most force evaluations of one interval; refuses a speed at which a mesh cycle would take minutes."""
+    vibrations = numbers.vibrations_per_cycle
+    if vibrations > _MOST_VIBRATIONS:
+        rpm = pair.operating.pinion_speed * 30.0 / np.pi
+        raise refuse(
+            "operating.pinion_speed",
+            f"{rpm:.4g} rpm",
+            f"at least {rpm * vibrations / _MOST_VIBRATIONS:.3g} rpm for the multibody model of this pair",
+            f"The fastest mode would swing {vibrations:.0f} times in a mesh cycle: the motion is "
+            "quasi-static. Use lumped.static_transmission_error, or raise the speed.",
+        )
+    return int(CALL_LIMIT * max(1.0, vibrations / _ORDINARY_VIBRATIONS))
 
 
 def _friction_velocity(numbers: Machine, flags: int, given: float | None) -> tuple[float, str]:

@@ -4,12 +4,19 @@ from __future__ import annotations
 
 import _thread
 import threading
+import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import lumped
 import multibody
+from lumped.averaged import modes
+from multibody import kernels as kn
+from multibody.machine import machine
+from multibody.model import build
+from multibody.setup import prepare
 
 PAIR = lumped.load_gear_pair("nasa_28_28")
 
@@ -39,6 +46,48 @@ def test_runaway_step_sizes_are_capped(monkeypatch):
     monkeypatch.setattr("multibody.setup.CALL_LIMIT", 300)
     with pytest.raises(lumped.NumericalError, match="More than 300 force evaluations"):
         multibody.simulate(PAIR, 2)
+
+
+@pytest.mark.parametrize("fidelity", ["linear", "exact"])
+def test_a_force_that_turns_nan_on_the_way_stops_the_run(fidelity):
+    """The element laws are finite at the start and not beyond the pitch point."""
+    setup = prepare(PAIR.with_(friction__law="none"), fidelity=fidelity)
+    machine, p = setup.machine, setup.machine.parameters
+    low, high = machine.offsets[kn.STIFFNESS], machine.offsets[kn.STIFFNESS + 1]
+    assert high - low == 1  # constant: split it at P
+    row = machine.table[low]
+    before, after = row.copy(), row.copy()
+    before[1] = after[0] = p[kn.L_XP]
+    after[-1] = np.nan
+    table = np.vstack([before, after, machine.table[high:]])
+    offsets = machine.offsets + (np.arange(machine.offsets.size) > kn.STIFFNESS)
+    broken = replace(machine, table=table, offsets=offsets)
+    model = build(broken, fidelity, setup.model.flags, 100_000)
+    with pytest.raises(lumped.NumericalError, match="not finite"):
+        replace(setup, model=model).run(np.array([0.0, 0.5, 1.0]) * broken.period, lambda *_: None)
+    assert model.budget.calls < 20_000
+
+
+def test_a_speed_that_would_take_for_ever_is_refused_before_work_starts(monkeypatch):
+    started = time.process_time()
+    with pytest.raises(
+        lumped.ParameterError, match=r"operating.pinion_speed = 1 rpm: allowed at least 37\..* rpm"
+    ):
+        multibody.steady_state(PAIR.with_(operating__pinion_speed=1))
+    assert time.process_time() - started < 2.0
+    # The cap on force evaluations grows with what a slow pair needs.
+    monkeypatch.setattr("multibody.setup.CALL_LIMIT", 10_000)
+    run = multibody.simulate(PAIR.with_(operating__pinion_speed=40), 1)
+    assert run.attrs["force_evaluations"] > 10_000
+
+
+@pytest.mark.parametrize("name", lumped.preset_names())
+def test_fastest_vibration_is_bounded_from_above_and_closely(name):
+    """Against the modes of the time-averaged lumped equations, whose mesh is softer by less than half."""
+    pair = lumped.load_gear_pair(name)
+    numbers = machine(pair, 1.0, 1.0)
+    fastest = max(mode.natural_frequency for mode in modes(pair)) * numbers.period
+    assert 1.0 < numbers.vibrations_per_cycle / fastest < np.sqrt(2.0)
 
 
 def test_a_failed_run_leaves_the_next_one_alone():
