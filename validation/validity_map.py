@@ -1,4 +1,4 @@
-"""Where over speed and torque the lumped model is valid: contact loss, sliding reversal, film regime."""
+"""Where over speed and torque the lumped model is valid: contact, sliding, stability, film regime."""
 
 from __future__ import annotations
 
@@ -10,17 +10,18 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 import lumped
-from lumped import GearPair, LawRangeWarning, NumericalError, geometry
+from lumped import GearPair, LawRangeWarning, geometry
 from lumped.errors import refuse
 from lumped.film import regime
 from lumped.friction import contact_path
 from lumped.results import provenance
+from validation.periodic import UNSTABLE
 from validation.validity import LOAD_NOISE, REVERSAL_LIMITS
 
 FloatArray = NDArray[np.float64]
 Progress = Callable[[float], None]
 
-#: Values of ``state``: the worst of contact and sliding.
+#: Values of ``state``: the worst of contact, sliding and stability.
 STATES = ("valid", "warning", "violated", "no periodic motion")
 #: Names of ``regime``.
 REGIMES = ("boundary", "mixed", "elastohydrodynamic", "full film")
@@ -48,8 +49,9 @@ def validity_map(
     -------
     Dataset over ``torque`` and ``speed``: lowest_load, smallest normal load of a pair in contact over the
     static load; reversal, largest distance from the pitch point at which sliding is reversed, over the base
-    pitch; film_parameter, its smallest value over the path of contact; regime, index into ``REGIMES``;
-    state, index into ``STATES``. Points without a periodic motion are NaN with state 3
+    pitch; spectral_radius, largest Floquet multiplier; film_parameter, its smallest value over the path of
+    contact; regime, index into ``REGIMES``; state, index into ``STATES``. Points without a periodic motion
+    are NaN with state 3
 
     Raises
     ------
@@ -63,53 +65,47 @@ def validity_map(
         axes[name] = axis
     speed, torque = axes["speeds_rpm"], axes["torques"]
     shape = (torque.size, speed.size)
-    found: dict[str, FloatArray] = {
-        name: np.full(shape, np.nan) for name in ("lowest_load", "reversal", "film_parameter")
-    }
+    names = ("lowest_load", "reversal", "spectral_radius", "film_parameter")
+    found: dict[str, FloatArray] = {name: np.full(shape, np.nan) for name in names}
+    g = geometry(pair)
     with warnings.catch_warnings():
         # The map itself shows the regime; one warning per point would say less.
         warnings.simplefilter("ignore", LawRangeWarning)
-        for place in np.ndindex(shape):
-            at = pair.with_(
-                {
-                    "operating.pinion_torque": float(torque[place[0]]),
-                    "operating.pinion_speed": float(speed[place[1]]),
-                    "operating.brake_torque": "balanced",
-                }
-            )
-            path = contact_path(at)
-            film = path.film_parameter(np.linspace(path.L_XA, path.L_XD, 65))
-            found["film_parameter"][place] = float(film.min())
-            try:
-                motion = lumped.steady_state(at, samples_per_cycle=samples)
-                found["lowest_load"][place], found["reversal"][place] = _motion(at, motion)
-            except NumericalError:
-                pass  # no periodic motion: the point says so
+        for row, value in enumerate(torque):
+            at = pair.with_({"operating.pinion_torque": float(value), "operating.brake_torque": "balanced"})
+            sweep = lumped.speed_sweep(at, speed, samples_per_cycle=samples)
+            static = float(value) / g.base_radius_pinion
+            found["lowest_load"][row] = sweep["normal_load_min"].to_numpy() / static
+            found["reversal"][row] = sweep["sliding_reversal"].to_numpy() / g.base_pitch
+            found["spectral_radius"][row] = sweep["spectral_radius"].to_numpy()
+            found["film_parameter"][row] = [_thinnest_film(at, float(rpm)) for rpm in speed]
             if progress is not None:
-                progress((np.ravel_multi_index(place, shape) + 1) / (shape[0] * shape[1]))
+                progress((row + 1) / torque.size)
     return _dataset(pair, speed, torque, found)
 
 
-def _motion(pair: GearPair, motion: xr.Dataset) -> tuple[float, float]:
-    """Smallest load over the static load, and largest distance of reversed sliding over the base pitch."""
-    g = geometry(pair)
-    contact = motion["contact"].to_numpy() > 0
-    load, position = motion["normal_load"].to_numpy(), motion["position"].to_numpy()
-    sliding = motion["sliding_velocity"].to_numpy()
-    reversed_ = contact & (load > 0) & (sliding * np.sign(position - g.L_XP) < 0.0)
-    distance = float(np.where(reversed_, np.abs(position - g.L_XP), 0.0).max())
-    static = pair.operating.pinion_torque / g.base_radius_pinion
-    return float(load[contact].min()) / static, distance / g.base_pitch
+def _thinnest_film(pair: GearPair, rpm: float) -> float:
+    """Smallest film parameter over the path of contact."""
+    path = contact_path(pair.with_({"operating.pinion_speed": rpm}))
+    return float(path.film_parameter(np.linspace(path.L_XA, path.L_XD, 65)).min())
 
 
-def validity_state(lowest_load: FloatArray, reversal: FloatArray) -> NDArray[np.int64]:
-    """Index into ``STATES`` from the smallest load over the static load and the reversal over the base pitch.
+def validity_state(
+    lowest_load: FloatArray, reversal: FloatArray, spectral_radius: FloatArray | None = None
+) -> NDArray[np.int64]:
+    """Index into ``STATES``: the worst of contact, sliding and stability.
 
-    NaN stands for a point without a periodic motion.
+    Parameters
+    ----------
+    lowest_load : smallest load over the static load; NaN for a point without a periodic motion
+    reversal : largest distance of reversed sliding from the pitch point over the base pitch
+    spectral_radius : largest Floquet multiplier, where stability counts
     """
     state = np.zeros(lowest_load.shape, dtype=np.int64)
     state[reversal > REVERSAL_LIMITS[0]] = 1
     state[(reversal > REVERSAL_LIMITS[1]) | (lowest_load < -LOAD_NOISE)] = 2
+    if spectral_radius is not None:
+        state[spectral_radius > UNSTABLE] = 2
     state[np.isnan(lowest_load)] = 3
     return state
 
@@ -117,11 +113,12 @@ def validity_state(lowest_load: FloatArray, reversal: FloatArray) -> NDArray[np.
 def _dataset(
     pair: GearPair, speed: FloatArray, torque: FloatArray, found: dict[str, FloatArray]
 ) -> xr.Dataset:
-    state = validity_state(found["lowest_load"], found["reversal"])
+    state = validity_state(found["lowest_load"], found["reversal"], found["spectral_radius"])
     dims = ("torque", "speed")
     names = {
         "lowest_load": "smallest normal load of a pair in contact over the static load",
         "reversal": "largest distance of reversed sliding from the pitch point over the base pitch",
+        "spectral_radius": "largest Floquet multiplier of the periodic motion",
         "film_parameter": "smallest film parameter along the path of contact",
     }
     data = {name: (dims, values, {"units": "1", "long_name": names[name]}) for name, values in found.items()}

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import xarray as xr
 from matplotlib.figure import Figure
 
 from lumped import GearPair, load_gear_pair
@@ -63,6 +64,7 @@ def figure_records(
     *,
     measurements: Sequence[Measurement] = (),
     with_multibody: bool = True,
+    runs: xr.Dataset | None = None,
     progress: Progress | None = None,
 ) -> tuple[FigureRecord, ...]:
     """Compute the data of the paper's figures.
@@ -74,6 +76,7 @@ def figure_records(
     figures : numbers of the figures
     measurements : records for figure 7
     with_multibody : whether figures 4 to 7 get their multibody twin
+    runs : of ``law_runs`` for this pair, where they are known already
     progress : called with the finished fraction
 
     Raises
@@ -85,7 +88,8 @@ def figure_records(
         if name not in DRAW:
             raise refuse("figures", name, "numbers out of " + ", ".join(DRAW), "Correct the number.")
     gears = load_gear_pair("nasa_28_28") if pair is None else pair
-    runs = law_runs(gears, with_multibody=with_multibody) if _NEED_RUNS & set(figures) else None
+    if runs is None and _NEED_RUNS & set(figures):
+        runs = law_runs(gears, with_multibody=with_multibody)
     records = []
     for done, name in enumerate(figures, 1):
         if name in _NEED_RUNS:

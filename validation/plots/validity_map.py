@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from validation.periodic import UNSTABLE
 from validation.plots.style import BLACK, new_figure
 from validation.validity import LOAD_NOISE, REVERSAL_LIMITS
 from validation.validity_map import REGIMES
@@ -19,7 +21,7 @@ _REGIMES = ("#c65d2e", "#f5d58a", "#d5ecdf", "#8fc1e3")
 
 
 def validity_map_figure(data: xr.Dataset, point: tuple[float, float] | None = None) -> Figure:
-    """Contact, sliding and film over speed and torque, a panel each.
+    """Contact, sliding and film over speed and torque, a panel each; crosses where the motion is unstable.
 
     Parameters
     ----------
@@ -29,6 +31,7 @@ def validity_map_figure(data: xr.Dataset, point: tuple[float, float] | None = No
     figure, axes = new_figure(1, 3, height=3.5, sharey=True)
     lowest, reversal = data["lowest_load"].to_numpy(), data["reversal"].to_numpy()
     nothing = np.isnan(lowest)
+    unstable = data["spectral_radius"].to_numpy() > UNSTABLE
     contact = np.where(nothing, 3, np.where(lowest < -LOAD_NOISE, 2, 0))
     sliding = np.select([nothing, reversal > REVERSAL_LIMITS[1], reversal > REVERSAL_LIMITS[0]], [3, 2, 1], 0)
     panels = (
@@ -49,10 +52,22 @@ def validity_map_figure(data: xr.Dataset, point: tuple[float, float] | None = No
     for ax, (title, values, colours, names) in zip(axes[0], panels, strict=True):
         _panel(ax, data, values, colours)
         present = [k for k in range(4) if (values == k).any()]
+        handles: list[Artist] = [
+            Patch(facecolor=colours[k], edgecolor=BLACK, linewidth=0.4, label=names[k]) for k in present
+        ]
+        if ax is axes[0, 0] and unstable.any():
+            row, column = np.nonzero(unstable)
+            handles += ax.plot(
+                data["speed"].to_numpy()[column],
+                data["torque"].to_numpy()[row],
+                "x",
+                color=BLACK,
+                markersize=3.5,
+                markeredgewidth=0.7,
+                label="unstable motion",
+            )
         ax.legend(
-            handles=[
-                Patch(facecolor=colours[k], edgecolor=BLACK, linewidth=0.4, label=names[k]) for k in present
-            ],
+            handles=handles,
             loc="upper center",
             bbox_to_anchor=(0.5, -0.2),
             frameon=False,

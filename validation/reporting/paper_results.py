@@ -43,8 +43,9 @@ def paper_results(pair: GearPair, samples: int, progress: Callable[[float], None
     with warnings.catch_warnings():
         # Laws are taken to the paper's operating points whether they suit them or not: that is what it did.
         warnings.simplefilter("ignore", LawRangeWarning)
-        figures = figure_records(pair, progress=lambda f: progress(0.4 * f))
+        runs = law_runs(pair)
+        figures = figure_records(pair, runs=runs, progress=lambda f: progress(0.4 * f))
         shown = errata_chapter(pair)
         progress(0.5)
-        table = claims(pair, samples=samples, runs=law_runs(pair), progress=lambda f: progress(0.5 + 0.5 * f))
+        table = claims(pair, samples=samples, runs=runs, progress=lambda f: progress(0.5 + 0.5 * f))
     return PaperResults(figures, table, shown)

@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 
+from validation.periodic import UNSTABLE
 from validation.plots.validity_map import validity_map_figure
 from validation.reporting.blocks import Cell, Chapter, Column, Fact, Facts, Picture, Quantity, Table, Text
 from validation.reporting.results import Results
@@ -27,6 +28,11 @@ def validity_map(results: Results) -> Chapter:
                 "sliding reversed off the pitch point",
                 float(np.mean(reversal > REVERSAL_LIMITS[0])),
                 f"by more than {100 * REVERSAL_LIMITS[0]:g} % of a base pitch",
+            ),
+            Fact(
+                "unstable",
+                "unstable motion",
+                float(np.mean(data["spectral_radius"].to_numpy() > UNSTABLE)),
             ),
             Fact(
                 "no_motion", "no periodic motion", float(np.mean(state == STATES.index("no periodic motion")))
@@ -53,13 +59,15 @@ def validity_map(results: Results) -> Chapter:
             "validity_map",
             "Where the lumped model holds, over pinion speed and torque. Left: do the teeth stay in contact? "
             "Middle: does sliding keep its direction away from the pitch point? Right: lubrication regime at "
-            "the thinnest place of the path of contact. Circle: operating point.",
+            "the thinnest place of the path of contact. Circle: operating point; crosses on the left: the "
+            "motion is unstable.",
             partial(validity_map_figure, data, (results.operating_rpm, pair.operating.pinion_torque)),
         ),
         Facts("shares", shares),
         Table(
             "valid_speeds",
-            "Speeds at which contact and sliding are as the model assumes, at three torques.",
+            "Speeds at which contact and sliding are as the model assumes and the motion is stable, at "
+            "three torques.",
             (
                 Column("torque", "pinion torque"),
                 Column("share", "share of the speeds"),
