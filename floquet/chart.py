@@ -107,8 +107,8 @@ def _at_point(evaluate: Callable[[dict[str, float]], Spectrum], point: dict[str,
 
 def chart_dataset(
     grid: Mapping[str, FloatArray],
-    multipliers: npt.NDArray[np.complex128],
-    multiplier_errors: FloatArray,
+    multipliers: npt.NDArray[np.complex128] | None,
+    multiplier_errors: FloatArray | None,
     radius: FloatArray,
     radius_error: FloatArray,
 ) -> xr.Dataset:
@@ -116,17 +116,15 @@ def chart_dataset(
 
     Returns
     -------
-    Dataset with spectral_radius, error, verdict (1 stable, 0 undecided, -1 unstable) over the axes, and
-    multipliers, multiplier_errors over the axes and ``multiplier``
+    Dataset with spectral_radius, error, verdict (1 stable, 0 undecided, -1 unstable) over the axes, and where
+    given, multipliers, multiplier_errors over the axes and ``multiplier``
     """
     import xarray as xr
 
     shape = tuple(values.size for values in grid.values())
     dims = tuple(grid)
-    count = multipliers.shape[-1]
-    decided = np.where(radius + radius_error < 1.0, 1, np.where(radius - radius_error > 1.0, -1, 0))
-    full = (*dims, "multiplier")
-    return xr.Dataset(
+    verdict = (radius + radius_error < 1.0).astype(np.int8) - (radius - radius_error > 1.0)
+    dataset = xr.Dataset(
         {
             "spectral_radius": (
                 dims,
@@ -140,7 +138,7 @@ def chart_dataset(
             ),
             "verdict": (
                 dims,
-                decided.astype(np.int8).reshape(shape),
+                verdict.reshape(shape),
                 {
                     "units": "1",
                     "long_name": "stability verdict, undecided where the bound contains 1",
@@ -148,19 +146,22 @@ def chart_dataset(
                     "flag_meanings": "unstable undecided stable",
                 },
             ),
-            "multipliers": (
-                full,
-                multipliers.reshape(*shape, count),
-                {"units": "1", "long_name": "Floquet multipliers, largest modulus first"},
-            ),
-            "multiplier_errors": (
-                full,
-                multiplier_errors.reshape(*shape, count),
-                {"units": "1", "long_name": "bound on the error of each multiplier"},
-            ),
         },
         coords={name: (name, values) for name, values in grid.items()},
     )
+    if multipliers is not None and multiplier_errors is not None:
+        full = (*dims, "multiplier")
+        dataset["multipliers"] = (
+            full,
+            multipliers.reshape(*shape, -1),
+            {"units": "1", "long_name": "Floquet multipliers, largest modulus first"},
+        )
+        dataset["multiplier_errors"] = (
+            full,
+            multiplier_errors.reshape(*shape, -1),
+            {"units": "1", "long_name": "bound on the error of each multiplier"},
+        )
+    return dataset
 
 
 def chart(

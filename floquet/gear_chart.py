@@ -6,17 +6,17 @@ import math
 from collections.abc import Mapping
 from functools import partial
 from itertools import product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from floquet.chart import Axes, Progress, chart_dataset, checked_axes, scan
 from floquet.gear_axes import gear_axis, vary
 from floquet.gear_multipliers import gear_pair_multipliers
-from floquet.gear_plane import Plane, plane_multipliers
+from floquet.gear_plane import Plane, Store, plane_multipliers
 from floquet.propagators import Propagator
 from floquet.spectrum import Spectrum
-from floquet.system import ComplexArray, FloatArray
+from floquet.system import FloatArray
 from lumped.errors import refuse
 from lumped.parameters import GearPair
 
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _INNER = ("speed_rpm", "damping_ratio", "friction_coefficient")
-_ROWS = 65_536
 
 
 def stability_chart(
@@ -34,6 +33,7 @@ def stability_chart(
     friction_law: str | None = None,
     rtol: float = 1e-10,
     method: str | Propagator = "taylor",
+    store: Literal["all", "radius"] = "all",
     n_jobs: int | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
@@ -51,13 +51,16 @@ def stability_chart(
     method : "taylor", the compiled kernel; "chebyshev", the same at some thousand nodes with a checked
         interpolation in speed and in damping or friction between them, for charts of many more points than
         that; or a method of `monodromy` for an independent check
+    store : "all"; or "radius" for the spectral radius, its error and the verdict without the multipliers: 17
+        bytes a point instead of 257
     n_jobs : threads (Taylor) or processes (others); default all cores for Taylor, 1 for the others
     progress : called with (points done, points in all)
 
     Returns
     -------
-    xarray.Dataset over the axes: spectral_radius, error, verdict, multipliers, multiplier_errors (10 each:
-    the feedback block and the off-line-of-action block; the rigid rotation is no part of them)
+    xarray.Dataset over the axes: spectral_radius, error, verdict and, with store "all", multipliers and
+    multiplier_errors (10 each: the feedback block and the off-line-of-action block; the rigid rotation is no
+    part of them)
 
     Raises
     ------
@@ -69,6 +72,8 @@ def stability_chart(
     grid = checked_axes(axes)
     for name, values in grid.items():
         gear_axis(name).check(name, values)
+    if store not in ("all", "radius"):
+        raise refuse("store", store, "all, radius", "Choose one of these.")
     if friction_law is not None:
         pair = pair.with_({"friction.law": friction_law})
     if method in ("taylor", "chebyshev"):
@@ -78,10 +83,12 @@ def stability_chart(
             raise refuse(
                 "method", method, '"taylor" for axes without speed_rpm', "Interpolation is over speed."
             )
-        dataset = _taylor_chart(pair, grid, rtol, n_jobs, progress, method == "chebyshev")
+        dataset = _compiled_chart(pair, grid, rtol, n_jobs, progress, method == "chebyshev", store == "all")
     else:
         evaluate = partial(_evaluate, pair, rtol, method)
         dataset = scan(evaluate, grid, n_jobs=n_jobs or 1, progress=progress)
+        if store == "radius":
+            dataset = dataset.drop_vars(["multipliers", "multiplier_errors"])
     for name in grid:
         axis = gear_axis(name)
         dataset[name].attrs.update(units=axis.units, long_name=axis.long_name)
@@ -98,13 +105,14 @@ def _evaluate(pair: GearPair, rtol: float, method: str | Propagator, point: dict
     return gear_pair_multipliers(vary(pair, point), rtol, method=method)
 
 
-def _taylor_chart(
+def _compiled_chart(
     pair: GearPair,
     grid: Mapping[str, FloatArray],
     rtol: float,
     threads: int | None,
     progress: Progress | None,
     interpolate: bool,
+    multipliers: bool,
 ) -> xr.Dataset:
     """Fit the block once per point of the slow axes, then run the kernel over the fast ones.
 
@@ -119,7 +127,7 @@ def _taylor_chart(
     mesh = np.meshgrid(*(grid[name] for name in inner), indexing="ij")
     flat = {name: m.ravel() for name, m in zip(inner, mesh, strict=True)}
     inner_shape = tuple(grid[name].size for name in inner)
-    values, errors = np.empty((*shape, 10), dtype=complex), np.empty((*shape, 10))
+    whole = Store(math.prod(shape), multipliers)
     done = 0
 
     def report(count: int) -> None:
@@ -132,32 +140,16 @@ def _taylor_chart(
         where = dict(zip(outer, index, strict=True))
         point = {name: float(grid[name][i]) for name, i in where.items()}
         plane = Plane(pair, point, flat, math.prod(inner_shape))
-        found = plane_multipliers(plane, rtol, threads, report, interpolate)
+        if not outer:  # the plane is the whole chart
+            plane_multipliers(plane, whole, rtol, threads, report, interpolate)
+            break
+        part = Store(plane.count, multipliers)
+        plane_multipliers(plane, part, rtol, threads, report, interpolate)
         key = tuple(where.get(name, slice(None)) for name in names)
-        for target, source in zip((values, errors), found, strict=True):
-            target[key] = source.reshape(*inner_shape, 10)
-        del found
-    values, errors = values.reshape(-1, 10), errors.reshape(-1, 10)
-    radius, radius_error = _sorted_in_place(values, errors)
-    return chart_dataset(grid, values, errors, radius, radius_error)
-
-
-def _sorted_in_place(values: ComplexArray, errors: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Put the largest multiplier of each row first; return the radii and their bounds.
-
-    By parts: a chart of a million points should not need its memory several times over.
-    """
-    radius, radius_error = np.empty(values.shape[0]), np.empty(values.shape[0])
-    for first in range(0, radius.size, _ROWS):
-        part = slice(first, first + _ROWS)
-        ranking = np.argsort(-np.abs(values[part]), axis=1, kind="stable")
-        values[part] = np.take_along_axis(values[part], ranking, 1)
-        errors[part] = np.take_along_axis(errors[part], ranking, 1)
-        modulus = np.abs(values[part])
-        radius[part] = modulus[:, 0]
-        high, low = (modulus + errors[part]).max(axis=1), (modulus - errors[part]).max(axis=1)
-        radius_error[part] = np.maximum(high - radius[part], radius[part] - low)
-    return radius, radius_error
+        for target, source in zip(whole.arrays(), part.arrays(), strict=True):
+            rest = target.shape[1:]
+            target.reshape(*shape, *rest)[key] = source.reshape(*inner_shape, *rest)
+    return chart_dataset(grid, whole.multipliers, whole.errors, whole.radius, whole.radius_error)
 
 
 def _is_slow(name: str, grid: Mapping[str, FloatArray]) -> bool:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from floquet.coarsening import coarsened
 from floquet.fast import FastMonodromy, FastMultipliers, fast_monodromies, fast_multipliers
@@ -19,9 +20,13 @@ from floquet.system import ComplexArray, FloatArray
 from lumped.parameters import GearPair
 from lumped.periodic_system import periodic_system
 
+Put = Callable[[npt.NDArray[np.intp], FastMultipliers], None]
+"""(indices (k,) of points, their multipliers)."""
+
 _REFERENCE_DAMPING = 1.0
 # Periods that share one coarsened block differ by at most this factor: short ones need fewer pieces still.
 _BAND = 1.5
+_CHUNK = 32_768  # points in memory with their matrices
 _FEW_PIECES = 6  # not worth joining
 _FEW_POINTS = 300  # for which joining costs more than it saves
 _FEW_SPEEDS = 64  # for which interpolation would cost more
@@ -66,14 +71,60 @@ class Plane:
         return np.ones(self.count) if given is None else given / given.max()
 
 
+class Store:
+    """Multipliers of many points, or no more than their spectral radius.
+
+    Parameters
+    ----------
+    count : number of points
+    multipliers : whether to keep the multipliers and their errors
+
+    Attributes
+    ----------
+    radius, radius_error : (count,)
+    multipliers, errors : (count, 10) the largest modulus first, or None
+    """
+
+    def __init__(self, count: int, multipliers: bool) -> None:
+        self.radius, self.radius_error = np.empty(count), np.empty(count)
+        self.multipliers = np.empty((count, 10), dtype=complex) if multipliers else None
+        self.errors = np.empty((count, 10)) if multipliers else None
+
+    def arrays(self) -> list[npt.NDArray[np.generic]]:
+        """Whatever is kept."""
+        given = (self.radius, self.radius_error, self.multipliers, self.errors)
+        return [array for array in given if array is not None]
+
+    def put(self, points: npt.NDArray[np.intp], found: FastMultipliers, exponents: ComplexArray) -> None:
+        """Take the feedback block of some points, and the exponents times period of the other bearings."""
+        oloa = np.exp(exponents)
+        values = np.concatenate([found.multipliers, oloa], axis=1)
+        # 4e-16: rounding of the exponent.
+        errors = np.concatenate([found.errors, 4e-16 * (1.0 + np.abs(exponents)) * np.abs(oloa)], axis=1)
+        modulus = np.abs(values)
+        self.radius[points] = radius = modulus.max(axis=1)
+        high, low = (modulus + errors).max(axis=1), (modulus - errors).max(axis=1)
+        self.radius_error[points] = np.maximum(high - radius, radius - low)
+        if self.multipliers is not None and self.errors is not None:
+            ranking = np.argsort(-modulus, axis=1, kind="stable")
+            self.multipliers[points] = np.take_along_axis(values, ranking, 1)
+            self.errors[points] = np.take_along_axis(errors, ranking, 1)
+
+
 def plane_multipliers(
-    plane: Plane, rtol: float, threads: int | None, report: Callable[[int], None], interpolate: bool
-) -> tuple[ComplexArray, FloatArray]:
-    """Multipliers (count, 10) and their bounds: the feedback block and the bearings off the line of action.
+    plane: Plane,
+    store: Store,
+    rtol: float,
+    threads: int | None,
+    report: Callable[[int], None],
+    interpolate: bool,
+) -> None:
+    """Multipliers of all points: the feedback block and the bearings off the line of action.
 
     Parameters
     ----------
     plane : the points
+    store : takes the multipliers
     rtol : wanted error relative to the scale of the monodromy matrices
     threads : default one per core
     report : called with the number of points done since the last call
@@ -83,7 +134,6 @@ def plane_multipliers(
     own = first.pair.operating.pinion_speed * 30.0 / np.pi
     speeds = plane.flat.get("speed_rpm", np.full(plane.count, own))
     unique, which = np.unique(speeds, return_inverse=True)
-    values, errors = np.empty((plane.count, 10), dtype=complex), np.empty((plane.count, 10))
     damping, friction = plane.damping(), plane.friction()
     for family in friction_families(first, unique):
         row = np.full(unique.size, -1)
@@ -97,22 +147,26 @@ def plane_multipliers(
             friction_level=family.level,
         )
         periods = block.period * variation.pair.operating.pinion_speed * 30.0 / np.pi / speeds[part]
-        found = None
-        if interpolate and family.members.size > _FEW_SPEEDS:
-            found = _interpolated(
-                block, variation, family, periods, damping[part], friction[part], rtol, threads
-            )
-        if found is None:
-            factors = friction[part, None] * family.factors[row[which[part]]]
-            found = _direct(block, periods, damping[part], factors, rtol, threads)
         exponents = oloa_exponents(periodic_system(variation.pair, "relative"))
-        angle = exponents[None, :] * periods[:, None]
-        oloa = np.exp(angle)
-        values[part, :6], errors[part, :6] = found.multipliers, found.errors
-        values[part, 6:] = oloa
-        errors[part, 6:] = 4e-16 * (1.0 + np.abs(angle)) * np.abs(oloa)  # rounding of the exponent
+
+        def put(
+            index: npt.NDArray[np.intp],
+            found: FastMultipliers,
+            part: npt.NDArray[np.intp] = part,
+            periods: FloatArray = periods,
+            exponents: ComplexArray = exponents,
+        ) -> None:
+            store.put(part[index], found, exponents[None, :] * periods[index, None])
+
+        done = False
+        if interpolate and family.members.size > _FEW_SPEEDS:
+            done = _interpolated(
+                block, variation, family, periods, damping[part], friction[part], rtol, threads, put
+            )
+        if not done:
+            factors = friction[part, None] * family.factors[row[which[part]]]
+            _direct(block, periods, damping[part], factors, rtol, threads, put)
         report(part.size)
-    return values, errors
 
 
 def _direct(
@@ -122,29 +176,27 @@ def _direct(
     factors: FloatArray,
     rtol: float,
     threads: int | None,
-) -> FastMultipliers:
+    put: Put,
+) -> None:
     """The kernel at every point, in bands of periods with a coarser block for each."""
-    tolerance = 2e-3 * rtol
     if not block.parts[1:]:
         factors = np.ones((periods.size, 0))
-    if periods.size < _FEW_POINTS or block.phases.size - 1 <= _FEW_PIECES:
-        return fast_multipliers(block, periods, damping, factors, tolerance=tolerance, threads=threads)
-    values, errors = np.empty((periods.size, 6), dtype=complex), np.empty((periods.size, 6))
-    deltas = np.empty(periods.size)
+    worth = periods.size >= _FEW_POINTS and block.phases.size - 1 > _FEW_PIECES
     rest = np.arange(periods.size)
     while rest.size:
         longest = float(periods[rest].max())
-        inside = periods[rest] > longest / _BAND
-        part, rest = rest[inside], rest[~inside]
+        inside = periods[rest] > (longest / _BAND if worth else 0.0)
+        band, rest = rest[inside], rest[~inside]
         system = block
-        if part.size >= _FEW_POINTS:
-            most = np.abs(factors[part]).max(axis=0)
-            system = coarsened(block, longest, float(damping[part].max()), most, 0.05 * rtol)
-        found = fast_multipliers(
-            system, periods[part], damping[part], factors[part], tolerance=tolerance, threads=threads
-        )
-        values[part], errors[part], deltas[part] = found.multipliers, found.errors, found.matrix_errors
-    return FastMultipliers(values, errors, deltas)
+        if worth and band.size >= _FEW_POINTS:
+            most = np.abs(factors[band]).max(axis=0)
+            system = coarsened(block, longest, float(damping[band].max()), most, 0.05 * rtol)
+        for first in range(0, band.size, _CHUNK):
+            part = band[first : first + _CHUNK]
+            found = fast_multipliers(
+                system, periods[part], damping[part], factors[part], tolerance=2e-3 * rtol, threads=threads
+            )
+            put(part, found)
 
 
 class _AnotherFamily(Exception):
@@ -160,10 +212,11 @@ def _interpolated(
     friction: FloatArray,
     rtol: float,
     threads: int | None,
-) -> FastMultipliers | None:
+    put: Put,
+) -> bool:
     """`_direct` by interpolation over periods and over damping or friction, whichever varies.
 
-    None where friction between the given speeds is not of the family.
+    Returns False where friction between the given speeds is not of the family; what was put then is void.
     """
     by_friction = bool(np.ptp(friction) > 0.0)
     unique, row = np.unique(periods, return_inverse=True)
@@ -182,10 +235,17 @@ def _interpolated(
         tolerance = max(1e-5 * rtol, 1e-14)
         return fast_monodromies(block, T, zeta, gains, tolerance=tolerance, threads=threads)
 
-    turning = float(block.modal().omega.max())
+    # The points are all combinations of both.
+    points = np.empty((unique.size, other.size), dtype=np.intp)
+    points[row, column] = np.arange(periods.size)
+
+    def receive(rows: npt.NDArray[np.intp], found: FastMultipliers) -> None:
+        put(points[rows].ravel(), found)
+
     try:
-        found, _ = interpolated_multipliers(flow, unique, other, turning, 1e-3 * rtol, threads)
+        interpolated_multipliers(
+            flow, unique, other, float(block.modal().omega.max()), 1e-3 * rtol, receive, threads
+        )
     except _AnotherFamily:
-        return None
-    at = row * other.size + column
-    return FastMultipliers(found.multipliers[at], found.errors[at], found.matrix_errors[at])
+        return False
+    return True

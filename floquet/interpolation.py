@@ -24,6 +24,9 @@ from lumped.errors import NumericalError
 Flow = Callable[[FloatArray, FloatArray], FastMonodromy]
 """(periods (k,), parameters (k,)) -> monodromy matrices in coordinates that do not depend on either."""
 
+Receive = Callable[[npt.NDArray[np.intp], FastMultipliers], None]
+"""(indices (k,) of periods, multipliers at these periods and all b parameters in C order, (k b, n))."""
+
 _BAND = 4.0  # ratio of the longest to the shortest period that share one interpolant
 _CHECKS = 24
 _SAFETY = 4.0
@@ -123,9 +126,10 @@ def interpolated_multipliers(
     parameters: FloatArray,
     rate: float,
     tolerance: float,
+    receive: Receive,
     threads: int | None = None,
-) -> tuple[FastMultipliers, int]:
-    """Multipliers over a product grid of periods and parameters, (a, b, n) flattened to (a b, n).
+) -> int:
+    """Multipliers over a product grid of periods and parameters, handed on in parts as they come.
 
     Parameters
     ----------
@@ -133,15 +137,16 @@ def interpolated_multipliers(
     periods, parameters : (a,) and (b,)
     rate : bound on the frequencies of the system [rad/s]
     tolerance : of the interpolation, relative to |M|
+    receive : called for every part of the grid, from several threads at a time
+    threads : default one per core
 
     Returns
     -------
-    multipliers with bounds, and the number of monodromy matrices computed
+    number of monodromy matrices computed
     """
     order = np.argsort(periods)
     sorted_periods = periods[order]
-    a, b = periods.size, parameters.size
-    values: npt.NDArray[np.complex128] | None = None
+    a = periods.size
     ends = (float(parameters.min()), float(parameters.max()))
     used, first = 0, 0
     while first < a:
@@ -152,14 +157,9 @@ def interpolated_multipliers(
             high = low * (1.0 + 1e-9)  # one speed alone: any width will do
         series = interpolant(flow, (low, high), ends, rate * (high - low), tolerance)
         used += series.nodes
-        if values is None:
-            n = series.coefficients.shape[2]
-            values = np.empty((a, b, n), dtype=complex)
-            radii, deltas = np.empty((a, b, n)), np.empty((a, b))
-        _evaluate(series, periods, parameters, rows, values, radii, deltas, threads)
+        _evaluate(series, periods, parameters, rows, receive, threads)
         first = last
-    assert values is not None
-    return FastMultipliers(values.reshape(a * b, -1), radii.reshape(a * b, -1), deltas.ravel()), used
+    return used
 
 
 def _evaluate(
@@ -167,13 +167,11 @@ def _evaluate(
     periods: FloatArray,
     parameters: FloatArray,
     rows: npt.NDArray[np.intp],
-    values: npt.NDArray[np.complex128],
-    radii: FloatArray,
-    deltas: FloatArray,
+    receive: Receive,
     threads: int | None,
 ) -> None:
-    """Fill the rows of values, radii and deltas that belong to one interpolant."""
-    b, n = parameters.size, values.shape[2]
+    """Evaluate the rows that belong to one interpolant."""
+    b, n = parameters.size, series.coefficients.shape[2]
     height = max(1, _CHUNK // b)
     delta = np.full(height * b, series.error)
 
@@ -186,8 +184,7 @@ def _evaluate(
             spectra(M, delta[: part.size * b], lam, rad, safe)
             for point in np.flatnonzero(~safe):
                 lam[point], rad[point] = multipliers_with_bounds(M[point], series.error)
-            values[part], radii[part] = lam.reshape(-1, b, n), rad.reshape(-1, b, n)
-            deltas[part] = series.error
+            receive(part, FastMultipliers(lam, rad, delta[: part.size * b]))
 
     in_threads(run, -(-rows.size // height), threads)
 

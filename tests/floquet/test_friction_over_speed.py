@@ -9,6 +9,7 @@ from floquet import gear_block, gear_pair_multipliers, stability_chart
 from floquet.gear_axes import GearVariation, vary
 from floquet.gear_friction import friction_factors, friction_families
 from lumped import load_gear_pair
+from lumped.errors import ParameterError
 from lumped.friction.along_path import friction_path_function
 
 PRESETS = ["nasa_28_28", "nasa_art_25_31", "kahraman_blankenship_50_50", "fzg_c"]
@@ -134,3 +135,22 @@ def test_level_apart_changes_nothing() -> None:
     t = np.linspace(0.01, 0.99, 50) * whole.period
     one, other = (block.to_periodic_system().evaluate(t) for block in (whole, apart))
     assert np.abs(one - other).max() <= 1e-10 * np.abs(one).max()
+
+
+@pytest.mark.parametrize("method", ["taylor", "chebyshev"])
+@pytest.mark.parametrize("extra", [{}, {"torque": [40.0, 60.0]}])
+def test_radius_alone_is_that_of_all_multipliers(method: str, extra: dict[str, list[float]]) -> None:
+    pair = load_gear_pair("nasa_28_28").with_(friction__law="xu_kahraman")
+    axes = {"damping_ratio": [0.0, 0.03], **extra, "speed_rpm": np.linspace(900.0, 15000.0, 80)}
+    whole = stability_chart(pair, axes, rtol=1e-8, method=method)
+    alone = stability_chart(pair, axes, rtol=1e-8, method=method, store="radius")
+    assert set(alone.data_vars) == {"spectral_radius", "error", "verdict"}
+    for name in alone.data_vars:
+        assert (alone[name] == whole[name]).all()
+    assert (np.abs(whole.multipliers).max("multiplier") == whole.spectral_radius).all()
+    assert (np.diff(np.abs(whole.multipliers), axis=-1) <= 0.0).all()
+
+
+def test_unknown_store_is_refused() -> None:
+    with pytest.raises(ParameterError, match="store"):
+        stability_chart(load_gear_pair("nasa_28_28"), {"speed_rpm": [900.0]}, store="some")

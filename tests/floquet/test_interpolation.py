@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from floquet import gear_block, stability_chart
-from floquet.fast import FastMonodromy, fast_monodromies, fast_multipliers
+from floquet.fast import FastMonodromy, FastMultipliers, fast_monodromies, fast_multipliers
 from floquet.interpolation import interpolant, interpolated_multipliers
 from lumped import load_gear_pair
 from lumped.errors import NumericalError, ParameterError
@@ -45,10 +45,20 @@ def test_multipliers_at_many_speeds_and_dampings(pair) -> None:
     def flow(t: np.ndarray, f: np.ndarray):
         return fast_monodromies(block, t, f)
 
-    result, nodes = interpolated_multipliers(flow, T, z, float(block.modal().omega.max()), 1e-11)
+    parts: list[tuple[np.ndarray, FastMultipliers]] = []
+    nodes = interpolated_multipliers(
+        flow, T, z, float(block.modal().omega.max()), 1e-11, lambda rows, found: parts.append((rows, found))
+    )
+    rows = np.concatenate([rows for rows, _ in parts])
+    assert sorted(rows) == list(range(41))
+    order = np.argsort(rows)
+    multipliers, errors = (
+        np.concatenate([getattr(found, name).reshape(-1, 7, 6) for _, found in parts])[order].reshape(-1, 6)
+        for name in ("multipliers", "errors")
+    )
     direct = fast_multipliers(block, np.repeat(T, 7), np.tile(z, 41))
-    distance = np.abs(result.multipliers[:, :, None] - direct.multipliers[:, None, :]).min(axis=2)
-    assert (distance <= result.errors + direct.errors.max(axis=1, keepdims=True)).all()
+    distance = np.abs(multipliers[:, :, None] - direct.multipliers[:, None, :]).min(axis=2)
+    assert (distance <= errors + direct.errors.max(axis=1, keepdims=True)).all()
     assert distance.max() < 1e-9
     assert nodes < 40_000  # a million points would be 25 times as many
 
