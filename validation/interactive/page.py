@@ -7,7 +7,6 @@ import hashlib
 from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -18,6 +17,7 @@ from lumped import GearPair, load_gear_pair
 from validation.interactive.payload import LAW_NAMES, payload, script_json
 from validation.interactive.results import FINE, PageResults, Sampling, compute
 from validation.output import write_dataset, write_text
+from validation.validity_map import STATES
 
 #: Parts of the page's own script, in this order.
 _SCRIPTS = ("data.js", "chart.js", "stability.js", "sweep.js", "start.js")
@@ -135,21 +135,21 @@ def unstable_speeds(chart: xr.Dataset, key: str, index: int, damping: float) -> 
     return ", ".join(spans) or "none"
 
 
-def _response_rows(results: PageResults, most: int = 16) -> list[dict[str, Any]]:
+def _response_rows(results: PageResults, most: int = 16) -> list[list[str]]:
     """Rows of the response of the pair's law, at a few speeds, for readers without scripts."""
     sweep = results.sweep.isel(law=results.own_law)
-    step = max(1, -(-sweep.sizes["speed"] // most))
-    rows = sweep.isel(speed=slice(None, None, step))
-    return [
-        {
-            "speed": f"{float(rows['speed'][i]):.5g}",
-            "dte": f"{1e6 * float(rows['dte_peak_to_peak'][i]):.4g}",
-            "oloa": f"{1e6 * float(rows['y_p_peak_to_peak'][i]):.4g}",
-            "load": f"{float(rows['lowest_load'][i]):.3g}",
-            "state": rows["validity"]
-            .attrs["long_name"]
-            .removeprefix("0 to 3: ")
-            .split(", ")[int(rows["validity"][i])],
-        }
-        for i in range(rows.sizes["speed"])
-    ]
+    step = -(-sweep.sizes["speed"] // most)
+    few = sweep.isel(speed=slice(None, None, step))
+    columns = (
+        (few["speed"], 1.0, 5),
+        (few["dte_peak_to_peak"], 1e6, 4),
+        (few["y_p_peak_to_peak"], 1e6, 4),
+        (few["lowest_load"], 1.0, 3),
+    )
+    texts = [[_text(factor * v, digits) for v in values.to_numpy()] for values, factor, digits in columns]
+    texts.append([STATES[state] for state in few["validity"].to_numpy()])
+    return [list(row) for row in zip(*texts, strict=True)]
+
+
+def _text(value: float, digits: int) -> str:
+    return f"{value:.{digits}g}" if np.isfinite(value) else "–"

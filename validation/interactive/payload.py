@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from validation.interactive.results import PageResults
 from validation.interactive.slices import Slices
-from validation.plots.tongue_chart import pretty
+from validation.plots.labels import pretty
 from validation.validity import LOAD_NOISE, REVERSAL_LIMITS
 from validation.validity_map import STATES
 

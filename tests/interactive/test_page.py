@@ -1,0 +1,241 @@
+"""Are the page's numbers those of the models, is its file whole and closed, and is refused what cannot be?"""
+
+import base64
+import dataclasses
+import hashlib
+import json
+import re
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from typer.testing import CliRunner
+
+import lumped
+from floquet.gear_axes import vary
+from floquet.gear_pair import gear_pair_multipliers, stability_chart
+from lumped import NumericalError
+from validation.cli import app
+from validation.interactive import compute, page, write_interactive_page
+from validation.interactive import results as interactive_results
+from validation.interactive.payload import payload, script_json
+from validation.interactive.results import COARSE, Sampling
+from validation.validity_map import validity_map
+
+TINY = Sampling(speeds=5, dampings=3, slices=2, sweep_speeds=4)
+
+
+class _Page(HTMLParser):
+    """Tags with their attributes, and the content of script elements."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.scripts, self.inside = [], [], False
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+        self.inside = tag == "script"
+        if self.inside:
+            self.scripts.append("")
+
+    def handle_endtag(self, tag):
+        self.inside = False
+
+    def handle_data(self, data):
+        if self.inside:
+            self.scripts[-1] += data
+
+
+@pytest.fixture(scope="session")
+def text(written):
+    return written.read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="session")
+def results(pair):
+    return compute(pair, TINY)
+
+
+def test_the_charts_are_those_of_the_general_engine(data, pair):
+    """The chart comes from the compiled kernel; the propagation it is held against shares no code."""
+    own = {
+        f"bearings.{g}.{d}_stiffness": getattr(getattr(pair.bearings, g), f"{d}_stiffness")
+        for g in ("pinion", "gear")
+        for d in ("loa", "oloa")
+    }
+    for k, i, j in ((0, 0, 30), (2, 3, 11), (1, 5, 4)):
+        at = {"speed_rpm": float(data["speed_rpm"][j]), "damping_ratio": float(data["damping_ratio"][i])}
+        factor = float(data["bearing_factor"][k])
+        stiffer = pair.with_({path: factor * value for path, value in own.items()})
+        expected = gear_pair_multipliers(vary(stiffer, at), 1e-9, method="gauss").spectral_radius
+        found = data["spectral_radius_over_bearing_factor"][k, i, j]
+        assert float(found) == pytest.approx(expected, abs=1e-6)  # the page shows six decimals
+        mean = float(data["friction_coefficient"][k])
+        rubbing = vary(pair, at | {"friction_coefficient": mean})
+        expected = gear_pair_multipliers(rubbing, 1e-9, method="gauss").spectral_radius
+        found = data["spectral_radius_over_friction_coefficient"][k, i, j]
+        assert float(found) == pytest.approx(expected, abs=1e-6)
+
+
+def test_the_pair_itself_is_on_every_chart(data, pair, results):
+    axes = {"speed_rpm": [4875.0], "damping_ratio": [0.016]}
+    expected = float(stability_chart(pair, axes)["spectral_radius"].squeeze())
+    assert results.found.spectral_radius == pytest.approx(expected, abs=1e-9)
+    for key, slices in results.stability.items():
+        here = slices.chart.isel({key: slices.own}).sel(speed_rpm=4875.0, damping_ratio=0.016)
+        assert float(here["spectral_radius"]) == pytest.approx(expected, abs=1e-6), key
+
+
+def test_the_responses_are_those_of_the_models(data, pair):
+    for law in ("none", "coulomb", "xu_kahraman"):
+        for j in (0, 5):
+            rpm = float(data["speed"][j])
+            at = pair.with_({"friction.law": law, "operating.pinion_speed": rpm})
+            motion = lumped.steady_state(at, samples_per_cycle=96)
+            one = data.sel(law=law).isel(speed=j)
+            # The speed passes from rpm to rad/s and back, and peaks are differences of larger numbers.
+            for name, variable in (("dte", "dte_peak_to_peak"), ("y_p", "y_p_peak_to_peak")):
+                expected = float(np.ptp(motion[name].to_numpy()))
+                scale = float(np.abs(motion[name]).max())
+                assert float(one[variable]) == pytest.approx(expected, abs=1e-9 * scale)
+            judged = validity_map(at, [rpm], [pair.operating.pinion_torque], samples=96).squeeze()
+            assert float(one["lowest_load"]) == pytest.approx(float(judged["lowest_load"]), rel=1e-8)
+            assert float(one["reversal"]) == pytest.approx(float(judged["reversal"]), rel=1e-8)
+            assert int(one["validity"]) == int(judged["state"])
+
+
+def test_every_variable_of_the_data_file_has_a_unit_and_a_name(data):
+    for name in data.variables:
+        assert data[name].attrs["long_name"], name
+        assert name == "law" or data[name].attrs["units"], name
+    assert data.attrs["gear_pair"] == "nasa_28_28"
+
+
+def test_the_page_is_small_closed_and_names_its_scripts_by_hash(written, text):
+    assert written.stat().st_size < 6e6
+    found = _Page(text)
+    assert not any({"src", "srcset"} & set(attrs) for _, attrs in found.tags)
+    links = [attrs["href"] for _, attrs in found.tags if "href" in attrs]
+    assert links == ["#stability"]
+    policy = next(attrs["content"] for _, attrs in found.tags if attrs.get("http-equiv"))
+    rules = dict(rule.strip().split(" ", 1) for rule in policy.split(";"))
+    assert rules["default-src"] == rules["connect-src"] == "'none'"
+    assert "unsafe" not in rules["script-src"]
+    digests = [hashlib.sha256(script.encode()).digest() for script in found.scripts[1:]]
+    assert rules["script-src"].split() == [f"'sha256-{base64.b64encode(d).decode()}'" for d in digests]
+    assert json.loads(found.scripts[0])["point"] == {"speed": 4875.0, "damping": 0.016}
+
+
+def test_a_script_that_could_end_its_element_is_not_written(results, monkeypatch):
+    monkeypatch.setattr(page, "plotly", lambda: "'</SCRIPT>'")
+    with pytest.raises(ValueError, match="end its element"):
+        page.render(results, "x.nc")
+
+
+def test_a_hostile_name_stays_text(hostile, attack):
+    found = _Page(hostile.read_text(encoding="utf-8"))
+    tags = [tag for tag, _ in found.tags]
+    assert tags.count("script") == 3
+    assert "img" not in tags
+    assert tags.count("style") == tags.count("title") == 1
+    assert not any(name.startswith("on") for _, attrs in found.tags for name in attrs)
+    assert attack[0] not in hostile.read_text(encoding="utf-8")
+
+
+@given(st.recursive(st.text(), lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner)))
+def test_json_in_the_page_opens_nothing_and_reads_back(value):
+    text = script_json(value)
+    assert re.search(r"[<>&\u2028\u2029]", text) is None
+    assert json.loads(text) == value
+
+
+def test_json_in_the_page_has_no_infinity():
+    with pytest.raises(ValueError, match="JSON"):
+        script_json([float("inf")])
+
+
+def test_a_speed_without_periodic_motion_is_a_gap(results):
+    """NaN is no JSON: the page has null there, and its table a word."""
+    sweep = results.sweep.copy(deep=True)
+    for name in ("dte_peak_to_peak", "y_p_peak_to_peak", "lowest_load", "reversal", "spectral_radius"):
+        sweep[name][:, 1] = np.nan
+    sweep["validity"][:, 1] = 3
+    gap = dataclasses.replace(results, sweep=sweep)
+    law = payload(gap)["sweep"]["laws"][0]
+    assert law["dte"][1] is None
+    assert law["dte"][2] is not None
+    text = page.render(gap, "x.nc")
+    assert "<td>no periodic motion</td>" in text
+    assert "NaN" not in _Page(text).scripts[0]
+    assert "<td>nan</td>" not in text
+
+
+def test_a_law_that_the_pair_does_not_admit_is_named(pair):
+    """Law II has no value from a roughness of 1.13 um on."""
+    rough = pair.with_({"pinion.roughness": 1.2, "gear.roughness": 1.2})
+    found = compute(rough, TINY)
+    assert "benedict_kelley" in found.missing
+    assert "benedict_kelley" not in found.sweep["law"]
+    assert str(found.sweep["law"].values[found.own_law]) == "xu_kahraman"
+    assert "Not available for this pair: II, Benedict and Kelley" in page.render(found, "x.nc")
+
+
+@pytest.mark.parametrize("preset", lumped.preset_names())
+def test_every_preset_has_its_page(preset, tmp_path):
+    written = write_interactive_page(preset, tmp_path / "page.html", sampling=COARSE)
+    assert written.is_file()
+    assert written.with_suffix(".nc").is_file()
+
+
+def test_the_same_pair_gives_the_same_page(pair, results):
+    assert page.render(compute(pair, TINY), "x.nc") == page.render(results, "x.nc")
+
+
+@pytest.fixture
+def tiny(monkeypatch):
+    """Coarse pages: these tests look at files, not at numbers."""
+    monkeypatch.setattr(page.write_interactive_page, "__kwdefaults__", _defaults(sampling=TINY))
+
+
+def _defaults(**changes):
+    return page.write_interactive_page.__kwdefaults__ | changes
+
+
+def _run(*arguments):
+    return CliRunner().invoke(app, ["interactive", *map(str, arguments)])
+
+
+def test_the_command_writes_page_and_data_and_does_not_overwrite(tiny, tmp_path):
+    out = tmp_path / "page.html"
+    done = _run("nasa_28_28", "-o", out)
+    assert done.exit_code == 0, done.output
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["page.html", "page.nc"]
+    again = _run("nasa_28_28", "-o", out)
+    assert again.exit_code == 2
+    assert "--force" in again.output
+    out.unlink()
+    assert _run("nasa_28_28", "-o", out).exit_code == 2  # the data file would be lost
+    assert not out.exists()
+    assert _run("nasa_28_28", "-o", out, "--force").exit_code == 0
+
+
+def test_the_command_refuses_other_names_and_missing_folders(tmp_path):
+    for name in ("page.pdf", "missing/page.html"):
+        refused = _run("nasa_28_28", "-o", tmp_path / name)
+        assert refused.exit_code == 2
+        assert "output" in refused.output
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_failure_leaves_nothing_behind(tiny, tmp_path, monkeypatch):
+    def fail(*_, **__):
+        raise NumericalError("no such motion: try another speed")
+
+    monkeypatch.setattr(interactive_results, "gear_pair_multipliers", fail)
+    failed = _run("nasa_28_28", "-o", tmp_path / "page.html")
+    assert failed.exit_code == 3
+    assert "no such motion" in failed.output
+    assert list(tmp_path.iterdir()) == []
