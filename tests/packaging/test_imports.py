@@ -9,7 +9,7 @@ import sys
 import pytest
 
 #: Libraries that take a tenth of a second or more, or a display, and that a bare import has no use for.
-HEAVY = {"control", "dask", "distributed", "matplotlib", "pandas", "scipy.stats", "xarray"}
+HEAVY = {"control", "dask", "distributed", "matplotlib", "pandas", "plotly", "scipy.stats", "xarray"}
 NUMERICS = HEAVY | {"exudyn", "lumped", "numba", "numpy", "pint", "scipy"}
 TIMED = """
 import contextlib, json, os, sys, time

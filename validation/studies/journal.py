@@ -47,12 +47,18 @@ class Scan:
     damaged_bytes : bytes between or after them that are no whole record
     end : end of the last undamaged record
     sessions : texts of the session records, in order
+    size : bytes of the file
     """
 
     records: int
     damaged_bytes: int
     end: int
     sessions: tuple[str, ...]
+    size: int
+
+
+#: What a pass finds where there is no journal.
+NOTHING = Scan(0, 0, 0, (), 0)
 
 
 class Key:
@@ -63,6 +69,7 @@ class Key:
         self.cases = bytes.fromhex(cases.sha256)
         self.count = cases.count
         self.outputs = len(cases.study.outputs)
+        self.axes = len(cases.study.axes) if cases.grid is None else 0
         #: Start of every checksum: a record of another study or another list of cases never passes.
         self.seed = zlib.crc32(hashlib.sha256(self.study + self.cases).digest())
         head = _HEADER.pack(_START, self.study, self.cases, self.count, self.outputs, 0)
@@ -83,7 +90,7 @@ def scan(path: Path, key: Key, visit: Callable[[Record], None]) -> Scan:
     try:
         size = os.fstat(descriptor).st_size
         if size == 0:
-            return Scan(0, 0, 0, ())
+            return NOTHING
         with mmap.mmap(descriptor, 0, access=mmap.ACCESS_READ) as data:
             found = _scan(data, size, key, visit)
             _check_header(path, data[: len(key.header)], key, found)
@@ -110,7 +117,7 @@ def _scan(data: Any, size: int, key: Key, visit: Callable[[Record], None]) -> Sc
             sessions.append(record.message)
         elif record.case < key.count:
             visit(record)
-    return Scan(records, damaged + size - end, end, tuple(sessions))
+    return Scan(records, damaged + size - end, end, tuple(sessions), size)
 
 
 def _check_header(path: Path, header: bytes, key: Key, found: Scan) -> None:
@@ -137,16 +144,25 @@ class Journal:
     ----------
     path : file
     key : what it belongs to
-    end : end of the last undamaged record, as ``scan`` found it; anything after it is cut off
+    found : what ``scan`` found in it; anything after the last undamaged record is cut off
+
+    Raises
+    ------
+    StoreError : it cannot be written, or another run writes to it or wrote to it since the scan
     """
 
-    def __init__(self, path: Path, key: Key, end: int = 0) -> None:
+    def __init__(self, path: Path, key: Key, found: Scan = NOTHING) -> None:
         self.path, self.key = path, key
         self._file = open_regular(path, os.O_RDWR | os.O_CREAT)
         try:
             self._lock()
-            self._end = max(end, len(key.header))
-            os.ftruncate(self._file, min(self._end, os.fstat(self._file).st_size))
+            size = os.fstat(self._file).st_size
+            if size != found.size:
+                raise StoreError(
+                    f"{path}: another run wrote to it just now. Run the same command with --resume."
+                )
+            self._end = max(found.end, len(key.header))
+            os.ftruncate(self._file, min(self._end, size))
             os.lseek(self._file, 0, os.SEEK_SET)
             self._write(key.header)  # the same bytes again, unless they were damaged
             os.fsync(self._file)

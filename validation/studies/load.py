@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -120,11 +121,14 @@ def _translated(error: ValidationError) -> list[FieldProblem]:
                     path, shown(quoted(item.get("input"))), _plainly(item["msg"]), "Correct the value."
                 ),
             )
-    return list(problems.values())
+    # A list whose items are refused is also "too short" for pydantic; the items are the reason.
+    return [p for path, p in problems.items() if not any(other.startswith(f"{path}.") for other in problems)]
 
 
 def _plainly(message: str) -> str:
     """Return pydantic's rule as what is allowed."""
+    if found := re.fullmatch(r"Tuple should have (at \w+ \d+ items?) after validation, not (\d+)", message):
+        return f"{found[1]} instead of {found[2]}"
     for start in ("Input should be ", "Value should be ", "Input should ", "Value should "):
         message = message.removeprefix(start)
     return message

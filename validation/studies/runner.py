@@ -21,7 +21,7 @@ from validation.studies.cases import CaseList, case_list
 from validation.studies.dispatch import Dispatcher
 from validation.studies.evaluate import versions
 from validation.studies.files import StoreError, storage_failure, write_text
-from validation.studies.journal import Journal, Key, Scan, scan
+from validation.studies.journal import NOTHING, Journal, Key, scan
 from validation.studies.pools import pool_of
 from validation.studies.record import Record, Status
 from validation.studies.results import JOURNAL, RESULTS, STUDY, Table, results_dataset, write_results
@@ -115,15 +115,19 @@ def run_sweep(
     root = Path(folder)
     cases = case_list(study)
     key = Key(cases)
-    begun = _prepare(root, study, resume)
+    _check_memory(key)
+    begun = _prepare(root, resume)
     path = root / JOURNAL
     table = Table.of(cases, with_values=False)
-    found = scan(path, key, table.add) if begun else Scan(0, 0, 0, ())
+    found = scan(path, key, table.add) if begun else NOTHING
     wanted = table.status == Status.MISSING
     if retry_failed:
         wanted |= table.status >= Status.REFUSED
     todo = int(np.count_nonzero(wanted))
-    with _terminate_as_interrupt(), Journal(path, key, found.end) as journal:
+    with _terminate_as_interrupt(), Journal(path, key, found) as journal:
+        # Only with the lock, so that of two runs into a new folder one leaves the other's study alone.
+        if not begun or not (root / STUDY).exists():
+            write_text(root / STUDY, study.to_toml())
         spent = 0.0
         if todo:
             _check_space(root, key, todo)
@@ -171,8 +175,8 @@ def _compute(
     return spent
 
 
-def _prepare(root: Path, study: Study, resume: bool) -> bool:
-    """Make the folder; returns whether a sweep was begun in it.
+def _prepare(root: Path, resume: bool) -> bool:
+    """Make the folder; returns whether it has a journal.
 
     Raises
     ------
@@ -198,12 +202,26 @@ def _prepare(root: Path, study: Study, resume: bool) -> bool:
         raise refuse(
             "output", root, "a new or empty folder", f"It holds {foreign[0]}: choose another --output."
         )
-    if not begun or STUDY not in names:
-        write_text(root / STUDY, study.to_toml())
     return begun
 
 
 _OURS = {STUDY, JOURNAL, RESULTS}
+
+
+def _check_memory(key: Key) -> None:
+    """Refuse a sweep whose results this machine could not hold, for they are labelled in one piece."""
+    if not hasattr(os, "sysconf") or "SC_PHYS_PAGES" not in os.sysconf_names:
+        return  # this system does not say
+    # The outputs are held twice while they are written, and a sampled study's axes like outputs.
+    need = key.count * (2 + 8 * (2 * key.outputs + key.axes))
+    present = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    if need > present:
+        raise refuse(
+            "design",
+            f"{key.count} cases",
+            f"results that fit in memory: these need {need / 1e9:.3g} GB of {present / 1e9:.3g} GB",
+            "Split the study, or keep fewer outputs.",
+        )
 
 
 def _check_space(root: Path, key: Key, todo: int) -> None:

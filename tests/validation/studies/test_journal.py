@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from lumped.errors import ParameterError
 from validation.studies.cases import case_list
 from validation.studies.files import StoreError, replaced
-from validation.studies.journal import Journal, Key, scan
+from validation.studies.journal import NOTHING, Journal, Key, scan
 from validation.studies.record import MAX_MESSAGE, Record, Status, decode, encode
 
 texts = st.text(max_size=60) | st.just("x" * 5000) | st.just("é" * MAX_MESSAGE)
@@ -127,7 +127,7 @@ def test_after_damage_appending_goes_on(journal):
     data = path.read_bytes()
     path.write_bytes(data[:-5])
     _, result = read(path, key)
-    with Journal(path, key, result.end) as file:
+    with Journal(path, key, result) as file:
         file.append([written[-1]])
     assert path.read_bytes() == data
 
@@ -140,7 +140,7 @@ def test_opening_cuts_off_a_damaged_tail_however_long(journal, tail):
     path.write_bytes(data + (b"\0" * tail + encode(written[0], key.outputs, key.seed)[:-1])[:tail])
     _, result = read(path, key)
     assert result.damaged_bytes == tail
-    Journal(path, key, result.end).close()
+    Journal(path, key, result).close()
     assert path.read_bytes() == data
 
 
@@ -156,7 +156,7 @@ def test_a_write_that_fails_in_the_middle_leaves_nothing_of_itself(journal, monk
     def failing(descriptor, block):
         raise OSError(28, "No space left on device")
 
-    with Journal(path, key, len(data)) as file:
+    with Journal(path, key, read(path, key)[1]) as file:
         write = os.write
         monkeypatch.setattr("validation.studies.journal.os.write", full)
         with pytest.raises(StoreError, match="No space left"):
@@ -173,7 +173,7 @@ def test_a_damaged_header_is_repaired(journal):
     path.write_bytes(b"\0" * 20 + data[20:])
     found, result = read(path, key)
     assert found == written
-    Journal(path, key, result.end).close()
+    Journal(path, key, result).close()
     assert path.read_bytes() == data
 
 
@@ -186,8 +186,21 @@ def test_the_journal_of_another_study_is_refused(journal, make_study):
 
 def test_a_second_writer_is_refused(journal):
     key, path, _ = journal
-    with Journal(path, key, path.stat().st_size), pytest.raises(StoreError, match="another run"):
-        Journal(path, key, path.stat().st_size)
+    _, result = read(path, key)
+    with Journal(path, key, result), pytest.raises(StoreError, match="another run is writing"):
+        Journal(path, key, result)
+
+
+def test_what_another_run_wrote_since_the_scan_is_not_cut_off(journal):
+    key, path, written = journal
+    _, result = read(path, key)
+    with Journal(path, key, result) as file:
+        file.append(written[:1])
+    data = path.read_bytes()
+    for seen in (result, NOTHING):  # the latter: a folder that was new when this run looked
+        with pytest.raises(StoreError, match="another run wrote"):
+            Journal(path, key, seen)
+    assert path.read_bytes() == data
 
 
 @pytest.mark.parametrize("kind", ["link", "pipe", "folder"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import threading
 import warnings
 from types import SimpleNamespace
@@ -159,6 +160,24 @@ def test_a_store_is_not_overwritten_by_accident(study, make_study, tmp_path):
     assert (out / "results.nc").read_bytes() == before
 
 
+def test_of_two_runs_into_a_new_folder_one_wins_and_keeps_its_study(study, make_study, tmp_path, undisturbed):
+    other = make_study(outputs=["base_pitch"])
+    out = tmp_path / "out"
+
+    def second(done, total, failed):
+        if done == 1:
+            with pytest.MonkeyPatch.context() as patch:  # as if it had looked before the first one began
+                patch.setattr(runner, "_prepare", lambda root, resume: False)
+                with pytest.raises(StoreError, match="another run"):
+                    run_sweep(other, out)
+            with pytest.raises(StoreError, match="another run is writing"):
+                run_sweep(study, out, resume=True)
+
+    assert run_sweep(study, out, progress=second).results.read_bytes() == undisturbed
+    assert (out / "study.toml").read_text() == study.to_toml()
+    assert read_results(out).sizes["failure"] == 24
+
+
 def test_a_folder_with_other_things_is_left_alone(study, tmp_path):
     (tmp_path / "thesis.tex").write_text("years of work")
     with pytest.raises(ParameterError, match=r"thesis\.tex"):
@@ -172,6 +191,21 @@ def test_a_sweep_that_cannot_fit_is_refused_before_it_starts(study, tmp_path, mo
     monkeypatch.setattr(runner.shutil, "disk_usage", lambda path: SimpleNamespace(free=1000))
     with pytest.raises(StoreError, match="Free space"):
         run_sweep(study, tmp_path / "out")
+
+
+@pytest.mark.skipif(not hasattr(os, "sysconf"), reason="the system does not say how much memory it has")
+def test_a_sweep_whose_results_do_not_fit_in_memory_is_refused_before_it_starts(
+    make_study, tmp_path, monkeypatch
+):
+    # The largest study: 1e9 cases of two outputs need 16 GB at least.
+    axes = [
+        {"field": f"{gear}.density", "low": 1e3, "high": 9e3, "count": n}
+        for gear, n in (("pinion", 100_000), ("gear", 10_000))
+    ]
+    monkeypatch.setattr(runner.os, "sysconf", {"SC_PHYS_PAGES": 2_000_000, "SC_PAGE_SIZE": 4096}.get)
+    with pytest.raises(ParameterError, match="Split the study"):
+        run_sweep(make_study(axes=axes), tmp_path / "out")
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize("options", [{"workers": 0}, {"workers": 5000}, {"case_seconds": 0.0}])

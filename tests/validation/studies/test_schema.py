@@ -187,6 +187,15 @@ def test_all_problems_come_at_once():
     assert any(field.startswith("gear_pair") for field in fields)
 
 
+def test_the_refused_items_of_a_list_do_not_make_it_too_short():
+    with pytest.raises(ParameterError) as caught:
+        load_study(changed(["axes", 0], {"field": "speed_rpm", "low": 1, "high": 2, "count": 10**12}))
+    assert [p.field for p in caught.value.problems] == ["axes.0.count"]
+    axis = {"field": "speed_rpm", "values": [1]}
+    with pytest.raises(ParameterError, match="at most 32 items instead of 33"):
+        load_study(changed(["axes"], [axis] * 33))
+
+
 def test_a_study_too_large_is_refused_at_once():
     axes = [
         {"field": f"{gear}.{field}", "low": 1.0, "high": 2.0, "count": 10_000}
