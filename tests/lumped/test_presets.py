@@ -7,13 +7,13 @@ import pytest
 from lumped import GearPair, bodies, geometry, load_gear_pair, preset_names
 from lumped.serialise import leaf_paths
 
-NAMES = ("fzg_c", "kahraman_blankenship_50_50", "nasa_28_28", "nasa_art_25_31")
+NAMES = preset_names()
 #: Rounded as printed on the model page.
 CONTACT_RATIO = {"nasa_28_28": (1.6380, 4), "nasa_art_25_31": (1.46, 2), "fzg_c": (1.463, 3)}
 
 
-def test_the_four_pairs_are_there():
-    assert preset_names() == NAMES
+def test_the_pairs_of_the_paper_and_of_the_classic_experiments_are_there():
+    assert {"fzg_c", "kahraman_blankenship_50_50", "nasa_28_28", "nasa_art_25_31"} <= set(NAMES)
 
 
 @pytest.mark.parametrize("name", NAMES)
