@@ -1,6 +1,7 @@
 """Is the report complete, true to its JSON, the same every time, safe to open, and written whole?"""
 
 import dataclasses
+import importlib
 import json
 import re
 from html.parser import HTMLParser
@@ -11,6 +12,12 @@ import lumped
 from lumped import ParameterError
 from validation import reporting
 from validation.reporting import build, results
+from validation.reporting.blocks import Chapter, Column, Fact, Facts, Quantity, Table
+from validation.reporting.page import render
+from validation.reporting.verdict import Summary
+
+#: The module: the package has the chapter's function under the same name.
+provenance = importlib.import_module("validation.reporting.chapters.provenance")
 
 HOSTILE = '<script>alert("x")</script> & "Getriebe" \'1\''
 
@@ -180,3 +187,37 @@ def test_the_headline_states_the_largest_difference_also_when_it_is_within_its_t
     )
     assert widened.verdict == "confirmed"
     assert "at most 40 %, in gear y" in finite_motions(widened)
+
+
+def test_numbers_stand_to_the_right_under_their_heading_gaps_included(pair):
+    table = Table(
+        "t",
+        "caption",
+        (Column("a", "A"), Column("b", "B")),
+        (("x", None), ("y", Quantity(1.0, "m")), ("z", 2.0)),
+    )
+    chapter = Chapter("c", "C", (table, Facts("f", (Fact("h", "hash", "0" * 64), Fact("w", "word", "ok")))))
+    timestamps = {"created": "2020-01-01", "seconds": {"all": 1.0}}
+    data = {"quick": False, "interactive_page": None, "timestamps": timestamps}
+    text = render(pair, Summary("It holds.", ()), (chapter,), {}, data)
+    assert re.findall(r"<th scope=\"col\"([^>]*)>", text) == ["", ' class="number"']
+    assert text.count('<td class="number">') == 3
+    assert text.count('<div class="long">') == 1
+
+
+def test_the_source_hash_sees_every_package(tmp_path, monkeypatch):
+    roots = {}
+    for package in provenance._OWN:
+        roots[package] = tmp_path / package
+        roots[package].mkdir()
+        (roots[package] / "a.py").write_text("x = 1")
+    monkeypatch.setattr(provenance.resources, "files", lambda name: roots[name])
+    first = provenance.source_hash.__wrapped__()
+    assert len(first) == 64
+    assert provenance.source_hash.__wrapped__() == first
+    for package in provenance._OWN:
+        (roots[package] / "a.py").write_text("x = 2")
+        assert provenance.source_hash.__wrapped__() != first
+        (roots[package] / "a.py").write_text("x = 1")
+    (roots["lumped"] / "a.py").rename(roots["lumped"] / "b.py")
+    assert provenance.source_hash.__wrapped__() != first

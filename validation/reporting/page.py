@@ -38,6 +38,7 @@ def render(
     )
     environment.filters["cell"] = cell
     environment.filters["kind"] = _kind
+    environment.filters["numeric_columns"] = _numeric_columns
     environment.tests["badge"] = lambda value: isinstance(value, Badge)
     environment.tests["numeric"] = _is_numeric
     template = environment.get_template("report.html")
@@ -54,3 +55,8 @@ def _kind(block: Block) -> str:
 
 def _is_numeric(value: object) -> bool:
     return isinstance(value, (int, float, Quantity)) and not isinstance(value, bool)
+
+
+def _numeric_columns(table: Table) -> list[bool]:
+    """Which columns hold numbers, at least in one row: their headings and gaps stand to the right too."""
+    return [any(_is_numeric(row[k]) for row in table.rows) for k in range(len(table.columns))]

@@ -22,7 +22,15 @@ from validation.stability_charts import dense_chart
 from validation.stability_margins import StabilityMargins, stability_margins
 from validation.validity import Flag, speed_drift, validity_flags
 from validation.validity_map import validity_map
-from validation.verification import Check, OrderCheck, Refinement, code_checks, order_checks, refinements
+from validation.verification import (
+    Check,
+    OrderCheck,
+    Refinement,
+    code_checks,
+    enough_samples,
+    order_checks,
+    refinements,
+)
 
 Progress = Callable[[float, str], None]
 
@@ -36,7 +44,7 @@ class Effort:
 
     Attributes
     ----------
-    samples : per mesh cycle of the periodic motion
+    samples : per mesh cycle of the periodic motion; at least, with ``verify``
     cycles : of the cross-check
     sweep_speeds : of the response over speed
     chart_speeds, chart_dampings : nodes of the stability chart
@@ -139,8 +147,9 @@ def compute(pair: GearPair, effort: Effort, progress: Progress) -> Results:
     NumericalError : a model fails; the text says what to try
     """
     progress(0.0, "periodic motion")
-    motion = lumped.steady_state(pair, samples_per_cycle=effort.samples)
-    orders = {n: mesh_orders(motion[n].to_numpy(), effort.samples, _ORDERS) for n in _DISPLACEMENTS}
+    samples = enough_samples(pair, effort.samples) if effort.verify else effort.samples
+    motion = lumped.steady_state(pair, samples_per_cycle=samples)
+    orders = {n: mesh_orders(motion[n].to_numpy(), samples, _ORDERS) for n in _DISPLACEMENTS}
     profile = friction_profile(pair)
     try:
         found = modes(pair)
@@ -178,7 +187,7 @@ def compute(pair: GearPair, effort: Effort, progress: Progress) -> Results:
     verification = None
     if effort.verify:
         progress(0.75, "verification")
-        verification = Verification(code_checks(pair), order_checks(), refinements(pair, effort.samples))
+        verification = Verification(code_checks(pair), order_checks(), refinements(pair, samples))
     reproduced, refusal = None, ""
     if effort.paper:
         try:

@@ -2,6 +2,14 @@
 
 from validation.verification.checks import Check, OrderCheck, Refinement
 from validation.verification.code import code_checks, order_checks
-from validation.verification.solution import refinements
+from validation.verification.solution import enough_samples, refinements
 
-__all__ = ["Check", "OrderCheck", "Refinement", "code_checks", "order_checks", "refinements"]
+__all__ = [
+    "Check",
+    "OrderCheck",
+    "Refinement",
+    "code_checks",
+    "enough_samples",
+    "order_checks",
+    "refinements",
+]

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import hashlib
 import platform
-from importlib import metadata
+from functools import cache
+from importlib import metadata, resources
+from pathlib import Path
 
 from lumped.results import parameters_hash
 from validation.reporting.blocks import Chapter, Column, Fact, Facts, Table, Text
 from validation.reporting.results import Results
 
+_OWN = ("lumped", "multibody", "floquet", "validation")
+_SUFFIXES = frozenset({".py", ".toml", ".html", ".css", ".js"})
 _PACKAGES = ("spurcheck", "numpy", "scipy", "numba", "exudyn", "control", "xarray", "matplotlib")
 
 
@@ -19,7 +24,8 @@ def provenance(results: Results) -> Chapter:
         "made_from",
         (
             Fact("parameters_sha256", "SHA-256 of the parameters", parameters_hash(results.pair)),
-            Fact("samples", "samples per mesh cycle", effort.samples),
+            Fact("source_sha256", "SHA-256 of the program's source", source_hash()),
+            Fact("samples", "samples per mesh cycle", int(results.motion.sizes["time"])),
             Fact("cycles", "mesh cycles of the cross-check", effort.cycles),
             Fact("sweep_speeds", "speeds of the response", effort.sweep_speeds),
             Fact("chart_nodes", "nodes of the stability chart", effort.chart_speeds * effort.chart_dampings),
@@ -32,6 +38,7 @@ def provenance(results: Results) -> Chapter:
         (Column("name", "name"), Column("version", "version")),
         (
             ("python", platform.python_version()),
+            ("platform", f"{platform.system()} {platform.machine()}"),
             *((name, metadata.version(name)) for name in _PACKAGES),
         ),
     )
@@ -42,3 +49,15 @@ def provenance(results: Results) -> Chapter:
         "(data/parameters.toml)."
     )
     return Chapter("provenance", "Versions and hashes", (text, facts, versions))
+
+
+@cache
+def source_hash() -> str:
+    """SHA-256 over names and contents of the four packages' files: says more than a version does."""
+    digest = hashlib.sha256()
+    for package in _OWN:
+        root = Path(str(resources.files(package)))
+        for path in sorted(p for p in root.rglob("*") if p.suffix in _SUFFIXES):
+            digest.update(f"{package}/{path.relative_to(root).as_posix()}\0".encode())
+            digest.update(path.read_bytes() + b"\0")
+    return digest.hexdigest()
