@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import _thread
+import itertools
 import threading
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import lumped
 import multibody
+import multibody.integration
 from lumped.averaged import modes
 from multibody import kernels as kn
 from multibody.machine import machine
@@ -62,7 +65,7 @@ def test_runaway_step_sizes_are_capped(monkeypatch):
 
 @pytest.mark.parametrize("fidelity", ["linear", "exact"])
 def test_a_force_that_turns_nan_on_the_way_stops_the_run(fidelity):
-    """The stiffness is finite but for a stretch that a tooth pair passes between 0.3 and 0.5 of the mesh cycle.
+    """The stiffness is finite but for a stretch that a tooth pair passes at 0.3 to 0.5 of the mesh cycle.
 
     The run must stop at that force, and not when somebody looks at its states.
     """
@@ -162,3 +165,31 @@ def test_dense_output_has_the_integrators_accuracy():
     error = np.abs(run["dte"] - reference["dte"]).to_numpy() / scale
     assert error.max() < 1e-7
     assert np.isfinite(run.to_array()).all()
+
+
+@pytest.mark.parametrize("moment", ["running", "writing"])
+def test_an_interrupted_command_leaves_no_half_written_file(moment, tmp_path, monkeypatch):
+    from typer.testing import CliRunner
+
+    from validation.cli import app
+
+    if moment == "running":
+        integrate, count = multibody.integration._run, itertools.count()
+
+        def run(*arguments):
+            if next(count) > 10:
+                raise KeyboardInterrupt
+            return integrate(*arguments)
+
+        monkeypatch.setattr("multibody.integration._run", run)
+    else:
+
+        def write(_data, path, **_options):
+            Path(path).write_bytes(b"half")
+            raise KeyboardInterrupt
+
+        monkeypatch.setattr("xarray.Dataset.to_netcdf", write)
+    command = ["simulate", "nasa_28_28", "--model", "multibody", "--cycles", "3"]
+    result = CliRunner().invoke(app, [*command, "-o", str(tmp_path / "run.nc")])
+    assert result.exit_code == 130
+    assert list(tmp_path.iterdir()) == []
