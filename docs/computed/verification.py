@@ -5,7 +5,7 @@ from __future__ import annotations
 import lumped
 from computed.markdown import must_pass, table
 from lumped import GearPair
-from validation import floquet_verification
+from validation import floquet_page
 from validation.verification import code_checks, order_checks, refinements
 
 _SAMPLES = 256
@@ -48,20 +48,9 @@ def refinement() -> str:
     return table(("solution", "measure", "level", "error"), rows)
 
 
-def floquet() -> str:
-    """All numbers of the verification of the Floquet engine."""
-    rows = []
-    for function in floquet_verification.CHECKS:
-        for c in function():
-            must_pass(c.name, c.passed)
-            bounds = f"≤ {c.high:g}" if c.low == 0.0 else f"{c.low:g} to {c.high:g}"
-            rows.append((c.name, c.value, bounds, c.meaning))
-    return table(("check", "number", "must be", "meaning"), rows)
-
-
 FILES = {
     "closed_forms.md": closed_forms,
     "orders.md": orders,
     "refinement.md": refinement,
-    "floquet.md": floquet,
+    **floquet_page.FILES,
 }
