@@ -9,12 +9,12 @@ import numpy.typing as npt
 
 from floquet.chart import Progress, checked_axes
 from floquet.fast import fast_monodromies
-from floquet.gear_axes import gear_axis, vary
+from floquet.gear_axes import GearVariation, gear_axis, vary
 from floquet.gear_block import gear_block
 from floquet.gear_chart import stability_chart
 from floquet.intervals import UnstableInterval, seeded_nodes, unstable_intervals
 from floquet.system import FloatArray
-from floquet.tongues import Tongue, label_tongue
+from floquet.tongues import ModeShares, Tongue, label_tongue
 from lumped.errors import refuse
 from lumped.parameters import GearPair
 
@@ -22,13 +22,14 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def predicted_lines(pair: GearPair, orders: int = 12) -> dict[Tongue, float]:
+def predicted_lines(pair: GearPair | GearVariation, orders: int = 12) -> dict[Tongue, float]:
     """Pinion speeds [rpm] at which the mesh frequency is (omega_i +- omega_j)/k.
 
     omega are the natural frequencies of the time-averaged undamped feedback block, k = 1..orders.
     """
     omega = gear_block(pair).modal().omega
-    per_rpm = pair.pinion.teeth * 2.0 * np.pi / 60.0  # mesh frequency [rad/s] per rpm
+    teeth = (pair if isinstance(pair, GearPair) else pair.pair).pinion.teeth
+    per_rpm = teeth * 2.0 * np.pi / 60.0  # mesh frequency [rad/s] per rpm
     lines = {}
     for i in range(omega.size):
         for j in range(i, omega.size):
@@ -48,10 +49,15 @@ def label_at(pair: GearPair, speed_rpm: float) -> tuple[Tongue, FloatArray]:
     -------
     label, and the (m,) shares of the modes of the mean system in the growing motion, by action
     """
-    block = gear_block(pair.with_({"operating.pinion_speed": speed_rpm}))
-    matrix = fast_monodromies(block).matrices[0]
-    label, shares = label_tongue(matrix, block.modal().omega, 2.0 * np.pi / block.period)
+    label, shares = label_variation(GearVariation(pair.with_({"operating.pinion_speed": speed_rpm})))
     return label, shares.total
+
+
+def label_variation(variation: GearVariation) -> tuple[Tongue, ModeShares]:
+    """Name the fastest growing motion of a pair as a chart varies it, see `label_tongue`."""
+    block = gear_block(variation)
+    matrix = fast_monodromies(block).matrices[0]
+    return label_tongue(matrix, block.modal().omega, 2.0 * np.pi / block.period)
 
 
 def stability_boundaries(
@@ -75,7 +81,8 @@ def stability_boundaries(
     ----------
     pair : the gear pair
     speed_rpm : range searched [rpm]
-    axes : one more axis {name: values} out of `GEAR_AXES` other than speed; default the pair as it is
+    axes : one more axis {name: values} out of `GEAR_AXES` other than speed, with the meaning that it has in
+        `stability_chart`; default the pair as it is
     friction_law : law to use instead of the pair's
     nodes : evenly spaced speeds of the search
     orders : largest k of the seeds
@@ -88,7 +95,8 @@ def stability_boundaries(
     Dataset over ``tongue`` (coordinates label, mode_i, mode_j, sign, order) and the axis: ``present``;
     ``lower`` and ``upper`` [rpm], the boundaries; ``peak`` [rpm] and ``peak_radius``; ``open_end``, whether
     the tongue runs out of the range. Where ``present`` is False the numbers are NaN. Where one label has
-    several intervals at one value, lower and upper enclose them all and ``intervals`` counts them.
+    several intervals at one value, lower and upper enclose them all, ``intervals`` counts them, and
+    ``interval_lower`` and ``interval_upper`` over ``interval`` have them one by one.
 
     Raises
     ------
@@ -105,22 +113,18 @@ def stability_boundaries(
     name, values = next(iter(checked_axes(axes).items())) if axes else ("value", np.array([np.nan]))
     if axes:
         gear_axis(name).check(name, values)
-        if name == "stiffness_variation":
-            raise refuse(
-                "axes", name, "axes that change the pair itself", "Use stability_chart for this axis."
-            )
     found: dict[Tongue, dict[int, list[UnstableInterval]]] = {}
     for index, value in enumerate(values):
-        variation = vary(pair, {name: float(value)} if axes else {})
-        here = variation.pair
-        lines = np.array(list(predicted_lines(here, orders).values()))
+        point = {name: float(value)} if axes else {}
+        lines = np.array(list(predicted_lines(vary(pair, point), orders).values()))
         start = seeded_nodes(lines, low, high, nodes)
 
-        def radius(speeds: FloatArray, here: GearPair = here) -> FloatArray:
-            return np.asarray(stability_chart(here, {"speed_rpm": speeds}, rtol=rtol).spectral_radius.values)
+        def radius(speeds: FloatArray, point: dict[str, float] = point) -> FloatArray:
+            grid = {"speed_rpm": speeds} | {key: np.array([at]) for key, at in point.items()}
+            return np.ravel(stability_chart(pair, grid, rtol=rtol, store="radius").spectral_radius.values)
 
         for interval in unstable_intervals(radius, start, xtol=xtol):
-            label, _ = label_at(here, interval.peak)
+            label, _ = label_variation(vary(pair, {**point, "speed_rpm": interval.peak}))
             found.setdefault(label, {}).setdefault(index, []).append(interval)
         if progress is not None:
             progress(index + 1, values.size)
@@ -139,6 +143,8 @@ def _dataset(
     tongues = sorted(found)
     shape = (len(tongues), values.size)
     numbers = {key: np.full(shape, np.nan) for key in ("lower", "upper", "peak", "peak_radius")}
+    most = max((len(parts) for columns in found.values() for parts in columns.values()), default=0)
+    ends = np.full((2, *shape, most), np.nan)
     present, open_end = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
     intervals = np.zeros(shape, dtype=np.int64)
     for row, tongue in enumerate(tongues):
@@ -151,6 +157,8 @@ def _dataset(
             present[row, column] = True
             open_end[row, column] = any(part.open_below or part.open_above for part in parts)
             intervals[row, column] = len(parts)
+            for index, part in enumerate(parts):
+                ends[:, row, column, index] = part.lower, part.upper
     dims = ("tongue", name)
     names = {
         "lower": ("rpm", "lower boundary of the tongue"),
@@ -158,12 +166,23 @@ def _dataset(
         "peak": ("rpm", "speed of the largest spectral radius in the tongue"),
         "peak_radius": ("1", "largest spectral radius in the tongue"),
     }
+    rpm = {"units": "rpm"}
     data: dict[str, tuple[tuple[str, ...], npt.NDArray[np.generic], dict[str, str]]] = {
         key: (dims, numbers[key], {"units": unit, "long_name": text}) for key, (unit, text) in names.items()
     }
     data["present"] = (dims, present, {"units": "1", "long_name": "tongue exists at this value"})
     data["open_end"] = (dims, open_end, {"units": "1", "long_name": "tongue runs out of the range searched"})
     data["intervals"] = (dims, intervals, {"units": "1", "long_name": "number of intervals of this label"})
+    data["interval_lower"] = (
+        (*dims, "interval"),
+        ends[0],
+        rpm | {"long_name": "lower ends of the intervals"},
+    )
+    data["interval_upper"] = (
+        (*dims, "interval"),
+        ends[1],
+        rpm | {"long_name": "upper ends of the intervals"},
+    )
     result = xr.Dataset(
         data,
         coords={

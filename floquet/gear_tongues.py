@@ -10,13 +10,11 @@ import numpy.typing as npt
 from scipy import ndimage
 
 from floquet.chart import Progress
-from floquet.fast import fast_monodromies
-from floquet.gear_axes import GearVariation, vary
-from floquet.gear_block import gear_block
-from floquet.gear_boundaries import stability_boundaries
+from floquet.gear_axes import vary
+from floquet.gear_boundaries import label_variation, stability_boundaries
 from floquet.gear_chart import stability_chart
 from floquet.system import FloatArray
-from floquet.tongues import ModeShares, Tongue, label_tongue, tongue_tip
+from floquet.tongues import Tongue, tongue_tip
 from lumped.errors import refuse
 from lumped.parameters import GearPair
 
@@ -185,10 +183,3 @@ def label_regions(pair: GearPair, chart: xr.Dataset, min_nodes: int = 1) -> list
         label, _ = label_variation(vary(pair, point))
         regions.append(LabelledRegion(label, point, float(values[node]), size))
     return sorted(regions, key=lambda region: -region.nodes)
-
-
-def label_variation(variation: GearVariation) -> tuple[Tongue, ModeShares]:
-    """Name the fastest growing motion of a pair as a chart varies it, see `label_tongue`."""
-    block = gear_block(variation)
-    matrix = fast_monodromies(block).matrices[0]
-    return label_tongue(matrix, block.modal().omega, 2.0 * np.pi / block.period)

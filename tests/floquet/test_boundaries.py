@@ -8,10 +8,13 @@ from scipy.special import mathieu_a, mathieu_b
 
 from floquet import monodromy, predicted_lines, stability_boundaries, stability_chart
 from floquet.gear_boundaries import label_at
+from floquet.gear_coverage import boundary_coverage
 from floquet.intervals import seeded_nodes, unstable_intervals
 from floquet.tongues import Tongue
 from lumped import load_gear_pair
 from lumped.errors import ParameterError
+
+PRESETS = ["nasa_28_28", "nasa_art_25_31", "kahraman_blankenship_50_50", "fzg_c"]
 
 
 @pytest.fixture(scope="module")
@@ -76,23 +79,64 @@ def test_radius_is_one_on_every_boundary(pair) -> None:
             assert outside < 1.0 < inside
 
 
-def test_no_unstable_node_of_a_dense_chart_is_missed(pair) -> None:
-    low, high = 1500.0, 19000.0
-    axes = {"damping_ratio": [0.0, 0.004, 0.015]}
-    found = stability_boundaries(pair, (low, high), axes)
-    speeds = np.linspace(low, high, 6001)
-    chart = stability_chart(pair, {"speed_rpm": speeds, **axes})
-    missed = unstable = 0
-    for value in axes["damping_ratio"]:
-        here = found.sel(damping_ratio=value)
-        inside = np.zeros(speeds.size, dtype=bool)
-        for lower, upper in zip(here.lower.values, here.upper.values, strict=True):
-            inside |= (speeds >= lower) & (speeds <= upper)
-        bad = (chart.verdict.sel(damping_ratio=value) == -1).values
-        unstable += int(bad.sum())
-        missed += int((bad & ~inside).sum())
-    assert unstable > 500
-    assert missed == 0
+@pytest.mark.slow
+@pytest.mark.parametrize("preset", PRESETS)
+def test_no_unstable_node_of_a_dense_chart_is_missed(preset: str) -> None:
+    pair = load_gear_pair(preset).with_(friction__law="coulomb", friction__coefficient=0.05)
+    axes = {"damping_ratio": [0.002, 0.006, 0.02]}
+    found = stability_boundaries(pair, (500.0, 20000.0), axes)
+    chart = stability_chart(pair, {"speed_rpm": np.linspace(500.0, 20000.0, 2000), **axes}, store="radius")
+    coverage = boundary_coverage(found, chart)
+    print({key: value for key, value in coverage.attrs.items() if key.endswith("nodes")})
+    assert coverage.unstable_nodes > 20
+    assert coverage.missed_nodes == 0
+    assert coverage.excess_nodes == 0
+
+
+def test_coverage_counts_what_is_missed(pair) -> None:
+    # A boundary that is taken away or moved leaves its nodes behind.
+    low, high = 15000.0, 18500.0
+    found = stability_boundaries(pair, (low, high))
+    chart = stability_chart(pair, {"speed_rpm": np.linspace(low, high, 400)})
+    whole = boundary_coverage(found, chart)
+    assert whole.missed_nodes == whole.excess_nodes == 0
+    without = boundary_coverage(found.isel(tongue=[]), chart)
+    assert without.missed_nodes == without.unstable_nodes == whole.unstable_nodes > 20
+    width = found.interval_upper - found.interval_lower
+    half = boundary_coverage(found.assign(interval_upper=found.interval_upper - 0.5 * width), chart)
+    assert half.missed_nodes == pytest.approx(0.5 * whole.unstable_nodes, abs=1)
+    wide = boundary_coverage(found.assign(interval_upper=found.interval_upper + 0.5 * width), chart)
+    assert wide.missed_nodes == 0
+    assert wide.excess_nodes > 0
+    with pytest.raises(ParameterError, match="chart"):
+        boundary_coverage(found, chart.expand_dims(torque=[30.0]))
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("stiffness_variation", [0.0, 0.5, 1.0]),
+        ("torque", [30.0, 80.0]),
+        ("contact_ratio", [1.3, 1.55]),
+        ("bearing_stiffness", [5e7, 2e8]),
+        ("friction_coefficient", [0.0, 0.1]),
+    ],
+)
+@pytest.mark.parametrize("law", ["coulomb", "benedict_kelley"])
+def test_boundaries_over_every_axis_are_those_of_the_chart(pair, name: str, values, law: str) -> None:
+    here = pair.with_(friction__law=law)
+    found = stability_boundaries(here, (13000.0, 19500.0), {name: values}, nodes=60, orders=2)
+    speeds = np.linspace(13000.0, 19500.0, 120)
+    coverage = boundary_coverage(found, stability_chart(here, {name: values, "speed_rpm": speeds}))
+    assert coverage.missed_nodes == coverage.excess_nodes == 0
+    if name == "stiffness_variation":
+        # Without variation nothing is parametric. With it width^2 = (a variation)^2 - d^2 to first order, d by
+        # damping (Hsu), so that twice the variation makes a little more than twice the width.
+        width = (found.upper - found.lower).sel(tongue=found.label == "2w3/2").values[0]
+        assert np.isnan(width[0])
+        assert 1.95 * width[1] < width[2] < 3.0 * width[1]
+    else:
+        assert coverage.unstable_nodes > 5
 
 
 def test_principal_tongue_is_named_by_its_mode_shape(pair) -> None:
@@ -129,7 +173,7 @@ def test_bad_ranges_are_refused(pair, speeds: tuple[float, float]) -> None:
 
 
 @pytest.mark.parametrize(
-    "axes", [{"speed_rpm": [1000.0]}, {"stiffness_variation": [0.5]}, {"unknown": [1.0]}]
+    "axes", [{"speed_rpm": [1000.0]}, {"unknown": [1.0]}, {"torque": [30.0], "damping_ratio": [0.1]}]
 )
 def test_bad_axes_are_refused(pair, axes: dict[str, list[float]]) -> None:
     with pytest.raises(ParameterError, match="axes"):
