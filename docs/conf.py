@@ -7,6 +7,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
+# Sphinx wants to see the folder of computed pages before they are computed.
+(HERE / "_generated" / "pages").mkdir(parents=True, exist_ok=True)
+
 project = "spurcheck"
 author = copyright = "The spurcheck developers"
 release = version = importlib.metadata.version("spurcheck")
@@ -18,6 +21,7 @@ extensions = [
     "extensions.mathml",
     "extensions.docstrings",
     "extensions.scripts",
+    "extensions.contributing",
     "computed",
 ]
 exclude_patterns = ["_generated", "images"]
@@ -34,6 +38,7 @@ python_maximum_signature_line_length = 80
 html_theme = "furo"
 html_title = f"spurcheck {release}"
 html_static_path = ["static"]
+html_extra_path = ["_generated/pages"]
 html_css_files = ["spurcheck.css"]
 html_show_sphinx = False
 html_copy_source = False
@@ -54,4 +59,6 @@ sphinx_gallery_conf = {
     "write_computation_times": False,
     "within_subsection_order": "FileNameSortKey",
     "copyfile_regex": "",
+    "notebook_extensions": set(),
+    "show_signature": False,
 }

@@ -36,7 +36,7 @@ def state() -> str:
     digest = hashlib.sha256(importlib.metadata.version("spurcheck").encode())
     for folder in _SOURCES:
         for path in sorted((DOCS.parent / folder).rglob("*")):
-            if path.suffix in {".py", ".toml", ".csv"}:
+            if path.suffix in {".py", ".toml", ".csv", ".js", ".html", ".css"}:
                 digest.update(path.name.encode() + path.read_bytes())
     return digest.hexdigest()
 
@@ -46,7 +46,7 @@ def write_files(folder: Path = GENERATED) -> bool:
     stamp, now = folder / ".state", state()
     if stamp.exists() and stamp.read_text() == now:
         return False
-    folder.mkdir(exist_ok=True)
+    (folder / "pages").mkdir(parents=True, exist_ok=True)
     stamp.unlink(missing_ok=True)
     for name, write in writers().items():
         (folder / name).write_text(write(), encoding="utf-8")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import lumped
-from computed.markdown import Cell, table, text
+from computed.markdown import Cell, greek, table, text
 from validation.paper.errata import errata_chapter
 
 
@@ -31,7 +31,7 @@ def chapter() -> str:
             f"## Equation {e.equation}\n\n{text(e.text)}\n",
             table(("computed", "as printed", "as repaired", "what must hold"), rows),
         ]
-    return "\n".join(parts)
+    return greek("\n".join(parts))
 
 
 FILES = {"errata.md": chapter}

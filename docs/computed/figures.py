@@ -10,11 +10,15 @@ import xarray as xr
 
 import floquet
 import lumped
+from computed import GENERATED
 from computed.agreement import torque_series
 from computed.diagrams import svg
 from floquet.gear_campbell import multiplier_paths
 from lumped import GearPair
 from lumped.friction import friction_profile
+from validation.interactive.page import render
+from validation.interactive.results import compute
+from validation.output import write_dataset
 from validation.plots.multiplier_paths import multiplier_paths_figure
 from validation.plots.path_of_contact import friction_laws_figure, path_figure
 from validation.plots.stability import stability_figure
@@ -97,6 +101,13 @@ def validity() -> str:
     return svg(figure)
 
 
+def explore() -> str:
+    """The interactive page; its numbers are written beside it."""
+    results = compute(_pair())
+    write_dataset(results.dataset(), GENERATED / "pages" / "explore.nc")
+    return render(results, "explore.nc")
+
+
 FILES: dict[str, Callable[[], str]] = {
     "friction_laws.svg": friction_laws,
     "film.svg": film,
@@ -104,4 +115,5 @@ FILES: dict[str, Callable[[], str]] = {
     "tongues.svg": tongues,
     "torque_law.svg": torque_law,
     "validity.svg": validity,
+    "pages/explore.html": explore,
 }

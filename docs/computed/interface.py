@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import textwrap
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -48,8 +49,13 @@ def transcript(*command: str, exit_code: int = 0, before: tuple[str, ...] = ()) 
             os.chdir(home)
     if result.exit_code != exit_code:
         raise RuntimeError(f"spurcheck {' '.join(command)}: exit code {result.exit_code}\n{result.output}")
-    lines = (line.rstrip() for line in _ESCAPES.sub("", result.output).strip("\n").splitlines())
+    lines = (wrapped(line.rstrip()) for line in _ESCAPES.sub("", result.output).strip("\n").splitlines())
     return "```text\n" + "\n".join(lines) + "\n```\n"
+
+
+def wrapped(line: str) -> str:
+    """A line as a terminal of 92 columns breaks it."""
+    return "\n".join(textwrap.wrap(line, 92, drop_whitespace=False)) if len(line) > 92 else line
 
 
 _INIT = ("init", "nasa_28_28", "-o", "mypair.toml")

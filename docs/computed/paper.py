@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import lumped
-from computed.markdown import Cell, table, text
+from computed.markdown import Cell, greek, table, text
 from validation.paper.claims import claims
 
 _SAMPLES = 40
@@ -33,7 +33,7 @@ def claims_table() -> str:
         f"{found.samples} samples (seed {found.seed}; {found.failed} had no periodic motion or law) over "
         f"{text(ranges)}."
     )
-    return f"{found.text}\n\n{table(columns, rows)}\n{sampling}\n"
+    return greek(f"{found.text}\n\n{table(columns, rows)}\n{sampling}\n")
 
 
 FILES = {"claims.md": claims_table}
