@@ -1,19 +1,21 @@
 """Pictures of the meshing teeth with their contact forces, drawn by matplotlib without a display.
 
-The axes are those of the model: x along the line of action, positive the way the pinion tooth pushes, y off
-it.
+The axes are those of the model: x along the nominal line of action from X, positive the way the pinion tooth
+pushes, y off it.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.animation import PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, FancyArrowPatch, Rectangle
 from numpy.typing import NDArray
 
 from lumped.errors import refuse
@@ -27,6 +29,9 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 _FACES, _EDGES = ("#c9d7e8", "#e8dcc3"), ("#37587f", "#7d6433")
 _NORMAL, _FRICTION = "#b3261e", "#1b7a3d"
+_LINE: dict[str, Any] = {"color": "0.25", "linewidth": 0.9, "linestyle": "--"}
+#: Factors by which friction arrows may be longer than those of normal loads.
+_ENLARGED = (1, 2, 5, 10, 20, 50, 100)
 
 
 def gear_picture(pair: GearPair, run: xr.Dataset, index: int = 0) -> Figure:
@@ -40,8 +45,8 @@ def gear_picture(pair: GearPair, run: xr.Dataset, index: int = 0) -> Figure:
 
     Returns
     -------
-    matplotlib Figure: to scale, deflections included (they are micrometres); arrows show the forces on the
-    gear body, all to one scale, normal load and friction enlarged alike
+    matplotlib Figure: to scale, deflections included (they are micrometres). Arrows show the forces on the
+    gear body with their values; one scale holds for the whole run, friction enlarged as the legend says
 
     Raises
     ------
@@ -109,9 +114,10 @@ def _outlines(pair: GearPair) -> tuple[FloatArray, FloatArray]:
     return gear_outline(pair, "pinion"), gear_outline(pair, "gear")
 
 
-def _largest(run: xr.Dataset) -> float:
-    """Largest normal load of the run [N]."""
-    return max(float(np.abs(run["normal_load"]).max()), 1e-300)
+def _largest(run: xr.Dataset) -> tuple[float, float]:
+    """Largest normal load and largest friction force of the run [N]."""
+    load, friction = (float(np.abs(run[name]).max()) for name in ("normal_load", "friction_force"))
+    return max(load, 1e-300), friction
 
 
 def _draw(
@@ -120,7 +126,7 @@ def _draw(
     run: xr.Dataset,
     index: int,
     outlines: tuple[FloatArray, FloatArray],
-    largest: float,
+    largest: tuple[float, float],
 ) -> None:
     g, now = geometry(pair), run.isel(time=index)
     t = float(now["time"])
@@ -130,44 +136,101 @@ def _draw(
         np.array([float(now["x_p"]), float(now["y_p"]) - g.base_radius_pinion]),
         np.array([float(now["x_g"]) + g.L_XY, float(now["y_g"]) + g.base_radius_gear]),
     )
-    whole, close = figure.subplots(1, 2, width_ratios=[1.0, 1.25])
+    whole, close = figure.subplots(1, 2, width_ratios=[1.0, 1.35])
     for axes in (whole, close):
         for outline, angle, centre, face, edge in zip(outlines, angles, centres, _FACES, _EDGES, strict=True):
             c, s = np.cos(angle), np.sin(angle)
             xy = 1e3 * (outline @ np.array([[c, s], [-s, c]]) + centre)
             axes.fill(xy[:, 0], xy[:, 1], facecolor=face, edgecolor=edge, linewidth=0.8)
-        axes.axline((0.0, 0.0), slope=0.0, color="0.35", linewidth=0.7, linestyle="--")
+        axes.axline((0.0, 0.0), slope=0.0, **_LINE)
         axes.set_aspect("equal")
         axes.set_xlabel("x along the line of action [mm]")
-    whole.set_ylabel("y off the line of action [mm]")
-    _close_up(close, pair, now, largest)
+        axes.set_ylabel("y off the line of action [mm]")
+    window = _window(pair)
+    _whole_gears(whole, pair, centres, window)
+    close.set_xlim(window[0], window[0] + window[2])
+    close.set_ylim(window[1], window[1] + window[3])
+    _forces(close, now, largest, 0.5 * window[2])
+    _path_of_contact(close, pair)
     rpm = pair.operating.pinion_speed * 30.0 / np.pi
-    phase = t / g.mesh_period
     figure.suptitle(
-        f"{pair.name}, {rpm:.4g} rpm, {pair.operating.pinion_torque:.4g} N m, mesh cycle {phase:.3f}",
+        f"{pair.name}: {rpm:.4g} rpm, {pair.operating.pinion_torque:.4g} N m, "
+        f"after {t / g.mesh_period:.2f} mesh cycles",
         parse_math=False,  # a name is text, whatever it contains
     )
 
 
-def _close_up(axes: Axes, pair: GearPair, now: xr.Dataset, largest: float) -> None:
+def _window(pair: GearPair) -> tuple[float, float, float, float]:
+    """Left, bottom, width, height of the close-up [mm]."""
     g = geometry(pair)
     reach = 1e3 * max(g.L_XD - g.L_XA, g.base_pitch)
     middle = 1e3 * 0.5 * (g.L_XA + g.L_XD)
-    axes.set_xlim(middle - 0.9 * reach, middle + 1.1 * reach)
-    axes.set_ylim(-0.65 * reach, 0.65 * reach)
-    for name in "ABPCD":
-        x = 1e3 * getattr(g, f"L_X{name}")
-        axes.plot([x], [0.0], marker="|", color="0.2", markersize=9)
-        axes.annotate(name, (x, 0.0), (0, -14), textcoords="offset points", ha="center", fontsize=8)
-    scale = 0.5 * reach / largest
+    return middle - 0.9 * reach, -0.65 * reach, 2.0 * reach, 1.3 * reach
+
+
+def _whole_gears(
+    axes: Axes,
+    pair: GearPair,
+    centres: tuple[FloatArray, FloatArray],
+    window: tuple[float, float, float, float],
+) -> None:
+    """Names, centres, base circles and senses of rotation, and the frame of the close-up."""
+    g = geometry(pair)
+    radii = (g.base_radius_pinion, g.base_radius_gear)
+    names = (f"pinion, {pair.pinion.teeth} teeth\ndrives", f"gear, {pair.gear.teeth} teeth\nis driven")
+    for centre, radius, name, turn, edge in zip(centres, radii, names, (-1, 1), _EDGES, strict=True):
+        x, y = 1e3 * centre
+        r = 1e3 * radius
+        axes.add_patch(Circle((x, y), r, fill=False, edgecolor=edge, linewidth=0.7, linestyle=":"))
+        axes.plot([x], [y], marker="+", color=edge, markersize=7)
+        axes.annotate(name, (x, y), (0, -7), textcoords="offset points", ha="center", va="top", fontsize=8)
+        ends = [
+            (x + 0.7 * r * np.cos(a), y + 0.7 * r * np.sin(a))
+            for a in np.deg2rad((90 - turn * 30, 90 + turn * 30))
+        ]
+        axes.add_patch(
+            FancyArrowPatch(
+                *ends,
+                connectionstyle=f"arc3,rad={turn * 0.28}",
+                arrowstyle="-|>",
+                mutation_scale=12,
+                color=edge,
+                linewidth=1.4,
+            )
+        )
+    axes.add_patch(Rectangle(window[:2], *window[2:], fill=False, edgecolor="0.25", linewidth=0.8))
+    axes.set_title("base circles dotted; frame: the close-up", fontsize=9)
+
+
+def _path_of_contact(axes: Axes, pair: GearPair) -> None:
+    """Ticks above the close-up where contact starts, changes and ends."""
+    g = geometry(pair)
+    places = {name: 1e3 * getattr(g, f"L_X{name}") for name in "ABPCD"}
+    for x in places.values():
+        axes.plot([x], [0.0], marker="|", color="0.25", markersize=8)
+    above = axes.secondary_xaxis("top")
+    above.set_xticks(list(places.values()), list(places))
+    above.set_xlabel("contact from A to D, fewest pairs of teeth from B to C, P pitch point", fontsize=9)
+
+
+def _forces(axes: Axes, now: xr.Dataset, largest: tuple[float, float], longest: float) -> None:
+    """Arrows of the forces on the gear at every contact, with their values."""
+    scale = 0.5 * longest / largest[0]
+    fitting = [f for f in _ENLARGED if f * largest[1] * scale <= 0.4 * longest]
+    enlarged = max(fitting, default=1)
     for i in range(now.sizes["pair"]):
         if float(now["contact"][i]) == 0.0:
             continue
         x, load, friction = (float(now[name][i]) for name in ("position", "normal_load", "friction_force"))
-        for dx, dy, colour in ((load * scale, 0.0, _NORMAL), (0.0, -friction * scale, _FRICTION)):
+        up = -friction * scale * enlarged
+        for dx, dy, colour, value in (
+            (load * scale, 0.0, _NORMAL, load),
+            (0.0, up, _FRICTION, abs(friction)),
+        ):
+            end = (1e3 * x + dx, dy)
             axes.annotate(
                 "",
-                (1e3 * x + dx, dy),
+                end,
                 (1e3 * x, 0.0),
                 arrowprops={
                     "arrowstyle": "-|>",
@@ -177,7 +240,21 @@ def _close_up(axes: Axes, pair: GearPair, now: xr.Dataset, largest: float) -> No
                     "shrinkB": 0,
                 },
             )
-    total, friction = (float(now[name].sum()) for name in ("normal_load", "friction_force"))
-    axes.set_title(
-        f"forces on the gear: normal {total:.0f} N (red), friction {round(-friction):d} N (green)", fontsize=9
-    )
+            axes.annotate(
+                f"{value:.0f} N",
+                end,
+                (4, 4 if dy == 0.0 else 0),
+                textcoords="offset points",
+                color=colour,
+                fontsize=9,
+                ha="left",
+                va="top" if dy < 0.0 else "bottom",
+                bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.8},
+            )
+    how = "to the same scale" if enlarged == 1 else f"arrows {enlarged} times as long"
+    handles = [
+        Line2D([], [], color=_NORMAL, linewidth=1.8, label="normal load on the gear"),
+        Line2D([], [], color=_FRICTION, linewidth=1.8, label=f"friction on the gear, {how}"),
+        Line2D([], [], label="line of action", **_LINE),
+    ]
+    axes.legend(handles=handles, loc="lower right", fontsize=8, framealpha=0.9)

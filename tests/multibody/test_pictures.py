@@ -65,8 +65,29 @@ def test_picture_needs_no_display(monkeypatch, tmp_path):
     assert (tmp_path / "gears.png").stat().st_size > 10_000
     arrows = [a for a in figure.axes[1].texts if a.arrow_patch is not None]
     assert len(arrows) == 2 * int(run["contact"][:, 4].sum())
+    # Every force is written beside its arrow, with the value of the run.
+    written = sorted(t.get_text() for t in figure.axes[1].texts if t.get_text())
+    touching = run["contact"][:, 4].to_numpy() > 0
+    forces = [np.abs(run[name][:, 4].to_numpy()[touching]) for name in ("normal_load", "friction_force")]
+    assert written == sorted(f"{force:.0f} N" for force in np.concatenate(forces))
     with pytest.raises(lumped.ParameterError, match="index"):
         gear_picture(PAIR, run, 17)
+
+
+def test_arrows_point_where_the_gear_is_pushed_and_to_scale():
+    run = multibody.simulate(PAIR, 1, samples_per_cycle=16)
+    axes = gear_picture(PAIR, run, 4).axes[1]
+    factor = float(axes.get_legend().get_texts()[1].get_text().split("arrows ")[1].split(" times")[0])
+    tips = [np.subtract(a.xy, a.xyann) for a in axes.texts if a.arrow_patch is not None]
+    load, friction = (run[name][:, 4].to_numpy() for name in ("normal_load", "friction_force"))
+    touching = run["contact"][:, 4].to_numpy() > 0
+    # Normal loads push the gear along +x, friction pushes it against the pinion's F.
+    scale = tips[0][0] / load[touching][0]
+    expected = []
+    for n, f in zip(load[touching], friction[touching], strict=True):
+        expected += [(scale * n, 0.0), (0.0, -factor * scale * f)]
+    assert scale > 0
+    np.testing.assert_allclose(tips, expected, rtol=1e-12, atol=1e-12)
 
 
 def test_animation_appears_whole_or_not_at_all(tmp_path, monkeypatch):

@@ -29,7 +29,8 @@ def meshing_teeth(results: Results) -> Picture:
     return Picture(
         "meshing_teeth",
         "The gears as the exact multibody model sees them, to scale, a quarter of a mesh cycle after a pair "
-        "was at A. Right: the contacts on the line of action, with the forces on the gear, all to one scale.",
+        "was at A. Right: the contacts on the line of action with the forces on the gear, friction enlarged "
+        "as the legend says.",
         partial(gear_picture, results.pair, run, index),
     )
 
