@@ -28,12 +28,36 @@ def mathml(latex: str, *, block: bool) -> str:
     ExtensionError : a command that has no MathML here
     """
     try:
-        found = str(tex2mathml(latex, as_block=block))
+        found = str(tex2mathml(_braced(latex), as_block=block))
     except MathError as error:
         raise ExtensionError(f"No MathML for {latex!r}: {error}") from None
     found = _ACCENTED.sub(r"<msub><mover>\1\3</mover>\2</msub>", found)
     # Chromium draws an accent through its letter where the font has no table of accent heights.
     return found.replace('<mover accent="true">', "<mover>")
+
+
+def _braced(latex: str) -> str:
+    """The same with braces about both arguments of every fraction: docutils reads frac 12 as one number."""
+    result, rest = "", latex
+    while start := re.search(r"\\[td]?frac\s*", rest):
+        result, rest = result + start[0].strip(), rest[start.end() :]
+        for _ in range(2):
+            argument, rest = _argument(rest.lstrip())
+            result += "{" + _braced(argument) + "}"
+    return result + rest
+
+
+def _argument(text: str) -> tuple[str, str]:
+    """First argument of a command, without its braces, and what follows."""
+    if not text.startswith("{"):
+        token = re.match(r"\\[a-zA-Z]+|.", text)
+        return (token[0], text[token.end() :]) if token else ("", "")
+    depth = 0
+    for i, character in enumerate(text):
+        depth += (character == "{") - (character == "}")
+        if depth == 0:
+            return text[1:i], text[i + 1 :]
+    return text[1:], ""
 
 
 def _inline(self: HTML5Translator, node: nodes.math) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 
@@ -55,6 +56,8 @@ def test_fields_of_a_docstring():
         ("θ̇_p", "θ̇[p]"),
         ("mesh_efficiency", "mesh_efficiency"),
         ("2w_i/k", "2w[i]/k"),
+        ("e^{−ct} y", "e{−ct} y"),
+        ("10^-16 m", "10{-16} m"),
     ],
 )
 def test_symbols_in_text(text, expected):
@@ -69,6 +72,14 @@ def test_equations_keep_the_index_beside_a_dotted_symbol():
     assert "munderover" not in found
     with pytest.raises(ExtensionError, match="nosuchcommand"):
         mathml(r"\nosuchcommand", block=True)
+
+
+def test_fractions_of_single_tokens():
+    """docutils by itself reads the 12 of \\frac12 as one number."""
+    for latex in (r"\tfrac12 x", r"\tfrac{1}{2} x", r"\frac 1 2x", r"\frac1{2} x"):
+        found = re.sub(r"\s", "", mathml(latex, block=True))
+        assert "<mn>1</mn><mn>2</mn></mfrac>" in found, latex
+    assert "<mfrac><mi>α</mi><mi>S</mi></mfrac>" in re.sub(r"\s", "", mathml(r"\frac\alpha S", block=True))
 
 
 def test_the_parameter_reference_states_unit_range_and_default():
