@@ -1,9 +1,10 @@
-"""Stability charts of any size: the method chosen by the number of points, the memory bounded by slices."""
+"""Stability charts of any size: the method that costs least, and slices that tell how far it is."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from typing import Literal
 
 import numpy as np
 import xarray as xr
@@ -11,7 +12,6 @@ from numpy.typing import NDArray
 
 from floquet import PROPAGATORS, stability_chart
 from floquet.chart import checked_axes
-from floquet.gear_axes import gear_axis
 from lumped import GearPair
 from lumped.errors import refuse
 
@@ -21,13 +21,12 @@ Progress = Callable[[float], None]
 
 METHODS = ("auto", "taylor", "chebyshev", *sorted(PROPAGATORS))
 #: From here on interpolation costs less processor time than every point by itself (measured on the presets).
-INTERPOLATE_FROM = 25_000
-#: Points in memory at once with all their multipliers, 240 bytes each and as much again while they are made.
-_SLICE = 1 << 17
-_SPEEDS = 128  # in a slice at least: interpolation over few speeds saves nothing
+INTERPOLATE_FROM = 100_000
+_FAST = ("speed_rpm", "damping_ratio", "friction_coefficient")
+# The compiled chart tells its progress only at its end: points of a slice, and speeds of one at least, since
+# interpolation over few speeds saves nothing.
+_SLICE, _SPEEDS = 1 << 18, 128
 _LARGEST = 25_000_000
-_RATES = ("damping_ratio", "friction_coefficient")
-_MULTIPLIERS = ("multipliers", "multiplier_errors")
 
 
 def dense_chart(
@@ -39,7 +38,7 @@ def dense_chart(
     multipliers: bool = False,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Stability chart over any axes, slice by slice.
+    """Stability chart over any axes.
 
     Parameters
     ----------
@@ -60,8 +59,6 @@ def dense_chart(
     NumericalError : a point fails; the message names it
     """
     grid = checked_axes(axes)
-    for name, values in grid.items():
-        gear_axis(name).check(name, values)
     points = math.prod(values.size for values in grid.values())
     if points > _LARGEST:
         raise refuse("points of the chart", points, f"at most {_LARGEST}", "Give the axes smaller counts.")
@@ -69,20 +66,18 @@ def dense_chart(
         raise refuse("method", method, ", ".join(METHODS), "Choose among these.")
     chosen = chart_method(grid) if method == "auto" else method
     along = _slicing_axis(grid)
-    rows = max(1 if along != "speed_rpm" else _SPEEDS, _SLICE * grid[along].size // points)
-    parts, done = [], 0
+    rows = max(_SPEEDS if along == "speed_rpm" else 1, _SLICE * grid[along].size // points)
+    parts: list[xr.Dataset] = []
     for first in range(0, grid[along].size, rows):
-        part = grid[along][first : first + rows]
 
-        def tell(finished: int, _: int, before: int = done) -> None:
+        def tell(done: int, total: int, first: int = first) -> None:
             if progress is not None:
-                progress((before + finished) / points)
+                before, now = (min(k, grid[along].size) / grid[along].size for k in (first, first + rows))
+                progress(before + (now - before) * done / total)
 
-        chart = stability_chart(pair, {**grid, along: part}, rtol=rtol, method=chosen, progress=tell)
-        # A copy, so that the multipliers of the slice can go.
-        parts.append(chart if multipliers else chart.drop_vars(_MULTIPLIERS).copy(deep=True))
-        del chart
-        done += points // grid[along].size * part.size
+        part = {**grid, along: grid[along][first : first + rows]}
+        store: Literal["all", "radius"] = "all" if multipliers else "radius"
+        parts.append(stability_chart(pair, part, rtol=rtol, method=chosen, store=store, progress=tell))
     if len(parts) == 1:
         return parts[0]
     joined: xr.Dataset = xr.concat(parts, dim=along, combine_attrs="override")
@@ -96,12 +91,11 @@ def chart_method(axes: Mapping[str, FloatArray]) -> str:
     ----------
     axes : of the chart
     """
-    fast = [np.size(values) for name, values in axes.items() if name in ("speed_rpm", *_RATES)]
-    many = "speed_rpm" in axes and math.prod(fast) >= INTERPOLATE_FROM
-    return "chebyshev" if many else "taylor"
+    many = math.prod(np.size(values) for name, values in axes.items() if name in _FAST) >= INTERPOLATE_FROM
+    return "chebyshev" if many and "speed_rpm" in axes else "taylor"
 
 
 def _slicing_axis(axes: Mapping[str, FloatArray]) -> str:
     """Axis along which slices repeat no work: one that needs a fit at each value anyway, or else speed."""
-    slow = [name for name in axes if name not in (*_RATES, "speed_rpm")]
+    slow = [name for name in axes if name not in _FAST]
     return next(iter([*slow, *(name for name in ("speed_rpm",) if name in axes), *axes]))

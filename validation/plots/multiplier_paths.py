@@ -56,7 +56,7 @@ def multiplier_paths_figure(paths: xr.Dataset, operating: float | None = None) -
     right.set_ylim(0.0, reach)
     right.set_xlabel(text)
     right.set_ylabel("modulus [-], red: unstable")
-    if operating is not None:
+    if operating is not None and parameter.min() <= operating <= parameter.max():
         right.axvline(operating, color=BLACK, linewidth=1.0, linestyle="--")
         right.annotate(
             "operating point", (operating, 0.02), xycoords=("data", "axes fraction"), xytext=(3, 0),

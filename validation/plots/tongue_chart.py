@@ -39,10 +39,12 @@ def tongue_chart_figure(
     """
     figure = stability_figure(chart, "speed_rpm", y, point)
     ax = figure.axes[0]
-    (low, high), (_, top) = ax.get_xlim(), ax.get_ylim()
+    (low, high), (bottom, top) = ax.get_xlim(), ax.get_ylim()
     largest: dict[str, tuple[float, float]] = {}
     for region in regions:
         if isinstance(region, TongueMargin):
+            if region.critical_damping <= bottom:
+                continue  # closed below the figure
             name, place, weight = region.label, region.tip_speed, region.critical_damping
             # Tongues thinner than the grid of the chart are seen by their traced edges alone.
             inside = region.damping <= top

@@ -1,0 +1,175 @@
+"""Does spurcheck stability write what it promises for every view and axis, and refuse the rest early?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+from typer.testing import CliRunner
+
+from validation.cli import app
+
+SPEEDS = ("--axis", "speed_rpm=15000:18500:12")
+TONGUE = ("--law", "none", "--set", "mesh.damping_ratio=0.01")
+
+
+def run(*arguments):
+    result = CliRunner().invoke(
+        app, ["stability", *map(str, arguments)], env={"COLUMNS": "200", "NO_COLOR": "1"}
+    )
+    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
+    return result
+
+
+def refused(*arguments):
+    result = run(*arguments)
+    assert result.exit_code == 2, result.output
+    assert result.stdout == ""
+    assert result.stderr.count("error:") == 1
+    return result.stderr
+
+
+def opened(path) -> xr.Dataset:
+    with xr.open_dataset(path, engine="h5netcdf") as data:
+        return data.load()
+
+
+@pytest.mark.parametrize(
+    "axis",
+    [
+        "damping_ratio=0:0.05:3",
+        "friction_coefficient=0:0.1:3",
+        "torque=20:80:3",
+        "stiffness_variation=0.5:1.5:3",
+        "contact_ratio=1.3:1.9:3",
+        "bearing_stiffness=5e7:2e8:3",
+    ],
+)
+def test_every_axis_makes_a_chart_over_speed(tmp_path, axis):
+    data, picture = tmp_path / "chart.nc", tmp_path / "chart.png"
+    result = run("--law", "coulomb", *SPEEDS, "--axis", axis, "-o", data, "-o", picture)
+    assert result.exit_code == 0, result.stderr
+    chart = opened(data)
+    assert dict(chart.sizes) == {"speed_rpm": 12, axis.split("=")[0]: 3}
+    assert set(chart.data_vars) == {"spectral_radius", "error", "verdict"}
+    assert chart["speed_rpm"].attrs["units"] == "rpm"
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_chart_and_traced_boundaries_are_in_one_file(tmp_path):
+    path, picture = tmp_path / "chart.nc", tmp_path / "chart.pdf"
+    result = run(
+        *TONGUE, *SPEEDS, "--axis", "damping_ratio=0:0.04:5", "--tongues", "--operating-range", "15000:17000",
+        "-o", path, "-o", picture,
+    )  # fmt: skip
+    assert result.exit_code == 0, result.stderr
+    found = opened(path)
+    assert list(found["label"].to_numpy()) == ["2w3/2"]
+    # 2.7 %, measured when the pair was chosen.
+    assert float(found["critical_damping"][0]) == pytest.approx(0.027, abs=1e-3)
+    assert f"{float(found['critical_damping'][0]):.6f}" in result.stdout
+    # The chart and the traced edges say the same at every node.
+    tongue = found.isel(tongue=0)
+    for i, damping in enumerate(found["damping_ratio"].to_numpy()):
+        edges = [
+            np.interp(damping, tongue["tongue_damping"], tongue[e]) for e in ("tongue_lower", "tongue_upper")
+        ]
+        inside = (found["speed_rpm"] > edges[0]) & (found["speed_rpm"] < edges[1])
+        inside &= damping < float(tongue["critical_damping"])
+        assert np.array_equal(inside, found["verdict"].isel(damping_ratio=i) == -1)
+    assert picture.read_bytes().startswith(b"%PDF")
+
+
+def test_multipliers_are_kept_on_request(tmp_path):
+    path = tmp_path / "chart.nc"
+    assert run(*SPEEDS, "--multipliers", "-o", path).exit_code == 0
+    assert opened(path)["multipliers_real"].shape == (12, 10)
+
+
+def test_boundaries_over_damping_and_over_another_axis(tmp_path):
+    traced, over = tmp_path / "traced.nc", tmp_path / "over.nc"
+    view = ("--view", "boundaries", "--law", "none", *SPEEDS)
+    assert run(*view, "-o", traced, "-o", tmp_path / "a.svg").exit_code == 0
+    found = opened(traced)
+    assert float(found["lower"][0, 0]) < float(found["tip_speed"][0]) < float(found["upper"][0, 0])
+    result = run(
+        *view, *TONGUE[2:], "--axis", "bearing_stiffness=8e7:1.2e8:3", "-o", over, "-o", tmp_path / "b.svg"
+    )
+    assert result.exit_code == 0, result.stderr
+    found = opened(over)
+    assert list(found["label"].to_numpy()) == ["2w3/2"]
+    # Stiffer bearings raise the natural frequencies and with them the tongue.
+    assert (np.diff(found["lower"][0]) > 0).all()
+    assert "2w3/2" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("view", "axis", "variable"),
+    [
+        ("campbell", SPEEDS, "frequency"),
+        ("paths", SPEEDS, "multipliers_real"),
+        ("paths", ("--axis", "damping_ratio=0:0.05:9"), "multipliers_imag"),
+    ],
+)
+def test_campbell_diagram_and_paths(tmp_path, view, axis, variable):
+    path = tmp_path / "view.nc"
+    result = run("--view", view, *TONGUE, *axis, "-o", path, "-o", tmp_path / "view.svg")
+    assert result.exit_code == 0, result.stderr
+    assert np.isfinite(opened(path)[variable]).all()
+
+
+def test_difference_of_two_laws_is_that_of_their_charts(tmp_path):
+    axes = (*SPEEDS, "--axis", "damping_ratio=0.01:0.05:3")
+    files = {law: tmp_path / f"{law}.nc" for law in ("coulomb", "composite")}
+    for law, path in files.items():
+        assert run("--law", law, *axes, "-o", path).exit_code == 0
+    path = tmp_path / "difference.nc"
+    result = run(
+        "--view", "laws", "--law", "composite", "--against", "coulomb", *axes, "-o", path,
+        "-o", tmp_path / "d.svg",
+    )  # fmt: skip
+    assert result.exit_code == 0, result.stderr
+    one, other = (np.log(opened(files[law])["spectral_radius"]) for law in ("composite", "coulomb"))
+    # Two charts to 1e-8 each.
+    assert np.allclose(opened(path)["growth_change"][0], one - other, rtol=0, atol=1e-6)
+
+
+def test_zones_of_one_degree_of_freedom(tmp_path):
+    path = tmp_path / "zones.nc"
+    result = run("--view", "zones", "--law", "coulomb", "-o", path, "-o", tmp_path / "zones.svg")
+    assert result.exit_code == 0, result.stderr
+    assert list(opened(path)["friction"].to_numpy()) == ["none", "reversing", "constant"]
+    assert "gear.teeth = 31" in refused("--view", "zones", "nasa_art_25_31")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (("--view", "moon"), "--view = moon"),
+        (("--method", "euler"), "--method = euler"),
+        (("--axis", "speed_rpm=0:1000:5"), "axes['speed_rpm'] = 0 rpm: allowed > 0"),
+        (("--axis", "damping_ratio=0:2:5"), "axes['damping_ratio'] = 1.5 1: allowed >= 0 and <= 1"),
+        (("--axis", "speed_rpm=1:2:6000"), "count from 2 to 5000"),
+        ((*SPEEDS, *SPEEDS), "speed_rpm is given twice"),
+        (("--operating-range", "5000"), "FROM:TO"),
+        (("--operating-range", "8000:3000"), "0 < FROM < TO"),
+        (("--view", "campbell", "--axis", "torque=1:2:3"), "speed_rpm"),
+        (("--view", "laws", *SPEEDS), "two axes for --view laws"),
+        (("--view", "laws", "--law", "coulomb", "--against", "coulomb"), "another law"),
+        (("--view", "laws", "--against", "sandpaper"), "--against = sandpaper"),
+        (("--view", "zones", *SPEEDS), "no axis for --view zones"),
+        (("--axis", "torque=1:2:3", "--view", "boundaries", "--axis", "damping_ratio=0:0.1:2"), "speed_rpm"),
+    ],
+)
+def test_what_cannot_be_shown_is_refused(arguments, expected):
+    assert expected in refused(*arguments)
+
+
+def test_nothing_is_written_where_a_view_fails(tmp_path):
+    existing = tmp_path / "chart.nc"
+    existing.write_text("mine")
+    assert "--force" in refused(*SPEEDS, "-o", existing)
+    three = (*SPEEDS, "--axis", "torque=20:30:2", "--axis", "damping_ratio=0:0.1:2")
+    assert "one or two axes" in refused(*three, "-o", tmp_path / "new.nc", "-o", tmp_path / "chart.png")
+    assert [p.name for p in tmp_path.iterdir()] == ["chart.nc"]
+    assert existing.read_text() == "mine"
