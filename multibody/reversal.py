@@ -38,9 +38,9 @@ def friction_velocity(machine: Machine) -> tuple[float, str]:
     -------
     (velocity, reason) : [m/s], 0 for the sign function; and why, in words
     """
-    if _beside_pitch_point(machine, _BESIDE) <= _CONTINUOUS * _largest(machine):
+    if _beside_pitch_point(machine) <= _CONTINUOUS * _largest(machine):
         return 0.0, "sign(): the friction law is continuous at the pitch point"
-    nominal, by_friction, needed = _accelerations(machine, _BESIDE)
+    nominal, by_friction, needed = _accelerations(machine)
     share = nominal / by_friction
     numbers = f"sliding passes zero at {nominal:.3g} m/s^2, {share:.3g} times what friction can change"
     if nominal > needed * by_friction:
@@ -51,44 +51,19 @@ def friction_velocity(machine: Machine) -> tuple[float, str]:
     )
 
 
-def sticking(machine: Machine) -> float:
-    """How much friction has of what could hold the teeth at zero sliding: from 1 on it may hold them.
-
-    Unlike ``friction_velocity`` this also sees a law that is continuous but changes its sign over a short
-    way: it acts like one that jumps if that way is shorter than the one by which friction itself moves the
-    place of zero sliding. The friction force mu N, switched, swings a gear in its bearing off the line of
-    action by a velocity mu N/sqrt(K m), at resonance Q times that; over Omega_p + Omega_g it is that way.
-
-    Parameters
-    ----------
-    machine : numbers of the gear pair
-    """
-    p = machine.parameters
-    load = machine.torque_pinion / p[kn.RADIUS_P]
-    impedance = float(np.sqrt(machine.bearing_stiffness[:, 1] * machine.mass).min())
-    swing = _largest(machine) * load / impedance * (_needed(machine) - 1.0)
-    way = swing / (p[kn.OMEGA_P] + p[kn.OMEGA_G])
-    nominal, by_friction, needed = _accelerations(machine, max(way, _BESIDE))
-    return needed * by_friction / nominal
-
-
-def _accelerations(machine: Machine, beside: float) -> tuple[float, float, float]:
+def _accelerations(machine: Machine) -> tuple[float, float, float]:
     """Return a_s and a_f [m/s^2], and the 1 + Q that a_s/a_f must exceed, see above."""
     p = machine.parameters
     arm_p, arm_g = p[kn.L_XP], p[kn.L_XY] - p[kn.L_XP]
     mobility = float((1.0 / machine.mass).sum())
     mobility += arm_p**2 / machine.inertia[0] + arm_g**2 / machine.inertia[1]
     load = machine.torque_pinion / p[kn.RADIUS_P]
-    by_friction = _beside_pitch_point(machine, beside) * load * mobility
+    by_friction = _beside_pitch_point(machine) * load * mobility
     nominal = (p[kn.OMEGA_P] + p[kn.OMEGA_G]) * p[kn.OMEGA_P] * p[kn.RADIUS_P]
-    return float(nominal), float(by_friction), _needed(machine)
-
-
-def _needed(machine: Machine) -> float:
-    """1 + Q of the less damped bearing off the line of action."""
     critical = 2.0 * np.sqrt(machine.bearing_stiffness[:, 1] * machine.mass)
-    ratio = float((machine.bearing_damping[:, 1] / critical).min())
-    return 1.0 + (0.5 / ratio if ratio > 0.0 else np.inf)
+    ratio = float((machine.bearing_damping[:, 1] / critical).min())  # of the less damped bearing
+    needed = 1.0 + (0.5 / ratio if ratio > 0.0 else np.inf)
+    return float(nominal), float(by_friction), needed
 
 
 def _largest(machine: Machine) -> float:
@@ -99,10 +74,10 @@ def _largest(machine: Machine) -> float:
     return max(abs(_mu(machine, float(xi))) for xi in places)
 
 
-def _beside_pitch_point(machine: Machine, distance: float) -> float:
-    """Larger friction coefficient at this distance before and after the pitch point."""
+def _beside_pitch_point(machine: Machine) -> float:
+    """Larger friction coefficient just before and after the pitch point."""
     place = float(machine.parameters[kn.L_XP])
-    return max(abs(_mu(machine, place + side * distance)) for side in (-1.0, 1.0))
+    return max(abs(_mu(machine, place + side * _BESIDE)) for side in (-1.0, 1.0))
 
 
 def _mu(machine: Machine, xi: float) -> float:

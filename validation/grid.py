@@ -3,6 +3,7 @@
 Every point compares two periodic motions, each with the brake torque that balances it. Two rules judge it:
 
 - each quantity against its tolerance, ``validation.tolerances``, as in the cross-check of a single pair;
+  at fidelity "exact" that is what is left after the predicted effects of finite motions;
 - the law of torque: deflections are proportional to torque, and what they do to the geometry to its square.
   So the difference of the transmission error over its peak to peak falls fourfold with a quarter of the
   torque. A mistake in geometry, sign or load would not fall at all, and noise would not fall regularly.
@@ -14,7 +15,8 @@ import itertools
 import time
 import warnings
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -23,16 +25,14 @@ import numpy as np
 import xarray as xr
 
 import lumped
-import multibody
 from lumped import GearPair
-from lumped.errors import LawRangeWarning, SpurcheckError, refuse
-from multibody.machine import machine
-from multibody.reversal import sticking
-from validation.comparison import FIDELITIES, QUANTITIES, agreement, contact_shift, off_switch_samples
+from lumped.errors import LawRangeWarning, refuse
+from validation.agreement import FIDELITIES, QUANTITIES
+from validation.grid_checkpoint import Checkpoint
+from validation.grid_point import COMPARED, SEPARATED, STICKING, GridPoint, compare_point
 from validation.metrics import FloatArray
-from validation.sliding_effect import SlidingEffect, sliding_effect
-from validation.tolerances import stiffness_jumps, tolerance
-from validation.validity import LOAD_NOISE
+
+__all__ = ["AXES", "COMPARED", "SEPARATED", "STICKING", "STIFFNESS", "Grid", "crosscheck_grid"]
 
 Progress = Callable[[float], None]
 
@@ -53,13 +53,7 @@ _COEFFICIENT = 0.05
 #: Allowed departure from the law of torque: the next order in torque is a share of the difference itself,
 #: which is some per cent at the torques of the presets.
 SCALING_TOLERANCE = 0.08
-#: What can come of a point, beside the text of an error.
-COMPARED, SEPARATED, STICKING = "compared", "teeth separate", "sliding may stick"
-#: The predicted effect of the sliding velocity is a pulse beside the pitch point, far shorter than the output
-#: interval: it is found on this many times more samples.
-_FINER = 32
 AXES = ("preset", "law", "stiffness", "speed", "torque")
-_RTOL = 1e-9
 
 
 @dataclass(frozen=True)
@@ -121,24 +115,12 @@ class Grid:
         return base.with_(changes)
 
 
-@dataclass(frozen=True, eq=False)
-class _Point:
-    """Outcome of one point: (fidelity, quantity) arrays, NaN where not compared."""
-
-    status: str
-    load_min: float = np.nan
-    seconds: float = 0.0
-    judged: FloatArray = field(default_factory=lambda: _missing())
-    limit: FloatArray = field(default_factory=lambda: _missing())
-    largest: FloatArray = field(default_factory=lambda: _missing())
-
-
-def _missing() -> FloatArray:
-    return np.full((len(FIDELITIES), len(QUANTITIES)), np.nan)
-
-
 def crosscheck_grid(
-    grid: Grid | None = None, *, workers: int = 2, progress: Progress | None = None
+    grid: Grid | None = None,
+    *,
+    workers: int = 2,
+    checkpoint: Path | None = None,
+    progress: Progress | None = None,
 ) -> xr.Dataset:
     """Compare the models at every point of a grid.
 
@@ -146,6 +128,8 @@ def crosscheck_grid(
     ----------
     grid : points; default the full grid
     workers : processes
+    checkpoint : folder that keeps every finished block of points, so that an interrupted run goes on where it
+        was; made if missing
     progress : called with the finished fraction
 
     Returns
@@ -154,84 +138,56 @@ def crosscheck_grid(
     fidelity and quantity:
 
         difference, limit : judged metric and its tolerance, see ``validation.tolerances``
+        total : relative L2 of the whole difference, before anything predicted is taken off
         largest : largest difference over the peak to peak of the lumped motion
         status : "compared", "teeth separate" (the lumped model's loads turn negative, so it is not valid
-            there and nothing is compared), or why a model failed
+            there and nothing is compared), "sliding may stick" (see ``validation.finite_motion``; compared
+            but not judged at fidelity "exact"), or why a model failed
         load_min : smallest normal load of the lumped model over the static load
         ratio : DTE difference over that at the next lower torque, divided by the ratio of the torques: 1 by
             the law of torque; NaN at the lowest
         ratio_judged : whether that law must hold there: constant friction coefficient, smooth stiffness
-        seconds : wall time of the point
+        seconds : processor time of the point
 
-    Attribute ``seconds`` is the wall time of all, ``workers`` how many processes shared it.
+    Attribute ``seconds`` is the wall time of this call, ``workers`` how many processes shared it, ``resumed``
+    how many points came from the checkpoint.
+
+    Raises
+    ------
+    ParameterError : the checkpoint belongs to another grid or version
     """
     g = grid or Grid()
     started = time.perf_counter()
+    store = None if checkpoint is None else Checkpoint(checkpoint, g)
     blocks = list(itertools.product(g.presets, g.laws, g.stiffness))
-    jobs = (joblib.delayed(_block)(g, *block) for block in blocks)
-    found: dict[tuple[str, str, str], list[_Point]] = {}
-    for done, (block, points) in enumerate(
-        joblib.Parallel(n_jobs=workers, return_as="generator_unordered")(jobs), 1
-    ):
+    found = {} if store is None else store.load(blocks)
+    resumed = sum(map(len, found.values()))
+    jobs = (joblib.delayed(_block)(g, *block) for block in blocks if block not in found)
+    for block, points in joblib.Parallel(n_jobs=workers, return_as="generator_unordered")(jobs):
         found[block] = points
+        if store is not None:
+            store.save(block, points)
         if progress is not None:
-            progress(done / len(blocks))
+            progress(len(found) / len(blocks))
     result = _dataset(g, [point for block in blocks for point in found[block]])
-    result.attrs |= {"seconds": time.perf_counter() - started, "workers": workers}
+    seconds = time.perf_counter() - started
+    result.attrs |= {"seconds": seconds, "workers": workers, "resumed": resumed}
     return result
 
 
-def _block(grid: Grid, preset: str, law: str, stiffness: str) -> tuple[tuple[str, str, str], list[_Point]]:
+def _block(grid: Grid, preset: str, law: str, stiffness: str) -> tuple[tuple[str, str, str], list[GridPoint]]:
     """All speeds and torques of one pair, law and stiffness: one job."""
     with warnings.catch_warnings():
         # The law's range concerns both models alike; single runs warn.
         warnings.simplefilter("ignore", LawRangeWarning)
         points = [
-            _point(grid.pair(preset, law, stiffness, speed, torque), grid.samples)
+            compare_point(grid.pair(preset, law, stiffness, speed, torque), grid.samples)
             for speed, torque in itertools.product(grid.speeds, grid.torques)
         ]
     return (preset, law, stiffness), points
 
 
-def _point(pair: GearPair, samples: int) -> _Point:
-    started = time.perf_counter()
-    load_min = np.nan
-    try:
-        reference = lumped.steady_state(pair, samples_per_cycle=samples)
-        static = pair.operating.pinion_torque / lumped.geometry(pair).base_radius_pinion
-        load_min = float(reference["normal_load"].min()) / static
-        if load_min < -LOAD_NOISE:
-            return _Point(SEPARATED, load_min, time.perf_counter() - started)
-        shift, jumps = contact_shift(pair, reference), stiffness_jumps(pair)
-        sliding = _sliding_effect(pair, samples)
-        keep = off_switch_samples(pair, reference["time"].to_numpy())
-        judged, limit, largest, status = _missing(), _missing(), _missing(), COMPARED
-        for i, fidelity in enumerate(FIDELITIES):
-            run = multibody.steady_state(pair, fidelity=fidelity, samples_per_cycle=samples, rtol=_RTOL)
-            for j, quantity in enumerate(QUANTITIES):
-                allowed = tolerance(quantity, fidelity, shift, jumps)
-                change = sliding.over(quantity, keep.size) if fidelity == "exact" else 0.0
-                found = agreement(quantity, fidelity, run, reference, keep, allowed, change)
-                judged[i, j], limit[i, j] = found.judged, allowed.limit
-                largest[i, j] = found.maximum_over_span
-            if fidelity == "exact" and (run.attrs["friction_velocity"] > 0.0 or may_stick(pair)):
-                status = STICKING
-    except SpurcheckError as error:
-        return _Point(str(error), load_min, time.perf_counter() - started)
-    return _Point(status, load_min, time.perf_counter() - started, judged, limit, largest)
-
-
-def may_stick(pair: GearPair) -> bool:
-    """Whether friction may hold the teeth at zero sliding, which no first-order argument covers."""
-    return sticking(machine(pair, pair.operating.pinion_torque, pair.operating.pinion_torque)) >= 1.0
-
-
-def _sliding_effect(pair: GearPair, samples: int) -> SlidingEffect:
-    fine = sliding_effect(pair, lumped.steady_state(pair, samples_per_cycle=_FINER * samples))
-    return SlidingEffect({name: change[..., ::_FINER] for name, change in fine.changes.items()})
-
-
-def _dataset(g: Grid, points: list[_Point]) -> xr.Dataset:
+def _dataset(g: Grid, points: list[GridPoint]) -> xr.Dataset:
     def each(name: str) -> Any:
         return np.array([getattr(p, name) for p in points]).reshape(g.shape)
 
@@ -244,12 +200,13 @@ def _dataset(g: Grid, points: list[_Point]) -> xr.Dataset:
     variables: dict[str, tuple[tuple[str, ...], Any, str, str]] = {
         "difference": (inner, every("judged"), "1", "judged metric of the difference"),
         "limit": (inner, every("limit"), "1", "tolerance of the judged metric"),
+        "total": (inner, every("total"), "1", "relative L2 of the whole difference"),
         "largest": (inner, largest, "1", "largest difference over peak to peak"),
         "status": (AXES, each("status"), "1", "what came of the point"),
         "load_min": (AXES, each("load_min"), "1", "smallest normal load over static load, lumped"),
         "ratio": (AXES, _ratios(g, largest), "1", "fall of the DTE difference with torque, over expected"),
         "ratio_judged": (AXES, _ratio_judged(g), "1", "whether the law of torque must hold"),
-        "seconds": (AXES, each("seconds"), "s", "wall time of the point"),
+        "seconds": (AXES, each("seconds"), "s", "processor time of the point"),
     }
     return xr.Dataset(
         {

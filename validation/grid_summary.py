@@ -1,4 +1,4 @@
-"""What a regression grid says: verdict, worst point, what broke a rule, and why the worst point is worst."""
+"""What a regression grid says: verdict, worst points, what broke a rule, and why the worst point is worst."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 import multibody
-from validation.comparison import Verdict
+from validation.agreement import Verdict
 from validation.grid import AXES, COMPARED, SCALING_TOLERANCE, SEPARATED, STICKING, Grid
 from validation.tolerances import LOST
 
@@ -23,9 +23,14 @@ class GridSummary:
     verdict : "not confirmed": a quantity disagrees at fidelity "linear", the law of torque is broken where it
         must hold, or the exact transmission error differs by more than ``tolerances.LOST``; "bounded": an
         exact quantity exceeds its tolerance; else "confirmed"
-    points, compared, separated, sticking, failed : how many points there are, and what came of them
+    points : how many there are
+    compared : of them judged by every rule
+    separated, sticking, failed : how many are not, because the lumped loads turn negative, because friction
+        may hold the teeth (only fidelity "linear" is judged there), or because a model failed
     linear, exact : largest share of a tolerance that is used, over the compared points
     outside : compared points with an exact quantity outside its tolerance
+    whole, left : largest relative L2 of the exact transmission error over the compared points, whole and
+        after what is predicted is taken off
     scaling : largest departure from the law of torque where it is judged; NaN where it is nowhere
     scaled : points where it is judged
     worst : coordinates of the largest exact DTE difference over peak to peak, of all points where both models
@@ -42,6 +47,8 @@ class GridSummary:
     linear: float
     exact: float
     outside: int
+    whole: float
+    left: float
     scaling: float
     scaled: int
     worst: Mapping[str, str | float]
@@ -59,7 +66,10 @@ def summarise_grid(result: xr.Dataset) -> GridSummary:
     exact = usage.sel(fidelity="exact").max("quantity").where(compared)
     departure = abs(law_of_torque(result) - 1.0)
     dte = result["largest"].sel(fidelity="exact", quantity="dte").where(ran)
-    lost = result["difference"].sel(fidelity="exact", quantity="dte").where(compared) > LOST
+    whole, left = (
+        result[name].sel(fidelity="exact", quantity="dte").where(compared) for name in ("total", "difference")
+    )
+    lost = whole > LOST
     broken = bool((departure > SCALING_TOLERANCE).any()) or bool(lost.any()) or not linear <= 1.0
     outside = int((exact > 1.0).sum())
     worst: dict[str, str | float] = {}
@@ -75,6 +85,8 @@ def summarise_grid(result: xr.Dataset) -> GridSummary:
         linear=linear,
         exact=float(exact.max()),
         outside=outside,
+        whole=float(whole.max()),
+        left=float(left.max()),
         scaling=float(departure.max()),
         scaled=int(departure.notnull().sum()),
         worst=worst,
@@ -88,6 +100,43 @@ def law_of_torque(result: xr.Dataset) -> xr.DataArray:
     compared = result["status"] == COMPARED
     following = compared.shift(torque=-1, fill_value=False)
     return result["ratio"].where((result["ratio_judged"] != 0) & compared & following)
+
+
+@dataclass(frozen=True)
+class Outside:
+    """A compared point with a quantity outside its tolerance.
+
+    Attributes
+    ----------
+    point : its coordinates
+    quantity : the one that uses most of its tolerance
+    left, limit : what is left of the difference, and its tolerance
+    whole : the difference before the predicted part is taken off
+    """
+
+    point: Mapping[str, str | float]
+    quantity: str
+    left: float
+    limit: float
+    whole: float
+
+
+def outside_tolerance(result: xr.Dataset) -> tuple[Outside, ...]:
+    """Compared points with an exact quantity outside its tolerance, the farthest first."""
+    exact = result.sel(fidelity="exact")
+    usage = (exact["difference"] / exact["limit"]).where(exact["status"] == COMPARED)
+    found = []
+    for index in np.ndindex(exact["status"].shape):
+        used = usage[index].fillna(0.0)
+        if not float(used.max()) > 1.0:
+            continue
+        quantity = str(used["quantity"][int(used.to_numpy().argmax())].item())
+        left, limit, whole = (
+            float(exact[name][index].sel(quantity=quantity)) for name in ("difference", "limit", "total")
+        )
+        point = {axis: exact[axis][place].item() for axis, place in zip(AXES, index, strict=True)}
+        found.append(Outside(point, quantity, left, limit, whole))
+    return tuple(sorted(found, key=lambda o: -o.left / o.limit))
 
 
 def failures(result: xr.Dataset) -> list[tuple[dict[str, str | float], str]]:

@@ -7,9 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
 
-from lumped import GearPair, geometry, mesh_elements
-
-Metric = Literal["maximum_over_span", "relative_l2", "remainder_l2"]
+Metric = Literal["maximum_over_span", "remainder_l2"]
 Group = Literal["dte", "x", "y", "normal_load", "friction_force"]
 
 #: Quantity -> group that shares a tolerance.
@@ -24,11 +22,6 @@ GROUPS: Mapping[str, Group] = MappingProxyType(
         "friction_force": "friction_force",
     }
 )
-
-#: Contact shift over base pitch of the 28/28 pair at 56.5 N m, where the exact limits below are stated.
-REFERENCE_SHIFT = 2.1e-3
-#: A pair stiffness at the ends of contact above this share of its largest value is a jump.
-_JUMP = 1e-2
 
 
 @dataclass(frozen=True)
@@ -61,27 +54,17 @@ LINEAR: Mapping[Group, Tolerance] = MappingProxyType(
     }
 )
 
-#: Exact fidelity: relative L2 at ``REFERENCE_SHIFT`` with a pair stiffness that starts from zero.
-EXACT_SMOOTH: Mapping[Group, float] = MappingProxyType(
-    {"dte": 3e-3, "x": 6e-3, "y": 3e-2, "normal_load": 3e-2, "friction_force": 3e-2}
-)
-#: Exact fidelity: relative L2 at ``REFERENCE_SHIFT`` with a pair stiffness that jumps at entry.
-EXACT_JUMP: Mapping[Group, float] = MappingProxyType(
-    {"dte": 4.6e-2, "x": 8e-3, "y": 7e-2, "normal_load": 0.34, "friction_force": 0.34}
-)
 #: Beyond this relative L2 of the transmission error the lumped motion no longer describes the exact one.
 LOST = 0.5
 
 
-def stiffness_jumps(pair: GearPair) -> bool:
-    """Whether a tooth pair takes up its stiffness at once, so that a shifted entry moves a jump."""
-    g, stiffness = geometry(pair), mesh_elements(pair).stiffness
-    largest = float(stiffness(stiffness.breaks[:-1]).max())
-    return float(stiffness(g.L_XA)) > _JUMP * max(largest, stiffness.mean())
-
-
-def tolerance(quantity: str, fidelity: str, shift: float, jumps: bool) -> Tolerance:
+def tolerance(quantity: str, fidelity: str, shift: float) -> Tolerance:
     """Limit for one quantity.
+
+    At fidelity "exact" what finite motions change first of all is predicted (``validation.finite_motion``)
+    and taken off. What is left has the shift as a factor too, times displacements over lengths of the
+    machine, or is of second order. So it must be smaller than the shift itself, whatever the quantity, the
+    pair and its stiffness.
 
     Parameters
     ----------
@@ -89,19 +72,13 @@ def tolerance(quantity: str, fidelity: str, shift: float, jumps: bool) -> Tolera
     fidelity : "linear" or "exact"
     shift : mean distance by which wind-up and bearing deflection move the contact along the line of action,
         over the base pitch; the small parameter of every finite-motion effect
-    jumps : whether the pair stiffness jumps at entry, see ``stiffness_jumps``
     """
     group = GROUPS[quantity]
     if fidelity == "linear":
         return LINEAR[group]
-    base = (EXACT_JUMP if jumps else EXACT_SMOOTH)[group]
-    kind = "jumping" if jumps else "smooth"
-    reason = (
-        f"finite motions shift the contact by {shift:.2e} of a base pitch; to first order the difference "
-        f"grows with that: {base:g} expected at {REFERENCE_SHIFT:g} with {kind} stiffness"
+    return Tolerance(
+        "remainder_l2",
+        shift,
+        f"finite motions shift the contact by {shift:.2e} of a base pitch; what they change first "
+        "of all is predicted and taken off, and the rest must be smaller than the shift itself",
     )
-    limit = base * shift / REFERENCE_SHIFT
-    if group in ("y", "friction_force"):
-        reason += "; what is left after the predicted effect of the actual sliding velocity is judged"
-        return Tolerance("remainder_l2", limit, reason)
-    return Tolerance("relative_l2", limit, reason)

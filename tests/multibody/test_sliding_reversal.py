@@ -7,8 +7,6 @@ import pytest
 
 import lumped
 import multibody
-from multibody.machine import machine
-from multibody.reversal import sticking
 
 SLOW = lumped.load_gear_pair("nasa_28_28").with_(
     friction__law="coulomb",
@@ -31,18 +29,6 @@ def test_default_says_which_sign_function_it_takes_and_why():
         attributes = multibody.simulate(pair, 1).attrs
         assert attributes["friction_velocity"] == velocity
         assert word in attributes["friction_velocity_reason"]
-
-
-def test_a_steep_law_can_hold_the_teeth_like_one_that_jumps():
-    """Law IV, sharpened, tends to law I; law III changes slowly and holds nothing at this speed."""
-    coulomb = sticking(machine(SLOW, 79.1, 79.1))
-    assert coulomb > 1.0
-    for sharpness, share in ((50.0, 0.02), (5000.0, 2e-4)):
-        smooth = SLOW.with_(friction__law="smoothed_coulomb", friction__sharpness=sharpness)
-        # (2/pi)(arctan u + u/(1 + u^2)) = 1 - O(u^-3), with u = sharpness times some 0.1 mm.
-        assert sticking(machine(smooth, 79.1, 79.1)) == pytest.approx(coulomb, rel=share)
-    rolling = SLOW.with_(friction__law="xu_kahraman", operating__pinion_torque=20)
-    assert sticking(machine(rolling, 20.0, 20.0)) < 1.0
 
 
 def test_sign_function_gets_stuck_and_says_so(monkeypatch):

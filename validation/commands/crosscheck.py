@@ -12,7 +12,8 @@ from validation.commands import options as opt
 from validation.commands.terminal import FAILED, guarded, progress_bar, stderr, stdout, table
 
 if TYPE_CHECKING:
-    from validation.comparison import Agreement, CrossCheck
+    from validation.agreement import Agreement
+    from validation.comparison import CrossCheck
 
 _SUFFIXES = (".json", ".png", ".svg")
 
@@ -37,6 +38,13 @@ def crosscheck(
             "instead of one pair; takes minutes.",
         ),
     ] = False,
+    checkpoint: Annotated[
+        Path | None,
+        typer.Option(
+            help="With --grid: a folder that keeps every finished part, so that the same command goes on "
+            "after an interruption.",
+        ),
+    ] = None,
     cycles: Annotated[int, typer.Option(help="Mesh cycles to run.")] = 40,
     samples: Annotated[int, typer.Option(help="Output times per mesh cycle.")] = 256,
     strict: Annotated[bool, typer.Option("--strict", help="Also fail on 'bounded'.")] = False,
@@ -61,19 +69,24 @@ def crosscheck(
 
     spurcheck crosscheck my_pair.toml --speed 4000 --strict -o agreement.json
 
-    spurcheck crosscheck --grid -o grid.nc
+    spurcheck crosscheck --grid -o grid.nc --checkpoint grid
     """
     if grid:
         from validation.commands.crosscheck_grid import crosscheck_grid
 
         given = {"PAIR": pair != opt.DEFAULT_PAIR, "--speed": speed, "--torque": torque, "--law": law}
-        crosscheck_grid(output, [k for k, v in (given | {"--set": settings}).items() if v], strict, force)
+        crosscheck_grid(
+            output, checkpoint, [k for k, v in (given | {"--set": settings}).items() if v], strict, force
+        )
         return
-    from validation.comparison import MEANINGS
+    from lumped.errors import refuse
+    from validation.agreement import MEANINGS
     from validation.comparison import crosscheck as run
     from validation.output import check_file
     from validation.reporting.formatting import number
 
+    if checkpoint is not None:
+        raise refuse("--checkpoint", checkpoint, "only with --grid", "One pair takes seconds: leave it out.")
     target = None if output is None else check_file(output, _SUFFIXES, force=force)
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
     with progress_bar("cross-check") as tell:
@@ -90,7 +103,6 @@ def crosscheck(
     shown.columns[0].no_wrap = True
     words = {
         "maximum_over_span": "max/span",
-        "relative_l2": "rel. L2",
         "remainder_l2": "rel. L2 left",
     }
     for a in check.agreements:
@@ -102,10 +114,16 @@ def crosscheck(
     console.print(shown)
     console.print("max/span: largest difference over the peak to peak of the lumped history", soft_wrap=True)
     console.print(
-        "left: after the predicted effect of friction at the actual sliding velocity is added "
-        "to the lumped history",
+        "left: after what finite motions must change, predicted from the lumped model alone, is added to the "
+        "lumped history",
         soft_wrap=True,
     )
+    if check.finite_motion is not None and not check.finite_motion.settled:
+        console.print(
+            "Friction may hold the teeth at zero sliding: the effect of the actual sliding velocity is not "
+            "predicted.",
+            soft_wrap=True,
+        )
     console.print(f"[bold]{check.verdict}[/bold]: {MEANINGS[check.verdict]}", soft_wrap=True)
     if target is not None:
         _write(check, target)
@@ -116,7 +134,7 @@ def crosscheck(
 
 def _write(check: CrossCheck, target: Path) -> None:
     from lumped import geometry
-    from validation.comparison import off_switch_samples
+    from validation.agreement import off_switch_samples
     from validation.output import whole_file, write_text
 
     if target.suffix.lower() == ".json":

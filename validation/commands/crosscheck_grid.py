@@ -16,28 +16,31 @@ if TYPE_CHECKING:
     from validation.grid_summary import GridSummary
 
 
-def crosscheck_grid(output: Path | None, given: list[str], strict: bool, force: bool) -> None:
+def crosscheck_grid(
+    output: Path | None, checkpoint: Path | None, given: list[str], strict: bool, force: bool
+) -> None:
     """Run the grid, print its table and the cause of the worst point, write the dataset or the heat map.
 
     Parameters
     ----------
     output : file to write
+    checkpoint : folder that keeps finished parts
     given : options that name one pair and have no meaning here
     strict : also fail on "bounded"
     force : overwrite
     """
     from lumped.errors import refuse
-    from validation.comparison import MEANINGS
+    from validation.agreement import MEANINGS
     from validation.grid import Grid
     from validation.grid import crosscheck_grid as run
-    from validation.grid_summary import explain, failures, summarise_grid
+    from validation.grid_summary import explain, failures, outside_tolerance, summarise_grid
     from validation.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
 
     if given:
         raise refuse("--grid", " ".join(given), "no options of a single pair", "The grid covers all presets.")
     target = None if output is None else check_file(output, DATA_SUFFIXES + FIGURE_SUFFIXES, force=force)
     with progress_bar("grid") as tell:
-        result = run(progress=lambda f: tell(0.95 * f, ""))
+        result = run(checkpoint=checkpoint, progress=lambda f: tell(0.95 * f, ""))
         found = summarise_grid(result)
         causes = None
         if found.worst:
@@ -46,8 +49,11 @@ def crosscheck_grid(output: Path | None, given: list[str], strict: bool, force: 
         _write(result, target)
     console = stdout()
     console.print(_table(result))
-    for line in _sentences(found, float(result.attrs["seconds"]), int(result.attrs["workers"])):
+    for line in _sentences(found, result):
         console.print(line, soft_wrap=True)
+    for o in outside_tolerance(result):
+        text = f"{o.quantity} left {o.left:.2g} of {o.whole:.2g}, limit {o.limit:.2g}"
+        console.print(f"outside at {_named(o.point)}: {text}", soft_wrap=True, markup=False)
     for point, reason in failures(result):
         console.print(f"failed at {_named(point)}: {reason}", soft_wrap=True, markup=False)
     if causes is not None:
@@ -73,7 +79,9 @@ def _table(result: xr.Dataset) -> object:
         ">may stick",
         ">failed",
         ">linear, of limit",
-        ">exact DTE, max/span",
+        ">exact DTE, rel. L2",
+        ">of it left",
+        ">left, of limit",
         ">law of torque, off by",
     )
     for preset in result["preset"].to_numpy():
@@ -81,30 +89,40 @@ def _table(result: xr.Dataset) -> object:
             part = result.sel(preset=preset, stiffness=stiffness)
             status = part["status"]
             counts = [int((status == state).sum()) for state in (COMPARED, SEPARATED, STICKING)]
-            linear = (part["difference"] / part["limit"]).sel(fidelity="linear").max()
-            dte = part["largest"].sel(fidelity="exact", quantity="dte").where(status == COMPARED).max()
+            usage, judged = part["difference"] / part["limit"], status == COMPARED
+            exact = part.sel(fidelity="exact", quantity="dte").where(judged)
+            used = usage.sel(fidelity="exact").where(judged).max()
             departure = abs(law_of_torque(part) - 1.0).max()
             shown.add_row(
                 str(preset),
                 str(stiffness),
                 *map(str, counts),
                 str(status.size - sum(counts)),
-                number(float(linear), 2),
-                number(float(dte), 3),
+                number(float(usage.sel(fidelity="linear").max()), 2),
+                number(float(exact["total"].max()), 2),
+                number(float(exact["difference"].max()), 2),
+                number(float(used), 2),
                 number(float(departure), 2),
             )
     return shown
 
 
-def _sentences(found: GridSummary, seconds: float, workers: int) -> list[str]:
+def _sentences(found: GridSummary, result: xr.Dataset) -> list[str]:
     from validation.grid import SCALING_TOLERANCE
 
+    seconds, workers, resumed = (result.attrs[name] for name in ("seconds", "workers", "resumed"))
+    kept = f" ({resumed} points kept from before)" if resumed else ""
     return [
-        f"{found.points} points in {seconds:.0f} s on {workers} processes: {found.compared} compared; "
-        f"{found.separated} where the teeth separate and {found.sticking} where sliding may stick, beyond "
-        f"the lumped model and not judged at fidelity exact; {found.failed} failed.",
-        f"Linear: at most {found.linear:.2g} of the tolerance. Exact: {found.outside} points with a quantity "
-        f"outside its tolerance, at most {found.exact:.3g} times.",
+        f"{found.points} points in {seconds:.0f} s on {workers} processes{kept}, "
+        f"{float(result['seconds'].sum()):.0f} s of processor time: {found.compared} judged; not judged at "
+        f"fidelity exact, because beyond the lumped model: {found.separated} where its tooth loads turn "
+        f"negative and {found.sticking} where friction may hold the teeth; {found.failed} failed.",
+        f"Linear: at most {found.linear:.2g} of the tolerance, at the {found.compared + found.sticking} "
+        "points where the teeth stay together.",
+        f"Exact: the transmission error differs by up to {found.whole:.2g} (relative L2); after what finite "
+        f"motions must change, predicted from the lumped model alone, {found.left:.2g} is left. "
+        f"{found.outside} judged points have a quantity outside its tolerance; the largest use is "
+        f"{found.exact:.3g} times.",
         "Largest exact difference of the transmission error over its peak to peak: "
         f"{found.largest_judged:.3g} where judged, {found.largest:.3g} anywhere.",
         f"Law of torque at {found.scaled} points with constant friction coefficient and smooth stiffness: "
