@@ -202,7 +202,7 @@ def test_dimension_checks_say_which_equations_they_can_judge(chapter):
     assert check("8", "dimension check") == ("passes", "passes")
     film = chapter.equation("21a, d")
     assert film.value("power of ten of U").repaired == pytest.approx(-6.0, abs=1e-12)
-    assert film.value("power of ten of the film in um").repaired == pytest.approx(3.0, abs=1e-12)
+    assert film.value("power of ten of the film in µm").repaired == pytest.approx(3.0, abs=1e-12)
 
 
 def test_chapter_states_effects_on_multipliers_from_floquet(chapter, pair):
@@ -224,3 +224,21 @@ def test_printed_laws_leave_the_mean_where_they_should(chapter, pair):
         mean_coefficient(friction_path_function(own, law="xu_kahraman")), rel=1e-9
     )
     assert row.printed > row.repaired
+
+
+def test_the_printed_film_puts_law_v_into_boundary_lubrication(chapter):
+    # Lambda is 4.4 to 4.6 at the preset's point and 10^(5 - 6.9) times that as printed: below 1 everywhere, so
+    # law V is law IV instead of law III.
+    own = load_gear_pair("nasa_28_28")
+    row = chapter.equation("21a, d").value("law V: mean of |mu| over the path of contact")
+    for value, law in ((row.printed, "smoothed_coulomb"), (row.repaired, "xu_kahraman")):
+        assert value == pytest.approx(mean_coefficient(friction_path_function(own, law=law)), rel=1e-9)
+    y = chapter.equation("21a, d").value("law V: peak to peak of y_g")
+    assert y.printed > 2.0 * y.repaired  # y goes with the coefficient
+
+
+def test_every_row_says_what_it_does_to_motion_and_multipliers(chapter):
+    for erratum in chapter.errata:
+        names = " ".join(e.quantity.lower() for e in erratum.evidence)
+        assert "multiplier" in names, erratum.equation
+        assert "motion" in names or "peak to peak" in names, erratum.equation

@@ -174,6 +174,30 @@ def test_a_row_with_its_own_unit_is_judged_by_its_own_numbers(document):
     assert failing(2, "printed", 1e-5) == ["errata/evidence/residual/printed"]
 
 
+def test_a_row_that_measures_an_error_may_grow_tenfold(document):
+    document["chapters"]["paper"] = {
+        "title": "Paper",
+        "figure7": [
+            {"quantity": "800 rpm: largest load", "value": {"value": 2567.0, "unit": "N"}},
+            {
+                "quantity": "800 rpm: multibody twin, change over one more cycle",
+                "value": {"value": 4e-7, "unit": "% of the peak to peak"},
+            },
+        ],
+    }
+    document["chapters"]["code_verification"] = {
+        "title": "Code",
+        "closed_forms": [{"key": "meissner", "value": 2e-7, "limit": 1e-5}],
+    }
+    for factor, fails in ((0.1, False), (9.0, False), (11.0, True)):
+        new = copy.deepcopy(document)
+        new["chapters"]["paper"]["figure7"][1]["value"]["value"] *= factor
+        assert bool(compare(document, new).regressions) is fails, factor
+        new = copy.deepcopy(document)
+        new["chapters"]["code_verification"]["closed_forms"][0]["value"] *= factor
+        assert bool(compare(document, new).regressions) is fails, factor
+
+
 def test_remarks_are_no_results(document):
     new = copy.deepcopy(document)
     chapter = new["chapters"]["stability"]

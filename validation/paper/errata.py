@@ -51,7 +51,7 @@ def errata_chapter(pair: GearPair) -> ErrataChapter:
             "pinion speed": f"{pair.operating.pinion_speed * 30.0 / math.pi:.6g} rpm",
             "pinion torque": f"{pair.operating.pinion_torque:.6g} N m",
             "friction of the sign errata": f"Coulomb, mu = {SHOWN_COEFFICIENT}",
-            "composite roughness": f"{_roughness(pair):.4g} um",
+            "composite roughness": f"{_roughness(pair):.4g} µm",
         },
         errata=(
             first,

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.optimize import brentq
 
 from lumped import GearPair, geometry
 from lumped.film import film_parameter, regime
-from lumped.friction import ContactPath, contact_path
+from lumped.friction import ContactPath, contact_path, friction_path_function
 from validation.paper import dimensions
+from validation.paper.errata_laws import law_effects
 from validation.paper.printed_laws import (
     PRINTED_FILM_EXPONENT,
     PRINTED_SPEED_EXPONENT,
@@ -62,6 +65,13 @@ def _erratum_20(pair: GearPair) -> Erratum:
                 "0",
             ),
             Evidence("speed from which the gap is met, 22.6 N m", "rpm", onset, "never", "never"),
+            Evidence(
+                f"motion, mean speed and multipliers under law V, 22.6 N m, {1.2 * onset:.0f} rpm",
+                "",
+                "none: no friction coefficient",
+                "those of law III",
+                "exist",
+            ),
         ),
     )
 
@@ -90,17 +100,17 @@ def _erratum_21(pair: GearPair) -> Erratum:
     needed = rough * parameter(cases["both"]) / light.friction.thresholds[1]
     return Erratum(
         "21a, d",
-        f"10^{PRINTED_FILM_EXPONENT} (film in um), 10^{PRINTED_SPEED_EXPONENT} (U)",
+        f"10^{PRINTED_FILM_EXPONENT} (film in µm), 10^{PRINTED_SPEED_EXPONENT} (U)",
         "10^3, 10^-6",
         "wrong",
-        f"Units fix both powers of ten: a film in mm times 10^{dimensions.film_exponent():.0f} is in um, and "
+        f"Units fix both powers of ten: a film in mm times 10^{dimensions.film_exponent():.0f} is in µm, and "
         "eta v_e/(E_r rho_r) in mPa s, m/s, N/mm^2 and mm is a pure number with "
         f"10^{dimensions.speed_exponent():.0f}. At 22.6 N m and 2500 rpm the film at the pitch point is "
-        f"{right:.3g} um, with both printed powers {cases['both']:.2g} um; the regime switch of Fig. 2b at "
+        f"{right:.3g} µm, with both printed powers {cases['both']:.2g} µm; the regime switch of Fig. 2b at "
         f"2500 rpm would then ask for a composite roughness of {1e3 * needed:.2g} nm.",
         (
             Evidence(
-                "power of ten of the film in um",
+                "power of ten of the film in µm",
                 "1",
                 PRINTED_FILM_EXPONENT,
                 dimensions.film_exponent(),
@@ -109,14 +119,34 @@ def _erratum_21(pair: GearPair) -> Erratum:
             Evidence(
                 "power of ten of U", "1", PRINTED_SPEED_EXPONENT, dimensions.speed_exponent(), "-6, by units"
             ),
-            *(Evidence(f"film at the pitch point, {name}", "um", v, right) for name, v in cases.items()),
+            *(Evidence(f"film at the pitch point, {name}", "µm", v, right) for name, v in cases.items()),
             Evidence("Lambda at the pitch point, both", "1", parameter(cases["both"]), parameter(right)),
             Evidence(
                 "composite roughness that puts Lambda = 4 at 2500 rpm and 22.6 N m",
-                "um",
+                "µm",
                 needed,
                 rough * parameter(right) / light.friction.thresholds[1],
-                "0.05 to 1 um, as ground gears have",
+                "0.05 to 1 µm, as ground gears have",
+            ),
+            *(
+                replace(row, quantity=f"law V: {row.quantity}")
+                for row in _film_effects(pair, cases["both"] / right)
             ),
         ),
     )
+
+
+def _film_effects(pair: GearPair, factor: float) -> list[Evidence]:
+    """Effects of the printed film on law V at the pair's own operating point.
+
+    Both printed powers multiply Lambda by one factor everywhere: the law as printed is the right one with its
+    thresholds divided by that factor.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    factor : printed film over the right one
+    """
+    moved = [threshold / factor for threshold in pair.friction.thresholds]
+    printed = friction_path_function(pair.with_({"friction.thresholds": moved}), law="composite")
+    return law_effects(pair, printed, "composite")

@@ -37,7 +37,7 @@ def law_errata(pair: GearPair) -> tuple[Erratum, ...]:
     )
 
 
-def _effects(pair: GearPair, printed: PathFunction, law: str) -> list[Evidence]:
+def law_effects(pair: GearPair, printed: PathFunction, law: str) -> list[Evidence]:
     """Mean coefficient, motions, efficiency and multipliers with a law as printed and as repaired."""
     own = pair.with_({"friction.law": law})
     right, wrong = response(own), response(own, friction=printed)
@@ -50,7 +50,7 @@ def _effects(pair: GearPair, printed: PathFunction, law: str) -> list[Evidence]:
         )
     ]
     rows += [
-        Evidence(f"peak to peak of {name}", "um", wrong.peak_to_peak(name), right.peak_to_peak(name))
+        Evidence(f"peak to peak of {name}", "µm", wrong.peak_to_peak(name), right.peak_to_peak(name))
         for name in ("dte", "y_g")
     ]
     rows.append(Evidence("mesh efficiency", "1", wrong.efficiency, right.efficiency))
@@ -64,7 +64,7 @@ def _ratio(row: Evidence) -> float:
 
 def _erratum_14(pair: GearPair) -> Erratum:
     check = [float(benedict_kelley(100, 10, 2, v_e, 0.4)) for v_e in (2.0, 10.0)]
-    effects = _effects(pair, law_ii_printed(pair), "benedict_kelley")
+    effects = law_effects(pair, law_ii_printed(pair), "benedict_kelley")
     return Erratum(
         "13b, 14",
         "v_e = v_rp + v_rg typed as v_s; log argument with v_s v_s^2",
@@ -76,7 +76,7 @@ def _erratum_14(pair: GearPair) -> Erratum:
         "cannot tell v_s^3 from v_s v_e^2; the definition and the law's source decide.",
         (
             Evidence(
-                "law II at w 100 N/mm, eta 10 mPa s, v_s 2 m/s, v_e 10 m/s, S 0.4 um",
+                "law II at w 100 N/mm, eta 10 mPa s, v_s 2 m/s, v_e 10 m/s, S 0.4 µm",
                 "1",
                 check[0],
                 check[1],
@@ -117,6 +117,12 @@ def _erratum_16(pair: GearPair) -> Erratum:
                 "passes",
             ),
             Evidence("Hertz pressure at the pitch point, (16) and Hertz in SI", "GPa", at_pitch, si, "equal"),
+            Evidence(
+                "motion, mean speed and multipliers",
+                "",
+                "as repaired: the formula is right",
+                "those of law III",
+            ),
         ),
     )
 
@@ -125,8 +131,10 @@ def _erratum_18(pair: GearPair) -> Erratum:
     # SR = 0.1 and V_e = 10 m/s mean v_s = 1 m/s.
     check = [float(xu_kahraman(1.0, 0.1, v, 10.0, 0.3, 0.008)) for v in (1.0, 10.0)]
     in_mm = float(xu_kahraman(1.0, 0.1, 10.0, 10.0, 0.3, 8.0))
-    effects = _effects(pair, law_iii_printed(pair), "xu_kahraman")
-    wrong_unit = _effects(pair, law_iii_printed(pair, sliding_speed=False, millimetres=True), "xu_kahraman")
+    effects = law_effects(pair, law_iii_printed(pair), "xu_kahraman")
+    wrong_unit = law_effects(
+        pair, law_iii_printed(pair, sliding_speed=False, millimetres=True), "xu_kahraman"
+    )
     return Erratum(
         "18",
         "V_s^b6; unit of R not given",
@@ -139,7 +147,7 @@ def _erratum_18(pair: GearPair) -> Erratum:
         "magnitude does.",
         (
             Evidence(
-                "law III at p_h 1 GPa, SR 0.1, V_e 10 m/s, eta 10 mPa s, S 0.3 um, R 8 mm: V_s for V_e",
+                "law III at p_h 1 GPa, SR 0.1, V_e 10 m/s, eta 10 mPa s, S 0.3 µm, R 8 mm: V_s for V_e",
                 "1",
                 check[0],
                 check[1],
@@ -177,7 +185,7 @@ def _erratum_19(pair: GearPair) -> Erratum:
     own = pair.with_({"friction.law": "smoothed_coulomb"})
     mu = average_coefficient(own)
     printed, right = law_iv_printed(own), friction_path_function(own)
-    effects = _effects(own, printed, "smoothed_coulomb")
+    effects = law_effects(own, printed, "smoothed_coulomb")
     residual = [derivative_residual(own, f, mu) for f in (printed, right)]
     return Erratum(
         "19",

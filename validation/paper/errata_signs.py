@@ -84,7 +84,7 @@ def _balances(printed: Response, repaired: Response, drift: float, steady: float
     return [
         Evidence(
             "power created by the tooth forces",
-            "% of T_p Omega_p",
+            "% of the driving power",
             100 * printed.created_power,
             100 * repaired.created_power,
             "0: forces at one contact only pass on or dissipate power",
@@ -129,14 +129,14 @@ def _balances(printed: Response, repaired: Response, drift: float, steady: float
 
 def _effects(printed: Response, repaired: Response) -> list[Evidence]:
     rows = [
-        Evidence(f"peak to peak of {name}", "um", printed.peak_to_peak(name), repaired.peak_to_peak(name))
+        Evidence(f"peak to peak of {name}", "µm", printed.peak_to_peak(name), repaired.peak_to_peak(name))
         for name in ("dte", "x_g", "y_p", "y_g")
     ]
     rows += [
-        Evidence(f"mean of {name}", "um", printed.mean(name), repaired.mean(name)) for name in ("dte", "x_g")
+        Evidence(f"mean of {name}", "µm", printed.mean(name), repaired.mean(name)) for name in ("dte", "x_g")
     ]
     rows.append(
-        Evidence("peak to peak of y_p - y_g", "um", _relative_motion(printed), _relative_motion(repaired), "")
+        Evidence("peak to peak of y_p - y_g", "µm", _relative_motion(printed), _relative_motion(repaired), "")
     )
     rows.append(
         Evidence("largest modulus of the Floquet multipliers", "1", printed.radius, repaired.radius, "")
@@ -178,7 +178,7 @@ def _bearing_symbol(pair: GearPair, repaired: Response) -> Evidence:
     unlike = response(softer)
     return Evidence(
         "peak to peak of x_g where K_gBx = K_gBy/2 (printed: K_gBy taken)",
-        "um",
+        "µm",
         repaired.peak_to_peak("x_g"),
         unlike.peak_to_peak("x_g"),
     )
@@ -206,7 +206,7 @@ def _text(number: int, printed: Response, repaired: Response, drift: float, firs
         return (
             "With the printed sign both gears are pushed the same way along the LOA: the sum of the tooth "
             f"forces is up to {printed.third_law_x:.4g} N instead of 0, x_g has mean "
-            f"{printed.mean('x_g'):.3g} um instead of {repaired.mean('x_g'):.3g} um, the DTE changes by "
+            f"{printed.mean('x_g'):.3g} µm instead of {repaired.mean('x_g'):.3g} µm, the DTE changes by "
             f"{100 * dte:.3g} % of its peak to peak and the largest multiplier from {repaired.radius:.4f} to "
             f"{printed.radius:.4f}. K_gBy in the same equation matters only where the two bearing "
             "stiffnesses differ."
@@ -214,6 +214,6 @@ def _text(number: int, printed: Response, repaired: Response, drift: float, firs
     return (
         "With the printed sign friction pushes both gears the same way: the sum of the tooth forces off the "
         f"LOA is up to {printed.third_law_y:.4g} N instead of 0, and the relative motion y_p - y_g vanishes "
-        f"to {_relative_motion(printed):.2g} um where it should be {_relative_motion(repaired):.3g} um. DTE "
+        f"to {_relative_motion(printed):.2g} µm where it should be {_relative_motion(repaired):.3g} µm. DTE "
         "and multipliers do not change, because y does not feed back."
     )

@@ -39,6 +39,13 @@ def erratum_8() -> Erratum:
         (
             Evidence("rank of the inertia matrix of equations 1, 2, 6 to 9", "1", ranks[0], ranks[1], "6"),
             Evidence("dimension check", "", equation_8(), equation_8(), "passes"),
+            Evidence(
+                "power balance, third law, motion, mean speed and multipliers",
+                "",
+                "none: y_p'' is not determined",
+                "those of the model",
+                "exist",
+            ),
         ),
     )
 
@@ -94,6 +101,12 @@ def erratum_5b(pair: GearPair) -> Erratum:
                 residual(high, True),
                 residual(high, False),
                 "0",
+            ),
+            Evidence(
+                f"power balance, motion and multipliers at contact ratio {low.contact_ratio:.3f}",
+                "",
+                "as repaired: the same arms" if low.pairs == 2 else "wrong lever of friction",
+                "those of the model",
             ),
         ),
     )

@@ -69,8 +69,8 @@ def conditions(pair: GearPair) -> dict[str, str]:
         "mesh damping ratio": f"{pair.mesh.damping_ratio:.4g}",
         "tooth-pair stiffness": pair.mesh.stiffness.model,
         "viscosity": f"{1e3 * path.viscosity:.4g} mPa s",
-        "average roughness S": f"{1e6 * path.roughness:.4g} um",
-        "composite roughness": f"{1e6 * path.composite_roughness:.4g} um",
+        "average roughness S": f"{1e6 * path.roughness:.4g} µm",
+        "composite roughness": f"{1e6 * path.composite_roughness:.4g} µm",
         "upper bound of law II": f"{pair.friction.maximum:.4g}",
         "sharpness of law IV": f"{1e-3 * pair.friction.sharpness:.4g} 1/mm",
     }
