@@ -8,7 +8,6 @@ from functools import cache
 import numpy as np
 import xarray as xr
 
-import floquet
 import lumped
 from computed import GENERATED
 from computed.agreement import torque_series
@@ -21,8 +20,10 @@ from validation.interactive.results import compute
 from validation.output import write_dataset
 from validation.plots.multiplier_paths import multiplier_paths_figure
 from validation.plots.path_of_contact import friction_laws_figure, path_figure
-from validation.plots.stability import stability_figure
 from validation.plots.style import BLUE, DASHES, GREY, LINES, RED, legend, new_figure
+from validation.plots.tongue_chart import tongue_chart_figure
+from validation.stability_charts import dense_chart
+from validation.stability_margins import stability_margins
 
 
 def _pair() -> GearPair:
@@ -55,7 +56,8 @@ def tongues() -> str:
     pair = _pair().with_(friction__law="coulomb", friction__coefficient=0.05)
     axes = {"speed_rpm": np.linspace(2000.0, 20000.0, 361), "damping_ratio": np.linspace(0.002, 0.06, 59)}
     point = (4875.0, pair.mesh.damping_ratio)
-    return svg(stability_figure(floquet.stability_chart(pair, axes), "speed_rpm", "damping_ratio", point))
+    traced = stability_margins(pair, (2000.0, 20000.0)).tongues
+    return svg(tongue_chart_figure(dense_chart(pair, axes), "damping_ratio", traced, point=point))
 
 
 def torque_law() -> str:

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from floquet.gear_tongues import LabelledRegion
-from validation.plots.labels import WHITE_BOX, label_above, pretty
+from validation.plots.labels import WHITE_BOX, label_above
 from validation.plots.stability import UNSTABLE, stability_figure
 from validation.plots.style import BLACK, BLUE, GREY, RED, new_figure
 from validation.stability_margins import TongueMargin
@@ -106,6 +106,3 @@ def critical_damping_figure(tips: xr.Dataset, damping_ratio: float | None = None
     ax.set_xlabel("pinion speed [rpm]")
     ax.set_ylabel("critical mesh damping ratio [%]")
     return figure
-
-
-__all__ = ["critical_damping_figure", "mark_operating_range", "pretty", "tongue_chart_figure"]
