@@ -8,6 +8,7 @@ includes the same parts, `FILES`.
 
 from __future__ import annotations
 
+import math
 import re
 import sys
 import tempfile
@@ -82,7 +83,12 @@ def coulomb_tips() -> str:
         (zone, names[case], number(damping, 4), number(ratio, 4))
         for zone, case, damping, ratio in zone_tips()
     ]
-    return _table(("zone", "friction", "closed by damping ratio", "at mesh over natural frequency"), rows)
+    pair = CoulombGearPair(friction=MU)
+    angle = math.degrees(pair.pressure_angle)
+    head = f"μ = {MU:g}, contact ratio {pair.contact_ratio:g}, pressure angle {angle:g}°:\n\n"
+    return head + _table(
+        ("zone", "friction", "closed by damping ratio", "at mesh over natural frequency"), rows
+    )
 
 
 def coulomb_zones() -> str:
