@@ -95,6 +95,7 @@ def store(count):
         path = Path(folder, "journal.bin")
 
         def write(block):
+            path.unlink(missing_ok=True)
             with Journal(path, key) as journal:
                 for start in range(0, count, block):
                     numbers = range(start, min(start + block, count))
@@ -205,12 +206,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="a tenth of the cases")
     share = 10 if parser.parse_args().quick else 1
-    case = overhead(5000 // share)
+    case = overhead(3000 // share)
     record = store(100_000 // share)
     task = cluster(2000 // share)
     project(case, record, task)
     memory(10_000 // share)
-    scaling(400 // share)
+    scaling(240 // share)
 
 
 if __name__ == "__main__":

@@ -103,7 +103,8 @@ def spaced(axis: Axis, kind: str, share: np.ndarray[Any, np.dtype[np.float64]]) 
                 raise refuse("count", axis.count, f"<= {high - low + 1} integers", "Lower the count.")
         return tuple(int(v) for v in whole)
     if axis.spacing == "log":
-        values = np.exp(np.log(axis.low) + share * np.log(axis.high / axis.low))
+        low, high = np.log(axis.low), np.log(axis.high)
+        values = np.exp(low + share * (high - low))  # the ratio itself may overflow
     else:
         values = axis.low + share * (axis.high - axis.low)
     return tuple(float(v) for v in np.clip(values, axis.low, axis.high))

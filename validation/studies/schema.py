@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
@@ -69,6 +70,8 @@ class Axis(Section):
             raise stop("low", self.low, "values, or low and high", "Give the range or the list of the axis.")
         if not self.low < self.high:
             raise stop("high", f"{self.high:g}", f"> low = {self.low:g}", "Swap or correct the two.")
+        if not math.isfinite(self.high - self.low):
+            raise stop("high", f"{self.high:g}", "a finite distance from low", "Narrow the range.")
         if self.spacing == "log" and self.low <= 0.0:
             raise stop("low", f"{self.low:g}", "> 0 with spacing 'log'", "Use spacing = 'linear'.")
         return self

@@ -112,6 +112,12 @@ REFUSED = {
     "both ways": (["axes", 0, "low"], 1.0, "axes.0.values", "Remove one"),
     "half a range": (["axes", 0], {"field": "speed_rpm", "low": 1}, "axes.0.low", "range or the list"),
     "reversed": (["axes", 0], {"field": "speed_rpm", "low": 2, "high": 1, "count": 3}, "axes.0.high", "Swap"),
+    "range beyond floats": (
+        ["axes", 0],
+        {"field": "speed_rpm", "low": -1e308, "high": 1e308, "count": 3},
+        "axes.0.high",
+        "Narrow",
+    ),
     "log of 0": (
         ["axes", 0],
         {"field": "speed_rpm", "low": 0, "high": 1, "count": 3, "spacing": "log"},
