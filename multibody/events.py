@@ -29,8 +29,6 @@ _STEP, _NEGLIGIBLE = 0.005, 1e-6
 #: Most switches per mesh cycle at which to stop, the largest; to stop at each of a table's hundreds would
 #: cost more than it saves.
 _MOST_SWITCHES = 12
-#: Share of the mesh cycle over which a Taylor polynomial of second order foretells a vibration.
-_NEAR = 0.05
 #: A prediction is repeated until it moves by less than this share of the mesh cycle, or so often.
 _SHARP, _MOST_ITERATIONS = 1e-13, 10
 
@@ -111,6 +109,7 @@ def time_to_event(
     p: FloatArray,
     flags: int,
     events: FloatArray,
+    near: float,
 ) -> float:
     """Time to the next event [s], infinite when there is none.
 
@@ -120,6 +119,8 @@ def time_to_event(
     q, v, a : (6,) coordinates, velocities, accelerations
     p, flags : as ``kernels.contact_forces``
     events : (n, 2) from ``event_table``
+    near : time over which a Taylor polynomial foretells the vibration [s]; further ahead only the nominal
+        speed is asked
     """
     pitch, speed = float(p[kn.PITCH]), float(p[kn.OMEGA_P] * p[kn.RADIUS_P])
     way, which = math.inf, 0
@@ -128,7 +129,7 @@ def time_to_event(
         if d < way:
             way, which = d, i
     wait = way / speed
-    if not wait < _NEAR * pitch / speed:
+    if not wait < near:
         return wait
     for _ in range(_MOST_ITERATIONS):
         later, moving = q + wait * (v + 0.5 * wait * a), v + wait * a

@@ -32,6 +32,8 @@ _FIRST_STEP = 1e-4
 #: Most predictions in one interval. A mesh cycle takes some ten; friction that holds the teeth at zero
 #: sliding would take them without end.
 _MOST_EVENTS = 64
+#: A Taylor polynomial of second order foretells vibration over this share of a swing of the fastest mode.
+_NEAR = 0.2
 #: exudyn takes an interval as finished so long before its end [s].
 _EXUDYN_END = 1e-10
 
@@ -149,33 +151,39 @@ def _interval(
     """Integrate over one interval, from event to event; returns it and a step size to go on with."""
     m, parts, t = model.machine, [], start
     a = accelerations(model, np.array([t]), q[None], v[None])[0]
-    # An event so close is reached by a Taylor step of second order. With some dozen radians of vibration per
-    # mesh cycle its velocity errs by less than rtol.
-    close = max(1e-2 * np.sqrt(s.timeIntegration.relativeTolerance) * m.period, _EXUDYN_END)
+    # Times in swings of the fastest mode. A Taylor step of second order errs by the square of the radians it
+    # spans, so one to an event so close errs by less than a tenth of rtol.
+    swing = m.period / max(m.vibrations_per_cycle, 1.0)
+    close = max(0.05 * np.sqrt(s.timeIntegration.relativeTolerance) * swing, _EXUDYN_END)
     if not np.isfinite(a).all():
         model.budget.reason = "not finite"
         raise _failure(model, start, stop)
     for _ in range(_MOST_EVENTS if locate else 0):
-        wait = time_to_event(t, q, v, a, model.parameters, model.flags, m.events)
+        wait = time_to_event(t, q, v, a, model.parameters, model.flags, m.events, _NEAR * swing)
         if wait < close:
             beyond = t + wait + 1e-12 * m.period + 1e-15 * t
             if not beyond < stop:
                 break
             part = _across(model, t, q, v, a, t + wait, beyond)
         else:
-            # Vibration spoils the prediction by a term in the square of the time ahead.
-            until = t + wait - min(0.5 * wait, 0.5 * wait**2 / m.period)
+            # Stop short of it by what vibration may shift it: the third order of the Taylor polynomial.
+            ahead = wait / swing
+            short = max(0.5 * ahead**3, 0.5 * close / swing) if ahead < _NEAR else 0.15
+            until = t + wait - swing * min(0.5 * ahead, short)
             if not until < stop:  # or no event at all
                 break
             part = _run(model, s, q, v, t, until, step)
-            if part.times.size > 3:
-                step = float(np.median(np.diff(part.times)))
+            step = _middle_step(part, step)
         parts.append(part)
         t, q, v, a = float(part.times[-1]), part.q[-1], part.v[-1], part.a[-1]
     part = _run(model, s, q, v, t, stop, step)
-    if part.times.size > 3:
-        step = float(np.median(np.diff(part.times)))
-    return Segment.joined([*parts, part]), step
+    return Segment.joined([*parts, part]), _middle_step(part, step)
+
+
+def _middle_step(part: Segment, default: float) -> float:
+    """Step size from the middle of a run, where neither its start nor its end cut it short."""
+    middle = part.times.size // 2
+    return float(part.times[middle] - part.times[middle - 1]) if part.times.size > 3 else default
 
 
 def _across(

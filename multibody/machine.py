@@ -72,7 +72,7 @@ class Machine:
         rows[3, :, 2] = -self.torque_pinion, -self.torque_gear
         return rows.reshape(4, 6)
 
-    @property
+    @cached_property
     def vibrations_per_cycle(self) -> float:
         """Swings of the fastest natural mode in one mesh cycle, with every pair at its largest stiffness.
 

@@ -42,7 +42,7 @@ def test_the_force_jumps_where_it_was_foreseen_and_not_before(pair, effects, rng
         q, v, a = rng.normal(size=6) * 1e-5, rng.normal(size=6) * 0.02, rng.normal(size=6) * 200.0
         q[[2, 5]] = -2e-5 / np.array([p[kn.RADIUS_P], p[kn.RADIUS_G]])  # pressed by some 40 um
         v[[2, 5]], a[[2, 5]] = v[[2, 5]] * 10, a[[2, 5]] * 10
-        wait = time_to_event(t, q, v, a, p, flags, numbers.events)
+        wait = time_to_event(t, q, v, a, p, flags, numbers.events, 0.05 * period)
         assert 0.0 <= wait < period
         if wait > 0.04 * period:
             continue  # foreseen roughly; the integrator asks again when it is nearer

@@ -68,7 +68,10 @@ def test_loads_never_pull_and_back_sides_strike():
     # Never both sides, and only with the pinion a whole backlash behind.
     assert float((front * back).max()) == 0.0
     assert float(run["overlap"].where(back > 0).max()) < -0.97 * backlash  # bearings give way by some um
-    assert float(run["overlap"][-256:].mean()) > 0.0  # driving again at the end
+    # Driving again: the teeth still rattle, chaotically, but over 20 cycles their impacts carry the torque.
+    static = 50 / lumped.geometry(pair).base_radius_pinion
+    assert float(front[-20 * 256 :].mean()) == pytest.approx(static, rel=0.05)
+    assert float(back[-20 * 256 :].max()) == 0.0
 
 
 def test_impacts_are_resolved():
