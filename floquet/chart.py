@@ -11,6 +11,7 @@ import numpy.typing as npt
 from joblib import Parallel, delayed
 
 from floquet.monodromy import monodromy
+from floquet.multipliers import verdicts
 from floquet.propagators import Propagator
 from floquet.spectrum import Spectrum
 from floquet.system import FloatArray, PeriodicSystem
@@ -123,7 +124,7 @@ def chart_dataset(
 
     shape = tuple(values.size for values in grid.values())
     dims = tuple(grid)
-    verdict = (radius + radius_error < 1.0).astype(np.int8) - (radius - radius_error > 1.0)
+    verdict = verdicts(radius, radius_error)
     dataset = xr.Dataset(
         {
             "spectral_radius": (

@@ -187,17 +187,24 @@ def fast_multipliers(
         system, periods, damping_factors, gain_factors,
         tolerance=tolerance, threads=threads, max_steps=max_steps,
     )  # fmt: skip
-    shape = flow.matrices.shape[:2]
-    values, radii = np.empty(shape, dtype=complex), np.empty(shape)
-    safe = np.empty(shape[0], dtype=bool)
+    parts: list[FastMultipliers] = in_threads(
+        lambda part: multipliers_of(flow.matrices[part], flow.errors[part]), flow.errors.size, threads
+    )
+    return FastMultipliers(
+        np.concatenate([part.multipliers for part in parts]),
+        np.concatenate([part.errors for part in parts]),
+        flow.errors,
+    )
 
-    def run(part: slice) -> None:
-        spectra(flow.matrices[part], flow.errors[part], values[part], radii[part], safe[part])
 
-    in_threads(run, shape[0], threads)
+def multipliers_of(matrices: FloatArray, errors: FloatArray) -> FastMultipliers:
+    """Eigenvalues of monodromy matrices (N, n, n), each with a bound, when these are wrong by errors (N,)."""
+    values, radii = np.empty(matrices.shape[:2], dtype=complex), np.empty(matrices.shape[:2])
+    safe = np.empty(errors.size, dtype=bool)
+    spectra(matrices, errors, values, radii, safe)
     for point in np.flatnonzero(~safe):
-        values[point], radii[point] = multipliers_with_bounds(flow.matrices[point], float(flow.errors[point]))
-    return FastMultipliers(values, radii, flow.errors)
+        values[point], radii[point] = multipliers_with_bounds(matrices[point], float(errors[point]))
+    return FastMultipliers(values, radii, errors)
 
 
 def _within(coarsening: Coarsening | None, T: FloatArray, zeta: FloatArray, factors: FloatArray) -> None:

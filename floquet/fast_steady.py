@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from floquet.fast import Points, in_threads
+from floquet.fast import Points, in_threads, multipliers_of
 from floquet.kernels.steady import Balance as KernelBalance
 from floquet.kernels.steady import periodic_points
+from floquet.multipliers import radii_with_bounds, verdicts
 from floquet.rank_one import RankOneSystem
 from floquet.system import FloatArray
 from lumped.errors import NumericalError, whole_number
@@ -27,6 +28,7 @@ class FastPeriodicMotion:
     amplitude_errors : (N,) bound on its error
     energy_norm : (N,) norm of ``initial`` in energy coordinates, to judge ``errors`` by
     deflection : (N, S) v . z at the phases j/S of the period
+    spectral_radius, radius_errors : (N,) largest |multiplier|, with a bound on its error
     """
 
     initial: FloatArray
@@ -35,6 +37,13 @@ class FastPeriodicMotion:
     amplitude_errors: FloatArray
     energy_norm: FloatArray
     deflection: FloatArray
+    spectral_radius: FloatArray
+    radius_errors: FloatArray
+
+    @property
+    def verdict(self) -> npt.NDArray[np.int8]:
+        """(N,) 1 stable, 0 undecided, -1 unstable: the motion exists, but nothing stays near it."""
+        return verdicts(self.spectral_radius, self.radius_errors)
 
 
 def fast_periodic_motions(
@@ -48,9 +57,10 @@ def fast_periodic_motions(
     threads: int | None = None,
     max_steps: int = 20_000,
 ) -> FastPeriodicMotion:
-    """Periodic motions, stable or not, for many periods T and factors on wd and on the varied gains.
+    """Periodic motions for many periods T and factors on wd and on the varied gains.
 
-    Nothing settles: x(0) solves (I - M) x(0) = x_rest(T), x_rest being the motion from rest.
+    Stable or not: ``verdict`` of the result says which. Nothing settles: x(0) solves (I - M) x(0) =
+    x_rest(T), x_rest being the motion from rest.
 
     Parameters
     ----------
@@ -68,13 +78,20 @@ def fast_periodic_motions(
     points = Points.of(system, periods, damping_factors, gain_factors, tolerance, threads, max_steps)
     n, N = 2 * system.v.size, points.periods.size
     start, bound, amplitude, deflection = np.zeros((N, n)), np.zeros((N, 2)), np.zeros(N), np.zeros((N, S))
+    radius, radius_error = np.empty(N), np.empty(N)
     balance = _kernel_balance(system)
 
     def run(part: slice) -> int:
-        failed = periodic_points(
-            *points.row_arguments(part), balance, start[part], bound[part], amplitude[part], deflection[part]
-        )
-        return -1 if failed < 0 else part.start + failed
+        M, delta = np.full((part.stop - part.start, n, n), np.nan), np.zeros(part.stop - part.start)
+        failed = int(periodic_points(
+            *points.row_arguments(part), balance,
+            start[part], bound[part], amplitude[part], deflection[part], M, delta,
+        ))  # fmt: skip
+        if failed >= 0:
+            return int(part.start) + failed
+        found = multipliers_of(M, delta)
+        radius[part], radius_error[part] = radii_with_bounds(found.multipliers, found.errors)
+        return -1
 
     points.refuse_failures(in_threads(run, N, threads))
     singular = np.flatnonzero(~np.isfinite(bound[:, 0]))
@@ -85,7 +102,9 @@ def fast_periodic_motions(
         )
     initial = start @ system.modal().state_matrix().T
     size = np.linalg.norm(start, axis=1)
-    return FastPeriodicMotion(initial, bound[:, 0], amplitude, bound[:, 1], size, deflection)
+    return FastPeriodicMotion(
+        initial, bound[:, 0], amplitude, bound[:, 1], size, deflection, radius, radius_error
+    )
 
 
 def _kernel_balance(system: RankOneSystem) -> KernelBalance:

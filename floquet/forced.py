@@ -8,8 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from floquet.multipliers import multipliers_with_bounds
 from floquet.propagation import Propagation, error_of_product, propagate
 from floquet.propagators import Propagator, propagator
+from floquet.spectrum import Spectrum
 from floquet.system import FloatArray, PeriodicSystem
 from lumped.errors import NumericalError, refuse
 
@@ -28,6 +30,8 @@ class PeriodicMotion:
     closure : |x(T) - x(0)| in the same coordinates, x(T) by marching through the period
     condition : condition number of I - M in the same coordinates; large near a multiplier +1
     substeps : steps of the propagation
+    spectrum : multipliers of the system: where its ``verdict`` is "unstable" the motion exists, but nothing
+        that starts beside it stays there
     """
 
     times: FloatArray
@@ -38,6 +42,7 @@ class PeriodicMotion:
     closure: float
     condition: float
     substeps: int
+    spectrum: Spectrum
 
 
 def periodic_motion(
@@ -48,7 +53,7 @@ def periodic_motion(
     method: str | Propagator = "gauss",
     max_substeps: int = 200_000,
 ) -> PeriodicMotion:
-    """Periodic motion under the forcing of the system, whether it is stable or not.
+    """Periodic motion under the forcing of the system, whether it is stable or not: see its ``spectrum``.
 
     The flow of (x, 1) over one period is [[M, g], [0, 1]]; x(0) solves (I - M) x(0) = g.
 
@@ -99,6 +104,7 @@ def periodic_motion(
         closure=closure,
         condition=float(singular[0] / singular[-1]),
         substeps=flow.steps.shape[0],
+        spectrum=Spectrum(*multipliers_with_bounds(M, delta), system.period),
     )
 
 

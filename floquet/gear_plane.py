@@ -15,6 +15,7 @@ from floquet.gear_block import gear_block
 from floquet.gear_friction import FrictionFamily, factors_at, friction_families
 from floquet.gear_multipliers import oloa_exponents
 from floquet.interpolation import interpolated_multipliers
+from floquet.multipliers import radii_with_bounds
 from floquet.rank_one import RankOneSystem
 from floquet.system import ComplexArray, FloatArray
 from lumped.parameters import GearPair
@@ -101,12 +102,9 @@ class Store:
         values = np.concatenate([found.multipliers, oloa], axis=1)
         # 4e-16: rounding of the exponent.
         errors = np.concatenate([found.errors, 4e-16 * (1.0 + np.abs(exponents)) * np.abs(oloa)], axis=1)
-        modulus = np.abs(values)
-        self.radius[points] = radius = modulus.max(axis=1)
-        high, low = (modulus + errors).max(axis=1), (modulus - errors).max(axis=1)
-        self.radius_error[points] = np.maximum(high - radius, radius - low)
+        self.radius[points], self.radius_error[points] = radii_with_bounds(values, errors)
         if self.multipliers is not None and self.errors is not None:
-            ranking = np.argsort(-modulus, axis=1, kind="stable")
+            ranking = np.argsort(-np.abs(values), axis=1, kind="stable")
             self.multipliers[points] = np.take_along_axis(values, ranking, 1)
             self.errors[points] = np.take_along_axis(errors, ranking, 1)
 

@@ -15,9 +15,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
-from floquet.fast import FastMonodromy, FastMultipliers, in_threads
-from floquet.kernels.eigen import spectra
-from floquet.multipliers import multipliers_with_bounds
+from floquet.fast import FastMonodromy, FastMultipliers, in_threads, multipliers_of
 from floquet.system import FloatArray
 from lumped.errors import NumericalError
 
@@ -179,12 +177,7 @@ def _evaluate(
         for chunk in range(chunks.start, chunks.stop):
             part = rows[chunk * height : (chunk + 1) * height]
             M = series(periods[part], parameters).reshape(part.size * b, n, n)
-            lam, rad = np.empty((part.size * b, n), dtype=complex), np.empty((part.size * b, n))
-            safe = np.empty(part.size * b, dtype=bool)
-            spectra(M, delta[: part.size * b], lam, rad, safe)
-            for point in np.flatnonzero(~safe):
-                lam[point], rad[point] = multipliers_with_bounds(M[point], series.error)
-            receive(part, FastMultipliers(lam, rad, delta[: part.size * b]))
+            receive(part, multipliers_of(M, delta[: part.size * b]))
 
     in_threads(run, -(-rows.size // height), threads)
 

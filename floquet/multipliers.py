@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import numpy.typing as npt
 from scipy.linalg import schur
 from scipy.linalg.lapack import ztrsen
 
@@ -109,3 +110,16 @@ def verdict(radius: float, error: float) -> str:
     if radius + error < 1.0:
         return "stable"
     return "unstable" if radius - error > 1.0 else "undecided"
+
+
+def radii_with_bounds(multipliers: ComplexArray, errors: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Largest |multiplier| of each row, (N, n) -> (N,), and a bound on its error."""
+    modulus = np.abs(multipliers)
+    radius = modulus.max(axis=1)
+    high, low = (modulus + errors).max(axis=1), (modulus - errors).max(axis=1)
+    return radius, np.maximum(high - radius, radius - low)
+
+
+def verdicts(radius: FloatArray, error: FloatArray) -> npt.NDArray[np.int8]:
+    """1 stable, 0 undecided where radius +- error contains 1, -1 unstable; any shape."""
+    return (radius + error < 1.0).astype(np.int8) - (radius - error > 1.0).astype(np.int8)

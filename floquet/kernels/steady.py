@@ -53,6 +53,8 @@ def periodic_points(
     bound: FloatArray,
     amplitude: FloatArray,
     deflection: FloatArray,
+    M: FloatArray,
+    M_error: FloatArray,
 ) -> int:
     """Periodic motion x(T) = x(0) at many points: (I - M) x(0) = state at T from rest.
 
@@ -64,6 +66,7 @@ def periodic_points(
     bound : (N, 2), out: bounds on the errors of x(0) and of the amplitude; inf where I - M may be singular
     amplitude : (N,), out: of the input
     deflection : (N, S), out: v . eta at S even phases j/S
+    M, M_error : (N, 2m, 2m), (N,), out: monodromy matrices and bounds on their errors
 
     Returns
     -------
@@ -87,6 +90,8 @@ def periodic_points(
         for i in range(n):
             for j in range(n):
                 closed[i, j] = (1.0 if i == j else 0.0) - flow[i, j]
+                M[point, i, j] = flow[i, j]
+        M_error[point] = error
         inverse, regular = _inverse(closed)
         size = norm(inverse.ravel())
         if not regular or not size * error < 1.0:

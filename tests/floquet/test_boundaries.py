@@ -130,8 +130,8 @@ def test_boundaries_over_every_axis_are_those_of_the_chart(pair, name: str, valu
     coverage = boundary_coverage(found, stability_chart(here, {name: values, "speed_rpm": speeds}))
     assert coverage.missed_nodes == coverage.excess_nodes == 0
     if name == "stiffness_variation":
-        # Without variation nothing is parametric. With it width^2 = (a variation)^2 - d^2 to first order, d by
-        # damping (Hsu), so that twice the variation makes a little more than twice the width.
+        # Without variation nothing is parametric. With it width^2 = (a variation)^2 - d^2 to first order, d
+        # by damping (Hsu), so that twice the variation makes a little more than twice the width.
         width = (found.upper - found.lower).sel(tongue=found.label == "2w3/2").values[0]
         assert np.isnan(width[0])
         assert 1.95 * width[1] < width[2] < 3.0 * width[1]

@@ -10,10 +10,12 @@ import pytest
 from floquet import (
     PeriodicSystem,
     RankOneSystem,
+    fast_multipliers,
     fast_periodic_motions,
     gear_block,
     gear_pair_system,
     periodic_motion,
+    stability_chart,
 )
 from floquet.rank_one import Gains
 from lumped import load_gear_pair, steady_state
@@ -159,3 +161,27 @@ def test_multiplier_at_one_is_refused() -> None:
         fast_periodic_motions(system)
     with pytest.raises(NumericalError, match=r"\+1"):
         periodic_motion(system.to_periodic_system())
+
+
+@pytest.mark.parametrize(("growth", "verdict"), [(-0.1, "stable"), (0.1, "unstable")])
+def test_unstable_periodic_motion_says_so(growth: float, verdict: str) -> None:
+    # x' = g x + cos t has a periodic solution for either sign of g; exp(2 pi g) is its multiplier.
+    system = PeriodicSystem(lambda t: [[growth]], 2.0 * np.pi, b=lambda t: [np.cos(t)])
+    motion = periodic_motion(system)
+    assert motion.spectrum.verdict == verdict
+    assert motion.spectrum.spectral_radius == pytest.approx(np.exp(2.0 * np.pi * growth), rel=1e-9)
+
+
+def test_fast_motions_say_where_they_are_unstable() -> None:
+    pair = load_gear_pair("nasa_28_28").with_(friction__law="none", mesh__damping_ratio=0.002)
+    block = gear_block(pair)
+    own = pair.operating.pinion_speed * 30 / np.pi
+    speeds = np.array([9000.0, 17000.0, 13500.0])
+    motion = fast_periodic_motions(block, block.period * own / speeds)
+    chart = stability_chart(pair, {"speed_rpm": speeds})
+    feedback = np.sort(np.abs(fast_multipliers(block, block.period * own / speeds).multipliers), axis=1)[
+        :, -1
+    ]
+    assert motion.spectral_radius == pytest.approx(feedback, rel=1e-10)
+    assert motion.verdict.tolist() == [1, -1, 1]  # 2w3/2 is open from 16300 to 17900 rpm
+    assert chart.verdict.values.tolist() == [1, -1, 1]
