@@ -231,7 +231,7 @@ class Flow:
     """State (12,) -> state after one mesh cycle."""
 
     def __init__(self, setup: Setup, machine: Machine) -> None:
-        model = build(machine, setup.fidelity, setup.model.flags, setup.model.budget.limit)
+        model = build(machine, setup.model.fidelity, setup.model.flags, setup.model.budget.limit)
         self.setup = replace(setup, model=model)
         self.edges = setup.edges(1)
 
@@ -243,8 +243,7 @@ class Flow:
 def _scale(setup: Setup) -> FloatArray:
     """Sizes of the 12 states in a vibration: static deflection, and that over the mesh cycle times 2 pi."""
     p = setup.machine.parameters
-    length = setup.atol / setup.rtol * setup.machine.period * 100.0
-    lengths = length * np.array([1 / p[kn.RADIUS_P], 1 / p[kn.RADIUS_G], 1, 1, 1, 1])
+    lengths = setup.deflection * np.array([1 / p[kn.RADIUS_P], 1 / p[kn.RADIUS_G], 1, 1, 1, 1])
     return np.concatenate([lengths, lengths * 2 * np.pi / setup.machine.period])
 
 

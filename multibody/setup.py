@@ -47,18 +47,22 @@ class Setup:
     ----------
     model : assembled exudyn model
     q, v : (6,) initial state in the model's coordinates
-    fidelity : "linear" or "exact"
-    rtol, atol : tolerances
+    rtol : relative tolerance of the integration
+    deflection : static deflection of the mesh under the driving torque [m]
     attributes : provenance of results
     """
 
     model: ExudynModel
     q: FloatArray
     v: FloatArray
-    fidelity: Fidelity
     rtol: float
-    atol: float
+    deflection: float
     attributes: dict[str, Any]
+
+    @property
+    def atol(self) -> float:
+        """Absolute tolerance of the integration, see ``_ATOL_SHARE`` [m/s]."""
+        return self.rtol * _ATOL_SHARE * self.deflection / self.machine.period
 
     @property
     def machine(self) -> Machine:
@@ -69,7 +73,7 @@ class Setup:
     def position_is_nominal(self) -> bool:
         """Whether contact positions depend on time alone, so that the switches are known beforehand."""
         moved = kn.ROTATION_PHASE | kn.MOVING_LINE | kn.SLIDING | kn.ENTRY_SHIFT | kn.CONTACT_LOSS
-        return self.fidelity == "linear" or not self.model.flags & moved
+        return self.model.fidelity == "linear" or not self.model.flags & moved
 
     def edges(self, cycles: int) -> FloatArray:
         """Ends of the integration intervals [s]: at the switches where those are known, else whole cycles."""
@@ -150,9 +154,8 @@ def prepare(
         model=build(numbers, fidelity, flags, call_limit, tables),
         q=q,
         v=v,
-        fidelity=fidelity,
         rtol=rtol,
-        atol=rtol * _ATOL_SHARE * deflection / numbers.period,
+        deflection=deflection,
         attributes=attributes,
     )
 
