@@ -162,8 +162,9 @@ def _draw(chapters: tuple[Chapter, ...], folder: Path, tell: Callable[[float], N
     images: dict[str, str] = {}
     for done, picture in enumerate(pictures, 1):
         figure = picture.draw()
-        for suffix in (".svg", ".png"):
-            save(figure, folder / f"{picture.key}{suffix}")
+        save(figure, folder / f"{picture.key}.svg")
+        figure.set_layout_engine("none")  # placed by the first drawing: the second need not place again
+        save(figure, folder / f"{picture.key}.png")
         svg = (folder / f"{picture.key}.svg").read_bytes()
         images[picture.key] = "data:image/svg+xml;base64," + base64.b64encode(svg).decode("ascii")
         tell(done / len(pictures))
