@@ -107,8 +107,7 @@ def cross_check(results: Results) -> Chapter:
 def _judged(check: CrossCheck) -> Table:
     words = {
         "maximum_over_span": "largest difference / peak to peak",
-        "relative_l2": "relative L2",
-        "remainder_l2": "relative L2 left after the sliding effect",
+        "remainder_l2": "relative L2 left after what is predicted",
     }
     rows: list[tuple[Cell, ...]] = [
         (
@@ -182,9 +181,9 @@ def _metrics(check: CrossCheck) -> Table:
         ),
         tuple(row(a) for a in check.agreements),
         note="Relative L2: norm of the difference over the norm of the lumped history; L2 left: the same "
-        "after the first-order effect of the actual sliding velocity, predicted from the lumped motion, is "
-        "added to the lumped friction forces and motions off the line of action. Largest, rms and mean "
-        "shift are over the peak to peak of the lumped history. Sprague and Geers (2003, 2004): "
+        "after what finite motions must change, predicted from the lumped model alone, is added to the "
+        "lumped history. Largest, rms and mean shift are over the peak to peak of the lumped "
+        "history. Sprague and Geers (2003, 2004): "
         "M = √(I_cc/I_rr) − 1, P = arccos(I_cr/√(I_cc I_rr))/π of the oscillation about the mean, "
         "I_xy = ∫ x y dt; C = √(M² + P²); M > 0 where multibody is larger. Span ratio: peak to peak over "
         "peak to peak. Samples on a switch are left out: they belong to either side of the jump.",
