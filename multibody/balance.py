@@ -12,13 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lumped.errors import whole_number
 from lumped.parameters import GearPair
 from lumped.solution import Initial
 from multibody import kernels as kn
 from multibody.drive import Drive, DriveTables, value_and_integral
 from multibody.integration import Segment
 from multibody.model import ExudynModel, contact_state
-from multibody.setup import Fidelity, prepare
+from multibody.setup import MOST_CYCLES, Fidelity, prepare
 
 FloatArray = NDArray[np.float64]
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
@@ -73,6 +74,7 @@ def power_balance(
     The powers are integrated over every step of the integrator by four-point Gauss quadrature on its dense
     output.
     """
+    cycles = whole_number("cycles", cycles, 1, MOST_CYCLES)
     setup = prepare(
         pair,
         fidelity=fidelity,

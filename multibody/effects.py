@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 
+import numpy as np
+
 from lumped.errors import refuse
 from multibody import kernels as kn
 
@@ -39,6 +41,9 @@ def effect_flags(effects: Collection[str] | Mapping[str, bool] | None) -> int:
         names: set[str] = set(EFFECTS)
     elif isinstance(effects, Mapping):
         _check(effects)
+        for name, acts in effects.items():
+            if not isinstance(acts, bool | np.bool_):
+                raise refuse(f"effects.{name}", acts, "True or False", "Say whether the effect acts.")
         names = {name for name in EFFECTS if effects.get(name, True)}
     else:
         _check(effects)

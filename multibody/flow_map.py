@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.errors import NumericalError
+from lumped.errors import NumericalError, whole_number
 from lumped.parameters import GearPair
 from lumped.periodic_system import periodic_system
 from lumped.propagation import step_maps
@@ -101,6 +101,7 @@ def monodromy(
     ------
     NumericalError : no periodic motion is found near the lumped one
     """
+    iterations = whole_number("iterations", iterations, 0, 1000)
     setup = prepare(
         pair,
         fidelity=fidelity,

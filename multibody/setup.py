@@ -27,6 +27,8 @@ from multibody.reversal import friction_velocity as choose_friction_velocity
 FloatArray = NDArray[np.float64]
 Fidelity = Literal["linear", "exact"]
 
+#: Most mesh cycles of a run.
+MOST_CYCLES = 100_000
 #: Force evaluations allowed in one interval; more in proportion where a mesh cycle has more vibrations of the
 #: fastest mode than this. One takes some 500 at rtol 1e-8, and an ordinary mesh cycle has some five.
 CALL_LIMIT, _ORDINARY_VIBRATIONS = 400_000, 80

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.errors import refuse
+from lumped.errors import whole_number
 from lumped.parameters import GearPair
 from lumped.solution import Initial
 from lumped.steady import sample_times
 from multibody.drive import Drive
 from multibody.integration import Segment
 from multibody.records import Recorder
-from multibody.setup import Fidelity, Setup, prepare
+from multibody.setup import MOST_CYCLES, Fidelity, Setup, prepare
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -75,8 +75,7 @@ def simulate(
     At fidelity "exact" the friction law is read where the nominal motion slides as fast as the teeth actually
     do, with the sign of the actual sliding velocity, so friction never feeds energy in.
     """
-    if not 1 <= cycles <= 100_000:
-        raise refuse("cycles", cycles, "1 to 100000", "Choose a number in that range.")
+    cycles = whole_number("cycles", cycles, 1, MOST_CYCLES)
     setup = prepare(
         pair,
         fidelity=fidelity,

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.errors import refuse
+from lumped.errors import refuse, whole_number
 from lumped.parameters import GearPair
 from lumped.results import provenance
 from multibody.records import to_lumped_state
-from multibody.setup import Fidelity, prepare
+from multibody.setup import MOST_CYCLES, Fidelity, prepare
 from multibody.simulation import record
 
 if TYPE_CHECKING:
@@ -68,8 +68,12 @@ def speed_sweep(
     import xarray as xr
 
     speeds = np.asarray(list(speeds_rpm), dtype=float)
-    if settle < 0 or cycles < 1:
-        raise refuse("settle, cycles", (settle, cycles), ">= 0 and >= 1", "Run whole cycles.")
+    settle = whole_number("settle", settle, 0, MOST_CYCLES)
+    cycles = whole_number("cycles", cycles, 1, MOST_CYCLES)
+    if speeds.size == 0:
+        raise refuse(
+            "speeds_rpm", "no speed", "one or more speeds", "Name the speeds in the order of the sweep."
+        )
     table = {name: np.full(speeds.size, np.nan) for name in _VARIABLES}
     state: FloatArray | None = None
     for j, rpm in enumerate(speeds):

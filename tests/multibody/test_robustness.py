@@ -132,6 +132,8 @@ def test_nothing_is_written_to_the_console(capfd):
     ("options", "field"),
     [
         ({"cycles": 0}, "cycles"),
+        ({"cycles": 2.5}, "cycles"),
+        ({"cycles": True}, "cycles"),
         ({"fidelity": "rigid"}, "fidelity"),
         ({"rtol": 0.1}, "rtol"),
         ({"rtol": float("nan")}, "rtol"),
@@ -140,6 +142,7 @@ def test_nothing_is_written_to_the_console(capfd):
         ({"initial": np.zeros(6)}, "initial"),
         ({"effects": {"gravity"}}, "effects"),
         ({"effects": "contact_loss"}, "effects"),
+        ({"effects": {"contact_loss": "no"}}, "effects.contact_loss"),
         ({"effects": {"contact_loss"}, "fidelity": "linear"}, "effects"),
         ({"friction_velocity": -1.0}, "friction_velocity"),
         ({"friction_velocity": float("nan")}, "friction_velocity"),
@@ -148,6 +151,23 @@ def test_nothing_is_written_to_the_console(capfd):
 def test_arguments_without_sense_are_refused(options, field):
     with pytest.raises(lumped.ParameterError, match=field):
         multibody.simulate(PAIR, **options)
+
+
+@pytest.mark.parametrize(
+    ("call", "field"),
+    [
+        (lambda: multibody.power_balance(PAIR, 0), "cycles"),
+        (lambda: multibody.power_balance(PAIR, 2.5), "cycles"),
+        (lambda: multibody.speed_sweep(PAIR, []), "speeds_rpm"),
+        (lambda: multibody.speed_sweep(PAIR, [3000], cycles=0), "cycles"),
+        (lambda: multibody.speed_sweep(PAIR, [3000], settle=-5), "settle"),
+        (lambda: multibody.monodromy(PAIR, iterations=-1), "iterations"),
+    ],
+)
+def test_counts_without_sense_are_refused(call, field):
+    """A ledger over no cycle balances, and a flow map without iterations looks like any other."""
+    with pytest.raises(lumped.ParameterError, match=field):
+        call()
 
 
 def test_output_times_do_not_change_the_motion():
