@@ -190,7 +190,7 @@ def project(overhead_seconds, record_seconds, task_seconds, case_seconds=20e-3, 
     size = (25 + 8 * outputs) * cases
     held = 8 * outputs * cases
     print(f"1e8 cases of {1e3 * case_seconds:g} ms, {outputs} outputs: journal {size / 1e9:.1f} GB, ", end="")
-    print(f"result {held / 1e9:.1f} GB, {(held + cases) / 1e9:.1f} GB of memory to compile it")
+    print(f"result {held / 1e9:.1f} GB, {(held + 11 * cases) / 1e9:.1f} GB of memory to compile it")
     for nodes in (1, 4, 16, 64, 256):
         slots = 64 * nodes
         batch = max(0.5, slots / 500.0)

@@ -212,8 +212,8 @@ def _check_memory(key: Key) -> None:
     """Refuse a sweep whose results this machine could not hold, for they are labelled in one piece."""
     if not hasattr(os, "sysconf") or "SC_PHYS_PAGES" not in os.sysconf_names:
         return  # this system does not say
-    # The outputs are held twice while they are written, and a sampled study's axes like outputs.
-    need = key.count * (2 + 8 * (2 * key.outputs + key.axes))
+    # Measured: the outputs, one of them again while it is written, the status; sampled axes as Python floats.
+    need = key.count * (8 * (key.outputs + 1) + 3 + 65 * key.sampled_axes)
     present = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     if need > present:
         raise refuse(

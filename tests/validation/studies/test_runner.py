@@ -197,12 +197,12 @@ def test_a_sweep_that_cannot_fit_is_refused_before_it_starts(study, tmp_path, mo
 def test_a_sweep_whose_results_do_not_fit_in_memory_is_refused_before_it_starts(
     make_study, tmp_path, monkeypatch
 ):
-    # The largest study: 1e9 cases of two outputs need 16 GB at least.
+    # The largest study: 1e9 cases of two outputs need 27 GB.
     axes = [
         {"field": f"{gear}.density", "low": 1e3, "high": 9e3, "count": n}
         for gear, n in (("pinion", 100_000), ("gear", 10_000))
     ]
-    monkeypatch.setattr(runner.os, "sysconf", {"SC_PHYS_PAGES": 2_000_000, "SC_PAGE_SIZE": 4096}.get)
+    monkeypatch.setattr(runner.os, "sysconf", {"SC_PHYS_PAGES": 6_000_000, "SC_PAGE_SIZE": 4096}.get)
     with pytest.raises(ParameterError, match="Split the study"):
         run_sweep(make_study(axes=axes), tmp_path / "out")
     assert not (tmp_path / "out").exists()
