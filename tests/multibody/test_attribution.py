@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import lumped
 from multibody.causes import CAUSES, attribution
@@ -53,6 +54,44 @@ def test_bearings_multiply_the_shift_of_entry():
         # First order in the delay, which is a twentieth of the period of the ringing after entry.
         assert float(found.sel(cause=cause)) == pytest.approx(rate * shift / speed, rel=0.25), cause
     assert float(found.sel(cause="contact_position")) < 0.05
+
+
+#: What each effect adds to every quantity of a made-up motion of span 10: all sums differ.
+MADE_UP = {
+    "rotation_phase": 1.0,
+    "moving_line": 2.0,
+    "sliding_velocity": -4.0,
+    "entry_shift": 0.5,
+    "contact_loss": 0.25,
+}
+
+
+@pytest.mark.parametrize("periodic", [False, True])
+def test_changes_alone_and_without_are_told_apart(monkeypatch, periodic):
+    """Effects that simply add: alone is the own part, without is the rest, each over the motion's span."""
+    asked = []
+
+    def motion(kind):
+        def run(pair, *args, effects, **options):
+            asked.append((kind, frozenset(effects)))
+            # The largest change is at one time only, with either sign.
+            values = np.array([0.0, 10.0, 5.0 + sum(MADE_UP[name] for name in effects)])
+            return xr.Dataset(dict.fromkeys(("dte", "x_p", "y_p", "theta_p"), ("time", values)))
+
+        return run
+
+    monkeypatch.setattr("multibody.causes.simulate", motion("run"))
+    monkeypatch.setattr("multibody.causes.steady_state", motion("periodic"))
+    found = attribution(JUMPS, periodic=periodic).sel(quantity="x_p")
+    assert {kind for kind, _ in asked} == {"periodic" if periodic else "run"}
+    total = sum(MADE_UP.values())
+    for cause, names in CAUSES.items():
+        own = sum(MADE_UP[name] for name in names)
+        assert float(found["alone"].sel(cause=cause)) == pytest.approx(abs(own) / 10.0), cause
+        assert float(found["without"].sel(cause=cause)) == pytest.approx(abs(total - own) / 10.0), cause
+    assert float(found["alone"].sel(cause="all")) == pytest.approx(abs(total) / 10.0)
+    assert float(found["without"].sel(cause="all")) == 0.0
+    assert found.attrs["largest"] == "sliding_velocity"
 
 
 def test_every_effect_belongs_to_one_cause():
