@@ -20,7 +20,7 @@ _QUANTITIES = ("dte", "x_p", "y_p")
 _METRICS = {
     "maximum_over_span": "largest difference over peak to peak",
     "relative_l2": "L2 norm of the difference over that of the history",
-    "remainder_l2": "the same, after the predicted effect of the actual sliding velocity",
+    "remainder_l2": "the same, after what finite motions must change",
 }
 
 
