@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from validation.comparison import CrossCheck, crosscheck
+    from validation.interactive import write_interactive_page
     from validation.reporting import Report, report
     from validation.validity import Flag, validity_flags
 
@@ -20,9 +21,18 @@ _HOMES = {
     "report": "validation.reporting",
     "Flag": "validation.validity",
     "validity_flags": "validation.validity",
+    "write_interactive_page": "validation.interactive",
 }
 
-__all__ = ["CrossCheck", "Flag", "Report", "crosscheck", "report", "validity_flags"]
+__all__ = [
+    "CrossCheck",
+    "Flag",
+    "Report",
+    "crosscheck",
+    "report",
+    "validity_flags",
+    "write_interactive_page",
+]
 
 
 def __getattr__(name: str) -> Any:

@@ -20,6 +20,10 @@ def page(browser, written):
     return browser.open(written)
 
 
+def six_digits(values):
+    return [float(f"{float(v):.6g}") for v in values]
+
+
 def sentence(data, k, i, j):
     speed, damping = float(data["speed_rpm"][j]), float(data["damping_ratio"][i])
     factor = float(data["bearing_factor"][k])
@@ -91,12 +95,14 @@ def test_tab_goes_through_controls_and_charts_in_reading_order(page):
 
 def test_keys_and_buttons_zoom_and_the_window_follows_the_cursor(page, data):
     speeds = data["speed_rpm"].to_numpy()
-    whole = [float(f"{speeds[0]:.6g}"), float(f"{speeds[-1]:.6g}")]
+    whole = six_digits(speeds[[0, -1]])
 
     def window():
         return page.drawn("stability-plot", "plot._fullLayout.xaxis.range")
 
     assert window() == whole
+    dampings = six_digits(data["damping_ratio"][[0, -1]])
+    assert page.drawn("stability-plot", "plot._fullLayout.yaxis.range") == dampings
     page.focus("stability")
     page.press("+", "+")
     low, high = window()

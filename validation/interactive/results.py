@@ -81,8 +81,9 @@ class PageResults:
             for key, slices in self.stability.items()
         ]
         parts += [self.sweep] + ([] if self.multibody is None else [self.multibody])
-        merged = xr.merge([part.drop_attrs(deep=False) for part in parts], join="exact")
-        return merged.assign_attrs(provenance(self.pair) | {"title": f"interactive page of {self.pair.name}"})
+        merged = xr.merge(parts, join="exact", combine_attrs="override")
+        merged.attrs = provenance(self.pair) | {"title": f"interactive page of {self.pair.name}"}
+        return merged
 
 
 def compute(

@@ -8,7 +8,7 @@ const UNSTABLE = ["#e1cc55", "#fee838"];
 // Stable colours change at the quantiles of what is there: most multipliers lie close below 1.
 function colourScale(sorted) {
   const low = sorted[0], high = sorted.at(-1), place = (value) => (value - low) / (high - low || 1);
-  const stable = sorted.subarray(0, sorted.findIndex((v) => v > 1) >>> 0);
+  const stable = sorted.filter((v) => v <= 1);
   const spread = (colours, from, to) => colours.map((c, i) => [from + (to - from) * i / (colours.length - 1), c]);
   if (stable.length === 0) return spread(UNSTABLE, 0, 1);
   const end = Math.min(place(1), 1);
@@ -122,7 +122,7 @@ function drawStability() {
       level(1, "y2", "solid", colours.ink),
     ],
     annotations: [
-      panelName(`largest multiplier [-] at mesh damping ratio ${plain(damping[at.damping])}`, 0.33, colours),
+      panelName(`largest multiplier [-], damping ratio ${plain(damping[at.damping], 4)}`, 0.33, colours),
       ...tongueNames(chart, plot.clientWidth - margin.l - margin.r, range),
       {
         text: "unstable above 1", x: 1, xref: "paper", xanchor: "right", y: 1, yref: "y2", yanchor: "bottom",
