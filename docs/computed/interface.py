@@ -66,7 +66,7 @@ FILES: dict[str, Callable[[], str]] = {
     "output_crosscheck.md": lambda: transcript("crosscheck", "nasa_28_28"),
     "output_simulate.md": lambda: transcript("simulate", "mypair.toml", "-o", "run.nc", before=_INIT),
     "output_refused.md": lambda: transcript(
-        "simulate", "mypair.toml", "--set", "pinion.teeth=3", exit_code=2, before=_INIT
+        "simulate", "mypair.toml", "--set", "centre_distance=80", exit_code=2, before=_INIT
     ),
     "output_stability.md": lambda: transcript("stability", "mypair.toml", "-o", "chart.png", before=_INIT),
     "output_measurement.md": lambda: transcript(

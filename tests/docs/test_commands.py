@@ -16,14 +16,14 @@ from typer.testing import CliRunner
 
 import lumped
 from validation.cli import app
-from validation.exchange import write_results, write_rexs
+from validation.exchange import write_results, write_rexs, write_state_space
 from validation.measurements import MeasurementSpec
 
 #: Commands that take longer than a few seconds or need a cluster: only their arguments are checked. That
 #: reports are written and compared is tested in tests/validation.
 NOT_RUN = re.compile(r"spurcheck (report|figures|interactive) |--grid|--scheduler")
 #: Commands that are meant to be refused.
-REFUSED = re.compile(r"pinion\.teeth=3$")
+REFUSED = re.compile(r"centre_distance=80$")
 COMMAND = get_command(app)
 CLUSTER = "docs/how_to/cluster.md"
 
@@ -90,6 +90,7 @@ def prepare(folder: Path, cluster) -> None:
     (folder / "mypair.toml").write_text(pair.to_toml())
     (folder / "my_pair.toml").write_text(pair.to_toml())
     write_rexs(pair, folder / "gearbox.rexs")
+    write_state_space(pair, folder / "averaged.npz")
     (folder / "study-sweep").mkdir()
     for result in ("run.nc", "study-sweep/results.nc"):
         write_results(lumped.simulate(pair, cycles=1), folder / result)
