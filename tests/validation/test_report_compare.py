@@ -238,6 +238,38 @@ def test_junit_counts_and_carries_every_failure(document):
     assert len(failures(new)) == 1
 
 
+def test_junit_of_hostile_verdicts_can_be_read(document):
+    document["chapters"]["cross_check"]["verdicts"][1]["verdict"] = {"state": "outside", "text": HOSTILE}
+    document["chapters"]["cross_check"]["verdicts"][0]["verdict"] = {"state": "within", "text": HOSTILE}
+    root = ElementTree.fromstring(junit(document).encode())
+    (failure,) = root.findall(".//failure")
+    assert failure.get("message") == HOSTILE.replace("\x00", "\ufffd")
+
+
+def test_a_state_is_a_verdict_and_a_marked_row_is_not(document):
+    document["chapters"]["validity"] = {
+        "title": "Validity",
+        "flags": [
+            {"key": "Teeth stay in contact", "state": state("violated"), "value": -3.0},
+            {"key": "Torques balance", "state": state("ok"), "assumed": state("violated")},
+        ],
+    }
+    assert [case.name for case in failures(document)] == ["Teeth stay in contact"]
+
+
+def test_an_earlier_chapter_of_changes_is_no_result(document):
+    changes = {
+        "title": "Changes",
+        "verdict": state("violated"),
+        "changes": [{"path": "a/b", "old": "1", "new": "2", "verdict": state("outside")}],
+    }
+    old = copy.deepcopy(document)
+    old["chapters"]["changes"] = changes
+    assert compare(old, document).changes == ()
+    assert compare(document, old).changes == ()
+    assert failures(old) == ()
+
+
 def test_markdown_shows_hostile_text_as_text(document):
     document["gear_pair"] = HOSTILE
     document["answers"][0]["text"] = HOSTILE

@@ -198,7 +198,7 @@ def _walk(path: str, value: Any, unit: str | None = None) -> Iterator[tuple[str,
             for key, item in value.items():
                 yield from _walk(f"{path}/{key}", item, own if isinstance(own, str) else None)
     elif isinstance(value, list):
-        names = _row_names(value)
+        names = row_names(value)
         for name, item in zip(names, value, strict=True):
             yield from _walk(f"{path}/{name}", item)
     else:
@@ -206,7 +206,7 @@ def _walk(path: str, value: Any, unit: str | None = None) -> Iterator[tuple[str,
         yield path, _Number(float(value), unit or "", unit is not None) if is_number else value
 
 
-def _row_names(rows: list[Any]) -> list[str]:
+def row_names(rows: list[Any]) -> list[str]:
     """Names of a table's rows: as many of their leading words as tell them apart, else numbered."""
     words = [[v for v in row.values() if isinstance(v, str)] if isinstance(row, dict) else [] for row in rows]
     names = [""] * len(rows)

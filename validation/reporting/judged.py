@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from validation.reporting.blocks import STATES
+from validation.reporting.compare import row_names
 
 #: Columns and facts whose badge is a verdict; other badges only mark a row.
 _VERDICTS = frozenset({"verdict", "state"})
@@ -19,7 +20,7 @@ class Case:
     Attributes
     ----------
     group : chapter
-    name : what is judged
+    name : what is judged; the same from run to run, so without numbers
     state, text : its badge
     detail : the numbers beside it
     """
@@ -61,14 +62,13 @@ def failures(document: Mapping[str, Any]) -> tuple[Case, ...]:
 def _of_block(chapter: str, name: str, block: Any) -> Iterator[Case]:
     if not isinstance(block, list):
         return
-    for row in block:
+    for name_of_row, row in zip(row_names(block), block, strict=True):
         if not isinstance(row, dict):
             continue
         for column, value in row.items():
             if column in _VERDICTS and isinstance(value, dict) and "state" in value:
-                words = [text for k, v in row.items() if k != column and (text := _text(v))]
                 detail = "; ".join(f"{k}: {_text(v)}" for k, v in row.items() if k != column and _text(v))
-                yield Case(f"{chapter}.{name}", ", ".join(words[:2]), value["state"], value["text"], detail)
+                yield Case(f"{chapter}.{name}", name_of_row, value["state"], value["text"], detail)
 
 
 def _text(value: Any) -> str:
