@@ -13,7 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from floquet.kernels.eigen import spectra
-from floquet.kernels.taylor import Limits, Problem, propagate_points
+from floquet.kernels.gains import Limits, Problem
+from floquet.kernels.taylor import propagate_points
 from floquet.multipliers import multipliers_with_bounds
 from floquet.packing import own, packed
 from floquet.rank_one import Coarsening, RankOneSystem

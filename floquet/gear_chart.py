@@ -50,7 +50,8 @@ def stability_chart(
     rtol : wanted accuracy of the monodromy matrices, relative to their scale; 1e-13 to 1e-3
     method : "taylor", the compiled kernel; "chebyshev", the same at some thousand nodes with a checked
         interpolation in speed and in damping or friction between them, for charts of many more points than
-        that; or a method of `monodromy` for an independent check
+        that (speeds at which a friction law changes its regimes are computed directly); or a method of
+        `monodromy` for an independent check
     store : "all"; or "radius" for the spectral radius, its error and the verdict without the multipliers: 17
         bytes a point instead of 257
     n_jobs : threads (Taylor) or processes (others); default all cores for Taylor, 1 for the others
@@ -148,7 +149,7 @@ def _compiled_chart(
         key = tuple(where.get(name, slice(None)) for name in names)
         for target, source in zip(whole.arrays(), part.arrays(), strict=True):
             rest = target.shape[1:]
-            target.reshape(*shape, *rest)[key] = source.reshape(*inner_shape, *rest)
+            target.reshape((*shape, *rest))[key] = source.reshape((*inner_shape, *rest))
     return chart_dataset(grid, whole.multipliers, whole.errors, whole.radius, whole.radius_error)
 
 

@@ -28,8 +28,7 @@ def friction_effect(
 ) -> xr.Dataset:
     """Difference charts: the effect of friction laws on the growth of the fastest motion.
 
-    Growth is log(spectral radius) per mesh cycle, so that the effect of a law adds to that of damping. A law
-    that varies with speed costs one fit per speed.
+    Growth is log(spectral radius) per mesh cycle, so that the effect of a law adds to that of damping.
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ def critical_damping(
     ----------
     pair : the gear pair; its mesh damping ratio is ignored
     speed_rpm : range searched [rpm]
-    friction_law : law to use instead of the pair's. A law that varies with speed costs a fit at every speed.
+    friction_law : law to use instead of the pair's
     damping_ratios : increasing ladder of mesh damping ratios
     orders : largest order of the seeds of the search
     rtol : of the monodromy matrices

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from floquet.kernels.gains import Problem
 from floquet.kernels.lanes import LANES
-from floquet.kernels.taylor import Problem
 from floquet.rank_one import RankOneSystem
 from floquet.system import FloatArray
 

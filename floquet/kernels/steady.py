@@ -8,20 +8,11 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
+from floquet.kernels.gains import Limits, Piece, Problem, load_piece, load_step, scratch_for
 from floquet.kernels.lanes import LANES
 from floquet.kernels.majorant import enough_terms, norm, shift
 from floquet.kernels.product import FORCED, carry
-from floquet.kernels.taylor import (
-    Limits,
-    Piece,
-    Problem,
-    load_piece,
-    load_step,
-    scratch_for,
-    series,
-    start_from_rest,
-    steps_of_period,
-)
+from floquet.kernels.taylor import series, start_from_rest, steps_of_period
 from floquet.system import FloatArray
 
 
