@@ -227,7 +227,7 @@ def test_printed_laws_leave_the_mean_where_they_should(chapter, pair):
 
 
 def test_the_printed_film_puts_law_v_into_boundary_lubrication(chapter):
-    # Lambda is 4.4 to 4.6 at the preset's point and 10^(5 - 6.9) times that as printed: below 1 everywhere, so
+    # Lambda is 4.4 to 4.6 at the preset's point, and 10^(5 - 6.9) times that as printed: below 1, so
     # law V is law IV instead of law III.
     own = load_gear_pair("nasa_28_28")
     row = chapter.equation("21a, d").value("law V: mean of |mu| over the path of contact")

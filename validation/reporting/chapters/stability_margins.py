@@ -39,7 +39,7 @@ def stability_margins(results: Results) -> Chapter:
             Fact(
                 "nearest_tongue",
                 "nearest tongue without mesh damping",
-                "none in the range" if nearest is None else nearest.label,
+                "none in the range" if nearest is None else nearest.label.replace("w", "ω"),
                 "" if nearest is None else f"{nearest.lower:.5g} to {nearest.upper:.5g} rpm",
             ),
             Fact(
