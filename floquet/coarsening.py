@@ -16,6 +16,8 @@ degree d is at most
     2 e^g exp(2 sum_j a_j R^(j+1)/(j+1)) rho^-d/(rho - 1)   for every rho > 1.
 
 Terms of second order are at most e^(g + eta) eta^2/2, eta the integral of |dA|.
+
+Sources: docs/theory/floquet.md, "Computing M".
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""Monodromy matrices of rank-one feedback systems by the compiled Taylor kernel, for many points at once."""
+"""Monodromy matrices of rank-one feedback systems by the compiled Taylor kernel, for many points at once.
+
+Sources: docs/theory/floquet.md, "Computing M".
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Periodic motion of rank-one feedback systems under forcing, for many points at once (compiled)."""
+"""Periodic motion of rank-one feedback systems under forcing, for many points at once (compiled).
+
+Sources: docs/theory/floquet.md, "Forced motion from the same matrix".
+"""
 
 from __future__ import annotations
 

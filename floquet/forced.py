@@ -1,4 +1,7 @@
-"""Periodic motion of x' = A(t) x + b(t), without letting anything settle."""
+"""Periodic motion of x' = A(t) x + b(t), without letting anything settle.
+
+Sources: docs/theory/floquet.md, "Forced motion from the same matrix".
+"""
 
 from __future__ import annotations
 

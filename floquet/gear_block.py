@@ -1,4 +1,7 @@
-"""The feedback block of a gear pair as a rank-one system for the compiled kernel."""
+"""The feedback block of a gear pair as a rank-one system for the compiled kernel.
+
+Sources: docs/theory/floquet.md, "Structure".
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Tongues of instability of a gear pair over speed: their boundaries, labelled by mode pair and order."""
+"""Tongues of instability of a gear pair over speed: their boundaries, labelled by mode pair and order.
+
+Sources: docs/theory/floquet.md, "Where instability is, and what it is called".
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Campbell diagram of a gear pair: frequencies over speed, with the speeds at which tongues are expected."""
+"""Campbell diagram of a gear pair: frequencies over speed, with the speeds at which tongues are expected.
+
+Sources: docs/theory/floquet.md, "Where instability is, and what it is called".
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Stability charts of gear pairs: the compiled route for dense charts, the general engine as its check."""
+"""Stability charts of gear pairs: the compiled route for dense charts, the general engine as its check.
+
+Sources: docs/theory/floquet.md, "Computing M".
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Do the traced boundaries of instability hold every unstable node of a dense chart?"""
+"""Do the traced boundaries of instability hold every unstable node of a dense chart?
+
+Sources: docs/theory/floquet.md, "Where instability is, and what it is called".
+"""
 
 from __future__ import annotations
 

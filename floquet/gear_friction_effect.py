@@ -1,4 +1,7 @@
-"""What each friction law does to the stability of a gear pair: difference charts."""
+"""What each friction law does to the stability of a gear pair: difference charts.
+
+Sources: docs/theory/floquet.md, "Where instability is, and what it is called".
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Multipliers of a gear pair: the 6 states that feed back, the off-line-of-action block in closed form."""
+"""Multipliers of a gear pair: the 6 states that feed back, the off-line-of-action block in closed form.
+
+Sources: docs/theory/floquet.md, "Structure".
+"""
 
 from __future__ import annotations
 

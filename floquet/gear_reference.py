@@ -3,6 +3,8 @@
 It integrates the piecewise polynomials k(xi), c(xi) and mu(xi) themselves, in plain coordinates and by a
 Taylor series of its own, and shares nothing with the compiled kernel but these polynomials. Where long double
 is no more than a double (it has 64 bits of mantissa on x86) it is only as good as any other route.
+
+Sources: docs/theory/floquet.md, "Computing M".
 """
 
 from __future__ import annotations

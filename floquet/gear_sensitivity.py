@@ -1,4 +1,7 @@
-"""How the largest multiplier of a gear pair changes with each parameter of a stability chart."""
+"""How the largest multiplier of a gear pair changes with each parameter of a stability chart.
+
+Sources: docs/theory/floquet.md, "Sensitivities".
+"""
 
 from __future__ import annotations
 

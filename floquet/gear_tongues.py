@@ -1,4 +1,7 @@
-"""Tongues of a gear pair: the mesh damping that closes each, and names for unstable regions of a chart."""
+"""Tongues of a gear pair: the mesh damping that closes each, and names for unstable regions of a chart.
+
+Sources: docs/theory/floquet.md, "Where instability is, and what it is called".
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Floquet modes x(t) = p(t) exp(s t), p periodic: branches of exponents, multipliers however small."""
+"""Floquet modes x(t) = p(t) exp(s t), p periodic: branches of exponents, multipliers however small.
+
+Sources: docs/theory/floquet.md, "Computing M".
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Monodromy matrix and Floquet multipliers with error bounds."""
+"""Monodromy matrix and Floquet multipliers with error bounds.
+
+Sources: docs/theory/floquet.md, "Computing M".
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Second-order systems with rank-one periodic feedback: the structure that the fast kernel exploits."""
+"""Second-order systems with rank-one periodic feedback: the structure that the fast kernel exploits.
+
+Sources: docs/theory/floquet.md, "Structure".
+"""
 
 from __future__ import annotations
 

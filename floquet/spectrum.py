@@ -1,4 +1,7 @@
-"""Multipliers with their error bounds, and what follows from them."""
+"""Multipliers with their error bounds, and what follows from them.
+
+Sources: docs/theory/floquet.md, "From the equations to a matrix".
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Periodic linear systems x' = A(t) x (+ b(t)): what every routine of this package consumes."""
+"""Periodic linear systems x' = A(t) x (+ b(t)): what every routine of this package consumes.
+
+Sources: docs/theory/floquet.md, "From the equations to a matrix".
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Tongues of instability: their names, by the shape of the growing motion, and the damping to close them."""
+"""Tongues of instability: their names, by the shape of the growing motion, and the damping to close them.
+
+Sources: docs/theory/floquet.md, "Where instability is, and what it is called".
+"""
 
 from __future__ import annotations
 

@@ -2,6 +2,8 @@
 
 The ledger is kept from contact records (loads, sliding and closing velocities), not from the forces that
 moved the bodies, so a wrong wrench, sign or lever shows up as a residual.
+
+Sources: docs/theory/multibody.md, "Overlap, wrench and contact point"; the power balance of rigid bodies.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""Why the exact model differs from the lumped one: its finite-motion effects, switched one at a time."""
+"""Why the exact model differs from the lumped one: its finite-motion effects, switched one at a time.
+
+Sources: docs/theory/multibody.md, "Effects".
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""What turns the pinion and brakes the gear: torque histories, a motor behind a spring, run-up ramps."""
+"""What turns the pinion and brakes the gear: torque histories, a motor behind a spring, run-up ramps.
+
+Sources: docs/theory/multibody.md, "Time integration".
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""How much the velocity over which friction changes its sign matters: the same run with ever smaller ones."""
+"""How much the velocity over which friction changes its sign matters: the same run with ever smaller ones.
+
+Sources: docs/theory/multibody.md, "Friction that holds the teeth".
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Simulate a gear pair with the multibody model and return the lumped model's variables."""
+"""Simulate a gear pair with the multibody model and return the lumped model's variables.
+
+Sources: docs/theory/multibody.md.
+"""
 
 from __future__ import annotations
 

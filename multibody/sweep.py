@@ -2,6 +2,8 @@
 
 A separating gear pair has more than one steady motion at the same speed; which one a machine shows depends
 on where it came from. A sweep that carries the state on finds both branches and the jumps between them.
+
+Sources: Kahraman and Blankenship 1997 for the experiment; docs/theory/multibody.md.
 """
 
 from __future__ import annotations

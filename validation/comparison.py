@@ -1,4 +1,7 @@
-"""Cross-check: the lumped model against the independent multibody model, quantity by quantity."""
+"""Cross-check: the lumped model against the independent multibody model, quantity by quantity.
+
+Sources: docs/theory/multibody.md, "The law of torque"; docs/theory/validity.md.
+"""
 
 from __future__ import annotations
 

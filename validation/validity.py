@@ -1,4 +1,7 @@
-"""Is the linear time-varying model valid for this motion? Its assumptions as flags, each with a number."""
+"""Is the linear time-varying model valid for this motion? Its assumptions as flags, each with a number.
+
+Sources: docs/theory/validity.md.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""One-step methods for X' = A(t) X, one small file per family, and the registry of their names."""
+"""One-step methods for X' = A(t) X, one small file per family, and the registry of their names.
+
+Sources: each propagator names its own; docs/theory/floquet.md, "Computing M".
+"""
 
 from __future__ import annotations
 

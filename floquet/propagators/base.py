@@ -1,4 +1,7 @@
-"""What a propagator is: one step of x' = A(t) x, for many steps at once."""
+"""What a propagator is: one step of x' = A(t) x, for many steps at once.
+
+Sources: docs/theory/floquet.md, "Computing M".
+"""
 
 from __future__ import annotations
 

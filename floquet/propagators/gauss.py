@@ -1,4 +1,7 @@
-"""Gauss-Legendre collocation: s stages, order 2 s, symplectic, A-stable."""
+"""Gauss-Legendre collocation: s stages, order 2 s, symplectic, A-stable.
+
+Sources: Hairer, Lubich and Wanner, Geometric Numerical Integration, 2006, section II.1.3.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Exponential methods: the exponential of a truncated Magnus series per step."""
+"""Exponential methods: the exponential of a truncated Magnus series per step.
+
+Sources: Blanes, Casas, Oteo and Ros, Physics Reports 470 (2009) 151-238.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Explicit Runge-Kutta methods applied to the matrix equation."""
+"""Explicit Runge-Kutta methods applied to the matrix equation.
+
+Sources: Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, 1993.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Law V: the law that the local film parameter asks for, equation (20)."""
+"""Law V: the law that the local film parameter asks for, equation (20).
+
+Sources: Abbas Al-Zubaidi 2008, eq. 20, and the missing full-film case (docs/theory/friction.md, "The five laws").
+"""
 
 from __future__ import annotations
 

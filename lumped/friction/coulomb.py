@@ -1,4 +1,7 @@
-"""Law I: Coulomb friction with one coefficient, equation (10)."""
+"""Law I: Coulomb friction with one coefficient, equation (10).
+
+Sources: Abbas Al-Zubaidi 2008, eq. 10 (docs/theory/friction.md, "The five laws").
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Law IV: Coulomb friction smoothed through the pitch point, equation (19)."""
+"""Law IV: Coulomb friction smoothed through the pitch point, equation (19).
+
+Sources: Abbas Al-Zubaidi 2008, eq. 19 (docs/theory/friction.md, "The five laws").
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""How simultaneous tooth pairs share the load."""
+"""How simultaneous tooth pairs share the load.
+
+Sources: docs/theory/mesh_physics.md, "Load sharing and static transmission error" and "Losses".
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Alignment of a record with a prediction by mesh phase."""
+"""Alignment of a record with a prediction by mesh phase.
+
+Sources: least squares over the phase, as docs/how_to/measured_data.md describes it.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""A record evaluated in one go: aligned, laid over its prediction, friction identified."""
+"""A record evaluated in one go: aligned, laid over its prediction, friction identified.
+
+Sources: docs/how_to/measured_data.md.
+"""
 
 from __future__ import annotations
 

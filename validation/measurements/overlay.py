@@ -1,4 +1,7 @@
-"""A record laid over a prediction: sample by sample, and as metrics with uncertainty."""
+"""A record laid over a prediction: sample by sample, and as metrics with uncertainty.
+
+Sources: docs/how_to/measured_data.md.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""A prediction as functions of mesh phase, so that it can be read where a record has its samples."""
+"""A prediction as functions of mesh phase, so that it can be read where a record has its samples.
+
+Sources: docs/theory/equations.md, "Periodic motion and the brake torque".
+"""
 
 from __future__ import annotations
 

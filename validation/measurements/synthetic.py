@@ -1,4 +1,7 @@
-"""Synthetic records whose truth is known, in the format of tooth-pair force measurements."""
+"""Synthetic records whose truth is known, in the format of tooth-pair force measurements.
+
+Sources: the tooth-pair records of Rebbechi, Oswald and Townsend 1996, whose form they take.
+"""
 
 from __future__ import annotations
 

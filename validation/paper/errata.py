@@ -1,4 +1,7 @@
-"""The errata chapter: every misprint of the paper's model section shown by computation."""
+"""The errata chapter: every misprint of the paper's model section shown by computation.
+
+Sources: Abbas Al-Zubaidi 2008, compared with docs/theory/equations.md and docs/theory/friction.md.
+"""
 
 from __future__ import annotations
 

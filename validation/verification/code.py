@@ -1,4 +1,8 @@
-"""The code against closed forms, laws of mechanics and theoretical orders, computed when asked."""
+"""The code against closed forms, laws of mechanics and theoretical orders, computed when asked.
+
+Sources: the closed forms are derived where they are used; Oberkampf and Roy, Verification and
+Validation in Scientific Computing, 2010, for the method.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The solutions of this gear pair against finer ones: steps, tolerances, sampling."""
+"""The solutions of this gear pair against finer ones: steps, tolerances, sampling.
+
+Sources: Oberkampf and Roy, Verification and Validation in Scientific Computing, 2010, chapter 8.
+"""
 
 from __future__ import annotations
 
