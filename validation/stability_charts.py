@@ -23,8 +23,8 @@ METHODS = ("auto", "taylor", "chebyshev", *sorted(PROPAGATORS))
 #: From here on interpolation costs less processor time than every point by itself (measured on the presets).
 INTERPOLATE_FROM = 100_000
 _FAST = ("speed_rpm", "damping_ratio", "friction_coefficient")
-# The compiled chart tells its progress only at its end: points of a slice, and speeds of one at least, since
-# interpolation over few speeds saves nothing.
+# Over fast axes alone the compiled chart tells its progress only at its end, so that it is cut along speed:
+# points of a slice, and speeds of one at least, since interpolation over few speeds saves nothing.
 _SLICE, _SPEEDS = 1 << 18, 128
 _LARGEST = 25_000_000
 
@@ -65,22 +65,21 @@ def dense_chart(
     if method not in METHODS:
         raise refuse("method", method, ", ".join(METHODS), "Choose among these.")
     chosen = chart_method(grid) if method == "auto" else method
-    along = _slicing_axis(grid)
-    rows = max(_SPEEDS if along == "speed_rpm" else 1, _SLICE * grid[along].size // points)
+    store: Literal["all", "radius"] = "all" if multipliers else "radius"
+    if set(grid) - set(_FAST) or "speed_rpm" not in grid:
+        tell = None if progress is None else lambda done, total: progress(done / total)
+        return stability_chart(pair, grid, rtol=rtol, method=chosen, store=store, progress=tell)
+    speeds = grid["speed_rpm"]
+    rows = max(_SPEEDS, _SLICE * speeds.size // points)
     parts: list[xr.Dataset] = []
-    for first in range(0, grid[along].size, rows):
-
-        def tell(done: int, total: int, first: int = first) -> None:
-            if progress is not None:
-                before, now = (min(k, grid[along].size) / grid[along].size for k in (first, first + rows))
-                progress(before + (now - before) * done / total)
-
-        part = {**grid, along: grid[along][first : first + rows]}
-        store: Literal["all", "radius"] = "all" if multipliers else "radius"
-        parts.append(stability_chart(pair, part, rtol=rtol, method=chosen, store=store, progress=tell))
+    for first in range(0, speeds.size, rows):
+        part = {**grid, "speed_rpm": speeds[first : first + rows]}
+        parts.append(stability_chart(pair, part, rtol=rtol, method=chosen, store=store))
+        if progress is not None:
+            progress(min(first + rows, speeds.size) / speeds.size)
     if len(parts) == 1:
         return parts[0]
-    joined: xr.Dataset = xr.concat(parts, dim=along, combine_attrs="override")
+    joined: xr.Dataset = xr.concat(parts, dim="speed_rpm", combine_attrs="override")
     return joined.transpose(*grid, ...)
 
 
@@ -93,9 +92,3 @@ def chart_method(axes: Mapping[str, FloatArray]) -> str:
     """
     many = math.prod(np.size(values) for name, values in axes.items() if name in _FAST) >= INTERPOLATE_FROM
     return "chebyshev" if many and "speed_rpm" in axes else "taylor"
-
-
-def _slicing_axis(axes: Mapping[str, FloatArray]) -> str:
-    """Axis along which slices repeat no work: one that needs a fit at each value anyway, or else speed."""
-    slow = [name for name in axes if name not in _FAST]
-    return next(iter([*slow, *(name for name in ("speed_rpm",) if name in axes), *axes]))

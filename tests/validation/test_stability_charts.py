@@ -36,8 +36,7 @@ def test_slices_make_the_same_chart_and_tell_how_far_it_is(pair, monkeypatch) ->
     assert told[-1] == 1.0
 
 
-def test_slow_axes_are_the_ones_cut(pair, monkeypatch) -> None:
-    monkeypatch.setattr(stability_charts, "_SLICE", 1)
+def test_slow_axes_tell_their_progress_value_by_value(pair) -> None:
     axes = {"speed_rpm": np.array([4000.0, 5000.0]), "torque": np.array([20.0, 60.0, 90.0])}
     told: list[float] = []
     found = dense_chart(pair, axes, progress=told.append)

@@ -119,3 +119,15 @@ def test_damping_at_the_operating_speed_is_a_root(pair) -> None:
 def test_tongues_are_drawn_to_their_tips(margins) -> None:
     figure = tongues_figure(margins)
     assert {t.get_text() for t in figure.axes[0].texts} >= {"2ω₃/5", "2ω₃/4"}
+
+
+@pytest.mark.parametrize(
+    ("rpm", "nearest"),
+    [(5000.0, 6500.0), (6600.0, 6600.0), (7400.0, 6800.0), (7800.0, 8300.0), (9e3, 8400.0)],
+)
+def test_the_nearest_unstable_speed_is_the_nearest_edge(margins, rpm: float, nearest: float) -> None:
+    intervals = np.array([[6500.0, 6800.0], [8300.0, 8400.0]])
+    here = replace(margins, rpm=rpm, unstable_here=intervals)
+    assert here.nearest_unstable == nearest
+    assert here.speed_margin == abs(rpm - nearest)
+    assert replace(margins, unstable_here=np.empty((0, 2))).speed_margin is None
