@@ -5,8 +5,8 @@
 
 Rates are per second of processor time, times the cores of the machine, so that other work on the machine does
 not enter. The solvers get every help they can use on the same points: polynomials ready to evaluate, and
-restarts at the switches (without that they would lose their order). Accuracy is measured in extended precision
-(`floquet.gear_reference`).
+restarts at the switches (without that they would lose their order). Accuracy is measured in extended
+precision (`floquet.gear_reference`).
 """
 
 from __future__ import annotations
