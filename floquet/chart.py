@@ -195,7 +195,13 @@ def chart(
 
 
 def save_chart(dataset: xr.Dataset, path: str | Path) -> None:
-    """Write a chart as NetCDF, which has no complex numbers: they become ``_real`` and ``_imag``."""
+    """Write a chart as NetCDF, which has no complex numbers: they become ``_real`` and ``_imag``.
+
+    Parameters
+    ----------
+    dataset : the chart, as `stability_chart` or `chart` returns it
+    path : of the file
+    """
     split = dataset.copy()
     for name, variable in dataset.data_vars.items():
         if np.iscomplexobj(variable.values):

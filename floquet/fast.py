@@ -33,7 +33,7 @@ class FastMonodromy:
 
     Attributes
     ----------
-    matrices : (N, 2m, 2m) in x = (omega eta, eta') of `ModalForm`
+    matrices : (N, 2m, 2m) in x = (omega eta, eta') of `ModalForm`, dimensionless
     errors : (N,) bound on the Frobenius norm of the error of each: majorant of the truncation, misfit of the
         polynomials, rounding
     forced : (N, 2m) state at T from rest under the forcing
@@ -162,7 +162,7 @@ class FastMultipliers:
 
     Attributes
     ----------
-    multipliers, errors : (N, 2m) with a bound on the error of each, in no particular order
+    multipliers, errors : (N, 2m) with a bound on the error of each, dimensionless, in no particular order
     matrix_errors : (N,) bound on the error of the monodromy matrix in energy coordinates
     """
 

@@ -25,7 +25,7 @@ class FastPeriodicMotion:
 
     Attributes
     ----------
-    initial : (N, 2m) state (z, z') at t = 0
+    initial : (N, 2m) state (z, z') at t = 0, in the units of the system, for a gear pair [m, m/s]
     errors : (N,) bound on the norm of the error of ``initial`` in energy coordinates (`ModalForm`)
     amplitude : (N,) of the input of `Balance`; 0 where the system has none
     amplitude_errors : (N,) bound on its error

@@ -29,6 +29,11 @@ def predicted_lines(pair: GearPair | GearVariation, orders: int = 12) -> dict[To
     """Pinion speeds [rpm] at which the mesh frequency is (omega_i +- omega_j)/k.
 
     omega are the natural frequencies of the time-averaged undamped feedback block, k = 1..orders.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    orders : largest k
     """
     omega = gear_block(pair).modal().omega
     teeth = (pair if isinstance(pair, GearPair) else pair.pair).pinion.teeth

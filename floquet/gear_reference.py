@@ -39,7 +39,7 @@ _LAPACK = 1e-13
 
 
 def extended_monodromy(pair: GearPair) -> FloatArray:
-    """Monodromy matrix (6, 6) of (q, x_p, x_g) and their rates over ``RATE``, rounded to double."""
+    """Monodromy matrix (6, 6) of (q, x_p, x_g) and their rates over ``RATE``, all in units of m."""
     system = periodic_system(pair, "feedback")
     lengths, w, wd = _steps(system)
     flows = _transitions(

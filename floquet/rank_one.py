@@ -183,9 +183,18 @@ class RankOneSystem:
 class ModalForm:
     """eta'' + C eta' + omega^2 eta + (w - reference) (v . eta) + wd (v . eta') = f + fr/T, z = shapes @ eta.
 
-    w, wd, f and fr are (Q, P, m, d+1), Q parts of `RankOneSystem.parts`. omega and shapes are the modes of
-    the mean undamped frictionless system, orthonormal in the metric. In the states x = (omega eta, eta') the
-    squared norm is twice the energy of that system, the natural measure of errors.
+    In the states x = (omega eta, eta') the squared norm is twice the energy of the mean undamped
+    frictionless system, the natural measure of errors.
+
+    Attributes
+    ----------
+    omega : (m,) natural frequencies of that system [rad/s]
+    C : (m, m) damping of the supports [1/s]
+    v : (m,) the deflection is v . eta
+    w, wd, f, fr : (Q, P, m, d+1) polynomials of the Q parts of `RankOneSystem.parts` on P pieces
+    reference : (m,) constant part of w that omega^2 has already
+    input : (m,) constant forcing that is balanced, see `Balance`
+    shapes : (m, m) modes of that system as columns, orthonormal in the metric
     """
 
     omega: FloatArray

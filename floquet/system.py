@@ -39,6 +39,7 @@ class PeriodicSystem:
     Attributes
     ----------
     dimension : n
+    edges : (segments + 1,) ends of the smooth segments from 0 to T [s]
 
     Raises
     ------

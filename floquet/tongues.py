@@ -28,6 +28,12 @@ class Tongue:
 
     i = j with sign +1 is a parametric resonance of one mode, i < j a combination resonance: of the sum
     (sign +1) or of the difference (sign -1, omega_j - omega_i).
+
+    Attributes
+    ----------
+    mode_i, mode_j : i <= j
+    sign : +1 or -1
+    order : k >= 1
     """
 
     mode_i: int

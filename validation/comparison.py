@@ -83,7 +83,7 @@ class CrossCheck:
     orders : mesh orders of both models, per quantity and fidelity
     lumped : dataset of the lumped model
     multibody : fidelity -> dataset of the multibody model, at the same times
-    cycles, compared_cycles : mesh cycles simulated, and those at the end over which "exact" is compared
+    cycles, compared_cycles : numbers of mesh cycles simulated, and of those at the end compared for "exact"
     contact_shift : mean shift of the contact by finite motions, over the base pitch
     finite_motion : what finite motions must change, predicted from the lumped model; None without "exact"
     unsettled : fidelity -> change of the multibody transmission error over the last two cycles, over its peak

@@ -1,6 +1,6 @@
 """Law V: the law that the local film parameter asks for, equation (20).
 
-Sources: Abbas Al-Zubaidi 2008, eq. 20, and the missing full-film case (docs/theory/friction.md, "The five laws").
+Sources: Abbas Al-Zubaidi 2008, eq. 20, and the missing full-film case (docs/theory/friction.md).
 """
 
 from __future__ import annotations

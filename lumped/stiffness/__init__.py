@@ -1,6 +1,6 @@
 """Tooth-pair stiffness over the path of contact: one small module per model, and their registry.
 
-Sources: each model names its own.
+Sources: each model names its own; docs/theory/mesh_physics.md, "Stiffness of a tooth pair".
 """
 
 from __future__ import annotations

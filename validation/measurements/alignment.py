@@ -1,6 +1,6 @@
 """Alignment of a record with a prediction by mesh phase.
 
-Sources: least squares over the phase, as docs/how_to/measured_data.md describes it.
+Sources: least squares over the phase; docs/theory/equations.md, "Frame", for what the phase is.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Alignment:
 
 
 def mesh_cycles(measurement: Measurement, pair: GearPair) -> FloatArray:
-    """Mesh cycles of the samples before alignment, (k,).
+    """Mesh cycles of the samples before alignment, (k,) [-].
 
     From roll angles eps of pair A's contact on the pinion, xi = r_bp eps and u = (xi - L_XA)/lambda; from
     times, u = t/T_m at the record's speed.

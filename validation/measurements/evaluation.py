@@ -1,6 +1,6 @@
 """A record evaluated in one go: aligned, laid over its prediction, friction identified.
 
-Sources: docs/how_to/measured_data.md.
+Sources: see ``identification`` (Fuller 1987).
 """
 
 from __future__ import annotations

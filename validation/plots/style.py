@@ -148,7 +148,13 @@ def path_marks(g: Geometry) -> dict[str, float]:
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a figure as SVG, PDF or PNG, by suffix; the same figure gives the same bytes, without dates."""
+    """Write a figure as SVG, PDF or PNG; the same figure gives the same bytes, without dates.
+
+    Parameters
+    ----------
+    figure : the figure
+    path : its suffix names the format
+    """
     suffix = path.suffix.lower().removeprefix(".")
     dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None, "ModDate": None}}
     metadata: dict[str, Any] = dates.get(suffix, {"Software": None})

@@ -47,7 +47,7 @@ class Report:
     sentence : its verdict in one sentence
     verdicts : chapter -> word of its verdict
     failures : verdicts that are bad, one line each
-    seconds : wall time
+    seconds : wall time [s]
     comparison : with an earlier report, where one was given
     """
 

@@ -1,0 +1,140 @@
+"""Is every public name documented: meaning, arguments, units, source?"""
+
+import dataclasses
+import importlib
+import inspect
+import pkgutil
+import re
+import sys
+
+import pytest
+
+import lumped
+
+PACKAGES = ("lumped", "multibody", "floquet", "validation")
+#: Modules that hold no mathematics of gears, so that there is nothing to cite.
+BOOKKEEPING = re.compile(
+    r"lumped\.(errors|parameters|serialise)"
+    r"|floquet\.chart"
+    r"|validation\.(exchange|studies|plots|reporting|commands|interactive|measurements\.(record|specification))\b.*"
+    r"|validation\.paper\.(records|reproduction|claims|plots|figures)\b.*"
+    r"|validation\.verification\.checks"
+)
+SOURCE = re.compile(r"\beqs?\. |\bISO\b|\b(18|19|20)\d\d\b|docs/theory/\w+\.md")
+UNIT = re.compile(
+    r"\[[^\]]*\]|\bSI\b|\bunits?\b|dimensionless|relative|ratio|share|coefficient|number|in mesh cycles"
+)
+
+
+def public_names():
+    """Objects that some package's or subpackage's __all__ names, each once."""
+    found = {}
+    for root in PACKAGES:
+        package = importlib.import_module(root)
+        modules = [package] + [
+            importlib.import_module(info.name)
+            for info in pkgutil.walk_packages(package.__path__, root + ".")
+            if info.ispkg
+        ]
+        for module in modules:
+            for name in getattr(module, "__all__", ()):
+                thing = getattr(module, name)
+                found.setdefault(id(thing), (f"{module.__name__}.{name}", thing))
+    return [pytest.param(thing, id=name) for name, thing in found.values()]
+
+
+NAMES = public_names()
+CALLABLES = [
+    p for p in NAMES if inspect.isclass(p.values[0]) or inspect.isroutine(inspect.unwrap(p.values[0]))
+]
+FUNCTIONS = [p for p in CALLABLES if inspect.isfunction(inspect.unwrap(p.values[0]))]
+
+
+def text_of(thing):
+    """Docstring of a function or class, with those of the base classes."""
+    if inspect.isclass(thing):
+        own = [c for c in thing.__mro__ if c.__module__.split(".")[0] in PACKAGES]
+        return "\n".join(inspect.getdoc(c) or "" for c in own)
+    return inspect.getdoc(thing) or ""
+
+
+def referred(text, thing):
+    """The text and those of the public names it sends the reader to, ``see `name` ``."""
+    texts = [text]
+    for name in re.findall(r"`+([\w.]+)`+", text):
+        owner, _, last = name.rpartition(".")
+        for module in filter(None, (owner, thing.__module__, thing.__module__.split(".")[0])):
+            try:
+                other = getattr(importlib.import_module(module), last, None)
+            except ImportError:
+                continue
+            if other is not None and other is not thing:
+                texts.append(text_of(other) if callable(other) else "")
+    return "\n".join(texts)
+
+
+def test_there_are_names_to_check():
+    assert len(NAMES) > 150
+
+
+@pytest.mark.parametrize("thing", CALLABLES)
+def test_has_a_meaning(thing):
+    text = inspect.getdoc(thing) or ""
+    assert len(text.split("\n")[0]) > 15
+    assert not text.startswith(f"{thing.__name__}("), "pydantic's or dataclass' own signature is no docstring"
+
+
+@pytest.mark.parametrize("thing", FUNCTIONS)
+def test_every_argument_is_described(thing):
+    parameters = [
+        p.name
+        for p in inspect.signature(thing).parameters.values()
+        if p.kind not in (p.VAR_KEYWORD, p.VAR_POSITIONAL)
+    ]
+    text = referred(text_of(thing), thing)
+    for name in parameters:
+        # One argument may be described by the sentence that says what the function does with it.
+        entry = rf"(?m)^[\w, *]*\b{name}\b[\w, ]*( \([^)]*\))? :" if len(parameters) > 1 else r"\w"
+        assert re.search(entry, text), f"{name} is not described"
+
+
+@pytest.mark.parametrize("thing", [p for p in CALLABLES if dataclasses.is_dataclass(p.values[0])])
+def test_every_attribute_is_described(thing):
+    text = text_of(thing)
+    for field in dataclasses.fields(thing):
+        assert field.name.startswith("_") or re.search(rf"\b{field.name}\b", text), field.name
+
+
+def _carries_numbers(thing):
+    if inspect.isclass(thing):
+        types = [str(f.type) for f in dataclasses.fields(thing)] if dataclasses.is_dataclass(thing) else []
+    else:
+        types = [str(inspect.signature(thing).return_annotation)]
+    return any(re.search(r"\b(float|FloatArray|ComplexArray)\b", t) for t in types)
+
+
+@pytest.mark.parametrize("thing", [p for p in CALLABLES if _carries_numbers(p.values[0])])
+def test_numbers_have_units(thing):
+    assert UNIT.search(text_of(thing)), "no unit, and nothing that says it has none"
+
+
+@pytest.mark.parametrize("thing", CALLABLES)
+def test_a_source_is_named(thing):
+    module = sys.modules[thing.__module__]
+    if not BOOKKEEPING.fullmatch(module.__name__):
+        assert SOURCE.search(text_of(thing) + (module.__doc__ or "")), f"name it in {module.__name__}"
+
+
+@pytest.mark.parametrize("thing", FUNCTIONS)
+def test_no_function_swallows_keywords(thing):
+    """Without **options Python itself refuses a keyword that it does not know; figures hand theirs on."""
+    kinds = {p.kind for p in inspect.signature(thing).parameters.values()}
+    assert inspect.Parameter.VAR_KEYWORD not in kinds
+
+
+def test_an_unknown_keyword_raises():
+    pair = lumped.load_gear_pair("nasa_28_28")
+    with pytest.raises(TypeError, match="cycle"):
+        lumped.simulate(pair, cycle=3)
+    with pytest.raises(lumped.ParameterError, match="pinion_sped"):
+        pair.with_(operating__pinion_sped=1000.0)
