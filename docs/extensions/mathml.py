@@ -40,7 +40,7 @@ def _braced(latex: str) -> str:
     """The same with braces about both arguments of every fraction: docutils reads frac 12 as one number."""
     result, rest = "", latex
     while start := re.search(r"\\[td]?frac\s*", rest):
-        result, rest = result + start[0].strip(), rest[start.end() :]
+        result, rest = result + rest[: start.start()] + start[0].strip(), rest[start.end() :]
         for _ in range(2):
             argument, rest = _argument(rest.lstrip())
             result += "{" + _braced(argument) + "}"
