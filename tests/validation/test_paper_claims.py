@@ -13,7 +13,7 @@ from lumped.errors import ParameterError
 from lumped.friction import contact_path
 from validation.paper import claim_numbers as numbers
 from validation.paper.claim_rules import RULES
-from validation.paper.claims import claims, judged
+from validation.paper.claims import ACCURACY, claims, judged
 from validation.paper.operating_points import LAWS
 from validation.paper.sensitivity import ASSUMPTIONS, Sensitivity, measure, sample_assumptions, vary
 
@@ -242,3 +242,81 @@ def test_without_samples_there_is_no_share(pair):
 def test_too_few_samples_are_refused(pair):
     with pytest.raises(ParameterError, match="samples"):
         claims(pair, samples=3)
+
+
+#: Numbers that meet every criterion, well inside.
+MET = {
+    "mean_ratio": 5.0,
+    "iii_at_pitch": 0.1,
+    "ii_at_pitch": 1.5,
+    "switch_width": 0.1,
+    "switch_drop": 2.0,
+    "switch_speed": 2500.0,
+    "jump_coulomb": 1.0,
+    "jump_benedict_kelley": 1.0,
+    "jump_xu_kahraman": 0.0,
+    "jump_smoothed_coulomb": 0.0,
+    "load_spread": 0.01,
+    "rms_x_p": 0.01,
+    "rms_dte": 0.01,
+    "rms_y_p": 0.01,
+    "order_y_p": 2.0,
+    "mean_absolute_x_p": 0.08,
+    "mean_absolute_y_p": 0.08,
+    "mean_iii_slow": 0.004,
+}
+#: Claim, number, last value that meets the criterion as it is written, first that does not.
+EDGES = [
+    ("mean of II above III", "mean_ratio", 2.0, 1.99),
+    ("pitch point", "iii_at_pitch", 0.2, 0.201),
+    ("pitch point", "ii_at_pitch", 1.001, 1.0),
+    ("abrupt regime change", "switch_width", 0.2, 0.201),
+    ("abrupt regime change", "switch_drop", 1.2, 1.199),
+    ("speed of the regime change", "switch_speed", 2000.0, 1999.0),
+    ("speed of the regime change", "switch_speed", 3000.0, 3001.0),
+    ("jumps", "jump_coulomb", 0.5, 0.499),
+    ("jumps", "jump_benedict_kelley", 0.5, 0.499),
+    ("jumps", "jump_xu_kahraman", 0.01, 0.0101),
+    ("jumps", "jump_smoothed_coulomb", -0.01, -0.0101),
+    ("normal load", "load_spread", 0.05, 0.0501),
+    ("LOA motion and DTE", "rms_x_p", 0.05, 0.0501),
+    ("LOA motion and DTE", "rms_dte", 0.05, 0.0501),
+    ("OLOA motion", "rms_y_p", 0.05, 0.0501),
+    ("second harmonic", "order_y_p", 2.0, 1.0),
+    ("second harmonic", "order_y_p", 2.0, 3.0),
+    ("8 % discrepancy", "mean_absolute_x_p", 0.04, 0.039),  # with y 0.08: 6 % in the mean
+    ("8 % discrepancy", "mean_absolute_y_p", 0.12, 0.121),
+    ("identified mu", "mean_iii_slow", 0.003, 0.0029),
+    ("identified mu", "mean_iii_slow", 0.005, 0.0051),
+]
+
+
+@pytest.mark.parametrize(("name", "key", "inside", "outside"), EDGES)
+def test_a_criterion_decides_where_its_words_say(name, key, inside, outside):
+    rule = next(rule for rule in RULES if rule.name == name)
+    assert rule.holds({**MET, key: inside})
+    assert not rule.holds({**MET, key: outside})
+
+
+def test_every_criterion_has_its_edges_pinned():
+    # The 3 % claim has no number of its own: it is met where the prediction stays within 3 %.
+    assert {edge[0] for edge in EDGES} == {rule.name for rule in RULES} - {ACCURACY}
+
+
+def test_percentiles_and_the_accuracy_claim(stated):
+    rule = next(rule for rule in RULES if rule.name == ACCURACY)
+    peak = stated["peak_friction"]
+    factors = np.array([0.5, 0.969, 0.971, 1.0, 1.029, 1.031, *np.full(94, 2.0)])
+    n = factors.size
+    varied = Sensitivity(
+        {k: np.full(n, v) for k, v in stated.items()} | {"peak_friction": peak * factors},
+        np.zeros((n, 1)),
+        0,
+        0,
+        1,
+    )
+    claim = judged(rule, stated, varied, {})
+    assert claim.share == pytest.approx(0.03)  # 0.971, 1 and 1.029 of a hundred
+    # Linear between the fifth and sixth of a hundred: 4.95 of 99 steps from the smallest.
+    assert claim.low == pytest.approx(peak * (1.029 + 0.95 * 0.002), rel=1e-9)
+    assert claim.high == pytest.approx(2.0 * peak, rel=1e-9)
