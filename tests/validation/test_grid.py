@@ -75,6 +75,11 @@ def test_a_point_where_friction_holds_the_teeth_is_compared_but_not_judged(resul
     found = summarise_grid(wrong)
     assert found.verdict == "confirmed"
     assert (found.sticking, found.scaled) == (1, 1)
+    assert outside_tolerance(wrong) == ()
+    # The law of torque needs both torques judged: of a pair whose lower torque is held nothing is asked.
+    lower = result.copy(deep=True)
+    lower["status"].loc[{"law": "coulomb", "speed": 0.3, "torque": 0.25}] = STICKING
+    assert int(law_of_torque(lower).notnull().sum()) == 1
     # It is the worst point, and named, but not among the judged.
     assert found.largest == 7.0
     assert found.largest_judged < 1.0
