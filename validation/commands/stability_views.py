@@ -73,8 +73,6 @@ class Request:
             )
         if view == "boundaries" and len(self.axes) == 2 and "speed_rpm" not in self.axes:
             raise refuse("--axis", ", ".join(self.axes), f"{text} for --view {view}", "Change the axes.")
-        if view == "boundaries" and "stiffness_variation" in self.axes:
-            raise refuse("--axis", "stiffness_variation", f"another axis for --view {view}", "Use a chart.")
         if view == "zones":
             coulomb_gear_pair(self.pair, 0.0)  # refuses a ratio for which there is no closed form
         if self.method not in METHODS:

@@ -30,14 +30,17 @@ def boundaries_figure(
     for row in range(found.sizes["tongue"]):
         tongue = found.isel(tongue=row)
         here = tongue["present"].to_numpy()
-        lower, upper = (np.where(here, tongue[edge].to_numpy(), np.nan) for edge in ("lower", "upper"))
-        ax.fill_betweenx(values, lower, upper, color=UNSTABLE, linewidth=0.0)
-        for edge in (lower, upper):  # marks show a tongue that is met at one value alone
-            ax.plot(edge, values, color=RED, linewidth=1.0, marker=".", markersize=3.0)
+        lower, upper = (
+            tongue[f"interval_{edge}"].transpose(name, ...).to_numpy() for edge in ("lower", "upper")
+        )
+        for edges in zip(lower.T, upper.T, strict=True):
+            ax.fill_betweenx(values, *edges, color=UNSTABLE, linewidth=0.0)
+            for edge in edges:  # marks show a tongue that is met at one value alone
+                ax.plot(edge, values, color=RED, linewidth=1.0, marker=".", markersize=3.0)
         # Named where the tongue leaves the figure, or at its last value.
         last = int(np.flatnonzero(here)[-1])
         names.append(str(tongue["label"].item()))
-        places.append(float(0.5 * (lower[last] + upper[last])))
+        places.append(float(tongue["peak"][last]))
         widths.append(float(np.nanmax(upper - lower)))
     ax.set_ylim(values.min(), values.max())
     if names:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import textwrap
+
 import matplotlib as mpl
 import numpy as np
 import xarray as xr
@@ -135,7 +137,7 @@ def mark_operating_point(ax: Axes, point: tuple[float, float]) -> None:
 
 
 def axis_label(chart: xr.Dataset, name: str) -> str:
-    """Plain name and unit of an axis of a chart."""
+    """Plain name and unit of an axis of a chart, in lines that fit the height of a figure."""
     attrs = chart[name].attrs
     unit = attrs.get("units", "1")
-    return f"{attrs.get('long_name', name)} [{'-' if unit == '1' else unit}]"
+    return textwrap.fill(f"{attrs.get('long_name', name)} [{'-' if unit == '1' else unit}]", 40)
