@@ -18,6 +18,8 @@ RECTANGULAR = lumped.load_gear_pair("nasa_28_28").with_(
 UNEQUAL = lumped.load_gear_pair("fzg_c").with_(
     friction__law="xu_kahraman", mesh__stiffness={"model": "parabolic"}, operating__pinion_speed=651
 )
+#: The same where stiffness changes along the path and does not jump: only the place of the contact matters.
+SMOOTH = UNEQUAL.with_(mesh__stiffness={"model": "parabolic", "ramp_length": 2.0})
 
 
 def unexplained(pair, effects=PREDICTED, quantities=("dte", "x_p", "y_p", "normal_load", "friction_force")):
@@ -60,15 +62,16 @@ def test_actual_sliding_velocity_alone():
         (RECTANGULAR, {"entry_shift", "rotation_phase", "moving_line"}),
         (RECTANGULAR, set(PREDICTED)),
         (UNEQUAL, set(PREDICTED)),
+        (SMOOTH, set(PREDICTED)),
     ],
-    ids=["contact", "all", "all, unequal"],
+    ids=["contact", "all", "all, unequal", "all, smooth"],
 )
 def test_effects_together(pair, effects):
     """What is left is not predicted: displacements over lengths of the machine, some 1e-3 of the change."""
     for name, (size, share) in unexplained(
         pair, effects, ("dte", "y_p", "normal_load", "friction_force")
     ).items():
-        assert size > 5e-3, name
+        assert size > 1e-3, name
         assert share < 2e-2, name
 
 
