@@ -17,7 +17,7 @@ from sphinx.transforms.post_transforms import SphinxPostTransform
 #: One letter, perhaps primed or dotted, or a closing bar, then _index and ^exponent in either order.
 _SYMBOL = re.compile(
     r"(?<![^\W\d])(?<![`.\\-])(?P<base>\b10(?=\^)|\(?\|*[^\W\d_][\u0300-\u036f′]*\|?)"
-    r"(?P<marks>(?:_(?:[^\W_]+|\{[^{}]*\})|\^(?:\{[^{}]*\}|[−-]?(?:\d+(?:\.\d+)?|[^\W\d_]\d*|\w)))+)(?![^\W_])"
+    r"(?P<marks>(?:_(?:[^\W_²³¹⁰-⁹]+|\{[^{}]*\})|\^(?:\{[^{}]*\}|[−-]?(?:\d+(?:\.\d+)?|[^\W\d_]\d*|\w)))+)(?![^\W_²³¹⁰-⁹])"
 )
 _MARK = re.compile(r"([_^])\{?([^_^{}]+)\}?")
 _NOT_TEXT = (

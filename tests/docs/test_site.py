@@ -57,6 +57,7 @@ def test_fields_of_a_docstring():
         ("mesh_efficiency", "mesh_efficiency"),
         ("2w_i/k", "2w[i]/k"),
         ("e^{−ct} y", "e{−ct} y"),
+        ("r_b²(r_i⁻²", "r[b]²(r[i]⁻²"),
         ("10^-16 m", "10{-16} m"),
     ],
 )
