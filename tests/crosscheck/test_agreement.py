@@ -91,7 +91,10 @@ def test_each_effect_acts(effect):
 
 @pytest.mark.slow
 def test_order_in_torque_is_two():
-    """Absolute differences grow with the square of the torque: slope 2 over T ... T/64, smooth stiffness."""
+    """Absolute differences grow with the square of the torque: slope 2 over T ... T/64, smooth stiffness.
+
+    Measured: 1.989 (dte), 1.989 (x_p), 1.990 (y_p).
+    """
     torques = 56.5 / 2.0 ** np.arange(7)
     sizes = {name: np.empty(7) for name in ("dte", "x_p", "y_p")}
     for j, torque in enumerate(torques):
