@@ -1,7 +1,7 @@
 """A record laid over a prediction: sample by sample, and as metrics with uncertainty.
 
-Sources: bootstrap of whole blocks, Davison and Hinkley, Bootstrap Methods and their Application, 1997, section
-8.2.
+Sources: bootstrap of whole blocks, Davison and Hinkley, Bootstrap Methods and their Application,
+1997, section 8.2.
 """
 
 from __future__ import annotations
