@@ -61,7 +61,11 @@ class Axis(Section):
             return ParameterError([FieldProblem(field, str(value), allowed, action)])
 
         for path in self.field:
-            target_of(path)
+            try:
+                target_of(path)
+            except ParameterError as error:
+                (problem, *_) = error.problems
+                raise stop("field", shown(repr(path)), problem.allowed, problem.action) from None
         if self.values is not None:
             if self.low is not None or self.high is not None or self.count is not None:
                 raise stop("values", "with low, high or count", "one of the two ways", "Remove one.")
