@@ -48,6 +48,7 @@ def efficiency_figure(losses: xr.Dataset, chosen: str) -> Figure:
     ax.invert_yaxis()
     ax.set_xlim(left=0.0)
     ax.set_xlabel("loss of the mesh over input power [%]")
+    ax.set_ylabel("friction law")
     legend_above(ax, 3)
     return figure
 

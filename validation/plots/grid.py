@@ -46,9 +46,9 @@ def grid_figure(result: xr.Dataset, quantity: str = "dte", fidelity: str = "exac
         (
             axes[0, 0],
             result["largest"].sel(fidelity=fidelity, quantity=quantity),
-            f"{quantity}, {fidelity}: largest\ndifference / peak to peak",
+            f"{quantity}, {fidelity}: largest\ndifference / peak to peak [-]",
         ),
-        (axes[1, 0], usage, "largest share of\na tolerance, all quantities"),
+        (axes[1, 0], usage, "largest share of\na tolerance, all quantities [-]"),
     ):
         table = values.transpose(*rows, *columns).to_numpy().reshape(shape)
         finite = table[np.isfinite(table) & (table > 0.0)]
@@ -68,7 +68,7 @@ def grid_figure(result: xr.Dataset, quantity: str = "dte", fidelity: str = "exac
         fontsize=7.0,
     )
     shares = ", ".join(f"{t:g}" for t in result["torque"].to_numpy())
-    bottom.set_xlabel(f"share of the preset's speed; within each, torque {shares} of the preset's")
+    bottom.set_xlabel(f"share of the preset's speed; within each, torque {shares} of the preset's [-]")
     figure.legend(loc="outside lower center", ncols=3, frameon=False, fontsize=7.5)
     return figure
 
@@ -89,6 +89,7 @@ def _frame(ax: Axes, result: xr.Dataset) -> None:
     """Name the rows, and part gear pairs and laws by white lines."""
     names = [f"{p}, {s}" for p in result["preset"].to_numpy() for s in result["stiffness"].to_numpy()]
     ax.set_yticks(range(len(names)), names, fontsize=7.0)
+    ax.set_ylabel("preset, stiffness model")
     for i in range(1, result.sizes["preset"]):
         ax.axhline(result.sizes["stiffness"] * i - 0.5, color="white", linewidth=1.6)
     for i in range(1, result.sizes["law"]):

@@ -33,5 +33,6 @@ def draw_figure3(record: FigureRecord) -> Figure:
     whole.set_ylabel("µ / mean of |µ| [-]")
     legend(whole, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=1.7)
     close.set_xlim(pitch - 0.03, pitch + 0.03)
-    close.set_xlabel("close-up of the pitch point P")
+    close.set_xlabel("close-up of P [mesh cycles since A]")
+    close.set_ylabel("µ / mean of |µ| [-]")
     return figure

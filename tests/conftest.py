@@ -1,0 +1,55 @@
+"""Whatever test saves a figure, its axes carry labels, with units where they show numbers."""
+
+import re
+
+import pytest
+from matplotlib.axis import Axis
+from matplotlib.figure import Figure
+
+#: A unit in brackets, or a count that is its own unit.
+UNIT = re.compile(r"\[[^\]]+\]|\b(mesh cycles|mesh order|revolutions)\b")
+#: What a number on an axis may look like: 1, -2.5, 10^3 in mathematical text, 5e-4.
+NUMBER = re.compile(r"[-−+0-9.e\s×{}$^\\]*|.*mathdefault.*")
+
+
+def _shown(axis: Axis) -> list[str]:
+    """Texts of the ticks of an axis that can be seen."""
+    return [label.get_text() for label in axis.get_ticklabels() if label.get_visible() and label.get_text()]
+
+
+def missing_labels(figure: Figure) -> list[str]:
+    """Complaints about axes of a figure without label, or without a unit though they show numbers.
+
+    Insets show part of the axes they lie in and need none; of shared axes one label is enough.
+    """
+    found = []
+    figure.draw_without_rendering()
+    insets = {child for axes in figure.axes for child in axes.child_axes}
+    for index, axes in enumerate(figure.axes):
+        for axis, name in ((axes.xaxis, "x"), (axes.yaxis, "y")):
+            texts = _shown(axis)
+            if axes in insets or not (axes.axison and axes.get_visible() and texts):
+                continue
+            shared = axes.get_shared_x_axes() if name == "x" else axes.get_shared_y_axes()
+            siblings = [getattr(other, f"{name}axis").get_label_text() for other in shared.get_siblings(axes)]
+            label = axis.get_label_text() or next(filter(None, siblings), "")
+            if not label:
+                found.append(f"axes {index}: the {name} axis has no label")
+            elif all(NUMBER.fullmatch(text) for text in texts) and not UNIT.search(label):
+                found.append(f"axes {index}: {label!r} states no unit")
+    return found
+
+
+@pytest.fixture(autouse=True, scope="session")
+def labelled_figures():
+    """Check every figure as it is saved."""
+    save = Figure.savefig
+
+    def checked(figure, *args, **options):
+        found = missing_labels(figure)
+        assert not found, (args, found)
+        return save(figure, *args, **options)
+
+    Figure.savefig = checked
+    yield
+    Figure.savefig = save
