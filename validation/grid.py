@@ -50,8 +50,8 @@ CONSTANT_COEFFICIENT = ("coulomb", "smoothed_coulomb")
 #: The law of torque is judged where the stiffness has no jump.
 SMOOTH_STIFFNESS = ("smooth",)
 _COEFFICIENT = 0.05
-#: Allowed departure from the law of torque: the next order in torque is a share of the difference itself,
-#: which is some per cent at the torques of the presets.
+#: Allowed departure of the fall with torque from the expected one: what the expectation leaves out is of the
+#: next order in torque, a share of the difference itself, which is some per cent at the presets' torques.
 SCALING_TOLERANCE = 0.08
 AXES = ("preset", "law", "stiffness", "speed", "torque")
 
@@ -144,8 +144,10 @@ def crosscheck_grid(
             there and nothing is compared), "sliding may stick" (see ``validation.finite_motion``; compared
             but not judged at fidelity "exact"), or why a model failed
         load_min : smallest normal load of the lumped model over the static load
+        expected : largest change of the DTE that finite motions must make, over its peak to peak
         ratio : DTE difference over that at the next lower torque, divided by the ratio of the torques: 1 by
             the law of torque; NaN at the lowest
+        ratio_expected : the same of the expected changes, which also know what follows the first order
         ratio_judged : whether that law must hold there: constant friction coefficient, smooth stiffness
         seconds : processor time of the point
 
@@ -196,7 +198,8 @@ def _dataset(g: Grid, points: list[GridPoint]) -> xr.Dataset:
         return np.stack([getattr(p, name) for p in points]).reshape(shape)
 
     inner = (*AXES, "fidelity", "quantity")
-    largest = every("largest")
+    largest, expected = every("largest"), each("expected")
+    dte = largest[..., FIDELITIES.index("exact"), QUANTITIES.index("dte")]
     variables: dict[str, tuple[tuple[str, ...], Any, str, str]] = {
         "difference": (inner, every("judged"), "1", "judged metric of the difference"),
         "limit": (inner, every("limit"), "1", "tolerance of the judged metric"),
@@ -204,7 +207,9 @@ def _dataset(g: Grid, points: list[GridPoint]) -> xr.Dataset:
         "largest": (inner, largest, "1", "largest difference over peak to peak"),
         "status": (AXES, each("status"), "1", "what came of the point"),
         "load_min": (AXES, each("load_min"), "1", "smallest normal load over static load, lumped"),
-        "ratio": (AXES, _ratios(g, largest), "1", "fall of the DTE difference with torque, over expected"),
+        "expected": (AXES, expected, "1", "largest expected DTE difference over peak to peak"),
+        "ratio": (AXES, _ratios(g, dte), "1", "fall of the DTE difference, over that of the torque"),
+        "ratio_expected": (AXES, _ratios(g, expected), "1", "expected fall over that of the torque"),
         "ratio_judged": (AXES, _ratio_judged(g), "1", "whether the law of torque must hold"),
         "seconds": (AXES, each("seconds"), "s", "processor time of the point"),
     }
@@ -230,9 +235,8 @@ def _dataset(g: Grid, points: list[GridPoint]) -> xr.Dataset:
     )
 
 
-def _ratios(g: Grid, largest: FloatArray) -> FloatArray:
-    """Fall of the exact DTE difference from each torque to the next, over the fall of the torque."""
-    dte = largest[..., FIDELITIES.index("exact"), QUANTITIES.index("dte")]
+def _ratios(g: Grid, dte: FloatArray) -> FloatArray:
+    """Fall of a difference of the DTE from each torque to the next, over the fall of the torque."""
     torques = np.asarray(g.torques)
     ratios = np.full(dte.shape, np.nan)
     ratios[..., :-1] = dte[..., :-1] / dte[..., 1:] / (torques[:-1] / torques[1:])

@@ -96,10 +96,15 @@ def summarise_grid(result: xr.Dataset) -> GridSummary:
 
 
 def law_of_torque(result: xr.Dataset) -> xr.DataArray:
-    """The ratios that are judged: both torques compared, coefficient constant, stiffness smooth."""
+    """Fall with torque over the expected one, where judged.
+
+    Judged are pairs of compared torques with constant coefficient and smooth stiffness. To first order the
+    fall is that of the torque; what sliding reversal changes near P does not obey that law, but is expected.
+    """
     compared = result["status"] == COMPARED
     following = compared.shift(torque=-1, fill_value=False)
-    return result["ratio"].where((result["ratio_judged"] != 0) & compared & following)
+    ratio = result["ratio"] / result["ratio_expected"]
+    return ratio.where((result["ratio_judged"] != 0) & compared & following)
 
 
 @dataclass(frozen=True)
