@@ -128,7 +128,7 @@ def _agreement(check: CrossCheck) -> str:
 def finite_motions(check: CrossCheck) -> str:
     """How much the exact model differs: in the transmission error, and in whatever differs most.
 
-    Stated whatever the verdict is: a difference that is understood, and so within its tolerance, is still
+    And how much of that the lumped model does not predict by itself. Stated whatever the verdict is: a difference that is understood, and so within its tolerance, is still
     one.
     """
     exact = check.of("exact")
@@ -137,7 +137,8 @@ def finite_motions(check: CrossCheck) -> str:
     text = f"difference {_percent(dte.relative_l2)} in the transmission error"
     if largest.quantity != dte.quantity:
         text += f", at most {_percent(largest.relative_l2)}, in {NAMES[largest.quantity]}"
-    return text
+    left = max(a.remainder_l2 for a in exact)
+    return f"{text}, foreseen from the lumped model alone but for {_percent(left)} at most"
 
 
 def _percent(ratio: float) -> str:
