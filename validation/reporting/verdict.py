@@ -128,8 +128,8 @@ def _agreement(check: CrossCheck) -> str:
 def finite_motions(check: CrossCheck) -> str:
     """How much the exact model differs: in the transmission error, and in whatever differs most.
 
-    And how much of that the lumped model does not predict by itself. Stated whatever the verdict is: a difference that is understood, and so within its tolerance, is still
-    one.
+    And how much of that the lumped model does not foresee. Stated whatever the verdict is: a difference that
+    is understood, and so within its tolerance, is still one.
     """
     exact = check.of("exact")
     largest = max(exact, key=lambda a: a.relative_l2)
