@@ -48,7 +48,7 @@ def crosscheck_grid(
     if target is not None:
         _write(result, target)
     console = stdout()
-    console.print(_table(result))
+    console.print(_tables(result))
     for line in _sentences(found, result):
         console.print(line, soft_wrap=True)
     for o in outside_tolerance(result):
@@ -65,25 +65,26 @@ def crosscheck_grid(
         raise typer.Exit(FAILED)
 
 
-def _table(result: xr.Dataset) -> object:
+def _tables(result: xr.Dataset) -> object:
+    from rich.console import Group
+
     from validation.grid import COMPARED, SEPARATED, STICKING
     from validation.grid_summary import law_of_torque
     from validation.reporting.formatting import number
 
-    # Narrow enough for a terminal of 80 columns: the pair stands above its rows.
-    shown = table(
-        "multibody against lumped: points judged, separate, held by friction, failed",
-        "",
-        ">points",
-        ">linear, of\nits limit",
-        ">exact DTE,\nrel. L2",
-        ">of it\nleft",
-        ">left, of\nits limit",
-        ">torque\nlaw off",
-    )
+    # A table a pair, narrow enough for a terminal of 80 columns.
+    tables = []
     for preset in result["preset"].to_numpy():
-        shown.add_section()
-        shown.add_row(str(preset))
+        shown = table(
+            f"{preset}: points judged, separate, held by friction, failed",
+            "stiffness",
+            ">points",
+            ">linear,\nof limit",
+            ">exact\nDTE",
+            ">of it\nleft",
+            ">left,\nof limit",
+            ">torque\nlaw off",
+        )
         for stiffness in result["stiffness"].to_numpy():
             part = result.sel(preset=preset, stiffness=stiffness)
             status = part["status"]
@@ -93,15 +94,16 @@ def _table(result: xr.Dataset) -> object:
             used = usage.sel(fidelity="exact").where(judged).max()
             departure = abs(law_of_torque(part) - 1.0).max()
             shown.add_row(
-                f"  {stiffness}",
+                str(stiffness),
                 " ".join(map(str, [*counts, status.size - sum(counts)])),
                 number(float(usage.sel(fidelity="linear").max()), 2),
                 number(float(exact["total"].max()), 2),
-                number(float(exact["difference"].max()), 2),
+                f"{float(exact['difference'].max()):.1e}",
                 number(float(used), 2),
                 number(float(departure), 2),
             )
-    return shown
+        tables.append(shown)
+    return Group(*tables)
 
 
 def _sentences(found: GridSummary, result: xr.Dataset) -> list[str]:
