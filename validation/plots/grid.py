@@ -56,7 +56,9 @@ def grid_figure(result: xr.Dataset, quantity: str = "dte", fidelity: str = "exac
         ax.grid(visible=False)
         norm = LogNorm(low, max(high, 1.01 * low))
         image = ax.imshow(table, norm=norm, cmap="viridis", aspect="auto", interpolation="nearest")
-        figure.colorbar(image, ax=ax, pad=0.01, aspect=20).set_label(label)
+        bar = figure.colorbar(image, ax=ax, pad=0.01, aspect=20)
+        bar.set_label(label, fontsize=8.0)
+        bar.ax.tick_params(labelsize=7.0)
         _marks(ax, status, legend=ax is axes[0, 0])
         _frame(ax, result)
     top, bottom = axes[:, 0]
@@ -68,7 +70,9 @@ def grid_figure(result: xr.Dataset, quantity: str = "dte", fidelity: str = "exac
         fontsize=7.0,
     )
     shares = ", ".join(f"{t:g}" for t in result["torque"].to_numpy())
-    bottom.set_xlabel(f"share of the preset's speed; within each, torque {shares} of the preset's [-]")
+    bottom.set_xlabel(
+        f"share of the preset's speed; within each, torque {shares} of the preset's [-]", fontsize=8.0
+    )
     figure.legend(loc="outside lower center", ncols=3, frameon=False, fontsize=7.5)
     return figure
 
@@ -89,7 +93,7 @@ def _frame(ax: Axes, result: xr.Dataset) -> None:
     """Name the rows, and part gear pairs and laws by white lines."""
     names = [f"{p}, {s}" for p in result["preset"].to_numpy() for s in result["stiffness"].to_numpy()]
     ax.set_yticks(range(len(names)), names, fontsize=7.0)
-    ax.set_ylabel("preset, stiffness model")
+    ax.set_ylabel("preset, stiffness model", fontsize=8.0)
     for i in range(1, result.sizes["preset"]):
         ax.axhline(result.sizes["stiffness"] * i - 0.5, color="white", linewidth=1.6)
     for i in range(1, result.sizes["law"]):
