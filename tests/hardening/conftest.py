@@ -22,11 +22,21 @@ from hypothesis import strategies as st
 from lumped import GearPair, load_gear_pair, preset_names
 from lumped.errors import ParameterError
 
-if sys.platform == "linux":
-    # A file without end, read whole, would take the machine down instead of failing a test.
+
+@pytest.fixture(autouse=True)
+def bounded_memory() -> Iterator[None]:
+    """A file without end, read whole, would take the machine down instead of failing a test."""
+    if sys.platform != "linux":
+        yield
+        return
     import resource
 
-    resource.setrlimit(resource.RLIMIT_AS, (16 << 30, resource.getrlimit(resource.RLIMIT_AS)[1]))
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    resource.setrlimit(resource.RLIMIT_AS, (16 << 30, before[1]))
+    yield
+    # Other tests of the same process start programs that want more addresses, as browsers do.
+    resource.setrlimit(resource.RLIMIT_AS, before)
+
 
 settings.register_profile(
     "hardening",

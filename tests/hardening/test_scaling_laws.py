@@ -55,7 +55,7 @@ def scaled(pair, scales):
     changes = {}
     for path, value in leaf_paths(pair).items():
         unit = stated_unit(path)
-        if unit is None:
+        if unit is None or value == "balanced":
             continue
         si = UNITS[unit][0]
         if any(EXPONENTS[si]):

@@ -168,6 +168,8 @@ def browser(tmp_path_factory):
     if binary is None or driver_path is None:
         pytest.skip("needs Chromium and chromedriver on the path (Debian: chromium, chromium-driver)")
     webdriver = pytest.importorskip("selenium.webdriver", reason="needs selenium (extra: test)")
+    from selenium.common.exceptions import WebDriverException
+
     options = webdriver.ChromeOptions()
     options.binary_location = binary
     profile = tmp_path_factory.mktemp("profile")
@@ -177,7 +179,10 @@ def browser(tmp_path_factory):
     ):  # fmt: skip
         options.add_argument(f"--{argument}")
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(driver_path))
+    try:
+        driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(driver_path))
+    except WebDriverException as error:  # a browser that the machine has but cannot start
+        pytest.skip(f"Chromium does not start: {error.msg}")
     driver.set_script_timeout(60)
     yield Browser(driver)
     driver.quit()

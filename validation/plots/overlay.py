@@ -20,7 +20,7 @@ def overlay_figure(points: xr.Dataset) -> Figure:
     names = [str(name) for name in points["channel"].to_numpy()]
     columns = min(len(names), 2)
     rows = -(-len(names) // columns)
-    figure, axes = new_figure(rows, columns, height=0.6 + 2.1 * rows)
+    figure, axes = new_figure(rows, columns, height=0.6 + 2.3 * rows)
     panels: list[Axes] = axes.ravel().tolist()
     for ax, name in zip(panels, names, strict=False):
         one = points.sel(channel=name)
@@ -37,11 +37,9 @@ def overlay_figure(points: xr.Dataset) -> Figure:
         ax.plot(x, predicted / factor, color=BLUE, linewidth=1.2, label="predicted")
         ax.axhline(0.0, color=GREY, linewidth=0.6)
         ax.set_xlim(0.0, float(np.ceil(10 * x[-1]) / 10))
-        ax.set_ylabel(f"{name} [{unit}]")
+        ax.set(xlabel="mesh cycles since the pair was at A", ylabel=f"{name} [{unit}]")
     for ax in panels[len(names) :]:
         ax.set_visible(False)
-    for ax in panels[-columns:]:
-        ax.set_xlabel("mesh cycles since the pair was at A")
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=2, frameon=False, fontsize=8.5)
     return figure
