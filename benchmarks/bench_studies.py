@@ -80,7 +80,7 @@ def overhead(count):
     plain = (plain_many - plain_few) / (many - few)
     swept = (swept_many - swept_few) / (many - few)
     print(f"plain call              {1e6 * plain:10.1f} us a case")
-    print(f"sweep, 1 worker         {1e6 * swept:10.1f} us a case")
+    print(f"sweep, 0 workers        {1e6 * swept:10.1f} us a case")
     print(f"overhead                {1e6 * (swept - plain):10.1f} us a case  ({few} and {many} cases)")
     print(f"run by itself           {1e3 * (swept_few - few * swept):10.1f} ms")
     return max(swept - plain, 0.0)

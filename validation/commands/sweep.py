@@ -23,7 +23,12 @@ def sweep(
         bool, typer.Option("--retry-failed", help="With --resume: compute the failed cases again.")
     ] = False,
     workers: Annotated[
-        int | None, typer.Option("--workers", help="Worker processes of this machine; default: one per core.")
+        int | None,
+        typer.Option(
+            "--workers",
+            help="Worker processes of this machine; default: one per core. 0: this process itself, which "
+            "starts faster, but a case that crashes ends the sweep.",
+        ),
     ] = None,
     scheduler: Annotated[
         str | None,

@@ -1,21 +1,22 @@
-"""What an axis of a study may vary, and its values in the unit of the field."""
+"""An axis of a study: what it varies, and its values in the unit of the field."""
 
 from __future__ import annotations
 
+import math
 import types
 import typing
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
+from pydantic import BeforeValidator, Field, StrictFloat, StrictInt, model_validator
+from pydantic_core import PydanticCustomError
 
 from floquet.gear_axes import GEAR_AXES
-from lumped.errors import refuse
+from lumped.errors import FieldProblem, ParameterError, refuse, shown
 from lumped.schema_errors import field_at
+from lumped.section import Section
 from lumped.units import Quantity, to_si, to_stated
-
-if TYPE_CHECKING:
-    from validation.studies.schema import Axis
 
 AxisValue = int | float | str
 _FLOQUET_ONLY = ("friction_coefficient", "stiffness_variation")
@@ -59,55 +60,120 @@ def target_of(path: str) -> Target:
     return Target("", info.description or path, "int" if _is_integer(info.annotation) else "other")
 
 
-def checked_values(axis: Axis) -> tuple[AxisValue, ...]:
-    """Values of a listed axis, or () for a range that is sampled; numbers are in the field's stated unit.
-
-    Raises
-    ------
-    ParameterError : text where a number belongs or the reverse, values not of the field's unit or repeated
-    """
-    target = target_of(axis.field[0])
-    units = {target_of(path).unit for path in axis.field}
-    if len(units) > 1:
-        raise refuse("field", " and ".join(sorted(units)), "fields of the same unit", "Use separate axes.")
-    if axis.values is None:
-        if target.kind == "other":
-            raise refuse("field", repr(axis.field[0]), "a number for a range", "List its values.")
-        if axis.count is None:
-            return ()
-        return spaced(axis, target.kind, np.linspace(0.0, 1.0, axis.count))
-    values = tuple(_read(value, target) for value in axis.values)
-    if len(set(values)) < len(values):
-        raise refuse("values", "a value twice", "values that all differ", "Remove the repetition.")
-    return values
+_Bound = Quantity("1", optional=True, action="Give the number in the axis' unit.")
 
 
-def spaced(axis: Axis, kind: str, share: np.ndarray[Any, np.dtype[np.float64]]) -> tuple[AxisValue, ...]:
-    """Values at the given shares, 0 to 1, of the way from low to high; integers for an integer field.
+def _plain_value(value: object) -> object:
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if isinstance(value, str) or (number and abs(value) < 2.0**63):  # type: ignore[arg-type]
+        return value
+    text = "{value}: allowed {allowed}. {action}"
+    allowed = {"value": shown(value), "allowed": "a finite number or text with a unit"}
+    raise PydanticCustomError("quantity", text, {**allowed, "action": "Correct the value."})
 
-    Samples of an integer field give both ends the same chance as the values between.
 
-    Raises
-    ------
-    ParameterError : an integer field gets the same value twice in a list of given length
-    """
-    assert axis.low is not None
-    assert axis.high is not None
-    if kind == "int":
-        low, high = int(np.ceil(axis.low)), int(np.floor(axis.high))
-        if axis.count is None:
-            whole = np.minimum(low + np.floor(share * (high - low + 1)), high)
+_Value = Annotated[StrictInt | StrictFloat | str, BeforeValidator(_plain_value)]
+
+
+def _single(value: object) -> object:
+    return (value,) if isinstance(value, str) else value
+
+
+class Axis(Section):
+    """One parameter that varies, or several fields that vary together (both face widths, say)."""
+
+    name: str = Field("", max_length=80, pattern=r"^\w*$", description="label; default the field's name")
+    field: Annotated[
+        tuple[str, ...], BeforeValidator(_single, json_schema_input_type=str | list[str]), Field(min_length=1)
+    ] = Field(description="dotted path of a gear-pair field, several paths, or the name of a chart axis")
+    values: tuple[_Value, ...] | None = Field(
+        None, min_length=1, max_length=10_000_000, description="the values, for a grid"
+    )
+    low: Annotated[float | None, _Bound] = Field(None, description="lower end, in the field's stated unit")
+    high: Annotated[float | None, _Bound] = Field(None, description="upper end, in the field's stated unit")
+    count: Annotated[int | None, Field(ge=2, le=10_000_000, strict=True)] = Field(
+        None, description="number of values from low to high, for a grid"
+    )
+    spacing: Literal["linear", "log"] = Field("linear", description="spacing or distribution, low to high")
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        def stop(field: str, value: object, allowed: str, action: str) -> ParameterError:
+            return ParameterError([FieldProblem(field, str(value), allowed, action)])
+
+        for path in self.field:
+            try:
+                target_of(path)
+            except ParameterError as error:
+                (problem, *_) = error.problems
+                raise stop("field", shown(repr(path)), problem.allowed, problem.action) from None
+        if self.values is not None:
+            if self.low is not None or self.high is not None or self.count is not None:
+                raise stop("values", "with low, high or count", "one of the two ways", "Remove one.")
+            return self
+        if self.low is None or self.high is None:
+            raise stop("low", self.low, "values, or low and high", "Give the range or the list of the axis.")
+        if not self.low < self.high:
+            raise stop("high", f"{self.high:g}", f"> low = {self.low:g}", "Swap or correct the two.")
+        if not math.isfinite(self.high - self.low):
+            raise stop("high", f"{self.high:g}", "a finite distance from low", "Narrow the range.")
+        if self.spacing == "log" and self.low <= 0.0:
+            raise stop("low", f"{self.low:g}", "> 0 with spacing 'log'", "Use spacing = 'linear'.")
+        return self
+
+    @property
+    def label(self) -> str:
+        """Name of the axis in the results: ``name``, or the path with "_" for the dot."""
+        return self.name or self.field[0].replace(".", "_")
+
+    def listed(self) -> tuple[AxisValue, ...]:
+        """Values of a listed axis, or () for a range that is sampled; numbers are in the field's stated unit.
+
+        Raises
+        ------
+        ParameterError : text where a number belongs or the reverse, values of another unit or repeated
+        """
+        target = target_of(self.field[0])
+        units = {target_of(path).unit for path in self.field}
+        if len(units) > 1:
+            raise refuse(
+                "field", " and ".join(sorted(units)), "fields of the same unit", "Use separate axes."
+            )
+        if self.values is None:
+            if target.kind == "other":
+                raise refuse("field", repr(self.field[0]), "a number for a range", "List its values.")
+            return () if self.count is None else self.spaced(np.linspace(0.0, 1.0, self.count))
+        values = tuple(_read(value, target) for value in self.values)
+        if len(set(values)) < len(values):
+            raise refuse("values", "a value twice", "values that all differ", "Remove the repetition.")
+        return values
+
+    def spaced(self, share: np.ndarray[Any, np.dtype[np.float64]]) -> tuple[AxisValue, ...]:
+        """Values at the given shares, 0 to 1, of the way from low to high; integers for an integer field.
+
+        Samples of an integer field give both ends the same chance as the values between.
+
+        Raises
+        ------
+        ParameterError : an integer field gets the same value twice in a list of given length
+        """
+        assert self.low is not None
+        assert self.high is not None
+        if target_of(self.field[0]).kind == "int":
+            low, high = math.ceil(self.low), math.floor(self.high)
+            if self.count is None:
+                whole = np.minimum(low + np.floor(share * (high - low + 1)), high)
+            else:
+                whole = np.rint(low + share * (high - low))
+                if np.unique(whole).size < whole.size:
+                    raise refuse("count", self.count, f"<= {high - low + 1} integers", "Lower the count.")
+            return tuple(int(v) for v in whole)
+        if self.spacing == "log":
+            low_log, high_log = np.log(self.low), np.log(self.high)
+            values = np.exp(low_log + share * (high_log - low_log))  # the ratio itself may overflow
         else:
-            whole = np.rint(low + share * (high - low))
-            if np.unique(whole).size < whole.size:
-                raise refuse("count", axis.count, f"<= {high - low + 1} integers", "Lower the count.")
-        return tuple(int(v) for v in whole)
-    if axis.spacing == "log":
-        low, high = np.log(axis.low), np.log(axis.high)
-        values = np.exp(low + share * (high - low))  # the ratio itself may overflow
-    else:
-        values = axis.low + share * (axis.high - axis.low)
-    return tuple(float(v) for v in np.clip(values, axis.low, axis.high))
+            values = self.low + share * (self.high - self.low)
+        return tuple(float(v) for v in np.clip(values, self.low, self.high))
 
 
 def _read(value: AxisValue, target: Target) -> AxisValue:

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import qmc
 
-from validation.studies.axes import AxisValue, spaced, target_of
+from validation.studies.axes import AxisValue
 from validation.studies.schema import Study
 
 FloatArray = npt.NDArray[np.float64]
@@ -84,10 +84,7 @@ class CaseList:
             where = np.unravel_index(numbers, self.shape)
             return [tuple(axis[i] for i in at) for axis, at in zip(self.grid, where, strict=True)]
         shares = self.shares(numbers)
-        return [
-            spaced(axis, target_of(axis.field[0]).kind, shares[:, j])
-            for j, axis in enumerate(self.study.axes)
-        ]
+        return [axis.spaced(shares[:, j]) for j, axis in enumerate(self.study.axes)]
 
     @cached_property
     def shape(self) -> tuple[int, ...]:

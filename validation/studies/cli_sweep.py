@@ -54,7 +54,8 @@ def sweep(
     try:
         study = load_study(study_file)
         count = case_list(study).count
-        where = f"on {scheduler}" if scheduler else f"on {workers or cores()} worker(s)"
+        wanted = cores() if workers is None else workers
+        where = f"on {scheduler}" if scheduler else f"on {wanted} worker(s)"
         console.print(escape(f"{study.name}: {count} cases, {study.analysis}, {where} -> {folder}"))
         if dry_run:
             return OK
@@ -62,7 +63,7 @@ def sweep(
             summary = run_sweep(
                 study,
                 folder,
-                workers=min(workers or cores(), max(count, 1)),
+                workers=min(wanted, max(count, 1)),
                 scheduler=scheduler,
                 resume=resume,
                 retry_failed=retry_failed,

@@ -8,8 +8,8 @@ from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from itertools import islice
 
 from validation.studies.analyses import Evaluator
+from validation.studies.batch import Batch, evaluate_batch, versions
 from validation.studies.cases import CaseList
-from validation.studies.evaluate import Batch, evaluate_batch, versions
 from validation.studies.pools import Pool, SweepStopped
 from validation.studies.record import Record, Status
 

@@ -14,7 +14,8 @@ from lumped.parameters import GearPair
 from lumped.schema_errors import unknown_key
 from lumped.serialise import load_gear_pair, preset_names
 from lumped.text_file import parse_toml, read_text
-from validation.studies.schema import Axis, Design, Settings, Study
+from validation.studies.axes import Axis
+from validation.studies.schema import Design, Settings, Study
 
 #: Largest study file read: a bound against a wrong path; a list of a million values fits.
 MAX_FILE_BYTES = 100_000_000

@@ -13,7 +13,8 @@ from contextlib import suppress
 from typing import Any, Protocol
 
 from lumped.errors import SpurcheckError, refuse
-from validation.studies.evaluate import Batch
+from validation.studies.batch import Batch
+from validation.studies.case_process import end_idle
 
 Work = Callable[..., Batch]
 #: How long a cluster may be without any worker before the sweep stops [s].
@@ -60,7 +61,7 @@ class Pool(Protocol):
 
 
 class SerialPool:
-    """One case after the other in this process."""
+    """One case after the other in this process, which a case that crashes takes with it."""
 
     slots = 1
     died: tuple[type[BaseException], ...] = ()
@@ -83,8 +84,6 @@ class SerialPool:
 
     def close(self) -> None:
         """End the process of cases with a time limit."""
-        from validation.studies.case_process import end_idle
-
         end_idle()
 
 
@@ -223,6 +222,6 @@ def pool_of(workers: int, scheduler: str | None) -> Pool:
     """
     if scheduler is not None:
         return DaskPool(scheduler)
-    if not 1 <= workers <= 1024:
-        raise refuse("workers", workers, "1 to 1024", "Use as many as there are cores.")
-    return SerialPool() if workers == 1 else ProcessPool(workers)
+    if not 0 <= workers <= 1024:
+        raise refuse("workers", workers, "0 to 1024", "Use as many as there are cores.")
+    return ProcessPool(workers) if workers else SerialPool()

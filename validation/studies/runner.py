@@ -17,9 +17,9 @@ from types import FrameType
 import numpy as np
 
 from lumped.errors import refuse
+from validation.studies.batch import versions
 from validation.studies.cases import CaseList, case_list
 from validation.studies.dispatch import Dispatcher
-from validation.studies.evaluate import versions
 from validation.studies.files import StoreError, storage_failure, write_text
 from validation.studies.journal import NOTHING, Journal, Key, scan
 from validation.studies.pools import pool_of
@@ -77,7 +77,7 @@ def run_sweep(
     study: Study,
     folder: str | Path,
     *,
-    workers: int = 1,
+    workers: int = 0,
     scheduler: str | None = None,
     resume: bool = False,
     retry_failed: bool = False,
@@ -90,7 +90,8 @@ def run_sweep(
     ----------
     study : the study
     folder : output folder; it is created, and holds ``study.toml``, ``journal.bin`` and ``results.nc``
-    workers : processes of this machine; 1 computes in this process
+    workers : processes of this machine, in which a case may crash without ending the sweep; 0 computes in
+        this process, which starts faster
     scheduler : address of a Dask scheduler, instead of ``workers``
     resume : go on where an earlier run of the same study in that folder ended
     retry_failed : with ``resume``, also compute the failed cases again

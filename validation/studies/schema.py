@@ -3,91 +3,20 @@
 from __future__ import annotations
 
 import hashlib
-import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, Field, PlainSerializer, StrictFloat, StrictInt, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import BeforeValidator, Field, PlainSerializer, model_validator
 
 from lumped.errors import FieldProblem, ParameterError, shown
 from lumped.parameters import GearPair
 from lumped.section import Section
 from lumped.units import Quantity
-from validation.studies.axes import AxisValue, checked_values, target_of
+from validation.studies.axes import Axis, target_of
 from validation.studies.outputs import OUTPUTS, Analysis
 
 #: Most cases of one study: bookkeeping takes about 1 byte of memory a case, results 8 bytes an output.
 MAX_CASES = 1_000_000_000
-_Bound = Quantity("1", optional=True, action="Give the number in the axis' unit.")
-
-
-def _plain_value(value: object) -> object:
-    number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if isinstance(value, str) or (number and abs(value) < 2.0**63):  # type: ignore[arg-type]
-        return value
-    text = "{value}: allowed {allowed}. {action}"
-    allowed = {"value": shown(value), "allowed": "a finite number or text with a unit"}
-    raise PydanticCustomError("quantity", text, {**allowed, "action": "Correct the value."})
-
-
-_Value = Annotated[StrictInt | StrictFloat | str, BeforeValidator(_plain_value)]
-
-
-def _single(value: object) -> object:
-    return (value,) if isinstance(value, str) else value
-
-
-class Axis(Section):
-    """One parameter that varies, or several fields that vary together (both face widths, say)."""
-
-    name: str = Field("", max_length=80, pattern=r"^\w*$", description="label; default the field's name")
-    field: Annotated[
-        tuple[str, ...], BeforeValidator(_single, json_schema_input_type=str | list[str]), Field(min_length=1)
-    ] = Field(description="dotted path of a gear-pair field, several paths, or the name of a chart axis")
-    values: tuple[_Value, ...] | None = Field(
-        None, min_length=1, max_length=10_000_000, description="the values, for a grid"
-    )
-    low: Annotated[float | None, _Bound] = Field(None, description="lower end, in the field's stated unit")
-    high: Annotated[float | None, _Bound] = Field(None, description="upper end, in the field's stated unit")
-    count: Annotated[int | None, Field(ge=2, le=10_000_000, strict=True)] = Field(
-        None, description="number of values from low to high, for a grid"
-    )
-    spacing: Literal["linear", "log"] = Field("linear", description="spacing or distribution, low to high")
-
-    @model_validator(mode="after")
-    def _complete(self) -> Self:
-        def stop(field: str, value: object, allowed: str, action: str) -> ParameterError:
-            return ParameterError([FieldProblem(field, str(value), allowed, action)])
-
-        for path in self.field:
-            try:
-                target_of(path)
-            except ParameterError as error:
-                (problem, *_) = error.problems
-                raise stop("field", shown(repr(path)), problem.allowed, problem.action) from None
-        if self.values is not None:
-            if self.low is not None or self.high is not None or self.count is not None:
-                raise stop("values", "with low, high or count", "one of the two ways", "Remove one.")
-            return self
-        if self.low is None or self.high is None:
-            raise stop("low", self.low, "values, or low and high", "Give the range or the list of the axis.")
-        if not self.low < self.high:
-            raise stop("high", f"{self.high:g}", f"> low = {self.low:g}", "Swap or correct the two.")
-        if not math.isfinite(self.high - self.low):
-            raise stop("high", f"{self.high:g}", "a finite distance from low", "Narrow the range.")
-        if self.spacing == "log" and self.low <= 0.0:
-            raise stop("low", f"{self.low:g}", "> 0 with spacing 'log'", "Use spacing = 'linear'.")
-        return self
-
-    @property
-    def label(self) -> str:
-        """Name of the axis in the results: ``name``, or the path with "_" for the dot."""
-        return self.name or self.field[0].replace(".", "_")
-
-    def listed(self) -> tuple[AxisValue, ...]:
-        """Values of the axis as the field reads them (numbers in its stated unit)."""
-        return checked_values(self)
 
 
 class Design(Section):
@@ -272,7 +201,7 @@ def _axis_problems(study: Study) -> list[FieldProblem]:
             add(f"{at}.values", "given", "low and high, for samples", "Give the range only, or use a grid.")
         try:
             if not any(problem.field.startswith(f"{at}.") for problem in problems):
-                checked_values(axis)
+                axis.listed()
         except ParameterError as error:
             problems += [
                 FieldProblem(f"{at}.{p.field}", p.value, p.allowed, p.action) for p in error.problems

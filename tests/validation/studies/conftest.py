@@ -56,7 +56,7 @@ def undisturbed(study: Study, tmp_path_factory: pytest.TempPathFactory) -> bytes
     return run_sweep(study, folder).results.read_bytes()
 
 
-#: Run a sweep of the study in argv[1] into argv[2] with argv[3] workers.
+#: Run a sweep of the study in argv[1] into argv[2] with argv[3] workers; 0: in the process that is disturbed.
 PROGRAM = """
 import sys
 from validation.studies import load_study, run_sweep
@@ -89,11 +89,11 @@ analyses.ANALYSES["geometry"] = slow
         self.study, self.undisturbed, self.file, self.out = study, undisturbed, file, out
         file.write_text(study.to_toml())
 
-    def command(self, before: str = "", workers: int = 1) -> list[str]:
+    def command(self, before: str = "", workers: int = 0) -> list[str]:
         """Arguments of the interpreter for a sweep, with program text that runs before it."""
         return ["-c", before + PROGRAM, str(self.file), str(self.out), str(workers)]
 
-    def start(self, before: str = "", workers: int = 1, **options: Any) -> subprocess.Popen[str]:
+    def start(self, before: str = "", workers: int = 0, **options: Any) -> subprocess.Popen[str]:
         """Start the sweep."""
         command = [sys.executable, *self.command(before, workers)]
         return subprocess.Popen(command, text=True, stderr=subprocess.PIPE, **options)

@@ -34,7 +34,7 @@ def command(tmp_path, monkeypatch):
             (tmp_path / "study.toml").write_text(STUDY.format(values=values))
         text = io.StringIO()
         console = Console(file=text, width=300)
-        code = sweep(tmp_path / "study.toml", console=console, **{"workers": 1} | options)
+        code = sweep(tmp_path / "study.toml", console=console, **{"workers": 0} | options)
         return code, text.getvalue()
 
     return run

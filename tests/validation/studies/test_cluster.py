@@ -9,7 +9,7 @@ import pytest
 
 from lumped.errors import ParameterError
 from validation.studies import Status, SweepStopped, dispatch, pools, run_sweep
-from validation.studies.evaluate import evaluate_batch
+from validation.studies.batch import evaluate_batch
 
 distributed = pytest.importorskip("distributed")
 pytestmark = [

@@ -7,9 +7,9 @@ from concurrent.futures import Future
 
 import pytest
 
+from validation.studies.batch import Batch, versions
 from validation.studies.cases import case_list
 from validation.studies.dispatch import Dispatcher
-from validation.studies.evaluate import Batch, versions
 from validation.studies.record import Record, Status
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from validation.studies import Status, SweepStopped, dispatch, run_sweep
-from validation.studies.evaluate import evaluate_batch
+from validation.studies.batch import evaluate_batch
 
 pytestmark = [
     pytest.mark.slow,
@@ -38,7 +38,7 @@ def test_kill_9_in_the_middle(sweep, seed):
     random.seed(seed)
     wanted = random.randint(1, 60)
     print(f"seed {seed}: kill after {wanted} cases")
-    run = sweep.start(sweep.SLOW, workers=1)
+    run = sweep.start(sweep.SLOW)
     sweep.wait_for(lambda: len(sweep.finished()) >= wanted, "cases")
     run.kill()
     run.communicate()
@@ -66,7 +66,7 @@ def torn(descriptor, block):
     global calls
     calls += 1
     if calls == 5:
-        write(descriptor, block[: len(block) // 2])
+        write(descriptor, block[:-7])  # inside the last record
         os.kill(os.getpid(), signal.SIGKILL)
     return write(descriptor, block)
 journal.os.write = torn
@@ -74,7 +74,7 @@ journal.os.write = torn
 
 
 def test_kill_9_during_a_write(sweep):
-    run = sweep.start(TORN, workers=1)
+    run = sweep.start(TORN)
     run.communicate()
     assert run.returncode == -signal.SIGKILL
     before = sweep.finished()
@@ -94,14 +94,14 @@ files.os.replace = die
 def test_kill_9_while_the_result_is_compiled(sweep):
     sweep.out.mkdir()
     shutil.copy(sweep.file, sweep.out)  # the study is there, so that the only replacement is the result
-    run = sweep.start(COMPILING, workers=1)
+    run = sweep.start(COMPILING)
     run.communicate()
     assert run.returncode == -signal.SIGKILL
     assert not (sweep.out / "results.nc").exists()
     sweep.check_resume(sweep.finished())
 
 
-@pytest.mark.parametrize(("number", "workers"), [(signal.SIGINT, 2), (signal.SIGTERM, 1)])
+@pytest.mark.parametrize(("number", "workers"), [(signal.SIGINT, 2), (signal.SIGTERM, 0)])
 def test_interrupts_stop_cleanly(sweep, number, workers):
     run = sweep.start(sweep.SLOW, workers=workers, start_new_session=True)
     sweep.wait_for(lambda: len(sweep.finished()) >= 5, "cases")
@@ -125,15 +125,16 @@ def test_killing_a_worker_is_not_noticed_in_the_result(sweep):
     assert summary.results.read_bytes() == sweep.undisturbed
 
 
-def test_a_case_that_kills_its_worker_is_found_out(sweep, monkeypatch):
+@pytest.mark.parametrize(("workers", "number"), [(1, signal.SIGSEGV), (2, signal.SIGKILL)])
+def test_a_case_that_kills_its_worker_is_found_out(sweep, monkeypatch, workers, number):
     def deadly(evaluator, cases, limit):
-        if any(number == 41 for number, values in cases):
-            os.kill(os.getpid(), signal.SIGKILL)
+        if any(case == 41 for case, values in cases):
+            os.kill(os.getpid(), number)
         return evaluate_batch(evaluator, cases, limit)
 
     with monkeypatch.context() as patch:
         patch.setattr(dispatch, "evaluate_batch", deadly)
-        summary = run_sweep(sweep.study, sweep.out, workers=2)
+        summary = run_sweep(sweep.study, sweep.out, workers=workers)
     statuses = dict(summary.statuses)
     assert statuses[Status.WORKER_DIED] == 1
     assert "worker process died" in dict(summary.failures)[41]

@@ -68,7 +68,7 @@ resource.setrlimit(resource.RLIMIT_FSIZE, (4000, resource.RLIM_INFINITY))
 
 def test_a_file_size_limit_in_the_middle_of_the_journal(sweep):
     assert resource.getrlimit(resource.RLIMIT_FSIZE)[0] == resource.RLIM_INFINITY
-    run = sweep.start(LIMITED, workers=1)
+    run = sweep.start(LIMITED)
     _, errors = run.communicate()
     assert "StoreError" in errors
     assert "File too large" in errors

@@ -208,7 +208,7 @@ def test_a_sweep_whose_results_do_not_fit_in_memory_is_refused_before_it_starts(
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("options", [{"workers": 0}, {"workers": 5000}, {"case_seconds": 0.0}])
+@pytest.mark.parametrize("options", [{"workers": -1}, {"workers": 5000}, {"case_seconds": 0.0}])
 def test_options_out_of_range_are_refused(study, tmp_path, options):
     with pytest.raises(ParameterError, match=next(iter(options))):
         run_sweep(study, tmp_path / "out", **options)
