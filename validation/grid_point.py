@@ -7,22 +7,18 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
 import lumped
-import multibody
 from lumped import GearPair
-from lumped.errors import NumericalError, SpurcheckError
-from multibody.machine import machine
-from multibody.reversal import friction_velocity
+from lumped.errors import SpurcheckError
 from validation.agreement import (
     FIDELITIES,
     QUANTITIES,
-    Fidelity,
     agreement,
     contact_shift,
     off_switch_samples,
 )
+from validation.exact_motion import periodic_motion
 from validation.finite_motion import finite_motion
 from validation.metrics import FloatArray, maximum_over_span
 from validation.tolerances import tolerance
@@ -31,12 +27,6 @@ from validation.validity import LOAD_NOISE
 #: What can come of a point, beside the text of an error.
 COMPARED, SEPARATED, STICKING = "compared", "teeth separate", "sliding may stick"
 _RTOL = 1e-9
-#: Share of the default velocity over which friction changes its sign, where sliding does not stick: there a
-#: sharper change costs little. The default leaves twice the tolerance in y at the Kahraman-Blankenship pair.
-_SHARPER = 0.01
-#: Velocity for a motion that the integrator cannot follow with a sharper one [m/s]: a law that vanishes at P
-#: counts as safe, but vibration may move the zero of sliding away from P, where the law does not vanish.
-_BLUNT = 0.01
 
 
 def _missing() -> FloatArray:
@@ -112,7 +102,7 @@ def compare_point(pair: GearPair, samples: int) -> GridPoint:
         expected = maximum_over_span(dte + predicted.over("dte", keep.size)[keep], dte)
         tables = [_missing() for _ in range(4)]
         for i, fidelity in enumerate(FIDELITIES):
-            run = _periodic(pair, fidelity, samples, _friction_velocity(pair) if predicted.settled else None)
+            run = periodic_motion(pair, fidelity, samples=samples, rtol=_RTOL, passes=predicted.settled)
             for j, quantity in enumerate(QUANTITIES):
                 allowed = tolerance(quantity, fidelity, shift)
                 change = predicted.over(quantity, keep.size) if fidelity == "exact" else 0.0
@@ -123,25 +113,6 @@ def compare_point(pair: GearPair, samples: int) -> GridPoint:
     except SpurcheckError as error:
         return GridPoint(str(error), load_min, spent())
     return GridPoint(COMPARED if predicted.settled else STICKING, load_min, spent(), expected, *tables)
-
-
-def _periodic(pair: GearPair, fidelity: Fidelity, samples: int, velocity: float | None) -> xr.Dataset:
-    """Motion of the multibody model, with blunter changes of the sign of friction where it cannot go on."""
-
-    def run(velocity: float | None) -> xr.Dataset:
-        return multibody.steady_state(
-            pair, fidelity=fidelity, samples_per_cycle=samples, rtol=_RTOL, friction_velocity=velocity
-        )
-
-    try:
-        return run(velocity)
-    except NumericalError:
-        return run(_BLUNT)
-
-
-def _friction_velocity(pair: GearPair) -> float:
-    torque = pair.operating.pinion_torque
-    return _SHARPER * friction_velocity(machine(pair, torque, torque))[0]
 
 
 def _plain(value: Any) -> Any:

@@ -189,8 +189,8 @@ def test_the_headline_states_the_largest_difference_also_when_it_is_within_its_t
         ),
     )
     assert widened.verdict == "confirmed"
-    assert "at most 40 %, in gear y" in finite_motions(widened)
-    assert finite_motions(widened).endswith("but for 7 % at most")
+    assert "gear y, most of all, by 40 %" in finite_motions(widened)
+    assert finite_motions(widened).endswith("accounts for all but 7 % (tolerance 100 %).")
 
 
 def test_numbers_stand_to_the_right_under_their_heading_gaps_included(pair):

@@ -68,10 +68,11 @@ def test_only_strict_turns_a_failing_verdict_into_an_exit_code(monkeypatch, tmp_
 def test_every_chapter_on_the_motion_warns(unstable):
     _, out = unstable
     data = json.loads((out / "report.json").read_text(encoding="utf-8"))
-    assert "has an unstable periodic motion" in data["verdict"]
+    assert data["verdict"].startswith("Do not rely on this prediction: the periodic motion is unstable")
+    assert "the lumped model predicts" not in data["verdict"]
     prediction = data["answers"][0]
-    assert prediction["verdict"]["state"] == "unstable"
-    assert prediction["text"].startswith("No motion that a pair would keep")
+    assert prediction["verdict"] == {"state": "violated", "text": "not reliable"}
+    assert prediction["text"].startswith("Not to be relied on: the periodic motion is unstable")
     for key in ("steady_state", "losses", "cross_check"):
         assert data["chapters"][key]["text"][0][0].startswith("Warning: the periodic motion"), key
     motion = data["chapters"]["steady_state"]["key_results"]["stability"]

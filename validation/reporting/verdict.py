@@ -1,4 +1,4 @@
-"""The report's first lines: one sentence and four verdicts."""
+"""The report's first lines: what may not be relied on, the prediction, and four verdicts."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from validation.comparison import CrossCheck
 from validation.reporting.blocks import Badge
 from validation.reporting.chapters.cross_check import NAMES
+from validation.reporting.chapters.steady_state import separating_share
 from validation.reporting.formatting import number, quantity
 from validation.reporting.results import Results
 from validation.validity import worst_state
@@ -34,17 +35,16 @@ class Answer:
 
 @dataclass(frozen=True)
 class Summary:
-    """Top of the report: one sentence, and the answers it is made of."""
+    """Top of the report: a paragraph, and the answers it is made of."""
 
     sentence: str
     answers: tuple[Answer, ...]
 
 
 def summarise(results: Results) -> Summary:
-    """Put the results into one sentence and four answers."""
-    motion = results.motion
+    """Put the results into one paragraph, what is wrong first, and four answers."""
+    motion, pair, verdict = results.motion, results.pair, results.multipliers.verdict
     load = motion["normal_load"].to_numpy()[motion["contact"].to_numpy() > 0]
-    pair = results.pair
     span = quantity(float(np.ptp(motion["dte"].to_numpy())), "m", 3)
     efficiency = f"{100 * float(motion.attrs['mesh_efficiency']):.2f} %"
     predicted = (
@@ -52,57 +52,67 @@ def summarise(results: Results) -> Summary:
         f"{number(float(load.max()) / results.static_load, 3)} times the static load, mesh efficiency "
         f"{efficiency}."
     )
-    over_range = _stable_speeds(results)
-    state = worst_state(results.flags)
-    raised = [flag.name.lower() for flag in results.flags if flag.state != "ok"]
-    validity = {
-        "ok": "valid here",
-        "warning": "near a limit of its validity",
-        "violated": "not valid here",
-    }[state]
-    verdict = results.multipliers.verdict
-    stands = verdict == "stable"
-    here = "stable here and" if stands else f"{verdict} here and stable"
-    says = "predicts" if stands else f"has an {verdict} periodic motion with"
-    if not stands:
-        predicted = f"No motion that a pair would keep: this periodic motion is {verdict}. {predicted}"
+    objections = _objections(results)
+    if objections:
+        predicted = f"Not to be relied on: {'; '.join(objections)}. {predicted}"
+    says = "predicts" if not objections else "computes"
     sentence = (
-        f"At {results.operating_rpm:.5g} rpm and {pair.operating.pinion_torque:.4g} N m the lumped model "
-        f"{says} a transmission error of {span} peak to peak and a mesh efficiency of {efficiency}; the "
-        f"independent multibody model {_agreement(results.check)}; the motion is {here} {over_range}; the "
-        f"model is {validity}" + (f" (in question: {', '.join(raised)})." if raised else ".")
+        ("" if not objections else f"Do not rely on this prediction: {'; '.join(objections)}. ")
+        + f"At {results.operating_rpm:.5g} rpm and {pair.operating.pinion_torque:.4g} N m the lumped model "
+        f"{says} a transmission error of {span} peak to peak and a mesh efficiency of {efficiency}. "
+        f"{_agreement(results.check)} The motion is {_stability(results)} {_validity(results)}"
     )
     return Summary(
         sentence,
         (
             Answer(
                 "What does the model predict?",
-                Badge("prediction") if stands else Badge(verdict),
+                Badge("violated", "not reliable") if objections else Badge("prediction"),
                 predicted,
                 "steady_state",
             ),
             Answer(
                 "Does the independent model agree?",
                 Badge(results.check.verdict),
-                _first_upper(_agreement_sentence(results.check)) + ".",
+                f"{_same_equations(results.check)} {finite_motions(results.check)}",
                 "cross_check",
             ),
             Answer(
                 "Is the motion stable?",
                 Badge(verdict),
                 f"Largest multiplier {results.multipliers.spectral_radius:.4f} at the operating point; "
-                f"stable {over_range} at the given damping.",
+                f"stable {_stable_speeds(results)} at the given damping.",
                 "stability",
             ),
             Answer(
                 "Is the model valid here?",
-                Badge(state),
-                f"{sum(f.state == 'ok' for f in results.flags)} of {len(results.flags)} checks pass"
-                + (f"; look at: {', '.join(raised)}." if raised else "."),
+                Badge(worst_state(results.flags)),
+                f"{sum(f.state == 'ok' for f in results.flags)} of {len(results.flags)} checks pass. "
+                + _validity(results),
                 "validity",
             ),
         ),
     )
+
+
+def _objections(results: Results) -> list[str]:
+    """Why the prediction is none: what makes a motion that no pair would show."""
+    verdict = results.multipliers.verdict
+    found = [] if verdict == "stable" else [f"the periodic motion is {verdict}, so a pair would leave it"]
+    found += [
+        f"the assumption “{flag.name.lower()}” is violated"
+        for flag in results.flags
+        if flag.state == "violated" and flag.key != "stability"
+    ]
+    if results.check.verdict == "not confirmed":
+        found.append("the independent multibody model does not confirm it")
+    return found
+
+
+def _stability(results: Results) -> str:
+    verdict = results.multipliers.verdict
+    here = "stable here and" if verdict == "stable" else f"{verdict} here and stable"
+    return f"{here} {_stable_speeds(results)}."
 
 
 def _stable_speeds(results: Results) -> str:
@@ -111,49 +121,68 @@ def _stable_speeds(results: Results) -> str:
     unstable = results.margins.unstable_here
     if not unstable.size:
         return reach
-    width = float(np.sum(unstable[:, 1] - unstable[:, 0]))
-    ranges = "one range" if len(unstable) == 1 else f"{len(unstable)} ranges"
-    return f"{reach} but {ranges}, {quantity(width, 'rpm', 3)} wide in all"
+    ranges = ", ".join(f"{a:.5g} to {b:.5g} rpm" for a, b in unstable[:3])
+    more = f" and {len(unstable) - 3} more ranges" if len(unstable) > 3 else ""
+    return f"{reach} but {ranges}{more}"
+
+
+def _validity(results: Results) -> str:
+    """Which assumptions hold here, and over how much of the speed range teeth stay in contact."""
+    raised = [flag for flag in results.flags if flag.state != "ok"]
+    words = {"warning": "near a limit", "violated": "violated"}
+    text = "The model's assumptions hold here"
+    if raised:
+        listed = (f"{flag.name.lower()} ({words[flag.state]})" for flag in raised)
+        text = f"Of the model's assumptions, these are in question here: {', '.join(listed)}"
+    share, (low, high) = separating_share(results), results.margins.speed_range
+    if not share:
+        return f"{text}."
+    return (
+        f"{text}; at {100 * share:.2g} % of the speeds from {low:.0f} to {high:.0f} rpm teeth would "
+        "separate, and neither motion nor stability there is as computed."
+    )
 
 
 def _agreement(check: CrossCheck) -> str:
-    finite = finite_motions(check)
-    return {
-        "confirmed": f"agrees within its stated tolerances ({finite})",
-        "bounded": f"confirms the equations, and finite motions do more than expected ({finite})",
-        "not confirmed": f"does not confirm it ({finite})",
+    if not all(a.within for a in check.of("linear")):
+        return f"The independent multibody model does not confirm it. {_same_equations(check)}"
+    confirms = {
+        "confirmed": "confirms it",
+        "bounded": "confirms the equations, but finite motions do more than the lumped motion accounts for",
+        "not confirmed": "confirms the equations, but shows another motion",
     }[check.verdict]
+    return f"The independent multibody model {confirms}. {finite_motions(check)}"
+
+
+def _same_equations(check: CrossCheck) -> str:
+    worst = check.worst("linear")
+    verb = "agrees" if worst.within else "does not agree"
+    return (
+        f"With the same equations the multibody model {verb}: {NAMES[worst.quantity]} to "
+        f"{number(worst.judged, 2)} of its peak to peak, tolerance {number(worst.tolerance.limit, 2)}."
+    )
 
 
 def finite_motions(check: CrossCheck) -> str:
     """How much the exact model differs: in the transmission error, and in whatever differs most.
 
-    And how much of that the lumped model does not foresee. Stated whatever the verdict is: a difference that
-    is understood, and so within its tolerance, is still one.
+    And how much of that follows from the lumped motion. Stated whatever the verdict is: a difference that is
+    understood, and so within its tolerance, is still one.
     """
     exact = check.of("exact")
     largest = max(exact, key=lambda a: a.relative_l2)
     dte = next((a for a in exact if a.quantity == "dte"), largest)
-    text = f"difference {_percent(dte.relative_l2)} in the transmission error"
+    most = ""
     if largest.quantity != dte.quantity:
-        text += f", at most {_percent(largest.relative_l2)}, in {NAMES[largest.quantity]}"
-    left = max(a.remainder_l2 for a in exact)
-    return f"{text}, foreseen from the lumped model alone but for {_percent(left)} at most"
+        most = f" and {NAMES[largest.quantity]}, most of all, by {_percent(largest.relative_l2)}"
+    worst = check.worst("exact")
+    left, limit = _percent(worst.remainder_l2), _percent(worst.tolerance.limit)
+    return (
+        f"Its contact follows the actual motion, which changes the {NAMES[dte.quantity]} by "
+        f"{_percent(dte.relative_l2)}{most} (rms of the change over rms of the motion); the lumped motion "
+        f"alone accounts for all but {left} (tolerance {limit})."
+    )
 
 
 def _percent(ratio: float) -> str:
     return f"{number(100 * ratio, 2)} %"
-
-
-def _agreement_sentence(check: CrossCheck) -> str:
-    linear = max(check.of("linear"), key=lambda a: a.judged / a.tolerance.limit)
-    verb = "agrees with" if linear.within else "disagrees with"
-    worst = f"largest use of a tolerance: {number(linear.judged, 2)} of {number(linear.tolerance.limit, 2)}"
-    return (
-        f"with the same linear equations the multibody model {verb} the lumped one ({worst}); with finite "
-        f"motions: {finite_motions(check)}"
-    )
-
-
-def _first_upper(text: str) -> str:
-    return text[:1].upper() + text[1:]

@@ -24,6 +24,7 @@ from validation.reporting.blocks import (
     Text,
 )
 from validation.reporting.results import Results
+from validation.validity import LOAD_NOISE
 
 
 def steady_state(results: Results) -> Chapter:
@@ -120,9 +121,6 @@ def _over_speed(results: Results) -> list[Block]:
     unstable = sweep["spectral_radius"].to_numpy() > UNSTABLE  # False where there is no periodic motion
     reached = np.where(unstable, np.nan, sweep["dte_peak_to_peak"].to_numpy())
     lost = speed[~sweep["periodic"].to_numpy().astype(bool)]
-    low = sweep["normal_load_min"].to_numpy()
-    with np.errstate(invalid="ignore"):
-        share = float(np.mean(low < 0.0))
     blocks: list[Block] = [
         Picture(
             "speed_sweep",
@@ -138,7 +136,9 @@ def _over_speed(results: Results) -> list[Block]:
                 Fact("speed_low", "lowest speed", Quantity(float(speed[0]), "rpm")),
                 Fact("speed_high", "highest speed", Quantity(float(speed[-1]), "rpm")),
                 Fact("speeds", "speeds computed", int(speed.size)),
-                Fact("share_separating", "share of the speeds with negative loads", share),
+                Fact(
+                    "share_separating", "share of the speeds with negative loads", separating_share(results)
+                ),
                 Fact("share_unstable", "share of the speeds with an unstable motion", float(unstable.mean())),
                 Fact(
                     "speed_of_largest",
@@ -182,6 +182,12 @@ def _over_speed(results: Results) -> list[Block]:
         )
     )
     return blocks
+
+
+def separating_share(results: Results) -> float:
+    """Share of the computed speeds at which a tooth pair would have to pull."""
+    low = results.sweep["normal_load_min"].to_numpy()  # NaN where there is no periodic motion
+    return float(np.mean(low < -LOAD_NOISE * results.static_load))
 
 
 def unstable_warning(results: Results) -> tuple[Text, ...]:

@@ -20,7 +20,7 @@ def validity(results: Results) -> Chapter:
     table = Table(
         "flags",
         "Assumptions of the lumped model, checked on the periodic motion (drift of the mean speed: on the "
-        "exact multibody run).",
+        "linear multibody run).",
         (
             Column("key", "check"),
             Column("state", "state"),
