@@ -28,6 +28,8 @@ class FieldProblem:
         return f"{self.field} = {self.value}: allowed {self.allowed}. {self.action}"
 
 
+#: Most problems that one refusal lists.
+MOST_PROBLEMS = 50
 _SHOWN_CHARACTERS = 60
 
 
@@ -37,15 +39,17 @@ def quoted(value: object) -> str:
         return repr(value)
     except RecursionError:
         return "a value that is nested too deeply"
+    except ValueError:  # Python writes no longer integers in decimals
+        return "a number of thousands of digits"
 
 
 def shown(value: object) -> str:
     """Text of a refused value, cut to a length that a message bears."""
     text = value if isinstance(value, str) else quoted(value)
-    text = text.encode("utf-8", "backslashreplace").decode()  # half a surrogate pair cannot be printed
-    if len(text) <= _SHOWN_CHARACTERS:
-        return text
-    return f"{text[:_SHOWN_CHARACTERS]}... ({len(text)} characters)"
+    cut = f"... ({len(text)} characters)" if len(text) > _SHOWN_CHARACTERS else ""
+    # Line ends, control characters and halves of surrogate pairs as code writes them.
+    seen = (c if c.isprintable() else c.encode("unicode_escape").decode() for c in text[:_SHOWN_CHARACTERS])
+    return "".join(seen) + cut
 
 
 class SpurcheckError(Exception):

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from lumped.gear_geometry import Geometry, geometry
 from lumped.mesh_elements import MeshElements, mesh_elements
@@ -105,14 +105,14 @@ class MeshCycle:
             name: float(np.mod((xi - g.L_XA) / g.base_pitch, 1.0) * self.period) for name, xi in marks.items()
         }
 
-    def sample(self, time: ArrayLike, segment: int | None = None) -> PairState:
+    def sample(self, time: ArrayLike, segment: int | NDArray[np.int64] | None = None) -> PairState:
         """Return the coefficients of all pairs at times t [s], any number of cycles.
 
         Parameters
         ----------
         time : (k,) times [s]
-        segment : the smooth segment to which all times belong, so that values at its ends are its one-sided
-            limits; by default each time's own segment, right-continuous at switches
+        segment : the smooth segment to which all times belong, or each (k,), so that values at its ends are
+            its one-sided limits; by default each time's own segment, right-continuous at switches
         """
         g = self.geometry
         t = np.atleast_1d(np.asarray(time, dtype=float))
@@ -123,7 +123,7 @@ class MeshCycle:
             tau = np.where(tau > self.period - same, 0.0, tau)
             index = np.searchsorted(self.edges[1:-1], tau + same, side="right")
         else:
-            tau, index = t, np.full(t.shape, segment)
+            tau, index = t, np.broadcast_to(segment, t.shape)
         speed, inside = g.omega_pinion * g.base_radius_pinion, _INSIDE * g.base_pitch
         low, high = speed * self.edges[index] + inside, speed * self.edges[index + 1] - inside
         shift = np.clip(speed * tau, low, high)

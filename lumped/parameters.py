@@ -14,7 +14,7 @@ from pydantic_core import PydanticCustomError
 from lumped.contact_parameters import Friction, FrictionLaw, Lubricant, ViscosityLaw
 from lumped.gear_parameters import BasicRack, Gear, ProfileRelief
 from lumped.mesh_parameters import Mesh
-from lumped.section import Section
+from lumped.section import Section, Text
 from lumped.units import Quantity
 
 
@@ -96,8 +96,8 @@ Sources = Annotated[
 class GearPair(Section):
     """A spur gear pair with everything that spurcheck needs to know about it."""
 
-    name: str = Field(min_length=1, max_length=80, description="short name")
-    description: str = Field("", max_length=2000, description="what this pair is")
+    name: Text = Field(min_length=1, max_length=80, description="short name")
+    description: Text = Field("", max_length=2000, description="what this pair is")
     basic_rack: BasicRack
     pinion: Gear = Field(description="the driving gear")
     gear: Gear = Field(description="the driven gear")

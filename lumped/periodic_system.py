@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from lumped.equations import COORDINATES, Structure, structure
 from lumped.errors import refuse
@@ -88,15 +88,19 @@ class LTVSystem:
         """Switch times strictly inside the period [s]."""
         return self.cycle.switch_times
 
-    def gain(self, time: ArrayLike, segment: int | None = None) -> MeshGain:
+    def gain(self, time: ArrayLike, segment: int | NDArray[np.int64] | None = None) -> MeshGain:
         """Rank-one feedback of the mesh at times (k,) [s]; ``segment`` as in ``MeshCycle.sample``."""
         pairs = self.cycle.sample(time, segment)
         s = self.structure
-        per_normal_load = s.normal + pairs.friction[..., None] * s.friction(pairs.position)
-        rows = (per_normal_load / s.mass) @ self.reduction.T  # (pairs, k, m)
-        k, c = pairs.stiffness[..., None], pairs.damping[..., None]
+        # Accelerations per unit N, F and F xi.
+        basis = np.vstack([s.normal, s.friction_arm.T]) / s.mass @ self.reduction.T
+
+        def acceleration(load: FloatArray) -> FloatArray:
+            friction = pairs.friction * load
+            return np.stack([v.sum(0) for v in (load, friction, friction * pairs.position)], axis=-1) @ basis
+
         error = pairs.stiffness * pairs.error + pairs.damping * pairs.error_rate
-        return MeshGain((rows * k).sum(0), (rows * c).sum(0), -(rows * error[..., None]).sum(0))
+        return MeshGain(acceleration(pairs.stiffness), acceleration(pairs.damping), -acceleration(error))
 
     def matrices(self, time: ArrayLike, segment: int | None = None) -> FloatArray:
         """A at times (k,) [s] -> (k, 2m, 2m)."""

@@ -54,10 +54,11 @@ VARIABLES: dict[str, tuple[tuple[str, ...], str, str]] = {
 
 def provenance(pair: GearPair, **settings: Any) -> dict[str, Any]:
     """Attributes that say what a result was made from: parameters, hash, versions, settings."""
+    text = pair.to_toml()
     return {
         "gear_pair": pair.name,
-        "parameters": pair.to_toml(),
-        "parameters_sha256": parameters_hash(pair),
+        "parameters": text,
+        "parameters_sha256": _sha256(text),
         "versions": _versions(),
         "settings": ", ".join(f"{key}={value}" for key, value in sorted(settings.items())),
     }
@@ -72,7 +73,11 @@ def _versions() -> str:
 
 def parameters_hash(pair: GearPair) -> str:
     """SHA-256 of the pair's TOML text: the same parameters give the same hash everywhere."""
-    return hashlib.sha256(pair.to_toml().encode()).hexdigest()
+    return _sha256(pair.to_toml())
+
+
+def _sha256(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def labelled(time: FloatArray, values: Mapping[str, FloatArray], attributes: Mapping[str, Any]) -> xr.Dataset:
@@ -86,17 +91,17 @@ def labelled(time: FloatArray, values: Mapping[str, FloatArray], attributes: Map
     """
     import xarray as xr
 
-    variables: dict[str, xr.DataArray] = {}
-    for name, (dims, unit, long_name) in VARIABLES.items():
-        if name in values:
-            attrs = {"units": unit, "long_name": long_name}
-            variables[name] = xr.DataArray(values[name], dims=dims, attrs=attrs)
+    variables = {
+        name: (dims, values[name], {"units": unit, "long_name": long_name})
+        for name, (dims, unit, long_name) in VARIABLES.items()
+        if name in values
+    }
     pairs = next((v.shape[0] for n, v in values.items() if VARIABLES[n][0][0] == "pair"), 0)
-    time_axis = xr.DataArray(time, dims="time", attrs={"units": "s", "long_name": "time"})
-    pair_axis = xr.DataArray(
-        np.arange(pairs), dims="pair", attrs={"units": "1", "long_name": "tooth pair, 0 is ahead"}
-    )
-    return xr.Dataset(variables, coords={"time": time_axis, "pair": pair_axis}, attrs=dict(attributes))
+    coordinates = {
+        "time": ("time", time, {"units": "s", "long_name": "time"}),
+        "pair": ("pair", np.arange(pairs), {"units": "1", "long_name": "tooth pair, 0 is ahead"}),
+    }
+    return xr.Dataset(variables, coords=coordinates, attrs=dict(attributes))
 
 
 def dataset(

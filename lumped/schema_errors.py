@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
-from lumped.errors import FieldProblem, ParameterError, quoted, shown
+from lumped.errors import MOST_PROBLEMS, FieldProblem, ParameterError, quoted, shown
 from lumped.parameters import GearPair
 from lumped.units import Quantity
 
@@ -27,7 +27,8 @@ def translated(error: ValidationError, data: Mapping[str, Any]) -> list[FieldPro
     error : what pydantic raised
     data : the refused input, to tell which member of a union was meant
     """
-    found = [problem for item in error.errors(include_url=False) for problem in _problems(item, data)]
+    items = error.errors(include_url=False)[:MOST_PROBLEMS]
+    found = [problem for item in items for problem in _problems(item, data)]
     first: dict[str, FieldProblem] = {}
     for problem in found:
         first.setdefault(problem.field, problem)

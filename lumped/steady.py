@@ -12,7 +12,7 @@ from lumped.gear_geometry import geometry
 from lumped.parameters import GearPair
 from lumped.path_function import FloatArray
 from lumped.periodic_system import LTVSystem, periodic_system
-from lumped.propagation import STAGES, STEP_ANGLE, StepMaps, step_maps
+from lumped.propagation import STAGES, step_maps
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,22 +69,21 @@ def periodic_solution(
     NumericalError : the speed sits on a stability boundary, where no periodic motion exists
     """
     system = system or periodic_system(pair, "absolute", as_printed=as_printed)
-    balanced = pair.operating.brake_torque == "balanced"
     torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
     maps = step_maps(system, torques, outputs=times)
-    solve = _bordered(pair, system, maps, balanced)
-    states = maps.states(*solve)
+    transition, forced = maps.over_all()
+    initial, weights = _bordered(pair, system, transition, forced)
+    states = maps.states(initial, weights)
     scale = np.abs(states).max(axis=0) + 1e-300
     closure = float((np.abs(states[-1] - states[0]) / scale).max())
-    at = np.searchsorted(maps.edges, times - 1e-9 * system.period)
+    at = np.searchsorted(maps.times, times - 1e-9 * system.period)
     result = states[at]
     error = 0.0
     if estimate_error:
-        low = step_maps(system, torques, outputs=times, stages=STAGES - 1, step_angle=STEP_ANGLE)
-        other = low.states(*_bordered(pair, system, low, balanced))[at]
+        low = step_maps(system, torques, outputs=times, stages=STAGES - 1)
+        other = low.states(*_bordered(pair, system, *low.over_all()))[at]
         dte, dte_low = result[:, :6] @ system.deflection, other[:, :6] @ system.deflection
         error = float(np.abs(dte - dte_low).max() / np.abs(dte).max())
-    weights = solve[1]
     return PeriodicSolution(
         system=system,
         time=times,
@@ -93,7 +92,7 @@ def periodic_solution(
         brake_torque=float(weights[2]),
         closure=closure,
         error=error,
-        spectral_radius=relative_spectral_radius(system, maps.over_all()[0]),
+        spectral_radius=relative_spectral_radius(system, transition),
     )
 
 
@@ -120,16 +119,12 @@ def relative_spectral_radius(system: LTVSystem, phi: FloatArray) -> float:
 
 
 def _bordered(
-    pair: GearPair, system: LTVSystem, maps: StepMaps, balanced: bool
+    pair: GearPair, system: LTVSystem, phi: FloatArray, forced: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Initial state (12,) and weights (3,) of own forcing, extra T_p and T_g."""
-    phi, forced = maps.over_all()
-    unknown = 2 if balanced else 1
-    known = np.array([1.0, 0.0, 0.0])
-    if not balanced:
-        brake = pair.operating.brake_torque
-        assert not isinstance(brake, str)
-        known[2] = brake
+    """Initial state (12,) and weights (3,) of own forcing, extra T_p and T_g, from the map over the cycle."""
+    brake = pair.operating.brake_torque
+    unknown = 2 if brake == "balanced" else 1
+    known = np.array([1.0, 0.0, 0.0 if brake == "balanced" else brake])
     matrix = np.zeros((13, 13))
     matrix[:12, :12] = np.eye(12) - phi
     matrix[:12, 12] = -forced[:, unknown]

@@ -31,7 +31,7 @@ def parse_toml(text: str) -> dict[str, Any]:
     return tomllib.loads(text)
 
 
-def read_text(path: str | Path, limit: int, encoding: str = "utf-8") -> str:
+def read_text(path: str | Path, limit: int, encoding: str = "utf-8-sig") -> str:
     """Return the text of an ordinary file (or of one that a link leads to).
 
     A pipe would block for ever and a device never ends, so both are refused before anything is read.
@@ -40,7 +40,7 @@ def read_text(path: str | Path, limit: int, encoding: str = "utf-8") -> str:
     ----------
     path : file
     limit : largest size [bytes]
-    encoding : of the text
+    encoding : of the text; the default is UTF-8 with or without the mark that Windows puts in front
 
     Raises
     ------

@@ -7,38 +7,41 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from lumped import NumericalError, geometry, periodic_system
+from lumped import NumericalError, geometry, periodic_system, propagation
+from lumped.periodic_system import MeshGain
 from lumped.propagation import fastest_frequency, gauss_tableau, step_maps
 
 
-def system_of(matrices, forcing, edges, size):
+def system_of(constant, gain, deflection, edges):
     """What ``step_maps`` needs of a system, for equations that are not a gear pair's."""
-    cycle = SimpleNamespace(edges=np.asarray(edges, dtype=float), knot_times=np.empty(0))
+    size = constant.shape[0]
+    column = np.asarray(deflection)
+
+    def matrices(t):
+        a = np.repeat(constant[None], t.size, axis=0)
+        lower = np.concatenate([g[..., None] * column for g in gain(t)[:2]], axis=2)
+        a[:, size // 2 :] += lower
+        return a
+
     return SimpleNamespace(
         size=size,
         period=float(edges[-1]),
-        cycle=cycle,
-        matrices=lambda times, segment=None: matrices(np.asarray(times), segment),
-        forcing=lambda times, segment=None: forcing(np.asarray(times), segment),
+        cycle=SimpleNamespace(edges=np.asarray(edges, dtype=float), knot_times=np.empty(0)),
+        constant=constant,
+        deflection=column,
+        torque_pinion=np.zeros(size),
+        pinion_torque=0.0,
+        gain=lambda t, segment: MeshGain(*gain(t)),
+        matrices=matrices,
     )
 
 
-def damped_mathieu(t, segment=None):
-    """z'' + 0.4 z' + (9 + 4 cos(2 t)) z: smooth, with time-varying stiffness and damping."""
-    a = np.zeros((t.size, 2, 2))
-    a[:, 0, 1] = 1.0
-    a[:, 1, 0] = -(9.0 + 4.0 * np.cos(2 * t))
-    a[:, 1, 1] = -0.4 * (1.0 + 0.5 * np.sin(2 * t))
-    return a
+def mathieu(t):
+    """z'' + (0.4 + 0.2 sin(2 t)) z' + (9 + 4 cos(2 t)) z = cos(2 t)^2: smooth, stiffness and damping vary."""
+    return tuple(v[:, None] for v in (-4.0 * np.cos(2 * t), -0.2 * np.sin(2 * t), np.cos(2 * t) ** 2))
 
 
-def push(t, segment=None):
-    b = np.zeros((t.size, 2))
-    b[:, 1] = np.cos(2 * t) ** 2
-    return b
-
-
-SMOOTH = system_of(damped_mathieu, push, [0.0, np.pi], 2)
+SMOOTH = system_of(np.array([[0.0, 1.0], [-9.0, -0.4]]), mathieu, [1.0], [0.0, np.pi])
 EXTRA = np.array([[0.0], [1.0]])
 
 
@@ -46,12 +49,9 @@ def reference():
     """Map over the period by an explicit method of another family at its tightest tolerance."""
 
     def rate(t, x):
-        x = x.reshape(2, 4)
-        a, b = damped_mathieu(np.array([t]))[0], push(np.array([t]))[0]
-        slope = a @ x
-        slope[:, 2] += b
-        slope[:, 3] += EXTRA[:, 0]
-        return slope.ravel()
+        z, v = x.reshape(2, 4)
+        acceleration = -(9.0 + 4.0 * np.cos(2 * t)) * z - (0.4 + 0.2 * np.sin(2 * t)) * v
+        return np.concatenate([v, acceleration + np.array([0.0, 0.0, np.cos(2 * t) ** 2, 1.0])])
 
     start = np.zeros((2, 4))
     start[:, :2] = np.eye(2)
@@ -91,35 +91,35 @@ def test_constant_coefficients_give_the_matrix_exponential():
     lower = -np.hstack([np.diag([40.0, 90.0, 10.0]) + rng.normal(size=(3, 3)), 0.3 * np.eye(3)])
     a = np.vstack([np.hstack([np.zeros((3, 3)), np.eye(3)]), lower])
     force = np.concatenate([np.zeros(3), rng.normal(size=3)])
-    system = system_of(
-        lambda t, segment: np.repeat(a[None], t.size, axis=0),
-        lambda t, segment: np.repeat(force[None], t.size, axis=0),
-        [0.0, 2.0],
-        6,
-    )
-    phi, forced = step_maps(system, np.zeros((6, 0)), step_angle=0.4).over_all()
+    constant = system_of(a, lambda t: (np.zeros((t.size, 3)),) * 3, np.zeros(3), [0.0, 2.0])
+    constant.torque_pinion, constant.pinion_torque = 0.5 * force, 2.0
+    # The same matrix with one column of its stiffness and of its damping as feedback of a coordinate.
+    split = a.copy()
+    split[3:, 1] = split[3:, 4] = 0.0
+
+    def gain(t):
+        return tuple(np.repeat(v[None], t.size, axis=0) for v in (a[3:, 1], a[3:, 4], force[3:]))
+
+    feedback = system_of(split, gain, [0.0, 1.0, 0.0], [0.0, 2.0])
     augmented = np.zeros((7, 7))
     augmented[:6, :6], augmented[:6, 6] = 2.0 * a, 2.0 * force
     exact = expm(augmented)[:6]
-    # Order 8 at 0.4 rad a step: 1e-12 a step, about 50 steps.
-    np.testing.assert_allclose(np.hstack([phi, forced]), exact, atol=1e-9 * np.abs(exact).max())
+    for system in (constant, feedback):
+        found = np.hstack(step_maps(system, np.zeros((6, 0)), step_angle=0.4).over_all())
+        # Order 8 at 0.4 rad a step: 1e-12 a step, about 50 steps.
+        np.testing.assert_allclose(found, exact, atol=1e-9 * np.abs(exact).max())
 
 
 def test_a_jump_at_an_edge_costs_no_order():
     """z'' + w(t)^2 z with w = 3 then 5: the map is the product of two rotations."""
 
-    def jump(t, segment):
-        a = np.zeros((t.size, 2, 2))
-        a[:, 0, 1] = 1.0
-        a[:, 1, 0] = -9.0 if segment == 0 else -25.0
-        if segment is None:
-            a[:, 1, 0] = np.where(t < 0.7, -9.0, -25.0)
-        return a
-
     def rotation(w, t):
         return np.array([[np.cos(w * t), np.sin(w * t) / w], [-w * np.sin(w * t), np.cos(w * t)]])
 
-    system = system_of(jump, lambda t, segment: np.zeros((t.size, 2)), [0.0, 0.7, 2.0], 2)
+    def jump(t):
+        return np.where(t < 0.7, -9.0, -25.0)[:, None], np.zeros((t.size, 1)), np.zeros((t.size, 1))
+
+    system = system_of(np.array([[0.0, 1.0], [0.0, 0.0]]), jump, [1.0], [0.0, 0.7, 2.0])
     phi, _ = step_maps(system, np.zeros((2, 0)), step_angle=0.3).over_all()
     np.testing.assert_allclose(phi, rotation(5.0, 1.3) @ rotation(3.0, 0.7), atol=1e-12)
 
@@ -163,6 +163,20 @@ class TestSteps:
         end = phi @ x + forced[:, 0]
         np.testing.assert_allclose(states[-1], end, rtol=1e-9, atol=1e-12 * np.abs(end).max())
         np.testing.assert_array_equal(states[0], x)
+
+    def test_intervals_and_blocks_only_group_the_steps(self, unequal, monkeypatch):
+        system = periodic_system(unequal.with_(operating__pinion_speed=300), "absolute")
+        x, outputs = np.linspace(-1e-5, 1e-5, 12), np.array([0.0, 0.1, 0.15, 0.8]) * system.period
+        maps = step_maps(system, np.zeros((12, 0)), outputs=outputs)
+        # Memory goes with the intervals, however many steps a slow cycle takes.
+        assert maps.edges.size > 300
+        assert maps.maps.shape[0] == 4
+        np.testing.assert_allclose(maps.times, [*outputs, system.period], rtol=1e-12)
+        monkeypatch.setattr(propagation, "_BLOCK", 7)
+        again = step_maps(system, np.zeros((12, 0)), outputs=outputs)
+        a, b = (m.states(x, np.array([1.0])) for m in (maps, again))
+        # Rounding over some hundred steps.
+        assert np.all(np.abs(a - b) <= 1e-10 * np.abs(a).max(axis=0))
 
     def test_a_standstill_is_refused_before_memory_runs_out(self, nasa):
         system = periodic_system(nasa.with_(operating__pinion_speed=1e-3), "absolute")

@@ -161,8 +161,8 @@ def test_the_estimate_bounds_the_error(nasa, law, speed, samples):
     times = sample_times(system.period, samples)
     torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
     fine = step_maps(system, torques, outputs=times, step_angle=0.02)
-    states = fine.states(*_bordered(pair, system, fine, True))
-    exact = states[np.searchsorted(fine.edges, times - 1e-9 * system.period)][:, :6] @ system.deflection
+    states = fine.states(*_bordered(pair, system, *fine.over_all()))
+    exact = states[np.searchsorted(fine.times, times - 1e-9 * system.period)][:, :6] @ system.deflection
     solution = periodic_solution(pair, times, system=system)
     dte = solution.states[:, :6] @ system.deflection
     error = np.abs(dte - exact).max() / np.abs(exact).max()
