@@ -164,11 +164,13 @@ def crosscheck(
     reference = lumped.simulate(pair, **options, rtol=RTOL["lumped"], progress=part(0))  # type: ignore[arg-type]
     shift = contact_shift(pair, reference)
     last = reference.isel(time=slice(-samples_per_cycle - 1, -1))
-    predicted = finite_motion(pair, last) if "exact" in fidelities else None
-    one = None if predicted is None else _periodic(pair, samples_per_cycle, predicted.settled)
-    compared = min(COMPARED_CYCLES, cycles // 2) if one is None else 1
     results: dict[Fidelity, xr.Dataset] = {}
+    predicted: FiniteMotion | None = None
+    one: xr.Dataset | None = None
     for done, fidelity in enumerate(fidelities, 1):
+        if fidelity == "exact":
+            predicted = finite_motion(pair, last)
+            one = _periodic(pair, samples_per_cycle, predicted.settled)
         if fidelity == "exact" and one is not None:
             places = np.arange(reference.sizes["time"]) % samples_per_cycle
             results[fidelity] = one.isel(time=places).assign_coords(time=reference["time"])
@@ -180,6 +182,7 @@ def crosscheck(
             rtol=RTOL[fidelity],
             progress=part(done),
         )
+    compared = min(COMPARED_CYCLES, cycles // 2) if one is None else 1
     agreements: list[Agreement] = []
     orders: list[OrderComparison] = []
     for fidelity, result in results.items():

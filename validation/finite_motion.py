@@ -44,7 +44,7 @@ import xarray as xr
 
 from lumped import GearPair, geometry
 from lumped.equations import Structure
-from lumped.errors import refuse
+from lumped.errors import NumericalError, refuse
 from lumped.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.periodic_system import LTVSystem, periodic_system
 from lumped.results import dataset
@@ -76,7 +76,7 @@ class FiniteMotion:
     changes : quantity -> (k,), of tooth forces (pairs, k), at the times of the lumped motion
     entry, exit : how far into the path the load starts, and how far before its end it stops [m]
     settled : whether friction and motion settled; if not, friction may hold the teeth, and in the prediction
-        it stays that of the nominal sliding velocity
+        it stays that of the nominal sliding velocity. Where not even that settles, nothing is predicted
     """
 
     changes: Mapping[str, FloatArray]
@@ -237,7 +237,9 @@ def finite_motion(pair: GearPair, cycle: xr.Dataset, effects: Collection[str] = 
         shifts, settled = _settle(model, shifts)
     if not settled:
         model = replace(model, times=fine, effects=model.effects - {"sliding_velocity"})
-        shifts, _ = _settle(model, None)
+        shifts, without = _settle(model, None)
+        if not without:
+            return FiniteMotion({name: np.zeros(cycle[name].shape) for name in _CHANGED}, 0.0, 0.0, False)
     found = model.system(shifts)
     solution = periodic_solution(pair, fine, system=found, estimate_error=False)
     motion = dataset(pair, found, fine, solution.states, {})
@@ -253,7 +255,10 @@ def _settle(model: _Lumped, start: _Shifts | None) -> tuple[_Shifts, bool]:
     floor = _SETTLED * model.cycle.geometry.base_pitch
     shifts, step, last = model.shifts_after(start), 1.0, np.inf
     for _ in range(_ITERATIONS):
-        found = model.shifts_after(shifts)
+        try:
+            found = model.shifts_after(shifts)
+        except NumericalError:  # swung so far that no such motion exists
+            return shifts, False
         distance = found.distance(shifts)
         if distance < max(floor, _OF_SHIFT * max(found.entry, found.exit)):
             return found, True

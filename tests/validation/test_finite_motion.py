@@ -158,3 +158,15 @@ def test_an_effect_that_is_not_predicted_is_refused():
     pair = RECTANGULAR
     with pytest.raises(ParameterError, match="contact_loss"):
         finite_motion(pair, lumped.steady_state(pair, samples_per_cycle=16), {"contact_loss"})
+
+
+def test_where_the_shifts_do_not_settle_nothing_is_predicted():
+    """At 30 rpm the contact would move farther than the path is long: no motion of the prediction exists."""
+    slow = lumped.load_gear_pair("fzg_c").with_(operating__pinion_speed=30)
+    cycle = lumped.steady_state(slow, samples_per_cycle=32)
+    predicted = finite_motion(slow, cycle)
+    assert not predicted.settled
+    assert predicted.changes.keys() == {"dte", "x_p", "x_g", "y_p", "y_g", "normal_load", "friction_force"}
+    for name, change in predicted.changes.items():
+        assert change.shape == cycle[name].shape
+        assert not change.any()
