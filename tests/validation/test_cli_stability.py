@@ -50,6 +50,9 @@ def test_every_axis_makes_a_chart_over_speed(tmp_path, axis):
     result = run("--law", "coulomb", *SPEEDS, "--axis", axis, "-o", data, "-o", picture)
     assert result.exit_code == 0, result.stderr
     chart = opened(data)
+    radius = chart["spectral_radius"]
+    worst = radius.isel(radius.argmax(...))
+    assert f"multiplier {float(worst):.6f} at speed_rpm {float(worst['speed_rpm']):.5g}, " in result.stdout
     assert dict(chart.sizes) == {"speed_rpm": 12, axis.split("=")[0]: 3}
     assert set(chart.data_vars) == {"spectral_radius", "error", "verdict"}
     assert chart["speed_rpm"].attrs["units"] == "rpm"
@@ -101,6 +104,16 @@ def test_boundaries_over_damping_and_over_another_axis(tmp_path):
     # Stiffer bearings raise the natural frequencies and with them the tongue.
     assert (np.diff(found["lower"][0]) > 0).all()
     assert "2w3/2" in result.stdout
+
+
+def test_a_range_without_a_tongue_says_so_in_place_of_an_empty_table(tmp_path):
+    picture = tmp_path / "none.png"
+    speeds = ("--axis", "speed_rpm=1000:1500:2", "--axis", "bearing_stiffness=8e7:1.2e8:2")
+    result = run("--view", "boundaries", *speeds, "-o", picture)
+    assert result.exit_code == 0, result.stderr
+    assert "no unstable speed from 1000 to 1500 rpm" in result.stdout
+    assert "from, rpm" not in result.stdout
+    assert picture.read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize(

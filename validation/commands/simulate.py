@@ -97,7 +97,7 @@ def simulate(
     shown.add_row("smallest load of a tooth pair", quantity(float(load.min()), "N"))
     static = gear_pair.operating.pinion_torque / g.base_radius_pinion
     shown.add_row("largest load over static load", number(float(load.max()) / static))
-    shown.add_row("mesh efficiency", number(float(result.attrs["mesh_efficiency"]), 6))
+    shown.add_row("mesh efficiency", f"{number(100.0 * float(result.attrs['mesh_efficiency']))} %")
     shown.add_row(
         "brake torque that holds the speed", quantity(float(result.attrs["brake_torque"]), "N m", 6)
     )

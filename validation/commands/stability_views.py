@@ -122,12 +122,16 @@ def _chart(request: Request) -> View:
             pair, grid, method=request.method, multipliers=request.multipliers, progress=lambda f: tell(f, "")
         )
     stable = chart["verdict"].to_numpy() == 1
+    radius = chart["spectral_radius"]
+    worst = radius.isel(radius.argmax(...))
     stdout().print(
-        f"{int(stable.sum())} of {stable.size} chart points are stable; largest multiplier "
-        f"{float(chart['spectral_radius'].max()):.6f}; largest bound on an error "
-        f"{float(chart['error'].max()):.1e}, method {chart.attrs['method']}",
+        "chart: " + ", ".join(f"{n} {v.min():g} to {v.max():g} ({v.size} values)" for n, v in grid.items())
+        + f"\n{int(stable.sum())} of {stable.size} points are stable; "
+        + f"largest multiplier {float(worst):.6f} at "
+        + ", ".join(f"{name} {float(worst[name]):.5g}" for name in grid)
+        + f"\nlargest bound on an error {float(chart['error'].max()):.1e}, method {chart.attrs['method']}",
         soft_wrap=True,
-    )
+    )  # fmt: skip
     traced: StabilityMargins | None = None
     regions: list[LabelledRegion] = []
     if request.tongues and set(grid) == _DAMPING_AXES:
@@ -218,6 +222,9 @@ def _boundaries(request: Request) -> View:
             {name: values} if values is not None else None,
             progress=lambda done, total: tell(done / total, ""),
         )
+    if not found.sizes["tongue"]:
+        stdout().print(f"no unstable speed from {speeds.min():g} to {speeds.max():g} rpm at any value")
+        return found, lambda: boundaries_figure(found, name, request.operating_range)
     shown = table(
         f"tongues over {GEAR_AXES[name].long_name}", "tongue", ">values", ">from, rpm", ">to, rpm",
         ">largest multiplier",

@@ -49,6 +49,7 @@ def boundaries_figure(
         ax.set_xlim(low - aside, high + aside)
         label_above(ax, names, places, widths)
     else:
+        ax.set_xticks([])
         ax.annotate("no speed of the range is unstable", (0.5, 0.5), xycoords="axes fraction", ha="center")
     if operating_range is not None:
         mark_operating_range(ax, operating_range)

@@ -121,7 +121,7 @@ def _note_assumptions(said: Said, pair: GearPair) -> None:
                 f"{path} is not in the file: {what} is assumed; give your own, for example with {option}"
             )
     if assumed:
-        said.note("assumed, for the file does not say: " + ", ".join(assumed))
+        said.note("assumed, not known: " + ", ".join(assumed))
     for which in ("pinion", "gear"):
         sources = dict(pair.sources)
         if f"{which}.inertia" not in sources and f"{which}.mass" in sources:

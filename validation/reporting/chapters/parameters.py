@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 import re
+from functools import cache
 
-from lumped import GearPair, bodies, mesh_elements
+from lumped import GearPair, bodies, load_gear_pair, mesh_elements
 from lumped.parameters import stated_unit
-from lumped.serialise import leaf_paths
+from lumped.serialise import leaf_paths, preset_names
 from validation.reporting.blocks import Badge, Cell, Chapter, Column, Fact, Facts, Quantity, Table, Text
 from validation.reporting.results import Results
 
@@ -97,14 +98,29 @@ def unit_text(unit: str) -> str:
 
 
 def source_of(pair: GearPair, path: str) -> str:
-    """Where the value of a field comes from: the source of the longest prefix of its path that has one."""
+    """Where the value of a field comes from: the source of the longest prefix of its path that has one.
+
+    A file that began as a preset may still give the preset's source for a value changed since: that value is
+    assumed, for all the file says.
+    """
+    source = _stated(pair, path)
+    presets = [preset for preset in _presets() if _stated(preset, path) == source]
+    value = leaf_paths(pair).get(path)
+    if is_assumed(source) or not presets or any(leaf_paths(p).get(path) == value for p in presets):
+        return source
+    return f"assumed; the source in the file is that of {presets[0].name} for another value"
+
+
+def _stated(pair: GearPair, path: str) -> str:
     sources = dict(pair.sources)
     parts = path.split(".")
-    for length in range(len(parts), 0, -1):
-        prefix = ".".join(parts[:length])
-        if prefix in sources:
-            return sources[prefix]
-    return DEFAULT
+    prefixes = (".".join(parts[:length]) for length in range(len(parts), 0, -1))
+    return next((sources[prefix] for prefix in prefixes if prefix in sources), DEFAULT)
+
+
+@cache
+def _presets() -> tuple[GearPair, ...]:
+    return tuple(map(load_gear_pair, preset_names()))
 
 
 def is_assumed(source: str) -> bool:
