@@ -17,12 +17,13 @@ import xarray as xr
 from lumped import GearPair, load_gear_pair
 from validation.output import write_dataset
 from validation.plots import save
+from validation.reporting.baseline import load_report
 from validation.reporting.blocks import Chapter, Picture, chapter_data, plain
 from validation.reporting.chapters import CHAPTERS
 from validation.reporting.chapters.changes import changes
-from validation.reporting.compare import TOLERANCE, Comparison, load_report
+from validation.reporting.compare import TOLERANCE, Comparison
 from validation.reporting.compare import compare as compare_reports
-from validation.reporting.folder import FORMAT, whole_folder
+from validation.reporting.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.reporting.interactive import write_interactive
 from validation.reporting.judged import failures
 from validation.reporting.junit import junit
@@ -32,9 +33,6 @@ from validation.reporting.summary import summary as markdown
 from validation.reporting.verdict import Summary, summarise
 
 Progress = Callable[[float, str], None]
-
-#: Version of the layout of report.json; a change that breaks readers raises it.
-FORMAT_VERSION = 1
 
 
 @dataclass(frozen=True)
@@ -97,7 +95,7 @@ def report(
     tell = progress or (lambda fraction, text: None)
     gear_pair = load_gear_pair(pair)
     target = Path(out)
-    earlier = None if compare is None else load_report(compare)
+    earlier = None if compare is None else load_report(compare, quick=quick)
     if earlier is not None:
         compare_reports(earlier, earlier, tolerance=tolerance)  # refuses a tolerance before any work
     with whole_folder(target, force=force) as folder:

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Literal
 
-from lumped.errors import ParameterError, refuse
-from lumped.text_file import read_text
+from lumped.errors import refuse
 from validation.reporting.blocks import REMARKS, STATES
-from validation.reporting.folder import FORMAT, REPORT
 
 #: Relative change of a number that passes; numbers are compared as computed, not as shown.
 TOLERANCE = 1e-3
@@ -27,7 +23,6 @@ _ERROR_ROWS = ("change over one more cycle",)
 _ERROR_TABLES = frozenset({"code_verification/closed_forms", "solution_verification/refinement"})
 #: Size below which a number counts as zero beside the largest of its unit in its table, or of its column.
 _SMALL = 1e-4
-_MAX_BYTES = 100_000_000
 _LARGEST_TEXT = 60
 #: Blocks that repeat the input, or name the software, which is free to change.
 _SAID_ELSEWHERE = {("parameters", "parameters"), ("provenance", "versions")}
@@ -86,39 +81,15 @@ class Comparison:
         return tuple(change for change in self.changes if change.fails)
 
 
-def load_report(source: str | Path) -> dict[str, Any]:
-    """Read report.json, or the one of a report folder.
-
-    Raises
-    ------
-    ParameterError : no such file, or not a report
-    """
-    path = Path(source)
-    if path.is_dir():
-        path = path / REPORT.file
-    action = "Give the report.json of an earlier report."
-    try:
-        data = json.loads(read_text(path, _MAX_BYTES))
-    except ParameterError:
-        raise
-    except OSError as error:
-        raise refuse("--compare", source, "a readable report.json", f"{error.strerror}. {action}") from None
-    except (ValueError, RecursionError):
-        raise refuse("--compare", source, "a report.json", f"This is no JSON. {action}") from None
-    keys = ("answers", "chapters", "parameters")
-    if not isinstance(data, dict) or data.get("format") != FORMAT or any(k not in data for k in keys):
-        raise refuse("--compare", source, f'a JSON file of format "{FORMAT}"', action)
-    return data
-
-
 def compare(old: Mapping[str, Any], new: Mapping[str, Any], *, tolerance: float = TOLERANCE) -> Comparison:
     """Compare two reports.
 
     A number fails where it changes by more than the tolerance, relative to the larger of the two and to a
     ten-thousandth of the largest number of its unit in its table, without a unit in its column. Where a row
     states the unit of its numbers each stands for itself. One that measures a numerical error fails where it
-    grows tenfold and beyond rounding. A verdict fails where it gets worse. An entry fails where it is gone.
-    Texts, new entries, changed parameters and settings are shown and do not fail.
+    grows tenfold and beyond rounding. A verdict fails where it gets worse. An entry fails where it is gone,
+    as one where a whole chapter is. Texts, new entries, changed parameters and settings are shown and do not
+    fail.
 
     Parameters
     ----------
@@ -131,10 +102,17 @@ def compare(old: Mapping[str, Any], new: Mapping[str, Any], *, tolerance: float 
     """
     if not 0.0 <= tolerance <= 1.0:
         raise refuse("--tolerance", tolerance, "0 to 1", "0.001 lets numbers change by a tenth of a percent.")
-    before, after = dict(_leaves(old)), dict(_leaves(new))
+    before, after = dict(leaves(old)), dict(leaves(new))
     scales = _scales(before)
-    changes = []
+    changes = [
+        Change(key, "missing", chapter["title"], "gone", None, True)
+        for key, chapter in old["chapters"].items()
+        if key not in new["chapters"] and key != "changes"
+    ]
+    gone = {change.path for change in changes}
     for path in before | after:
+        if path.partition("/")[0] in gone:
+            continue
         first, second = before.get(path), after.get(path)
         if first != second or type(first) is not type(second):
             change = _change(path, path in before, path in after, first, second, tolerance, scales)
@@ -170,7 +148,7 @@ class _Number:
 Leaf = _Number | str | bool | None | _State
 
 
-def _leaves(document: Mapping[str, Any]) -> Iterator[tuple[str, Leaf]]:
+def leaves(document: Mapping[str, Any]) -> Iterator[tuple[str, Leaf]]:
     """Paths and values of everything that a report says; the chapter of changes and versions are left out."""
     for answer in document["answers"]:
         yield f"answers/{answer['question']}", _State(answer["verdict"]["state"], answer["verdict"]["text"])
@@ -207,8 +185,11 @@ def _walk(path: str, value: Any, unit: str | None = None) -> Iterator[tuple[str,
 
 
 def row_names(rows: list[Any]) -> list[str]:
-    """Names of a table's rows: as many of their leading words as tell them apart, else numbered."""
-    words = [[v for v in row.values() if isinstance(v, str)] if isinstance(row, dict) else [] for row in rows]
+    """Names of a table's rows: as many leading words and whole numbers as tell them apart, else numbered."""
+    words = [
+        [str(v) for v in row.values() if type(v) in (str, int)] if isinstance(row, dict) else []
+        for row in rows
+    ]
     names = [""] * len(rows)
     for count in (1, 2):
         names = [", ".join(w[:_LARGEST_TEXT] for w in found[:count]) for found in words]
@@ -292,5 +273,5 @@ def _shown(value: Leaf) -> str:
         return value.text
     if isinstance(value, _Number):
         return f"{value.value:.6g} {value.unit}".rstrip()
-    text = str(value)
+    text = "no value" if value is None else str(value)
     return text if len(text) <= _LARGEST_TEXT else text[:_LARGEST_TEXT] + "…"

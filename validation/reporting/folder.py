@@ -15,6 +15,8 @@ from lumped.errors import ParameterError, refuse
 
 #: Value of "format" in report.json, by which an earlier report is recognised.
 FORMAT = "spurcheck-report"
+#: Version of the layout of report.json; a change that breaks readers raises it.
+FORMAT_VERSION = 1
 
 
 @dataclass(frozen=True)

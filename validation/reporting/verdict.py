@@ -177,10 +177,13 @@ def finite_motions(check: CrossCheck) -> str:
         most = f" and {NAMES[largest.quantity]}, most of all, by {_percent(largest.relative_l2)}"
     worst = check.worst("exact")
     left, limit = _percent(worst.remainder_l2), _percent(worst.tolerance.limit)
+    accounts = f"accounts for all but {left} (tolerance {limit})"
+    if worst.remainder_l2 > 0.5 * worst.relative_l2:
+        accounts = f"does not account for this ({left} left, tolerance {limit})"
     return (
         f"Its contact follows the actual motion, which changes the {NAMES[dte.quantity]} by "
         f"{_percent(dte.relative_l2)}{most} (rms of the change over rms of the motion); the lumped motion "
-        f"alone accounts for all but {left} (tolerance {limit})."
+        f"alone {accounts}."
     )
 
 

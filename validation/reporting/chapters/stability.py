@@ -77,7 +77,8 @@ def stability(results: Results) -> Chapter:
     rows: list[tuple[Cell, ...]] = [
         (part, float(value.real), float(value.imag), float(abs(value)))
         for part, values in (("mesh: q, x_p, x_g", found.feedback), ("bearings: y_p, y_g", found.oloa))
-        for value in values
+        # By size, and of two of one size in an order that rounding cannot change.
+        for value in sorted(values, key=lambda v: (-round(abs(v), 9), -round(v.real, 9), -v.imag))
     ]
     blocks: list[Block] = [
         facts,
