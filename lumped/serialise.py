@@ -15,7 +15,7 @@ from lumped.errors import FieldProblem, ParameterError, shown
 from lumped.parameters import STORED_AS, GearPair
 from lumped.schema_errors import field_at, nearest, translated, unknown_key
 from lumped.text_file import parse_toml, read_text
-from lumped.units import Quantity, to_file
+from lumped.units import Quantity, to_file, to_stated
 
 #: Largest parameter file read, a bound against a wrong path rather than a limit of the format.
 MAX_FILE_BYTES = 1_000_000
@@ -87,8 +87,19 @@ def to_mapping(pair: GearPair) -> dict[str, Any]:
 
 
 def json_schema() -> dict[str, Any]:
-    """Return the JSON Schema of a parameter file; every quantity carries ``unit`` and ``si_unit``."""
-    return GearPair.model_json_schema()
+    """Return the JSON Schema of a parameter file; every quantity carries ``unit`` and ``si_unit``.
+
+    A default is what the file would say: a bare number in the stated unit.
+    """
+    schema = GearPair.model_json_schema()
+    for section in (schema, *schema["$defs"].values()):
+        for field in section["properties"].values():
+            default = field.get("default")
+            if default in (None, []):  # held so inside, but nothing that a file can say
+                field.pop("default", None)
+            elif "unit" in field and not isinstance(default, str):
+                field["default"] = to_stated(default, field["unit"])
+    return schema
 
 
 def leaf_paths(pair: GearPair) -> dict[str, Any]:

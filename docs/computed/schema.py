@@ -8,7 +8,6 @@ from typing import Any
 import lumped
 from computed.markdown import Cell, table, text
 from lumped.friction import LAWS
-from lumped.units import UNITS, to_stated
 
 _LIMITS = (
     ("exclusiveMinimum", "> {:g}"),
@@ -47,10 +46,8 @@ def _default(field: Mapping[str, Any], required: bool) -> Cell:
     if required:
         return "required"
     default = field.get("default")
-    if default is None or default == "" or default == []:
+    if default is None or default == "":
         return None
-    if isinstance(default, float) and field.get("unit") in UNITS:  # held in SI
-        default = float(f"{to_stated(default, field['unit']):.12g}")
     return f"`{default}`" if isinstance(default, str | float | int) else text(str(default))
 
 

@@ -190,6 +190,24 @@ class TestJsonSchema:
         for data in (tomllib.loads(preset_text(name)), load_gear_pair(name).to_mapping()):
             assert list(_violations(data, schema, schema, "")) == []
 
+    def test_a_default_written_out_changes_nothing(self):
+        schema = json_schema()
+        silent, written = (tomllib.loads(preset_text("nasa_28_28")) for _ in range(2))
+        count = 0
+        for key, reference in schema["properties"].items():
+            for section in _alternatives(reference, schema):
+                for name, field in section["properties"].items():
+                    if isinstance(silent.get(key), dict) and "default" in field:
+                        assert list(_violations(field["default"], field, schema, name)) == []
+                        silent[key].pop(name, None)
+                        written[key][name] = field["default"]
+                        count += 1
+        assert count > 20
+        assert load_gear_pair(written) == load_gear_pair(silent)
+        rack = schema["$defs"]["BasicRack"]["properties"]
+        assert rack["pressure_angle"]["default"] == 20.0
+        assert "default" not in schema["properties"]["centre_distance"]
+
     def test_the_check_itself_can_fail(self, edited):
         schema = json_schema()
         for path, value in [("pinion.teeth", "many"), ("pinion.teth", 3), ("pinion.face_width", ...)]:

@@ -139,6 +139,15 @@ def test_simulate_prints_numbers_and_writes_by_suffix(tmp_path):
     assert sorted(p.suffix for p in tmp_path.iterdir()) == [".csv", ".nc", ".png", ".svg"]
 
 
+def test_simulate_says_where_its_motion_is_not_to_be_relied_on():
+    assert run("simulate", "--steady").stderr == ""
+    separated = run("simulate", "--steady", "--speed", 8500, "--torque", 5)
+    assert "teeth would separate: lowest load -50" in separated.stderr
+    assert "--model multibody" in separated.stderr
+    undamped = ["nasa_art_25_31", "--speed", 18000, "--set", "mesh.damping_ratio=0"]
+    assert "is unstable: a disturbance grows 1.081 times" in run("simulate", *undamped, "--steady").stderr
+
+
 def test_multibody_runs_from_the_command():
     result = run("simulate", "--model", "multibody", "--cycles", 1, "--samples", 32, "--initial", "periodic")
     assert result.exit_code == 0, result.stderr

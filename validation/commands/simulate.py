@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import guarded, progress_bar, stderr, stdout, table
+from validation.commands.terminal import guarded, note, progress_bar, stderr, stdout, table
 
 Model = Literal["lumped", "multibody"]
 Fidelity = Literal["exact", "linear"]
@@ -85,6 +85,7 @@ def simulate(
                 progress=lambda f: tell(f, ""),
             )
     from validation.reporting.formatting import number, quantity
+    from validation.validity import contact_loss
 
     g = lumped.geometry(gear_pair)
     last = result.isel(time=slice(-samples, None))
@@ -102,6 +103,19 @@ def simulate(
         "brake torque that holds the speed", quantity(float(result.attrs["brake_torque"]), "N m", 6)
     )
     stdout().print(shown)
+    separation = contact_loss(gear_pair, g, last)
+    if separation.state != "ok" and (model == "lumped" or fidelity == "linear"):
+        note(
+            f"teeth would separate: {separation.detail}. This model lets them pull instead, so the motion is "
+            "not to be relied on. The exact multibody model lets them separate (--model multibody); more "
+            "torque or damping keeps them in contact."
+        )
+    radius = float(result.attrs.get("spectral_radius", 0.0))
+    if radius > 1.0:
+        note(
+            f"this periodic motion is unstable: a disturbance grows {number(radius)} times in a mesh cycle, "
+            "so a pair does not stay in it. See 'spurcheck stability', or raise the damping."
+        )
     if target is None:
         return
     if target.suffix.lower() in FIGURE_SUFFIXES:
