@@ -2,7 +2,9 @@
 Five friction laws over the path of contact
 ===========================================
 
-Which coefficient does each law give the same pair, and what happens at the pitch point?
+Which coefficient does each law give the same pair, and what happens at the pitch point? I jumps there, II
+rises until its bound stops it, III vanishes, IV turns over a short length, and V is II at this thin film:
+choose a law for the film you have.
 """
 
 import numpy as np

@@ -2,7 +2,8 @@
 Film regimes over speed
 =======================
 
-At which speed does the contact of the 28/28 pair leave mixed lubrication?
+At which speed does the contact of the 28/28 pair leave mixed lubrication? Near
+2500 rpm at 22.6 N m, where the film parameter passes 4 and law V changes from II to III.
 """
 
 import numpy as np
@@ -32,8 +33,9 @@ def draw(result: xr.Dataset) -> Figure:
     axes.fill_between(
         result["speed"], result["film_parameter"].min("xi"), result["film_parameter"].max("xi"), alpha=0.2
     )
-    for threshold in (1.0, 4.0, 10.0):
+    for threshold, above in ((1.0, "mixed: II"), (4.0, "film: III"), (10.0, "thick film: III")):
         axes.axhline(threshold, color="0.5", linewidth=0.8)
+        axes.annotate(above, (500.0, threshold), (0, 2), textcoords="offset points", color="0.4")
     axes.set(xlabel="pinion speed [rpm]", ylabel="film parameter [-]")
     axes.legend()
     return figure

@@ -2,7 +2,9 @@
 Dynamic transmission error over speed
 =====================================
 
-Where are the resonances of the periodic motion, and which mode do they belong to?
+Where are the resonances of the periodic motion, and which mode do they belong to? The largest stands where
+the mesh frequency meets the highest mode of the averaged pair, the next where twice the mesh frequency
+does; at either the linear model may end, for teeth separate.
 """
 
 import numpy as np
@@ -27,7 +29,9 @@ def draw(result: xr.Dataset) -> Figure:
     axes = figure.add_subplot()
     axes.plot(result["speed"], result["dte_peak_to_peak"] * 1e6)
     for speed in result.attrs["resonant_speeds"]:
-        axes.axvline(speed, color="0.6", linewidth=0.8, linestyle="--")
+        line = axes.axvline(speed, color="0.6", linewidth=0.8, linestyle="--")
+    line.set_label("mesh frequency = natural frequency")
+    axes.legend()
     axes.set(xlabel="pinion speed [rpm]", ylabel="transmission error, peak to peak [µm]")
     return figure
 

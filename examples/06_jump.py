@@ -2,8 +2,9 @@
 The jump at the primary resonance
 =================================
 
-A lightly damped 50/50 pair answers differently when the speed rises and when it falls.
-The linear model cannot.
+A lightly damped 50/50 pair answers differently when the speed rises and when it falls: falling, it keeps
+the large motion, in which teeth separate, to speeds at which a rising sweep has not met it. The linear
+model has one answer.
 """
 
 import numpy as np
@@ -19,7 +20,7 @@ def compute() -> xr.Dataset:
     pair = lumped.load_gear_pair("kahraman_blankenship_50_50").with_(
         friction__law="none", mesh__stiffness={"model": "parabolic", "ramp_length": 2.0}
     )
-    speeds = np.linspace(2000.0, 2900.0, 19)
+    speeds = np.linspace(2100.0, 2900.0, 17)
     settings = {"settle": 40, "cycles": 10, "rtol": 1e-6, "samples_per_cycle": 64}
     up = multibody.speed_sweep(pair, speeds, **settings)
     down = multibody.speed_sweep(pair, speeds[::-1], **settings).sortby("speed")
@@ -33,7 +34,7 @@ def draw(result: xr.Dataset) -> Figure:
     figure = Figure(figsize=(7, 4), layout="constrained")
     axes = figure.add_subplot()
     for name, style in (("rising", "o-"), ("falling", "s-"), ("linear", "--")):
-        axes.semilogy(result["speed"], result[name] * 1e6, style, markersize=4, label=name)
+        axes.plot(result["speed"], result[name] * 1e6, style, markersize=4, label=name)
     axes.set(xlabel="pinion speed [rpm]", ylabel="transmission error, rms [µm]")
     axes.legend()
     return figure

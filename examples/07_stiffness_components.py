@@ -2,7 +2,9 @@
 What a tooth pair's stiffness is made of
 ========================================
 
-How much of the compliance is contact, tooth and gear body, and how far is the sum from ISO 6336-1?
+How much of the compliance is contact, tooth and gear body, and how far is the sum from ISO 6336-1? Gear
+bodies and teeth yield about alike, the contact half as much, and the sum lies in the scatter that the
+standard states.
 """
 
 import xarray as xr

@@ -3,7 +3,8 @@ Harris map of a relieved pair
 =============================
 
 What does the static transmission error of a pair with tip relief look like below, at and above the torque
-that the relief is made for?
+that the relief is made for? Flat at that torque; below, the relief itself is the error, above, the
+deflection.
 """
 
 import numpy as np

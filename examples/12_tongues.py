@@ -2,8 +2,8 @@
 Tongues of instability over speed and damping
 =============================================
 
-A stiffness that varies with the mesh frequency drives a mode where that frequency is (omega_i + omega_j)/k.
-How wide are those ranges of speed, and how much damping closes them?
+A stiffness that varies with the mesh frequency drives a mode where that frequency is (ω_i + ω_j)/k. How
+wide are those ranges of speed, and how much damping closes them? Only the widest, 2ω_3/2, survives 1 %.
 """
 
 import numpy as np
@@ -32,7 +32,8 @@ def draw(result: xr.Dataset) -> Figure:
         axes.fill_betweenx(tongue["damping_ratio"] * 100, tongue["lower"], tongue["upper"], alpha=0.5)
         axes.axvline(float(tongue["predicted"]), color="0.5", linewidth=0.8, linestyle="--")
         place = (float(tongue["peak"][0]), 100 * float(result["damping_ratio"][0]))
-        axes.annotate(str(tongue["label"].item()), place, (0, 4), textcoords="offset points", ha="center")
+        name = str(tongue["label"].item()).replace("w3", "ω$_3$")
+        axes.annotate(name, place, (-5, 4), textcoords="offset points", ha="right", rotation=90)
     axes.set(xlabel="pinion speed [rpm]", ylabel="mesh damping ratio [%]", yscale="log")
     return figure
 

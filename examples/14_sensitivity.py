@@ -2,7 +2,8 @@
 Which parameter moves the stability margin
 ==========================================
 
-Derivatives of the largest multiplier with respect to every axis of a chart, from left and right eigenvectors.
+What brings a pair beside a tongue closer to it? Speed, then bearing stiffness: they move the tongue.
+Damping matters less by far. Derivatives of the largest multiplier, from left and right eigenvectors.
 """
 
 import numpy as np
