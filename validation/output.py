@@ -121,6 +121,12 @@ def _attribute(value: Any) -> Any:
     return value
 
 
+def _inert(texts: np.ndarray[Any, np.dtype[Any]]) -> np.ndarray[Any, np.dtype[Any]]:
+    """Put an apostrophe before text that a spreadsheet would run as a formula."""
+    safe = [f"'{t}" if str(t).startswith(("=", "+", "-", "@", "\t", "\r")) else t for t in texts]
+    return np.array(safe, dtype=object)
+
+
 def _write_csv(result: xr.Dataset, path: Path) -> None:
     """One row per point of the axes, one column per variable (and tooth pair, multiplier or law)."""
     ready = _real(result)
@@ -141,6 +147,7 @@ def _write_csv(result: xr.Dataset, path: Path) -> None:
             known = ready[d].to_numpy() if d in ready.coords else np.arange(ready.sizes[d])
             labels = [f"{label}_{d}{k}" for label in labels for k in known]
         columns += [(f"{name}{label} [{unit}]", row) for label, row in zip(labels, values, strict=True)]
+    columns = [(heading, _inert(v) if v.dtype.kind in "OU" else v) for heading, v in columns]
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow([heading for heading, _ in columns])

@@ -159,6 +159,39 @@ def test_a_key_of_many_parts_is_refused_at_once(within, tmp_path, text):
             assert accepted_or_refused(load, tmp_path / "x.toml") is None
 
 
+@pytest.mark.parametrize("key", ["", "gear_pair."])
+def test_very_many_unknown_keys_are_refused_at_once(within, tmp_path, key):
+    # Comparing each problem with each other one, or each key with the known ones, would take minutes.
+    text = "".join(f"{key}k{number} = 1\n" for number in range(100_000))
+    (tmp_path / "x.toml").write_text(text)
+    for load in (load_gear_pair, load_study, load_measurement):
+        with within(SECONDS):
+            assert accepted_or_refused(load, tmp_path / "x.toml") is None
+
+
+def test_very_many_values_that_are_no_numbers_are_refused_at_once(within):
+    text = STUDY.replace("low = 500.0", "values = [" + "true," * 10**6 + "]")
+    with within(SECONDS):
+        assert accepted_or_refused(load_study, text) is None
+
+
+@pytest.mark.parametrize("number", ["0x" + "f" * 5000, "1" * 4000, "1" * 5000])
+def test_a_number_of_thousands_of_digits_is_refused(tmp_path, number):
+    # Python itself refuses to write it out in decimals.
+    for text in (STUDY.replace("500.0", number), STUDY.replace("samples = 16", f"samples = {number}")):
+        assert accepted_or_refused(load_study, text) is None
+    (tmp_path / "x.toml").write_text(preset_text("nasa_28_28").replace("teeth = 28", f"teeth = {number}"))
+    assert accepted_or_refused(load_gear_pair, tmp_path / "x.toml") is None
+
+
+def test_the_mark_that_windows_puts_before_utf_8_is_no_text(tmp_path):
+    file = tmp_path / "pair.toml"
+    file.write_text(preset_text("fzg_c"), encoding="utf-8-sig")
+    assert load_gear_pair(file).name == "fzg_c"
+    file.write_text(preset_text("fzg_c"), encoding="utf-16")
+    assert accepted_or_refused(load_gear_pair, file) is None
+
+
 def test_dots_in_comments_and_numbers_are_no_keys(tmp_path):
     dots = "# " + "." * 200 + "\n" + "# a" + ".a" * 200 + "\n"
     numbers = "points = [" + ", ".join(["1.5"] * 200) + "]\n"

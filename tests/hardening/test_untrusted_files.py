@@ -20,7 +20,8 @@ HOSTILE_NAMES = [
     "__import__('os').system('touch outside')",
     "{{ cycler.__init__.__globals__.os.system('touch outside') }}",
     "<script>alert(1)</script>",
-    "a\x1b]0;owned\x07b",
+    "[/bold][link=file:///etc/passwd]x",
+    "=cmd|' /C calc'!A0",
 ]
 
 
@@ -45,6 +46,15 @@ def test_text_in_a_study_is_only_text(tmp_path, monkeypatch, name):
     pair = load_gear_pair("nasa_28_28").with_(name=name, description=name)
     run_sweep(study(name=name, description=name, gear_pair=pair), tmp_path / "out")
     assert files_below(tmp_path) == ["out/journal.bin", "out/results.nc", "out/study.toml"]
+
+
+@pytest.mark.parametrize("text", ["a\x1b]0;owned\x07b", "a\0b", "a\x9b31m"])
+@pytest.mark.parametrize("field", ["name", "description"])
+def test_text_has_no_control_characters(field, text):
+    for load in (load_gear_pair("nasa_28_28").with_, study):
+        with pytest.raises(ParameterError, match="control characters") as caught:
+            load(**{field: text})
+        assert text not in str(caught.value)
 
 
 @pytest.mark.parametrize("name", HOSTILE_NAMES)

@@ -98,6 +98,13 @@ def test_measurement_identifies_the_friction_that_made_the_record(example, tmp_p
     }
 
 
+def test_measurement_beside_a_prediction_without_friction(example, tmp_path):
+    result = run("measurement", example / "measurement.toml", "--law", "none", "-o", tmp_path / "out")
+    assert result.exit_code == 0, result.output
+    metrics = json.loads((tmp_path / "out" / "measurement.json").read_text(encoding="utf-8"))["metrics"]
+    assert metrics["friction_A"]["relative_rms"] is None
+
+
 def test_measurement_refuses_what_it_cannot_use(example, tmp_path):
     assert "no.toml" in refused("measurement", tmp_path / "no.toml")
     assert "xu_kahraman" in refused("measurement", example / "measurement.toml", "--identify", "sandpaper")

@@ -178,6 +178,16 @@ def test_overlay_metrics_know_a_constant_offset(truth):
     np.testing.assert_allclose(band["scatter"], 0.0, atol=1e-4)  # difference of squares of 12 N in doubles
 
 
+def test_a_prediction_without_friction_has_no_scale_for_a_relative_metric(pair, truth):
+    smooth = predict(pair.with_(friction__law="none"), recurrence=3)
+    metrics = overlay_metrics(record(truth), smooth, align(record(truth), smooth), resamples=99)
+    friction = metrics.sel(channel="friction_A")
+    assert friction["rms"] > 10.0
+    for name in ("relative_rms", "relative_rms_low", "relative_mean_absolute_high"):
+        assert np.isnan(friction[name])
+        assert np.isfinite(metrics.sel(channel="normal_A")[name])
+
+
 def test_overlay_interval_has_the_width_of_the_noise(truth):
     noisy = record(truth, engagements=100, noise_normal=0.05, seed=17)
     metrics = overlay_metrics(noisy, truth, align(noisy, truth, shift=0.0), level=0.95)
@@ -197,7 +207,16 @@ def test_arguments_that_cannot_be_used_are_refused(truth):
             identify_friction(clean, truth, phase, **how)
     with pytest.raises(ParameterError):
         align(clean, truth, channels=["nothing"])
+    for shift in (np.nan, np.inf, 1e300):
+        with pytest.raises(ParameterError, match="shift"):
+            align(clean, truth, shift=shift)
+    far = dataclasses.replace(clean, abscissa=clean.abscissa * 1e20)
+    with pytest.raises(ParameterError, match="abscissa"):
+        align(far, truth)
     with pytest.raises(NumericalError, match="in contact"):
         identify_friction(clean, truth, phase, guard=1.0)
+    early = dataclasses.replace(clean, abscissa=clean.abscissa * 1e-6)  # all of it within pair A's contact
+    with pytest.raises(NumericalError, match="normal_B is in contact"):
+        overlay_metrics(early, truth, align(early, truth, shift=0.0))
     with pytest.raises(ParameterError, match="recurrence"):
         predict(truth.pair, recurrence=1)

@@ -49,6 +49,16 @@ def test_csv_of_a_chart_has_one_row_per_point_with_its_own_value(tmp_path):
     ]
 
 
+def test_text_in_csv_is_no_formula(tmp_path):
+    # Spreadsheets run what starts with one of = + - @; an apostrophe marks it as text.
+    laws = ["coulomb", "=cmd|' /C calc'!A0", "@SUM(1)", "-1+2", "+1"]
+    result = xr.Dataset({"mu": ("law_name", np.arange(-2.0, 3.0))}, coords={"law_name": laws})
+    output.write_dataset(result, tmp_path / "laws.csv")
+    rows = list(csv.reader((tmp_path / "laws.csv").read_text().splitlines()))[1:]
+    assert [row[0] for row in rows] == [laws[0], *(f"'{law}" for law in laws[1:])]
+    assert [row[1] for row in rows] == ["-2.0", "-1.0", "0.0", "1.0", "2.0"]
+
+
 def test_netcdf_loses_nothing(dataset, tmp_path):
     output.write_dataset(dataset, tmp_path / "run.nc")
     with xr.open_dataset(tmp_path / "run.nc", engine="h5netcdf") as opened:

@@ -79,6 +79,8 @@ def crosscheck(
             output, checkpoint, [k for k, v in (given | {"--set": settings}).items() if v], strict, force
         )
         return
+    from rich.text import Text
+
     from lumped.errors import refuse
     from validation.agreement import MEANINGS
     from validation.comparison import crosscheck as run
@@ -103,10 +105,10 @@ def crosscheck(
     shown.columns[0].no_wrap = True
     words = {
         "maximum_over_span": "max/span",
-        "remainder_l2": "rel. L2 left",
+        "remainder_l2": "left",
     }
     for a in check.agreements:
-        verdict = "[green]within[/green]" if a.within else "[red]outside[/red]"
+        verdict = Text("within", "green") if a.within else Text("outside", "red")
         limit = a.tolerance.limit
         metric = words[a.tolerance.metric]
         shown.add_row(a.quantity, a.fidelity, metric, number(a.judged, 3), number(limit, 3), verdict)
@@ -114,8 +116,8 @@ def crosscheck(
     console.print(shown)
     console.print("max/span: largest difference over the peak to peak of the lumped history", soft_wrap=True)
     console.print(
-        "left: after what finite motions must change, predicted from the lumped model alone, is added to the "
-        "lumped history",
+        "left: L2 norm of what is left of the difference, after what finite motions must change (predicted "
+        "from the lumped model alone) is taken off, over that of the lumped history",
         soft_wrap=True,
     )
     if check.finite_motion is not None and not check.finite_motion.settled:
@@ -124,7 +126,7 @@ def crosscheck(
             "predicted.",
             soft_wrap=True,
         )
-    console.print(f"[bold]{check.verdict}[/bold]: {MEANINGS[check.verdict]}", soft_wrap=True)
+    console.print(f"[bold]{check.verdict}[/bold]: {MEANINGS[check.verdict]}", markup=True, soft_wrap=True)
     if target is not None:
         _write(check, target)
         stderr().print(f"wrote {target}", soft_wrap=True)

@@ -58,7 +58,7 @@ def crosscheck_grid(
         console.print(f"failed at {_named(point)}: {reason}", soft_wrap=True, markup=False)
     if causes is not None:
         _explain(found, causes)
-    console.print(f"[bold]{found.verdict}[/bold]: {MEANINGS[found.verdict]}", soft_wrap=True)
+    console.print(f"[bold]{found.verdict}[/bold]: {MEANINGS[found.verdict]}", markup=True, soft_wrap=True)
     if target is not None:
         stderr().print(f"wrote {target}", soft_wrap=True)
     if found.verdict == "not confirmed" or (strict and found.verdict != "confirmed"):

@@ -121,7 +121,7 @@ def _show(found: Evaluation) -> None:
     spec, console = found.measurement.spec, stdout()
     rpm = spec.pinion_speed * 30.0 / math.pi
     console.print(
-        f"[bold]{spec.name}[/bold]: {found.measurement.abscissa.size} samples at {rpm:.6g} rpm and "
+        f"{spec.name}: {found.measurement.abscissa.size} samples at {rpm:.6g} rpm and "
         f"{spec.pinion_torque:.5g} N m; mesh phase {found.alignment.shift:.5f} "
         f"± {found.alignment.standard_error:.1g} mesh cycles, "
         f"{100 * found.alignment.share_explained:.1f} % of the variation explained",
@@ -151,7 +151,7 @@ def _show(found: Evaluation) -> None:
         )
     console.print(shown)
     for one in found.found:
-        console.print(f"[bold]identified:[/bold] {one.text}", soft_wrap=True)
+        console.print(f"identified: {one.text}", soft_wrap=True)
         console.print(
             f"  mean |mu| over the path of contact {one.mean_mu:.4g}; left over "
             f"{quantity(one.residual_rms, 'N', 3)} rms",
@@ -161,6 +161,8 @@ def _show(found: Evaluation) -> None:
 
 def _write(found: Evaluation, folder: Path) -> None:
     from dataclasses import asdict
+
+    import numpy as np
 
     from validation.output import write_dataset
     from validation.plots import save
@@ -188,7 +190,10 @@ def _write(found: Evaluation, folder: Path) -> None:
             "share_explained": found.alignment.share_explained,
         },
         "metrics": {
-            str(name): {str(key): float(value) for key, value in metrics.sel(channel=name).data_vars.items()}
+            str(name): {
+                str(key): float(value) if np.isfinite(value) else None
+                for key, value in metrics.sel(channel=name).data_vars.items()
+            }
             for name in metrics["channel"].to_numpy()
         },
         "identified": [asdict(one) | {"text": one.text} for one in found.found],

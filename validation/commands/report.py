@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 #: Changes listed in the terminal.
 _MOST = 30
+#: Changed parameters listed there.
+_INPUTS = 5
 
 
 @guarded
@@ -96,16 +98,20 @@ def report(
 
 
 def _show_changes(comparison: Comparison) -> None:
-    from rich.markup import escape
-
     console = stdout()
     failed, changed = len(comparison.regressions), len(comparison.changes)
     console.print(
-        f"\n{comparison.compared} values compared: {changed} changed, {failed} past tolerance",
+        f"\n{comparison.compared} values compared with the earlier report of {comparison.old_name}: "
+        f"{changed} changed, {failed} past tolerance",
         soft_wrap=True,
     )
+    inputs = [change for change in comparison.changes if change.path.startswith("input/")]
+    if inputs:
+        more = f" and {len(inputs) - _INPUTS} more" if len(inputs) > _INPUTS else ""
+        listed = "; ".join(map(str, inputs[:_INPUTS]))
+        console.print(f"  the parameters differ: {listed}{more}", soft_wrap=True)
     for change in comparison.changes[:_MOST]:
-        mark = "[red]past tolerance[/red]" if change.fails else "within"
-        console.print(f"  {mark}  {escape(str(change))}", soft_wrap=True)
+        mark = "past tolerance" if change.fails else "within"
+        console.print(f"  {mark}  {change}", style="red" if change.fails else None, soft_wrap=True)
     if len(comparison.changes) > _MOST:
         console.print(f"  and {len(comparison.changes) - _MOST} more: see summary.md and report.json")

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rich.markup import escape
-
 from lumped.errors import refuse
-from validation.commands.terminal import stderr
+from validation.commands.terminal import note as tell
 from validation.exchange import gear_pair_from_rexs, parameter_text
 
 
@@ -27,5 +25,5 @@ def text_from_rexs(path: Path | None, stage: int | None) -> tuple[str, str]:
         raise refuse("--stage", stage, "a stage of the file of --from-rexs", "Give --from-rexs FILE too.")
     mapping, notes = gear_pair_from_rexs(path, stage)
     for note in notes:
-        stderr().print(f"[yellow]note:[/yellow] {escape(note)}", soft_wrap=True)
+        tell(note)
     return parameter_text(mapping, notes), path.name.split(".")[0] or "rexs"

@@ -127,7 +127,7 @@ def _print_point(pair: GearPair, found: GearPairMultipliers) -> None:
     from validation.reporting.formatting import number
 
     shown = table(f"{pair.name}: operating point", "quantity", ">value")
-    shown.add_row("verdict", f"[bold]{found.verdict}[/bold]")
+    shown.add_row("verdict", found.verdict)
     shown.add_row("largest multiplier", f"{found.spectral_radius:.8f}")
     shown.add_row("bound on its error", number(found.error, 2))
     shown.add_row("margin, 1 - largest multiplier", number(1.0 - found.spectral_radius))

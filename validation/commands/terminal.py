@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import functools
+import unicodedata
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import ParamSpec
+from typing import Any, ParamSpec
 
 import typer
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
+from rich.text import Text
 
 P = ParamSpec("P")
 
@@ -19,14 +21,34 @@ P = ParamSpec("P")
 FAILED, REFUSED, NUMERICAL, INTERRUPTED = 1, 2, 3, 130
 
 
+#: Categories of characters that command a terminal or reorder a line instead of being seen; a line end may.
+_UNSEEN = ("Cc", "Cf", "Cs")
+
+
+class PlainConsole(Console):
+    """Console on which text from files stays text: no markup unless asked for, no control characters."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(markup=False, highlight=False, emoji=False, **options)
+
+    def render_str(self, text: str, **options: Any) -> Text:
+        """Return the text with what cannot be seen written as code writes it."""
+        if not text.isprintable():
+            text = "".join(
+                c.encode("unicode_escape").decode() if unicodedata.category(c) in _UNSEEN and c != "\n" else c
+                for c in text
+            )
+        return super().render_str(text, **options)
+
+
 def stdout() -> Console:
     """Console for results; made anew so that a replaced stream is used."""
-    return Console(highlight=False, emoji=False)
+    return PlainConsole()
 
 
 def stderr() -> Console:
     """Console for everything that is not the result."""
-    return Console(stderr=True, highlight=False, emoji=False)
+    return PlainConsole(stderr=True)
 
 
 def guarded(command: Callable[P, None]) -> Callable[P, None]:
@@ -42,7 +64,7 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
             text = str(message)
             if text not in told:
                 told.add(text)
-                stderr().print(f"[yellow]note:[/yellow] {escape(text)}")
+                note(text)
 
         try:
             with warnings.catch_warnings():
@@ -63,8 +85,13 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
 
 
 def _fail(text: str, code: int) -> None:
-    stderr().print(f"[bold red]error:[/bold red] {escape(text)}", soft_wrap=True)
+    stderr().print(f"[bold red]error:[/bold red] {escape(text)}", markup=True, soft_wrap=True)
     raise typer.Exit(code)
+
+
+def note(text: str) -> None:
+    """Tell something that is not the result."""
+    stderr().print(f"[yellow]note:[/yellow] {escape(text)}", markup=True, soft_wrap=True)
 
 
 @contextmanager

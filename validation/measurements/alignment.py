@@ -23,6 +23,7 @@ _COARSE = 32  # trial shifts per mesh cycle
 _COARSE_SAMPLES = 2000
 _ZOOM = 4
 _FINEST = 1e-6  # mesh cycles
+_FARTHEST = 1e9  # mesh cycles, where double precision still resolves the finest shift
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,10 +95,13 @@ def align(
 
     Raises
     ------
-    ParameterError : unknown channel names
+    ParameterError : unknown channel names, or a shift or abscissae beyond 1e9 mesh cycles
     NumericalError : the channels do not vary, or the best shift explains less than half of their variation
     """
     raw = mesh_cycles(measurement, prediction.pair)
+    for field, farthest in (("abscissa", np.abs(raw).max()), ("shift", abs(shift or 0.0))):
+        if not farthest < _FARTHEST:
+            raise refuse(field, f"{farthest:g} mesh cycles", f"< {_FARTHEST:g}", "Check its unit.")
     if shift is not None:
         return Alignment(raw + shift, shift, 0.0)
     chosen = _chosen(measurement, channels)

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from lumped.errors import refuse
+from lumped.errors import NumericalError, refuse
 from validation.measurements.alignment import Alignment
 from validation.measurements.prediction import Prediction
 from validation.measurements.record import Measurement
@@ -107,7 +107,12 @@ def overlay_metrics(
     Returns
     -------
     Dataset over ``channel``: each metric of ``METRICS``, with ``<metric>_low`` and ``<metric>_high``,
-    largest (the largest |measured - predicted|) and the number of blocks
+    largest (the largest |measured - predicted|) and the number of blocks; the relative ones are NaN where the
+    prediction is constant
+
+    Raises
+    ------
+    NumericalError : no sample of a channel is in contact
     """
     if resamples < 99 or not 0.5 <= level < 1.0:
         raise refuse("resamples, level", (resamples, level), ">= 99, 0.5 to 1", "Use 999 and 0.95.")
@@ -147,15 +152,16 @@ def _one_turn(prediction: Prediction) -> FloatArray:
 
 def _metrics(sums: FloatArray, span: float) -> dict[str, FloatArray]:
     n, e, e2, absolute, y, p, yp, y2, p2 = sums
+    whole = span or np.nan  # a constant prediction, such as no friction, has no scale
     rms, mean_absolute = np.sqrt(e2 / n), absolute / n
     spread = np.sqrt(np.maximum(n * y2 - y**2, 0.0) * np.maximum(n * p2 - p**2, 0.0))
     correlation = np.where(spread > 0.0, (n * yp - y * p) / np.where(spread > 0.0, spread, 1.0), 0.0)
     return {
         "bias": e / n,
         "rms": rms,
-        "relative_rms": rms / span,
+        "relative_rms": rms / whole,
         "mean_absolute": mean_absolute,
-        "relative_mean_absolute": mean_absolute / span,
+        "relative_mean_absolute": mean_absolute / whole,
         "correlation": correlation,
     }
 
@@ -172,5 +178,9 @@ def _samples(
     else:
         age, inside = prediction.age(u, channel.pair), prediction.contact(u, channel.pair)
         block = np.floor((u - PAIR_LABELS.index(channel.pair)) / prediction.recurrence)
+    if not inside.any():
+        raise NumericalError(
+            f"No sample of {channel.name} is in contact; check the abscissae, the shift and the pair labels."
+        )
     p = prediction.value(channel.quantity, u, channel.pair)
     return age[inside], y[inside], p[inside], block[inside].astype(np.int64)

@@ -26,6 +26,8 @@ from validation.measurements.specification import (
 FloatArray = NDArray[np.float64]
 
 _MAX_BYTES = 2_000_000_000
+#: Values whose squares can be summed.
+_LARGEST = 1e100
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +75,7 @@ def load_measurement(source: str | Path | Mapping[str, Any], data: str | Path | 
         raise refuse("data", "", "the CSV file of the record", "Name it in the description.")
     path = Path(data) if data is not None else folder / spec.data
     try:
-        text = read_text(path, _MAX_BYTES, "utf-8-sig")
+        text = read_text(path, _MAX_BYTES)
     except ParameterError:
         raise
     except (OSError, ValueError) as error:
@@ -122,7 +124,11 @@ def parse_measurement(spec: MeasurementSpec, text: str) -> Measurement:
         field = f"channel.{channel.name}.unit"
         unit = _unit(channel.unit, units[j], field)
         factor = channel.gain * si_factor(unit, QUANTITIES[channel.quantity][0], field)
-        channels[channel.name] = factor * (table[:, j] - channel.zero)
+        with np.errstate(over="ignore", invalid="ignore"):
+            channels[channel.name] = values = factor * (table[:, j] - channel.zero)
+        if not (np.abs(values) < _LARGEST).all():
+            largest = f"up to {np.abs(values).max():g} in SI units"
+            raise refuse(f"channel.{channel.name}", largest, f"< {_LARGEST:g}", "Check gain, zero and unit.")
         noise[channel.name] = None if channel.noise is None else abs(factor) * channel.noise
     return Measurement(spec, abscissa, channels, noise, hashlib.sha256(text.encode()).hexdigest())
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidationError, model_validator
 
-from lumped.errors import FieldProblem, ParameterError, quoted, refuse, shown
-from lumped.section import Section
+from lumped.errors import MOST_PROBLEMS, FieldProblem, ParameterError, quoted, refuse, shown
+from lumped.section import Section, Text
 from lumped.text_file import parse_toml, read_text
 from lumped.units import Quantity
 
@@ -109,9 +109,9 @@ class Channel(Section):
 class MeasurementSpec(Section):
     """The description of one measured record."""
 
-    name: str = Field(min_length=1, max_length=120, description="short name")
-    description: str = Field("", description="what was measured and how")
-    source: str = Field(min_length=1, description="who measured it, where it was published")
+    name: Text = Field(min_length=1, max_length=120, description="short name")
+    description: Text = Field("", description="what was measured and how")
+    source: Text = Field(min_length=1, description="who measured it, where it was published")
     data: str = Field("", description="the CSV file, beside this file")
     delimiter: str = Field(",", min_length=1, max_length=1, description="between the cells")
     decimal: Literal[".", ","] = Field(".", description="decimal sign of the cells")
@@ -119,7 +119,7 @@ class MeasurementSpec(Section):
     pinion_torque: Annotated[float, Quantity("N*m", above=0)] = Field(
         description="pinion torque of the record"
     )
-    recurrence: Annotated[int, Field(ge=1)] | None = Field(
+    recurrence: Annotated[int, Field(ge=1, le=1_000_000)] | None = Field(
         None,
         description="mesh cycles after which the same labelled pair is in contact again; default the "
         "pinion's number of teeth (one instrumented pinion tooth)",
@@ -175,7 +175,7 @@ def read_specification(source: str | Path | Mapping[str, Any]) -> tuple[Measurem
 
 def _problems(error: ValidationError) -> list[FieldProblem]:
     found: list[FieldProblem] = []
-    for item in error.errors(include_url=False):
+    for item in error.errors(include_url=False)[:MOST_PROBLEMS]:
         place = ".".join(str(part) for part in item["loc"]) or "file"
         context = item.get("ctx", {})
         if item["type"] == "quantity":

@@ -19,6 +19,8 @@ from lumped.section import Section
 from lumped.units import Quantity, to_si, to_stated
 
 AxisValue = int | float | str
+#: Every integer below this is a floating-point number.
+_EXACT = 2**53
 _FLOQUET_ONLY = ("friction_coefficient", "stiffness_variation")
 
 
@@ -63,16 +65,18 @@ def target_of(path: str) -> Target:
 _Bound = Quantity("1", optional=True, action="Give the number in the axis' unit.")
 
 
-def _plain_value(value: object) -> object:
-    number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if isinstance(value, str) or (number and abs(value) < 2.0**63):  # type: ignore[arg-type]
-        return value
-    text = "{value}: allowed {allowed}. {action}"
-    allowed = {"value": shown(value), "allowed": "a finite number or text with a unit"}
-    raise PydanticCustomError("quantity", text, {**allowed, "action": "Correct the value."})
-
-
-_Value = Annotated[StrictInt | StrictFloat | str, BeforeValidator(_plain_value)]
+def _plain_values(values: object) -> object:
+    """Refuse the first value that is no number or text; pydantic would list millions of them."""
+    for value in values if isinstance(values, (list, tuple)) else ():
+        number = isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < 2.0**63
+        if not number and not isinstance(value, str):
+            context = {"value": shown(value), "allowed": "finite numbers or text with a unit"}
+            raise PydanticCustomError(
+                "quantity",
+                "{value}: allowed {allowed}. {action}",
+                {**context, "action": "Correct the value."},
+            )
+    return values
 
 
 def _single(value: object) -> object:
@@ -86,9 +90,10 @@ class Axis(Section):
     field: Annotated[
         tuple[str, ...], BeforeValidator(_single, json_schema_input_type=str | list[str]), Field(min_length=1)
     ] = Field(description="dotted path of a gear-pair field, several paths, or the name of a chart axis")
-    values: tuple[_Value, ...] | None = Field(
-        None, min_length=1, max_length=10_000_000, description="the values, for a grid"
-    )
+    values: Annotated[
+        tuple[StrictInt | StrictFloat | str, ...] | None,
+        BeforeValidator(_plain_values, json_schema_input_type=list[int | float | str]),
+    ] = Field(None, min_length=1, max_length=10_000_000, description="the values, for a grid")
     low: Annotated[float | None, _Bound] = Field(None, description="lower end, in the field's stated unit")
     high: Annotated[float | None, _Bound] = Field(None, description="upper end, in the field's stated unit")
     count: Annotated[int | None, Field(ge=2, le=10_000_000, strict=True)] = Field(
@@ -142,6 +147,15 @@ class Axis(Section):
         if self.values is None:
             if target.kind == "other":
                 raise refuse("field", repr(self.field[0]), "a number for a range", "List its values.")
+            assert self.low is not None
+            assert self.high is not None
+            if target.kind == "int" and not -_EXACT < math.ceil(self.low) <= math.floor(self.high) < _EXACT:
+                raise refuse(
+                    "low",
+                    f"{self.low:g} to {self.high:g}",
+                    "a range with integers in it",
+                    "Correct the range.",
+                )
             return () if self.count is None else self.spaced(np.linspace(0.0, 1.0, self.count))
         values = tuple(_read(value, target) for value in self.values)
         if len(set(values)) < len(values):
@@ -178,6 +192,8 @@ class Axis(Section):
 
 def _read(value: AxisValue, target: Target) -> AxisValue:
     if target.kind == "other":
+        if not isinstance(value, str):
+            raise refuse("values", value, "text, as in a parameter file", "Put it in quotes.")
         return value
     if isinstance(value, str):
         unit = target.unit.replace("N m", "N*m") or "1"

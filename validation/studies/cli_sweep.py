@@ -9,7 +9,6 @@ from types import TracebackType
 from typing import Self
 
 from rich.console import Console
-from rich.markup import escape
 from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
@@ -41,14 +40,13 @@ def sweep(
     scheduler: str | None = None,
     case_seconds: float | None = None,
     dry_run: bool = False,
-    console: Console | None = None,
+    console: Console,
     out: Console | None = None,
 ) -> int:
     """Run ``spurcheck sweep`` and return its exit code (the constants of this module).
 
     ``console`` takes progress and errors, ``out`` the summary; the other arguments are the command's.
     """
-    console = console or Console(stderr=True, highlight=False)
     # The folder's name never comes from inside the file.
     folder = output if output is not None else Path(study_file.stem + "-sweep")
     try:
@@ -56,14 +54,14 @@ def sweep(
         count = case_list(study).count
         wanted = cores() if workers is None else workers
         where = f"on {scheduler}" if scheduler else f"on {wanted} worker(s)"
-        console.print(escape(f"{study.name}: {count} cases, {study.analysis}, {where} -> {folder}"))
+        console.print(f"{study.name}: {count} cases, {study.analysis}, {where} -> {folder}", soft_wrap=True)
         if dry_run:
             return OK
         with SweepProgress(console) as progress:
             summary = run_sweep(
                 study,
                 folder,
-                workers=min(wanted, max(count, 1)),
+                workers=wanted,
                 scheduler=scheduler,
                 resume=resume,
                 retry_failed=retry_failed,
@@ -71,14 +69,14 @@ def sweep(
                 progress=progress,
             )
     except ParameterError as error:
-        console.print(f"[bold red]error:[/bold red] {escape(str(error))}", soft_wrap=True)
+        console.print(f"error: {error}", style="red", soft_wrap=True)
         return REFUSED
     except SpurcheckError as error:
-        console.print(f"[bold red]error:[/bold red] {escape(str(error))}", soft_wrap=True)
+        console.print(f"error: {error}", style="red", soft_wrap=True)
         return STOPPED
     except KeyboardInterrupt:
-        again = escape(f"Stopped. What was computed is in {folder}; run the same command with --resume.")
-        console.print(again, style="yellow")
+        again = f"Stopped. What was computed is in {folder}; run the same command with --resume."
+        console.print(again, style="yellow", soft_wrap=True)
         return INTERRUPTED
     print_summary(summary, out or console)
     return FAILED if summary.failed else OK
@@ -142,7 +140,7 @@ def print_summary(summary: Summary, console: Console) -> None:
     console.print(table)
     for case, text in summary.failures:
         first = text.splitlines()[0] if text else ""
-        console.print(escape(f"case {case}: {first}"), style="red")
+        console.print(f"case {case}: {first}", style="red", soft_wrap=True)
     if summary.failed > len(summary.failures):
         console.print(f"... and {summary.failed - len(summary.failures)} more, see failure_message")
     if summary.damaged_bytes:
@@ -151,8 +149,7 @@ def print_summary(summary: Summary, console: Console) -> None:
         )
     rate = summary.computed / max(summary.seconds, 1e-9)
     console.print(
-        escape(
-            f"{summary.computed} computed, {summary.before} kept from before, in {summary.seconds:.3g} s "
-            f"({rate:.3g} cases/s) -> {summary.results}"
-        )
+        f"{summary.computed} computed, {summary.before} kept from before, in {summary.seconds:.3g} s "
+        f"({rate:.3g} cases/s) -> {summary.results}",
+        soft_wrap=True,
     )

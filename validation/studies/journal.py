@@ -69,7 +69,6 @@ class Key:
         self.cases = bytes.fromhex(cases.sha256)
         self.count = cases.count
         self.outputs = len(cases.study.outputs)
-        self.sampled_axes = len(cases.study.axes) if cases.grid is None else 0
         #: Start of every checksum: a record of another study or another list of cases never passes.
         self.seed = zlib.crc32(hashlib.sha256(self.study + self.cases).digest())
         head = _HEADER.pack(_START, self.study, self.cases, self.count, self.outputs, 0)

@@ -9,7 +9,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from lumped.errors import FieldProblem, ParameterError, quoted, refuse, shown
+from lumped.errors import MOST_PROBLEMS, FieldProblem, ParameterError, quoted, refuse, shown
 from lumped.parameters import GearPair
 from lumped.schema_errors import unknown_key
 from lumped.serialise import load_gear_pair, preset_names
@@ -100,7 +100,7 @@ def _inside(name: str) -> str:
 def _translated(error: ValidationError) -> list[FieldProblem]:
     """Return pydantic's findings as the tool's own; the parts of a union are one finding."""
     problems: dict[str, FieldProblem] = {}
-    for item in error.errors(include_url=False):
+    for item in error.errors(include_url=False)[:MOST_PROBLEMS]:
         location = [str(part) for part in item["loc"] if str(part) not in _UNION_PARTS]
         path = ".".join(location) or "file"
         context = item.get("ctx", {})

@@ -213,15 +213,16 @@ class DaskPool:
             self._client.close(timeout=5)
 
 
-def pool_of(workers: int, scheduler: str | None) -> Pool:
-    """Return the pool of the options ``--workers`` and ``--scheduler``.
+def pool_of(workers: int, scheduler: str | None, todo: int) -> Pool:
+    """Return the pool of the options ``--workers`` and ``--scheduler``, for ``todo`` cases.
 
     Raises
     ------
     ParameterError : workers out of range, or no scheduler at the address
     """
-    if scheduler is not None:
-        return DaskPool(scheduler)
     if not 0 <= workers <= 1024:
         raise refuse("workers", workers, "0 to 1024", "Use as many as there are cores.")
-    return ProcessPool(workers) if workers else SerialPool()
+    if scheduler is not None and todo:
+        return DaskPool(scheduler)
+    most = min(workers, todo)
+    return ProcessPool(most) if most else SerialPool()

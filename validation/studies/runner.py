@@ -111,12 +111,14 @@ def run_sweep(
     KeyboardInterrupt : Ctrl-C or SIGTERM; nothing computed before is lost
     """
     start = time.perf_counter()
-    if case_seconds is not None and not 0.0 < case_seconds < 1e9:
-        raise refuse("case_seconds", f"{case_seconds:g} s", "> 0 s", "Give the longest time of a case.")
+    if case_seconds is not None and not 1e-3 <= case_seconds <= 1e9:
+        raise refuse(
+            "case_seconds", f"{case_seconds:g} s", "0.001 s to 1e9 s", "Give the longest time of a case."
+        )
     root = Path(folder)
     cases = case_list(study)
+    _check_memory(cases)
     key = Key(cases)
-    _check_memory(key)
     begun = _prepare(root, resume)
     path = root / JOURNAL
     table = Table.of(cases, with_values=False)
@@ -125,19 +127,19 @@ def run_sweep(
     if retry_failed:
         wanted |= table.status >= Status.REFUSED
     todo = int(np.count_nonzero(wanted))
-    with _terminate_as_interrupt(), Journal(path, key, found) as journal:
+    with (
+        _terminate_as_interrupt(),
+        contextlib.closing(pool_of(workers, scheduler, todo)) as pool,
+        Journal(path, key, found) as journal,
+    ):
         # Only with the lock, so that of two runs into a new folder one leaves the other's study alone.
         if not begun or not (root / STUDY).exists():
             write_text(root / STUDY, study.to_toml())
         spent = 0.0
         if todo:
             _check_space(root, key, todo)
-            pool = pool_of(workers, scheduler)
-            try:
-                journal.append([Record(len(found.sessions), Status.SESSION, 0.0, message=versions())])
-                spent = _compute(cases, journal, Dispatcher(pool, cases, case_seconds), wanted, progress)
-            finally:
-                pool.close()
+            journal.append([Record(len(found.sessions), Status.SESSION, 0.0, message=versions())])
+            spent = _compute(cases, journal, Dispatcher(pool, cases, case_seconds), wanted, progress)
         journal.sync()
         full = Table.of(cases)
         complete = scan(path, key, full.add)
@@ -209,17 +211,18 @@ def _prepare(root: Path, resume: bool) -> bool:
 _OURS = {STUDY, JOURNAL, RESULTS}
 
 
-def _check_memory(key: Key) -> None:
+def _check_memory(cases: CaseList) -> None:
     """Refuse a sweep whose results this machine could not hold, for they are labelled in one piece."""
     if not hasattr(os, "sysconf") or "SC_PHYS_PAGES" not in os.sysconf_names:
         return  # this system does not say
     # Measured: the outputs, one of them again while it is written, the status; sampled axes as Python floats.
-    need = key.count * (8 * (key.outputs + 1) + 3 + 65 * key.sampled_axes)
+    sampled = 0 if cases.study.design.method == "grid" else len(cases.study.axes)
+    need = cases.count * (8 * (len(cases.study.outputs) + 1) + 3 + 65 * sampled)
     present = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     if need > present:
         raise refuse(
             "design",
-            f"{key.count} cases",
+            f"{cases.count} cases",
             f"results that fit in memory: these need {need / 1e9:.3g} GB of {present / 1e9:.3g} GB",
             "Split the study, or keep fewer outputs.",
         )

@@ -10,13 +10,18 @@ from pydantic import BeforeValidator, Field, PlainSerializer, model_validator
 
 from lumped.errors import FieldProblem, ParameterError, shown
 from lumped.parameters import GearPair
-from lumped.section import Section
+from lumped.section import Section, Text
 from lumped.units import Quantity
 from validation.studies.axes import Axis, target_of
 from validation.studies.outputs import OUTPUTS, Analysis
 
 #: Most cases of one study: bookkeeping takes about 1 byte of memory a case, results 8 bytes an output.
 MAX_CASES = 1_000_000_000
+#: Names in the results besides axes and outputs.
+NAMES = (
+    *("status", "case", "failure", "failed_case", "failure_message", "output", "axis"),
+    *(f"sobol_{kind}{end}" for kind in ("first", "total") for end in ("", "_ci_low", "_ci_high")),
+)
 
 
 class Design(Section):
@@ -101,8 +106,8 @@ def _pair_out(pair: GearPair) -> dict[str, Any]:
 class Study(Section):
     """A study: everything that decides the results, nothing about where and how it runs."""
 
-    name: str = Field(min_length=1, max_length=80, description="short name")
-    description: str = Field("", max_length=2000, description="what the study is for")
+    name: Text = Field(min_length=1, max_length=80, description="short name")
+    description: Text = Field("", max_length=2000, description="what the study is for")
     gear_pair: Annotated[GearPair, BeforeValidator(_pair_in), PlainSerializer(_pair_out)] = Field(
         description="preset name, TOML path beside the study file, or the gear pair's sections"
     )
@@ -172,7 +177,7 @@ def _axis_problems(study: Study) -> list[FieldProblem]:
 
     labels = [axis.label for axis in study.axes]
     paths = [path for axis in study.axes for path in axis.field]
-    reserved = {*study.outputs, "status", "case", "failed_case", "failed_status", "failure_message", "axis"}
+    reserved = {*study.outputs, *NAMES}
     cases = 1
     for j, axis in enumerate(study.axes):
         at = f"axes.{j}"

@@ -9,6 +9,7 @@ from rich.console import Console
 from typer.testing import CliRunner
 
 from validation.cli import app
+from validation.commands.terminal import PlainConsole
 from validation.studies import read_results
 from validation.studies.cli_sweep import FAILED, INTERRUPTED, OK, REFUSED, STOPPED, SweepProgress, sweep
 
@@ -33,7 +34,7 @@ def command(tmp_path, monkeypatch):
         if values is not None:
             (tmp_path / "study.toml").write_text(STUDY.format(values=values))
         text = io.StringIO()
-        console = Console(file=text, width=300)
+        console = PlainConsole(file=text, width=300)
         code = sweep(tmp_path / "study.toml", console=console, **{"workers": 0} | options)
         return code, text.getvalue()
 
@@ -61,6 +62,12 @@ def test_a_refused_study_is_2_and_one_message(command, tmp_path):
     assert "axes.0.values" in text
     assert "Traceback" not in text
     assert not (tmp_path / "study-sweep").exists()
+
+
+@pytest.mark.parametrize("options", [{"workers": 1025}, {"scheduler": "nonsense"}, {"case_seconds": 1e-9}])
+def test_refused_options_leave_the_folder_free(command, options):
+    assert command(**options)[0] == REFUSED
+    assert command()[0] == OK
 
 
 def test_the_second_run_needs_resume(command):

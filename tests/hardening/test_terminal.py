@@ -1,0 +1,52 @@
+"""Does text from files stay text on the terminal?"""
+
+from __future__ import annotations
+
+import io
+
+import pytest
+from typer.testing import CliRunner
+
+from lumped.serialise import preset_text
+from validation.cli import app
+from validation.commands.terminal import PlainConsole, table
+
+#: Text -> how it is shown: markup as it is written, characters that command a terminal as code writes them.
+TEXTS = {
+    "[/bold][red]x": "[/bold][red]x",
+    "[link=file:///etc/passwd]x[/link]": "[link=file:///etc/passwd]x[/link]",
+    "a\x1b]0;owned\x07b": "a\\x1b]0;owned\\x07b",
+    "a\x9b31mb": "a\\x9b31mb",
+    "gear\rpinion": "gear\\rpinion",
+    "a\u202eb": "a\\u202eb",  # would turn the rest of the line round
+    "µ = 5 °, ü, 齿": "µ = 5 °, ü, 齿",
+}
+
+
+@pytest.mark.parametrize("text", TEXTS)
+def test_text_is_shown_as_it_is_written(text):
+    console = PlainConsole(file=io.StringIO(), width=200)
+    console.print(text)
+    shown = table(text, text)
+    shown.add_row(text)
+    console.print(shown)
+    assert console.file.getvalue().count(TEXTS[text]) == 4
+
+
+@pytest.mark.parametrize("name", ["[/red]", "a\x1b[31mb"])
+def test_commands_show_names_of_files_and_pairs(tmp_path, name):
+    pair = tmp_path / f"{name}.toml".replace("/", "|")
+    pair.write_text(preset_text("nasa_28_28").replace('name = "nasa_28_28"', 'name = "[/red]"'))
+    out = tmp_path / f"{name}.nc".replace("/", "|")
+    run = CliRunner().invoke(app, ["simulate", str(pair), "--steady", "-o", str(out)])
+    assert run.exit_code == 0, run.output
+    assert "[/red]" in run.output
+    assert "\x1b" not in run.output
+    assert out.exists()
+
+
+def test_what_is_unknown_is_quoted_in_the_refusal(tmp_path):
+    (tmp_path / "x.toml").write_text('"a\\u001b[31m[/red]\\nerror: b" = 1\n')
+    run = CliRunner().invoke(app, ["simulate", str(tmp_path / "x.toml")])
+    assert run.exit_code == 2, run.output
+    assert r"a\x1b[31m[/red]\nerror: b" in run.output
