@@ -7,9 +7,10 @@ from typing import Annotated
 
 import typer
 
-from validation.commands.terminal import stderr, stdout
+from validation.commands.terminal import guarded, stderr, stdout
 
 
+@guarded
 def sweep(
     study: Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")],
     output: Annotated[

@@ -79,7 +79,7 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
             name = f"{error.filename}: " if error.filename else ""
             _fail(f"{name}{error.strerror or type(error).__name__}", REFUSED)
         except KeyboardInterrupt:
-            _fail("interrupted; nothing was written", INTERRUPTED)
+            _fail("interrupted", INTERRUPTED)
 
     return run
 

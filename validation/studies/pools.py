@@ -7,9 +7,9 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Future
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from typing import Any, Protocol
 
 from lumped.errors import SpurcheckError, refuse
@@ -87,6 +87,24 @@ class SerialPool:
         end_idle()
 
 
+@contextmanager
+def _undisturbed() -> Iterator[None]:
+    """Keep Ctrl-C back until the end of the block, and from processes that are started in it."""
+    if threading.current_thread() is not threading.main_thread() or os.name != "posix":
+        yield
+        return
+    late: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, frame: late.append(number))
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # what a new process inherits
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        signal.signal(signal.SIGINT, before)
+    if late:
+        raise KeyboardInterrupt
+
+
 def _worker_start(parent: int) -> None:
     """Leave Ctrl-C to the parent, and end when the parent is killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -120,7 +138,8 @@ class ProcessPool:
     def submit(self, work: Work, *arguments: Any) -> Future[Batch]:
         """Queue a batch."""
         try:
-            future: Future[Batch] = self._executor.submit(work, *arguments)
+            with _undisturbed():  # the first one starts the workers
+                future: Future[Batch] = self._executor.submit(work, *arguments)
         except BrokenExecutor as error:  # a worker died between two batches
             future = Future()
             future.set_exception(error)
@@ -136,7 +155,8 @@ class ProcessPool:
 
     def close(self) -> None:
         """End the workers."""
-        self._executor.shutdown(wait=True, kill_workers=True)
+        with _undisturbed():
+            self._executor.shutdown(wait=True, kill_workers=True)
 
 
 class DaskPool:

@@ -20,7 +20,7 @@ from lumped.errors import refuse
 from validation.studies.batch import versions
 from validation.studies.cases import CaseList, case_list
 from validation.studies.dispatch import Dispatcher
-from validation.studies.files import StoreError, storage_failure, write_text
+from validation.studies.files import StoreError, write_text
 from validation.studies.journal import NOTHING, Journal, Key, scan
 from validation.studies.pools import pool_of
 from validation.studies.record import Record, Status
@@ -64,8 +64,8 @@ class Summary:
 
     @property
     def failed(self) -> int:
-        """Cases without outputs."""
-        return sum(number for status, number in self.statuses if status.failed)
+        """Cases without outputs; missing are those whose records something else took away."""
+        return sum(number for status, number in self.statuses if status.failed or status is Status.MISSING)
 
     @property
     def exit_code(self) -> int:
@@ -191,7 +191,8 @@ def _prepare(root: Path, resume: bool) -> bool:
     except (FileExistsError, NotADirectoryError):
         raise refuse("output", root, "a folder", "A file has that name: choose another --output.") from None
     except OSError as error:
-        raise storage_failure(root, "use it", error) from error
+        reason = f"It cannot be used: {error.strerror}."
+        raise refuse("output", root, "a folder that can be made and read", reason) from error
     begun = JOURNAL in names
     if begun and not resume:
         raise refuse(
@@ -200,15 +201,13 @@ def _prepare(root: Path, resume: bool) -> bool:
             "a new folder",
             "It holds a sweep: go on with --resume, or choose another --output.",
         )
-    foreign = sorted(name for name in names if not name.startswith(".") and name not in _OURS)
+    # The journal is the first file of a sweep, so without one all others, a study.toml too, are the user's.
+    foreign = sorted(name for name in names if not name.startswith("."))
     if foreign and not begun:
         raise refuse(
             "output", root, "a new or empty folder", f"It holds {foreign[0]}: choose another --output."
         )
     return begun
-
-
-_OURS = {STUDY, JOURNAL, RESULTS}
 
 
 def _check_memory(cases: CaseList) -> None:

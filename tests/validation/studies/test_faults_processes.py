@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 import random
-import shutil
 import signal
+import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -85,19 +86,35 @@ def test_kill_9_during_a_write(sweep):
 COMPILING = """
 import os, signal
 from validation.studies import files
-def die(*names):
-    os.kill(os.getpid(), signal.SIGKILL)
+replace = os.replace
+def die(part, path):
+    if path.name == "results.nc":
+        os.kill(os.getpid(), signal.SIGKILL)
+    replace(part, path)
 files.os.replace = die
 """
 
 
 def test_kill_9_while_the_result_is_compiled(sweep):
-    sweep.out.mkdir()
-    shutil.copy(sweep.file, sweep.out)  # the study is there, so that the only replacement is the result
     run = sweep.start(COMPILING)
     run.communicate()
     assert run.returncode == -signal.SIGKILL
     assert not (sweep.out / "results.nc").exists()
+    sweep.check_resume(sweep.finished())
+
+
+def test_ctrl_c_while_the_workers_start_is_no_traceback(sweep):
+    command = [sys.executable, "-m", "validation.cli", "sweep", sweep.file, "-o", sweep.out, "--workers", "2"]
+    run = subprocess.Popen(command, text=True, stdout=-1, stderr=subprocess.STDOUT, start_new_session=True)
+    sweep.wait_for(lambda: workers_of(run.pid), "workers")
+    for _ in range(5):  # an impatient user, and a terminal that tells every process of the group
+        os.killpg(run.pid, signal.SIGINT)
+        time.sleep(0.05)
+    text, _ = run.communicate(timeout=60)
+    # By the signal itself, which a shell shows as 130 too, when it comes while the interpreter ends.
+    assert run.returncode in (130, -signal.SIGINT), text
+    assert "--resume" in text
+    assert "Traceback" not in text
     sweep.check_resume(sweep.finished())
 
 

@@ -178,11 +178,29 @@ def test_of_two_runs_into_a_new_folder_one_wins_and_keeps_its_study(study, make_
     assert read_results(out).sizes["failure"] == 24
 
 
+def test_records_that_something_else_removed_are_no_success(study, make_study, tmp_path):
+    def truncate(done, total, failed):
+        if done == 96:
+            os.truncate(tmp_path / "out" / "journal.bin", 200)
+
+    axes = [{"field": "operating.pinion_speed", "low": 500, "high": 9000, "count": 96}]
+    good = make_study(axes=axes)
+    summary = run_sweep(good, tmp_path / "out", progress=truncate)
+    assert dict(summary.statuses)[Status.MISSING] > 0
+    assert summary.exit_code == 1
+    assert run_sweep(good, tmp_path / "out", resume=True).exit_code == 0
+
+
 def test_a_folder_with_other_things_is_left_alone(study, tmp_path):
     (tmp_path / "thesis.tex").write_text("years of work")
     with pytest.raises(ParameterError, match=r"thesis\.tex"):
         run_sweep(study, tmp_path)
     assert [p.name for p in tmp_path.iterdir()] == ["thesis.tex"]
+    (tmp_path / "thesis.tex").rename(tmp_path / "study.toml")
+    with pytest.raises(ParameterError, match=r"It holds study\.toml"):
+        run_sweep(study, tmp_path)
+    assert (tmp_path / "study.toml").read_text() == "years of work"
+    (tmp_path / "study.toml").rename(tmp_path / "thesis.tex")
     with pytest.raises(ParameterError, match="A file has that name"):
         run_sweep(study, tmp_path / "thesis.tex")
 
