@@ -74,7 +74,7 @@ def test_06_the_separating_pair_has_two_motions_and_the_linear_one(example):
     module = example(6)
     result = module.compute()
     labelled(module.draw(result))
-    # Just below the jump of the rising sweep. Farther down it hangs on rounding how far the large motion is kept.
+    # Just below the jump of the rising sweep. How far down the large motion is kept hangs on rounding.
     at = result.sel(speed=2460.0)
     assert float(at["separated"]) == 0.0
     # In contact all the time the models differ by finite motions only, of the order of 1 %.
