@@ -137,7 +137,9 @@ def _problems(item: Any, data: Mapping[str, Any]) -> list[FieldProblem]:
             FieldProblem(path or "file", value, f"{_RENAMED[kind]} of keys and values", "Write a section.")
         ]
     if parts and not models and field_at(path).annotation is int:
-        return [FieldProblem(path, value, _whole_number(path), "Write it without a point.")]
+        point = isinstance(item.get("input"), float)
+        action = "Write it without a point." if point else "Write a whole number in that range."
+        return [FieldProblem(path, value, _whole_number(path), action)]
     allowed = item["msg"].removeprefix("Input should be ").removeprefix("Value should be ")
     return [FieldProblem(path or "file", value, allowed, "Correct the value.")]
 

@@ -25,7 +25,7 @@ class PeriodicSolution:
     time : (k,) [s]
     states : (k, 12)
     pinion_torque, brake_torque : mean torques that hold the mean speed [N m]
-    closure : largest mismatch of state and state one cycle later, relative to the largest state of its kind
+    closure : largest mismatch of state and state one cycle later, over the largest displacement or rate
     error : estimate of the largest relative error of the dynamic transmission error
     spectral_radius : largest modulus of the Floquet multipliers, the rigid rotation taken out; above 1 the
         motion is unstable, and a pair leaves it
@@ -74,8 +74,7 @@ def periodic_solution(
     transition, forced = maps.over_all()
     initial, weights = _bordered(pair, system, transition, forced)
     states = maps.states(initial, weights)
-    scale = np.abs(states).max(axis=0) + 1e-300
-    closure = float((np.abs(states[-1] - states[0]) / scale).max())
+    closure = _closure(system, states)
     at = np.searchsorted(maps.times, times - 1e-9 * system.period)
     result = states[at]
     error = 0.0
@@ -94,6 +93,16 @@ def periodic_solution(
         error=error,
         spectral_radius=relative_spectral_radius(system, transition),
     )
+
+
+def _closure(system: LTVSystem, states: FloatArray) -> float:
+    """Mismatch of the last and the first state; rotations count by their way on the base circle."""
+    radius = np.append(np.abs(system.structure.deflection[:2]), np.ones(4))
+    z, rates = states[:, :6] * radius, states[:, 6:] * radius
+    length = np.abs(z).max()
+    # A pair at rest but for rounding has no rate of its own to compare with.
+    velocity = max(np.abs(rates).max(), length / system.period)
+    return float(max(np.abs(z[-1] - z[0]).max() / length, np.abs(rates[-1] - rates[0]).max() / velocity))
 
 
 def relative_spectral_radius(system: LTVSystem, phi: FloatArray) -> float:

@@ -11,24 +11,26 @@ from lumped.path_function import FloatArray, PathFunction
 #: Ramp in s from 0 to 1. The square of the cubic smoothstep, so that sqrt(k), and with it the damping
 #: 2 zeta sqrt(k m_e), is analytic on the ramp too; it starts like s^4 and ends with zero slope.
 RAMP = Polynomial([0.0, 0.0, 3.0, -2.0]) ** 2
+#: Shortest ramp over half of the path of contact: rounding of positions is then below the fit's tolerance.
+_SHORTEST = 2e-4
 #: Fit error of a ramped function over its largest value.
 _FIT_TOLERANCE = 1e-11
 
 
 def check_ramp_length(ramp_length: float, low: float, high: float) -> None:
-    """Refuse a ramp longer than half of the path of contact.
+    """Refuse a ramp longer than half of the path of contact, or too short to be resolved.
 
     Raises
     ------
-    ParameterError : the ramps overlap
+    ParameterError : the ramps overlap, or are no jump though shorter than positions can resolve
     """
     half = 0.5 * (high - low)
-    if ramp_length > half:
+    if ramp_length > half or 0.0 < ramp_length < _SHORTEST * half:
         raise refuse(
             "mesh.stiffness.ramp_length",
             f"{ramp_length * 1e3:g} mm",
-            f"0 to {half * 1e3:.4f} mm, half of the path of contact",
-            "Shorten the ramp.",
+            f"0, or {_SHORTEST * half * 1e3:.4f} to {half * 1e3:.4f} mm, half of the path of contact",
+            "Shorten the ramp." if ramp_length > half else "Write 0 for a jump.",
         )
 
 
@@ -46,7 +48,7 @@ def ramped(function: PathFunction, ramp_length: float) -> PathFunction:
 
     Raises
     ------
-    ParameterError : the ramps overlap
+    ParameterError : the ramps overlap, or cannot be resolved
     """
     if ramp_length == 0.0:
         return function

@@ -144,7 +144,8 @@ def test_brake_torque_is_balanced_or_positive(edited, value):
 class TestOtherFields:
     @pytest.mark.parametrize("value", [4, 1001, 0, -28, 28.0, 28.5, "28", True, None, math.nan])
     def test_teeth(self, edited, value):
-        problem(edited("pinion.teeth", value), "pinion.teeth", allowed="5")
+        one = problem(edited("pinion.teeth", value), "pinion.teeth", allowed="5")
+        assert ("without a point" in one.action) == isinstance(value, float)
 
     @pytest.mark.parametrize(
         ("path", "value", "near"),

@@ -53,6 +53,18 @@ def test_the_period_closes(nasa, law, speed):
         assert np.abs(again - once).max() <= 1e-8 * scale, variable
 
 
+def test_a_pair_that_does_not_move_closes(high_contact):
+    """Contact ratio 2, equal pairs, P in the middle: stiffness and friction are constant, so is all."""
+    g = geometry(high_contact)
+    tip = 2e3 * math.hypot(g.base_radius_pinion, g.L_XP + g.base_pitch)
+    pair = high_contact.with_(pinion__tip_diameter=tip, gear__tip_diameter=tip)
+    assert geometry(pair).contact_ratio == pytest.approx(2.0, rel=1e-12)
+    run = steady_state(pair, samples_per_cycle=8)
+    assert np.ptp(run["dte"].to_numpy()) < 1e-12 * float(run["dte"].mean())
+    # Its rates are rounding of nothing; the mismatch is judged by displacement over period.
+    assert run.attrs["closure"] < 1e-10
+
+
 @pytest.mark.parametrize("speed", [500, 4000, 4875, 20000])
 @pytest.mark.parametrize("damping", [0.0, 0.05])
 def test_without_friction_nothing_is_lost(nasa, unequal, speed, damping):

@@ -126,6 +126,19 @@ def test_too_long_a_ramp_is_refused():
     assert "7.6765 mm" in problem.allowed
 
 
+@pytest.mark.parametrize("model", ["parabolic", "energy"])
+def test_a_ramp_too_short_to_resolve_is_refused(model):
+    def stiffness(ramp):
+        pair = with_model(model=model, ramp_length=ramp)
+        return pair_stiffness(pair, geometry(pair))
+
+    with pytest.raises(ParameterError, match="Write 0 for a jump"):
+        stiffness(1.5e-3)
+    shortest, jump = stiffness(1.6e-3), stiffness(0.0)
+    middle = np.linspace(LOW + 2e-6, HIGH - 2e-6, 50)
+    np.testing.assert_allclose(shortest(middle), jump(middle), rtol=1e-10)
+
+
 def test_square_root_of_the_ramp_is_smooth():
     # c_i = 2 zeta sqrt(k_i m_e): sqrt(k) must behave like s^2 at the start, so c/s^2 tends to a constant.
     ramp = 1e-3
