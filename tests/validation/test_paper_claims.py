@@ -166,10 +166,9 @@ def test_whatever_is_not_reproduced_says_why(stated):
         for holds in (True, False):
             claim = judged(dataclasses.replace(rule, holds=lambda _, h=holds: h), stated, None, {})
             outcomes[claim.verdict] += 1
-            assert (claim.verdict == "reproduced") == (claim.reason == "")
+            assert claim.verdict == "reproduced" or claim.reason
             if claim.reason:
                 assert len(claim.reason) > 40
-                assert claim.reason in claim.text
     assert outcomes == {"reproduced": 8, "not reproduced": 8, "cannot be judged": 8}
 
 

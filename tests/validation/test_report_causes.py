@@ -32,7 +32,7 @@ def test_the_table_has_every_cause_and_its_numbers(attributed):
     text, table = causes(SimpleNamespace(causes=attributed))
     assert isinstance(table, Table)
     assert len(table.rows) == len(CAUSES) + 1
-    keys = [column.key for column in table.columns]
+    keys = list(table.columns)
     row = dict(zip(keys, table.rows[2], strict=True))
     assert row["dte_alone"] == float(attributed["alone"].sel(cause="entry_shift", quantity="dte"))
     assert row["y_p_without"] == float(attributed["without"].sel(cause="entry_shift", quantity="y_p"))

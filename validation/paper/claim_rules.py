@@ -27,7 +27,7 @@ class ClaimRule:
     value : number from the claim numbers of ``sensitivity.measure``
     holds : whether the criterion is met
     details : further numbers, name -> (function, unit)
-    otherwise : why it comes out otherwise where the criterion is not met
+    remark, otherwise : on the outcome where the criterion is met, and why where it is not
     figure : "4" or "7" where the number is of the motion in that figure, which must then be stable and in
         contact; "" where it is of the laws alone
     unpublished : why the claim cannot be judged from what was published; "" where it can
@@ -41,6 +41,7 @@ class ClaimRule:
     value: Callable[[Numbers], float]
     holds: Callable[[Numbers], bool]
     details: Mapping[str, tuple[Callable[[Numbers], float], str]]
+    remark: str = ""
     otherwise: str = ""
     figure: Literal["", "4", "7"] = ""
     unpublished: str = ""
@@ -95,6 +96,8 @@ RULES: tuple[ClaimRule, ...] = (
         value=_key("iii_at_pitch"),
         holds=lambda n: n["iii_at_pitch"] <= 0.2 and n["ii_at_pitch"] > 1.0,
         details={"II at the pitch point over its largest value elsewhere": (_key("ii_at_pitch"), "times")},
+        remark="Both follow from the laws' form: III goes with |SR|^1.04, II with the logarithm of 1/v_s up "
+        "to its bound.",
         otherwise="Law II meets its upper bound away from the pitch point too, or law III changes its sign "
         "over more than 0.01 mesh cycles: the further numbers say which.",
     ),
@@ -141,6 +144,8 @@ RULES: tuple[ClaimRule, ...] = (
             "jump of III": (_key("jump_xu_kahraman"), "of the peak to peak"),
             "jump of IV": (_key("jump_smoothed_coulomb"), "of the peak to peak"),
         },
+        remark="Where a tooth pair takes up its stiffness at once, the friction force of every law also "
+        "jumps as pairs enter and leave; the claim is about the pitch point.",
         otherwise="The bound of law II makes its jump smaller, or the sharpness of law IV makes its change "
         "a jump: the further numbers say which.",
     ),

@@ -88,8 +88,8 @@ def judged(
     verdict: ClaimVerdict = (
         "cannot be judged" if reason else "reproduced" if rule.holds(stated) else "not reproduced"
     )
-    if verdict == "not reproduced":
-        reason = rule.otherwise
+    if not reason:
+        reason = rule.remark if verdict == "reproduced" else rule.otherwise
     share = low = high = None
     usable = 0
     if varied is not None:
@@ -112,7 +112,6 @@ def judged(
         unit=rule.unit,
         criterion=rule.criterion,
         verdict=verdict,
-        text=_text(rule, value, verdict, reason, share, usable),
         reason=reason,
         details=details,
         share=share,
@@ -120,28 +119,6 @@ def judged(
         low=low,
         high=high,
     )
-
-
-#: Remarks on claims that are reproduced.
-_REMARKS = {
-    "pitch point": "Both follow from the laws' form: III goes with |SR|^1.04, II with the logarithm of 1/v_s "
-    "up to its bound.",
-    "jumps": "Where a tooth pair takes up its stiffness at once, the friction force of every law also jumps "
-    "as pairs enter and leave; the claim is about the pitch point.",
-}
-
-
-def _text(
-    rule: ClaimRule, value: float, verdict: ClaimVerdict, reason: str, share: float | None, usable: int
-) -> str:
-    parts = [f"{Number(value, rule.unit)}; criterion: {rule.criterion}.", reason]
-    if verdict == "reproduced":
-        parts.append(_REMARKS.get(rule.name, ""))
-    if share is not None:
-        parts.append(f"Met in {100 * share:.0f} % of {usable} samples of the assumptions.")
-        if verdict != "cannot be judged" and 0.1 < share < 0.9:
-            parts.append("The verdict depends on the assumptions.")
-    return " ".join(part for part in parts if part)
 
 
 def twin_numbers(runs: xr.Dataset) -> dict[str, dict[str, Number]]:

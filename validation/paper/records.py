@@ -120,8 +120,7 @@ class Claim:
     unit : its unit
     criterion : when the statement counts as reproduced
     verdict : "reproduced", "not reproduced" or "cannot be judged"
-    text : one or two sentences on the outcome
-    reason : why it is not reproduced or cannot be judged, in plain words; "" where it is reproduced
+    reason : why it is not reproduced or cannot be judged; of a reproduced one a remark, or ""
     details : further numbers
     share : share of the usable samples of the assumptions in which the criterion holds; None where none was
         sampled or usable
@@ -136,7 +135,6 @@ class Claim:
     unit: str
     criterion: str
     verdict: ClaimVerdict
-    text: str
     reason: str = ""
     details: Mapping[str, Number] = field(default_factory=dict)
     share: float | None = None

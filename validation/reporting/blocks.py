@@ -7,7 +7,7 @@ number that the file does not have.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -62,20 +62,7 @@ class Quantity:
 
 
 Cell = str | int | float | bool | Quantity | Badge | None
-
-
-@dataclass(frozen=True)
-class Column:
-    """Column of a table.
-
-    Attributes
-    ----------
-    key : name in report.json
-    title : heading
-    """
-
-    key: str
-    title: str
+Rows = list[tuple[Cell, ...]]
 
 
 @dataclass(frozen=True)
@@ -86,7 +73,7 @@ class Table:
     ----------
     key : name in report.json
     caption : what it shows
-    columns : headings
+    columns : name in report.json -> heading
     rows : cells, one per column
     marked : indices of rows to highlight
     note : remark below
@@ -94,7 +81,7 @@ class Table:
 
     key: str
     caption: str
-    columns: tuple[Column, ...]
+    columns: Mapping[str, str]
     rows: tuple[tuple[Cell, ...], ...]
     marked: frozenset[int] = frozenset()
     note: str = ""
@@ -187,8 +174,7 @@ def chapter_data(chapter: Chapter) -> dict[str, Any]:
         if isinstance(block, Facts):
             data[block.key] = {fact.key: _fact_data(fact) for fact in block.items}
         elif isinstance(block, Table):
-            keys = [column.key for column in block.columns]
-            data[block.key] = [dict(zip(keys, map(plain, row), strict=True)) for row in block.rows]
+            data[block.key] = [dict(zip(block.columns, map(plain, row), strict=True)) for row in block.rows]
             about = {"caption": block.caption} | ({"note": block.note} if block.note else {})
             data.setdefault("tables", {})[block.key] = about
         elif isinstance(block, Picture):

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from multibody.pictures import gear_picture
-from validation.reporting.blocks import Block, Cell, Column, Picture, Table, Text
+from validation.reporting.blocks import Block, Picture, Rows, Table, Text
 from validation.reporting.results import Results
 
 _CAUSES = {
@@ -40,7 +40,7 @@ def causes(results: Results) -> list[Block]:
     found = results.causes
     if found is None:
         return []
-    rows: list[tuple[Cell, ...]] = []
+    rows: Rows = []
     for cause, text in _CAUSES.items():
         at = found.sel(cause=cause)
         values = [
@@ -61,14 +61,14 @@ def causes(results: Results) -> list[Block]:
         Table(
             "causes",
             "Largest change of the motion by finite-motion effects, over its peak to peak.",
-            (
-                Column("cause", "effect"),
-                *(
-                    Column(f"{quantity}_{kind}", f"{title}, {words}")
+            {
+                "cause": "effect",
+                **{
+                    f"{quantity}_{kind}": f"{title}, {words}"
                     for quantity, title in _QUANTITIES.items()
                     for kind, words in (("alone", "this alone"), ("without", "all but this"))
-                ),
-            ),
+                },
+            },
             tuple(rows),
             frozenset([list(_CAUSES).index(str(found.attrs["largest"]))]),
             note="Effects act together: where neither of two alone does much, both may. Teeth enter late by "

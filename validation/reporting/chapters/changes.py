@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from validation.reporting.blocks import Badge, Block, Cell, Chapter, Column, Table, Text
+from validation.reporting.blocks import Badge, Block, Chapter, Rows, Table, Text
 from validation.reporting.compare import ERROR_GROWTH, Comparison
 
 _MOST = 500
@@ -21,7 +21,7 @@ def changes(comparison: Comparison) -> Chapter:
         )
     ]
     if comparison.changes:
-        rows: list[tuple[Cell, ...]] = [
+        rows: Rows = [
             (
                 c.path,
                 c.kind,
@@ -36,14 +36,14 @@ def changes(comparison: Comparison) -> Chapter:
             Table(
                 "changes",
                 "What changed, the worst first.",
-                (
-                    Column("path", "value"),
-                    Column("kind", "kind"),
-                    Column("old", "before"),
-                    Column("new", "now"),
-                    Column("size_percent", "change [%]"),
-                    Column("verdict", "tolerance"),
-                ),
+                {
+                    "path": "value",
+                    "kind": "kind",
+                    "old": "before",
+                    "new": "now",
+                    "size_percent": "change [%]",
+                    "verdict": "tolerance",
+                },
                 tuple(rows),
                 note="" if len(comparison.changes) <= _MOST else f"The first {_MOST} are shown.",
             )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from validation.reporting.blocks import Badge, Chapter, Column, Table, Text
+from validation.reporting.blocks import Badge, Chapter, Table, Text
 from validation.reporting.results import Results
 
 
@@ -21,14 +21,14 @@ def code_verification(results: Results) -> Chapter | None:
     table = Table(
         "closed_forms",
         "Errors against exact values; relative where not said otherwise.",
-        (
-            Column("key", "check"),
-            Column("subject", "what is checked"),
-            Column("exact", "what it must equal"),
-            Column("value", "error"),
-            Column("limit", "limit"),
-            Column("verdict", "verdict"),
-        ),
+        {
+            "key": "check",
+            "subject": "what is checked",
+            "exact": "what it must equal",
+            "value": "error",
+            "limit": "limit",
+            "verdict": "verdict",
+        },
         tuple(
             (
                 c.key,
@@ -45,14 +45,14 @@ def code_verification(results: Results) -> Chapter | None:
     order_table = Table(
         "orders",
         "Order of convergence on Mathieu's equation, a = 3, q = 2, over one period; step halved once.",
-        (
-            Column("method", "method"),
-            Column("theory", "theory"),
-            Column("observed", "observed"),
-            Column("steps", "coarse steps"),
-            Column("error", "error, fine steps"),
-            Column("verdict", "verdict"),
-        ),
+        {
+            "method": "method",
+            "theory": "theory",
+            "observed": "observed",
+            "steps": "coarse steps",
+            "error": "error, fine steps",
+            "verdict": "verdict",
+        },
         tuple(
             (
                 o.method,

@@ -15,11 +15,11 @@ from validation.reporting.blocks import (
     Block,
     Cell,
     Chapter,
-    Column,
     Fact,
     Facts,
     Picture,
     Quantity,
+    Rows,
     Table,
     Text,
 )
@@ -131,7 +131,7 @@ def _judged(check: CrossCheck) -> Table:
         "maximum_over_span": "largest difference / peak to peak",
         "remainder_l2": "relative L2 left after what is predicted",
     }
-    rows: list[tuple[Cell, ...]] = [
+    rows: Rows = [
         (
             NAMES[a.quantity],
             a.fidelity,
@@ -145,14 +145,14 @@ def _judged(check: CrossCheck) -> Table:
     return Table(
         "verdicts",
         "Verdict per quantity against its stated tolerance.",
-        (
-            Column("quantity", "quantity"),
-            Column("fidelity", "multibody"),
-            Column("metric", "metric judged"),
-            Column("value", "value"),
-            Column("tolerance", "tolerance"),
-            Column("verdict", "verdict"),
-        ),
+        {
+            "quantity": "quantity",
+            "fidelity": "multibody",
+            "metric": "metric judged",
+            "value": "value",
+            "tolerance": "tolerance",
+            "verdict": "verdict",
+        },
         tuple(rows),
     )
 
@@ -188,19 +188,19 @@ def _metrics(check: CrossCheck) -> Table:
     return Table(
         "metrics",
         "All metrics of multibody against lumped.",
-        (
-            Column("quantity", "quantity"),
-            Column("fidelity", "multibody"),
-            Column("relative_l2", "relative L2"),
-            Column("remainder_l2", "L2 left"),
-            Column("maximum_over_span", "largest"),
-            Column("rms_over_span", "rms"),
-            Column("mean_shift", "mean shift"),
-            Column("peak_to_peak_ratio", "span ratio"),
-            Column("sprague_geers_magnitude", "S-G M"),
-            Column("sprague_geers_phase", "S-G P"),
-            Column("sprague_geers_comprehensive", "S-G C"),
-        ),
+        {
+            "quantity": "quantity",
+            "fidelity": "multibody",
+            "relative_l2": "relative L2",
+            "remainder_l2": "L2 left",
+            "maximum_over_span": "largest",
+            "rms_over_span": "rms",
+            "mean_shift": "mean shift",
+            "peak_to_peak_ratio": "span ratio",
+            "sprague_geers_magnitude": "S-G M",
+            "sprague_geers_phase": "S-G P",
+            "sprague_geers_comprehensive": "S-G C",
+        },
         tuple(row(a) for a in check.agreements),
         note="Relative L2: norm of the difference over the norm of the lumped history; L2 left: the same "
         "after what finite motions must change, predicted from the lumped model alone, is added to the "
@@ -213,7 +213,7 @@ def _metrics(check: CrossCheck) -> Table:
 
 
 def _orders(check: CrossCheck) -> Table:
-    rows: list[tuple[Cell, ...]] = []
+    rows: Rows = []
     for comparison in check.orders:
         if comparison.fidelity != "exact":
             continue
@@ -237,14 +237,14 @@ def _orders(check: CrossCheck) -> Table:
     return Table(
         "orders",
         "Exact multibody against lumped by mesh order; tooth forces as the sum of the pairs in contact.",
-        (
-            Column("quantity", "quantity"),
-            Column("order", "order"),
-            Column("lumped", "lumped"),
-            Column("multibody", "multibody"),
-            Column("ratio", "ratio"),
-            Column("phase_difference_deg", "phase difference [°]"),
-        ),
+        {
+            "quantity": "quantity",
+            "order": "order",
+            "lumped": "lumped",
+            "multibody": "multibody",
+            "ratio": "ratio",
+            "phase_difference_deg": "phase difference [°]",
+        },
         tuple(rows),
         note="Orders below a thousandth of the largest are left out.",
     )

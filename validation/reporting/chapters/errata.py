@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from validation.paper import draw_errata
-from validation.reporting.blocks import Badge, Block, Cell, Chapter, Column, Fact, Facts, Picture, Table, Text
+from validation.reporting.blocks import Badge, Block, Chapter, Fact, Facts, Picture, Rows, Table, Text
 from validation.reporting.chapters.steady_state import unstable_warning
 from validation.reporting.results import Results
 
@@ -15,10 +15,10 @@ def errata(results: Results) -> Chapter | None:
     if results.paper is None:
         return None
     chapter = results.paper.errata
-    rows: list[tuple[Cell, ...]] = [
+    rows: Rows = [
         (e.equation, e.printed, e.repaired, Badge("misprint", e.verdict), e.text) for e in chapter.errata
     ]
-    evidence: list[tuple[Cell, ...]] = [
+    evidence: Rows = [
         (e.equation, v.quantity, v.printed, v.repaired, v.unit or "–", v.requirement or None)
         for e in chapter.errata
         for v in e.evidence
@@ -30,13 +30,13 @@ def errata(results: Results) -> Chapter | None:
         Table(
             "errata",
             "Misprints and their repair.",
-            (
-                Column("equation", "equation"),
-                Column("printed", "printed"),
-                Column("repaired", "repaired"),
-                Column("verdict", "the print is"),
-                Column("text", "what shows it"),
-            ),
+            {
+                "equation": "equation",
+                "printed": "printed",
+                "repaired": "repaired",
+                "verdict": "the print is",
+                "text": "what shows it",
+            },
             tuple(rows),
         ),
         Picture(
@@ -48,14 +48,14 @@ def errata(results: Results) -> Chapter | None:
         Table(
             "evidence",
             "The computations.",
-            (
-                Column("equation", "equation"),
-                Column("quantity", "quantity"),
-                Column("printed", "as printed"),
-                Column("repaired", "repaired"),
-                Column("unit", "unit"),
-                Column("requirement", "must hold"),
-            ),
+            {
+                "equation": "equation",
+                "quantity": "quantity",
+                "printed": "as printed",
+                "repaired": "repaired",
+                "unit": "unit",
+                "requirement": "must hold",
+            },
             tuple(evidence),
         ),
     ]

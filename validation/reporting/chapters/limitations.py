@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from lumped.serialise import leaf_paths
-from validation.reporting.blocks import Badge, Cell, Chapter, Column, Table, Text
+from validation.reporting.blocks import Badge, Chapter, Rows, Table, Text
 from validation.reporting.chapters.parameters import is_assumed, source_of
 from validation.reporting.formatting import number
 from validation.reporting.results import Results
@@ -17,12 +17,12 @@ def limitations(results: Results) -> Chapter:
     table = Table(
         "assumptions",
         "What the lumped model assumes, and what this report found about it at the operating point.",
-        (
-            Column("assumption", "assumption"),
-            Column("consequence", "where it fails"),
-            Column("found", "found here"),
-            Column("state", "state"),
-        ),
+        {
+            "assumption": "assumption",
+            "consequence": "where it fails",
+            "found": "found here",
+            "state": "state",
+        },
         tuple(_rows(results)),
     )
     outside = Text(
@@ -51,9 +51,9 @@ def _assumed(results: Results) -> tuple[int, int]:
     return sum(is_assumed(source_of(results.pair, path)) for path in paths), len(paths)
 
 
-def _rows(results: Results) -> list[tuple[Cell, ...]]:
+def _rows(results: Results) -> Rows:
     flags = {flag.key: flag for flag in results.flags}
-    rows: list[tuple[Cell, ...]] = []
+    rows: Rows = []
 
     def of_flag(key: str, assumption: str) -> None:
         flag: Flag | None = flags.get(key)

@@ -9,18 +9,7 @@ from lumped.friction import contact_path
 from lumped.lubricant import dynamic_viscosity
 from lumped.viscosity import ZERO_CELSIUS
 from validation.plots.efficiency import efficiency_figure, film_figure, sliding_power_figure
-from validation.reporting.blocks import (
-    Block,
-    Cell,
-    Chapter,
-    Column,
-    Fact,
-    Facts,
-    Picture,
-    Quantity,
-    Table,
-    Text,
-)
+from validation.reporting.blocks import Block, Chapter, Fact, Facts, Picture, Quantity, Rows, Table, Text
 from validation.reporting.chapters.steady_state import unstable_warning
 from validation.reporting.results import Results
 
@@ -38,7 +27,7 @@ def _losses(results: Results) -> list[Block]:
     blocks: list[Block] = []
     if by_law.sizes["law"]:
         chosen = pair.friction.law
-        rows: list[tuple[Cell, ...]] = []
+        rows: Rows = []
         for name in by_law["law"].to_numpy():
             row = by_law.sel(law=name)
             dynamic = float(row["mesh_efficiency_dynamic"])
@@ -64,15 +53,15 @@ def _losses(results: Results) -> list[Block]:
             Table(
                 "efficiency_by_law",
                 "Mesh efficiency by friction law, sliding losses only.",
-                (
-                    Column("law", "law"),
-                    Column("path_coefficient", "mean |µ| over the path"),
-                    Column("mean_coefficient", "µ weighted by the loss"),
-                    Column("power_loss", "sliding loss, quasi-static"),
-                    Column("closed_form", "efficiency, closed form"),
-                    Column("quasi_static", "efficiency, quasi-static"),
-                    Column("dynamic", "efficiency, periodic motion"),
-                ),
+                {
+                    "law": "law",
+                    "path_coefficient": "mean |µ| over the path",
+                    "mean_coefficient": "µ weighted by the loss",
+                    "power_loss": "sliding loss, quasi-static",
+                    "closed_form": "efficiency, closed form",
+                    "quasi_static": "efficiency, quasi-static",
+                    "dynamic": "efficiency, periodic motion",
+                },
                 tuple(rows),
                 frozenset(own),
             ),
@@ -127,7 +116,7 @@ def _film(results: Results) -> list[Block]:
         Table(
             "film_regimes",
             "Lubrication regimes along the path of contact.",
-            (Column("regime", "regime"), Column("share", "share of the path")),
+            {"regime": "regime", "share": "share of the path"},
             tuple(zip(names, shares, strict=True)),
         ),
     ]

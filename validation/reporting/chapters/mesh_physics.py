@@ -10,18 +10,7 @@ from validation.mesh_physics import CURVES, MeshPhysics
 from validation.plots.harris_map import harris_figure, relief_figure
 from validation.plots.load_sharing import load_sharing_figure
 from validation.plots.stiffness_components import energy_mesh_figure, stiffness_components_figure
-from validation.reporting.blocks import (
-    Block,
-    Cell,
-    Chapter,
-    Column,
-    Fact,
-    Facts,
-    Picture,
-    Quantity,
-    Table,
-    Text,
-)
+from validation.reporting.blocks import Block, Chapter, Fact, Facts, Picture, Quantity, Rows, Table, Text
 from validation.reporting.results import Results
 
 
@@ -66,7 +55,7 @@ def _stiffness(results: Results, found: MeshPhysics) -> list[Block]:
                 lambda: stiffness_components_figure(g, components),
             )
         )
-        rows: list[tuple[Cell, ...]] = []
+        rows: Rows = []
         for part in compliance["component"].to_numpy():
             values = compliance.sel(component=part).to_numpy()
             with np.errstate(divide="ignore"):  # a load across the tooth does not compress it
@@ -78,7 +67,7 @@ def _stiffness(results: Results, found: MeshPhysics) -> list[Block]:
             Table(
                 "stiffness_components",
                 "Stiffness of the parts of one tooth pair.",
-                (Column("part", "part"), *(Column(f"at_{name}", f"at {name}") for name in places)),
+                {"part": "part", **{f"at_{name}": f"at {name}" for name in places}},
                 tuple(rows),
                 frozenset({len(rows) - 1}),
                 note=f"Error of the Gauss integration: {components.attrs['quadrature_error']:.0e}, relative.",
@@ -97,12 +86,12 @@ def _stiffness(results: Results, found: MeshPhysics) -> list[Block]:
             Table(
                 "energy_against_iso",
                 "Potential-energy stiffness over that of ISO 6336-1, method B.",
-                (
-                    Column("variant", "assumption"),
-                    Column("mean_ratio", "mean mesh stiffness, ratio"),
-                    Column("single_ratio", "size: largest pair stiffness over c'"),
-                    Column("shape_ratio", "shape over the path, ratio"),
-                ),
+                {
+                    "variant": "assumption",
+                    "mean_ratio": "mean mesh stiffness, ratio",
+                    "single_ratio": "size: largest pair stiffness over c'",
+                    "shape_ratio": "shape over the path, ratio",
+                },
                 tuple(
                     (str(name), *(float(iso[key].sel(variant=name)) for key in iso.data_vars))
                     for name in iso["variant"].to_numpy()
@@ -142,6 +131,7 @@ def _loaded_mesh(results: Results, found: MeshPhysics) -> list[Block]:
             )
         )
     if curves is not None and harris is not None:
+        torques = harris["torque"].to_numpy()
         blocks.append(
             Picture(
                 "harris_map",
@@ -154,12 +144,12 @@ def _loaded_mesh(results: Results, found: MeshPhysics) -> list[Block]:
             Table(
                 "static_transmission_error",
                 "Static transmission error by torque.",
-                (
-                    Column("torque", "pinion torque"),
-                    Column("mean", "mean"),
-                    Column("peak_to_peak", "peak to peak"),
-                    Column("contact_ratio", "mean number of loaded pairs"),
-                ),
+                {
+                    "torque": "pinion torque",
+                    "mean": "mean",
+                    "peak_to_peak": "peak to peak",
+                    "contact_ratio": "mean number of loaded pairs",
+                },
                 tuple(
                     (
                         Quantity(float(row["torque"]), "N m"),
@@ -176,21 +166,23 @@ def _loaded_mesh(results: Results, found: MeshPhysics) -> list[Block]:
             Table(
                 "harris_minimum",
                 "Torque of the least peak to peak in the Harris map.",
-                (
-                    Column("flank", "flanks"),
-                    Column("torque", "torque of the least error"),
-                    Column("least", "least peak to peak"),
-                ),
+                {
+                    "flank": "flanks",
+                    "torque": "torque of the least error",
+                    "least": "least peak to peak",
+                },
                 tuple(
                     (
                         str(name),
-                        Quantity(float(harris["torque"][int(np.argmin(row))]), "N m"),
+                        Quantity(float(torques[int(np.argmin(row))]), "N m"),
                         Quantity(float(row.min()), "m"),
                     )
                     for name, row in zip(
                         harris["flank"].to_numpy(), harris["peak_to_peak"].to_numpy(), strict=True
                     )
                 ),
+                note=f"Among {torques.size} torques from {torques[0]:.4g} to {torques[-1]:.4g} N m: between two "
+                "of them it may be less, and a least at an end may lie beyond it.",
             )
         )
     best, relief = found.optimum, found.relief

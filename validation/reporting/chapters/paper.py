@@ -6,7 +6,7 @@ import math
 from functools import partial
 
 from validation.paper import DRAW, PAPER, ClaimsTable
-from validation.reporting.blocks import Badge, Block, Cell, Chapter, Column, Picture, Quantity, Table, Text
+from validation.reporting.blocks import Badge, Block, Chapter, Picture, Quantity, Rows, Table, Text
 from validation.reporting.results import Results
 
 
@@ -49,14 +49,12 @@ def paper(results: Results) -> Chapter | None:
                 partial(DRAW[record.number], record),
             )
         )
-        numbers: list[tuple[Cell, ...]] = [
-            (name, Quantity(one.value, one.unit or "1")) for name, one in record.numbers.items()
-        ]
+        numbers: Rows = [(name, Quantity(one.value, one.unit or "1")) for name, one in record.numbers.items()]
         blocks.append(
             Table(
                 f"figure{record.number}",
                 f"Read off figure {record.number}.",
-                (Column("quantity", "quantity"), Column("value", "value")),
+                {"quantity": "quantity", "value": "value"},
                 tuple(numbers),
             )
         )
@@ -64,7 +62,7 @@ def paper(results: Results) -> Chapter | None:
 
 
 def _claims(table: ClaimsTable) -> Table:
-    rows: list[tuple[Cell, ...]] = [
+    rows: Rows = [
         (
             c.name,
             c.statement,
@@ -73,7 +71,7 @@ def _claims(table: ClaimsTable) -> Table:
             c.criterion,
             c.low,
             c.high,
-            None if c.share is None else 100 * c.share,
+            None if c.share is None else round(100 * c.share),
             Badge(c.verdict),
             c.reason or "–",
         )
@@ -82,18 +80,18 @@ def _claims(table: ClaimsTable) -> Table:
     return Table(
         "claims",
         "The paper's statements as numbers.",
-        (
-            Column("name", "claim"),
-            Column("statement", "the paper says"),
-            Column("value", "value"),
-            Column("unit", "unit"),
-            Column("criterion", "reproduced if"),
-            Column("low", "5 %"),
-            Column("high", "95 %"),
-            Column("share_percent", "met in [%]"),
-            Column("verdict", "verdict"),
-            Column("reason", "why not"),
-        ),
+        {
+            "name": "claim",
+            "statement": "the paper says",
+            "value": "value",
+            "unit": "unit",
+            "criterion": "reproduced if",
+            "low": "5 %",
+            "high": "95 %",
+            "share_percent": "met in [%]",
+            "verdict": "verdict",
+            "reason": "why, or a remark",
+        },
         tuple(rows),
         note="5 %, 95 %: percentiles of the number over the samples of the assumptions; met in: share of the "
         "samples in which the criterion holds.",
@@ -101,23 +99,21 @@ def _claims(table: ClaimsTable) -> Table:
 
 
 def _definitions(table: ClaimsTable) -> Table:
-    rows: list[tuple[Cell, ...]] = [(c.name, c.definition, c.usable, c.text) for c in table.claims]
+    rows: Rows = [(c.name, c.definition, c.usable) for c in table.claims]
     return Table(
         "claim_definitions",
-        "How each number is defined, in how many samples its motion is stable and in contact, and what the "
-        "outcome means.",
-        (
-            Column("name", "claim"),
-            Column("definition", "number"),
-            Column("usable", "samples"),
-            Column("text", "outcome"),
-        ),
+        "How each number is defined, and in how many samples its motion is stable and in contact.",
+        {
+            "name": "claim",
+            "definition": "number",
+            "usable": "samples",
+        },
         tuple(rows),
     )
 
 
 def _details(table: ClaimsTable) -> Table:
-    rows: list[tuple[Cell, ...]] = [
+    rows: Rows = [
         (claim.name, name, Quantity(one.value, one.unit or "1"))
         for claim in table.claims
         for name, one in claim.details.items()
@@ -125,6 +121,6 @@ def _details(table: ClaimsTable) -> Table:
     return Table(
         "claim_details",
         "Further numbers behind the claims.",
-        (Column("claim", "claim"), Column("quantity", "quantity"), Column("value", "value")),
+        {"claim": "claim", "quantity": "quantity", "value": "value"},
         tuple(rows),
     )

@@ -9,7 +9,7 @@ from functools import cache
 from lumped import GearPair, bodies, load_gear_pair, mesh_elements
 from lumped.parameters import stated_unit
 from lumped.serialise import leaf_paths, preset_names
-from validation.reporting.blocks import Badge, Cell, Chapter, Column, Fact, Facts, Quantity, Table, Text
+from validation.reporting.blocks import Badge, Chapter, Fact, Facts, Quantity, Rows, Table, Text
 from validation.reporting.results import Results
 
 #: Source of a value that the parameter file leaves to the schema.
@@ -19,7 +19,7 @@ DEFAULT = "default of the schema"
 def parameters(results: Results) -> Chapter:
     """Write the chapter."""
     pair, g = results.pair, results.geometry
-    rows: list[tuple[Cell, ...]] = []
+    rows: Rows = []
     assumed: set[int] = set()
     for path, value in leaf_paths(pair).items():
         if path in ("name", "description"):
@@ -35,13 +35,13 @@ def parameters(results: Results) -> Chapter:
     table = Table(
         "parameters",
         f"Parameters of {pair.name}. {len(assumed)} of {len(rows)} values are assumed.",
-        (
-            Column("field", "field"),
-            Column("value", "value"),
-            Column("unit", "unit"),
-            Column("source", "source"),
-            Column("assumed", ""),
-        ),
+        {
+            "field": "field",
+            "value": "value",
+            "unit": "unit",
+            "source": "source",
+            "assumed": "",
+        },
         tuple(rows),
         frozenset(assumed),
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from lumped import mesh_cycle
 from lumped.friction import LAWS
 from validation import plots
-from validation.reporting.blocks import Block, Cell, Chapter, Column, Picture, Quantity, Table, Text
+from validation.reporting.blocks import Block, Chapter, Picture, Quantity, Rows, Table, Text
 from validation.reporting.results import Results
 
 
@@ -13,7 +13,7 @@ def path_of_contact(results: Results) -> Chapter:
     """Write the chapter."""
     pair, g, profile = results.pair, results.geometry, results.profile
     chosen = pair.friction.law
-    rows: list[tuple[Cell, ...]] = []
+    rows: Rows = []
     marked: set[int] = set()
     for index, law in enumerate(profile["law"].to_numpy()):
         if str(law) == chosen:
@@ -30,12 +30,12 @@ def path_of_contact(results: Results) -> Chapter:
     laws = Table(
         "friction_laws",
         "Friction coefficient along the path of contact by law.",
-        (
-            Column("law", "law"),
-            Column("mean_mu", "mean |µ| [-]"),
-            Column("largest_mu", "largest |µ| [-]"),
-            Column("used", "used in this report"),
-        ),
+        {
+            "law": "law",
+            "mean_mu": "mean |µ| [-]",
+            "largest_mu": "largest |µ| [-]",
+            "used": "used in this report",
+        },
         tuple(rows),
         frozenset(marked),
         note="Largest values are those at the sampled positions; law II is bounded at the pitch point by "
@@ -44,7 +44,7 @@ def path_of_contact(results: Results) -> Chapter:
     conditions = Table(
         "contact_conditions",
         "Contact conditions over the path of contact.",
-        (Column("quantity", "quantity"), Column("smallest", "smallest"), Column("largest", "largest")),
+        {"quantity": "quantity", "smallest": "smallest", "largest": "largest"},
         tuple(
             (
                 str(profile[name].attrs["long_name"]),

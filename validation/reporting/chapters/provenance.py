@@ -9,7 +9,7 @@ from importlib import metadata, resources
 from pathlib import Path
 
 from lumped.results import parameters_hash
-from validation.reporting.blocks import Chapter, Column, Fact, Facts, Table, Text
+from validation.reporting.blocks import Chapter, Fact, Facts, Table, Text
 from validation.reporting.results import Results
 
 _OWN = ("lumped", "multibody", "floquet", "validation")
@@ -35,7 +35,7 @@ def provenance(results: Results) -> Chapter:
     versions = Table(
         "versions",
         "Software.",
-        (Column("name", "name"), Column("version", "version")),
+        {"name": "name", "version": "version"},
         (
             ("python", platform.python_version()),
             ("platform", f"{platform.system()} {platform.machine()}"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from validation.reporting.blocks import Badge, Cell, Chapter, Column, Table, Text
+from validation.reporting.blocks import Badge, Chapter, Rows, Table, Text
 from validation.reporting.results import Results
 
 
@@ -17,7 +17,7 @@ def solution_verification(results: Results) -> Chapter | None:
         f"again at other resolutions: {passed} of {len(studies)} are within their limits. Marked: the "
         "resolution that the report uses."
     )
-    rows: list[tuple[Cell, ...]] = []
+    rows: Rows = []
     marked: set[int] = set()
     for study in studies:
         for level in study.levels:
@@ -29,13 +29,13 @@ def solution_verification(results: Results) -> Chapter | None:
     table = Table(
         "refinement",
         "Error at each resolution.",
-        (
-            Column("solution", "solution"),
-            Column("setting", "resolution"),
-            Column("error", "error"),
-            Column("limit", "limit"),
-            Column("verdict", "verdict"),
-        ),
+        {
+            "solution": "solution",
+            "setting": "resolution",
+            "error": "error",
+            "limit": "limit",
+            "verdict": "verdict",
+        },
         tuple(rows),
         marked=frozenset(marked),
     )

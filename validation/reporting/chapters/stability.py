@@ -9,13 +9,12 @@ from validation.plots.tongue_chart import tongue_chart_figure
 from validation.reporting.blocks import (
     Badge,
     Block,
-    Cell,
     Chapter,
-    Column,
     Fact,
     Facts,
     Picture,
     Quantity,
+    Rows,
     Table,
     Text,
 )
@@ -74,7 +73,7 @@ def stability(results: Results) -> Chapter:
             Fact("step_damping", "chart step, damping ratio", float(np.diff(dampings).max())),
         ),
     )
-    rows: list[tuple[Cell, ...]] = [
+    rows: Rows = [
         (part, float(value.real), float(value.imag), float(abs(value)))
         for part, values in (("mesh: q, x_p, x_g", found.feedback), ("bearings: y_p, y_g", found.oloa))
         # By size, and of two of one size in an order that rounding cannot change.
@@ -104,12 +103,12 @@ def stability(results: Results) -> Chapter:
         Table(
             "multipliers_table",
             "Multipliers at the operating point.",
-            (
-                Column("part", "states"),
-                Column("real", "real part"),
-                Column("imag", "imaginary part"),
-                Column("modulus", "modulus"),
-            ),
+            {
+                "part": "states",
+                "real": "real part",
+                "imag": "imaginary part",
+                "modulus": "modulus",
+            },
             tuple(rows),
         ),
     ]

@@ -5,18 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from validation.plots.tongues import tongues_figure
-from validation.reporting.blocks import (
-    Block,
-    Cell,
-    Chapter,
-    Column,
-    Fact,
-    Facts,
-    Picture,
-    Quantity,
-    Table,
-    Text,
-)
+from validation.reporting.blocks import Block, Chapter, Fact, Facts, Picture, Quantity, Rows, Table, Text
 from validation.reporting.results import Results
 from validation.stability_margins import ORDERS
 
@@ -89,7 +78,7 @@ def stability_margins(results: Results) -> Chapter:
         facts,
     ]
     if m.tongues:
-        rows: list[tuple[Cell, ...]] = [
+        rows: Rows = [
             (
                 t.label.replace("w", "ω"),
                 Quantity(t.lower, "rpm"),
@@ -112,16 +101,16 @@ def stability_margins(results: Results) -> Chapter:
             Table(
                 "tongues_table",
                 "Every tongue without mesh damping, and the mesh damping that closes it.",
-                (
-                    Column("label", "mesh frequency"),
-                    Column("lower", "from"),
-                    Column("upper", "to"),
-                    Column("radius", "largest multiplier"),
-                    Column("critical_damping", "closed by damping"),
-                    Column("tip_speed", "closes at"),
-                    Column("damping_margin", "margin in damping"),
-                    Column("distance", "distance in speed"),
-                ),
+                {
+                    "label": "mesh frequency",
+                    "lower": "from",
+                    "upper": "to",
+                    "radius": "largest multiplier",
+                    "critical_damping": "closed by damping",
+                    "tip_speed": "closes at",
+                    "damping_margin": "margin in damping",
+                    "distance": "distance in speed",
+                },
                 tuple(rows),
             ),
         ]

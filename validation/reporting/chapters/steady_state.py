@@ -15,11 +15,11 @@ from validation.reporting.blocks import (
     Block,
     Cell,
     Chapter,
-    Column,
     Fact,
     Facts,
     Picture,
     Quantity,
+    Rows,
     Table,
     Text,
 )
@@ -71,7 +71,7 @@ def steady_state(results: Results) -> Chapter:
         ),
     )
     names = ("dte", "x_p", "x_g", "y_p", "y_g")
-    rows: list[tuple[Cell, ...]] = []
+    rows: Rows = []
     for order in range(1, 7):
         row: list[Cell] = [order]
         row += [Quantity(float(results.orders[name].amplitude[order]), "m") for name in names]
@@ -79,7 +79,7 @@ def steady_state(results: Results) -> Chapter:
     orders = Table(
         "mesh_orders",
         "Amplitudes by mesh order.",
-        (Column("order", "order"), *(Column(name, VARIABLES[name][2]) for name in names)),
+        {"order": "order", **{name: VARIABLES[name][2] for name in names}},
         tuple(rows),
     )
     blocks: list[Block] = [
@@ -159,8 +159,10 @@ def _over_speed(results: Results) -> list[Block]:
             Text("A mode of the averaged pair is overdamped, so natural frequencies are not listed.")
         )
         return blocks
-    rows: list[tuple[Cell, ...]] = [
+    along = [k for k in range(len(results.modes)) if k not in off]
+    rows: Rows = [
         (
+            None if k in off else f"ω{along.index(k) + 1}",
             Quantity(mode.natural_frequency, "Hz"),
             mode.damping_ratio,
             Quantity(mode.resonant_speed, "rpm"),
@@ -171,13 +173,14 @@ def _over_speed(results: Results) -> list[Block]:
     blocks.append(
         Table(
             "modes",
-            "Modes of the time-averaged pair.",
-            (
-                Column("natural_frequency", "natural frequency"),
-                Column("damping_ratio", "damping ratio"),
-                Column("resonant_speed", "pinion speed at mesh resonance"),
-                Column("motion", "motion"),
-            ),
+            "Modes of the time-averaged pair; ω1 to ω3 name the tongues of instability.",
+            {
+                "label": "name",
+                "natural_frequency": "natural frequency",
+                "damping_ratio": "damping ratio",
+                "resonant_speed": "pinion speed at mesh resonance",
+                "motion": "motion",
+            },
             tuple(rows),
         )
     )

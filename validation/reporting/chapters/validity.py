@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from validation.reporting.blocks import Badge, Chapter, Column, Quantity, Table, Text
+from validation.reporting.blocks import Badge, Chapter, Quantity, Table, Text
 from validation.reporting.results import Results
 from validation.validity import worst_state
 
@@ -21,14 +21,14 @@ def validity(results: Results) -> Chapter:
         "flags",
         "Assumptions of the lumped model, checked on the periodic motion (drift of the mean speed: on the "
         "linear multibody run).",
-        (
-            Column("key", "check"),
-            Column("state", "state"),
-            Column("value", "value"),
-            Column("detail", "where and how much"),
-            Column("meaning", "what it means"),
-            Column("action", "what to do"),
-        ),
+        {
+            "key": "check",
+            "state": "state",
+            "value": "value",
+            "detail": "where and how much",
+            "meaning": "what it means",
+            "action": "what to do",
+        },
         tuple(
             (
                 flag.name,

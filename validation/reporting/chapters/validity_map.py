@@ -8,7 +8,7 @@ import numpy as np
 
 from validation.periodic import UNSTABLE
 from validation.plots.validity_map import validity_map_figure
-from validation.reporting.blocks import Cell, Chapter, Column, Fact, Facts, Picture, Quantity, Table, Text
+from validation.reporting.blocks import Chapter, Fact, Facts, Picture, Quantity, Rows, Table, Text
 from validation.reporting.results import Results
 from validation.validity import LOAD_NOISE, REVERSAL_LIMITS
 from validation.validity_map import REGIMES, STATES
@@ -44,7 +44,7 @@ def validity_map(results: Results) -> Chapter:
         )
     torque, speed = data["torque"].to_numpy(), data["speed"].to_numpy()
     here = int(np.argmin(np.abs(torque - pair.operating.pinion_torque)))
-    rows: list[tuple[Cell, ...]] = []
+    rows: Rows = []
     for row in sorted({0, here, torque.size - 1}):
         spans = _spans(speed, state[row] == 0)
         share = float(np.mean(state[row] == 0))
@@ -68,11 +68,11 @@ def validity_map(results: Results) -> Chapter:
             "valid_speeds",
             "Speeds at which contact and sliding are as the model assumes and the motion is stable, at "
             "three torques.",
-            (
-                Column("torque", "pinion torque"),
-                Column("share", "share of the speeds"),
-                Column("speeds", "pinion speeds"),
-            ),
+            {
+                "torque": "pinion torque",
+                "share": "share of the speeds",
+                "speeds": "pinion speeds",
+            },
             tuple(rows),
             note=f"Between neighbouring points, {speed[1] - speed[0]:.4g} rpm apart, the state may change "
             "unseen.",
