@@ -85,8 +85,9 @@ class Points:
         factors[:, 1:] = given if given.ndim == 2 else np.broadcast_to(given, T.shape)[:, None]
         zeta = own(np.broadcast_to(np.asarray(damping_factors, dtype=float), T.shape))
         _within(system.coarsening, T, zeta, factors)
-        # Longer steps have fewer terms per unit of time, but amplify rounding by exp(angle).
-        angle = min(max(math.log(tolerance) + 33.0, 5.0), 9.0)
+        # Longer steps have fewer terms per unit of time, but amplify rounding, 30 eps = exp(-32.6), by
+        # exp(angle): to an eighth of the tolerance.
+        angle = min(max(math.log(tolerance) + 30.5, 3.0), 9.0)
         return cls(
             problem=packed(system),
             limits=Limits(float(tolerance), angle, int(max_steps)),

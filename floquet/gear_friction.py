@@ -107,26 +107,34 @@ class _Law:
         self.law = law_named(pair.friction.law)
         self.path, self.settings = contact_path(pair), friction_settings(pair)
         self.to_mean = variation.friction_mean is not None
+        self.positions = _positions(self.path)
+        self.known: dict[float, tuple[FloatArray, list[float]]] = {}
 
     def at(self, rpm: float) -> ContactPath:
         ratio = self.path.omega_gear / self.path.omega_pinion
         omega = rpm * np.pi / 30.0
         return replace(self.path, omega_pinion=omega, omega_gear=omega * ratio)
 
+    def values(self, rpm: float) -> tuple[FloatArray, list[float]]:
+        """Mu at the positions, and the positions of its switches, at a speed."""
+        if rpm not in self.known:
+            there = self.at(rpm)
+            mu = self.law.signed(self.positions, there, self.settings)
+            self.known[rpm] = mu, self.law.switches(there, self.settings)
+        return self.known[rpm]
+
     def weights(self, reference: float, speeds_rpm: FloatArray) -> tuple[npt.NDArray[np.intp], FloatArray]:
         """Speeds (k,) at which mu = a mu_reference + b sign(xi - L_XP), and a, b there, (k, 2)."""
-        own = self.at(reference)
-        xi, switches = _positions(own), self.law.switches(own, self.settings)
-        mu, sign = self.law.signed(xi, own, self.settings), np.sign(xi - own.L_XP)
+        mu, switches = self.values(reference)
+        sign = np.sign(self.positions - self.path.L_XP)
         basis = np.stack([mu, sign], axis=1)
         members, found = [], []
         for i, rpm in enumerate(speeds_rpm):
-            there = self.at(float(rpm))
-            now = self.law.signed(xi, there, self.settings)
+            now, others = self.values(float(rpm))
             one = np.array([now @ mu / (mu @ mu) if mu.any() else 1.0, 0.0])
             for pair in (one, np.linalg.lstsq(basis, now, rcond=None)[0]):
                 if np.abs(basis @ pair - now).max() <= _SAME * np.abs(now).max():
-                    if _alike(switches, self.law.switches(there, self.settings), own):
+                    if _alike(switches, others, self.path):
                         members.append(i)
                         found.append(pair)
                     break

@@ -192,7 +192,7 @@ def _direct(
         for first in range(0, band.size, _CHUNK):
             part = band[first : first + _CHUNK]
             found = fast_multipliers(
-                system, periods[part], damping[part], factors[part], tolerance=2e-3 * rtol, threads=threads
+                system, periods[part], damping[part], factors[part], tolerance=2e-4 * rtol, threads=threads
             )
             put(part, found)
 

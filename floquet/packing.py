@@ -15,7 +15,7 @@ _PROPORTIONAL = 1e-12  # wd is rho w where it differs from it by no more than th
 def packed(system: RankOneSystem) -> Problem:
     """Arrange a system for the kernels: modal coordinates, lanes, and bounds that do not change per point."""
     form = system.modal()
-    pieces, m = system.phases.size - 1, system.v.size
+    pieces = system.phases.size - 1
     w_size, wd_size = _norms(form.w), _norms(form.wd)
     centred = form.w[0, :, :, 0] - form.reference
     w_size[0] += np.linalg.norm(centred, axis=1) - np.linalg.norm(form.w[0, :, :, 0], axis=1)
@@ -24,8 +24,8 @@ def packed(system: RankOneSystem) -> Problem:
     flow_error = np.zeros(pieces) if system.coarsening is None else system.coarsening.errors
     return Problem(
         phases=own(system.phases),
-        w=_lanes(form.w, m),
-        wd=_lanes(form.wd, m),
+        w=_lanes(form.w),
+        wd=_lanes(form.wd),
         f=own(form.f),
         fr=own(form.fr),
         degrees=degrees,
@@ -35,6 +35,7 @@ def packed(system: RankOneSystem) -> Problem:
         fit_error=own(np.stack([part.fit_errors for part in system.parts])),
         flow_error=own(flow_error),
         C=own(form.C),
+        drive=max(0.0, -float(np.linalg.eigvalsh(0.5 * (form.C + form.C.T)).min())),
         omega=own(form.omega),
         v=own(form.v),
         input=own(form.input),
@@ -69,14 +70,9 @@ def _ratios(w: FloatArray, wd: FloatArray, wd_size: FloatArray) -> tuple[FloatAr
     return rho, unequal
 
 
-def _lanes(poly: FloatArray, m: int) -> FloatArray:
-    """(Q, P, m, d+1) in powers of u in [-1, 1] -> (Q, P, d+1, LANES) in powers of tau = (u + 1)/2."""
-    degree = poly.shape[3] - 1
-    shift = np.zeros((degree + 1, degree + 1))  # column n: (2 tau - 1)^n
-    column = np.ones(1)
-    for n in range(degree + 1):
-        shift[: n + 1, n] = column
-        column = np.convolve(column, [-1.0, 2.0])
-    out = np.zeros((*poly.shape[:2], degree + 1, LANES))
-    out[..., :m] = np.einsum("kn,qpmn->qpkm", shift, poly)
+def _lanes(poly: FloatArray) -> FloatArray:
+    """(Q, P, m, d+1) -> (Q, P, d+1, LANES)."""
+    Q, P, m, count = poly.shape
+    out = np.zeros((Q, P, count, LANES))
+    out[..., :m] = np.swapaxes(poly, 2, 3)
     return out

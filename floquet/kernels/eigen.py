@@ -8,17 +8,17 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from floquet.kernels.compiled import compiled
 from floquet.system import ComplexArray, FloatArray
 
 _EPS = 2.220446049250313e-16
 _MAX_SWEEPS = 60
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled()
 def _hessenberg(A: FloatArray) -> None:
     """Reduce A (n, n) to upper Hessenberg form in place by Householder reflections."""
     n = A.shape[0]
@@ -58,7 +58,7 @@ def _hessenberg(A: FloatArray) -> None:
             A[i, k] = 0.0
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled()
 def _francis(H: FloatArray, lo: int, hi: int, sum_: float, product: float) -> None:
     """One implicit double-shift QR sweep on rows lo..hi; the shifts have this sum and product."""
     x = H[lo, lo] * H[lo, lo] + H[lo, lo + 1] * H[lo + 1, lo] - sum_ * H[lo, lo] + product
@@ -102,7 +102,7 @@ def _francis(H: FloatArray, lo: int, hi: int, sum_: float, product: float) -> No
             z = H[k + 3, k] if k + 3 <= hi else 0.0
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled()
 def _eigenvalues(A: FloatArray, values: ComplexArray) -> bool:
     """Eigenvalues of A (overwritten); conjugate pairs stand side by side. False: no convergence."""
     n = A.shape[0]
@@ -152,7 +152,7 @@ def _eigenvalues(A: FloatArray, values: ComplexArray) -> bool:
     return True
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled()
 def _condition_numbers(
     A: FloatArray, values: ComplexArray, B: FloatArray, product: FloatArray, kappa: FloatArray
 ) -> None:
@@ -200,7 +200,7 @@ def _condition_numbers(
         kappa[p] = math.sqrt(square) / gap if gap > 0.0 else math.inf
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled()
 def _disks(values: ComplexArray, kappa: FloatArray, size: float, radii: FloatArray) -> None:
     """Radii by Gershgorin's theorem for diag(values) + F, |F_ij| <= f_ij = size sqrt(kappa_i kappa_j).
 
@@ -227,7 +227,7 @@ def _disks(values: ComplexArray, kappa: FloatArray, size: float, radii: FloatArr
         radii[i] = own + tau * (full - own)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled()
 def _join(values: ComplexArray, radii: FloatArray, scratch: FloatArray, group: npt.NDArray[np.int64]) -> None:
     """Widen the radii of overlapping disks: a union of k disks apart from the others holds k eigenvalues."""
     n = values.size
@@ -247,7 +247,7 @@ def _join(values: ComplexArray, radii: FloatArray, scratch: FloatArray, group: n
                 radii[i] = max(radii[i], abs(values[i] - values[j]) + scratch[j])
 
 
-@numba.njit(cache=True, error_model="numpy", nogil=True)
+@compiled(nogil=True)
 def spectra(
     M: FloatArray, delta: FloatArray, values: ComplexArray, radii: FloatArray, safe: npt.NDArray[np.bool_]
 ) -> None:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
+from floquet.kernels.compiled import compiled
 from floquet.kernels.lanes import LANES, load, plus, scaled, store, zero
-from floquet.kernels.majorant import MAX_TERMS, norm, shift
+from floquet.kernels.majorant import MAX_TERMS, norm, powers_of_radii, shift
 from floquet.system import FloatArray
 
 
@@ -20,9 +20,9 @@ class Problem(NamedTuple):
     Attributes
     ----------
     phases : (P+1,) ends of the pieces as parts of the period, 0 to 1
-    w, wd : (Q, P, d+1, LANES) coefficients in powers of the piece's tau in [0, 1], lowest first, coordinates
+    w, wd : (Q, P, d+1, LANES) coefficients in powers of the piece's u in [-1, 1], lowest first, coordinates
         in the first lanes; the damping factor zeta multiplies wd
-    f, fr : (Q, P, m, d+1) in powers of u = 2 tau - 1; the forcing is f + (zeta/T) fr
+    f, fr : (Q, P, m, d+1) likewise; the forcing is f + (zeta/T) fr
     degrees : (P, 2) of w and wd
     sizes : (Q, P, 2) bounds on the norms of w and wd over the piece, without the reference
     ratios : (P,) rho where wd = rho w for all parts, else nan
@@ -30,6 +30,7 @@ class Problem(NamedTuple):
     fit_error : (Q, P, 4) largest |error| of w, wd, f, fr by their polynomials on each piece
     flow_error : (P,) bound on what the error of the transition matrix over each piece has besides
     C, omega, v : (m, m) [1/s], (m,) [rad/s], (m,)
+    drive : bound on the rate [1/s] at which C lets the state grow; 0 where all supports are damped
     input : (m,) constant forcing whose motion from rest is carried beside that of f
     reference : (m,) constant part of w that omega^2 already has, so that w - reference acts
     """
@@ -46,6 +47,7 @@ class Problem(NamedTuple):
     fit_error: FloatArray
     flow_error: FloatArray
     C: FloatArray
+    drive: float
     omega: FloatArray
     v: FloatArray
     input: FloatArray
@@ -58,7 +60,7 @@ class Limits(NamedTuple):
     Attributes
     ----------
     tolerance : of each step's truncation, relative to 1
-    angle : largest majorant exponent per step
+    angle : largest majorant exponent per half of a step
     max_steps : steps per period at most
     """
 
@@ -70,15 +72,19 @@ class Limits(NamedTuple):
 class Piece(NamedTuple):
     """Scratch: the gains of one piece at one point, and the same in the time of one step.
 
+    The time of a step is u in [-1, 1] about its middle, its unit half of the step, h.
+
     Attributes
     ----------
     w, wd : (d+1, LANES) over the piece; f : (d+1, m)
     ws, wds, fs : the same over one step, times h^2, h and h^2
     degrees : of w, wd, f on this piece
-    a, r : majorant
+    a, powers : majorant, and what ``enough_terms`` needs besides
     Z, s, sd : (terms, 3, LANES), (terms, LANES): coefficients of eta, v . eta and its derivative
     v, hC, h2_omega2, h2_reference : (3,), (3, 3), (3,), (3,)
     sizes : |v/omega|, |v| and max omega + |C|
+    ends : (4, 2m, LANES) states at the end and at the start of the step, and room to work
+    unit : (LANES, LANES) rows of the unit matrix
     """
 
     w: FloatArray
@@ -89,7 +95,7 @@ class Piece(NamedTuple):
     fs: FloatArray
     degrees: npt.NDArray[np.int64]
     a: FloatArray
-    r: FloatArray
+    powers: FloatArray
     Z: FloatArray
     s: FloatArray
     sd: FloatArray
@@ -98,9 +104,11 @@ class Piece(NamedTuple):
     h2_omega2: FloatArray
     h2_reference: FloatArray
     sizes: FloatArray
+    ends: FloatArray
+    unit: FloatArray
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled()
 def scratch_for(problem: Problem) -> Piece:
     """Allocate the scratch of one thread."""
     m = problem.v.size
@@ -111,12 +119,13 @@ def scratch_for(problem: Problem) -> Piece:
     return Piece(
         np.zeros((dw, LANES)), np.zeros((dd, LANES)), np.zeros((df, m)),
         np.zeros((dw, LANES)), np.zeros((dd, LANES)), np.zeros((df, m)),
-        np.zeros(3, dtype=np.int64), np.zeros(max(dw, dd)), np.zeros(MAX_TERMS + 2),
+        np.zeros(3, dtype=np.int64), np.zeros(max(dw, dd)), powers_of_radii(max(dw, dd)),
         np.zeros((MAX_TERMS + 2, 3, LANES)),
         np.zeros((MAX_TERMS + 2, LANES)), np.zeros((MAX_TERMS + 2, LANES)),
         v, np.zeros((3, 3)), np.zeros(3), np.zeros(3),
         np.array([norm(problem.v / problem.omega), norm(problem.v),
                   problem.omega.max() + norm(problem.C.ravel())]),
+        np.zeros((4, 2 * m, LANES)), np.eye(LANES),
     )  # fmt: skip
 
 
@@ -124,7 +133,7 @@ def scratch_for(problem: Problem) -> Piece:
 # _nrt=False: without it every call counts the references of all arrays of its tuples, half of the run time.
 
 
-@numba.njit(cache=True, error_model="numpy", _nrt=False)
+@compiled(_nrt=False)
 def row_norm(poly: FloatArray, j: int, m: int) -> float:
     """Norm of poly[j, 0:m]."""
     total = 0.0
@@ -133,7 +142,7 @@ def row_norm(poly: FloatArray, j: int, m: int) -> float:
     return math.sqrt(total)
 
 
-@numba.njit(cache=True, error_model="numpy", _nrt=False)
+@compiled(_nrt=False)
 def _summed(
     polys: FloatArray, i: int, degree: int, weights: FloatArray, factor: float, out: FloatArray
 ) -> None:
@@ -145,24 +154,25 @@ def _summed(
         store(out, (j,), total)
 
 
-@numba.njit(cache=True, error_model="numpy", _nrt=False)
+@compiled(_nrt=False)
 def _part_of(poly: FloatArray, degree: int, part: int, parts: int, factor: float, out: FloatArray) -> None:
-    """Out = factor times poly in the time of one of so many equal parts, by synthetic division."""
+    """Out = factor times poly in the time of one of so many equal parts, as in ``shift``."""
     if parts == 1:
         for j in range(degree + 1):
             store(out, (j,), scaled(factor, load(poly, (j,))))
         return
     for j in range(degree + 1):
         store(out, (j,), load(poly, (j,)))
+    middle = (2.0 * part + 1.0) / parts - 1.0
     for j in range(degree):
         for i in range(degree - 1, j - 1, -1):
-            store(out, (i,), plus(part / parts, load(out, (i + 1,)), load(out, (i,))))
+            store(out, (i,), plus(middle, load(out, (i + 1,)), load(out, (i,))))
     for j in range(degree + 1):
         store(out, (j,), scaled(factor, load(out, (j,))))
         factor /= parts
 
 
-@numba.njit(cache=True, error_model="numpy", _nrt=False)
+@compiled(_nrt=False)
 def load_piece(
     problem: Problem, i: int, gains: FloatArray, zeta: float, T: float, piece: Piece
 ) -> tuple[float, float, float, float]:
@@ -199,9 +209,9 @@ def load_piece(
     return rate, error, error_f, zeta * rho
 
 
-@numba.njit(cache=True, error_model="numpy", _nrt=False)
+@compiled(_nrt=False)
 def load_step(problem: Problem, piece: Piece, part: int, parts: int, h: float, ratio: float) -> int:
-    """Write the gains over one of the steps of length h into which a piece is cut, and their majorant a.
+    """Write the gains over one of the steps of length 2 h into which a piece is cut, and their majorant a.
 
     Returns the degree of a.
     """
@@ -217,7 +227,7 @@ def load_step(problem: Problem, piece: Piece, part: int, parts: int, h: float, r
         change += (piece.ws[0, q] + piece.h2_reference[q]) ** 2
         for p in range(m):
             piece.hC[q, p] = h * problem.C[q, p]
-    shift(piece.f, df, -1.0 + 2.0 * part / parts, 2.0 / parts, piece.fs)
+    shift(piece.f, df, (2.0 * part + 1.0) / parts - 1.0, 1.0 / parts, piece.fs)
     for j in range(df + 1):
         for q in range(m):
             piece.fs[j, q] *= h * h

@@ -1,30 +1,37 @@
-"""How many Taylor terms are enough: a scalar recurrence that dominates the vector one, compiled.
+"""How many Taylor terms are enough: a scalar series that dominates the vector one, compiled.
 
-The Taylor coefficients x_k of x' = A(tau) x, A(tau) = sum_j A_j tau^j, obey (k+1) x_{k+1} = sum_j A_j
-x_{k-j}; hence |x_k| <= r_k with r_0 = 1, (k+1) r_{k+1} = sum_j a_j r_{k-j}, for any a_j >= |A_j|. This gives,
-before any vector is computed, the degree p after which the neglected terms sum to less than the tolerance.
-The solution from rest under a forcing f then has |x_{k+1}| <= h |f| r_k, by induction from the same
-recurrence.
+The Taylor coefficients x_k of x' = A(u) x, A(u) = sum_j A_j u^j, obey (k+1) x_{k+1} = sum_j A_j x_{k-j};
+hence |x_k| <= r_k with r_0 = 1, (k+1) r_{k+1} = sum_j a_j r_{k-j}, for any a_j >= |A_j|. The r_k are the
+coefficients of exp g(R), g(R) = sum_j a_j R^(j+1)/(j+1). They are not negative, so that r_k R^k <= exp g(R)
+for every R > 0, and for every R > 1 the terms beyond degree p sum to at most
+
+    exp(g(R)) R^-p/(R - 1)   for all |u| <= 1.
+
+This gives p before any vector is computed. The solution from rest under a forcing f has |x_{k+1}| <= h |f|
+r_k, by induction from the same recurrence: its bound is that of degree p - 1.
 """
 
 from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
+from floquet.kernels.compiled import compiled
+from floquet.kernels.lanes import LANES, load, plus, scaled, store
 from floquet.system import FloatArray
 
 MAX_TERMS = 64
 """Largest Taylor degree."""
-_INVERSE = 1.0 / np.arange(1, MAX_TERMS + 3)
-_INVERSE = np.concatenate([[np.inf], _INVERSE])
+RADII = np.concatenate([[1.0], np.geomspace(1.3, 60.0, 2 * LANES - 1)])
+"""The R at which the bound is tried, after R = 1, which gives the sum of all r_k."""
+_LOGS = np.log(RADII[1:])
+_LOWER = np.log(RADII[1:] - 1.0)
 
 
-@numba.njit(cache=True, fastmath={"contract"}, error_model="numpy", _nrt=False)
+@compiled(fastmath={"contract"}, _nrt=False)
 def shift(poly: FloatArray, degree: int, u: float, scale: float, out: FloatArray) -> None:
-    """Coefficients of tau -> poly(u + scale tau) by synthetic division, (degree+1, m) lowest first."""
+    """Coefficients of t -> poly(u + scale t) by synthetic division, (degree+1, m) lowest first."""
     m = poly.shape[1]
     for j in range(degree + 1):
         for r in range(m):
@@ -40,7 +47,7 @@ def shift(poly: FloatArray, degree: int, u: float, scale: float, out: FloatArray
             out[j, r] *= factor
 
 
-@numba.njit(cache=True, error_model="numpy", _nrt=False)
+@compiled(_nrt=False)
 def norm(row: FloatArray) -> float:
     """Euclidean norm."""
     total = 0.0
@@ -49,55 +56,46 @@ def norm(row: FloatArray) -> float:
     return math.sqrt(total)
 
 
-@numba.njit(cache=True, error_model="numpy", _nrt=False)
-def _enough_constant(a: float, tolerance: float, r: FloatArray) -> tuple[int, float, float, float]:
-    """`enough_terms` for degree 0: r_k = a^k/k!."""
-    size = 1.0
-    for k in range(MAX_TERMS):
-        r[k + 1] = r[k] * a / (k + 1)
-        size += r[k + 1]
-        theta = a / (k + 2)
-        tail = theta / (1.0 - theta) * r[k + 1]
-        if theta < 0.5 and tail <= tolerance:
-            return k + 1, tail, tail + r[k + 1], size
-    return -1, math.inf, math.inf, size
+@compiled()
+def powers_of_radii(count: int) -> FloatArray:
+    """R^(j+1)/(j+1), j = 0..count-1, for all RADII in two rows of lanes: (2, count, LANES)."""
+    powers = np.empty((2, count, LANES))
+    for i in range(2 * LANES):
+        for j in range(count):
+            powers[i // LANES, j, i % LANES] = RADII[i] ** (j + 1) / (j + 1)
+    return powers
 
 
-@numba.njit(cache=True, fastmath={"contract"}, error_model="numpy", _nrt=False)
+@compiled(fastmath={"contract"}, _nrt=False)
 def enough_terms(
-    a: FloatArray, degree: int, tolerance: float, r: FloatArray
-) -> tuple[int, float, float, float]:
-    """Degree p, bounds on everything beyond it, sum_k r_k; p = -1 when MAX_TERMS do not suffice.
+    a: FloatArray, degree: int, log_tolerance: float, powers: FloatArray, work: FloatArray
+) -> tuple[int, float, float]:
+    """Degree p after which the neglected terms sum to less than the tolerance; -1 above MAX_TERMS.
 
-    With rho_k the largest of the last degree + 1 values r and theta = sum a/(k+1) < 1, r_{k+1} <= theta
-    rho_k, so the terms after k sum to at most (degree + 1) theta/(1 - theta) rho_k.
+    Parameters
+    ----------
+    a : (d+1,) majorant
+    degree : d
+    log_tolerance : logarithm of the tolerance
+    powers : as of `powers_of_radii`
+    work : (2, LANES) scratch
 
     Returns
     -------
-    p; bound on the neglected terms of the flow; the same, per unit of h |f|, of the solution from rest; sum
-    of the r_k kept, which measures rounding
+    p; the factor by which the tolerance is larger, per unit of h |f|, for the solution from rest; sum of all
+    r_k, which measures rounding
     """
-    total = 0.0
-    for j in range(degree + 1):
-        total += a[j]
-    r[0] = 1.0
-    if degree == 0:
-        terms, tail, tail_f, size = _enough_constant(a[0], tolerance, r)
-        return terms, tail, tail_f, size
-    size = 1.0
-    for k in range(MAX_TERMS):
-        value = 0.0
-        for j in range(min(degree, k), -1, -1):  # the newest last: the older ones need not wait for it
-            value += a[j] * r[k - j]
-        r[k + 1] = value * _INVERSE[k + 1]
-        size += r[k + 1]
-        theta = total * _INVERSE[k + 2]
-        # The newest value alone must pass before the others are looked at.
-        if theta < 0.5 and k >= degree and (degree + 1) * theta * r[k + 1] <= tolerance:
-            largest = 0.0
-            for j in range(degree + 1):
-                largest = max(largest, r[k + 1 - j])
-            tail = (degree + 1) * theta / (1.0 - theta) * largest
-            if tail <= tolerance:
-                return k + 1, tail, tail + r[k + 1], size
-    return -1, math.inf, math.inf, size
+    first, second = scaled(a[0], load(powers, (0, 0))), scaled(a[0], load(powers, (1, 0)))
+    for j in range(1, degree + 1):
+        first, second = plus(a[j], load(powers, (0, j)), first), plus(a[j], load(powers, (1, j)), second)
+    store(work, (0,), first)
+    store(work, (1,), second)
+    best, radius = 1.0 + MAX_TERMS, 1.0
+    for i in range(_LOGS.size):
+        terms = (work[(i + 1) // LANES, (i + 1) % LANES] - _LOWER[i] - log_tolerance) / _LOGS[i]
+        if terms < best:
+            best, radius = terms, RADII[i + 1]
+    size = math.exp(work[0, 0])
+    if not best <= MAX_TERMS:
+        return -1, math.inf, size
+    return max(1, math.ceil(best)), radius, size

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
-import numba
-
-from floquet.kernels.lanes import LANES, load, plus, plus_square, store, zero
+from floquet.kernels.compiled import compiled
+from floquet.kernels.lanes import LANES, load, plus, plus_square, scaled, store, zero
 from floquet.system import FloatArray
 
 FORCED = 6
@@ -14,8 +13,8 @@ FORCED = 6
 _EPS = 2.220446049250313e-16
 
 
-@numba.njit(cache=True, error_model="numpy", _nrt=False)
-def _frobenius(rows: FloatArray, scratch: FloatArray) -> float:
+@compiled(_nrt=False)
+def frobenius(rows: FloatArray, scratch: FloatArray) -> float:
     """Norm of rows[:, 0:n], by way of the first row of ``scratch``."""
     n = rows.shape[0]
     total = zero()
@@ -28,7 +27,7 @@ def _frobenius(rows: FloatArray, scratch: FloatArray) -> float:
     return math.sqrt(square)
 
 
-@numba.njit(cache=True, error_model="numpy", _nrt=False)
+@compiled(_nrt=False)
 def multiply(left: FloatArray, right: FloatArray, out: FloatArray) -> None:
     """Out = left[:, 0:n] @ right, all (n, LANES)."""
     n = left.shape[0]
@@ -39,7 +38,67 @@ def multiply(left: FloatArray, right: FloatArray, out: FloatArray) -> None:
         store(out, (i,), total)
 
 
-@numba.njit(cache=True, error_model="numpy", _nrt=False)
+@compiled(_nrt=False)
+def invert(A: FloatArray, unit: FloatArray, work: FloatArray, out: FloatArray) -> None:
+    """Out[:, 0:n] = inverse of A[:, 0:n], (n, LANES), by Gauss-Jordan elimination with row pivots.
+
+    Not finite where A is singular. ``unit`` has the rows of the unit matrix, ``work`` is scratch like A.
+    """
+    n = A.shape[0]
+    for i in range(n):
+        store(work, (i,), load(A, (i,)))
+        store(out, (i,), load(unit, (i,)))
+    for k in range(n):
+        p = k
+        for i in range(k + 1, n):
+            if abs(work[i, k]) > abs(work[p, k]):
+                p = i
+        factor = 1.0 / work[p, k]
+        left, right = scaled(factor, load(work, (p,))), scaled(factor, load(out, (p,)))
+        store(work, (p,), load(work, (k,)))
+        store(out, (p,), load(out, (k,)))
+        store(work, (k,), left)
+        store(out, (k,), right)
+        for i in range(n):
+            if i != k:
+                factor = -work[i, k]
+                store(work, (i,), plus(factor, left, load(work, (i,))))
+                store(out, (i,), plus(factor, right, load(out, (i,))))
+
+
+@compiled(_nrt=False)
+def divide(
+    end: FloatArray, start: FloatArray, unit: FloatArray, scratch: FloatArray, step: FloatArray
+) -> tuple[float, float]:
+    """Flow over a step, P = E S^-1, from those from its middle to its end E and to its start S.
+
+    Parameters
+    ----------
+    end, start : (n, LANES), the columns from FORCED on being states from rest in the middle
+    unit : rows of the unit matrix
+    scratch : (2, n, LANES)
+    step : (n, LANES), out: P, and in the columns from FORCED on states at the end from rest at the start
+
+    Returns
+    -------
+    |P| and a bound on |P S - E|, Frobenius norms
+    """
+    n = end.shape[0]
+    inverse, back = scratch[0], scratch[1]
+    invert(start, unit, back, inverse)
+    multiply(end, inverse, step)
+    multiply(step, start, back)
+    for i in range(n):
+        store(back, (i,), plus(-1.0, load(end, (i,)), load(back, (i,))))
+    residual, size = frobenius(back, inverse), frobenius(step, inverse)
+    residual += (n + 1.0) * _EPS * size * frobenius(start, inverse)
+    for i in range(n):
+        for lane in range(FORCED, LANES):
+            step[i, lane] = -back[i, lane]
+    return size, residual
+
+
+@compiled(_nrt=False)
 def carry(
     steps: FloatArray,
     local: FloatArray,
@@ -74,7 +133,7 @@ def carry(
         for lane in range(LANES):
             flow[i, lane] = 1.0 if i == lane and lane < n else 0.0
     for k in range(count):
-        weights[k, 1] = _frobenius(flow, scratch)
+        weights[k, 1] = frobenius(flow, scratch)
         multiply(steps[k], flow, product)
         for i in range(n):
             store(flow, (i,), load(product, (i,)))
@@ -86,9 +145,9 @@ def carry(
             after[i, lane] = 1.0 if i == lane and lane < n else 0.0
     total = 0.0
     for k in range(count - 1, -1, -1):
-        weights[k, 0] = _frobenius(after, scratch)
+        weights[k, 0] = frobenius(after, scratch)
         # n eps |P| is the rounding of multiplying by this step.
-        local[k] += n * _EPS * _frobenius(steps[k], scratch)
+        local[k] += n * _EPS * frobenius(steps[k], scratch)
         total += weights[k, 0] * local[k] * weights[k, 1]
         if layout[k, 1] == layout[k, 2] - 1.0:
             total += weights[k, 0] * layout[k, 3] * weights[k - int(layout[k, 1]), 1]

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
+from floquet.kernels.compiled import compiled
 from floquet.kernels.gains import Limits, Piece, Problem, load_piece, load_step, scratch_for
 from floquet.kernels.lanes import LANES
 from floquet.kernels.majorant import enough_terms, norm, shift
-from floquet.kernels.product import FORCED, carry
-from floquet.kernels.taylor import series, start_from_rest, steps_of_period
+from floquet.kernels.product import FORCED, carry, invert
+from floquet.kernels.taylor import ends_of_step, series, start_from_rest, steps_of_period
 from floquet.system import FloatArray
 
 
@@ -32,7 +32,7 @@ class Balance(NamedTuple):
     own: float
 
 
-@numba.njit(cache=True, error_model="numpy", nogil=True)
+@compiled(nogil=True)
 def periodic_points(
     problem: Problem,
     gains: FloatArray,
@@ -123,7 +123,7 @@ def periodic_points(
     return -1
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled()
 def _inverse(A: FloatArray) -> tuple[FloatArray, bool]:
     """Inverse by Gauss-Jordan elimination with row pivots; False: singular."""
     n = A.shape[0]
@@ -151,7 +151,7 @@ def _inverse(A: FloatArray) -> tuple[FloatArray, bool]:
     return inverse, True
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled()
 def _advance(step: FloatArray, state: FloatArray) -> None:
     """Carry the motion under f (column 0) and under the input (column 1) over one step."""
     n = state.shape[0]
@@ -165,7 +165,7 @@ def _advance(step: FloatArray, state: FloatArray) -> None:
     state[:] = following
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled()
 def _residuals(
     steps: FloatArray, local: FloatArray, weights: FloatArray, count: int, state: FloatArray
 ) -> FloatArray:
@@ -179,7 +179,7 @@ def _residuals(
     return residual
 
 
-@numba.njit(cache=True, fastmath={"contract"}, error_model="numpy")
+@compiled(fastmath={"contract"})
 def _sample(
     problem: Problem,
     gains: FloatArray,
@@ -202,7 +202,7 @@ def _sample(
     balanced = balance.own != 0.0
     nu, nu_rate = norm(problem.v / problem.omega), norm(problem.v)
     psi, shifted = np.zeros((degree, 3)), np.zeros((degree, 3))
-    c = np.zeros((piece.s.shape[0], 2))
+    c, middle = np.zeros((piece.s.shape[0], 2)), np.zeros((n, 2))
     means = np.zeros(3)
     last, ratio, sample = -1, math.nan, 0
     for k in range(count):
@@ -221,31 +221,41 @@ def _sample(
                         psi[j, 1] += gains[q] * zeta * balance.psi[q, i, 1, j]
                         psi[j, 2] += gains[q] * (balance.psi[q, i, 2, j] + zeta / T * balance.psi[q, i, 3, j])
                 last = i
-            h = width * T
+            h = 0.5 * width * T
             top = load_step(problem, piece, part, parts, h, ratio)
-            terms, _, _, _ = enough_terms(piece.a, top, limits.tolerance, piece.r)
+            log_tolerance = math.log(limits.tolerance)
+            terms, _, _ = enough_terms(piece.a, top, log_tolerance, piece.powers, piece.ends[0])
             start_from_rest(problem, piece, h)
             series(problem, piece, terms, h, ratio)
+            start, inverse = piece.ends[1], piece.ends[2]
+            ends_of_step(problem, piece, terms, h, piece.ends[0], start)
+            invert(start, piece.unit, piece.ends[3], inverse)
+            for q in range(n):
+                for column in range(2):
+                    middle[q, column] = 0.0
+                    for p in range(n):
+                        middle[q, column] += inverse[q, p] * (state[p, column] - start[p, FORCED + column])
             for j in range(terms + 2):
                 for column in range(2):
                     total = piece.s[j, FORCED + column]
                     for q in range(n):
-                        total += piece.s[j, q] * state[q, column]
+                        total += piece.s[j, q] * middle[q, column]
                     c[j, column] = total
             while sample < samples and sample < end * samples:
-                tau = (sample / samples - begin) / width
+                u = 2.0 * (sample / samples - begin) / width - 1.0
                 for column in range(2):
                     total = 0.0
                     for j in range(terms, -1, -1):
-                        total = total * tau + c[j, column]
+                        total = total * u + c[j, column]
                     sampled[sample, column] = total
                 sample += 1
             if balanced:
-                shift(psi, degree - 1, -1.0 + 2.0 * part / parts, 2.0 / parts, shifted)
+                shift(psi, degree - 1, (2.0 * part + 1.0) / parts - 1.0, 1.0 / parts, shifted)
                 for e in range(degree):
-                    means[0] -= width * shifted[e, 2] / (e + 1.0)
+                    if e % 2 == 0:
+                        means[0] -= width * shifted[e, 2] / (e + 1.0)
                     means[2] += width * (abs(shifted[e, 0]) * nu + abs(shifted[e, 1]) * nu_rate)
-                    for j in range(terms + 1):
+                    for j in range(e % 2, terms + 1, 2):  # the mean of an odd power of u is zero
                         both = width / (e + j + 1.0)
                         rate = both * shifted[e, 1] * (j + 1.0) / h
                         for column in range(2):

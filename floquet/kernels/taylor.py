@@ -5,32 +5,38 @@ In modal coordinates of a reference problem (`floquet.rank_one`) the system read
     eta'' + C eta' + omega^2 eta + w(t) (v . eta) + wd(t) (v . eta') = f(t),
 
 with w, wd, f polynomials on every piece of the period. In the energy coordinates x = (omega eta, eta') the
-part omega^2 is skew, so that one step of length h has the matrix A(tau) = sum_j A_j tau^j, 0 <= tau <= 1,
-with
+part omega^2 is skew, so that one step of length 2 h has the matrix A(u) = sum_j A_j u^j, -1 <= u <= 1, with
 
     |A_0| <= a_0 = h (max omega + |C| + |w_0| |v/omega| + |wd_0| |v|),   |A_j| <= a_j likewise without
     omega, C,
 
 which is what `floquet.kernels.majorant` needs.
+
+The series starts in the middle of the step, where it needs fewer terms and where powers of u are small. Its
+sums at u = 1 and -1 are the flows E and S from the middle to the end and back to the start, and P = E S^-1 is
+that of the step. Let E and S be wrong by at most d each, and let r be what P S - E comes to. Then P is wrong
+by at most (r + (1 + |P|) d) |S^-1|, and |S^-1|, the flow from the start to the middle, is bounded by the
+growth of energy. A motion from rest in the middle, e at the end and s at the start, is e - P s at the end
+when it is at rest at the start.
 """
 
 from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
+from floquet.kernels.compiled import compiled
 from floquet.kernels.gains import Limits, Piece, Problem, load_piece, load_step, row_norm, scratch_for
 from floquet.kernels.lanes import LANES, load, plus, scaled, store, zero
 from floquet.kernels.majorant import enough_terms, norm
-from floquet.kernels.product import FORCED, carry
+from floquet.kernels.product import FORCED, carry, divide
 from floquet.system import FloatArray
 
 _EPS = 2.220446049250313e-16
 
 
-@numba.njit(cache=True, fastmath={"contract"}, error_model="numpy", _nrt=False)
+@compiled(fastmath={"contract"}, _nrt=False)
 def series(problem: Problem, piece: Piece, terms: int, h: float, ratio: float) -> None:
     """Fill Z[k] (3, LANES), the Taylor coefficients in step time, k = 2..terms+1, from Z[0] and Z[1].
 
@@ -88,38 +94,39 @@ def series(problem: Problem, piece: Piece, terms: int, h: float, ratio: float) -
     store(s, (terms + 1,), there)
 
 
-@numba.njit(cache=True, error_model="numpy", _nrt=False)
+@compiled(_nrt=False)
 def start_from_rest(problem: Problem, piece: Piece, h: float) -> None:
     """Unit initial states x = (omega eta, eta') in the first 2m columns, rest in the others."""
     m = problem.v.size
     for q in range(m):
-        store(piece.Z, (0, q), zero())
-        store(piece.Z, (1, q), zero())
-        piece.Z[0, q, q] = 1.0 / problem.omega[q]
-        piece.Z[1, q, m + q] = h
+        store(piece.Z, (0, q), scaled(1.0 / problem.omega[q], load(piece.unit, (q,))))
+        store(piece.Z, (1, q), scaled(h, load(piece.unit, (m + q,))))
 
 
-@numba.njit(cache=True, fastmath={"contract"}, error_model="numpy", _nrt=False)
-def end_of_step(problem: Problem, piece: Piece, terms: int, h: float, out: FloatArray) -> None:
-    """Energy coordinates at the end of the step, (2m, LANES), summed from the smallest terms on."""
+@compiled(fastmath={"contract"}, _nrt=False)
+def ends_of_step(
+    problem: Problem, piece: Piece, terms: int, h: float, end: FloatArray, start: FloatArray
+) -> None:
+    """Energy coordinates at both ends of the step, (2m, LANES), summed from the smallest terms on."""
     m = problem.v.size
+    top = terms + 1 - (terms + 1) % 2  # the largest even power
     for q in range(m):
-        # Even and odd powers apart: two chains of additions instead of one.
-        last = terms + 1
-        position, rate = load(piece.Z, (last, q)), scaled(float(last), load(piece.Z, (last, q)))
-        other, other_rate = zero(), zero()
-        for k in range(terms, 0, -1):
-            x = load(piece.Z, (k, q))
-            if (last - k) % 2 == 0:
-                position, rate = plus(1.0, x, position), plus(float(k), x, rate)
-            else:
-                other, other_rate = plus(1.0, x, other), plus(float(k), x, other_rate)
-        position = plus(1.0, load(piece.Z, (0, q)), plus(1.0, other, position))
-        store(out, (q,), scaled(problem.omega[q], position))
-        store(out, (m + q,), scaled(1.0 / h, plus(1.0, other_rate, rate)))
+        even, odd, even_rate, odd_rate = zero(), zero(), zero(), zero()
+        if top == terms:
+            odd = load(piece.Z, (terms + 1, q))
+            even_rate = scaled(terms + 1.0, odd)
+        for k in range(top, 0, -2):
+            x, y = load(piece.Z, (k, q)), load(piece.Z, (k - 1, q))
+            even, odd_rate = plus(1.0, x, even), plus(float(k), x, odd_rate)
+            odd, even_rate = plus(1.0, y, odd), plus(float(k - 1), y, even_rate)
+        even = plus(1.0, load(piece.Z, (0, q)), even)
+        store(end, (q,), scaled(problem.omega[q], plus(1.0, odd, even)))
+        store(start, (q,), scaled(problem.omega[q], plus(-1.0, odd, even)))
+        store(end, (m + q,), scaled(1.0 / h, plus(1.0, odd_rate, even_rate)))
+        store(start, (m + q,), scaled(1.0 / h, plus(-1.0, odd_rate, even_rate)))
 
 
-@numba.njit(cache=True, error_model="numpy", _nrt=False)
+@compiled(_nrt=False)
 def steps_of_period(
     problem: Problem,
     gains: FloatArray,
@@ -148,18 +155,18 @@ def steps_of_period(
     """
     m = problem.v.size
     count = 0
-    calm, size_input = piece.sizes[2], norm(problem.input)
+    size_input, log_tolerance = norm(problem.input), math.log(limits.tolerance)
     for i in range(problem.phases.size - 1):
         length = (problem.phases[i + 1] - problem.phases[i]) * T
         rate, misfit, misfit_f, ratio = load_piece(problem, i, gains, zeta, T, piece)
-        parts = max(1, math.ceil(length * rate / limits.angle))
+        parts = max(1, math.ceil(0.5 * length * rate / limits.angle))
         part = 0
         while part < parts:
             if count + parts - part > limits.max_steps:
                 return -1
-            h = length / parts
+            h = 0.5 * length / parts
             degree = load_step(problem, piece, part, parts, h, ratio)
-            terms, tail, tail_f, size = enough_terms(piece.a, degree, limits.tolerance, piece.r)
+            terms, factor_f, size = enough_terms(piece.a, degree, log_tolerance, piece.powers, piece.ends[0])
             if terms < 0:
                 # The polynomials vary too much within the step: begin the piece again with half of it.
                 count -= part
@@ -168,21 +175,35 @@ def steps_of_period(
                 continue
             start_from_rest(problem, piece, h)
             series(problem, piece, terms, h, ratio)
-            end_of_step(problem, piece, terms, h, steps[count])
+            end, start, scratch = piece.ends[0], piece.ends[1], piece.ends[2:]
+            ends_of_step(problem, piece, terms, h, end, start)
+            size_step, residual = divide(end, start, piece.unit, scratch, steps[count])
             # Every coefficient is a sum of at most 2 d + 2 m + 4 rounded products of size r_k.
             rounding = _EPS * (2.0 * degree + 2.0 * m + 8.0) * size
-            # The skew part of A and the damping C do not let the energy grow; what is left of a does at most.
-            growth = -h * calm
+            # Neither the skew part of A nor damping lets the energy grow; what is left of a at most does.
+            growth = h * (problem.drive - piece.sizes[2])
             for j in range(degree + 1):
                 growth += piece.a[j]
+            back = math.exp(growth)
+            spread = 2.0 * h * back * back
+            twice = 1.0 + size_step
+            error = (residual + twice * (limits.tolerance + rounding)) * back
             size_f = 0.0
             for j in range(piece.degrees[2] + 1):
                 size_f += row_norm(piece.fs, j, m)
             size_f /= h  # fs holds h^2 f
-            spread = h * math.exp(growth)
-            local[count, 0] = tail + rounding + misfit * spread
-            local[count, 1] = (tail_f + rounding + misfit * spread) * size_f + misfit_f * spread
-            local[count, 2] = (tail_f + rounding + misfit * spread) * h * size_input
+            local[count, 0] = error + misfit * spread
+            for c in range(2):
+                # The motion from rest in the middle, and its error; misfits act for all of the step.
+                force = size_f if c == 0 else h * size_input
+                own = (factor_f * limits.tolerance + rounding) * force
+                reach = 0.0
+                for q in range(2 * m):
+                    reach += start[q, FORCED + c] ** 2
+                reach = own + math.sqrt(reach)
+                error_f = twice * own + (error + 2.0 * m * _EPS * twice) * reach
+                local[count, 1 + c] = error_f + misfit * spread * 2.0 * force
+            local[count, 1] += misfit_f * spread
             layout[count, 0], layout[count, 1], layout[count, 2] = i, part, parts
             layout[count, 3] = problem.flow_error[i]
             count += 1
@@ -190,7 +211,7 @@ def steps_of_period(
     return count
 
 
-@numba.njit(cache=True, error_model="numpy", nogil=True)
+@compiled(nogil=True)
 def propagate_points(
     problem: Problem,
     gains: FloatArray,
