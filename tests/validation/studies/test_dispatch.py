@@ -32,6 +32,7 @@ class ScriptedPool:
     def __init__(self, deadly, dies_together, unfinished=False, slots=3):
         self.deadly, self.dies_together, self.unfinished = Counter(deadly), dies_together, unfinished
         self.slots = slots
+        self.seconds = 1e-3
         self.under_way: list[tuple[Future[Batch], list[int]]] = []
         self.restarts = 0
         self.submitted: list[list[int]] = []
@@ -50,7 +51,9 @@ class ScriptedPool:
         future, cases = self.under_way.pop()
         killers = [case for case in cases if self.deadly[case] > 0]
         if not killers:
-            future.set_result(Batch(tuple(Record(c, Status.OK, 1e-3, (1.0, 2.0)) for c in cases), versions()))
+            future.set_result(
+                Batch(tuple(Record(c, Status.OK, self.seconds, (1.0, 2.0)) for c in cases), versions())
+            )
             return
         self.deadly[killers[0]] -= 1
         future.set_exception(Died())
@@ -82,6 +85,26 @@ def statuses(study, monkeypatch):
         return found
 
     return run
+
+
+@pytest.mark.parametrize(
+    ("slots", "expected"),
+    [
+        (10, 50),  # half a second of 10 ms
+        (500, 100),  # a second, so that the scheduler gets no more than 500 batches a second
+        (5000, 1_000_000 // 20_000),  # a quarter of an equal share, so that no worker is idle at the end
+    ],
+)
+def test_batches_grow_with_the_number_of_workers(make_study, slots, expected):
+    axis = {"field": "operating.pinion_speed", "low": 500, "high": 9000, "count": 1_000_000}
+    pool = ScriptedPool({}, dies_together=False, slots=slots)
+    pool.seconds = 10e-3
+    records = Dispatcher(pool, case_list(make_study(axes=[axis]))).records(iter(range(1_000_000)), 1_000_000)
+    while len(pool.submitted) < 2 * slots + 10:
+        next(records)
+    # One by one until the first time is known.
+    assert {len(batch) for batch in pool.submitted[: 2 * slots]} == {1}
+    assert len(pool.submitted[-1]) == pytest.approx(expected, rel=0.02)
 
 
 POOLS = pytest.mark.parametrize(
