@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import control
 import numpy as np
 
 from lumped.errors import NumericalError, refuse
@@ -16,6 +15,7 @@ from lumped.path_function import FloatArray
 from lumped.periodic_system import Form, LTVSystem, periodic_system
 
 if TYPE_CHECKING:
+    import control
     import xarray as xr
 
 #: Gauss-Legendre rule per smooth segment of the average, exact to degree 47.
@@ -50,6 +50,8 @@ def averaged_state_space(pair: GearPair, form: Form = "relative") -> control.Sta
     ------
     ParameterError : form "absolute", whose rigid rotation has no frequency response at rest
     """
+    import control  # takes longer to import than all else of lumped; modes do without
+
     if form == "absolute":
         raise refuse("form", form, "relative or feedback", "The rigid rotation has no steady response.")
     system = periodic_system(pair, form)
@@ -134,6 +136,7 @@ def frequency_response(pair: GearPair, frequencies: Sequence[float] | FloatArray
     -------
     xarray.Dataset over ``frequency`` [Hz]: complex receptances ``dte``, ``x_p``, ``x_g`` [m/(N m)]
     """
+    import control
     import xarray as xr
 
     f = np.asarray(frequencies, dtype=float)

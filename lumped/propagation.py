@@ -86,9 +86,18 @@ def _merged(maps: FloatArray, group: IntArray) -> FloatArray:
 
 
 def fastest_frequency(system: LTVSystem) -> float:
-    """Bound on the fastest natural frequency over the cycle [rad/s], from frozen-time eigenvalues."""
-    middles = 0.5 * (system.cycle.edges[1:] + system.cycle.edges[:-1])
-    values = np.linalg.eigvals(system.matrices(middles))
+    """Bound on the fastest natural frequency over the cycle [rad/s].
+
+    Frozen-time eigenvalues at the stiffest of three times on each polynomial piece, in each smooth segment.
+    """
+    switches = system.cycle.edges
+    marks = np.union1d(switches, system.cycle.knot_times)
+    times = (marks[:-1] + np.multiply.outer([0.05, 0.5, 0.95], np.diff(marks))).ravel()
+    segment = np.searchsorted(switches, times, side="right") - 1
+    stiffness = np.abs(system.gain(times, segment).stiffness @ system.deflection)
+    order = np.lexsort((stiffness, segment))
+    stiffest = order[np.flatnonzero(np.diff(segment[order], append=-1))]
+    values = np.linalg.eigvals(system.matrices(times[stiffest]))
     return float(np.abs(values).max()) * 1.1
 
 
