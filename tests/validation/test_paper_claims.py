@@ -11,6 +11,7 @@ from floquet.gear_pair import gear_pair_multipliers
 from lumped import bodies, geometry, load_gear_pair
 from lumped.errors import ParameterError
 from lumped.friction import contact_path
+from lumped.friction.xu_kahraman import xu_kahraman
 from validation.paper import claim_numbers as numbers
 from validation.paper.claim_rules import RULES
 from validation.paper.claims import ACCURACY, claims, judged
@@ -319,3 +320,50 @@ def test_percentiles_and_the_accuracy_claim(stated):
     # Linear between the fifth and sixth of a hundred: 4.95 of 99 steps from the smallest.
     assert claim.low == pytest.approx(peak * (1.029 + 0.95 * 0.002), rel=1e-9)
     assert claim.high == pytest.approx(2.0 * peak, rel=1e-9)
+
+
+#: Made-up numbers, all different, and what each claim states with them: value, then its further numbers.
+DIFFERENT = {
+    **MET,
+    "switch_drop": 2.8,
+    "jump_benedict_kelley": 0.9,
+    "jump_xu_kahraman": 0.001,
+    "jump_smoothed_coulomb": 0.002,
+    "load_spread": 0.036,
+    "load_spread_rms": 0.019,
+    "rms_x_p": 0.029,
+    "rms_dte": 0.016,
+    "rms_y_p": 0.385,
+    "order_x_p": 3.0,
+    "order_dte": 4.0,
+    "relative_order_y_p": 5.0,
+    "relative_order_x_p": 6.0,
+    "relative_order_dte": 7.0,
+    "mean_absolute_x_p": 0.013,
+    "mean_absolute_y_p": 0.163,
+    "mean_iii_fast": 0.003,
+    "peak_normal": 2628.0,
+    "peak_friction": 33.0,
+}
+#: Law III with R in millimetres over that in metres, at its check value.
+_MM_FOR_M = float(xu_kahraman(1.0, 0.1, 10.0, 10.0, 0.3, 8.0) / xu_kahraman(1.0, 0.1, 10.0, 10.0, 0.3, 8e-3))
+STATED = {
+    "mean of II above III": [5.0],
+    "pitch point": [0.1, 1.5],
+    "abrupt regime change": [10.0, 2.8],
+    "speed of the regime change": [2500.0],
+    "jumps": [0.9, 0.001, 0.002],
+    "normal load": [3.6, 1.9],
+    "LOA motion and DTE": [2.9, 2.9, 1.6],
+    "OLOA motion": [38.5],
+    "second harmonic": [2.0, 3.0, 4.0, 5.0, 6.0, 7.0],
+    "8 % discrepancy": [8.8, 1.3, 16.3],
+    "identified mu": [0.004, 0.003, 0.004 * _MM_FOR_M],
+    "3 % error": [33.0, 2628.0],
+}
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
+def test_a_claim_states_the_numbers_that_its_words_name(rule):
+    found = [rule.value(DIFFERENT), *(function(DIFFERENT) for function, _ in rule.details.values())]
+    assert found == pytest.approx(STATED[rule.name], rel=1e-6)
