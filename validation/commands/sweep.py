@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from validation.commands.terminal import guarded, stderr, stdout
+from validation.commands.terminal import INTERRUPTED, NUMERICAL, fail, guarded, stderr, stdout
 
 
 @guarded
@@ -61,18 +61,38 @@ def sweep(
 
     spurcheck sweep study.toml --scheduler tcp://head:8786
     """
-    from validation.studies.cli_sweep import sweep as run
+    from lumped.errors import ParameterError, SpurcheckError
+    from validation.studies import load_study, run_sweep
+    from validation.studies.cases import case_list
+    from validation.studies.cli_sweep import SweepProgress, cores, print_summary
 
-    code = run(
-        study,
-        output,
-        resume=resume,
-        retry_failed=retry_failed,
-        workers=workers,
-        scheduler=scheduler,
-        case_seconds=case_seconds,
-        dry_run=dry_run,
-        console=stderr(),
-        out=stdout(),
-    )
-    raise typer.Exit(code)
+    console = stderr()
+    # The folder's name never comes from inside the file.
+    folder = output if output is not None else Path(f"{study.stem}-sweep")
+    wanted = load_study(study)
+    processes = cores() if workers is None else workers
+    where = f"on {scheduler}" if scheduler else f"on {processes} worker(s)"
+    text = f"{wanted.name}: {case_list(wanted).count} cases, {wanted.analysis}, {where} -> {folder}"
+    console.print(text, soft_wrap=True)
+    if dry_run:
+        return
+    try:
+        with SweepProgress(console) as progress:
+            summary = run_sweep(
+                wanted,
+                folder,
+                workers=processes,
+                scheduler=scheduler,
+                resume=resume,
+                retry_failed=retry_failed,
+                case_seconds=case_seconds,
+                progress=progress,
+            )
+    except ParameterError:
+        raise
+    except SpurcheckError as error:  # storage or workers gone
+        fail(str(error), NUMERICAL)
+    except KeyboardInterrupt:
+        fail(f"Stopped. What was computed is in {folder}; run the same command with --resume.", INTERRUPTED)
+    print_summary(summary, stdout())
+    raise typer.Exit(summary.exit_code)

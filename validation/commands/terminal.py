@@ -7,7 +7,7 @@ import unicodedata
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, ParamSpec
+from typing import Any, NoReturn, ParamSpec
 
 import typer
 from rich.console import Console
@@ -72,19 +72,20 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
                 warnings.showwarning = show
                 command(*args, **kwargs)
         except ParameterError as error:
-            _fail(str(error), REFUSED)
+            fail(str(error), REFUSED)
         except NumericalError as error:
-            _fail(str(error), NUMERICAL)
+            fail(str(error), NUMERICAL)
         except OSError as error:
             name = f"{error.filename}: " if error.filename else ""
-            _fail(f"{name}{error.strerror or type(error).__name__}", REFUSED)
+            fail(f"{name}{error.strerror or type(error).__name__}", REFUSED)
         except KeyboardInterrupt:
-            _fail("interrupted", INTERRUPTED)
+            fail("interrupted", INTERRUPTED)
 
     return run
 
 
-def _fail(text: str, code: int) -> None:
+def fail(text: str, code: int) -> NoReturn:
+    """End the command with one message and an exit code."""
     stderr().print(f"[bold red]error:[/bold red] {escape(text)}", markup=True, soft_wrap=True)
     raise typer.Exit(code)
 

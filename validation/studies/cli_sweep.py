@@ -1,10 +1,9 @@
-"""What ``spurcheck sweep`` does: progress, summary, exit code."""
+"""What ``spurcheck sweep`` shows: progress and summary."""
 
 from __future__ import annotations
 
 import os
 import time
-from pathlib import Path
 from types import TracebackType
 from typing import Self
 
@@ -19,67 +18,10 @@ from rich.progress import (
 )
 from rich.table import Table
 
-from lumped.errors import ParameterError, SpurcheckError
-from validation.studies.cases import case_list
-from validation.studies.load import load_study
 from validation.studies.record import MEANINGS
-from validation.studies.runner import Summary, run_sweep
+from validation.studies.runner import Summary
 
-#: Exit codes: every case has outputs; some failed; input refused; storage or workers gone; interrupted.
-OK, FAILED, REFUSED, STOPPED, INTERRUPTED = 0, 1, 2, 3, 130
 _PLAIN_SECONDS = 10.0
-
-
-def sweep(
-    study_file: Path,
-    output: Path | None = None,
-    *,
-    resume: bool = False,
-    retry_failed: bool = False,
-    workers: int | None = None,
-    scheduler: str | None = None,
-    case_seconds: float | None = None,
-    dry_run: bool = False,
-    console: Console,
-    out: Console | None = None,
-) -> int:
-    """Run ``spurcheck sweep`` and return its exit code (the constants of this module).
-
-    ``console`` takes progress and errors, ``out`` the summary; the other arguments are the command's.
-    """
-    # The folder's name never comes from inside the file.
-    folder = output if output is not None else Path(study_file.stem + "-sweep")
-    try:
-        study = load_study(study_file)
-        count = case_list(study).count
-        wanted = cores() if workers is None else workers
-        where = f"on {scheduler}" if scheduler else f"on {wanted} worker(s)"
-        console.print(f"{study.name}: {count} cases, {study.analysis}, {where} -> {folder}", soft_wrap=True)
-        if dry_run:
-            return OK
-        with SweepProgress(console) as progress:
-            summary = run_sweep(
-                study,
-                folder,
-                workers=wanted,
-                scheduler=scheduler,
-                resume=resume,
-                retry_failed=retry_failed,
-                case_seconds=case_seconds,
-                progress=progress,
-            )
-    except ParameterError as error:
-        console.print(f"error: {error}", style="red", soft_wrap=True)
-        return REFUSED
-    except SpurcheckError as error:
-        console.print(f"error: {error}", style="red", soft_wrap=True)
-        return STOPPED
-    except KeyboardInterrupt:
-        again = f"Stopped. What was computed is in {folder}; run the same command with --resume."
-        console.print(again, style="yellow", soft_wrap=True)
-        return INTERRUPTED
-    print_summary(summary, out or console)
-    return FAILED if summary.failed else OK
 
 
 def cores() -> int:

@@ -9,9 +9,10 @@ from rich.console import Console
 from typer.testing import CliRunner
 
 from validation.cli import app
-from validation.commands.terminal import PlainConsole
 from validation.studies import read_results
-from validation.studies.cli_sweep import FAILED, INTERRUPTED, OK, REFUSED, STOPPED, SweepProgress, sweep
+from validation.studies.cli_sweep import SweepProgress
+
+OK, FAILED, REFUSED, STOPPED, INTERRUPTED = 0, 1, 2, 3, 130
 
 STUDY = """
 name = "command [red]"
@@ -33,10 +34,11 @@ def command(tmp_path, monkeypatch):
     def run(values=None, **options):
         if values is not None:
             (tmp_path / "study.toml").write_text(STUDY.format(values=values))
-        text = io.StringIO()
-        console = PlainConsole(file=text, width=300)
-        code = sweep(tmp_path / "study.toml", console=console, **{"workers": 0} | options)
-        return code, text.getvalue()
+        words = ["sweep", "study.toml"]
+        for name, value in ({"workers": 0} | options).items():
+            words += [f"--{name.replace('_', '-')}", *([] if value is True else [str(value)])]
+        result = CliRunner().invoke(app, words)
+        return result.exit_code, result.output
 
     return run
 
