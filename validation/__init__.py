@@ -12,14 +12,15 @@ if TYPE_CHECKING:
     from validation.comparison import CrossCheck, crosscheck
     from validation.interactive import write_interactive_page
     from validation.reporting import Report, report
-    from validation.validity import Flag, validity_flags
+    from validation.validity import validity_flags
+    from validation.validity_flag import Flag
 
 _HOMES = {
     "CrossCheck": "validation.comparison",
     "crosscheck": "validation.comparison",
     "Report": "validation.reporting",
     "report": "validation.reporting",
-    "Flag": "validation.validity",
+    "Flag": "validation.validity_flag",
     "validity_flags": "validation.validity",
     "write_interactive_page": "validation.interactive",
 }

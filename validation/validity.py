@@ -6,9 +6,7 @@ Sources: docs/theory/validity.md.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
@@ -16,11 +14,10 @@ import xarray as xr
 from lumped import GearPair, Geometry, geometry
 from lumped.friction import contact_path, law_range_violations
 from lumped.stiffness import stiffness_range_violations
+from validation.validity_flag import Flag, State, flag
 
 if TYPE_CHECKING:
     from floquet.gear_pair import GearPairMultipliers
-
-State = Literal["ok", "warning", "violated"]
 
 #: Loads below this share of the static load are zero for the question whether teeth separate.
 LOAD_NOISE = 1e-4
@@ -30,37 +27,6 @@ REVERSAL_LIMITS = (0.02, 0.05)
 DRIFT_LIMITS = (1e-3, 1e-2)
 #: Estimated relative error of the periodic motion: warning, violation.
 ERROR_LIMITS = (1e-6, 1e-4)
-
-
-@dataclass(frozen=True)
-class Flag:
-    """One assumption of the model, checked.
-
-    Attributes
-    ----------
-    key : stable name for programs
-    name : plain name
-    state : "ok", "warning" or "violated"
-    value, unit : the number that decides ("1" for a ratio); None where a text says it all
-    detail : where and how much
-    meaning : what the assumption is for
-    action : what to do; empty where nothing needs doing
-    """
-
-    key: str
-    name: str
-    state: State
-    value: float | None
-    unit: str
-    detail: str
-    meaning: str
-    action: str
-
-
-def worst_state(flags: Sequence[Flag]) -> State:
-    """Most serious state among flags."""
-    order: tuple[State, ...] = ("ok", "warning", "violated")
-    return max((flag.state for flag in flags), key=order.index, default="ok")
 
 
 def validity_flags(
@@ -97,21 +63,6 @@ def _state(value: float, limits: tuple[float, float]) -> State:
     return "ok" if value <= limits[0] else "warning" if value <= limits[1] else "violated"
 
 
-def _flag(
-    *,
-    key: str,
-    name: str,
-    state: State,
-    value: float | None,
-    unit: str,
-    detail: str,
-    meaning: str,
-    action: str,
-) -> Flag:
-    """Flag whose action is given only where something needs doing."""
-    return Flag(key, name, state, value, unit, detail, meaning, "" if state == "ok" else action)
-
-
 def _zone(g: Geometry, position: float) -> str:
     """Position on the path of contact in words: distance from A and the zone it lies in."""
     marks = (("A", g.L_XA), ("B", g.L_XB), ("P", g.L_XP), ("C", g.L_XC), ("D", g.L_XD))
@@ -138,18 +89,7 @@ def contact_loss(pair: GearPair, g: Geometry, motion: xr.Dataset) -> Flag:
     detail = f"lowest load {lowest:.4g} N ({lowest / static:.3g} of the static load) {place}"
     if separated.any():
         detail += f"; below zero over {100 * share:.3g} % of the time in contact"
-    return _flag(
-        key="contact_loss",
-        name="Teeth stay in contact",
-        state=state,
-        value=lowest,
-        unit="N",
-        detail=detail,
-        meaning="The equations let a tooth pair pull. A negative load means the teeth separate in reality, "
-        "and the motion after that is not the one predicted.",
-        action="Raise the torque or the damping, leave the resonance, or use the exact multibody model, "
-        "which lets teeth separate.",
-    )
+    return flag("contact_loss", state, lowest, detail)
 
 
 def sliding_reversal(g: Geometry, motion: xr.Dataset) -> Flag:
@@ -170,67 +110,35 @@ def sliding_reversal(g: Geometry, motion: xr.Dataset) -> Flag:
         )
     else:
         detail = "the actual sliding velocity, vibration included, keeps its nominal sign at every sample"
-    return _flag(
-        key="sliding_reversal",
-        name="Sliding keeps its direction",
-        state=state,
-        value=farthest,
-        unit="m",
-        detail=detail,
-        meaning="The model takes the direction of friction from the nominal rotation. Where vibration "
-        "reverses the sliding, the friction force has the wrong sign and feeds energy in.",
-        action="Use the exact multibody model, which takes friction from the actual sliding velocity; low "
-        "speeds and resonances cause this.",
-    )
+    return flag("sliding_reversal", state, farthest, detail)
 
 
 def contact_ratio(g: Geometry) -> Flag:
     """Contact ratio in the range of the formulas, with some margin above 1."""
     sigma = g.contact_ratio
     state: State = "ok" if 1.1 <= sigma <= 3.0 else "warning"
-    return _flag(
-        key="contact_ratio",
-        name="Contact ratio",
-        state=state,
-        value=sigma,
-        unit="1",
-        detail=f"{sigma:.4f}: up to {g.pairs} tooth pairs share the load",
-        meaning="Below 1.1 deflection and tolerances leave moments without a loaded pair; above 3 the model "
-        "does not apply.",
-        action="Lengthen the addendum or reduce the centre distance.",
-    )
+    return flag("contact_ratio", state, sigma, f"{sigma:.4f}: up to {g.pairs} tooth pairs share the load")
 
 
 def law_ranges(pair: GearPair) -> Flag:
     """The friction law is used inside the range in which it was fitted."""
     violations = law_range_violations(pair)
-    return _flag(
-        key="friction_law_range",
-        name="Friction law inside its range",
-        state="warning" if violations else "ok",
-        value=float(len(violations)),
-        unit="1",
-        detail="; ".join(str(v) for v in violations) or f"{pair.friction.law}: no stated limit is exceeded",
-        meaning="An empirical law says nothing outside the conditions in which it was fitted.",
-        action="Choose a law that covers the conditions, or take the friction as an assumption.",
+    return flag(
+        "friction_law_range",
+        "warning" if violations else "ok",
+        float(len(violations)),
+        "; ".join(str(v) for v in violations) or f"{pair.friction.law}: no stated limit is exceeded",
     )
 
 
 def stiffness_ranges(pair: GearPair, g: Geometry) -> Flag:
     """The stiffness model is used inside the ranges of its fits."""
     violations = stiffness_range_violations(pair, g)
-    return _flag(
-        key="stiffness_range",
-        name="Stiffness model inside its range",
-        state="warning" if violations else "ok",
-        value=float(len(violations)),
-        unit="1",
-        detail="; ".join(str(v) for v in violations)
-        or f"{pair.mesh.stiffness.model}: no stated limit is left",
-        meaning="The standard's stiffness and the deflection of the gear body are fits. Outside their range "
-        "the stiffness is an extrapolation.",
-        action='Take the stiffness from finite elements or a measurement (model "table"), or see how far the '
-        "results depend on it.",
+    return flag(
+        "stiffness_range",
+        "warning" if violations else "ok",
+        float(len(violations)),
+        "; ".join(str(v) for v in violations) or f"{pair.mesh.stiffness.model}: no stated limit is left",
     )
 
 
@@ -242,17 +150,12 @@ def film_regime(pair: GearPair) -> Flag:
     boundary = pair.friction.thresholds[0]
     fluid_law = pair.friction.law in ("benedict_kelley", "xu_kahraman")
     state: State = "warning" if fluid_law and low < boundary else "ok"
-    return _flag(
-        key="film_parameter",
-        name="Lubrication regime suits the law",
-        state=state,
-        value=low,
-        unit="1",
-        detail=f"film parameter {low:.3g} to {high:.3g} along the path of contact, boundary lubrication "
+    return flag(
+        "film_parameter",
+        state,
+        low,
+        f"film parameter {low:.3g} to {high:.3g} along the path of contact, boundary lubrication "
         f"below {boundary:g}",
-        meaning="Laws II and III describe mixed and elastohydrodynamic contacts; in boundary lubrication "
-        "the surfaces themselves carry the friction.",
-        action="Use law V (composite) or a Coulomb law with a measured coefficient.",
     )
 
 
@@ -269,17 +172,7 @@ def torque_balance(pair: GearPair, motion: xr.Dataset) -> Flag:
             f"with the given brake torque of {brake:.6g} N m the drive must give {needed:.6g} N m, "
             f"not {given:.6g} N m"
         )
-    return _flag(
-        key="torque_balance",
-        name="Torques balance",
-        state=state,
-        value=excess,
-        unit="1",
-        detail=detail,
-        meaning="Friction takes power. Without the balancing torque the mean speed would drift, and there "
-        "would be no periodic motion.",
-        action='Set operating.brake_torque = "balanced", or correct one of the torques.',
-    )
+    return flag("torque_balance", state, excess, detail)
 
 
 def speed_drift(g: Geometry, motion: xr.Dataset) -> Flag:
@@ -289,17 +182,12 @@ def speed_drift(g: Geometry, motion: xr.Dataset) -> Flag:
     first = time <= time[0] + g.mesh_period
     drift = abs(float(rate[last].mean() - rate[first].mean())) / g.omega_pinion
     state = _state(drift, DRIFT_LIMITS)
-    return _flag(
-        key="speed_drift",
-        name="Mean speed is steady",
-        state=state,
-        value=drift,
-        unit="1",
-        detail=f"the mean pinion speed of the last mesh cycle differs from that of the first by {drift:.2e} "
+    return flag(
+        "speed_drift",
+        state,
+        drift,
+        f"the mean pinion speed of the last mesh cycle differs from that of the first by {drift:.2e} "
         "of the nominal speed",
-        meaning="Coefficients repeat with the nominal speed. A drifting speed makes the prediction wrong, "
-        "not transient.",
-        action="Balance the torques.",
     )
 
 
@@ -307,16 +195,12 @@ def solution_error(motion: xr.Dataset) -> Flag:
     """The periodic motion is computed accurately."""
     error = float(motion.attrs["error_estimate"])
     state = _state(error, ERROR_LIMITS)
-    return _flag(
-        key="solution_error",
-        name="Periodic motion is accurate",
-        state=state,
-        value=error,
-        unit="1",
-        detail=f"estimated relative error of the transmission error {error:.1e}; mismatch after one cycle "
+    return flag(
+        "solution_error",
+        state,
+        error,
+        f"estimated relative error of the transmission error {error:.1e}; mismatch after one cycle "
         f"{float(motion.attrs['closure']):.1e}",
-        meaning="A numerical error must stay far below every difference that is discussed.",
-        action="Check for extreme stiffness, damping or speed.",
     )
 
 
@@ -325,15 +209,10 @@ def stability(multipliers: GearPairMultipliers) -> Flag:
     radius, error = multipliers.spectral_radius, multipliers.error
     states: dict[str, State] = {"stable": "ok", "undecided": "warning", "unstable": "violated"}
     state = states[multipliers.verdict]
-    return _flag(
-        key="stability",
-        name="Periodic motion is stable",
-        state=state,
-        value=radius,
-        unit="1",
-        detail=f"{multipliers.verdict}: largest multiplier {radius:.6f}, error bound {error:.1e}; the rigid "
+    return flag(
+        "stability",
+        state,
+        radius,
+        f"{multipliers.verdict}: largest multiplier {radius:.6f}, error bound {error:.1e}; the rigid "
         "rotation is taken out, not tolerated",
-        meaning="A multiplier outside the unit circle grows from mesh cycle to mesh cycle: the periodic "
-        "motion then exists on paper only.",
-        action="Raise the mesh or bearing damping, or leave the speed range of the tongue.",
     )

@@ -6,6 +6,7 @@ import pytest
 import lumped
 from floquet.gear_pair import gear_pair_multipliers
 from validation import validity
+from validation.validity_flag import worst_state
 
 
 @pytest.fixture(scope="module")
@@ -102,8 +103,8 @@ def test_an_undamped_tongue_is_unstable(pair):
 def test_the_worst_state_wins(pair):
     calm = validity.contact_ratio(lumped.geometry(pair))
     warned = validity.film_regime(pair.with_({"friction.composite_roughness": 2.0}))
-    assert validity.worst_state([]) == "ok"
-    assert validity.worst_state([calm, warned, calm]) == "warning"
+    assert worst_state([]) == "ok"
+    assert worst_state([calm, warned, calm]) == "warning"
 
 
 def test_a_stiffness_model_outside_its_fit_is_said():

@@ -12,7 +12,7 @@ from validation.reporting.chapters.cross_check import NAMES
 from validation.reporting.chapters.steady_state import separating_share
 from validation.reporting.formatting import number, quantity
 from validation.reporting.results import Results
-from validation.validity import worst_state
+from validation.validity_flag import worst_state
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from validation.reporting.blocks import Badge, Chapter, Rows, Table, Text
 from validation.reporting.chapters.parameters import is_assumed, source_of
 from validation.reporting.formatting import number
 from validation.reporting.results import Results
-from validation.validity import Flag
+from validation.validity_flag import Flag
 
 
 def limitations(results: Results) -> Chapter:

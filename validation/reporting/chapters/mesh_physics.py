@@ -181,8 +181,8 @@ def _loaded_mesh(results: Results, found: MeshPhysics) -> list[Block]:
                         harris["flank"].to_numpy(), harris["peak_to_peak"].to_numpy(), strict=True
                     )
                 ),
-                note=f"Among {torques.size} torques from {torques[0]:.4g} to {torques[-1]:.4g} N m: between two "
-                "of them it may be less, and a least at an end may lie beyond it.",
+                note=f"Among {torques.size} torques from {torques[0]:.4g} to {torques[-1]:.4g} N m: between "
+                "two of them it may be less, and a least at an end may lie beyond it.",
             )
         )
     best, relief = found.optimum, found.relief
