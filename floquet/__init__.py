@@ -23,11 +23,12 @@ if TYPE_CHECKING:
     from floquet.forced import PeriodicMotion, periodic_motion
     from floquet.gear_axes import GEAR_AXES
     from floquet.gear_boundaries import predicted_lines, stability_boundaries
-    from floquet.gear_campbell import campbell, multiplier_paths
+    from floquet.gear_campbell import campbell
     from floquet.gear_chart import stability_chart
     from floquet.gear_coverage import boundary_coverage
     from floquet.gear_friction_effect import friction_effect
     from floquet.gear_multipliers import GearPairMultipliers, gear_pair_multipliers, gear_pair_system
+    from floquet.gear_paths import multiplier_paths
     from floquet.gear_reference import extended_monodromy, stress_test
     from floquet.gear_sensitivity import gear_sensitivities
     from floquet.gear_tongues import critical_damping, label_regions
@@ -43,7 +44,8 @@ _LATER = {
     "forced": ["PeriodicMotion", "periodic_motion"],
     "gear_axes": ["GEAR_AXES"],
     "gear_boundaries": ["predicted_lines", "stability_boundaries"],
-    "gear_campbell": ["campbell", "multiplier_paths"],
+    "gear_campbell": ["campbell"],
+    "gear_paths": ["multiplier_paths"],
     "gear_chart": ["stability_chart"],
     "gear_coverage": ["boundary_coverage"],
     "gear_friction_effect": ["friction_effect"],

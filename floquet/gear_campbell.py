@@ -13,7 +13,7 @@ from scipy.optimize import linear_sum_assignment
 
 from floquet.chart import checked_axes
 from floquet.fast import fast_monodromies
-from floquet.gear_axes import gear_axis, vary
+from floquet.gear_axes import vary
 from floquet.gear_block import gear_block
 from floquet.gear_boundaries import predicted_lines
 from floquet.system import ComplexArray, FloatArray
@@ -129,49 +129,3 @@ def _exponents_by_mode(matrix: FloatArray, omega: FloatArray, period: float) -> 
     principal = np.log(chosen) / period
     mesh = 2.0 * np.pi / period
     return np.asarray(principal + 1j * mesh * np.round((omega - principal.imag) / mesh))
-
-
-def multiplier_paths(pair: GearPair, name: str, values: npt.ArrayLike, *, rtol: float = 1e-9) -> xr.Dataset:
-    """Paths of the multipliers of the feedback block in the complex plane as one parameter varies.
-
-    Neighbouring points are joined so that the sum of the distances is least; take steps small enough that
-    multipliers move less than they are apart.
-
-    Parameters
-    ----------
-    pair : the gear pair
-    name : axis out of `GEAR_AXES`
-    values : (k,) of the axis, increasing
-    rtol : of the monodromy matrices
-
-    Returns
-    -------
-    Dataset over the axis and ``path``: complex ``multipliers``, paths in the order of the first point
-    """
-    import xarray as xr
-
-    points = checked_axes({name: values})[name]
-    axis = gear_axis(name)
-    paths: list[ComplexArray] = []
-    for value in points:
-        matrix = fast_monodromies(
-            gear_block(vary(pair, {name: float(value)})), tolerance=0.01 * rtol
-        ).matrices[0]
-        found = np.linalg.eigvals(matrix).astype(complex)
-        if paths:
-            _, order = linear_sum_assignment(np.abs(paths[-1][:, None] - found[None, :]))
-            found = found[order]
-        else:
-            found = found[np.argsort(-np.abs(found), kind="stable")]
-        paths.append(found)
-    return xr.Dataset(
-        {
-            "multipliers": (
-                (name, "path"),
-                np.array(paths),
-                {"units": "1", "long_name": "Floquet multipliers"},
-            )
-        },
-        coords={name: (name, points, {"units": axis.units, "long_name": axis.long_name})},
-        attrs={"title": f"multiplier paths of {pair.name}"},
-    )

@@ -12,7 +12,7 @@ import lumped
 from computed import GENERATED
 from computed.agreement import torque_series
 from computed.diagrams import svg
-from floquet.gear_campbell import multiplier_paths
+from floquet.gear_paths import multiplier_paths
 from lumped import GearPair
 from lumped.friction import friction_profile
 from validation.interactive.page import render

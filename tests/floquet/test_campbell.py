@@ -7,7 +7,7 @@ import pytest
 
 from floquet import gear_pair_multipliers, predicted_lines
 from floquet.gear_axes import GearVariation
-from floquet.gear_campbell import campbell, multiplier_paths
+from floquet.gear_campbell import campbell
 from floquet.gear_friction_effect import friction_effect
 from lumped import load_gear_pair
 from lumped.averaged import modes
@@ -54,19 +54,6 @@ def test_lines_and_orders(pair) -> None:
         assert 4000.0 <= speed <= 18000.0
     with pytest.raises(ParameterError, match="speeds_rpm"):
         campbell(pair, [2000.0, 1000.0])
-
-
-def test_paths_are_continuous_and_complete(pair) -> None:
-    damping = np.linspace(0.0, 0.1, 81)
-    result = multiplier_paths(pair.with_(operating__pinion_speed=16700), "damping_ratio", damping)
-    steps = np.abs(np.diff(result.multipliers.values, axis=0))
-    # Leaving the tongue two multipliers meet on the real axis and part like a square root of the step.
-    assert steps.max() < 3 * np.sqrt(damping[1])
-    at = gear_pair_multipliers(pair.with_(operating__pinion_speed=16700, mesh__damping_ratio=0.05))
-    one = result.multipliers.sel(damping_ratio=0.05, method="nearest").values
-    assert np.abs(one[:, None] - at.feedback).min(axis=1).max() < 1e-7
-    with pytest.raises(ParameterError, match="axes"):
-        multiplier_paths(pair, "moon_phase", [1.0])
 
 
 def test_difference_chart_is_the_difference(pair) -> None:

@@ -12,7 +12,8 @@ from matplotlib.collections import QuadMesh
 from typer.testing import CliRunner
 
 from floquet import predicted_lines, stability_chart
-from floquet.gear_campbell import campbell, multiplier_paths
+from floquet.gear_campbell import campbell
+from floquet.gear_paths import multiplier_paths
 from floquet.gear_tongues import critical_damping, label_regions
 from lumped import load_gear_pair
 from validation.cli import app

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from floquet import predicted_lines, stability_boundaries
 from floquet.gear_axes import GEAR_AXES, operating_value
-from floquet.gear_campbell import campbell, multiplier_paths
+from floquet.gear_campbell import campbell
 from floquet.gear_friction_effect import friction_effect
+from floquet.gear_paths import multiplier_paths
 from floquet.gear_tongues import LabelledRegion, label_regions
 from lumped import GearPair
 from lumped.errors import refuse
