@@ -20,6 +20,7 @@ from floquet.gear_tongues import LabelledRegion, label_regions
 from lumped import GearPair
 from lumped.errors import refuse
 from lumped.friction import LAWS
+from validation.chart_axes import chart_axes
 from validation.commands.terminal import progress_bar, stdout, table
 from validation.coulomb_zones import coulomb_gear_pair, zones
 from validation.output import DATA_SUFFIXES, whole_file, write_dataset
@@ -32,7 +33,6 @@ from validation.plots.style import save
 from validation.plots.tongue_chart import mark_operating_range, tongue_chart_figure
 from validation.plots.tongues import tongues_figure
 from validation.plots.zones import zones_figure
-from validation.reporting.results import FULL, chart_axes
 from validation.stability_charts import METHODS, dense_chart
 from validation.stability_margins import StabilityMargins, margins_dataset, stability_margins
 
@@ -41,6 +41,8 @@ View = tuple[xr.Dataset, Callable[[], Figure]]
 """What is written as data, and the figure."""
 
 _DAMPING_AXES = {"speed_rpm", "damping_ratio"}
+#: Speeds and damping ratios of a chart.
+_CHART = (401, 81)
 _LINE = 401
 _LARGEST_DIFFERENCE = 250_000
 
@@ -94,7 +96,7 @@ class Request:
         """Return the one axis asked for; else ``name`` over the range of the report's chart."""
         if self.axes:
             return next(iter(self.axes.items()))
-        values = chart_axes(self.pair, FULL)[name]
+        values = chart_axes(self.pair, *_CHART)[name]
         return name, np.linspace(values[0], values[-1], count)
 
     def value(self, name: str) -> float:
@@ -117,7 +119,7 @@ def show(view: str, request: Request) -> None:
 
 def _chart(request: Request) -> View:
     pair = request.pair
-    grid = dict(request.axes) or chart_axes(pair, FULL)
+    grid = dict(request.axes) or chart_axes(pair, *_CHART)
     with progress_bar("stability chart") as tell:
         chart = dense_chart(
             pair, grid, method=request.method, multipliers=request.multipliers, progress=lambda f: tell(f, "")
@@ -209,7 +211,7 @@ def _regions(chart: xr.Dataset, pair: GearPair) -> list[LabelledRegion]:
 
 def _boundaries(request: Request) -> View:
     pair = request.pair
-    ends = chart_axes(pair, FULL)["speed_rpm"][[0, -1]]
+    ends = chart_axes(pair, *_CHART)["speed_rpm"][[0, -1]]
     grid = dict(request.axes)
     speeds = grid.pop("speed_rpm", ends)
     name, values = next(iter(grid.items()), ("damping_ratio", None))
@@ -261,7 +263,7 @@ def _paths(request: Request) -> View:
 
 def _laws(request: Request) -> View:
     pair = request.pair
-    grid = dict(request.axes) or chart_axes(pair, FULL)
+    grid = dict(request.axes) or chart_axes(pair, *_CHART)
     points = int(np.prod([values.size for values in grid.values()]))
     if points > _LARGEST_DIFFERENCE:
         raise refuse(

@@ -14,6 +14,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from lumped import GearPair, load_gear_pair
+from validation.chart_axes import operating_rpm
 from validation.interactive.payload import LAW_NAMES, payload, script_json
 from validation.interactive.results import FINE, PageResults, Sampling, compute
 from validation.output import write_dataset, write_text
@@ -83,7 +84,7 @@ def render(results: PageResults, data_name: str) -> str:
     pair = results.pair
     return environment.get_template("page.html").render(
         pair=pair,
-        rpm=pair.operating.pinion_speed * 30.0 / np.pi,
+        rpm=operating_rpm(pair),
         law=LAW_NAMES.get(pair.friction.law, pair.friction.law),
         found=results.found,
         slices=results.stability.values(),

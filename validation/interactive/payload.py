@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from validation.chart_axes import operating_rpm
 from validation.interactive.results import PageResults
 from validation.interactive.slices import Slices
 from validation.plots.labels import pretty
@@ -39,7 +40,7 @@ def payload(results: PageResults) -> dict[str, Any]:
     pair = results.pair
     return {
         "point": {
-            "speed": pair.operating.pinion_speed * 30.0 / np.pi,
+            "speed": operating_rpm(pair),
             "damping": pair.mesh.damping_ratio,
         },
         "stability": [_slices(slices) for slices in results.stability.values()],

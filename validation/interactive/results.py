@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
@@ -16,8 +16,8 @@ from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError
 from lumped.averaged import modes
 from lumped.friction import LAWS, law_range_violations
 from lumped.results import provenance
+from validation.chart_axes import chart_axes, operating_rpm, speed_range
 from validation.interactive.slices import SLICES, Slices
-from validation.reporting.results import FULL, chart_axes, speed_range
 from validation.validity_map import STATES, validity_state
 
 FloatArray = NDArray[np.float64]
@@ -112,12 +112,12 @@ def compute(
         found = modes(pair)
     except NumericalError:  # an overdamped mode has no natural frequency
         found = ()
-    rpm = pair.operating.pinion_speed * 30.0 / np.pi
+    rpm = operating_rpm(pair)
     # Resonances are wider the faster the pair runs, so steps grow with the root of speed.
     low, high = speed_range(pair, found)
     speeds = np.linspace(low**0.5, high**0.5, sampling.sweep_speeds) ** 2
     speeds[np.argmin(np.abs(speeds - rpm))] = rpm
-    grid = chart_axes(pair, replace(FULL, chart_speeds=sampling.speeds, chart_dampings=sampling.dampings))
+    grid = chart_axes(pair, sampling.speeds, sampling.dampings)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)  # the page says it beside the law
         stability = {}
@@ -195,7 +195,7 @@ _LABELS = {
 
 def _points(pair: GearPair, motion: xr.Dataset) -> xr.Dataset:
     """Response of the multibody model at the operating speed."""
-    rpm = pair.operating.pinion_speed * 30.0 / np.pi
+    rpm = operating_rpm(pair)
     points = xr.Dataset(
         coords={"multibody_speed": ("multibody_speed", [rpm], {"units": "rpm", "long_name": "pinion speed"})}
     )

@@ -14,6 +14,7 @@ from floquet.gear_chart import stability_chart
 from floquet.gear_tongues import LabelledRegion, label_regions
 from lumped import GearPair
 from lumped.errors import ParameterError
+from validation.chart_axes import with_point
 
 FloatArray = NDArray[np.float64]
 Grid = dict[str, FloatArray]
@@ -52,7 +53,7 @@ def bearing_slices(pair: GearPair, grid: Grid, count: int) -> Slices:
     grid : speed_rpm and damping_ratio
     count : values of the factor; those that the schema refuses are left out
     """
-    factors = _with(np.geomspace(*_FACTORS, count), 1.0)
+    factors = with_point(np.geomspace(*_FACTORS, count), 1.0)
     variants = {float(f): made for f in factors if (made := _stiffer(pair, float(f))) is not None}
     charts = [stability_chart(variant, grid, rtol=_RTOL) for variant in variants.values()]
     values = np.array(list(variants))
@@ -74,7 +75,7 @@ def friction_slices(pair: GearPair, grid: Grid, count: int) -> Slices:
     """
     name = "friction_coefficient"
     own = operating_value(pair, name)
-    values = _with(np.linspace(0.0, min(max(_LEAST_FRICTION_RANGE, 2.0 * own), 1.0), count), own)
+    values = with_point(np.linspace(0.0, min(max(_LEAST_FRICTION_RANGE, 2.0 * own), 1.0), count), own)
     chart = stability_chart(pair, {**grid, name: values}, rtol=_RTOL)
     tongues = [tuple(label_regions(pair, chart.isel({name: [i]}))) for i in range(count)]
     attrs = {"units": "1", "long_name": gear_axis(name).long_name}
@@ -102,13 +103,6 @@ def _stiffer(pair: GearPair, factor: float) -> GearPair | None:
         return pair.with_({path: factor * value for path, value in own.items()})
     except ParameterError:
         return None
-
-
-def _with(values: FloatArray, point: float) -> FloatArray:
-    """Values with the one nearest to the point moved onto it."""
-    nodes = values.copy()
-    nodes[np.argmin(np.abs(nodes - point))] = point
-    return nodes
 
 
 def _ordered(chart: xr.Dataset) -> xr.Dataset:

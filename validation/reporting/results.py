@@ -14,13 +14,15 @@ from floquet.gear_pair import GearPairMultipliers, gear_pair_multipliers
 from lumped import GearPair, Geometry, NumericalError, ParameterError
 from lumped.averaged import Mode, modes
 from lumped.friction import friction_profile
+from validation.chart_axes import chart_axes, operating_rpm, speed_range, with_point
 from validation.comparison import CrossCheck, crosscheck
 from validation.mesh_physics import MeshPhysics, mesh_physics
 from validation.metrics import FloatArray, MeshOrders, mesh_orders
 from validation.reporting.paper_results import PaperResults, paper_results
 from validation.stability_charts import dense_chart
 from validation.stability_margins import StabilityMargins, stability_margins
-from validation.validity import Flag, speed_drift, validity_flags
+from validation.validity import speed_drift, validity_flags
+from validation.validity_flag import Flag
 from validation.validity_map import validity_map
 from validation.verification import (
     Check,
@@ -125,7 +127,7 @@ class Results:
     @property
     def operating_rpm(self) -> float:
         """Pinion speed [rpm]."""
-        return self.pair.operating.pinion_speed * 30.0 / np.pi
+        return operating_rpm(self.pair)
 
     @property
     def static_load(self) -> float:
@@ -173,7 +175,7 @@ def compute(pair: GearPair, effort: Effort, progress: Progress) -> Results:
     multipliers = gear_pair_multipliers(pair)
     chart = dense_chart(
         pair,
-        chart_axes(pair, effort),
+        chart_axes(pair, effort.chart_speeds, effort.chart_dampings),
         rtol=effort.chart_rtol,
         progress=lambda f: progress(0.45 + 0.15 * f, "stability chart"),
     )
@@ -230,54 +232,10 @@ def _causes(pair: GearPair) -> xr.Dataset | None:
         return None
 
 
-def speed_range(pair: GearPair, found: tuple[Mode, ...]) -> tuple[float, float]:
-    """Speeds [rpm] that the report covers.
-
-    The upper end is past the operating speed by half and past the speed where the mesh frequency meets the
-    highest mode of the averaged pair, which is also the widest parametric resonance 2 omega/2 below its
-    first tongue.
-    """
-    rpm = _rpm(pair)
-    top = max([1.5 * rpm, *(1.2 * mode.resonant_speed for mode in found)])
-    # Two digits are enough for the end of an axis.
-    digits = 10.0 ** (np.floor(np.log10(top)) - 1)
-    top = float(np.ceil(top / digits) * digits)
-    return min(0.05 * top, 0.5 * rpm), top
-
-
-def chart_axes(pair: GearPair, effort: Effort) -> dict[str, FloatArray]:
-    """Axes of the stability chart, speed and mesh damping ratio; the operating point is a node."""
-    try:
-        found = modes(pair)
-    except NumericalError:
-        found = ()
-    speeds = np.linspace(*speed_range(pair, found), effort.chart_speeds)
-    dampings = np.linspace(0.0, _largest_damping(pair), effort.chart_dampings)
-    return {
-        "speed_rpm": _with_point(speeds, _rpm(pair)),
-        "damping_ratio": _with_point(dampings, pair.mesh.damping_ratio),
-    }
-
-
 def map_axes(pair: GearPair, speeds: tuple[float, float], effort: Effort) -> tuple[FloatArray, FloatArray]:
     """Speeds [rpm] and torques [N m] of the validity map; the operating point is a node."""
     torque = pair.operating.pinion_torque
     return (
-        _with_point(np.linspace(*speeds, effort.map_speeds), _rpm(pair)),
-        _with_point(torque * np.geomspace(0.2, 4.0, effort.map_torques), torque),
+        with_point(np.linspace(*speeds, effort.map_speeds), operating_rpm(pair)),
+        with_point(torque * np.geomspace(0.2, 4.0, effort.map_torques), torque),
     )
-
-
-def _rpm(pair: GearPair) -> float:
-    return float(pair.operating.pinion_speed * 30.0 / np.pi)
-
-
-def _largest_damping(pair: GearPair) -> float:
-    return min(max(0.08, 1.5 * pair.mesh.damping_ratio), 1.0)
-
-
-def _with_point(values: FloatArray, point: float) -> FloatArray:
-    """Axis values with the node nearest to the operating point moved onto it."""
-    nodes = values.copy()
-    nodes[np.argmin(np.abs(nodes - point))] = point
-    return nodes
