@@ -41,7 +41,8 @@ def limitations(results: Results) -> Chapter:
     text = Text(
         f"Verification asks whether the equations are solved right; validation, whether they are the right "
         f"equations, and only measurements decide that. {assumed} of {total} parameter values of this pair "
-        "are assumed: no conclusion is firmer than these."
+        "are assumed: no conclusion is firmer than these. Apart from the paper's claims this report does not "
+        "vary them; a study says how far they move a result (spurcheck sweep)."
     )
     return Chapter("limitations", "Assumptions and limitations", (text, table, outside))
 
