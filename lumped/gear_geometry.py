@@ -114,11 +114,6 @@ def geometry(pair: GearPair) -> Geometry:
     return result
 
 
-def check_geometry(pair: GearPair) -> None:
-    """Raise ``ParameterError`` with every reason why the pair cannot exist."""
-    geometry(pair)
-
-
 def _tip_radius(gear: Gear, pair: GearPair) -> float:
     rack = pair.basic_rack
     if gear.tip_diameter is not None:

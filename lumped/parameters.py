@@ -6,14 +6,23 @@ may carry any unit of that dimension (``lumped.units``).
 
 from __future__ import annotations
 
+import copy
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, PlainSerializer, model_validator
+from pydantic import BeforeValidator, Field, PlainSerializer, ValidationError, model_validator
+from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
 from lumped.contact_parameters import Friction, FrictionLaw, Lubricant, ViscosityLaw
+from lumped.errors import FieldProblem, ParameterError
+from lumped.gear_geometry import geometry
 from lumped.gear_parameters import BasicRack, Gear, ProfileRelief
 from lumped.mesh_parameters import Mesh
+from lumped.schema_errors import field_of, translated, unknown_key
 from lumped.section import Section, Text
 from lumped.units import Quantity
 
@@ -86,6 +95,14 @@ def _sources_in(value: object) -> object:
     return tuple(sorted((STORED_AS.get(path, path), text) for path, text in value.items()))
 
 
+#: Fields of which only one can be given: naming one removes the others.
+_ALTERNATIVES = (
+    ("basic_rack.module", "basic_rack.diametral_pitch"),
+    ("pinion.addendum", "pinion.tip_diameter"),
+    ("gear.addendum", "gear.tip_diameter"),
+    ("lubricant.viscosity", "lubricant.viscosity_law"),
+)
+
 Sources = Annotated[
     tuple[tuple[str, str], ...],
     BeforeValidator(_sources_in, json_schema_input_type=dict[str, str]),
@@ -113,18 +130,17 @@ class GearPair(Section):
 
     @model_validator(mode="after")
     def _must_exist(self) -> GearPair:
-        from lumped.gear_geometry import check_geometry
-        from lumped.schema_errors import check_sources
-
-        check_geometry(self)
-        check_sources(self)
+        geometry(self)
+        wrong = [problem for path, _ in self.sources for problem in _source_problems(path)]
+        if wrong:
+            raise ParameterError(wrong)
         return self
 
     def to_mapping(self) -> dict[str, Any]:
         """Return the pair as nested plain data for TOML or JSON; reading it back gives an equal pair."""
-        from lumped.serialise import to_mapping
-
-        return to_mapping(self)
+        data = super().to_mapping()
+        sources = dict(data.pop("sources"))
+        return data | {"sources": sources} if sources else data
 
     def to_toml(self) -> str:
         """Return the pair as TOML text; reading it back gives an equal pair."""
@@ -145,15 +161,86 @@ class GearPair(Section):
         ------
         ParameterError : an unknown path or a value that a file could not have either
         """
-        from lumped.serialise import varied
+        return _varied(self, {**(changes or {}), **{key.replace("__", "."): v for key, v in fields.items()}})
 
-        return varied(self, {**(changes or {}), **{key.replace("__", "."): v for key, v in fields.items()}})
+
+def validated(data: Mapping[str, Any], source: str, folder: Path = Path()) -> GearPair:
+    """Return the gear pair of plain data, or refuse it in the user's words.
+
+    Parameters
+    ----------
+    data : nested mapping in file units
+    source : where it comes from, for the refusal
+    folder : data files that the parameters name are read relative to it
+
+    Raises
+    ------
+    ParameterError : everything that is refused, with field, value, allowed range and next action
+    """
+    try:
+        return GearPair.model_validate(data, context={"folder": folder})
+    except ParameterError as error:
+        raise ParameterError(list(error.problems), error.source or source) from None
+    except ValidationError as error:
+        raise ParameterError(translated(error, GearPair), source) from None
+
+
+def _varied(pair: GearPair, changes: Mapping[str, Any]) -> GearPair:
+    data = pair.to_mapping()
+    sources: dict[str, str] = data.setdefault("sources", {})
+    for path, value in changes.items():
+        outdated = [path]
+        for group in _ALTERNATIVES:
+            if path in group and value is not None:
+                outdated += group
+                for other in group:
+                    _assign(data, other, None)
+        _assign(data, path, value)
+        for known in [key for key in sources if any(key == p or key.startswith(f"{p}.") for p in outdated)]:
+            del sources[known]
+        if path not in ("name", "description", "sources") and value is not None:
+            sources[STORED_AS.get(path, path)] = "varied by the user"
+    return validated(data, f"{pair.name} varied")
+
+
+def _assign(data: dict[str, Any], path: str, value: Any) -> None:
+    *parents, leaf = path.split(".")
+    node = data
+    for part in parents:
+        inner = node.setdefault(part, {})
+        if not isinstance(inner, dict):
+            raise ParameterError([unknown_key(path, list(node), part)])
+        node = inner
+    if value is None:
+        if path not in STORED_AS:
+            field_at(path)  # a name that does not exist is an error also where nothing is set
+        node.pop(leaf, None)
+    else:
+        node[leaf] = value.to_mapping() if isinstance(value, Section) else copy.deepcopy(value)
+
+
+def field_at(path: str) -> FieldInfo:
+    """Return pydantic's description of a field of a gear pair by dotted path.
+
+    Raises
+    ------
+    ParameterError : no such field; the nearest is suggested
+    """
+    return field_of(GearPair, path)
+
+
+@lru_cache(maxsize=1024)  # every variation of a pair has the same paths
+def _source_problems(path: str) -> tuple[FieldProblem, ...]:
+    """A misspelt path would leave its value without a source."""
+    try:
+        field_at(path)
+    except ParameterError as error:
+        return tuple(replace(problem, field=f"sources.{problem.field}") for problem in error.problems)
+    return ()
 
 
 def stated_unit(path: str) -> str | None:
     """Return the stated unit of a field by dotted path, or None where the field has none."""
-    from lumped.schema_errors import field_at
-
     info = field_at(path)
     for marker in info.metadata:
         if isinstance(marker, Quantity):
@@ -177,5 +264,7 @@ __all__ = [
     "ProfileRelief",
     "Section",
     "ViscosityLaw",
+    "field_at",
     "stated_unit",
+    "validated",
 ]

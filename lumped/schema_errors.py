@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Mapping
-from dataclasses import replace
-from functools import lru_cache
+from collections.abc import Iterable
 from types import UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
@@ -13,36 +11,35 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from lumped.errors import MOST_PROBLEMS, FieldProblem, ParameterError, quoted, shown
-from lumped.parameters import GearPair
 from lumped.units import Quantity
 
 _RENAMED = {"model_type": "a table", "model_attributes_type": "a table", "dict_type": "a table"}
 
 
-def translated(error: ValidationError, data: Mapping[str, Any]) -> list[FieldProblem]:
+def translated(error: ValidationError, root: type[BaseModel]) -> list[FieldProblem]:
     """Return one problem per field that pydantic refused.
 
     Parameters
     ----------
     error : what pydantic raised
-    data : the refused input, to tell which member of a union was meant
+    root : the model that was to be made
     """
     items = error.errors(include_url=False)[:MOST_PROBLEMS]
-    found = [problem for item in items for problem in _problems(item, data)]
+    found = [problem for item in items for problem in _problems(item, root)]
     first: dict[str, FieldProblem] = {}
     for problem in found:
         first.setdefault(problem.field, problem)
     return list(first.values())
 
 
-def field_at(path: str) -> FieldInfo:
+def field_of(root: type[BaseModel], path: str) -> FieldInfo:
     """Return pydantic's description of a field by dotted path (through every member of a union).
 
     Raises
     ------
     ParameterError : no such field; the nearest is suggested
     """
-    models: list[type[BaseModel]] = [GearPair]
+    models = [root]
     info: FieldInfo | None = None
     for part in path.split("."):
         names = {name: field for model in models for name, field in model.model_fields.items()}
@@ -52,27 +49,6 @@ def field_at(path: str) -> FieldInfo:
         models = models_in(info.annotation)
     assert info is not None  # "".split(".") has one part, which is unknown
     return info
-
-
-def check_sources(pair: GearPair) -> None:
-    """Refuse sources of fields that do not exist: a misspelt path would leave its value without a source.
-
-    Raises
-    ------
-    ParameterError : all such paths; the nearest field is suggested
-    """
-    wrong = [problem for path, _ in pair.sources for problem in _source_problems(path)]
-    if wrong:
-        raise ParameterError(wrong)
-
-
-@lru_cache(maxsize=1024)  # every variation of a pair has the same paths
-def _source_problems(path: str) -> tuple[FieldProblem, ...]:
-    try:
-        field_at(path)
-    except ParameterError as error:
-        return tuple(replace(problem, field=f"sources.{problem.field}") for problem in error.problems)
-    return ()
 
 
 def models_in(annotation: Any) -> list[type[BaseModel]]:
@@ -105,8 +81,8 @@ def unknown_key(path: str, known: list[str], part: str) -> FieldProblem:
     )
 
 
-def _problems(item: Any, data: Mapping[str, Any]) -> list[FieldProblem]:
-    parts, models = _location(item["loc"])
+def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
+    parts, models = _location(item["loc"], root)
     path, kind, context = ".".join(parts), item["type"], item.get("ctx", {})
     cause = context.get("error")
     if isinstance(cause, ParameterError):
@@ -124,29 +100,33 @@ def _problems(item: Any, data: Mapping[str, Any]) -> list[FieldProblem]:
         known = [name for model in models for name in model.model_fields]
         return [unknown_key(path, known, parts[-1])]
     if kind == "missing" and parts and parts[-1].isidentifier():
-        return [FieldProblem(path, "missing", _description(path), "Add it to the parameter file.")]
+        return [
+            FieldProblem(path, "missing", _description(field_of(root, path)), "Add it to the parameter file.")
+        ]
     if kind in ("union_tag_invalid", "union_tag_not_found"):
         given = context.get("tag", "missing")
-        tags = [str(tag) for model in models_in(field_at(path).annotation) for tag in _tags(model)]
+        tags = [str(tag) for model in models_in(field_of(root, path).annotation) for tag in _tags(model)]
         return [_choice(f"{path}.model", given, tags)]
     if kind == "literal_error":
-        names = [str(name) for name in get_args(field_at(path).annotation)]
+        names = [str(name) for name in get_args(field_of(root, path).annotation)]
         return [_choice(path, item.get("input"), names)]
     if kind in _RENAMED:
         return [
             FieldProblem(path or "file", value, f"{_RENAMED[kind]} of keys and values", "Write a section.")
         ]
-    if parts and not models and field_at(path).annotation is int:
+    if parts and not models and field_of(root, path).annotation is int:
         point = isinstance(item.get("input"), float)
         action = "Write it without a point." if point else "Write a whole number in that range."
-        return [FieldProblem(path, value, _whole_number(path), action)]
+        return [FieldProblem(path, value, _whole_number(field_of(root, path)), action)]
     allowed = item["msg"].removeprefix("Input should be ").removeprefix("Value should be ")
     return [FieldProblem(path or "file", value, allowed, "Correct the value.")]
 
 
-def _location(location: tuple[int | str, ...]) -> tuple[list[str], list[type[BaseModel]]]:
+def _location(
+    location: tuple[int | str, ...], root: type[BaseModel]
+) -> tuple[list[str], list[type[BaseModel]]]:
     """Path of pydantic's location without union tags and tuple indices, and the sections that it ends in."""
-    models: list[type[BaseModel]] = [GearPair]
+    models = [root]
     parts: list[str] = []
     for item in location:
         part = str(item)
@@ -174,14 +154,13 @@ def _choice(path: str, given: object, names: list[str]) -> FieldProblem:
     return FieldProblem(path, shown(given), "one of " + ", ".join(names), action)
 
 
-def _whole_number(path: str) -> str:
-    limits = {type(marker).__name__: marker for marker in field_at(path).metadata}
+def _whole_number(info: FieldInfo) -> str:
+    limits = {type(marker).__name__: marker for marker in info.metadata}
     low, high = getattr(limits.get("Ge"), "ge", "-inf"), getattr(limits.get("Le"), "le", "inf")
     return f"a whole number from {low} to {high}"
 
 
-def _description(path: str) -> str:
-    info = field_at(path)
+def _description(info: FieldInfo) -> str:
     quantity = next((m for m in info.metadata if isinstance(m, Quantity)), None)
     text = info.description or "a section of the parameter file"
     return f"{quantity.allowed} ({text})" if quantity else text

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from lumped import GearPair, geometry, load_gear_pair, preset_names
 from lumped.errors import ParameterError, SpurcheckError
-from lumped.schema_errors import field_at
+from lumped.parameters import field_at
 from lumped.serialise import preset_text
 from lumped.text_file import parse_toml
 from validation.measurements import load_measurement

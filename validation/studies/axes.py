@@ -14,7 +14,7 @@ from pydantic_core import PydanticCustomError
 
 from floquet.gear_axes import GEAR_AXES
 from lumped.errors import FieldProblem, ParameterError, refuse, shown
-from lumped.schema_errors import field_at
+from lumped.parameters import field_at
 from lumped.section import Section
 from lumped.units import Quantity, to_si, to_stated
 
