@@ -5,6 +5,7 @@ Sources: docs/theory/floquet.md, "Where instability is, and what it is called".
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,10 +13,11 @@ import numpy.typing as npt
 
 from floquet.chart import Progress, checked_axes
 from floquet.fast import fast_monodromies
-from floquet.gear_axes import GearVariation, gear_axis, vary
+from floquet.gear_axes import GEAR_AXES, GearVariation, gear_axis, vary
 from floquet.gear_block import gear_block
 from floquet.gear_chart import stability_chart
 from floquet.intervals import UnstableInterval, seeded_nodes, unstable_intervals
+from floquet.rank_one import RankOneSystem
 from floquet.system import FloatArray
 from floquet.tongues import ModeShares, Tongue, label_tongue
 from lumped.errors import refuse
@@ -23,6 +25,8 @@ from lumped.parameters import GearPair
 
 if TYPE_CHECKING:
     import xarray as xr
+
+_MOST = 20_000  # speeds of the grid of a search
 
 
 def predicted_lines(pair: GearPair | GearVariation, orders: int = 12) -> dict[Tongue, float]:
@@ -82,8 +86,9 @@ def stability_boundaries(
 ) -> xr.Dataset:
     """Boundaries, spectral radius = 1, of the tongues of instability over speed.
 
-    Along speed the search starts from an even grid and a graded cluster at every predicted line
-    (omega_i +- omega_j)/k, so that thin tongues are met; ends are found by bisection.
+    Along speed the search starts from a grid that no tongue of a damped pair slips through, whatever its
+    order (`search_grid`), and from a graded cluster at every predicted line (omega_i +- omega_j)/k, for pairs
+    with hardly any damping; ends are found by bisection.
 
     Parameters
     ----------
@@ -92,8 +97,8 @@ def stability_boundaries(
     axes : one more axis {name: values} out of `GEAR_AXES` other than speed, with the meaning that it has in
         `stability_chart`; default the pair as it is
     friction_law : law to use instead of the pair's
-    nodes : evenly spaced speeds of the search
-    orders : largest k of the seeds
+    nodes : evenly spaced speeds of the search besides
+    orders : largest k of the clusters
     xtol : relative accuracy of the boundaries
     rtol : of the monodromy matrices
     progress : called with (values done, values in all)
@@ -104,7 +109,9 @@ def stability_boundaries(
     ``lower`` and ``upper`` [rpm], the boundaries; ``peak`` [rpm] and ``peak_radius``; ``open_end``, whether
     the tongue runs out of the range. Where ``present`` is False the numbers are NaN. Where one label has
     several intervals at one value, lower and upper enclose them all, ``intervals`` counts them, and
-    ``interval_lower`` and ``interval_upper`` over ``interval`` have them one by one.
+    ``interval_lower`` and ``interval_upper`` over ``interval`` have them one by one. ``complete`` over the
+    axis: whether the grid is as fine as the damping asks for; where it is not, thin tongues of orders above
+    ``orders`` may be missing.
 
     Raises
     ------
@@ -122,10 +129,12 @@ def stability_boundaries(
     if axes:
         gear_axis(name).check(name, values)
     found: dict[Tongue, dict[int, list[UnstableInterval]]] = {}
+    complete = np.ones(values.size, dtype=bool)
     for index, value in enumerate(values):
         point = {name: float(value)} if axes else {}
         lines = np.array(list(predicted_lines(vary(pair, point), orders).values()))
-        start = seeded_nodes(lines, low, high, nodes)
+        dense, complete[index] = search_grid(gear_block(vary(pair, point)), low, high)
+        start = np.union1d(dense, seeded_nodes(lines, low, high, nodes))
 
         def radius(speeds: FloatArray, point: dict[str, float] = point) -> FloatArray:
             grid = {"speed_rpm": speeds} | {key: np.array([at]) for key, at in point.items()}
@@ -136,7 +145,35 @@ def stability_boundaries(
             found.setdefault(label, {}).setdefault(index, []).append(interval)
         if progress is not None:
             progress(index + 1, values.size)
-    return _dataset(pair, found, name, values, bool(axes))
+    result = _dataset(pair, found, name, values)
+    result["complete"] = (name, complete, {"units": "1", "long_name": "grid as fine as the damping asks for"})
+    return result if axes else result.isel({name: 0}, drop=True)
+
+
+def search_grid(block: RankOneSystem, low: float, high: float) -> tuple[FloatArray, bool]:
+    """Speeds so dense that every tongue of instability of any order raises the radius at one of them.
+
+    Near k Omega = omega_i + omega_j two modes that decay with a and are coupled with strength g have, at the
+    detuning d = (k Omega - omega_i - omega_j)/2, the exponents -a +- sqrt(g^2 - d^2) (Hsu 1963; differences
+    likewise). They are unstable somewhere only if g > a. Then the larger one is above -b for all |d| < sqrt(2
+    a b - b^2), b <= a being the least decay of all modes: it stands out of whatever else there is over |d| <
+    b at least. From one speed to the next d changes by less than omega_max times the relative step, so that
+    steps of b/omega_max put two speeds into this window. The search climbs from there
+    (`unstable_intervals`).
+
+    Parameters
+    ----------
+    block : feedback block of the pair
+    low, high : range of speeds
+
+    Returns
+    -------
+    speeds; and whether the steps are that small, which would at times take more than 20000 of them
+    """
+    needed = -float(block.mean_exponents().real.max()) / float(block.modal().omega.max())
+    span = math.log(high / low)
+    complete = needed * _MOST > span
+    return np.geomspace(low, high, math.ceil(span / needed) + 1 if complete else _MOST), complete
 
 
 def _dataset(
@@ -144,7 +181,6 @@ def _dataset(
     found: dict[Tongue, dict[int, list[UnstableInterval]]],
     name: str,
     values: FloatArray,
-    has_axis: bool,
 ) -> xr.Dataset:
     import xarray as xr
 
@@ -203,8 +239,6 @@ def _dataset(
         },
         attrs={"title": f"stability boundaries of {pair.name}", "friction_law": pair.friction.law},
     )
-    if not has_axis:
-        return result.isel({name: 0}, drop=True)
-    axis = gear_axis(name)
-    result[name].attrs.update(units=axis.units, long_name=axis.long_name)
+    if name in GEAR_AXES:
+        result[name].attrs.update(units=GEAR_AXES[name].units, long_name=GEAR_AXES[name].long_name)
     return result

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import eigh
 
-from floquet.system import FloatArray, PeriodicSystem
+from floquet.system import ComplexArray, FloatArray, PeriodicSystem
 from lumped.errors import refuse
 
 
@@ -144,13 +144,24 @@ class RankOneSystem:
 
         return PeriodicSystem(A, T, tuple(self.phases[1:-1] * T), vectorized=True, b=b)
 
+    def mean_exponents(self) -> ComplexArray:
+        """Exponents (2m,) [1/s] of the system with gains averaged over the period."""
+        m = self.v.size
+        A = np.zeros((2 * m, 2 * m))
+        A[:m, m:] = np.eye(m)
+        A[m:, :m] = -np.diag(self.stiffness) - np.outer(self._mean(self.total.w), self.v)
+        A[m:, m:] = -np.diag(self.damping) - np.outer(self._mean(self.total.wd), self.v)
+        return np.asarray(np.linalg.eigvals(A), dtype=complex)
+
+    def _mean(self, poly: FloatArray) -> FloatArray:
+        """Mean over the period of polynomials (P, m, d+1)."""
+        powers = np.arange(poly.shape[2])
+        moments = np.where(powers % 2 == 0, 1.0 / (powers + 1.0), 0.0)  # mean of u^j over [-1, 1]
+        return np.asarray(np.einsum("p,pmj,j->m", np.diff(self.phases), poly, moments))
+
     def modal(self) -> ModalForm:
         """Return the system in modal coordinates of its time average, see `ModalForm`."""
-        g, total = self.metric, self.total
-        widths = np.diff(self.phases)
-        powers = np.arange(total.w.shape[2])
-        moments = np.where(powers % 2 == 0, 1.0 / (powers + 1.0), 0.0)  # mean of u^j over [-1, 1]
-        mean = np.einsum("p,pmj,j->m", widths, total.w, moments)
+        g, mean = self.metric, self._mean(self.total.w)
         k = float(g @ (mean * self.v)) / float(self.v @ self.v) if (g * mean) @ self.v > 0 else 0.0
         K = np.diag(g * self.stiffness) + k * np.outer(self.v, self.v)
         squares, Phi = eigh(K, np.diag(g))

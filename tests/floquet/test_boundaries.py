@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.special import mathieu_a, mathieu_b
 
-from floquet import monodromy, predicted_lines, stability_boundaries, stability_chart
-from floquet.gear_boundaries import label_at
+from floquet import gear_block, monodromy, predicted_lines, stability_boundaries, stability_chart
+from floquet.gear_boundaries import label_at, search_grid
 from floquet.gear_coverage import boundary_coverage
 from floquet.intervals import seeded_nodes, unstable_intervals
 from floquet.tongues import Tongue
@@ -178,3 +178,40 @@ def test_bad_ranges_are_refused(pair, speeds: tuple[float, float]) -> None:
 def test_bad_axes_are_refused(pair, axes: dict[str, list[float]]) -> None:
     with pytest.raises(ParameterError, match="axes"):
         stability_boundaries(pair, (1000.0, 2000.0), axes)
+
+
+def test_no_tongue_of_any_order_is_lost_at_low_speed_and_low_damping() -> None:
+    # Tongues of orders up to 67 here, the thinnest a part in 3000 wide.
+    changes = {"friction.law": "coulomb", "friction.coefficient": 0.05, "mesh.damping_ratio": 5e-4}
+    changes |= {f"bearings.{gear}.loa_damping_ratio": 5e-4 for gear in ("pinion", "gear")}
+    pair = load_gear_pair("nasa_28_28").with_(changes)
+    ends = (500.0, 900.0)
+    found = stability_boundaries(pair, ends)
+    assert found.complete
+    assert found.order.max() > 40
+    speeds = np.geomspace(*ends, 20_001)  # steps of 3e-5, a quarter of those of the search
+
+    def radius(x: np.ndarray) -> np.ndarray:
+        return np.ravel(stability_chart(pair, {"speed_rpm": x}, rtol=1e-9, store="radius").spectral_radius)
+
+    coverage = boundary_coverage(found, stability_chart(pair, {"speed_rpm": speeds}, rtol=1e-9))
+    assert coverage.attrs["unstable_nodes"] > 500
+    assert coverage.attrs["missed_nodes"] == 0
+    lines = np.array(list(predicted_lines(pair).values()))
+    seeded = unstable_intervals(radius, seeded_nodes(lines, *ends, 400))
+    assert len(seeded) < int(found.intervals.sum())  # what the grid is for
+
+
+def test_search_says_when_damping_is_too_low_for_its_grid() -> None:
+    undamped = {"mesh.damping_ratio": 0.0}
+    undamped |= {f"bearings.{gear}.loa_damping_ratio": 0.0 for gear in ("pinion", "gear")}
+    pair = load_gear_pair("nasa_28_28").with_({"friction.law": "none", **undamped})
+    _, complete = search_grid(gear_block(pair), 500.0, 20000.0)
+    assert not complete
+    # With damped bearings every mode decays: the grid is fine enough, and small.
+    grid, complete = search_grid(
+        gear_block(pair.with_(bearings__pinion__loa_damping_ratio=0.05)), 500.0, 20000.0
+    )
+    assert complete
+    assert grid.size < 20_000
+    assert np.log(grid[1] / grid[0]) < 0.01
