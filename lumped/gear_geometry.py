@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from lumped.errors import FieldProblem, ParameterError
-from lumped.involute import form_length, inverse_involute, involute, tooth_half_angle
+from lumped.involute import RackTooth, inverse_involute, involute, tooth_half_angle
 
 if TYPE_CHECKING:
     from lumped.parameters import Gear, GearPair
@@ -143,9 +143,9 @@ def _build(pair: GearPair) -> tuple[Geometry, list[FieldProblem]]:
     pitch = 2.0 * math.pi * r_wp / pinion.teeth
     theoretical = (pitch - 2.0 * (r_wp * half[0] + r_wg * half[1])) * math.cos(alpha_w)
     forms = [
-        form_length(
-            m, g.teeth, alpha, g.profile_shift, rack.dedendum_coefficient, rack.fillet_radius_coefficient
-        )
+        RackTooth(
+            g.teeth, m, alpha, g.profile_shift, rack.dedendum_coefficient, rack.fillet_radius_coefficient
+        ).form_length
         for g in (pinion, gear)
     ]
     omega_p = pair.operating.pinion_speed

@@ -2,7 +2,7 @@
 
 Axes: u along the tooth's centre line, from the gear's centre outwards; h across it, so that the tooth's
 section at u is 2 h wide. Both flanks are equal. References: ISO 21771 for the involute and the tooth
-thickness; the fillet is the envelope of the rack's tip circle (see ``lumped.involute.trochoid``).
+thickness; the fillet is the envelope of the rack's tip circle (see ``lumped.involute.RackTooth.trochoid``).
 """
 
 from __future__ import annotations
@@ -15,34 +15,13 @@ import numpy as np
 from scipy.optimize import brentq
 
 from lumped.errors import refuse
-from lumped.involute import form_length, involute
+from lumped.involute import RackTooth, tooth_half_angle
 from lumped.path_function import FloatArray
 
 
 @dataclass(frozen=True)
-class ToothProfile:
-    """One tooth of a gear as its basic rack cuts it.
-
-    Attributes
-    ----------
-    teeth : number of teeth
-    module : [m]
-    pressure_angle : of the basic rack [rad]
-    profile_shift : x [-]
-    dedendum, fillet : dedendum and tip radius of the rack over module [-]
-    """
-
-    teeth: int
-    module: float
-    pressure_angle: float
-    profile_shift: float
-    dedendum: float
-    fillet: float
-
-    @property
-    def base_radius(self) -> float:
-        """Radius of the base circle [m]."""
-        return 0.5 * self.module * self.teeth * math.cos(self.pressure_angle)
+class ToothProfile(RackTooth):
+    """One tooth of a gear, flank and fillet as functions of one parameter each."""
 
     @property
     def root_radius(self) -> float:
@@ -52,15 +31,7 @@ class ToothProfile:
     @property
     def base_half_angle(self) -> float:
         """Half the tooth's thickness on the base circle, as an angle at the gear's centre [rad]."""
-        thickness = 0.5 * math.pi + 2.0 * self.profile_shift * math.tan(self.pressure_angle)
-        return thickness / self.teeth + involute(self.pressure_angle)
-
-    @cached_property
-    def form_length(self) -> float:
-        """Length on the base tangent at which the involute begins [m]."""
-        return form_length(
-            self.module, self.teeth, self.pressure_angle, self.profile_shift, self.dedendum, self.fillet
-        )
+        return tooth_half_angle(self.teeth, self.profile_shift, self.pressure_angle, 0.0)
 
     @property
     def root_half_angle(self) -> float:
@@ -75,22 +46,18 @@ class ToothProfile:
         ------
         ParameterError : the rack's tip radius leaves no room for its tip
         """
-        _, half_width, down = self._rack_tip
-        if half_width < 0.0:
+        bottom, joint = self.fillet_rolls
+        if bottom < 0.0:
             raise refuse(
                 "basic_rack.fillet_radius_coefficient",
                 f"{self.fillet:g}",
                 f"<= {self._largest_fillet():.4f} for this rack (full radius)",
                 "Lower the fillet radius or the dedendum of the rack.",
             )
-        r = 0.5 * self.module * self.teeth
-        bottom = half_width / r
-        joint = bottom - down / (r * math.tan(self.pressure_angle))
         form = math.hypot(self.base_radius, self.form_length)
 
         def excess(roll: float) -> float:
-            u, h, _ = self.fillet_points(np.array([roll]))
-            return math.hypot(float(u[0]), float(h[0])) - form
+            return float(np.hypot(*self.trochoid(np.array(roll)))) - form
 
         if excess(joint) <= 1e-9 * self.module:  # the joint is the end of the fillet: no undercut
             return bottom, joint
@@ -127,27 +94,17 @@ class ToothProfile:
         u, h : coordinates [m]
         slope : du/dphi [m/rad]
         """
-        radius, half_width, down = self._rack_tip
-        r = 0.5 * self.module * self.teeth
+        x, y = self.trochoid(roll)
+        radius, half_width, down = self.rack_tip
+        r = self.reference_radius
         along = half_width - r * roll
         distance = np.hypot(along, down)
-        stretch = 1.0 + radius / distance
-        x, y = along * stretch, r - down * stretch
-        stretch_rate = radius * along * r / distance**3
+        stretch, stretch_rate = 1.0 + radius / distance, radius * along * r / distance**3
         x_rate, y_rate = -r * stretch + along * stretch_rate, -down * stretch_rate
         turn = roll - math.pi / self.teeth
         cosine, sine = np.cos(turn), np.sin(turn)
         u, h = y * cosine - x * sine, -(x * cosine + y * sine)
         return u, h, y_rate * cosine - x_rate * sine - y * sine - x * cosine
-
-    @property
-    def _rack_tip(self) -> tuple[float, float, float]:
-        """Tip radius, half distance of the tip circles' centres, their depth below the pitch line [m]."""
-        radius = self.fillet * self.module
-        flat = self.dedendum - self.fillet
-        half_width = self.module * (0.25 * math.pi - flat * math.tan(self.pressure_angle))
-        half_width -= radius / math.cos(self.pressure_angle)
-        return radius, half_width, self.module * (self.dedendum - self.profile_shift) - radius
 
     def _largest_fillet(self) -> float:
         tangent, cosine = math.tan(self.pressure_angle), math.cos(self.pressure_angle)

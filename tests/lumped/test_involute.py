@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from lumped.involute import form_length, inverse_involute, involute, tooth_half_angle, trochoid
+from lumped.involute import RackTooth, inverse_involute, involute, tooth_half_angle
 
 
 @given(angle=st.floats(1e-3, 1.4))
@@ -91,7 +91,7 @@ RACKS = [
 def test_form_circle_against_cutting(z, degrees, shift, dedendum, fillet, undercut):
     alpha = math.radians(degrees)
     r, r_b = 0.5 * z, 0.5 * z * math.cos(alpha)
-    length = form_length(1.0, z, alpha, shift, dedendum, fillet)
+    length = RackTooth(z, 1.0, alpha, shift, dedendum, fillet).form_length
     form = math.hypot(r_b, length)
     closed = r * math.sin(alpha) - (dedendum - fillet * (1 - math.sin(alpha)) - shift) / math.sin(alpha)
     assert (closed < 0) == undercut
@@ -123,11 +123,11 @@ def test_trochoid_is_the_boundary_of_the_cut(z, degrees, shift, dedendum, fillet
     """Each trochoid point touches the rack at its own roll, and its lowest point is the root circle."""
     alpha = math.radians(degrees)
     roll = np.linspace(-0.2, 0.2, 9)
-    radius, angle = trochoid(roll, 1.0, z, alpha, shift, dedendum, fillet)
+    tooth = RackTooth(z, 1.0, alpha, shift, dedendum, fillet)
     r = 0.5 * z
     # The rack frame slides along by r * roll while the gear turns by roll.
-    x = radius * np.sin(angle - roll)
-    y = r - radius * np.cos(angle - roll)
+    x, along = tooth.trochoid(roll)
+    y = r - along
     depth = rack_depth(x + 0.0, y, alpha, 0.25 * math.pi - shift * math.tan(alpha), dedendum - shift, fillet)
     half_width = (
         0.25 * math.pi - (dedendum - fillet) * math.tan(alpha) - fillet / math.cos(alpha)
@@ -135,9 +135,9 @@ def test_trochoid_is_the_boundary_of_the_cut(z, degrees, shift, dedendum, fillet
     touching = np.hypot(x - (half_width - r * roll), y - (dedendum - shift - fillet)) - fillet
     assert np.abs(touching).max() < 1e-12
     assert depth.shape == roll.shape
-    root, _ = trochoid(np.array([half_width / r]), 1.0, z, alpha, shift, dedendum, fillet)
-    assert root[0] == pytest.approx(r - dedendum + shift, rel=1e-14)
-    assert radius.min() >= root[0] - 1e-12
+    root = np.hypot(*tooth.trochoid(np.array(half_width / r)))
+    assert root == pytest.approx(r - dedendum + shift, rel=1e-14)
+    assert np.hypot(x, along).min() >= root - 1e-12
 
 
 def test_tooth_half_angle_at_the_reference_circle():
@@ -159,7 +159,8 @@ def test_undercut_grows_from_nothing():
     alpha = math.radians(20)
     limit = 1.0 - 8.5 * math.sin(alpha) ** 2
     lacking = np.logspace(-18, -2, 120)
-    lengths = [form_length(1.0, 17, alpha, limit - e, 1.25, 0.25 / (1 - math.sin(alpha))) for e in lacking]
+    fillet = 0.25 / (1 - math.sin(alpha))
+    lengths = [RackTooth(17, 1.0, alpha, limit - e, 1.25, fillet).form_length for e in lacking]
     # The crossing is at most as far beyond X as the flank's end falls short of it, e/sin(a). Lengths below
     # 1e-4 of a module, a form radius 1e-9 of a module beyond the base circle, do not count.
     assert np.all(np.diff(lengths) >= -1e-4)
