@@ -209,9 +209,7 @@ def test_search_says_when_damping_is_too_low_for_its_grid() -> None:
     _, complete = search_grid(gear_block(pair), 500.0, 20000.0)
     assert not complete
     # With damped bearings every mode decays: the grid is fine enough, and small.
-    grid, complete = search_grid(
-        gear_block(pair.with_(bearings__pinion__loa_damping_ratio=0.05)), 500.0, 20000.0
-    )
+    damped = pair.with_(bearings__pinion__loa_damping_ratio=0.05)
+    grid, complete = search_grid(gear_block(damped), 500.0, 20000.0)
     assert complete
-    assert grid.size < 20_000
-    assert np.log(grid[1] / grid[0]) < 0.01
+    assert grid.size < 2000

@@ -133,6 +133,8 @@ def test_constant_coefficients() -> None:
     exact = in_energy_coordinates(still, expm(A * still.period))
     result = fast_monodromies(still)
     assert np.linalg.norm(result.matrices[0] - exact) <= result.errors[0] + 1e-12 * np.linalg.norm(exact)
+    multipliers = np.exp(still.mean_exponents() * still.period)
+    assert np.abs(np.sort_complex(multipliers) - np.sort_complex(np.linalg.eigvals(exact))).max() < 1e-11
 
 
 def test_many_points_equal_single_systems() -> None:
