@@ -58,6 +58,16 @@ def effective_modulus(
     return np.asarray(2.0 / (pinion + gear), dtype=np.float64)
 
 
+def _line_contact(
+    unit_load: ArrayLike, radius: ArrayLike, effective_modulus: ArrayLike
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    return (
+        checked("unit_load", unit_load, "N/mm", allow_zero=True),
+        checked("radius", radius, "mm"),
+        checked("effective_modulus", effective_modulus, "N/mm^2"),
+    )
+
+
 def hertz_half_width(unit_load: ArrayLike, radius: ArrayLike, effective_modulus: ArrayLike) -> FloatArray:
     """Half width b_H of the Hertzian contact band, b_H = sqrt(8 w rho / (pi E')).
 
@@ -71,9 +81,7 @@ def hertz_half_width(unit_load: ArrayLike, radius: ArrayLike, effective_modulus:
     -------
     b_H [mm]
     """
-    w = checked("unit_load", unit_load, "N/mm", allow_zero=True)
-    rho = checked("radius", radius, "mm")
-    modulus = checked("effective_modulus", effective_modulus, "N/mm^2")
+    w, rho, modulus = _line_contact(unit_load, radius, effective_modulus)
     return np.asarray(np.sqrt(8.0 * w * rho / (np.pi * modulus)), dtype=np.float64)
 
 
@@ -90,9 +98,7 @@ def hertz_pressure(unit_load: ArrayLike, radius: ArrayLike, effective_modulus: A
     -------
     p_h [GPa]
     """
-    w = checked("unit_load", unit_load, "N/mm", allow_zero=True)
-    rho = checked("radius", radius, "mm")
-    modulus = checked("effective_modulus", effective_modulus, "N/mm^2")
+    w, rho, modulus = _line_contact(unit_load, radius, effective_modulus)
     return np.asarray(1e-3 * np.sqrt(w * modulus / (2.0 * np.pi * rho)), dtype=np.float64)
 
 

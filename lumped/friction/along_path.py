@@ -17,13 +17,14 @@ from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.benedict_kelley import friction_number
 from lumped.friction.fitted import fit_signed, mean_coefficient
 from lumped.friction.registry import law_named
+from lumped.gear_geometry import Geometry
+from lumped.gear_geometry import geometry as gear_geometry
 from lumped.lubricant import dynamic_viscosity
 from lumped.path_function import PathFunction
 from lumped.roughness import composite_roughness, mean_roughness
 from lumped.validity import FloatArray, RangeViolation, range_violations, warn_violations
 
 if TYPE_CHECKING:
-    from lumped.gear_geometry import Geometry
     from lumped.parameters import GearPair
 
 __all__ = [
@@ -51,7 +52,7 @@ def contact_path(pair: GearPair, geometry: Geometry | None = None) -> ContactPat
     pair : the gear pair
     geometry : its geometry, if it is at hand
     """
-    g = _geometry(pair) if geometry is None else geometry
+    g = gear_geometry(pair) if geometry is None else geometry
     pinion, gear, lubricant, friction = pair.pinion, pair.gear, pair.lubricant, pair.friction
     composite = friction.composite_roughness
     if composite is None:
@@ -187,9 +188,3 @@ def _arguments(path: ContactPath, xi: FloatArray) -> dict[str, FloatArray]:
         "radius": path.radius(xi),
         "friction_number": friction_number(path.unit_load * 1e-3, path.viscosity * 1e3, *velocities),
     }
-
-
-def _geometry(pair: GearPair) -> Geometry:
-    from lumped.gear_geometry import geometry
-
-    return geometry(pair)
