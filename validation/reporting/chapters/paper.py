@@ -71,7 +71,7 @@ def _claims(table: ClaimsTable) -> Table:
             c.criterion,
             c.low,
             c.high,
-            None if c.share is None else round(100 * c.share),
+            None if c.share is None else float(round(100 * c.share)),
             Badge(c.verdict),
             c.reason or "–",
         )
