@@ -42,7 +42,7 @@ Settings = Annotated[
         "--set",
         metavar="FIELD=VALUE",
         help="Change any parameter, as often as needed: --set mesh.damping_ratio=0.03 "
-        "--set 'bearings.pinion.loa_stiffness=2e8 N/m'.",
+        "--set 'lubricant.viscosity=8 mPa*s'.",
     ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite what is there already.")]
