@@ -102,9 +102,8 @@ def modes(pair: GearPair) -> tuple[Mode, ...]:
     NumericalError : a mode of the averaged system is overdamped, so it has no natural frequency
     """
     system = periodic_system(pair, "relative")
-    plant = averaged_state_space(pair)
     m = len(system.coordinates)
-    values, vectors = np.linalg.eig(plant.A)
+    values, vectors = np.linalg.eig(averaged_matrix(system))
     found = []
     for value, vector in zip(values, vectors.T, strict=True):
         if value.imag <= 0.0:

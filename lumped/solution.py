@@ -5,6 +5,7 @@ Sources: docs/theory/equations.md, "Periodic motion and the brake torque".
 
 from __future__ import annotations
 
+import itertools
 import numbers
 from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, Any, Literal
@@ -85,23 +86,14 @@ def simulate(
     scale = np.abs(static_deflection(pair, mean_mesh_stiffness(system.cycle)))[:6]
     length = max(float(scale.max()), 1e-12)
     atol = rtol * length * np.concatenate([np.ones(6), np.full(6, 1.0 / system.period)])
+    outputs = np.append(grid[1:], system.period)  # t = T_m is the next cycle's first output
     row = 1
     for cycle in range(cycles):
-        for segment, (low, high) in enumerate(
-            zip(system.cycle.edges[:-1], system.cycle.edges[1:], strict=True)
-        ):
-            last = cycle == cycles - 1 and segment == system.cycle.edges.size - 2
-            inside = grid[(grid > low) & (grid <= high)]
-            targets = np.append(inside, high) if inside.size == 0 or inside[-1] < high else inside
-            values = _integrate(rate(segment), float(low), float(high), state, targets, rtol, atol)
-            count = inside.size + (1 if last else 0)
-            if not last and high == system.period:
-                states[row + inside.size] = values[-1]  # t = T_m is the next cycle's first output
-                count += 1
+        for segment, (low, high) in enumerate(itertools.pairwise(system.cycle.edges.tolist())):
+            inside = outputs[(outputs > low) & (outputs <= high)]
+            values = _integrate(rate(segment), low, high, state, np.union1d(inside, high), rtol, atol)
             states[row : row + inside.size] = values[: inside.size]
-            if last:
-                states[row + inside.size] = values[-1]
-            row += count
+            row += inside.size
             state = values[-1]
         if progress is not None:
             progress((cycle + 1) / cycles)

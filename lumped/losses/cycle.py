@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 from lumped.gear_geometry import Geometry
 from lumped.path_function import FloatArray, PathFunction
 
-_NODES = (
-    8  # exact to degree 15: a fitted mu of degree 8 times a sliding velocity of degree 1, and a load share
-)
+#: Exact to degree 15: a fitted mu of degree 8 times a sliding velocity of degree 1, and a load share.
+_NODES = 8
 _SAME = 1e-13  # of a base pitch: edges closer than this are one
 
 
