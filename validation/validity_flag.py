@@ -1,4 +1,7 @@
-"""One checked assumption of the model: its state in numbers, and what it is for in words."""
+"""One checked assumption of the model: its state in numbers, and what it is for in words.
+
+Sources: docs/theory/validity.md.
+"""
 
 from __future__ import annotations
 
