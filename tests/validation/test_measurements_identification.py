@@ -64,6 +64,13 @@ def test_roll_angle_gives_the_phase(truth):
     np.testing.assert_allclose(mesh_cycles(measurement, truth.pair), np.arange(9), atol=1e-12)
 
 
+def test_times_are_mesh_cycles_at_the_speed_of_the_record(truth):
+    cycles = mesh_cycles(record(truth), truth.pair)
+    np.testing.assert_allclose(cycles, record(truth).abscissa / truth.geometry.mesh_period, rtol=1e-14)
+    other = truth.pair.with_(operating__pinion_speed=3 * 800)
+    np.testing.assert_array_equal(mesh_cycles(record(truth), other), cycles)
+
+
 @pytest.mark.parametrize("start", [0.0, 0.37, 1.9, 2.75])
 def test_alignment_finds_an_unknown_start(truth, start):
     found = align(record(truth, start=start, noise_normal=0.02), truth)
@@ -71,6 +78,15 @@ def test_alignment_finds_an_unknown_start(truth, start):
     # The sampled jumps fix the phase to a fraction of the sample spacing, 1/100 cycle.
     assert abs(away) < 2e-3
     assert found.gain[0] == pytest.approx(1.0, abs=0.01)  # 1900 samples with 2 % noise: 0.01 is many sigma
+
+
+def test_the_standard_error_of_the_phase_is_the_spread_of_the_phases(truth):
+    starts = np.random.default_rng(4).uniform(0.0, 3.0, 20)
+    noisy = [record(truth, start=u, noise_normal=0.02, seed=j) for j, u in enumerate(starts)]
+    found = [align(one, truth) for one in noisy]
+    away = (np.array([one.shift for one in found]) - starts + 1.5) % 3.0 - 1.5
+    # 20 phases know their spread to 16 %; 50 % is three of those.
+    assert np.mean([one.standard_error for one in found]) == pytest.approx(away.std(), rel=0.5)
 
 
 def test_alignment_does_not_take_a_calibration_error_for_a_phase(truth):
@@ -83,11 +99,15 @@ def test_alignment_does_not_take_a_calibration_error_for_a_phase(truth):
 
 def test_alignment_refuses_a_record_that_does_not_fit(truth):
     rng = np.random.default_rng(3)
-    noise = dataclasses.replace(
-        record(truth), channels={k: rng.standard_normal(v.size) for k, v in record(truth).channels.items()}
-    )
+    clean = record(truth).channels
+    for offset in (0.0, 1e3):  # a mean explains nothing
+        noise = {k: offset + rng.standard_normal(v.size) for k, v in clean.items()}
+        with pytest.raises(NumericalError, match="explains only"):
+            align(dataclasses.replace(record(truth), channels=noise), truth)
+    # The other sign of the friction, which jumps at the pitch point: at no phase is it the prediction.
+    turned = {k: -v for k, v in clean.items()}
     with pytest.raises(NumericalError, match="explains only"):
-        align(noise, truth)
+        align(dataclasses.replace(record(truth), channels=turned), truth, channels=["friction_A"])
 
 
 @pytest.mark.parametrize("normal", ["measured", "predicted"])
@@ -106,6 +126,34 @@ def test_a_scale_on_a_law_and_a_zero_error_come_back(pair):
     # 1e-3: F is interpolated between 1024 samples, N and the law are not
     assert found.estimate == pytest.approx(0.7, rel=1e-3)
     np.testing.assert_allclose(found.zero, -4.0, atol=0.02)
+    g = truth.geometry
+    path = np.abs(truth.friction(np.linspace(g.L_XA, g.L_XD, 20_001)))
+    assert found.mean_mu == pytest.approx(0.7 * path.mean(), rel=1e-3)
+
+
+def test_the_interval_is_that_of_its_level(truth):
+    noisy = record(truth, noise_friction=0.02)
+    for level, quantile in ((0.95, 1.960), (0.6827, 1.0)):  # of the normal distribution: 600 samples
+        found = identify_friction(noisy, truth, align(noisy, truth, shift=0.0), level=level)
+        reach = quantile * found.standard_error
+        np.testing.assert_allclose(
+            [found.estimate - found.low, found.high - found.estimate], reach, rtol=5e-3
+        )
+
+
+def test_noise_weighs_only_where_every_channel_states_it_and_only_what_is_used(truth):
+    noisy = record(truth, noise_normal=0.1, noise_friction=0.02)
+    phase = align(noisy, truth, shift=0.0)
+
+    def estimate(normal, **noise):
+        measured = dataclasses.replace(noisy, noise=noisy.noise | noise)
+        return identify_friction(measured, truth, phase, normal=normal).estimate
+
+    none = dict.fromkeys(noisy.noise)
+    assert estimate("measured", normal_B=None) == estimate("measured", **none)
+    assert estimate("measured", **none) != estimate("measured")
+    # A predicted load has no noise, whatever the sensor has.
+    assert estimate("predicted", normal_A=500.0) == estimate("predicted")
 
 
 def test_noise_on_the_load_biases_plain_least_squares_but_not_the_weighted_one(truth):

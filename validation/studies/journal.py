@@ -92,7 +92,7 @@ def scan(path: Path, key: Key, visit: Callable[[Record], None]) -> Scan:
             return NOTHING
         with mmap.mmap(descriptor, 0, access=mmap.ACCESS_READ) as data:
             found = _scan(data, size, key, visit)
-            _check_header(path, data[: len(key.header)], key, found)
+            _check_header(path, data[: len(key.header)], key)
             return found
     finally:
         os.close(descriptor)
@@ -119,11 +119,9 @@ def _scan(data: Any, size: int, key: Key, visit: Callable[[Record], None]) -> Sc
     return Scan(records, damaged + size - end, end, tuple(sessions), size)
 
 
-def _check_header(path: Path, header: bytes, key: Key, found: Scan) -> None:
-    """Refuse the journal of another study; a damaged header is no loss when the records fit."""
-    if header == key.header or found.records:
-        return
-    whole = len(header) == len(key.header)
+def _check_header(path: Path, header: bytes, key: Key) -> None:
+    """Refuse the journal of another study; a damaged header is no loss, the records are bound to it too."""
+    whole = len(header) == len(key.header) and header != key.header
     if whole and struct.unpack("<I", header[-4:])[0] == zlib.crc32(header[:-4]):
         same = header[8:40] == key.study
         raise refuse(

@@ -113,6 +113,35 @@ def test_backlash_leaves_out_what_the_centre_distance_gives(xml, save):
     assert 0.0 < pair.mesh.backlash < 0.13e-3
 
 
+def test_less_backlash_than_the_centre_distance_gives_is_no_thicker_tooth(xml, save):
+    # The centre distance alone gives 2 um: teeth cannot be thickened to take it away.
+    stage = "".join(
+        f'<attribute id="{key}_normal_backlash" unit="mm">0.001</attribute>' for key in ("minimum", "maximum")
+    )
+    pair = lumped.load_gear_pair(gear_pair_from_rexs(save(xml(stage=stage)))[0])
+    assert pair.mesh.backlash == 0.0
+    assert lumped.geometry(pair).normal_backlash > 0.001e-3
+
+
+def test_the_first_load_case_stands_in_and_the_accumulation_does_not(xml, save):
+    def load(torque):
+        attribute = f'<attribute id="torque_around_u_axis" unit="N m">{torque}</attribute>'
+        return f'<component id="33">{attribute}</component>'
+
+    cases = "".join(f'<load_case id="{n}">{load(torque)}</load_case>' for n, torque in ((1, 7.5), (2, 8.5)))
+    # Results of the whole spectrum name the same components again.
+    spectrum = f'<load_spectrum id="1">{cases}<accumulation>{load(99)}</accumulation></load_spectrum>'
+    text = xml(spectrum=spectrum)
+    stated, notes = gear_pair_from_rexs(save(text))
+    assert stated["operating"]["pinion_torque"] == 42.5  # the component's own value decides
+    assert any("2 load cases" in note for note in notes)
+    own = '<attribute id="torque_around_u_axis" unit="N m">-42.5</attribute>'
+    assert own in text
+    mapping, _ = gear_pair_from_rexs(save(text.replace(own, "")))
+    assert mapping["operating"]["pinion_torque"] == 7.5
+    assert "load case 1" in mapping["sources"]["operating.pinion_torque"]
+
+
 def test_oil_by_two_viscosities_and_the_temperature_of_the_casing(xml, save):
     components = (
         '<component id="71" type="lubricant">'

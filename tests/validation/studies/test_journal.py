@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 import os
 import struct
@@ -182,6 +183,31 @@ def test_the_journal_of_another_study_is_refused(journal, make_study):
     other = Key(case_list(make_study(outputs=["contact_ratio", "base_pitch"])))
     with pytest.raises(ParameterError, match="choose another --output"):
         read(path, other)
+
+
+def test_the_journal_of_other_samples_of_the_study_is_refused(make_study, tmp_path):
+    # As another version of scipy would draw them; the study itself is the same.
+    axes = [{"field": "operating.pinion_speed", "low": 500, "high": 9000}]
+    cases = case_list(make_study(design={"method": "sobol", "samples": 8}, axes=axes))
+    key = Key(cases)
+    other = case_list(cases.study)
+    other.__dict__["sha256"] = hashlib.sha256(b"other samples").hexdigest()
+    path = tmp_path / "journal.bin"
+    with Journal(path, Key(other)) as file:
+        file.append(sample_records(8))
+    with pytest.raises(ParameterError, match="Another version of scipy"):
+        read(path, key)
+    # Nor do its records pass below a damaged header.
+    path.write_bytes(b"\0" * 20 + path.read_bytes()[20:])
+    assert read(path, key)[0] == []
+
+
+def test_a_record_of_a_case_that_does_not_exist_is_left_out(journal):
+    key, path, written = journal
+    _, result = read(path, key)
+    with Journal(path, key, result) as file:
+        file.append([Record(key.count, Status.OK, 0.5, (1.0, 2.0))])
+    assert read(path, key)[0] == written
 
 
 def test_a_second_writer_is_refused(journal):
