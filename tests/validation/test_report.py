@@ -189,11 +189,12 @@ def test_the_headline_states_the_largest_difference_also_when_it_is_within_its_t
         )
 
     assert widened(0.07).verdict == "confirmed"
-    text = finite_motions(widened(0.07))
+    text = finite_motions(widened(0.07)).replace("\u00a0", " ")
     assert "changes the transmission error by 30 % and gear y, most of all, by 40 %" in text
     assert text.endswith("the lumped motion alone accounts for all but 7 % (tolerance 100 %).")
     # More than half is left: that is no account.
-    assert finite_motions(widened(0.2)).endswith("does not account for this (20 % left, tolerance 100 %).")
+    text = finite_motions(widened(0.2)).replace("\u00a0", " ")
+    assert text.endswith("does not account for this (20 % left, tolerance 100 %).")
 
 
 def test_numbers_stand_to_the_right_under_their_heading_gaps_included(pair):

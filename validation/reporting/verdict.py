@@ -188,4 +188,4 @@ def finite_motions(check: CrossCheck) -> str:
 
 
 def _percent(ratio: float) -> str:
-    return f"{number(100 * ratio, 2)} %"
+    return quantity(100 * ratio, "%", 2)
