@@ -17,6 +17,7 @@ import numpy as np
 
 from lumped.path_function import FloatArray, PathFunction
 from lumped.stiffness.foundation import ring_twist
+from lumped.stiffness.neighbours import neighbour_breaks
 
 if TYPE_CHECKING:
     from lumped.gear_geometry import Geometry
@@ -72,13 +73,6 @@ def coupled(k: PathFunction, twist: float, geometry: Geometry) -> PathFunction:
         together = sum(local(xi + shift) for shift in shifts)
         return np.asarray(local(xi) / (1.0 + twist * together), dtype=np.float64)
 
-    marks = np.add.outer([low, high], shifts).ravel()
-    switches = np.unique(marks[(marks > low + 1e-9 * pitch) & (marks < high - 1e-9 * pitch)])
-    knots = np.add.outer(k.breaks[1:-1], shifts).ravel()
-    knots = knots[(knots > low) & (knots < high)]
-    apart = (
-        np.abs(np.subtract.outer(knots, [low, high, *switches])).min(axis=1, initial=np.inf) > 1e-9 * pitch
-    )
-    breaks = np.unique(np.concatenate([[low, high], switches, knots[apart]]))
+    breaks, switches = neighbour_breaks([low, high], k.breaks[1:-1], geometry)
     scale = float(k(np.linspace(low, high, 65)[1:-1]).max())
     return PathFunction.fit(stiffness, breaks, switches, tolerance=_FIT_TOLERANCE * scale)

@@ -14,6 +14,7 @@ from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 from lumped.errors import NumericalError, refuse
 from lumped.path_function import FloatArray, PathFunction
 from lumped.stiffness.energy import energy_curve
+from lumped.stiffness.neighbours import neighbour_breaks
 from lumped.stiffness.ramp import check_ramp_length, ramped
 
 if TYPE_CHECKING:
@@ -121,18 +122,9 @@ def _shared(total: PPoly, ramp_length: float, pair: GearPair, geometry: Geometry
         part = weight(xi) / sum(weight(xi + shift) for shift in shifts)
         return np.asarray(total(np.mod(xi - low, period)) * part, dtype=np.float64)
 
-    # Another pair enters or leaves where xi is a whole number of pitches from A or D.
     ramps = [low + ramp_length, high - ramp_length] if ramp_length > 0.0 else []
-    marks = np.add.outer([low, high, *ramps], shifts).ravel()
-    switches = np.unique(marks[(marks > low + 1e-9 * period) & (marks < high - 1e-9 * period)])
-    knots = np.add.outer(low + total.x, shifts).ravel()
-    knots = knots[(knots > low) & (knots < high)]
-    apart = np.abs(np.subtract.outer(knots, switches)).min(axis=1, initial=np.inf) > 1e-9 * period
-    inner = np.unique(np.concatenate([switches, knots[apart]]))
-    inner = inner[np.diff(inner, prepend=-np.inf) > 1e-9 * period]
-    switches = switches[np.isin(switches, inner)]
+    breaks, switches = neighbour_breaks([low, high, *ramps], low + total.x, geometry)
     scale = float(np.abs(total.c[-1]).max())
-    breaks = np.array([low, *inner, high])
     return _positive(PathFunction.fit(share, breaks, switches, tolerance=_FIT_TOLERANCE * scale))
 
 
