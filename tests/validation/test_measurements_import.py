@@ -86,7 +86,9 @@ def changed_channel(place, **changes):
         (changed_channel(0, zero=-1e200), "channel.normal"),
         ({"recurrence": 10**400}, "recurrence"),
         (changed_channel(1, name="normal"), "channel.name"),
-        ({"unknown": 1}, "unknown"),
+        ({"delimeter": ";"}, "Did you mean 'delimiter'"),
+        (changed_channel(0, colunm="N A"), r"channel\.0\.colunm .* Did you mean 'column'"),
+        ({"abscissa": None}, "abscissa = None"),
         ({"decimal": ";"}, "decimal"),
     ],
 )

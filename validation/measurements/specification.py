@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidationError, model_validator
 
-from lumped.errors import MOST_PROBLEMS, FieldProblem, ParameterError, quoted, refuse, shown
+from lumped.errors import ParameterError, refuse, shown
 from lumped.section import Section, Text
 from lumped.text_file import parse_toml, read_text
 from lumped.units import Quantity
+from validation.schema_problems import translated
 
 if TYPE_CHECKING:
     import pint
@@ -124,7 +125,7 @@ class MeasurementSpec(Section):
         description="mesh cycles after which the same labelled pair is in contact again; default the "
         "pinion's number of teeth (one instrumented pinion tooth)",
     )
-    abscissa: Abscissa
+    abscissa: Abscissa = Field(description="where the samples lie")
     channel: tuple[Channel, ...] = Field(min_length=1, max_length=64, description="the measured columns")
 
     @model_validator(mode="after")
@@ -170,20 +171,7 @@ def read_specification(source: str | Path | Mapping[str, Any]) -> tuple[Measurem
     except ParameterError as error:
         raise ParameterError(list(error.problems), name) from None
     except ValidationError as error:
-        raise ParameterError(_problems(error), name) from None
-
-
-def _problems(error: ValidationError) -> list[FieldProblem]:
-    found: list[FieldProblem] = []
-    for item in error.errors(include_url=False)[:MOST_PROBLEMS]:
-        place = ".".join(str(part) for part in item["loc"]) or "file"
-        context = item.get("ctx", {})
-        if item["type"] == "quantity":
-            found.append(FieldProblem(place, context["value"], context["allowed"], context["action"]))
-        else:
-            value = shown(quoted(item.get("input")))
-            found.append(FieldProblem(shown(place), value, item["msg"], "Correct the value."))
-    return found
+        raise ParameterError(translated(error, MeasurementSpec), name) from None
 
 
 @cache

@@ -84,7 +84,8 @@ def print_summary(summary: Summary, console: Console) -> None:
         first = text.splitlines()[0] if text else ""
         console.print(f"case {case}: {first}", style="red", soft_wrap=True)
     if summary.failed > len(summary.failures):
-        console.print(f"... and {summary.failed - len(summary.failures)} more, see failure_message")
+        more = summary.failed - len(summary.failures)
+        console.print(f"... and {more} more: see status and failure_message in the results")
     if summary.damaged_bytes:
         console.print(
             f"{summary.damaged_bytes} damaged bytes of the journal were skipped, their cases computed"

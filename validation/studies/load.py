@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 
-from lumped.errors import MOST_PROBLEMS, FieldProblem, ParameterError, quoted, refuse, shown
+from lumped.errors import FieldProblem, ParameterError, refuse, shown
 from lumped.parameters import GearPair
-from lumped.schema_errors import unknown_key
 from lumped.serialise import load_gear_pair, preset_names
 from lumped.text_file import parse_toml, read_text
-from validation.studies.axes import Axis
-from validation.studies.schema import Design, Settings, Study
+from validation.schema_problems import translated
+from validation.studies.schema import Study
 
 #: Largest study file read: a bound against a wrong path; a list of a million values fits.
 MAX_FILE_BYTES = 100_000_000
@@ -81,7 +79,7 @@ def _validated(data: dict[str, Any], source: str, folder: Path) -> Study:
     except ValidationError as error:
         problems += [
             p
-            for p in _translated(error)
+            for p in translated(error, Study)
             if not (problems and p.field == "gear_pair" and p.value == "missing")
         ]
     except RecursionError:
@@ -95,61 +93,3 @@ def _inside(name: str) -> str:
     if not name or "\0" in name or len(name) > 1000:
         raise refuse("file", shown(repr(name)), "a preset or the path of a TOML file", "Correct the path.")
     return name
-
-
-def _translated(error: ValidationError) -> list[FieldProblem]:
-    """Return pydantic's findings as the tool's own; the parts of a union are one finding."""
-    problems: dict[str, FieldProblem] = {}
-    for item in error.errors(include_url=False)[:MOST_PROBLEMS]:
-        location = [str(part) for part in item["loc"] if str(part) not in _UNION_PARTS]
-        path = ".".join(location) or "file"
-        context = item.get("ctx", {})
-        cause = context.get("error")
-        if isinstance(cause, ParameterError):
-            prefix = f"{path}." if location else ""
-            for p in cause.problems:
-                problems[prefix + p.field] = FieldProblem(prefix + p.field, p.value, p.allowed, p.action)
-        elif item["type"] == "quantity":
-            problems[path] = FieldProblem(path, context["value"], context["allowed"], context["action"])
-        elif item["type"] == "extra_forbidden":
-            problems[path] = _unknown(path, location)
-        elif item["type"] == "missing":
-            problems[path] = FieldProblem(path, "missing", _description(location), "Add it.")
-        else:
-            problems.setdefault(
-                path,
-                FieldProblem(
-                    path, shown(quoted(item.get("input"))), _plainly(item["msg"]), "Correct the value."
-                ),
-            )
-    # A list whose items are refused is also "too short" for pydantic; the items are the reason.
-    return [p for path, p in problems.items() if not any(other.startswith(f"{path}.") for other in problems)]
-
-
-def _plainly(message: str) -> str:
-    """Return pydantic's rule as what is allowed."""
-    if found := re.fullmatch(r"Tuple should have (at \w+ \d+ items?) after validation, not (\d+)", message):
-        return f"{found[1]} instead of {found[2]}"
-    for start in ("Input should be ", "Value should be ", "Input should ", "Value should "):
-        message = message.removeprefix(start)
-    return message
-
-
-_UNION_PARTS = {"int", "float", "str", "function-before[_pair_in(), GearPair]"}
-_SECTIONS: dict[str, type[BaseModel]] = {"axes": Axis, "design": Design, "settings": Settings}
-
-
-def _fields(location: list[str]) -> Mapping[str, Any]:
-    """Fields of the section that a location is in."""
-    fields: Mapping[str, Any] = _SECTIONS.get(location[0] if len(location) > 1 else "", Study).model_fields
-    return fields
-
-
-def _unknown(path: str, location: list[str]) -> FieldProblem:
-    known = list(_fields(location))
-    return unknown_key(path, known, location[-1])
-
-
-def _description(location: list[str]) -> str:
-    info = _fields(location).get(location[-1])
-    return (info.description if info else None) or "a value"
