@@ -11,6 +11,10 @@ from validation.metrics import FloatArray
 
 #: Places on the path closer than this are one [m].
 _SAME = 1e-11
+#: Arguments at which tanh is broken into lines: what they leave out is below a thousandth of its size.
+_TANH = np.arctanh(np.linspace(-0.999, 0.999, 81))
+#: Lines that stand for one piece of a friction law.
+_PARTS = 8
 #: A change across a break by more than this share of the largest value is a jump.
 _JUMP = 1e-4
 
@@ -36,7 +40,7 @@ def moved(law: PathFunction, place: FloatArray, stands_at: FloatArray) -> PathFu
 
 
 def at_sliding(
-    law: PathFunction, pitch_point: float, place: FloatArray, slides_as: FloatArray
+    law: PathFunction, pitch_point: float, place: FloatArray, slides_as: FloatArray, width: float
 ) -> PathFunction:
     """Friction coefficient at the actual sliding velocity, with its sign.
 
@@ -46,6 +50,8 @@ def at_sliding(
     pitch_point : L_XP [m]
     place : (k,) nominal positions, over the whole path [m]
     slides_as : (k,) where the nominal motion slides as fast as the teeth do there [m]
+    width : distance from the pitch point over which the sign changes, as tanh [m]; at once if it is less than
+        the places lie apart
 
     Returns
     -------
@@ -54,9 +60,14 @@ def at_sliding(
 
     def value(equivalent: FloatArray) -> FloatArray:
         magnitude = np.abs(law(np.clip(equivalent, *law.interval)))
-        return np.asarray(np.sign(equivalent - pitch_point) * magnitude, dtype=np.float64)
+        beyond = equivalent - pitch_point
+        sign = np.tanh(beyond / width) if width > 0.0 else np.sign(beyond)
+        return np.asarray(sign * magnitude, dtype=np.float64)
 
-    marks = np.union1d(law.breaks, [pitch_point])
+    width = width if width > np.diff(place).max() else 0.0
+    pieces = law.breaks.size - 1
+    parts = np.interp(np.arange(pieces * _PARTS + 1) / _PARTS, np.arange(pieces + 1), law.breaks)
+    marks = np.union1d(parts, pitch_point + width * _TANH)
     return _through(value, law, marks, place, slides_as)
 
 

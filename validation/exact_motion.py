@@ -14,9 +14,8 @@ from validation.agreement import Fidelity
 #: Share of the default velocity over which friction changes its sign, where sliding does not stick: there a
 #: sharper change costs little. The default leaves twice the tolerance in y at the Kahraman-Blankenship pair.
 _SHARPER = 0.01
-#: Velocity for a motion that the integrator cannot follow with a sharper one [m/s]: a law that vanishes at P
-#: counts as safe, but vibration may move the zero of sliding away from P, where the law does not vanish.
-_BLUNT = 0.01
+#: Velocity for a motion that the integrator cannot follow with a sharper one [m/s].
+BLUNT = 0.01
 
 
 def periodic_motion(
@@ -46,4 +45,4 @@ def periodic_motion(
     try:
         return motion(sharp)
     except NumericalError:
-        return motion(_BLUNT)
+        return motion(BLUNT)

@@ -15,7 +15,7 @@ import itertools
 import time
 import warnings
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -160,7 +160,7 @@ def crosscheck_grid(
     """
     g = grid or Grid()
     started = time.perf_counter()
-    store = None if checkpoint is None else Checkpoint(checkpoint, g)
+    store = None if checkpoint is None else Checkpoint(checkpoint, asdict(g))
     blocks = list(itertools.product(g.presets, g.laws, g.stiffness))
     found = {} if store is None else store.load(blocks)
     resumed = sum(map(len, found.values()))

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
-from dataclasses import asdict
+from collections.abc import Iterable, Mapping, Sequence
 from hashlib import sha256
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import lumped
 from lumped.errors import refuse
 from validation.agreement import FIDELITIES, QUANTITIES
 from validation.grid_point import GridPoint
 from validation.output import write_text
-
-if TYPE_CHECKING:
-    from validation.grid import Grid
 
 Block = tuple[str, str, str]
 _KEY = "grid.json"
@@ -30,7 +26,7 @@ class Checkpoint:
     Parameters
     ----------
     folder : made if missing
-    grid : the grid it belongs to
+    grid : fields of the grid it belongs to
 
     Raises
     ------
@@ -38,9 +34,9 @@ class Checkpoint:
         that can be written
     """
 
-    def __init__(self, folder: Path, grid: Grid) -> None:
+    def __init__(self, folder: Path, grid: Mapping[str, Any]) -> None:
         self.folder = folder
-        key = json.loads(json.dumps(asdict(grid) | {"code": _code(), "tables": [FIDELITIES, QUANTITIES]}))
+        key = json.loads(json.dumps(dict(grid) | {"code": _code(), "tables": [FIDELITIES, QUANTITIES]}))
         path = folder / _KEY
         try:
             folder.mkdir(parents=True, exist_ok=True)

@@ -18,7 +18,7 @@ from validation.agreement import (
     contact_shift,
     off_switch_samples,
 )
-from validation.exact_motion import periodic_motion
+from validation.exact_motion import BLUNT, periodic_motion
 from validation.finite_motion import finite_motion
 from validation.metrics import FloatArray, maximum_over_span
 from validation.tolerances import tolerance
@@ -82,7 +82,7 @@ def compare_point(pair: GearPair, samples: int) -> GridPoint:
     -----
     Which points are judged is decided by the lumped model alone, before the multibody model is looked at: the
     teeth separate where a lumped load turns negative, and sliding may stick where the lumped motion and the
-    friction at its own sliding velocity do not settle (``validation.finite_motion``).
+    friction at its own sliding velocity do not settle or do not pass zero (``validation.finite_motion``).
     """
     started = time.process_time()
     load_min = np.nan
@@ -103,9 +103,12 @@ def compare_point(pair: GearPair, samples: int) -> GridPoint:
         tables = [_missing() for _ in range(4)]
         for i, fidelity in enumerate(FIDELITIES):
             run = periodic_motion(pair, fidelity, samples=samples, rtol=_RTOL, passes=predicted.settled)
+            foreseen = predicted
+            if fidelity == "exact" and run.attrs["friction_velocity"] == BLUNT:  # a choice of the numerics
+                foreseen = finite_motion(pair, reference, friction_velocity=BLUNT)
             for j, quantity in enumerate(QUANTITIES):
                 allowed = tolerance(quantity, fidelity, shift)
-                change = predicted.over(quantity, keep.size) if fidelity == "exact" else 0.0
+                change = foreseen.over(quantity, keep.size) if fidelity == "exact" else 0.0
                 found = agreement(quantity, fidelity, run, reference, keep, allowed, change)
                 values = found.judged, allowed.limit, found.relative_l2, found.maximum_over_span
                 for table, value in zip(tables, values, strict=True):

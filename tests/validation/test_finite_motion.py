@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import lumped
 import multibody
 from lumped import ParameterError
+from lumped.mesh_cycle import mesh_cycle
+from lumped.path_function import PathFunction
+from lumped.periodic_system import periodic_system
 from validation.agreement import contact_shift, off_switch_samples
 from validation.finite_motion import PREDICTED, finite_motion
+from validation.shifted_motion import ShiftedModel
 
 RECTANGULAR = lumped.load_gear_pair("nasa_28_28").with_(
     friction__law="xu_kahraman", mesh__stiffness={"model": "rectangular"}
@@ -99,6 +105,50 @@ def test_what_is_left_vanishes_faster_than_the_motion():
         shift = contact_shift(pair, lumped.steady_state(pair, samples_per_cycle=128))
         for name, (size, share) in unexplained(pair).items():
             assert size * share < 0.2 * shift, (name, torque)
+
+
+def test_the_turned_line_moves_the_vibration_and_with_it_the_reversal():
+    """The spring N/L between y_p and y_g detunes the bearings of the slow 50/50 pair by some 1e-3 only.
+
+    Added to y afterwards, without what that y does to friction, it leaves 1.7 times the shift.
+    """
+    pair = lumped.load_gear_pair("kahraman_blankenship_50_50").with_(
+        friction__law="composite", mesh__stiffness={"model": "rectangular"}, operating__pinion_speed=450
+    )
+    shift = contact_shift(pair, lumped.steady_state(pair, samples_per_cycle=128))
+    size, share = unexplained(pair, quantities=("y_p",))["y_p"]
+    assert size > 1.0
+    assert size * share < 0.6 * shift
+
+
+def test_friction_holds_where_it_can_take_all_of_the_sliding_acceleration():
+    """Filippov's condition in the nominal motion, where the sliding acceleration at P is known.
+
+    Sliding passes P with (Omega_p + Omega_g) Omega_p r_bp plus what vibration adds; friction takes
+    mu N (1/m_p + 1/m_g + X_p^2/J_p + X_g^2/J_g) of it on either side.
+    """
+    pair = RECTANGULAR.with_(friction__law="coulomb", friction__coefficient=0.05)
+    cycle = mesh_cycle(pair)
+    g, system = cycle.geometry, periodic_system(pair, "absolute", cycle=cycle)
+    times = np.arange(4096) * (cycle.period / 4096)
+    model = ShiftedModel(pair, cycle, system, np.zeros(12), times, frozenset({"sliding_velocity"}), 0.0)
+    shifts = model.shifts_after(model.motion(None))
+    motion = model.motion(shifts)
+    way = model.shifts_after(motion).slides_as
+    at = int(np.searchsorted(way, g.L_XP))
+    m = system.structure.mass
+    mobility = 1 / m[4] + 1 / m[5] + g.L_XP**2 / m[0] + (g.L_XY - g.L_XP) ** 2 / m[1]
+    taken = 0.05 * motion.load[at] * mobility
+    slope = (way[at - 1] - way[at - 2]) / (motion.place[at - 1] - motion.place[at - 2])
+    before = slope * (g.omega_pinion + g.omega_gear) * g.omega_pinion * g.base_radius_pinion
+    assert 0.0 < taken < before  # approach: friction hurries the sliding on, by as much as it then takes
+    free = before - taken
+    # The same motion with more friction at zero sliding alone, as if the law rose there.
+    for share, held in ((0.9, False), (1.1, True)):
+        friction = PathFunction.constant(0.05 * share * free / taken, g.L_XA, g.L_XD)
+        laws = replace(cycle.elements, friction=friction)
+        steep = replace(model, cycle=replace(cycle, elements=laws))
+        assert steep.held(motion) == held
 
 
 def test_without_friction_nothing_moves_off_the_line_of_action():
