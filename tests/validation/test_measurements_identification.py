@@ -134,17 +134,15 @@ def test_a_scale_on_a_law_and_a_zero_error_come_back(pair):
 def test_samples_whose_sign_is_not_certain_are_left_out(truth):
     noisy = record(truth, noise_normal=0.2)
     phase = align(noisy, truth, shift=0.0)
-    unsure = dataclasses.replace(phase, standard_error=0.02)
-    pitch = truth.geometry.base_pitch
-    # Pair by pair, 4 engagements at 100.3 samples a pitch: three standard errors and a sample on both sides.
-    expected = {0.0: 2 * 4 * 2 * (1 / 100.3), 0.02: 2 * 4 * 2 * (3 * 0.02 + 1 / 100.3)}
     everything = identify_friction(noisy, truth, phase, guard=0.0).samples
-    for alignment, mesh_cycles_lost in zip((phase, unsure), expected.values(), strict=True):
-        kept = identify_friction(noisy, truth, alignment).samples
-        # Each of the sixteen ends may fall either side of a sample.
-        assert everything - kept == pytest.approx(100.3 * mesh_cycles_lost, abs=16)
-        reach = (3.0 * alignment.standard_error + alignment.sample_spacing) * pitch
-        assert identify_friction(noisy, truth, alignment, guard=reach).samples == kept
+    for error in (0.0, 0.02):
+        unsure = dataclasses.replace(phase, standard_error=error)
+        reach = 3.0 * error + 1.0 / 100.3  # mesh cycles: three standard errors and one sample
+        kept = identify_friction(noisy, truth, unsure)
+        # Two pairs of four engagements, both sides of the pitch point; each end falls within a sample.
+        assert everything - kept.samples == pytest.approx(16 * reach * 100.3, abs=16)
+        guard = reach * truth.geometry.base_pitch
+        assert identify_friction(noisy, truth, unsure, guard=guard).samples == kept.samples
 
 
 def test_the_interval_is_that_of_its_level(truth):
