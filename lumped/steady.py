@@ -26,7 +26,7 @@ class PeriodicSolution:
     states : (k, 12)
     pinion_torque, brake_torque : mean torques that hold the mean speed [N m]
     closure : largest mismatch of state and state one cycle later, over the largest displacement or rate
-    error : estimate of the largest relative error of the dynamic transmission error
+    error : estimate of the largest relative error of the dynamic transmission error; None where not asked for
     spectral_radius : largest modulus of the Floquet multipliers, the rigid rotation taken out; above 1 the
         motion is unstable, and a pair leaves it
     """
@@ -37,7 +37,7 @@ class PeriodicSolution:
     pinion_torque: float
     brake_torque: float
     closure: float
-    error: float
+    error: float | None
     spectral_radius: float
 
 
@@ -77,7 +77,7 @@ def periodic_solution(
     closure = _closure(system, states)
     at = np.searchsorted(maps.times, times - 1e-9 * system.period)
     result = states[at]
-    error = 0.0
+    error = None
     if estimate_error:
         low = step_maps(system, torques, outputs=times, stages=STAGES - 1)
         other = low.states(*_bordered(pair, system, *low.over_all()))[at]
