@@ -74,20 +74,6 @@ def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[
     return families
 
 
-def friction_factors(variation: GearVariation, speeds_rpm: FloatArray) -> FloatArray | None:
-    """Mu at these speeds over mu at the speed of the pair, or None where that is no single factor.
-
-    Parameters
-    ----------
-    variation : the pair at its own speed, as a chart varies it
-    speeds_rpm : (k,) pinion speeds
-    """
-    own = variation.pair.operating.pinion_speed * 30.0 / np.pi
-    family = FrictionFamily(own, np.arange(speeds_rpm.size), None, np.ones((speeds_rpm.size, 1)))
-    factors = factors_at(variation, family, speeds_rpm)
-    return None if factors is None else factors[:, 0]
-
-
 def factors_at(variation: GearVariation, family: FrictionFamily, speeds_rpm: FloatArray) -> FloatArray | None:
     """Factors (k, 1 or 2) of a family at further speeds; None where these are not all of the family."""
     if not depends_on_speed(variation.pair):

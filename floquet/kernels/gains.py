@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from floquet.kernels.compiled import compiled
 from floquet.kernels.lanes import LANES, load, plus, scaled, store, zero
-from floquet.kernels.majorant import MAX_TERMS, norm, powers_of_radii, shift
+from floquet.kernels.majorant import MAX_TERMS, norm, powers_of_radii
 from floquet.system import FloatArray
 
 
@@ -76,7 +76,7 @@ class Piece(NamedTuple):
 
     Attributes
     ----------
-    w, wd : (d+1, LANES) over the piece; f : (d+1, m)
+    w, wd, f : (d+1, LANES) over the piece
     ws, wds, fs : the same over one step, times h^2, h and h^2
     degrees : of w, wd, f on this piece
     a, powers : majorant, and what ``enough_terms`` needs besides
@@ -117,8 +117,8 @@ def scratch_for(problem: Problem) -> Piece:
     v = np.zeros(3)
     v[:m] = problem.v
     return Piece(
-        np.zeros((dw, LANES)), np.zeros((dd, LANES)), np.zeros((df, m)),
-        np.zeros((dw, LANES)), np.zeros((dd, LANES)), np.zeros((df, m)),
+        np.zeros((dw, LANES)), np.zeros((dd, LANES)), np.zeros((df, LANES)),
+        np.zeros((dw, LANES)), np.zeros((dd, LANES)), np.zeros((df, LANES)),
         np.zeros(3, dtype=np.int64), np.zeros(max(dw, dd)), powers_of_radii(max(dw, dd)),
         np.zeros((MAX_TERMS + 2, 3, LANES)),
         np.zeros((MAX_TERMS + 2, LANES)), np.zeros((MAX_TERMS + 2, LANES)),
@@ -155,8 +155,8 @@ def _summed(
 
 
 @compiled(_nrt=False)
-def _part_of(poly: FloatArray, degree: int, part: int, parts: int, factor: float, out: FloatArray) -> None:
-    """Out = factor times poly in the time of one of so many equal parts, as in ``shift``."""
+def part_of(poly: FloatArray, degree: int, part: int, parts: int, factor: float, out: FloatArray) -> None:
+    """Out = factor times poly in the time of one of so many equal parts, by synthetic division."""
     if parts == 1:
         for j in range(degree + 1):
             store(out, (j,), scaled(factor, load(poly, (j,))))
@@ -192,8 +192,7 @@ def load_piece(
         _summed(problem.wd, i, piece.degrees[1], gains, zeta, piece.wd)
     rate, error, error_f = calm, 0.0, 0.0
     for j in range(piece.f.shape[0]):
-        for r in range(piece.f.shape[1]):
-            piece.f[j, r] = 0.0
+        store(piece.f, (j,), zero())
     for q in range(gains.size):
         g = abs(gains[q])
         rate += g * (problem.sizes[q, i, 0] * nu + abs(zeta) * problem.sizes[q, i, 1] * nu_rate)
@@ -201,7 +200,7 @@ def load_piece(
         if not math.isnan(rho):
             error += g * abs(zeta) * problem.unequal[q, i] * nu_rate
         error_f += g * (fit[q, i, 2] + fit[q, i, 3] * abs(zeta) / T)
-        for r in range(piece.f.shape[1]):
+        for r in range(problem.v.size):
             for j in range(problem.f.shape[3]):
                 piece.f[j, r] += gains[q] * problem.f[q, i, r, j]
             for j in range(problem.fr.shape[3]):
@@ -220,17 +219,14 @@ def load_step(problem: Problem, piece: Piece, part: int, parts: int, h: float, r
     merged = not math.isnan(ratio)
     dw, dd, df = piece.degrees[0], piece.degrees[1], piece.degrees[2]
     change = 0.0
-    _part_of(piece.w, dw, part, parts, h * h, piece.ws)
+    part_of(piece.w, dw, part, parts, h * h, piece.ws)
     for q in range(m):
         piece.h2_omega2[q] = (h * problem.omega[q]) ** 2
         piece.h2_reference[q] = -h * h * problem.reference[q]
         change += (piece.ws[0, q] + piece.h2_reference[q]) ** 2
         for p in range(m):
             piece.hC[q, p] = h * problem.C[q, p]
-    shift(piece.f, df, (2.0 * part + 1.0) / parts - 1.0, 1.0 / parts, piece.fs)
-    for j in range(df + 1):
-        for q in range(m):
-            piece.fs[j, q] *= h * h
+    part_of(piece.f, df, part, parts, h * h, piece.fs)
     for j in range(piece.a.size):
         piece.a[j] = 0.0
     # ws holds h^2 w and wds h wd.
@@ -243,7 +239,7 @@ def load_step(problem: Problem, piece: Piece, part: int, parts: int, h: float, r
             piece.a[j] += size * abs(ratio) * nu_rate
     if merged:
         return int(dw)
-    _part_of(piece.wd, dd, part, parts, h, piece.wds)
+    part_of(piece.wd, dd, part, parts, h, piece.wds)
     for j in range(dd + 1):
         piece.a[j] += row_norm(piece.wds, j, m) * nu_rate
     return int(max(dw, dd))

@@ -29,24 +29,6 @@ _LOGS = np.log(RADII[1:])
 _LOWER = np.log(RADII[1:] - 1.0)
 
 
-@compiled(fastmath={"contract"}, _nrt=False)
-def shift(poly: FloatArray, degree: int, u: float, scale: float, out: FloatArray) -> None:
-    """Coefficients of t -> poly(u + scale t) by synthetic division, (degree+1, m) lowest first."""
-    m = poly.shape[1]
-    for j in range(degree + 1):
-        for r in range(m):
-            out[j, r] = poly[j, r]
-    for j in range(degree):
-        for i in range(degree - 1, j - 1, -1):
-            for r in range(m):
-                out[i, r] += u * out[i + 1, r]
-    factor = 1.0
-    for j in range(1, degree + 1):
-        factor *= scale
-        for r in range(m):
-            out[j, r] *= factor
-
-
 @compiled(_nrt=False)
 def norm(row: FloatArray) -> float:
     """Euclidean norm."""

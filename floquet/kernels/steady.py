@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from floquet.kernels.compiled import compiled
-from floquet.kernels.gains import Limits, Piece, Problem, load_piece, load_step, scratch_for
+from floquet.kernels.gains import Limits, Piece, Problem, load_piece, load_step, part_of, scratch_for
 from floquet.kernels.lanes import LANES
-from floquet.kernels.majorant import enough_terms, norm, shift
+from floquet.kernels.majorant import enough_terms, norm
 from floquet.kernels.product import FORCED, carry, invert
 from floquet.kernels.taylor import ends_of_step, series, start_from_rest, steps_of_period
 from floquet.system import FloatArray
@@ -201,7 +201,7 @@ def _sample(
     n, samples, degree = state.shape[0], sampled.shape[0], balance.psi.shape[3]
     balanced = balance.own != 0.0
     nu, nu_rate = norm(problem.v / problem.omega), norm(problem.v)
-    psi, shifted = np.zeros((degree, 3)), np.zeros((degree, 3))
+    psi, shifted = np.zeros((degree, LANES)), np.zeros((degree, LANES))
     c, middle = np.zeros((piece.s.shape[0], 2)), np.zeros((n, 2))
     means = np.zeros(3)
     last, ratio, sample = -1, math.nan, 0
@@ -250,7 +250,7 @@ def _sample(
                     sampled[sample, column] = total
                 sample += 1
             if balanced:
-                shift(psi, degree - 1, (2.0 * part + 1.0) / parts - 1.0, 1.0 / parts, shifted)
+                part_of(psi, degree - 1, part, parts, 1.0, shifted)
                 for e in range(degree):
                     if e % 2 == 0:
                         means[0] -= width * shifted[e, 2] / (e + 1.0)

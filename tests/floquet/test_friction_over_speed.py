@@ -7,7 +7,7 @@ import pytest
 
 from floquet import gear_block, gear_pair_multipliers, stability_chart
 from floquet.gear_axes import GearVariation, vary
-from floquet.gear_friction import friction_factors, friction_families
+from floquet.gear_friction import friction_families
 from lumped import load_gear_pair
 from lumped.errors import ParameterError
 from lumped.friction.along_path import friction_path_function
@@ -53,8 +53,8 @@ def test_factors_follow_the_equations() -> None:
     # Law III goes with the entraining velocity to the power b6 = -0.100601 (equation 18). In law II speed is
     # inside a logarithm only, to the power -3 (equation 14).
     variation = with_law("xu_kahraman")
-    own = variation.pair.operating.pinion_speed * 30 / np.pi
-    assert friction_factors(variation, SPEEDS) == pytest.approx((SPEEDS / own) ** -0.100601, rel=1e-11)
+    (family,) = friction_families(variation, SPEEDS)
+    assert family.factors[:, 0] == pytest.approx((SPEEDS / family.speed_rpm) ** -0.100601, rel=1e-11)
     (family,) = friction_families(with_law("benedict_kelley"), SPEEDS)
     assert family.factors[:, 0] == pytest.approx(1.0, rel=1e-12)
     slope = np.diff(family.factors[:, 1] * family.level) / np.diff(np.log10(SPEEDS))
@@ -65,8 +65,8 @@ def test_factors_follow_the_equations() -> None:
 def test_given_coefficient_does_not_change() -> None:
     for law in ("none", "coulomb", "smoothed_coulomb"):
         variation = with_law(law, friction__coefficient=0.06)
-        assert (friction_factors(variation, SPEEDS) == 1.0).all()
         (family,) = friction_families(variation, SPEEDS)
+        assert (family.factors == 1.0).all()
         assert family.level is None
 
 
@@ -78,7 +78,6 @@ def test_moving_regimes_are_fitted_apart() -> None:
     sizes = sorted(family.members.size for family in families)
     assert sizes[-1] > 30  # full film
     assert sizes[0] == 1  # a switch on the path
-    assert friction_factors(variation, speeds) is None
     for family in families:
         if family.members.size > 1:
             # No family joins speeds on either side of another one's.
