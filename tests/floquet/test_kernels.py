@@ -9,6 +9,7 @@ import pytest
 from scipy.linalg import expm
 
 from floquet import RankOneSystem, fast_monodromies
+from floquet.kernels.eigen import spectra
 from floquet.kernels.lanes import LANES
 from floquet.kernels.majorant import MAX_TERMS, enough_terms, powers_of_radii
 from floquet.kernels.product import FORCED, divide
@@ -91,3 +92,44 @@ def test_supports_that_feed_energy_in_enter_the_bound() -> None:
     silent = fast_monodromies(replace(system, gains=replace(declared, fit_errors=np.zeros((1, 4)))))
     assert distance > 1000 * silent.errors[0]
     assert found.errors[0] < 1000 * distance
+
+
+def spectrum(M: np.ndarray, delta: float = 0.0) -> tuple[np.ndarray, np.ndarray, bool]:
+    """Eigenvalues, radii of their disks, and whether these are safe."""
+    n = len(M)
+    values, radii, safe = np.empty((1, n), dtype=complex), np.empty((1, n)), np.empty(1, dtype=bool)
+    spectra(M[None], np.array([delta]), values, radii, safe)
+    return values[0], radii[0], bool(safe[0])
+
+
+@pytest.mark.parametrize("n", [3, 4, 6])
+def test_cyclic_permutations_do_not_stall_the_iteration(n: int) -> None:
+    # Both shifts of the corner are zero, with which a sweep leaves an orthogonal matrix as it is.
+    values, _, safe = spectrum(np.roll(np.eye(n), 1, axis=0))
+    assert safe
+    roots = np.exp(2j * np.pi * np.arange(n) / n)
+    assert np.abs(values[:, None] - roots).min(axis=0).max() < 1e-14
+
+
+def test_rounding_of_the_eigenvalues_is_inside_their_disks() -> None:
+    # L D L^-1 with whole numbers, L of unit diagonal: no rounding in the matrix, eigenvalues 1 to 6.
+    rng = np.random.default_rng(21)
+    D, worst = np.diag(np.arange(1.0, 7.0)), 0.0
+    for _ in range(40):
+        L = np.eye(6) + np.tril(rng.integers(-3, 4, (6, 6)), -1)
+        M = L @ D @ np.round(np.linalg.inv(L))
+        assert (M @ L == L @ D).all()
+        values, radii, safe = spectrum(M)
+        if safe:
+            error = np.abs(np.sort(values.real) - np.arange(1, 7))
+            assert (error <= radii[np.argsort(values.real)]).all()
+            worst = max(worst, float(error.max()))
+    assert worst > 1e-13
+
+
+def test_nearly_defective_eigenvalues_are_left_to_the_careful_bound() -> None:
+    # Condition number 1/gap: beyond 1e6 rounding of the recurrence decides it.
+    for gap, trusted in ((1e-4, True), (1e-8, False)):
+        M = np.diag([0.5, 0.5 + gap, -0.3])
+        M[0, 1] = 1.0
+        assert spectrum(M)[2] == trusted
