@@ -18,12 +18,13 @@ from floquet.gear_tongues import critical_damping, label_regions
 from lumped import load_gear_pair
 from validation.cli import app
 from validation.plots.campbell import campbell_figure
-from validation.plots.labels import pretty, spread
+from validation.plots.labels import spread
 from validation.plots.multiplier_paths import multiplier_paths_figure
 from validation.plots.stability import stability_figure
 from validation.plots.tongue_chart import critical_damping_figure, tongue_chart_figure
 from validation.plots.tongues import tongues_figure
 from validation.stability_margins import stability_margins
+from validation.tongue_names import pretty
 
 
 @pytest.fixture(scope="module")

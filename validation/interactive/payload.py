@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from validation.chart_axes import operating_rpm
 from validation.interactive.results import PageResults
 from validation.interactive.slices import Slices
-from validation.plots.labels import pretty
+from validation.tongue_names import pretty
 from validation.validity import LOAD_NOISE, REVERSAL_LIMITS
 from validation.validity_map import STATES
 

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from validation.plots.style import BLACK, GREY, WIDTH
+from validation.tongue_names import pretty
 
 FloatArray = NDArray[np.float64]
 
@@ -20,16 +21,6 @@ WHITE_BOX: dict[str, Any] = {
 _FONT = 7.5
 # Upright labels need their line height; the axes take about five sixths of the figure's width.
 _GAP = 1.25 * _FONT / (72.0 * WIDTH * 5.0 / 6.0)
-
-
-def pretty(label: str) -> str:
-    """Label as written in text, with omega and indices: 2w3/5 -> 2ω₃/5."""
-    digits = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
-    out, after = "", False
-    for character in label:
-        out += character.translate(digits) if after and character.isdigit() else character.replace("w", "ω")
-        after = character == "w" or (after and character.isdigit())
-    return out.removesuffix("/1").replace("-", "−")
 
 
 def spread(places: Sequence[float] | FloatArray, gap: float, low: float, high: float) -> FloatArray:
