@@ -176,35 +176,27 @@ def margins_dataset(margins: StabilityMargins) -> xr.Dataset:
     edges = np.full((3, len(tongues), max((t.damping.size for t in tongues), default=0)), np.nan)
     for index, t in enumerate(tongues):
         edges[:, index, : t.damping.size] = t.damping, t.left, t.right
-    edge = ("tongue", "row")
-    data: dict[str, tuple[tuple[str, ...], FloatArray, dict[str, str]]] = {
-        "damping_ratio": (edge, edges[0], _attrs("1", "mesh damping ratio of a point of the edges")),
-        "lower": (edge, edges[1], _attrs("rpm", "lower edge of the tongue")),
-        "upper": (edge, edges[2], _attrs("rpm", "upper edge of the tongue")),
-    }
-    for name, values, unit, text in (
-        (
-            "critical_damping",
-            [t.critical_damping for t in tongues],
-            "1",
-            "mesh damping that closes the tongue",
-        ),
-        ("tip_speed", [t.tip_speed for t in tongues], "rpm", "pinion speed where the tongue closes"),
-        ("peak_radius", [t.radius for t in tongues], "1", "largest multiplier without mesh damping"),
-    ):
-        data[name] = (("tongue",), np.array(values), _attrs(unit, text))
+    tips = np.array([(t.critical_damping, t.tip_speed, t.radius) for t in tongues]).reshape(-1, 3).T
+    edge, tip = ("tongue", "row"), ("tongue",)
+    columns = (
+        ("damping_ratio", edge, edges[0], "1", "mesh damping ratio of a point of the edges"),
+        ("lower", edge, edges[1], "rpm", "lower edge of the tongue"),
+        ("upper", edge, edges[2], "rpm", "upper edge of the tongue"),
+        ("critical_damping", tip, tips[0], "1", "mesh damping that closes the tongue"),
+        ("tip_speed", tip, tips[1], "rpm", "pinion speed where the tongue closes"),
+        ("peak_radius", tip, tips[2], "1", "largest multiplier without mesh damping"),
+    )
     return xr.Dataset(
-        data,
+        {
+            name: (dims, values, {"units": unit, "long_name": text})
+            for name, dims, values, unit, text in columns
+        },
         coords={"label": ("tongue", np.array([t.label for t in tongues], dtype=object))},
         attrs={
             "title": "tongues of instability over speed and mesh damping",
             "friction_coefficient_held": margins.friction_coefficient,
         },
     )
-
-
-def _attrs(units: str, long_name: str) -> dict[str, str]:
-    return {"units": units, "long_name": long_name}
 
 
 def feedback_radius(pair: GearPair) -> Radius:
@@ -235,9 +227,9 @@ def _windows(intervals: list[UnstableInterval], limits: tuple[float, float]) -> 
     while it closes it, but not beyond half the way to a neighbour.
     """
     middles = [0.5 * (a.upper + b.lower) for a, b in itertools.pairwise(intervals)]
-    left, right = [limits[0], *middles], [*middles, limits[1]]
+    ends = [limits[0], *middles, limits[1]]
     windows = []
-    for interval, low, high in zip(intervals, left, right, strict=True):
+    for interval, low, high in zip(intervals, ends, ends[1:], strict=False):  # without a tongue, none
         aside = 0.25 * (interval.upper - interval.lower)
         windows.append((max(interval.lower - aside, low), min(interval.upper + aside, high)))
     return windows

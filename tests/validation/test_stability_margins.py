@@ -13,7 +13,7 @@ from floquet.vaishya_singh import CoulombGearPair
 from lumped import geometry, load_gear_pair, periodic_system
 from lumped.bodies import bodies
 from validation.plots.tongues import tongues_figure
-from validation.stability_margins import stability_margins
+from validation.stability_margins import margins_dataset, stability_margins
 
 MU = 0.2
 
@@ -131,3 +131,11 @@ def test_the_nearest_unstable_speed_is_the_nearest_edge(margins, rpm: float, nea
     assert here.nearest_unstable == nearest
     assert here.speed_margin == abs(rpm - nearest)
     assert replace(margins, unstable_here=np.empty((0, 2))).speed_margin is None
+
+
+def test_a_range_without_a_tongue_has_no_margins_but_an_answer(pair) -> None:
+    found = stability_margins(pair, (1000.0, 1100.0))
+    assert found.tongues == ()
+    assert found.critical_damping == 0.0
+    assert (found.nearest, found.nearest_unstable, found.law_difference) == (None, None, None)
+    assert margins_dataset(found).sizes["tongue"] == 0

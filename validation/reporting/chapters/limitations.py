@@ -88,13 +88,16 @@ def _rows(results: Results) -> Rows:
             Badge("prediction", "by assumption"),
         )
     )
+    margins = results.margins
+    tongues = "the range has no tongue"
+    if margins.tongues:
+        tongues = f"every tongue of the range closes at {number(margins.critical_damping, 3)}"
     rows.append(
         (
             "Damping in the mesh is viscous, a constant ratio.",
             "The ratio sets peaks at resonance and the width of tongues.",
-            f"ratio {results.pair.mesh.damping_ratio:g}; every tongue of the range closes at "
-            f"{number(results.margins.critical_damping, 3)}",
-            Badge("ok" if results.pair.mesh.damping_ratio > results.margins.critical_damping else "warning"),
+            f"ratio {results.pair.mesh.damping_ratio:g}; {tongues}",
+            Badge("ok" if results.pair.mesh.damping_ratio >= margins.critical_damping else "warning"),
         )
     )
     return rows
