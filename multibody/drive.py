@@ -96,7 +96,10 @@ def drive_tables(
 def _history(name: str, history: tuple[ArrayLike, ArrayLike] | None, default: float) -> FloatArray:
     if history is None:
         return np.array([[0.0, default]])
-    times, values = (np.atleast_1d(np.asarray(part, dtype=float)) for part in history)
+    try:
+        times, values = (np.atleast_1d(np.asarray(part, dtype=float)) for part in history)
+    except (TypeError, ValueError):  # no pair, or no numbers
+        times = values = np.empty(0)
     good = times.ndim == 1 and times.shape == values.shape and times.size > 0
     if not good or not (np.isfinite(times).all() and np.isfinite(values).all()):
         raise refuse(

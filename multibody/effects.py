@@ -60,7 +60,7 @@ def active_effects(flags: int) -> tuple[str, ...]:
 
 
 def _check(names: Collection[str]) -> None:
-    given = [names] if isinstance(names, str) else names
+    given = names if isinstance(names, Collection) and not isinstance(names, str) else [names]
     for name in given:
-        if name not in EFFECTS or isinstance(names, str):
+        if given is not names or not isinstance(name, str) or name not in EFFECTS:
             raise refuse("effects", name, f"a set out of {sorted(EFFECTS)}", "Name the effects to keep.")

@@ -34,6 +34,8 @@ MOST_CYCLES = 100_000
 CALL_LIMIT, _ORDINARY_VIBRATIONS = 400_000, 80
 #: Most vibrations in a mesh cycle: up to half a million force evaluations, a second or two.
 _MOST_VIBRATIONS = 500
+#: Largest static deflection over the base pitch: the pairing of flanks is lost at half a pitch.
+_MOST_DEFLECTION = 0.25
 #: exudyn has one absolute tolerance for coordinates and rates. It is set for the rates: this share of a
 #: static deflection per mesh cycle, times rtol. With a tenth of it the step shrinks to nothing where little
 #: moves off the line of action (50/50 pair, law III, low speed and torque, rtol 1e-9); with much less, a rate
@@ -137,6 +139,13 @@ def prepare(
             state[7] += tables.motor[0, 1] * numbers.parameters[kn.OMEGA_G] / omega
     q, v = from_lumped_state(state)
     deflection = numbers.torque_pinion / numbers.parameters[kn.RADIUS_P] / mean_mesh_stiffness(system.cycle)
+    if fidelity == "exact" and deflection > _MOST_DEFLECTION * numbers.parameters[kn.PITCH]:
+        raise refuse(
+            "operating.pinion_torque",
+            f"{numbers.torque_pinion:.4g} N m",
+            f"a static deflection below {_MOST_DEFLECTION:g} of a base pitch",
+            f"The mesh would yield by {deflection * 1e3:.3g} mm and skip teeth. Lower it.",
+        )
     names = active_effects(flags)
     attributes = provenance(
         pair, fidelity=fidelity, effects=names, rtol=rtol, friction_velocity=velocity, drive=drive

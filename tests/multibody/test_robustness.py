@@ -143,6 +143,11 @@ def test_nothing_is_written_to_the_console(capfd):
         ({"effects": {"gravity"}}, "effects"),
         ({"effects": "contact_loss"}, "effects"),
         ({"effects": {"contact_loss": "no"}}, "effects.contact_loss"),
+        ({"effects": 5}, "effects"),
+        ({"effects": [["contact_loss"]]}, "effects"),
+        ({"drive": multibody.Drive(pinion_torque=5.0)}, "drive.pinion_torque"),
+        ({"drive": multibody.Drive(brake_torque=(["much"], [1.0]))}, "drive.brake_torque"),
+        ({"drive": multibody.Drive(pinion_torque=([0.0, 1.0], [1.0, np.nan]))}, "drive.pinion_torque"),
         ({"effects": {"contact_loss"}, "fidelity": "linear"}, "effects"),
         ({"friction_velocity": -1.0}, "friction_velocity"),
         ({"friction_velocity": float("nan")}, "friction_velocity"),
@@ -162,10 +167,12 @@ def test_arguments_without_sense_are_refused(options, field):
         (lambda: multibody.speed_sweep(PAIR, [3000], cycles=0), "cycles"),
         (lambda: multibody.speed_sweep(PAIR, [3000], settle=-5), "settle"),
         (lambda: multibody.monodromy(PAIR, iterations=-1), "iterations"),
+        (lambda: multibody.simulate(PAIR.with_(operating__pinion_torque=1e7), 1), "pinion_torque"),
     ],
 )
-def test_counts_without_sense_are_refused(call, field):
-    """A ledger over no cycle balances, and a flow map without iterations looks like any other."""
+def test_calls_without_sense_are_refused(call, field):
+    """A ledger over no cycle balances, a flow map without iterations looks like any other, and so does a run
+    in which flanks are paired with those of the next tooth."""
     with pytest.raises(lumped.ParameterError, match=field):
         call()
 
