@@ -58,6 +58,24 @@ def test_a_thin_tongue_near_its_line_is_not_lost(offset: float) -> None:
     assert not unstable_intervals(radius, np.linspace(500.0, 20000.0, 100))  # the even grid alone loses it
 
 
+def test_a_peak_above_one_between_two_samples_below_one_is_found() -> None:
+    def radius(x: np.ndarray) -> np.ndarray:
+        return 0.999 + 0.002 * np.exp(-np.square(x - 5.0))
+
+    nodes = np.arange(0.0, 11.0, 2.0)
+    assert radius(nodes).max() < 1.0
+    (found,) = unstable_intervals(radius, nodes)
+    reach = np.sqrt(np.log(2.0))
+    assert (found.lower, found.upper) == pytest.approx((5.0 - reach, 5.0 + reach), rel=1e-6)
+    assert found.peak == pytest.approx(5.0, abs=0.01)
+    assert not found.open_below
+    assert not found.open_above
+    (cut,) = unstable_intervals(radius, np.array([0.0, 3.0, 4.5, 5.0]))
+    assert cut.open_above
+    assert cut.upper == 5.0
+    assert not unstable_intervals(lambda x: 1.0 + 1e-10 * np.cos(x), nodes)  # below the threshold
+
+
 def test_lines_are_sums_and_differences_of_frequencies(pair) -> None:
     lines = predicted_lines(pair, orders=3)
     assert len(lines) == 3 * (6 + 3)  # 6 sums of 3 modes, 3 differences
