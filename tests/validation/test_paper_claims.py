@@ -109,6 +109,15 @@ def test_the_motions_behind_the_claims_are_judged_by_their_worst(pair, stated):
         assert stated[f"min_load_{figure}"] == pytest.approx(min(loads), rel=1e-6)
 
 
+def test_orders_of_largest_spread_are_stated_absolute_and_relative(pair, stated):
+    laws = numbers.law_cycles(FIGURE_4.of(pair))
+    for name in ("x_p", "y_p", "dte"):
+        absolute, relative = numbers.spread_by_order(laws, name)
+        assert stated[f"order_{name}"] == 1 + np.argmax(absolute)
+        assert stated[f"relative_order_{name}"] == 1 + np.argmax(relative)
+    assert stated["order_y_p"] != stated["relative_order_y_p"]
+
+
 def test_every_claim_has_a_number_a_criterion_and_a_verdict(table):
     names = {c.name for c in table.claims}
     assert len(names) == len(RULES) == 12
@@ -137,6 +146,8 @@ def test_whatever_is_not_reproduced_says_why(stated):
             claim = judged(dataclasses.replace(rule, holds=lambda _, h=holds: h), stated, None, {})
             outcomes[claim.verdict] += 1
             assert claim.verdict == "reproduced" or claim.reason
+            if not rule.unpublished:
+                assert claim.reason == (rule.remark if holds else rule.otherwise)
             if claim.reason:
                 assert len(claim.reason) > 40
     assert outcomes == {"reproduced": 8, "not reproduced": 8, "cannot be judged": 8}
