@@ -141,10 +141,12 @@ def test_friction_holds_where_it_can_take_all_of_the_sliding_acceleration():
     taken = 0.05 * motion.load[at] * mobility
     slope = (way[at - 1] - way[at - 2]) / (motion.place[at - 1] - motion.place[at - 2])
     before = slope * (g.omega_pinion + g.omega_gear) * g.omega_pinion * g.base_radius_pinion
-    assert 0.0 < taken < before  # approach: friction hurries the sliding on, by as much as it then takes
+    assert (
+        0.02 * before < taken < before
+    )  # approach: friction hurries the sliding on, by as much as it then takes
     free = before - taken
     # The same motion with more friction at zero sliding alone, as if the law rose there.
-    for share, held in ((0.9, False), (1.1, True)):
+    for share, held in ((0.99, False), (1.01, True)):
         friction = PathFunction.constant(0.05 * share * free / taken, g.L_XA, g.L_XD)
         laws = replace(cycle.elements, friction=friction)
         steep = replace(model, cycle=replace(cycle, elements=laws))
