@@ -108,7 +108,7 @@ def test_what_is_left_vanishes_faster_than_the_motion():
 
 
 def test_the_turned_line_moves_the_vibration_and_with_it_the_reversal():
-    """The spring N/L between y_p and y_g detunes the bearings of the slow 50/50 pair by some 1e-3 only.
+    """The spring N/L between y_p and y_g changes the frequencies of the 50/50 pair's bearings by 4e-5 only.
 
     Added to y afterwards, without what that y does to friction, it leaves 1.7 times the shift.
     """
