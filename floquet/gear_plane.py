@@ -138,9 +138,11 @@ def plane_multipliers(
         row[family.members] = np.arange(family.members.size)
         part = np.flatnonzero(row[which] >= 0)
         variation = plane.variation(family.speed_rpm)
+        several = interpolate and family.members.size > _FEW_SPEEDS
+        # Interpolation multiplies the bounds at its nodes, most of which is the fit of the law, by 9 to 13.
         block = gear_block(
             variation,
-            rtol=max(0.01 * rtol, 1e-12),
+            rtol=max((0.002 if several else 0.01) * rtol, 1e-12),
             friction_apart=variation.pair.friction.law != "none",
             friction_level=family.level,
         )
@@ -157,7 +159,7 @@ def plane_multipliers(
             store.put(part[index], found, exponents[None, :] * periods[index, None])
 
         done = False
-        if interpolate and family.members.size > _FEW_SPEEDS:
+        if several:
             done = _interpolated(
                 block, variation, family, periods, damping[part], friction[part], rtol, threads, put
             )

@@ -86,6 +86,15 @@ def test_chart_agrees_with_the_direct_one(pair, law: str, axes: dict[str, object
     assert (direct.verdict == fast.verdict).all()
 
 
+def test_bound_asked_for_is_the_bound_given(pair) -> None:
+    # Law II needs the finest fit, and the Lebesgue constants multiply its bound; near defective multipliers,
+    # a curve in the plane of speed and damping, the bound of a multiplier is larger than that of the matrix.
+    law = pair.with_({"friction.law": "benedict_kelley"})
+    axes = {"speed_rpm": np.linspace(2000.0, 20000.0, 100), "damping_ratio": np.linspace(0.0, 0.1, 20)}
+    chart = stability_chart(law, axes, rtol=1e-8, method="chebyshev")
+    assert float((chart.error > 1e-8).mean()) < 0.01
+
+
 def test_interpolation_needs_speeds(pair) -> None:
     with pytest.raises(ParameterError, match="speed_rpm"):
         stability_chart(pair, {"damping_ratio": [0.0, 0.1]}, method="chebyshev")
