@@ -5,6 +5,8 @@ Sources: Blanes, Casas, Oteo and Ros, Physics Reports 470 (2009) 151-238.
 
 from __future__ import annotations
 
+from abc import abstractmethod
+
 import numpy as np
 from scipy.linalg import expm
 
@@ -22,9 +24,9 @@ class _Exponential(Propagator):
         self.name, self.order = name, order
         self.nodes = butcher_gauss(stages)[2]
 
+    @abstractmethod
     def exponent(self, hA: FloatArray) -> FloatArray:
         """Exponent Omega (k, n, n) of the step from h A at the nodes, (k, s, n, n)."""
-        raise NotImplementedError
 
     def step_matrices(self, A: FloatArray, h: FloatArray) -> FloatArray:
         """See `Propagator.step_matrices`; exp(Omega)."""

@@ -122,7 +122,8 @@ def test_growth_comes_closer_to_floquet_with_falling_torque():
         pair = TONGUE.with_(operating__pinion_torque=56.5 * part)
         predicted = np.log(floquet.gear_pair_multipliers(pair).spectral_radius)
         off.append(np.log(multibody.monodromy(pair).spectral_radius) / predicted - 1.0)
-    assert off[0] / off[1] == pytest.approx(4.0, rel=0.1)
+    # In proportion to the torque but for its square, a few times 1.5 % here.
+    assert off[0] / off[1] == pytest.approx(4.0, rel=0.04)
 
 
 @pytest.mark.slow

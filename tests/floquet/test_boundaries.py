@@ -122,6 +122,7 @@ def test_coverage_counts_what_is_missed(pair) -> None:
     assert without.missed_nodes == without.unstable_nodes == whole.unstable_nodes > 20
     width = found.interval_upper - found.interval_lower
     half = boundary_coverage(found.assign(interval_upper=found.interval_upper - 0.5 * width), chart)
+    # Counting error of one node at the moved end.
     assert half.missed_nodes == pytest.approx(0.5 * whole.unstable_nodes, abs=1)
     wide = boundary_coverage(found.assign(interval_upper=found.interval_upper + 0.5 * width), chart)
     assert wide.missed_nodes == 0

@@ -170,7 +170,8 @@ def finite_motions(check: CrossCheck) -> str:
     understood, and so within its tolerance, is still one.
     """
     exact = check.of("exact")
-    largest = max(exact, key=lambda a: a.relative_l2)
+    # To the digits printed: the bodies of a 1:1 pair differ by rounding, and the first is named every time.
+    largest = max(exact, key=lambda a: float(f"{a.relative_l2:.2g}"))
     dte = next((a for a in exact if a.quantity == "dte"), largest)
     most = ""
     if largest.quantity != dte.quantity:
