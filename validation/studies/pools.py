@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import importlib
 import os
 import signal
@@ -182,7 +183,6 @@ class DaskPool:
                 "scheduler", address, "address of a running scheduler with workers", f"No answer: {error}."
             ) from None
         self.died: tuple[type[BaseException], ...] = (distributed.scheduler.KilledWorker,)
-        self._executor = self._client.get_executor(pure=False)
         self._without_workers: float | None = None
         self.slots = self._threads()
 
@@ -192,10 +192,17 @@ class DaskPool:
     def submit(self, work: Work, *arguments: Any) -> Future[Batch]:
         """Send a batch to the scheduler."""
         try:
-            future: Future[Batch] = self._executor.submit(work, *arguments)
+            task = self._client.submit(work, *arguments, pure=False)
         except Exception as error:
             raise self._lost(error) from error
-        return future
+
+        # The client's own executor never ends the future of a batch whose result is lost with its worker
+        # before it was fetched, when the scheduler then gives the batch up.
+        async def outcome() -> Batch:
+            batch: Batch = await task
+            return batch
+
+        return asyncio.run_coroutine_threadsafe(outcome(), self._client.loop.asyncio_loop)
 
     def check(self) -> None:
         """Stop when the scheduler is gone, or has been without workers for long; follow a growing cluster."""
@@ -228,8 +235,6 @@ class DaskPool:
     def close(self) -> None:
         """Leave the cluster running and disconnect."""
         with suppress(Exception):  # a scheduler that is gone cannot say goodbye
-            self._executor.shutdown(wait=False)
-        with suppress(Exception):
             self._client.close(timeout=5)
 
 

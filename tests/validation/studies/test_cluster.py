@@ -74,6 +74,38 @@ def test_a_case_that_kills_every_worker_is_found_out(study, tmp_path, cluster, m
     assert again.results.read_bytes() == undisturbed
 
 
+def test_a_result_lost_before_it_is_fetched_ends_its_future(tmp_path, cluster):
+    # The batch is done, its worker dies before the result is fetched, and computing it again kills the next.
+    second = tmp_path / "computed once"
+
+    def work():
+        if second.exists():
+            os.kill(os.getpid(), signal.SIGKILL)
+        second.touch()
+        return os.getpid()
+
+    pool = pools.DaskPool(cluster.scheduler_address)
+    pool._client.run_on_scheduler(lambda dask_scheduler: setattr(dask_scheduler, "allowed_failures", 0))
+    fetch, killed = pool._client._gather, []
+
+    async def late(tasks, *arguments, **options):
+        if not killed:
+            (holder,) = next(iter((await pool._client.who_has(tasks)).values()))
+            killed.append(pid_of[holder])
+            os.kill(killed[0], signal.SIGKILL)
+        return await fetch(tasks, *arguments, **options)
+
+    pid_of = pool._client.run(os.getpid)
+    pool._client._gather = late
+    try:
+        error = pool.submit(work).exception(timeout=60)
+    finally:
+        pool.close()
+    assert killed
+    assert second.exists()
+    assert isinstance(error, pool.died)
+
+
 def test_a_lost_scheduler_stops_the_sweep_and_nothing_is_lost(study, tmp_path, undisturbed):
     cluster = distributed.LocalCluster(
         n_workers=1, threads_per_worker=1, dashboard_address=None, silence_logs=50
