@@ -31,7 +31,7 @@ def compute() -> xr.Dataset:
     """Mesh efficiency over torque with two friction laws, computed by two workers of a local cluster."""
     with (
         tempfile.TemporaryDirectory() as folder,
-        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster,
     ):
         run_sweep(load_study(STUDY), Path(folder, "out"), scheduler=cluster.scheduler_address)
         return read_results(Path(folder, "out")).load()

@@ -115,7 +115,7 @@ class Dispatcher:
             return None
         except CancelledError as error:
             raise SweepStopped(
-                "The scheduler dropped a batch: check it, then run the same command with --resume."
+                "The scheduler is gone or dropped a batch: check it, then run the same command with --resume."
             ) from error
         except Exception as error:
             raise SweepStopped(

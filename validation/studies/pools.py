@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import importlib
+import logging
 import os
 import signal
 import threading
@@ -18,7 +19,7 @@ from validation.studies.batch import Batch
 from validation.studies.case_process import end_idle
 
 Work = Callable[..., Batch]
-#: How long a cluster may be without any worker before the sweep stops [s].
+#: How long a cluster may be without workers, or its scheduler without an answer, before the sweep stops [s].
 WORKER_WAIT = 60.0
 _CONNECT_SECONDS = 20.0
 _ONE_THREAD = dict.fromkeys(
@@ -160,6 +161,10 @@ class ProcessPool:
             self._executor.shutdown(wait=True, kill_workers=True)
 
 
+def _nothing(record: logging.LogRecord) -> bool:
+    return False
+
+
 class DaskPool:
     """A Dask cluster by the address of its scheduler; spurcheck must be installed on its workers."""
 
@@ -177,17 +182,25 @@ class DaskPool:
             ) from None
         try:
             self._client: Any = distributed.Client(address, timeout=_CONNECT_SECONDS, set_as_default=False)
-            self._client.wait_for_workers(1, timeout=WORKER_WAIT)
+            self.slots = self._first_threads()
         except (OSError, ValueError, TimeoutError) as error:
             raise refuse(
                 "scheduler", address, "address of a running scheduler with workers", f"No answer: {error}."
             ) from None
         self.died: tuple[type[BaseException], ...] = (distributed.scheduler.KilledWorker,)
         self._without_workers: float | None = None
-        self.slots = self._threads()
+
+    def _first_threads(self) -> int:
+        end = time.monotonic() + WORKER_WAIT
+        while not (threads := self._threads()):
+            if time.monotonic() > end:
+                raise TimeoutError(f"no worker came in {WORKER_WAIT:g} s")
+            time.sleep(0.1)
+        return threads
 
     def _threads(self) -> int:
-        return sum(self._client.nthreads().values())
+        # Without a limit a scheduler that stands still, its connection alive, would be waited for for ever.
+        return sum(self._client.nthreads(callback_timeout=WORKER_WAIT).values())
 
     def submit(self, work: Work, *arguments: Any) -> Future[Batch]:
         """Send a batch to the scheduler."""
@@ -234,8 +247,11 @@ class DaskPool:
 
     def close(self) -> None:
         """Leave the cluster running and disconnect."""
+        log = logging.getLogger("distributed.client")
+        log.addFilter(_nothing)  # it prints the traceback of a reconnection that this ends
         with suppress(Exception):  # a scheduler that is gone cannot say goodbye
             self._client.close(timeout=5)
+        log.removeFilter(_nothing)
 
 
 def pool_of(workers: int, scheduler: str | None, todo: int) -> Pool:

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
+import subprocess
+import sys
+import threading
+import time
 
 import pytest
 
@@ -28,7 +33,7 @@ def cluster():
         threads_per_worker=1,
         processes=True,
         protocol="tcp",
-        dashboard_address=None,
+        dashboard_address=":0",
         silence_logs=50,
     ) as cluster:
         yield cluster
@@ -108,7 +113,7 @@ def test_a_result_lost_before_it_is_fetched_ends_its_future(tmp_path, cluster):
 
 def test_a_lost_scheduler_stops_the_sweep_and_nothing_is_lost(study, tmp_path, undisturbed):
     cluster = distributed.LocalCluster(
-        n_workers=1, threads_per_worker=1, dashboard_address=None, silence_logs=50
+        n_workers=1, threads_per_worker=1, dashboard_address=":0", silence_logs=50
     )
     computed = []
 
@@ -122,6 +127,67 @@ def test_a_lost_scheduler_stops_the_sweep_and_nothing_is_lost(study, tmp_path, u
     summary = run_sweep(study, tmp_path / "out", resume=True, workers=2)
     assert summary.before >= computed[2]
     assert summary.results.read_bytes() == undisturbed
+
+
+@pytest.fixture
+def scheduler(tmp_path):
+    """Process of a scheduler with one worker, and its address."""
+    known = tmp_path / "scheduler.json"
+    options = ["--port", "0", "--dashboard-address", ":0", "--scheduler-file", str(known)]
+    worker_options = ["--nthreads", "1", "--no-nanny"]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    run = [sys.executable, "-m"]
+    process = subprocess.Popen([*run, "distributed.cli.dask_scheduler", *options], **quiet)
+    while not known.exists():
+        assert process.poll() is None
+        time.sleep(0.1)
+    address = json.loads(known.read_text())["address"]
+    worker = subprocess.Popen([*run, "distributed.cli.dask_worker", address, *worker_options], **quiet)
+    yield process, address
+    for each in (process, worker):
+        each.kill()
+        each.wait()
+
+
+def test_a_scheduler_that_stands_still_stops_the_sweep(study, tmp_path, scheduler, monkeypatch, undisturbed):
+    process, address = scheduler
+
+    def freeze(done, total, failed):
+        monkeypatch.setattr(pools, "WORKER_WAIT", 2.0)
+        process.send_signal(signal.SIGSTOP)  # its connections stay open
+        thaw.start()  # so that a client that waits for ever fails this test instead of hanging it
+
+    thaw = threading.Timer(30.0, process.send_signal, [signal.SIGCONT])
+    with pytest.raises(SweepStopped, match="--resume"):
+        run_sweep(study, tmp_path / "out", scheduler=address, progress=freeze)
+    thaw.cancel()
+    summary = run_sweep(study, tmp_path / "out", resume=True)
+    assert summary.before > 0
+    assert summary.results.read_bytes() == undisturbed
+
+
+def test_the_command_says_in_one_line_that_the_scheduler_died(make_study, tmp_path, scheduler):
+    process, address = scheduler
+    long = make_study(
+        analysis="multibody",
+        outputs=["dte_rms"],
+        settings={"cycles": 100_000},
+        axes=[{"field": "operating.pinion_speed", "values": [2000, 3000]}],
+    )
+    (tmp_path / "long.toml").write_text(long.to_toml())
+    command = [sys.executable, "-m", "validation.cli", "sweep", "long.toml", "--scheduler", address]
+    sweep = subprocess.Popen(
+        command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
+    while not (tmp_path / "long-sweep" / "journal.bin").exists():
+        assert sweep.poll() is None
+        time.sleep(0.1)
+    time.sleep(1.0)  # the cases are on their way
+    process.kill()
+    text, _ = sweep.communicate(timeout=60)
+    assert sweep.returncode == 3
+    assert "--resume" in text
+    assert "Traceback" not in text
 
 
 def test_no_scheduler_is_refused(study, tmp_path, monkeypatch):
@@ -141,7 +207,7 @@ def test_the_time_limit_holds_on_threads_of_a_worker(study, make_study, tmp_path
         axes=[{"field": "operating.pinion_speed", "values": [2000, 3000]}],
     )
     with distributed.LocalCluster(
-        n_workers=1, threads_per_worker=2, protocol="tcp", dashboard_address=None, silence_logs=50
+        n_workers=1, threads_per_worker=2, protocol="tcp", dashboard_address=":0", silence_logs=50
     ) as cluster:
         address = cluster.scheduler_address
         summary = run_sweep(endless, tmp_path / "endless", scheduler=address, case_seconds=2.0)
