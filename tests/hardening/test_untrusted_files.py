@@ -10,7 +10,7 @@ import pytest
 
 from lumped import load_gear_pair
 from lumped.errors import ParameterError
-from validation.studies import StoreError, load_study, run_sweep
+from validation.studies import StoreError, load_study, read_results, run_sweep
 
 HOSTILE_NAMES = [
     "../../outside",
@@ -42,10 +42,13 @@ def study(**changes):
 
 @pytest.mark.parametrize("name", HOSTILE_NAMES)
 def test_text_in_a_study_is_only_text(tmp_path, monkeypatch, name):
-    monkeypatch.chdir(tmp_path)
+    inner = tmp_path / "a" / "b"  # two folders deep, so that ../../outside is seen
+    inner.mkdir(parents=True)
+    monkeypatch.chdir(inner)
     pair = load_gear_pair("nasa_28_28").with_(name=name, description=name)
-    run_sweep(study(name=name, description=name, gear_pair=pair), tmp_path / "out")
-    assert files_below(tmp_path) == ["out/journal.bin", "out/results.nc", "out/study.toml"]
+    run_sweep(study(name=name, description=name, gear_pair=pair), inner / "out")
+    assert files_below(tmp_path) == [f"a/b/out/{file}" for file in ("journal.bin", "results.nc", "study.toml")]
+    assert not os.path.exists("/tmp/outside")
 
 
 @pytest.mark.parametrize("text", ["a\x1b]0;owned\x07b", "a\0b", "a\x9b31m"])
@@ -88,8 +91,12 @@ def test_links_in_the_output_folder_are_not_followed(tmp_path, name):
     target = tmp_path / "precious"
     target.write_text("do not touch")
     out = tmp_path / "out"
-    out.mkdir()
+    run_sweep(study(), out)  # or a folder with these names would be refused as somebody else's
+    (out / name).unlink(missing_ok=True)
     os.symlink(target, out / name)
-    with contextlib.suppress(ParameterError, StoreError):
+    refused = pytest.raises(StoreError, match="symbolic link")
+    with refused if name == "journal.bin" else contextlib.nullcontext():
         run_sweep(study(), out, resume=True)
+    with refused if name in ("journal.bin", "study.toml") else contextlib.nullcontext():
+        read_results(out)
     assert target.read_text() == "do not touch"
