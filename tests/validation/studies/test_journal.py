@@ -6,6 +6,7 @@ import hashlib
 import math
 import os
 import struct
+import zlib
 
 import pytest
 from hypothesis import given
@@ -65,6 +66,40 @@ def test_no_flipped_bit_passes(record, data):
     bit = data.draw(st.integers(0, 8 * len(whole) - 1))
     whole[bit // 8] ^= 1 << bit % 8
     assert decode(bytes(whole), 0, 2, 7) is None
+
+
+#: Codes in the stores that users have: a new meaning takes a new number, none is ever given away again.
+CODES = {
+    "OK": 0,
+    "OUTSIDE_LAW_RANGE": 1,
+    "REFUSED": 2,
+    "NUMERICAL": 3,
+    "UNEXPECTED": 4,
+    "WORKER_DIED": 5,
+    "TIME_LIMIT": 6,
+    "SESSION": 100,
+}
+
+
+def stored(code, content, case=7, seed=9):
+    """A record by the description of its format, every number little-endian."""
+    head = b"\xc5SPc" + struct.pack("<IQBf", len(content), case, code, 0.5) + content
+    return head + struct.pack("<I", zlib.crc32(head, seed))
+
+
+def test_the_format_is_that_of_the_stores_there_are():
+    assert {status.name: int(status) for status in Status if status is not Status.MISSING} == CODES
+    for name, code in CODES.items():
+        values = () if Status[name].failed else (1.5, -0.0)
+        data = stored(code, struct.pack(f"<{len(values)}d", *values) + "é".encode())
+        record = Record(7, Status[name], 0.5, values, "é")
+        assert encode(record, 2, 9) == data
+        assert decode(data, 0, 2, 9) == (record, len(data))
+
+
+@pytest.mark.parametrize("code", [7, 99, 255])  # 255: the byte of MISSING, which is never written
+def test_a_status_that_only_a_later_version_knows_is_no_record(code):
+    assert decode(stored(code, b""), 0, 2, 9) is None
 
 
 def sample_records(count):
