@@ -102,7 +102,8 @@ def radius_with_bound(multipliers: ComplexArray, bounds: FloatArray) -> tuple[fl
     """Spectral radius and a bound on its error from multipliers and their bounds."""
     modulus = np.abs(multipliers)
     radius = float(modulus.max())
-    return radius, float(max((modulus + bounds).max() - radius, radius - (modulus - bounds).max()))
+    # No more than this below: the largest multiplier's own bound, which is at most as much.
+    return radius, float((modulus + bounds).max()) - radius
 
 
 def verdict(radius: float, error: float) -> str:
@@ -116,8 +117,7 @@ def radii_with_bounds(multipliers: ComplexArray, errors: FloatArray) -> tuple[Fl
     """Largest |multiplier| of each row, (N, n) -> (N,), and a bound on its error."""
     modulus = np.abs(multipliers)
     radius = modulus.max(axis=1)
-    high, low = (modulus + errors).max(axis=1), (modulus - errors).max(axis=1)
-    return radius, np.maximum(high - radius, radius - low)
+    return radius, (modulus + errors).max(axis=1) - radius
 
 
 def verdicts(radius: FloatArray, error: FloatArray) -> npt.NDArray[np.int8]:

@@ -7,6 +7,14 @@ import pytest
 from scipy.linalg import expm
 
 from floquet import PROPAGATORS, PeriodicSystem, monodromy
+from floquet.multipliers import (
+    _cluster_data,
+    multipliers_with_bounds,
+    radii_with_bounds,
+    radius_with_bound,
+    verdict,
+    verdicts,
+)
 
 
 def distances(computed: np.ndarray, exact: np.ndarray) -> np.ndarray:
@@ -106,3 +114,73 @@ def test_tolerance_is_met_by_every_method(known_system, method: str) -> None:
     system, exact = known_system(B, 0.3 * S, 1.0)
     result = monodromy(system, rtol=1e-7, method=method)
     assert np.linalg.norm(result.matrix - exact, 2) < 1e-6 * np.linalg.norm(exact, 2)  # rtol, other norm
+
+
+@pytest.mark.parametrize("share", [0.01, 0.5, 0.99])
+def test_the_bound_of_a_multiplier_holds_for_the_worst_error_of_the_matrix(share: float) -> None:
+    # M has the multipliers 0 and 1 with projectors of norm p. E = delta y x' with the left and right vectors
+    # of 0 moves it by p delta and, as tr(M + E) = 1 + delta / p and det(M + E) = p delta, by a positive rest.
+    a = 2.0
+    p = np.sqrt(1.0 + a**2)
+    delta = share * 0.25 / p  # 4 p delta < 1, the distance of the two: beyond it they share one bound
+    values, bounds = multipliers_with_bounds(np.array([[0.0, a], [0.0, 1.0]]), delta)
+    E = delta / p * np.array([[1.0, 0.0], [-a, 0.0]])
+    assert np.linalg.norm(E, 2) == pytest.approx(delta, rel=1e-14)
+    trace = 1.0 + delta / p
+    moved = 2.0 * p * delta / (trace + np.sqrt(trace**2 - 4.0 * p * delta))
+    assert moved > p * delta
+    assert values[1] == 0.0
+    assert moved <= bounds[1] <= 2.0 * p * delta  # nor is it more than 2 (p delta)^2 / (1 / 2) above p delta
+
+
+def test_rounding_of_the_eigenvalues_themselves_is_in_the_bound() -> None:
+    # Unimodular changes of variables: integer matrices, exact in floating point, with multipliers 1 to 5.
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        U, L = (np.eye(5) + np.triu(rng.integers(-2, 3, (5, 5)), 1) for _ in range(2))
+        S = U @ L.T
+        M = S @ np.diag([1.0, 2.0, 3.0, 4.0, 5.0]) @ np.rint(np.linalg.inv(S))
+        values, bounds = multipliers_with_bounds(M, 0.0)
+        assert (np.abs(values - [5.0, 4.0, 3.0, 2.0, 1.0]) <= bounds).all()
+
+
+def test_the_separation_of_a_cluster_is_never_overestimated() -> None:
+    # LAPACK's estimate of 1/|inv(T22 - T11)| may be too large by sqrt(2) here, and is for the first matrix:
+    # of inv(T22) = [[1, 1], [0, e]] the 1-norm is 1 + e, the 2-norm about sqrt(2).
+    rng = np.random.default_rng(5)
+    random = [np.triu(rng.normal(size=(3, 3))) for _ in range(20)]
+    for T in [np.array([[0.0, 0.0, 0.0], [0.0, 1.0, -100.0], [0.0, 0.0, 100.0]]), *random]:
+        true = np.linalg.svd(T[1:, 1:] - T[0, 0] * np.eye(2), compute_uv=False)[-1]
+        _, separation, _ = _cluster_data(T.astype(complex), np.eye(3, dtype=complex), [0])
+        assert 0.0 < separation <= true * (1.0 + 1e-12)  # rounding
+
+
+def test_a_radius_whose_interval_ends_at_1_is_undecided() -> None:
+    ends = [(0.75, 0.25), (1.25, 0.25), (1.0, 0.0)]
+    inside = [(0.5, 0.25), (1.5, 0.25)]
+    assert [verdict(*each) for each in ends + inside] == ["undecided"] * 3 + ["stable", "unstable"]
+    assert verdicts(*np.array(ends + inside).T).tolist() == [0, 0, 0, 1, -1]
+
+
+@pytest.mark.parametrize("size", [2, 3])
+def test_a_defective_multiplier_alone_has_elsners_bound(size: int) -> None:
+    # Of a Jordan block with g beside the diagonal |B - mean| = g and the projector is 1.
+    g, delta = 4.0, 1e-8
+    _, bounds = multipliers_with_bounds(0.5 * np.eye(size) + g * np.eye(size, k=1), delta)
+    # Rounding adds 4 n eps |M| < 2e-14 to delta, 2e-6 of it.
+    assert bounds == pytest.approx((2.0 * g + delta) ** (1 - 1 / size) * delta ** (1 / size), rel=2e-6)
+    assert (g ** (size - 1) * delta) ** (1 / size) <= bounds[0]  # what delta in the corner does
+
+
+def test_the_order_of_equal_moduli_is_fixed() -> None:
+    values, _ = multipliers_with_bounds(
+        np.array([[-0.5, 0, 0, 0], [0, 0, 0.5, 0], [0, -0.5, 0, 0], [0, 0, 0, 0.5]]), 0.0
+    )
+    np.testing.assert_allclose(values, [0.5j, 0.5, -0.5, -0.5j], atol=1e-15)
+
+
+def test_the_radius_may_be_that_of_another_multiplier_within_its_bound() -> None:
+    values, bounds = np.array([1.0, -0.875]), np.array([0.0625, 0.25])
+    assert radius_with_bound(values, bounds) == (1.0, 0.125)
+    radii, errors = radii_with_bounds(np.array([values, [0.5, 0.25]]), np.array([bounds, bounds[::-1]]))
+    assert (radii.tolist(), errors.tolist()) == ([1.0, 0.5], [0.125, 0.25])
