@@ -43,14 +43,12 @@ class Scan:
 
     Attributes
     ----------
-    records : undamaged records
-    damaged_bytes : bytes between or after them that are no whole record
+    damaged_bytes : bytes between or after the records that are no whole record
     end : end of the last undamaged record
     sessions : texts of the session records, in order
     size : bytes of the file
     """
 
-    records: int
     damaged_bytes: int
     end: int
     sessions: tuple[str, ...]
@@ -58,7 +56,7 @@ class Scan:
 
 
 #: What a pass finds where there is no journal.
-NOTHING = Scan(0, 0, 0, (), 0)
+NOTHING = Scan(0, 0, (), 0)
 
 
 class Key:
@@ -100,7 +98,7 @@ def scan(path: Path, key: Key, visit: Callable[[Record], None]) -> Scan:
 
 def _scan(data: Any, size: int, key: Key, visit: Callable[[Record], None]) -> Scan:
     at = end = min(len(key.header), size)
-    records = damaged = 0
+    damaged = 0
     sessions: list[str] = []
     while at < size:
         read = decode(data, at, key.outputs, key.seed)
@@ -111,12 +109,11 @@ def _scan(data: Any, size: int, key: Key, visit: Callable[[Record], None]) -> Sc
         record, after = read
         damaged += at - end
         at = end = after
-        records += 1
         if record.status is Status.SESSION:
             sessions.append(record.message)
         elif record.case < key.count:
             visit(record)
-    return Scan(records, damaged + size - end, end, tuple(sessions), size)
+    return Scan(damaged + size - end, end, tuple(sessions), size)
 
 
 def _check_header(path: Path, header: bytes, key: Key) -> None:

@@ -33,13 +33,11 @@ class Table:
     status : (cases,) ``Status`` codes
     values : (outputs, cases), NaN where the status says that there is no result; None when not wanted
     messages : case -> error text of the failed ones
-    seconds : computing time of all cases together
     """
 
     status: np.ndarray[Any, np.dtype[np.int8]]
     values: FloatArray | None
     messages: dict[int, str]
-    seconds: float = 0.0
 
     @staticmethod
     def of(cases: CaseList, *, with_values: bool = True) -> Table:
@@ -51,7 +49,6 @@ class Table:
         """Enter a record."""
         case = record.case
         self.status[case] = record.status
-        self.seconds += record.seconds
         if record.status.failed:
             self.messages[case] = record.message
         else:

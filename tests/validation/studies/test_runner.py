@@ -36,7 +36,7 @@ def speed_of(variation):
 
 def test_the_result_is_labelled_and_right(study, tmp_path):
     summary = run_sweep(study, tmp_path / "out")
-    assert (summary.cases, summary.computed, summary.before) == (120, 120, 0)
+    assert (summary.cases, summary.computed, summary.before, summary.damaged_bytes) == (120, 120, 0, 0)
     with xr.open_dataset(summary.results, engine="h5netcdf") as result:
         assert result.contact_ratio.dims == ("operating_pinion_speed", "face_width", "centre_distance")
         assert result.operating_pinion_speed.attrs["units"] == "rpm"
@@ -262,6 +262,42 @@ def test_the_lumped_analysis_is_the_speed_sweep(make_study, tmp_path):
     for name in names:
         np.testing.assert_array_equal(result[name], expected[name])
     assert (result.error_estimate < 1e-6).all()
+
+
+def test_the_multibody_analysis_is_the_end_of_the_transient(make_study, tmp_path):
+    from multibody import simulate
+
+    names = [
+        "dte_rms",
+        "x_p_peak_to_peak",
+        "normal_load_max",
+        "friction_force_peak_to_peak",
+        "friction_power_mean",
+    ]
+    study = make_study(
+        analysis="multibody",
+        outputs=names,
+        settings={"cycles": 4, "kept_cycles": 2, "samples_per_cycle": 32},
+        axes=[{"field": "speed_rpm", "values": [4000.0]}],
+    )
+    assert run_sweep(study, tmp_path / "out").failed == 0
+    result = read_results(tmp_path / "out").isel(speed_rpm=0)
+    pair = load_gear_pair("nasa_28_28").with_(operating__pinion_speed="4000 rpm")
+    run = simulate(pair, 4, samples_per_cycle=32, initial="periodic")
+    period = geometry(pair).mesh_period
+    # Two whole cycles: the sample at the very end is the start of a third one.
+    last = run.isel(time=(run.time > 1.99 * period) & (run.time < 3.99 * period))
+    assert last.sizes["time"] == 64
+    friction = last.friction_force.sum("pair")
+    expected = [
+        np.sqrt(((last.dte - last.dte.mean()) ** 2).mean()),
+        last.x_p.max() - last.x_p.min(),
+        last.normal_load.where(last.contact > 0).max(),
+        friction.max() - friction.min(),
+        last.friction_power.sum("pair").mean(),
+    ]
+    # The sum of 64 numbers in another order; the trajectory itself is deterministic.
+    assert [float(result[name]) for name in names] == pytest.approx([float(x) for x in expected], rel=1e-12)
 
 
 def test_the_floquet_analysis_is_the_stability_chart(make_study, tmp_path):
