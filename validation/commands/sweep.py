@@ -71,7 +71,7 @@ def sweep(
     folder = output if output is not None else Path(f"{study.stem}-sweep")
     wanted = load_study(study)
     processes = cores() if workers is None else workers
-    where = f"on {scheduler}" if scheduler else f"on {processes} worker(s)"
+    where = f"on {scheduler}" if scheduler is not None else f"on {processes} worker(s)"
     text = f"{wanted.name}: {case_list(wanted).count} cases, {wanted.analysis}, {where} -> {folder}"
     console.print(text, soft_wrap=True)
     if dry_run:

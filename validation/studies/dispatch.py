@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections import Counter, deque
 from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
@@ -38,6 +39,7 @@ class Dispatcher:
         self._evaluator = Evaluator.of(cases.study)
         self._seconds: float | None = None
         self._left = 0
+        self._checked = time.monotonic()
         self._suspects: deque[int] = deque()
         self._deaths: Counter[int] = Counter()
 
@@ -103,9 +105,15 @@ class Dispatcher:
     def _finished(self, running: dict[Future[Batch], list[int]]) -> set[Future[Batch]]:
         while True:
             done, _ = wait(running, timeout=_CHECK_SECONDS, return_when=FIRST_COMPLETED)
+            if time.monotonic() - self._checked >= _CHECK_SECONDS:  # also while batches end: workers may join
+                try:
+                    self._pool.check()
+                except SweepStopped:
+                    if not done:  # what is done is kept first
+                        raise
+                self._checked = time.monotonic()
             if done:
                 return done
-            self._pool.check()
 
     def _result(self, future: Future[Batch]) -> tuple[Record, ...] | None:
         """Records of a finished batch, None when its worker died."""

@@ -180,10 +180,14 @@ class DaskPool:
                 "an installation with dask.distributed",
                 "Install the extra: pip install 'spurcheck[cluster]'.",
             ) from None
+        self._client: Any = distributed.Client.__new__(distributed.Client)
         try:
-            self._client: Any = distributed.Client(address, timeout=_CONNECT_SECONDS, set_as_default=False)
+            self._client.__init__(address, timeout=_CONNECT_SECONDS, set_as_default=False)
             self.slots = self._first_threads()
-        except (OSError, ValueError, TimeoutError) as error:
+        except Exception as error:  # noqa: BLE001  (each protocol refuses an address in its own way)
+            if self._client.status == "running":
+                self.close()
+            self._client.status = "closed"  # the destructor of one half made would wait, and fail, for 40 s
             raise refuse(
                 "scheduler", address, "address of a running scheduler with workers", f"No answer: {error}."
             ) from None

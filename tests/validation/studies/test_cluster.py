@@ -195,8 +195,12 @@ def test_no_scheduler_is_refused(study, tmp_path, monkeypatch):
     monkeypatch.setattr(pools, "_CONNECT_SECONDS", 0.5)
     with pytest.raises(ParameterError, match="running scheduler"):
         run_sweep(study, tmp_path / "out", scheduler="tcp://127.0.0.1:9")
-    with pytest.raises(ParameterError, match="running scheduler"):
-        run_sweep(study, tmp_path / "out", resume=True, scheduler="nonsense://x")
+    # Without certificates, and no address at all.
+    for address in ("tls://127.0.0.1:9", "nonsense://x", ""):
+        with pytest.raises(ParameterError, match="running scheduler"):
+            run_sweep(study, tmp_path / "out", scheduler=address)
+    # One left half made would print a traceback when the interpreter ends, after 40 s.
+    assert all(client.status == "closed" for client in distributed.Client._instances)
 
 
 def test_the_time_limit_holds_on_threads_of_a_worker(study, make_study, tmp_path, undisturbed):

@@ -64,7 +64,8 @@ class ScriptedPool:
             self.under_way.clear()
 
     def check(self):
-        self.advance()
+        if self.under_way:
+            self.advance()
 
     def restart(self):
         self.restarts += 1
@@ -130,3 +131,19 @@ def test_a_case_has_failed_when_it_killed_its_worker_twice_alone_on_it(statuses,
     assert {case for case, status in found.items() if status is Status.WORKER_DIED} == {5}
     # Once beside other batches, which says nothing for sure, then twice alone.
     assert sum(5 in batch for batch in pool.submitted) == 3
+
+
+def test_workers_that_join_are_used_while_batches_end_all_the_time(statuses):
+    class Growing(ScriptedPool):
+        def submit(self, work, evaluator, batch, limit):
+            future = super().submit(work, evaluator, batch, limit)
+            if self.under_way:
+                self.advance()
+            return future
+
+        def check(self):
+            self.slots = 30
+
+    pool = Growing({}, dies_together=False, slots=1)
+    statuses(pool)
+    assert pool.slots == 30
