@@ -5,16 +5,19 @@ from __future__ import annotations
 import hashlib
 import math
 import os
+import stat
 import struct
+import sys
 import zlib
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumped.errors import ParameterError
+from lumped.errors import ParameterError, SpurcheckError
+from lumped.text_file import read_text
 from validation.studies.cases import case_list
-from validation.studies.files import StoreError, replaced
+from validation.studies.files import StoreError, read_bytes, replaced, write_text
 from validation.studies.journal import NOTHING, Journal, Key, scan
 from validation.studies.record import MAX_MESSAGE, Record, Status, decode, encode
 
@@ -307,3 +310,68 @@ def test_a_failed_replacement_keeps_the_old_file(tmp_path):
         half()
     assert path.read_bytes() == b"old"
     assert [p.name for p in tmp_path.iterdir()] == ["results.nc"]
+
+
+@pytest.fixture
+def disk(monkeypatch):
+    """What is asked of the disk, in order: syncs with the size that they find, and renames."""
+    asked: list[str] = []
+    fsync, replace = os.fsync, os.replace
+
+    def noted_fsync(descriptor):
+        found = os.fstat(descriptor)
+        asked.append("sync the folder" if stat.S_ISDIR(found.st_mode) else f"sync {found.st_size} bytes")
+        fsync(descriptor)
+
+    def noted_replace(part, path):
+        asked.append("rename")
+        replace(part, path)
+
+    monkeypatch.setattr(os, "fsync", noted_fsync)
+    monkeypatch.setattr(os, "replace", noted_replace)
+    return asked
+
+
+@pytest.mark.skipif(os.name != "posix", reason="folders can be synced on POSIX systems")
+def test_a_new_file_is_on_the_disk_before_its_name_and_its_name_before_the_sweep_goes_on(disk, tmp_path):
+    # A power failure between the three leaves the old file or the new one, never a name of an empty one.
+    write_text(tmp_path / "study.toml", "12345")
+    assert disk == ["sync 5 bytes", "rename", "sync the folder"]
+
+
+@pytest.mark.parametrize(("after", "synced"), [(-1.0, ["append"]), (1e9, [])])
+def test_records_are_on_the_disk_after_a_while_and_at_the_end(
+    study, disk, tmp_path, monkeypatch, after, synced
+):
+    monkeypatch.setattr("validation.studies.journal.SYNC_SECONDS", after)
+    key, path = Key(case_list(study)), tmp_path / "journal.bin"
+    with Journal(path, key) as file:
+        assert disk == [f"sync {len(key.header)} bytes"]
+        file.append(sample_records(3))
+        size = f"sync {path.stat().st_size} bytes"
+        assert disk[1:] == [size for _ in synced]
+    assert disk[1:] == [size for _ in [*synced, "close"]]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="/proc of Linux")
+def test_no_file_is_left_open(journal, make_study, tmp_path):
+    # A worker or a notebook lives for thousands of reads, and systems give a process about 1000 open files.
+    key, path, _ = journal
+    other = Key(case_list(make_study(outputs=["contact_ratio", "base_pitch"])))
+    (tmp_path / "large").write_bytes(b"12345")
+    os.mkfifo(tmp_path / "pipe")
+    before = len(os.listdir("/proc/self/fd"))
+    found = read(path, key)[1]
+    write_text(tmp_path / "text", "x")
+    for fails in (
+        lambda: read(path, other),
+        lambda: Journal(path, key, NOTHING),
+        lambda: read_bytes(tmp_path / "large", 4),
+        lambda: read_bytes(tmp_path / "pipe", 4),
+        lambda: read_text(tmp_path / "large", 4),
+        lambda: read_text(tmp_path / "pipe", 4),
+    ):
+        with pytest.raises(SpurcheckError):
+            fails()
+    Journal(path, key, found).close()
+    assert len(os.listdir("/proc/self/fd")) == before
