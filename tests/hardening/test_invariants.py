@@ -96,7 +96,7 @@ def test_forces_on_the_two_bodies_cancel(pairs, data):
     # Over a period the bearings carry the mean mesh force: momentum is periodic.
     for name, force in (("x_p", normal), ("x_g", -normal), ("y_p", -friction), ("y_g", friction)):
         bearing = run[f"bearing_force_{name}"].to_numpy()
-        # Each jump costs the mean at most one sample: a pair enters, leaves and passes P, there by twice mu N.
+        # A jump costs the mean at most one sample: a pair enters, leaves and passes P, there by twice mu N.
         scale = np.abs(force).max() + np.abs(bearing).max()
         assert abs(bearing.mean() - force.mean()) <= scale * 4.0 / samples, name
 

@@ -47,7 +47,9 @@ def test_text_in_a_study_is_only_text(tmp_path, monkeypatch, name):
     monkeypatch.chdir(inner)
     pair = load_gear_pair("nasa_28_28").with_(name=name, description=name)
     run_sweep(study(name=name, description=name, gear_pair=pair), inner / "out")
-    assert files_below(tmp_path) == [f"a/b/out/{file}" for file in ("journal.bin", "results.nc", "study.toml")]
+    assert files_below(tmp_path) == [
+        f"a/b/out/{file}" for file in ("journal.bin", "results.nc", "study.toml")
+    ]
     assert not os.path.exists("/tmp/outside")
 
 
