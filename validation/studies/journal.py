@@ -120,15 +120,13 @@ def _check_header(path: Path, header: bytes, key: Key) -> None:
     """Refuse the journal of another study; a damaged header is no loss, the records are bound to it too."""
     whole = len(header) == len(key.header) and header != key.header
     if whole and struct.unpack("<I", header[-4:])[0] == zlib.crc32(header[:-4]):
-        same = header[8:40] == key.study
-        raise refuse(
-            "output",
-            path.parent,
-            "a folder of this very study" if not same else "the same cases",
-            "The study was changed since: choose another --output."
-            if not same
-            else "Another version of scipy draws other samples: use the version that began the study.",
-        )
+        if header[8:40] == key.study:
+            allowed = "the same cases"
+            action = "Another version of scipy draws other samples: use the version that began the study."
+        else:
+            allowed = "a folder of this very study"
+            action = "The study was changed since: choose another --output."
+        raise refuse("output", path.parent, allowed, action)
 
 
 class Journal:

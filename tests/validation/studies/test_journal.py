@@ -219,7 +219,7 @@ def test_a_damaged_header_is_repaired(journal):
 def test_the_journal_of_another_study_is_refused(journal, make_study):
     _, path, _ = journal
     other = Key(case_list(make_study(outputs=["contact_ratio", "base_pitch"])))
-    with pytest.raises(ParameterError, match="choose another --output"):
+    with pytest.raises(ParameterError, match=r"this very study.*choose another --output"):
         read(path, other)
 
 
@@ -233,7 +233,7 @@ def test_the_journal_of_other_samples_of_the_study_is_refused(make_study, tmp_pa
     path = tmp_path / "journal.bin"
     with Journal(path, Key(other)) as file:
         file.append(sample_records(8))
-    with pytest.raises(ParameterError, match="Another version of scipy"):
+    with pytest.raises(ParameterError, match=r"the same cases.*Another version of scipy"):
         read(path, key)
     # Nor do its records pass below a damaged header.
     path.write_bytes(b"\0" * 20 + path.read_bytes()[20:])
@@ -351,6 +351,30 @@ def test_records_are_on_the_disk_after_a_while_and_at_the_end(
         size = f"sync {path.stat().st_size} bytes"
         assert disk[1:] == [size for _ in synced]
     assert disk[1:] == [size for _ in [*synced, "close"]]
+
+
+def test_a_disk_that_fails_when_it_is_synced_is_told_and_nothing_unsure_is_kept(journal, monkeypatch):
+    key, path, written = journal
+    data, found = path.read_bytes(), read(path, key)[1]
+    told = r"Input/output error.*--resume"
+
+    def failing(descriptor):
+        raise OSError(5, "Input/output error")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "fsync", failing)
+        with pytest.raises(StoreError, match=told):
+            Journal(path, key, found)
+    monkeypatch.setattr("validation.studies.journal.SYNC_SECONDS", -1.0)
+    file = Journal(path, key, found)
+    monkeypatch.setattr(os, "fsync", failing)
+    with pytest.raises(StoreError, match=told):
+        file.append(written[:1])
+    assert path.read_bytes() == data
+    with pytest.raises(StoreError, match=told):
+        file.close()
+    monkeypatch.undo()
+    Journal(path, key, found).close()  # it is unlocked
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="/proc of Linux")
