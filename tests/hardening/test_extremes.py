@@ -143,6 +143,7 @@ MAY_REFUSE = {
     **dict.fromkeys(("1e-6 rpm", "bearings 1e30", "inertia 1e-15", "inertia 1e12", "mass 1e-15"), ANALYSES),
     "width 1e-9": ANALYSES,
     **dict.fromkeys(("pair stiffness 1e12", "modulus 1e6"), (multibody_transient, floquet_multipliers)),
+    **dict.fromkeys(("10 rpm", "1 rpm"), BODIES),
     # The coefficient of friction that the law gives is beyond 1.
     **dict.fromkeys(("viscosity 1e-9", "viscosity 1e5", "roughness 50"), ANALYSES),
     # Gears that nothing holds have no periodic motion to start from.

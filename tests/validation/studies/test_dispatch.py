@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from concurrent.futures import Future
+from concurrent.futures import CancelledError, Future
 
 import pytest
 
 from validation.studies.batch import Batch, versions
 from validation.studies.cases import case_list
 from validation.studies.dispatch import Dispatcher
+from validation.studies.pools import SweepStopped
 from validation.studies.record import Record, Status
 
 
@@ -108,6 +109,16 @@ def test_batches_grow_with_the_number_of_workers(make_study, slots, expected):
     assert len(pool.submitted[-1]) == pytest.approx(expected, rel=0.02)
 
 
+def test_the_last_batches_are_small_so_that_no_worker_has_many_cases_when_the_others_have_none(make_study):
+    axis = {"field": "operating.pinion_speed", "low": 500, "high": 9000, "count": 10_000}
+    pool = ScriptedPool({}, dies_together=False, slots=2)
+    pool.seconds = 1e-6  # all of them would be one batch by time
+    list(Dispatcher(pool, case_list(make_study(axes=[axis]))).records(iter(range(10_000)), 10_000))
+    sizes = [len(batch) for batch in pool.submitted]
+    assert max(sizes) > 1000
+    assert sizes[-2:] == [1, 1]
+
+
 POOLS = pytest.mark.parametrize(
     ("together", "unfinished"), [(True, False), (True, True), (False, False)], ids=["all", "cut off", "one"]
 )
@@ -131,6 +142,23 @@ def test_a_case_has_failed_when_it_killed_its_worker_twice_alone_on_it(statuses,
     assert {case for case, status in found.items() if status is Status.WORKER_DIED} == {5}
     # Once beside other batches, which says nothing for sure, then twice alone.
     assert sum(5 in batch for batch in pool.submitted) == 3
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (CancelledError(), r"scheduler is gone.*--resume"),
+        (ModuleNotFoundError("No module named 'validation'"), r"No module.*install this version.*--resume"),
+    ],
+)
+def test_an_error_that_is_no_case_s_stops_the_sweep_and_says_what_to_do(statuses, error, words):
+    class Broken(ScriptedPool):
+        def advance(self):
+            future, _ = self.under_way.pop()
+            future.set_exception(error)
+
+    with pytest.raises(SweepStopped, match=words):
+        statuses(Broken({}, dies_together=False))
 
 
 def test_workers_that_join_are_used_while_batches_end_all_the_time(statuses):
