@@ -109,7 +109,10 @@ def test_batches_grow_with_the_number_of_workers(make_study, slots, expected):
     assert len(pool.submitted[-1]) == pytest.approx(expected, rel=0.02)
 
 
-def test_the_last_batches_are_small_so_that_no_worker_has_many_cases_when_the_others_have_none(make_study):
+def test_the_last_batches_are_small_so_that_no_worker_has_many_cases_when_the_others_have_none(
+    make_study, monkeypatch
+):
+    monkeypatch.setattr("validation.studies.dispatch._CHECK_SECONDS", 0.0)
     axis = {"field": "operating.pinion_speed", "low": 500, "high": 9000, "count": 10_000}
     pool = ScriptedPool({}, dies_together=False, slots=2)
     pool.seconds = 1e-6  # all of them would be one batch by time
