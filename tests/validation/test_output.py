@@ -1,6 +1,7 @@
 """Are result files whole, complete and readable?"""
 
 import csv
+import os
 
 import numpy as np
 import pytest
@@ -21,7 +22,7 @@ def dataset():
             "response": ("time", rng.normal(size=4) + 1j * rng.normal(size=4), {"units": "m"}),
         },
         coords={"time": ("time", np.arange(4) * 1e-4, {"units": "s"}), "pair": [0, 1]},
-        attrs={"warnings": [], "flag": True, "name": "n"},
+        attrs={"warnings": ["one", "two"], "flag": True, "name": "n"},
     )
 
 
@@ -49,6 +50,17 @@ def test_csv_of_a_chart_has_one_row_per_point_with_its_own_value(tmp_path):
     ]
 
 
+def test_csv_has_a_column_for_each_law_by_its_name(tmp_path):
+    loss = np.array([[1.0, 2.0], [3.0, 4.0]])
+    result = xr.Dataset(
+        {"loss": (("speed", "law"), loss, {"units": "W"})}, {"speed": [1, 2], "law": ["coulomb", "none"]}
+    )
+    output.write_dataset(result, tmp_path / "loss.csv")
+    heading, *rows = csv.reader((tmp_path / "loss.csv").read_text().splitlines())
+    assert heading == ["speed [1]", "loss_lawcoulomb [W]", "loss_lawnone [W]"]
+    assert [[float(v) for v in row[1:]] for row in rows] == loss.tolist()
+
+
 def test_text_in_csv_is_no_formula(tmp_path):
     # Spreadsheets run what starts with one of = + - @; an apostrophe marks it as text.
     laws = ["coulomb", "=cmd|' /C calc'!A0", "@SUM(1)", "-1+2", "+1"]
@@ -67,6 +79,7 @@ def test_netcdf_loses_nothing(dataset, tmp_path):
     np.testing.assert_array_equal(back["response_real"] + 1j * back["response_imag"], dataset["response"])
     np.testing.assert_array_equal(back["periodic"], [1, 0, 1, 1])
     assert back["dte"].attrs["units"] == "m"
+    assert back.attrs == {"warnings": "one; two", "flag": 1, "name": "n"}
 
 
 def _fail_while_writing(path):
@@ -84,9 +97,34 @@ def test_a_failure_while_writing_leaves_the_old_file_and_nothing_else(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
+@pytest.mark.skipif(os.name != "posix", reason="modes of POSIX systems")
+def test_a_file_may_be_read_by_whom_the_user_lets(tmp_path):
+    before = os.umask(0o027)
+    try:
+        output.write_text(tmp_path / "run.txt", "x")
+    finally:
+        os.umask(before)
+    assert (tmp_path / "run.txt").stat().st_mode & 0o777 == 0o640
+
+
+@pytest.mark.parametrize(
+    ("error", "words"), [(OSError(30, "Read-only file system"), "Read-only"), (OSError(), "OSError")]
+)
+def test_a_folder_that_cannot_be_written_is_refused_with_the_reason(tmp_path, monkeypatch, error, words):
+    def failing(**options):
+        raise error
+
+    monkeypatch.setattr(output.tempfile, "TemporaryFile", failing)
+    with pytest.raises(ParameterError, match=rf"cannot be written \({words}"):
+        output.check_file(tmp_path / "run.nc", output.DATA_SUFFIXES, force=False)
+
+
 def test_output_files_are_refused_before_any_work(tmp_path):
     existing = tmp_path / "old.nc"
     existing.write_text("")
+    (tmp_path / "folder.nc").mkdir()
+    with pytest.raises(ParameterError, match="add a file name"):
+        output.check_file(tmp_path / "folder.nc", output.DATA_SUFFIXES, force=True)
     for path, reason in (
         (tmp_path / "run.xlsx", r"\.nc, \.csv"),
         (existing, "--force"),

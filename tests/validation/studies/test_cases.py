@@ -82,12 +82,18 @@ def test_ranges_are_linear_or_logarithmic_and_hold_their_ends(make_study):
 
 
 def test_samples_of_a_whole_number_give_every_value_the_same_share(make_study):
-    axes = [{"field": "pinion.teeth", "low": 25, "high": 28}]
+    axes = [{"field": "pinion.teeth", "low": 24.5, "high": 28.9}]  # whole numbers inside: 25 to 28
     cases = case_list(make_study(axes=axes, design={"method": "sobol", "samples": 256}))
     teeth = [values[0] for values in cases.values(range(256))]
     # 256 balanced points over 4 values; exact, because each value owns a dyadic quarter of the range.
     assert [teeth.count(z) for z in (25, 26, 27, 28)] == [64] * 4
     assert all(type(z) is int for z in teeth)
+
+
+def test_samples_are_as_fine_as_floats(make_study):
+    # Of 30 bits, as scipy takes by itself, every share is a multiple of 2^-30: 1e9 samples would repeat values.
+    shares = sampled(make_study, method="sobol", samples=16).shares(np.arange(16))
+    assert (shares * 2.0**30 % 1.0 != 0.0).all()
 
 
 def test_the_seed_decides_the_samples(make_study):

@@ -13,6 +13,7 @@ import xarray as xr
 
 from lumped import LawRangeWarning, NumericalError, geometry, load_gear_pair, speed_sweep
 from lumped.errors import ParameterError
+from lumped.parameters import field_at
 from validation.studies import Status, StoreError, analyses, read_results, run_sweep, runner
 
 
@@ -40,6 +41,9 @@ def test_the_result_is_labelled_and_right(study, tmp_path):
     with xr.open_dataset(summary.results, engine="h5netcdf") as result:
         assert result.contact_ratio.dims == ("operating_pinion_speed", "face_width", "centre_distance")
         assert result.operating_pinion_speed.attrs["units"] == "rpm"
+        assert (
+            result.operating_pinion_speed.attrs["long_name"] == field_at("operating.pinion_speed").description
+        )
         assert result.face_width.attrs["field"] == "pinion.face_width, gear.face_width"
         pair = load_gear_pair("nasa_28_28")
         for distance in (88.9, 89.4):

@@ -96,6 +96,28 @@ def test_a_choice_can_be_an_axis():
     assert study.axes[0].listed() == tuple(laws)
 
 
+@pytest.mark.parametrize(
+    ("axis", "values"),
+    [
+        ({"field": "pinion.teeth", "low": 20, "high": 22, "count": 3}, (20, 21, 22)),
+        ({"field": "pinion.teeth", "values": [28, 30.0]}, (28, 30)),
+        ({"field": "lubricant.viscosity_law.iso_vg", "values": [32, 68.0]}, (32, 68)),
+    ],
+)
+def test_an_axis_of_a_whole_number_has_whole_numbers(axis, values):
+    listed = load_study(changed(["axes", 0], axis)).axes[0].listed()
+    assert listed == values
+    assert all(type(value) is int for value in listed)
+
+
+def test_a_range_of_whole_numbers_ends_where_floats_skip_some():
+    # 2^53 + 1 is no floating-point number.
+    axis = {"field": "pinion.teeth", "low": 2.0**53 - 3, "high": 2.0**53 - 1, "count": 3}
+    assert load_study(changed(["axes", 0], axis)).axes[0].listed() == tuple(2**53 - k for k in (3, 2, 1))
+    with pytest.raises(ParameterError, match="integers"):
+        load_study(changed(["axes", 0], {**axis, "high": 2.0**53}))
+
+
 REFUSED = {
     "unknown key": (["axess"], 1, "axess", "Did you mean 'axes'"),
     "unknown key of an axis": (["axes", 0, "feild"], 1, "axes.0.feild", "Did you mean 'field'"),
@@ -112,6 +134,18 @@ REFUSED = {
     "both ways": (["axes", 0, "low"], 1.0, "axes.0.values", "Remove one"),
     "half a range": (["axes", 0], {"field": "speed_rpm", "low": 1}, "axes.0.low", "range or the list"),
     "reversed": (["axes", 0], {"field": "speed_rpm", "low": 2, "high": 1, "count": 3}, "axes.0.high", "Swap"),
+    "range of one value": (
+        ["axes", 0],
+        {"field": "speed_rpm", "low": 1, "high": 1, "count": 3},
+        "axes.0.high",
+        "> low",
+    ),
+    "count in quotes": (
+        ["axes", 0],
+        {"field": "speed_rpm", "low": 1, "high": 2, "count": "3"},
+        "axes.0.count",
+        "integer",
+    ),
     "range beyond floats": (
         ["axes", 0],
         {"field": "speed_rpm", "low": -1e308, "high": 1e308, "count": 3},
