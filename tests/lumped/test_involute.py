@@ -166,3 +166,19 @@ def test_undercut_grows_from_nothing():
     assert np.all(np.diff(lengths) >= -1e-4)
     assert np.all(np.array(lengths) <= lacking / math.sin(alpha) + 1e-4)
     assert lengths[-1] > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("z", "alpha", "shift", "dedendum", "fillet"),
+    [
+        # Found by search: the trochoid's depth is below rounding where it passes the base circle.
+        (81, 0.23080577008515268, -1.4353245316593124, 0.9475775213877308, 0.34154099905330737),
+        (116, 0.1764933654101075, -0.5125017671791579, 1.5758501294228693, 0.3642612045811606),
+    ],
+)
+def test_an_undercut_within_rounding_has_a_crossing_too(z, alpha, shift, dedendum, fillet):
+    sine = math.sin(alpha)
+    lacking = dedendum - fillet * (1 - sine) - shift - 0.5 * z * sine**2
+    assert lacking > 1e-4 * sine  # so that it counts as undercut
+    length = RackTooth(z, 1.0, alpha, shift, dedendum, fillet).form_length
+    assert 0.0 <= length <= lacking / sine + 1e-4

@@ -91,7 +91,7 @@ def test_samples_of_a_whole_number_give_every_value_the_same_share(make_study):
 
 
 def test_samples_are_as_fine_as_floats(make_study):
-    # Of 30 bits, as scipy takes by itself, every share is a multiple of 2^-30: 1e9 samples would repeat values.
+    # Of 30 bits, which scipy takes by itself, every share would be a multiple of 2^-30.
     shares = sampled(make_study, method="sobol", samples=16).shares(np.arange(16))
     assert (shares * 2.0**30 % 1.0 != 0.0).all()
 

@@ -80,6 +80,21 @@ def test_a_failed_case_leaves_the_indices_out_and_says_so(make_study, tmp_path):
     assert result.attrs["sensitivity"].startswith(f"no indices: {summary.failed} of 40 cases failed")
 
 
+def test_before_the_last_case_there_are_no_indices(make_study, tmp_path):
+    seen = []
+
+    def progress(done, total, failed):
+        result = read_results(tmp_path / "out")
+        seen.append((done, total - done, "sobol_first" in result, result.attrs["sensitivity"]))
+
+    design = {"method": "sobol", "samples": 8, "sensitivity": True}
+    run_sweep(make_study(design=design, axes=AXES), tmp_path / "out", progress=progress)
+    assert "sobol_first" in read_results(tmp_path / "out")
+    done, missing, found, text = seen[0]
+    assert (done, missing, found) == (1, 39, False)
+    assert text.endswith("39 are not computed yet")
+
+
 def test_indices_do_not_depend_on_the_unit():
     rng = np.random.default_rng(2)
     values = rng.random((1, 5 * 64))
