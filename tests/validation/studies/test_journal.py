@@ -306,10 +306,15 @@ def test_a_failed_replacement_keeps_the_old_file(tmp_path):
             part.write_bytes(b"half")
             raise OSError(28, "No space left on device")
 
-    with pytest.raises(StoreError, match="--resume"):
-        half()
-    assert path.read_bytes() == b"old"
-    assert [p.name for p in tmp_path.iterdir()] == ["results.nc"]
+    def taken_away() -> None:
+        with replaced(path) as part:
+            part.unlink()
+
+    for fails in (half, taken_away):
+        with pytest.raises(StoreError, match="--resume"):
+            fails()
+        assert path.read_bytes() == b"old"
+        assert [p.name for p in tmp_path.iterdir()] == ["results.nc"]
 
 
 @pytest.fixture
@@ -399,3 +404,23 @@ def test_no_file_is_left_open(journal, make_study, tmp_path):
             fails()
     Journal(path, key, found).close()
     assert len(os.listdir("/proc/self/fd")) == before
+
+
+@pytest.mark.parametrize("what", ["moved", "deleted", "replaced"])
+def test_a_journal_that_is_taken_away_is_told_at_once_not_at_the_end(journal, monkeypatch, what):
+    key, path, written = journal
+    found, aside = read(path, key)[1], path.with_name("aside")
+    monkeypatch.setattr("validation.studies.journal.SYNC_SECONDS", -1.0)
+    file = Journal(path, key, found)
+    path.rename(aside)
+    if what == "replaced":
+        path.write_bytes(aside.read_bytes())
+    if what == "deleted":
+        aside.unlink()
+    with pytest.raises(StoreError, match="moved, deleted or replaced"):
+        file.append(written[:1])
+    with pytest.raises(StoreError, match="moved, deleted or replaced"):
+        file.close()
+    if what != "deleted":
+        assert read(aside, key)[0] == written  # and it can be opened again where it is
+        Journal(aside, key, found).close()

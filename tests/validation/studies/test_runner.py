@@ -154,6 +154,20 @@ def test_failed_cases_are_computed_again_on_request(study, tmp_path, undisturbed
     assert summary.results.read_bytes() == undisturbed
 
 
+@pytest.mark.parametrize("kind", [RuntimeError, ValueError, OSError])
+def test_a_result_that_cannot_be_written_is_told_however_hdf5_says_so(study, tmp_path, undisturbed, kind):
+    def failing(*arguments, **options):
+        raise kind("file write failed")
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(xr.Dataset, "to_netcdf", failing)
+        with pytest.raises(StoreError, match=r"results\.nc.*file write failed.*--resume"):
+            run_sweep(study, tmp_path / "out")
+    summary = run_sweep(study, tmp_path / "out", resume=True)
+    assert summary.computed == 0
+    assert summary.results.read_bytes() == undisturbed
+
+
 def test_a_store_is_not_overwritten_by_accident(study, make_study, tmp_path):
     out = tmp_path / "out"
     before = run_sweep(study, out).results.read_bytes()

@@ -101,3 +101,11 @@ def test_indices_do_not_depend_on_the_unit():
     one, other = indices(values, 3, 0), indices(1e-9 * values + 5.0, 3, 0)
     # A range of 1e-9 about 5 keeps 16 - 10 = 6 digits; the estimators square differences of it.
     np.testing.assert_allclose(one["sobol_total"], other["sobol_total"], rtol=1e-5)
+    for scale in (1e-200, 1e200):  # where squares vanish and overflow
+        scaled = indices(scale * values, 3, 0)
+        # The estimators are differences of means of 64 numbers of order 1.
+        np.testing.assert_allclose(one["sobol_total"], scaled["sobol_total"], rtol=0, atol=1e-12)
+
+
+def test_where_every_output_is_constant_no_index_is_a_number():
+    assert all(np.isnan(array).all() for array in indices(np.full((2, 5 * 8), 3.0), 3, 0).values())
