@@ -13,7 +13,6 @@ import contextlib
 import faulthandler
 import os
 import pickle
-import signal
 import subprocess
 import sys
 import threading
@@ -97,7 +96,10 @@ class CaseProcess:
         self.kill()
         program = _PROGRAM.format(path=[*sys.path])
         self._process = subprocess.Popen(
-            [sys.executable, "-P", "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+            [sys.executable, "-P", "-c", program],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            process_group=0,  # Ctrl-C is the parent's
         )
         if self._ask(self._evaluator) is None:
             self.kill()
@@ -140,7 +142,6 @@ def end_idle() -> None:
 
 def serve() -> None:
     """Be the process: read messages from the standard input, answer on the standard output."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a library prints is no answer
     asked = [time.monotonic()]

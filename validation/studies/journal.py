@@ -191,6 +191,8 @@ class Journal:
         except OSError as error:
             with contextlib.suppress(OSError):  # what cannot be cut off is found by its checksum
                 os.ftruncate(self._file, self._end)
+            if isinstance(error, StoreError):
+                raise
             raise storage_failure(self.path, "write to it", error) from error
         self._end += len(block)
 
@@ -200,16 +202,31 @@ class Journal:
             view = view[os.write(self._file, view) :]
 
     def sync(self) -> None:
-        """Make everything written so far survive a power failure."""
-        os.fsync(self._file)
+        """Make everything written so far survive a power failure.
+
+        Raises
+        ------
+        StoreError : it cannot, or the file is no longer where it was, so that nobody would find its records
+        """
+        try:
+            os.fsync(self._file)
+        except OSError as error:
+            raise storage_failure(self.path, "write to it", error) from error
         self._synced = time.monotonic()
+        try:
+            there = os.path.samestat(os.fstat(self._file), os.lstat(self.path))
+        except OSError as error:
+            there = not isinstance(error, FileNotFoundError)  # else nobody can say
+        if not there:
+            raise StoreError(
+                f"{self.path} was moved, deleted or replaced while the sweep ran. If it was moved, go on "
+                "there with --resume; else begin again in a new --output."
+            )
 
     def close(self) -> None:
         """Write out and unlock."""
         try:
             self.sync()
-        except OSError as error:
-            raise storage_failure(self.path, "write to it", error) from error
         finally:
             os.close(self._file)
 

@@ -9,14 +9,16 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, Future
-from contextlib import contextmanager, suppress
+from contextlib import suppress
+from multiprocessing import resource_tracker
 from typing import Any, Protocol
 
 from lumped.errors import SpurcheckError, refuse
 from validation.studies.batch import Batch
 from validation.studies.case_process import end_idle
+from validation.studies.stop_signals import undisturbed
 
 Work = Callable[..., Batch]
 #: How long a cluster may be without workers, or its scheduler without an answer, before the sweep stops [s].
@@ -89,24 +91,6 @@ class SerialPool:
         end_idle()
 
 
-@contextmanager
-def _undisturbed() -> Iterator[None]:
-    """Keep Ctrl-C back until the end of the block, and from processes that are started in it."""
-    if threading.current_thread() is not threading.main_thread() or os.name != "posix":
-        yield
-        return
-    late: list[int] = []
-    before = signal.signal(signal.SIGINT, lambda number, frame: late.append(number))
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # what a new process inherits
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-        signal.signal(signal.SIGINT, before)
-    if late:
-        raise KeyboardInterrupt
-
-
 def _worker_start(parent: int) -> None:
     """Leave Ctrl-C to the parent, and end when the parent is killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -133,6 +117,8 @@ class ProcessPool:
     def _start(self) -> Any:
         from joblib.externals.loky import ProcessPoolExecutor
 
+        # Else it starts with the first worker, and lets Ctrl-C through to all of them.
+        resource_tracker.ensure_running()
         return ProcessPoolExecutor(
             self.slots, env=_ONE_THREAD, initializer=_worker_start, initargs=(os.getpid(),)
         )
@@ -140,7 +126,7 @@ class ProcessPool:
     def submit(self, work: Work, *arguments: Any) -> Future[Batch]:
         """Queue a batch."""
         try:
-            with _undisturbed():  # the first one starts the workers
+            with undisturbed():  # the first one starts the workers
                 future: Future[Batch] = self._executor.submit(work, *arguments)
         except BrokenExecutor as error:  # a worker died between two batches
             future = Future()
@@ -157,8 +143,12 @@ class ProcessPool:
 
     def close(self) -> None:
         """End the workers."""
-        with _undisturbed():
+        with undisturbed():
             self._executor.shutdown(wait=True, kill_workers=True)
+
+
+#: Loggers that print tracebacks of what ``SweepStopped`` says in one line.
+_TRACEBACKS = ("distributed.client", "distributed.protocol.core", "distributed.protocol.pickle")
 
 
 def _nothing(record: logging.LogRecord) -> bool:
@@ -180,14 +170,18 @@ class DaskPool:
                 "an installation with dask.distributed",
                 "Install the extra: pip install 'spurcheck[cluster]'.",
             ) from None
+        for name in _TRACEBACKS:
+            logging.getLogger(name).addFilter(_nothing)
         self._client: Any = distributed.Client.__new__(distributed.Client)
         try:
             self._client.__init__(address, timeout=_CONNECT_SECONDS, set_as_default=False)
             self.slots = self._first_threads()
-        except Exception as error:  # noqa: BLE001  (each protocol refuses an address in its own way)
-            if self._client.status == "running":
-                self.close()
-            self._client.status = "closed"  # the destructor of one half made would wait, and fail, for 40 s
+        except BaseException as error:  # each protocol refuses an address in its own way
+            if self._client.status != "running":
+                self._client.status = "closed"  # the end of one half made would wait, and fail, for 40 s
+            self.close()
+            if not isinstance(error, Exception):
+                raise
             raise refuse(
                 "scheduler", address, "address of a running scheduler with workers", f"No answer: {error}."
             ) from None
@@ -251,11 +245,10 @@ class DaskPool:
 
     def close(self) -> None:
         """Leave the cluster running and disconnect."""
-        log = logging.getLogger("distributed.client")
-        log.addFilter(_nothing)  # it prints the traceback of a reconnection that this ends
         with suppress(Exception):  # a scheduler that is gone cannot say goodbye
             self._client.close(timeout=5)
-        log.removeFilter(_nothing)
+        for name in _TRACEBACKS:
+            logging.getLogger(name).removeFilter(_nothing)
 
 
 def pool_of(workers: int, scheduler: str | None, todo: int) -> Pool:

@@ -5,14 +5,11 @@ from __future__ import annotations
 import contextlib
 import os
 import shutil
-import signal
-import threading
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from types import FrameType
 
 import numpy as np
 
@@ -26,6 +23,7 @@ from validation.studies.pools import pool_of
 from validation.studies.record import Record, Status
 from validation.studies.results import JOURNAL, RESULTS, STUDY, Table, results_dataset, write_results
 from validation.studies.schema import Study
+from validation.studies.stop_signals import stopping_as_interrupt
 
 #: Called after every block of records with (cases computed in this run, cases to compute, failed so far).
 Progress = Callable[[int, int, int], None]
@@ -108,7 +106,7 @@ def run_sweep(
     ParameterError : the folder holds something else, or arguments out of range
     StoreError : the store cannot be written; nothing written before is lost
     SweepStopped : the workers are gone; nothing computed before is lost
-    KeyboardInterrupt : Ctrl-C or SIGTERM; nothing computed before is lost
+    KeyboardInterrupt : Ctrl-C, SIGTERM or SIGHUP; nothing computed before is lost
     """
     start = time.perf_counter()
     if case_seconds is not None and not 1e-3 <= case_seconds <= 1e9:
@@ -128,7 +126,7 @@ def run_sweep(
         wanted |= table.status >= Status.REFUSED
     todo = int(np.count_nonzero(wanted))
     with (
-        _terminate_as_interrupt(),
+        stopping_as_interrupt(),
         contextlib.closing(pool_of(workers, scheduler, todo)) as pool,
         Journal(path, key, found) as journal,
     ):
@@ -236,20 +234,3 @@ def _check_space(root: Path, key: Key, todo: int) -> None:
             f"{root}: the results need about {need / 1e6:.4g} MB and {free / 1e6:.4g} MB are free. "
             "Free space, or choose an --output on another disk."
         )
-
-
-@contextlib.contextmanager
-def _terminate_as_interrupt() -> Iterator[None]:
-    """Let SIGTERM, by which batch systems announce the end, stop the sweep as Ctrl-C does."""
-    if threading.current_thread() is not threading.main_thread() or os.name != "posix":
-        yield
-        return
-
-    def stop(number: int, frame: FrameType | None) -> None:
-        raise KeyboardInterrupt
-
-    before = signal.signal(signal.SIGTERM, stop)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)

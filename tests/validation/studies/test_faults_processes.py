@@ -14,6 +14,7 @@ import pytest
 
 from validation.studies import Status, SweepStopped, dispatch, run_sweep
 from validation.studies.batch import evaluate_batch
+from validation.studies.stop_signals import stopping_as_interrupt, undisturbed
 
 pytestmark = [
     pytest.mark.slow,
@@ -32,6 +33,12 @@ def is_worker(pid):
         return b"popen_loky" in Path(f"/proc/{pid}/cmdline").read_bytes()
     except (FileNotFoundError, ProcessLookupError):
         return False
+
+
+def blocks_ctrl_c(pid):
+    status = Path(f"/proc/{pid}/status").read_text().splitlines()
+    (mask,) = [line.split()[1] for line in status if line.startswith("SigBlk:")]
+    return bool(int(mask, 16) >> (signal.SIGINT - 1) & 1)
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -107,6 +114,7 @@ def test_ctrl_c_while_the_workers_start_is_no_traceback(sweep):
     command = [sys.executable, "-m", "validation.cli", "sweep", sweep.file, "-o", sweep.out, "--workers", "2"]
     run = subprocess.Popen(command, text=True, stdout=-1, stderr=subprocess.STDOUT, start_new_session=True)
     sweep.wait_for(lambda: workers_of(run.pid), "workers")
+    assert all(blocks_ctrl_c(pid) for pid in workers_of(run.pid))
     for _ in range(5):  # an impatient user, and a terminal that tells every process of the group
         os.killpg(run.pid, signal.SIGINT)
         time.sleep(0.05)
@@ -118,7 +126,7 @@ def test_ctrl_c_while_the_workers_start_is_no_traceback(sweep):
     sweep.check_resume(sweep.finished())
 
 
-@pytest.mark.parametrize(("number", "workers"), [(signal.SIGINT, 2), (signal.SIGTERM, 0)])
+@pytest.mark.parametrize(("number", "workers"), [(signal.SIGINT, 2), (signal.SIGTERM, 0), (signal.SIGHUP, 0)])
 def test_interrupts_stop_cleanly(sweep, number, workers):
     run = sweep.start(sweep.SLOW, workers=workers, start_new_session=True)
     sweep.wait_for(lambda: len(sweep.finished()) >= 5, "cases")
@@ -126,6 +134,41 @@ def test_interrupts_stop_cleanly(sweep, number, workers):
     _, errors = run.communicate(timeout=30)
     assert errors.rstrip().endswith("KeyboardInterrupt")
     sweep.check_resume(sweep.finished())
+
+
+@stopping_as_interrupt()
+def interrupted_while_it_ends():
+    try:
+        signal.raise_signal(signal.SIGTERM)
+    finally:
+        for number in (signal.SIGINT, signal.SIGHUP, signal.SIGTERM):
+            signal.raise_signal(number)
+
+
+def test_only_the_first_signal_interrupts():
+    before = signal.getsignal(signal.SIGTERM)
+    with pytest.raises(KeyboardInterrupt):
+        interrupted_while_it_ends()
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+def test_a_signal_is_kept_back_and_one_that_a_shell_ignores_stays_ignored():
+    ended = []
+
+    @stopping_as_interrupt()
+    @undisturbed()
+    def start(number):
+        signal.raise_signal(number)
+        ended.append(number)
+
+    with pytest.raises(KeyboardInterrupt):
+        start(signal.SIGTERM)
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)  # as in a job that a script starts with &
+    try:
+        start(signal.SIGINT)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert ended == [signal.SIGTERM, signal.SIGINT]
 
 
 def test_killing_a_worker_is_not_noticed_in_the_result(sweep):

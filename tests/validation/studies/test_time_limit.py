@@ -127,6 +127,7 @@ def test_one_process_serves_many_cases_and_ends_with_the_sweep(odd, tmp_path):
         assert [record.status for record in records] == [Status.OK, Status.OK]
     pids = set(note.read_text().split())
     assert len(pids) == 1
+    assert os.getpgid(int(next(iter(pids)))) != os.getpgrp()  # a terminal sends Ctrl-C to the whole group
     case_process.end_idle()
     with pytest.raises(ProcessLookupError):
         os.kill(int(pids.pop()), 0)

@@ -1,0 +1,61 @@
+"""The signals that ask a sweep to stop: Ctrl-C, SIGTERM of batch systems, SIGHUP of a closed terminal."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+_NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
+_OURS = (signal.SIG_DFL, signal.default_int_handler)
+
+
+def _signals() -> list[signal.Signals]:
+    """Signals that a handler here can be set for: not those that nohup, a shell or the caller took."""
+    if threading.current_thread() is not threading.main_thread() or os.name != "posix":
+        return []
+    return [signal.Signals[name] for name in _NAMES]
+
+
+@contextmanager
+def stopping_as_interrupt() -> Iterator[None]:
+    """Let the first signal raise KeyboardInterrupt; those after it must not interrupt the clean end."""
+    before = {number: signal.getsignal(number) for number in _signals()}
+    before = {number: handler for number, handler in before.items() if handler in _OURS}
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        for each in before:
+            signal.signal(each, signal.SIG_IGN)
+        raise KeyboardInterrupt
+
+    for number in before:
+        signal.signal(number, stop)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+@contextmanager
+def undisturbed() -> Iterator[None]:
+    """Keep the signals back until the end of the block, and Ctrl-C from processes that are started in it."""
+    late: list[int] = []
+    before = {number: signal.getsignal(number) for number in _signals()}
+    if not before:
+        yield
+        return
+    for number in before:
+        signal.signal(number, lambda number, frame: late.append(number))
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # what a new process inherits
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    if late:
+        signal.raise_signal(late[0])
