@@ -96,7 +96,7 @@ def test_links_in_the_output_folder_are_not_followed(tmp_path, name):
     run_sweep(study(), out)  # or a folder with these names would be refused as somebody else's
     (out / name).unlink(missing_ok=True)
     os.symlink(target, out / name)
-    refused = pytest.raises(StoreError, match="symbolic link")
+    refused = pytest.raises(StoreError, match="is a symbolic link")
     with refused if name == "journal.bin" else contextlib.nullcontext():
         run_sweep(study(), out, resume=True)
     with refused if name in ("journal.bin", "study.toml") else contextlib.nullcontext():

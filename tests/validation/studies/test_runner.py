@@ -161,8 +161,9 @@ def test_a_result_that_cannot_be_written_is_told_however_hdf5_says_so(study, tmp
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(xr.Dataset, "to_netcdf", failing)
-        with pytest.raises(StoreError, match=r"results\.nc.*file write failed.*--resume"):
+        with pytest.raises(StoreError, match=r"results\.nc.*file write failed.*--resume") as caught:
             run_sweep(study, tmp_path / "out")
+    assert str(caught.value).count("--resume") == 1  # told once, not wrapped in itself
     summary = run_sweep(study, tmp_path / "out", resume=True)
     assert summary.computed == 0
     assert summary.results.read_bytes() == undisturbed
