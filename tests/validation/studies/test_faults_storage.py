@@ -135,3 +135,4 @@ def test_everything_but_the_journal_can_be_rebuilt(sweep):
     for name in ("results.nc", "study.toml"):
         (sweep.out / name).unlink()
     sweep.check_resume(range(120))
+    assert (sweep.out / "study.toml").read_text() == sweep.study.to_toml()

@@ -38,6 +38,7 @@ def speed_of(variation):
 def test_the_result_is_labelled_and_right(study, tmp_path):
     summary = run_sweep(study, tmp_path / "out")
     assert (summary.cases, summary.computed, summary.before, summary.damaged_bytes) == (120, 120, 0, 0)
+    assert 0.0 < summary.case_seconds < summary.seconds  # one after the other in this process
     with xr.open_dataset(summary.results, engine="h5netcdf") as result:
         assert result.contact_ratio.dims == ("operating_pinion_speed", "face_width", "centre_distance")
         assert result.operating_pinion_speed.attrs["units"] == "rpm"
@@ -137,7 +138,7 @@ def test_stopping_and_resuming_gives_the_same_bytes(study, tmp_path, undisturbed
     assert summary.before + summary.computed == 120
     assert summary.results.read_bytes() == undisturbed
     again = run_sweep(study, out, resume=True)
-    assert (again.computed, again.before) == (0, 120)
+    assert (again.computed, again.before, again.case_seconds) == (0, 120, 0.0)
     assert again.results.read_bytes() == undisturbed
 
 
@@ -242,6 +243,11 @@ def test_a_sweep_whose_results_do_not_fit_in_memory_is_refused_before_it_starts(
     monkeypatch.setattr(runner.os, "sysconf", {"SC_PHYS_PAGES": 6_000_000, "SC_PAGE_SIZE": 4096}.get)
     with pytest.raises(ParameterError, match="Split the study"):
         run_sweep(make_study(axes=axes), tmp_path / "out")
+    # Of 1024 samples the values of the axis, as Python floats, take more than the outputs: 92 kB altogether.
+    axes = [{"field": "pinion.density", "low": 1e3, "high": 9e3}]
+    monkeypatch.setattr(runner.os, "sysconf", {"SC_PHYS_PAGES": 60, "SC_PAGE_SIZE": 1000}.get)
+    with pytest.raises(ParameterError, match="Split the study"):
+        run_sweep(make_study(axes=axes, design={"method": "sobol", "samples": 1024}), tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 

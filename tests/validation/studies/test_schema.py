@@ -83,6 +83,17 @@ def test_every_change_of_a_study_changes_its_hash():
     assert len(hashes | {base.sha256}) == len(changes) + 1
 
 
+def test_a_study_written_without_a_setting_means_the_same_for_ever():
+    # A store names its study by the text without defaults: a new default would mix two studies in one store,
+    # a default that is written would shut out every store from before the setting existed.
+    study = load_study(GRID)
+    assert set(study.to_mapping()) == set(GRID)
+    defaults = {"samples_per_cycle": 128, "cycles": 20, "kept_cycles": 1, "fidelity": "exact", "rtol": None}
+    assert study.settings.model_dump() == defaults
+    defaults = {"method": "grid", "samples": None, "seed": 0, "sensitivity": False}
+    assert study.design.model_dump() == defaults
+
+
 def test_text_with_a_unit_is_the_number_in_the_stated_unit():
     study = load_study(
         changed(["axes", 0], {"field": "pinion.face_width", "values": ["1 cm", 12, "0.5 inch"]})
@@ -126,6 +137,25 @@ REFUSED = {
     "text field": (["axes", 0, "field"], "name", "axes.0.field", "by dotted path"),
     "unknown output": (["outputs"], ["mesh_eficiency"], "outputs.0", "mesh_efficiency"),
     "output twice": (["outputs"], ["brake_torque"] * 2, "outputs", "all differ"),
+    "name twice": (
+        ["axes"],
+        [{"field": f"{gear}.bore", "name": "bore", "values": [1]} for gear in ("pinion", "gear")],
+        "axes.1.name",
+        "no other axis",
+    ),
+    "field twice": (
+        ["axes"],
+        [{"field": "pinion.bore", "name": name, "values": [1]} for name in ("one", "other")],
+        "axes.1.field",
+        "no other axis changes",
+    ),
+    "too many samples for indices": (
+        ["design"],
+        {"method": "sobol", "samples": 2**29, "sensitivity": True},
+        "design",
+        "split the study",
+    ),
+    "one cycle": (["settings"], {"cycles": 1}, "settings.cycles", "2"),
     "no axes": (["axes"], [], "axes", "at least 1"),
     "other unit": (["axes", 0, "values"], ["3 mm"], "axes.0.values", "not a torque"),
     "value twice": (["axes", 0, "values"], [1, 1.0], "axes.0.values", "all differ"),
