@@ -131,7 +131,7 @@ def run_sweep(
         Journal(path, key, found) as journal,
     ):
         # Only with the lock, so that of two runs into a new folder one leaves the other's study alone.
-        if not begun or not (root / STUDY).exists():
+        if not (root / STUDY).exists():
             write_text(root / STUDY, study.to_toml())
         spent = 0.0
         if todo:

@@ -226,9 +226,14 @@ def test_a_folder_with_other_things_is_left_alone(study, tmp_path):
 
 
 def test_a_sweep_that_cannot_fit_is_refused_before_it_starts(study, tmp_path, monkeypatch):
-    monkeypatch.setattr(runner.shutil, "disk_usage", lambda path: SimpleNamespace(free=1000))
+    # A record is a head of 21 bytes, two outputs of 8 and a checksum of 4; a case of the result two outputs
+    # of 8 and a status of 1.
+    need = 120 * (21 + 2 * 8 + 4) + 120 * (2 * 8 + 1)
+    monkeypatch.setattr(runner.shutil, "disk_usage", lambda path: SimpleNamespace(free=need - 1))
     with pytest.raises(StoreError, match="Free space"):
         run_sweep(study, tmp_path / "out")
+    monkeypatch.setattr(runner.shutil, "disk_usage", lambda path: SimpleNamespace(free=need))
+    assert run_sweep(study, tmp_path / "out", resume=True).computed == 120
 
 
 @pytest.mark.skipif(not hasattr(os, "sysconf"), reason="the system does not say how much memory it has")
