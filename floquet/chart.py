@@ -15,7 +15,8 @@ from floquet.multipliers import verdicts
 from floquet.propagators import Propagator
 from floquet.spectrum import Spectrum
 from floquet.system import FloatArray, PeriodicSystem
-from lumped.errors import NumericalError, refuse
+from lumped.arguments import real_numbers, whole_number
+from lumped.errors import NumericalError, refuse, shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,15 +37,13 @@ def checked_axes(axes: Axes) -> dict[str, FloatArray]:
     ParameterError
         No axis, or an axis that is empty, not finite, not 1-D or has repeated values.
     """
-    if not axes:
-        raise refuse("axes", "{}", "at least one name -> values", "Give the parameters to vary.")
+    if not isinstance(axes, Mapping) or not axes:
+        raise refuse("axes", shown(axes), "at least one name -> values", "Give the parameters to vary.")
     result = {}
     for name, values in axes.items():
-        array = np.atleast_1d(np.asarray(values, dtype=float))
-        if array.ndim != 1 or array.size == 0 or not np.isfinite(array).all():
-            raise refuse(f"axes[{name!r}]", values, "a non-empty list of finite numbers", "Correct the list.")
+        array = real_numbers(f"axes[{name!r}]", values)
         if np.unique(array).size != array.size:
-            raise refuse(f"axes[{name!r}]", values, "values that all differ", "Remove the repetitions.")
+            raise refuse(f"axes[{name!r}]", shown(values), "values that differ", "Remove the repetitions.")
         result[str(name)] = array
     return result
 
@@ -81,6 +80,7 @@ def scan(
     mesh = np.stack(np.meshgrid(*grid.values(), indexing="ij"), axis=-1).reshape(-1, len(names))
     points = [dict(zip(names, map(float, row), strict=True)) for row in mesh]
     results: list[Spectrum] = []
+    n_jobs = whole_number("n_jobs", n_jobs, -1, 1024, "Use -1 for all cores.") or 1
     if n_jobs == 1:
         stream = (_at_point(evaluate, point) for point in points)
     else:

@@ -30,6 +30,8 @@ from numpy.polynomial import legendre
 
 from floquet.rank_one import Coarsening, Gains, RankOneSystem
 from floquet.system import FloatArray
+from lumped.arguments import real_number, real_numbers
+from lumped.errors import refuse, shown
 
 _DEGREE = 8
 _RHO = np.array([1.3, 1.6, 2.0, 2.5, 3.0, 4.0, 5.5, 8.0, 12.0, 20.0, 40.0])
@@ -59,7 +61,15 @@ def coarsened(
     -------
     The system without forcing and balance, with the bounds as its `Coarsening`
     """
-    most = np.concatenate([[1.0], np.atleast_1d(np.asarray(factors, dtype=float))])
+    longest = real_number("longest", longest, 0.0, above=True, unit="s")
+    damping = real_number("damping", damping, 0.0)
+    tolerance = real_number("tolerance", tolerance, 0.0, above=True)
+    varied = real_numbers("factors", factors, 0.0) if np.size(factors) else np.empty(0)
+    if varied.size != len(system.parts) - 1:
+        raise refuse(
+            "factors", shown(factors), f"{len(system.parts) - 1} numbers", "Give one for each varied part."
+        )
+    most = np.concatenate([[1.0], varied])
     fine = _Fine.of(system, longest, damping, most)
     bounds, pieces = [0], []
     while bounds[-1] < fine.pieces:

@@ -22,7 +22,8 @@ from floquet.multipliers import multipliers_with_bounds
 from floquet.packing import own, packed
 from floquet.rank_one import Coarsening, RankOneSystem
 from floquet.system import ComplexArray, FloatArray
-from lumped.errors import NumericalError, refuse
+from lumped.arguments import real_array, real_number, real_numbers, whole_number
+from lumped.errors import NumericalError, refuse, shown
 
 _T = TypeVar("_T")
 
@@ -78,19 +79,24 @@ class Points:
             raise refuse(
                 "coordinates", system.v.size, "at most 3", "Use floquet.monodromy for larger systems."
             )
-        T = own(system.period if periods is None else periods)
+        given = system.period if periods is None else periods
+        T = own(real_numbers("periods", given, 0.0, above=True, unit="s"))
+        tolerance = real_number("tolerance", tolerance, 1e-16, 0.1)
+        max_steps = whole_number("max_steps", max_steps, 1, 2**31 - 1)
+        if threads is not None:
+            threads = whole_number("threads", threads, 1, 1024)
         parts = len(system.parts)
         factors = np.ones((T.size, parts))
-        given = np.asarray(gain_factors, dtype=float)
-        factors[:, 1:] = given if given.ndim == 2 else np.broadcast_to(given, T.shape)[:, None]
-        zeta = own(np.broadcast_to(np.asarray(damping_factors, dtype=float), T.shape))
+        gains = _factors("gain_factors", gain_factors, T.shape, (T.size, parts - 1))
+        factors[:, 1:] = gains if gains.ndim == 2 else gains[:, None]
+        zeta = own(_factors("damping_factors", damping_factors, T.shape))
         _within(system.coarsening, T, zeta, factors)
         # Longer steps have fewer terms per unit of time, but amplify rounding, 30 eps = exp(-32.6), by
         # exp(angle): to an eighth of the tolerance.
         angle = min(max(math.log(tolerance) + 30.5, 3.0), 9.0)
         return cls(
             problem=packed(system),
-            limits=Limits(float(tolerance), angle, int(max_steps)),
+            limits=Limits(tolerance, angle, max_steps),
             periods=T,
             damping_factors=zeta,
             gain_factors=factors,
@@ -210,6 +216,19 @@ def multipliers_of(matrices: FloatArray, errors: FloatArray) -> FastMultipliers:
     for point in np.flatnonzero(~safe):
         values[point], radii[point] = multipliers_with_bounds(matrices[point], float(errors[point]))
     return FastMultipliers(values, radii, errors)
+
+
+def _factors(
+    name: str, given: npt.ArrayLike, each: tuple[int, ...], parts: tuple[int, ...] | None = None
+) -> FloatArray:
+    """Factors, one per variant, or where ``parts`` is a shape, one per variant and part."""
+    array = real_array(name, given)
+    if np.isfinite(array).all():
+        if parts is not None and array.shape == parts:
+            return array
+        if array.shape in ((), (1,), each):
+            return np.broadcast_to(array, each)
+    raise refuse(name, shown(given), f"finite, one or {each[0]}", "Give one factor per period.")
 
 
 def _within(coarsening: Coarsening | None, T: FloatArray, zeta: FloatArray, factors: FloatArray) -> None:

@@ -16,7 +16,8 @@ from floquet.kernels.steady import periodic_points
 from floquet.multipliers import radii_with_bounds, verdicts
 from floquet.rank_one import RankOneSystem
 from floquet.system import FloatArray
-from lumped.errors import NumericalError, whole_number
+from lumped.arguments import whole_number
+from lumped.errors import NumericalError
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,12 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from floquet.monodromy import checked_effort
 from floquet.multipliers import multipliers_with_bounds
 from floquet.propagation import Propagation, error_of_product, propagate
 from floquet.propagators import Propagator, propagator
 from floquet.spectrum import Spectrum
 from floquet.system import FloatArray, PeriodicSystem
-from lumped.errors import NumericalError, refuse
+from lumped.arguments import real_numbers
+from lumped.errors import NumericalError
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,11 +76,10 @@ def periodic_motion(
     NumericalError
         A multiplier is +1 within the error, as it is for a free rigid motion: no periodic motion, or many.
     """
-    if not (isinstance(rtol, int | float) and 1e-14 <= rtol <= 0.1):
-        raise refuse("rtol", rtol, "1e-14 to 0.1", "Use 1e-10, or 1e-6 for a quick look.")
-    wanted = np.atleast_1d(np.asarray(times, dtype=float))
-    if wanted.ndim != 1 or not ((wanted >= 0.0) & (wanted <= system.period)).all():
-        raise refuse("times", times, f"0 to the period {system.period:g} s", "Reduce them modulo the period.")
+    rtol, max_substeps = checked_effort(rtol, max_substeps)
+    wanted = real_numbers(
+        "times", times, 0.0, system.period, unit="s", action="Reduce them modulo the period."
+    )
     scale = _scales(system)
     augmented = _augmented(system, wanted)
     flow = propagate(augmented, propagator(method), rtol, max_substeps, np.append(scale, 1.0))

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from floquet.system import FloatArray
+from lumped.arguments import one_of
 from lumped.errors import refuse
 from lumped.friction.along_path import mean_coefficient
 from lumped.gear_geometry import geometry
@@ -150,9 +151,7 @@ def gear_axis(name: str) -> GearAxis:
     ParameterError
         Unknown name.
     """
-    if name not in GEAR_AXES:
-        raise refuse("axes", name, ", ".join(GEAR_AXES), "Choose among these.")
-    return GEAR_AXES[name]
+    return GEAR_AXES[one_of("axes", name, GEAR_AXES)]
 
 
 def vary(pair: GearPair, point: Mapping[str, float]) -> GearVariation:

@@ -17,6 +17,7 @@ from floquet.gear_multipliers import mean_mesh_stiffness
 from floquet.piecewise import fit_pieces
 from floquet.rank_one import Balance, Gains, RankOneSystem
 from floquet.system import FloatArray
+from lumped.arguments import real_number
 from lumped.mesh_cycle import MeshCycle
 from lumped.parameters import GearPair
 from lumped.path_function import PathFunction
@@ -50,6 +51,9 @@ def gear_block(
     friction_level : with friction apart, a constant |mu| that changes sign at the pitch point; mu less this,
         and this, become two ``varied`` parts, so that mu may also rise and fall as a whole
     """
+    rtol = real_number("rtol", rtol, 1e-14, 0.1)
+    if friction_level is not None:
+        friction_level = real_number("friction_level", friction_level, 0.0, 10.0)
     variation = GearVariation(source) if isinstance(source, GearPair) else source
     system = periodic_system(variation.pair, "feedback", cycle=variation.cycle())
     per_load = -(system.structure.normal / system.structure.mass) @ system.reduction.T

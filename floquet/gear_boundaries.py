@@ -20,13 +20,28 @@ from floquet.intervals import UnstableInterval, seeded_nodes, unstable_intervals
 from floquet.rank_one import RankOneSystem
 from floquet.system import FloatArray
 from floquet.tongues import ModeShares, Tongue, label_tongue
-from lumped.errors import refuse
+from lumped.arguments import real_number, real_numbers, whole_number
+from lumped.errors import refuse, shown
 from lumped.parameters import GearPair
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _MOST = 20_000  # speeds of the grid of a search
+
+
+def checked_range(speed_rpm: tuple[float, float]) -> tuple[float, float]:
+    """Return a range of speeds [rpm], checked.
+
+    Raises
+    ------
+    ParameterError
+        Not two increasing positive speeds.
+    """
+    speeds = real_numbers("speed_rpm", speed_rpm, 0.0, above=True, increasing=True, unit="rpm")
+    if speeds.size != 2:
+        raise refuse("speed_rpm", shown(speed_rpm), "0 < low < high", "Give a range of speeds in rpm.")
+    return float(speeds[0]), float(speeds[1])
 
 
 def predicted_lines(pair: GearPair | GearVariation, orders: int = 12) -> dict[Tongue, float]:
@@ -39,6 +54,7 @@ def predicted_lines(pair: GearPair | GearVariation, orders: int = 12) -> dict[To
     pair : the gear pair
     orders : largest k
     """
+    orders = whole_number("orders", orders, 1, 1000)
     omega = gear_block(pair).modal().omega
     teeth = (pair if isinstance(pair, GearPair) else pair.pair).pinion.teeth
     per_rpm = teeth * 2.0 * np.pi / 60.0  # mesh frequency [rad/s] per rpm
@@ -118,14 +134,15 @@ def stability_boundaries(
     ParameterError
         Unusable range or axis.
     """
-    low, high = float(speed_rpm[0]), float(speed_rpm[1])
-    if not 0.0 < low < high < np.inf:
-        raise refuse("speed_rpm", speed_rpm, "0 < low < high", "Give a range of speeds in rpm.")
+    low, high = checked_range(speed_rpm)
+    nodes = whole_number("nodes", nodes, 0, 1_000_000)
+    xtol = real_number("xtol", xtol, 1e-15, 0.1)
     if friction_law is not None:
         pair = pair.with_({"friction.law": friction_law})
-    if axes is not None and (len(axes) != 1 or "speed_rpm" in axes):
-        raise refuse("axes", list(axes), "one axis other than speed_rpm", "Scan other axes one at a time.")
-    name, values = next(iter(checked_axes(axes).items())) if axes else ("value", np.array([np.nan]))
+    checked = checked_axes(axes) if axes is not None else {}
+    if axes is not None and (len(checked) != 1 or "speed_rpm" in checked):
+        raise refuse("axes", ", ".join(checked), "one other than speed_rpm", "Scan other axes one at a time.")
+    name, values = next(iter(checked.items())) if axes else ("value", np.array([np.nan]))
     if axes:
         gear_axis(name).check(name, values)
     found: dict[Tongue, dict[int, list[UnstableInterval]]] = {}

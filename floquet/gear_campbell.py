@@ -11,14 +11,14 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
-from floquet.chart import checked_axes
 from floquet.fast import fast_monodromies
 from floquet.gear_axes import vary
 from floquet.gear_block import gear_block
 from floquet.gear_boundaries import predicted_lines
 from floquet.system import ComplexArray, FloatArray
 from floquet.tongues import mode_shares
-from lumped.errors import refuse
+from lumped.arguments import real_number, real_numbers, whole_number
+from lumped.errors import NumericalError
 from lumped.parameters import GearPair
 
 if TYPE_CHECKING:
@@ -55,12 +55,14 @@ def campbell(
     ------
     ParameterError
         Speeds that are not increasing.
+    NumericalError
+        A speed so low that a multiplier is too small for a number.
     """
     import xarray as xr
 
-    speeds = checked_axes({"speed_rpm": speeds_rpm})["speed_rpm"]
-    if speeds.size > 1 and (np.diff(speeds) <= 0.0).any():
-        raise refuse("speeds_rpm", "unsorted", "increasing speeds", "Sort them.")
+    speeds = real_numbers("speeds_rpm", speeds_rpm, 0.0, above=True, increasing=True, unit="rpm")
+    mesh_orders = whole_number("mesh_orders", mesh_orders, 1, 1000)
+    rtol = real_number("rtol", rtol, 1e-13, 1e-3)
     mean = gear_block(pair).modal()
     modes = mean.omega
     # A mode that leaves the dynamic transmission error alone feeds nothing back: no tongue can involve it.
@@ -72,6 +74,11 @@ def campbell(
         matrix = fast_monodromies(block, tolerance=0.01 * rtol).matrices[0]
         omega = block.modal().omega
         exponents = _exponents_by_mode(matrix, omega, block.period)
+        if not np.isfinite(exponents).all():
+            raise NumericalError(
+                f"At {speed:g} rpm a mode dies out within one mesh cycle: its multiplier is too small for a "
+                "number. Raise the lowest speed."
+            )
         frequency[index] = exponents.imag / (2.0 * np.pi)
         decay[index] = -exponents.real
         radius[index] = np.exp(exponents.real.max() * block.period)
@@ -126,6 +133,7 @@ def _exponents_by_mode(matrix: FloatArray, omega: FloatArray, period: float) -> 
     modulus = np.abs(values)
     solution, mode = linear_sum_assignment(-forward * (1.0 + 0.01 * modulus / modulus.max())[:, None])
     chosen = values[solution[np.argsort(mode)]].astype(complex)
-    principal = np.log(chosen) / period
+    with np.errstate(divide="ignore", invalid="ignore"):  # a multiplier of zero has no exponent
+        principal = np.log(chosen) / period
     mesh = 2.0 * np.pi / period
     return np.asarray(principal + 1j * mesh * np.round((omega - principal.imag) / mesh))

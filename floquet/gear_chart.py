@@ -20,6 +20,7 @@ from floquet.gear_plane import Plane, Store, plane_multipliers
 from floquet.propagators import Propagator
 from floquet.spectrum import Spectrum
 from floquet.system import FloatArray
+from lumped.arguments import one_of, real_number, whole_number
 from lumped.errors import refuse
 from lumped.parameters import GearPair
 
@@ -76,13 +77,13 @@ def stability_chart(
     grid = checked_axes(axes)
     for name, values in grid.items():
         gear_axis(name).check(name, values)
-    if store not in ("all", "radius"):
-        raise refuse("store", store, "all, radius", "Choose one of these.")
+    if n_jobs is not None:
+        n_jobs = whole_number("n_jobs", n_jobs, 1, 1024)
+    one_of("store", store, ("all", "radius"))
     if friction_law is not None:
         pair = pair.with_({"friction.law": friction_law})
-    if method in ("taylor", "chebyshev"):
-        if not 1e-13 <= rtol <= 1e-3:
-            raise refuse("rtol", rtol, "1e-13 to 1e-3", "Use 1e-8 for charts, 1e-10 for verdicts.")
+    if isinstance(method, str) and method in ("taylor", "chebyshev"):
+        rtol = real_number("rtol", rtol, 1e-13, 1e-3, action="Use 1e-8 for charts, 1e-10 for verdicts.")
         if method == "chebyshev" and "speed_rpm" not in grid:
             raise refuse(
                 "method", method, '"taylor" for axes without speed_rpm', "Interpolation is over speed."
@@ -90,7 +91,7 @@ def stability_chart(
         dataset = _compiled_chart(pair, grid, rtol, n_jobs, progress, method == "chebyshev", store == "all")
     else:
         evaluate = partial(_evaluate, pair, rtol, method)
-        dataset = scan(evaluate, grid, n_jobs=n_jobs or 1, progress=progress)
+        dataset = scan(evaluate, grid, n_jobs=1 if n_jobs is None else n_jobs, progress=progress)
         if store == "radius":
             dataset = dataset.drop_vars(["multipliers", "multiplier_errors"])
     for name in grid:

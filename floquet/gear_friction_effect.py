@@ -12,6 +12,7 @@ import numpy as np
 
 from floquet.chart import Axes, Progress, checked_axes
 from floquet.gear_chart import stability_chart
+from lumped.arguments import one_of, some_of
 from lumped.errors import refuse
 from lumped.friction import LAWS
 from lumped.parameters import GearPair
@@ -57,9 +58,8 @@ def friction_effect(
     import xarray as xr
 
     grid = checked_axes(axes)
-    for law in (*laws, reference):
-        if law not in LAWS:
-            raise refuse("laws", law, ", ".join(LAWS), "Choose among these.")
+    laws = some_of("laws", laws, LAWS)
+    one_of("reference", reference, LAWS)
     if "friction_coefficient" in grid and reference == "none":
         raise refuse("axes", "friction_coefficient", "axes other than friction", "Choose another reference.")
     charts = []

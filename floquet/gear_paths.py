@@ -13,13 +13,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
-from floquet.chart import checked_axes
 from floquet.fast import fast_monodromies
 from floquet.gear_axes import gear_axis, vary
 from floquet.gear_block import gear_block
 from floquet.gear_friction import depends_on_speed
 from floquet.system import ComplexArray, FloatArray
-from lumped.errors import refuse
+from lumped.arguments import real_number, real_numbers
 from lumped.parameters import GearPair
 
 if TYPE_CHECKING:
@@ -58,11 +57,10 @@ def multiplier_paths(pair: GearPair, name: str, values: npt.ArrayLike, *, rtol: 
     """
     import xarray as xr
 
-    points = checked_axes({name: values})[name]
     axis = gear_axis(name)
+    points = real_numbers("values", values, increasing=True)
     axis.check(name, points)
-    if (np.diff(points) <= 0.0).any():
-        raise refuse("values", "unsorted", "increasing values", "Sort them.")
+    rtol = real_number("rtol", rtol, 1e-13, 1e-3)
     line = _Line(pair, name, rtol)
     here = line.at(float(points[0]))
     here = here.arranged(np.argsort(-np.abs(here.multipliers), kind="stable"))

@@ -22,6 +22,7 @@ from floquet.fast import fast_multipliers
 from floquet.gear_block import gear_block
 from floquet.system import FloatArray
 from lumped import load_gear_pair
+from lumped.arguments import whole_number
 from lumped.errors import LawRangeWarning
 from lumped.parameters import GearPair
 from lumped.path_function import PathFunction
@@ -172,7 +173,8 @@ def stress_test(count: int, seed: int) -> xr.Dataset:
     was reported; ``excess``, the largest ratio of a distance to its bound. Routes: "fine", one fit as single
     points use it; "joined", with pieces joined as in dense charts.
     """
-    rng = np.random.default_rng(seed)
+    count = whole_number("count", count, 1, 1_000_000)
+    rng = np.random.default_rng(whole_number("seed", seed, 0, 2**63 - 1))
     result = np.empty((3, 2, count))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)  # random pairs leave the ranges of the laws

@@ -14,6 +14,7 @@ from floquet.gear_axes import GEAR_AXES, gear_axis, operating_value, vary
 from floquet.gear_multipliers import gear_pair_multipliers, gear_pair_system, oloa_exponents
 from floquet.sensitivity import multiplier_derivatives, segment_time
 from floquet.system import FloatArray, PeriodicSystem
+from lumped.arguments import some_of
 from lumped.errors import NumericalError
 from lumped.parameters import GearPair
 from lumped.periodic_system import periodic_system
@@ -60,7 +61,7 @@ def gear_sensitivities(
     """
     import xarray as xr
 
-    names = list(GEAR_AXES if parameters is None else parameters)
+    names = list(GEAR_AXES if parameters is None else some_of("parameters", parameters, GEAR_AXES))
     axes = [gear_axis(name) for name in names]
     whole = gear_pair_multipliers(pair, rtol)
     oloa = bool(np.abs(whole.oloa).max() > np.abs(whole.feedback).max())

@@ -18,7 +18,8 @@ from floquet.gear_boundaries import label_variation, stability_boundaries
 from floquet.gear_chart import stability_chart
 from floquet.system import FloatArray
 from floquet.tongues import Tongue, tongue_tip
-from lumped.errors import refuse
+from lumped.arguments import real_numbers, whole_number
+from lumped.errors import refuse, shown
 from lumped.parameters import GearPair
 
 if TYPE_CHECKING:
@@ -69,9 +70,9 @@ def critical_damping(
     """
     import xarray as xr
 
-    ladder = np.asarray(damping_ratios, dtype=float)
-    if ladder.ndim != 1 or ladder.size < 2 or not (np.diff(ladder) > 0).all():
-        raise refuse("damping_ratios", damping_ratios, "an increasing list", "Sort the ratios.")
+    ladder = real_numbers("damping_ratios", damping_ratios, 0.0, increasing=True)
+    if ladder.size < 2:
+        raise refuse("damping_ratios", shown(damping_ratios), "two or more ratios", "Add a ratio.")
     if friction_law is not None:
         pair = pair.with_({"friction.law": friction_law})
     total = 2 * ladder.size
@@ -171,6 +172,7 @@ def label_regions(pair: GearPair, chart: xr.Dataset, min_nodes: int = 1) -> list
     -------
     regions, the largest first
     """
+    min_nodes = whole_number("min_nodes", min_nodes, 1, 10**9)
     radius = chart["spectral_radius"]
     names = [str(n) for n in radius.dims]
     values = radius.to_numpy()

@@ -13,9 +13,11 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import eig
 
+from floquet.monodromy import checked_effort
 from floquet.propagation import Propagation, error_of_product, propagate
 from floquet.propagators import Propagator, propagator
 from floquet.system import ComplexArray, FloatArray, PeriodicSystem
+from lumped.arguments import whole_number
 from lumped.errors import NumericalError, refuse
 
 _EPS = float(np.finfo(np.float64).eps)
@@ -90,15 +92,15 @@ def floquet_modes(
     NumericalError
         As in `monodromy`; also when the eigenvalues do not come in complete sets of roots.
     """
-    if not (isinstance(rtol, int | float) and 1e-14 <= rtol <= 0.1):
-        raise refuse("rtol", rtol, "1e-14 to 0.1", "Use 1e-10.")
+    rtol, max_substeps = checked_effort(rtol, max_substeps)
     d = system.balancing()
     if samples is None:
         middle = 0.5 * (system.edges[:-1] + system.edges[1:])
         A = system.evaluate(middle) * (d[None, :] / d[:, None])
         turns = system.period * float(np.abs(np.linalg.eigvals(A)).max()) / (2.0 * np.pi)
         samples = 2 ** math.ceil(math.log2(max(16.0, 8.0 * turns)))
-    if samples < 8 or samples > 65536 or samples & (samples - 1):
+    samples = whole_number("samples", samples, 8, 65536)
+    if samples & (samples - 1):
         raise refuse("samples", samples, "a power of two from 8 to 65536", "Leave it at its default.")
     times = system.period * np.arange(samples) / samples
     fine = PeriodicSystem(

@@ -16,7 +16,8 @@ from floquet.propagation import Propagation, error_of_product, propagate
 from floquet.propagators import Propagator, propagator
 from floquet.spectrum import Spectrum
 from floquet.system import FloatArray, PeriodicSystem
-from lumped.errors import NumericalError, refuse
+from lumped.arguments import real_number, whole_number
+from lumped.errors import NumericalError
 
 # Where |M| is below this, the tolerance is no longer relative: such a system is dead after one period.
 _DEAD = 1e-150
@@ -75,12 +76,9 @@ def monodromy(
         Non-finite A, growth beyond floating point, too many substeps, or rounding alone exceeds rtol. The
         text says what to try.
     """
-    if not (isinstance(rtol, int | float) and 1e-14 <= rtol <= 0.1):
-        raise refuse("rtol", rtol, "1e-14 to 0.1", "Use 1e-10 for verdicts, 1e-6 for a quick look.")
-    if max_substeps < 2:
-        raise refuse("max_substeps", max_substeps, "at least 2", "Leave it at its default.")
+    rtol, max_substeps = checked_effort(rtol, max_substeps)
     step = propagator(method)
-    local = float(rtol)
+    local = rtol
     evaluations = 0
     for _attempt in range(4):
         propagation = propagate(system, step, local, max_substeps)
@@ -100,6 +98,21 @@ def monodromy(
         f"of its norm, of which rounding makes {rounding / size:.2g}. Ask for rtol >= "
         f"{2.0 * max(delta, rounding) / size:.1g}, or use a method of higher order (fewer steps, less "
         "rounding); if that is too coarse, the period is too long for double precision."
+    )
+
+
+def checked_effort(rtol: float, max_substeps: int) -> tuple[float, int]:
+    """Return tolerance and limit of a propagation, checked.
+
+    Raises
+    ------
+    ParameterError
+        One of them is out of range.
+    """
+    advice = "Use 1e-10 for verdicts, 1e-6 for a quick look."
+    return (
+        real_number("rtol", rtol, 1e-14, 0.1, action=advice),
+        whole_number("max_substeps", max_substeps, 2, 10**9, "Leave it at its default."),
     )
 
 

@@ -11,6 +11,7 @@ import scipy.linalg
 
 from floquet.monodromy import monodromy
 from floquet.system import ComplexArray, FloatArray, PeriodicSystem
+from lumped.arguments import real_number
 from lumped.errors import NumericalError
 
 Derivative = Callable[[FloatArray], FloatArray]
@@ -75,6 +76,8 @@ def multiplier_derivatives(
     magnitude : size of the parameter, where dA/dp carries noise: a derivative smaller than rtol/100 over this
         size is not resolved, and noise is not mistaken for it
     """
+    if not (isinstance(magnitude, float) and magnitude == np.inf):
+        magnitude = real_number("magnitude", magnitude, 0.0, above=True)
     n = system.dimension
     probe = np.concatenate([system.edges[:-1] + f * np.diff(system.edges) for f in (0.25, 0.5, 0.75)])
     # The error of dM is relative to the larger of M and dM: bring dA to the size of A.

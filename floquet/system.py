@@ -5,7 +5,6 @@ Sources: docs/theory/floquet.md, "From the equations to a matrix".
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
@@ -13,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import matrix_balance
 
+from lumped.arguments import real_number, real_numbers
 from lumped.errors import NumericalError, refuse
 
 FloatArray = npt.NDArray[np.float64]
@@ -59,23 +59,19 @@ class PeriodicSystem:
     """Segment ends, 0 = edges[0] < edges[1] < ... < edges[-1] = T [s], shape (m+1,)."""
 
     def __post_init__(self) -> None:
-        if not callable(self.A):
-            raise refuse(
-                "A", type(self.A).__name__, "a callable t -> (n, n)", "Wrap a constant as lambda t: A0."
-            )
-        if not (math.isfinite(self.period) and self.period > 0.0):
-            raise refuse("period", self.period, "a finite number > 0 [s]", "Give the length of one cycle.")
-        breaks = np.atleast_1d(np.asarray(self.breakpoints, dtype=float))
-        if breaks.ndim != 1 or not np.all(np.isfinite(breaks)):
-            raise refuse("breakpoints", self.breakpoints, "a list of finite times [s]", "Remove the others.")
-        outside = breaks[(breaks < 0.0) | (breaks > self.period)]
-        if outside.size:
-            raise refuse(
-                "breakpoints",
-                outside[0],
-                f"0 to the period {self.period:g} s",
-                "Reduce switch times modulo the period.",
-            )
+        for name, returned in (("A", "(n, n)"), ("b", "(n,)")):
+            function = getattr(self, name)
+            if not callable(function) and not (name == "b" and function is None):
+                advice = "Wrap a constant as a function of t."
+                raise refuse(name, type(function).__name__, f"a callable t -> {returned}", advice)
+        period = real_number(
+            "period", self.period, 0.0, above=True, unit="s", action="Give the length of one cycle."
+        )
+        object.__setattr__(self, "period", period)
+        breaks = np.empty(0)
+        if np.size(self.breakpoints):
+            advice = "Reduce switch times modulo the period."
+            breaks = real_numbers("breakpoints", self.breakpoints, 0.0, period, unit="s", action=advice)
         edges = np.unique(np.concatenate(([0.0], breaks, [self.period])))
         # Two switches that differ only by rounding are one switch; keep 0 and T themselves.
         inner = edges[1:-1]

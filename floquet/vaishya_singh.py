@@ -16,7 +16,7 @@ two cancel. Lengths of time are in parts of the mesh cycle, frequencies in units
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -24,7 +24,7 @@ import numpy.typing as npt
 from floquet.chart import scan
 from floquet.spectrum import Spectrum
 from floquet.system import ComplexArray, FloatArray, PeriodicSystem
-from lumped.errors import refuse
+from lumped.arguments import one_of, real_number
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -54,16 +54,11 @@ class CoulombGearPair:
     sign: FrictionSign = "reversing"
 
     def __post_init__(self) -> None:
-        checks = (
-            ("contact_ratio", 1.0 <= self.contact_ratio <= 2.0, "1 to 2"),
-            ("damping_ratio", self.damping_ratio >= 0.0, ">= 0"),
-            ("friction", 0.0 <= self.friction < 1.0, "0 <= mu < 1"),
-            ("pressure_angle", 0.0 < self.pressure_angle < 0.25 * np.pi, "between 0 and pi/4 rad"),
-            ("sign", self.sign in ("reversing", "constant"), "reversing or constant"),
-        )
-        for name, good, allowed in checks:
-            if not good:
-                raise refuse(name, getattr(self, name), allowed, "Correct the value.")
+        real_number("contact_ratio", self.contact_ratio, 1.0, 2.0)
+        real_number("damping_ratio", self.damping_ratio, 0.0)
+        real_number("friction", self.friction, 0.0, 1.0 - _EPS)
+        real_number("pressure_angle", self.pressure_angle, 0.0, 0.25 * np.pi, above=True, unit="rad")
+        one_of("sign", self.sign, get_args(FrictionSign))
 
     @property
     def phases(self) -> FloatArray:
@@ -190,6 +185,5 @@ def stability_zones(
 
 
 def _positive(speed_ratio: float) -> float:
-    if not (np.isfinite(speed_ratio) and speed_ratio > 0.0):
-        raise refuse("speed_ratio", speed_ratio, "> 0", "Give mesh frequency over natural frequency.")
-    return float(speed_ratio)
+    advice = "Give mesh frequency over natural frequency."
+    return real_number("speed_ratio", speed_ratio, 0.0, above=True, action=advice)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.errors import NumericalError, refuse
+from lumped.arguments import one_of, real_numbers
+from lumped.errors import NumericalError
 from lumped.parameters import GearPair
 from lumped.path_function import FloatArray
 from lumped.periodic_system import Form, LTVSystem, periodic_system
@@ -52,8 +53,7 @@ def averaged_state_space(pair: GearPair, form: Form = "relative") -> control.Sta
     """
     import control  # takes longer to import than all else of lumped; modes do without
 
-    if form == "absolute":
-        raise refuse("form", form, "relative or feedback", "The rigid rotation has no steady response.")
+    one_of("form", form, ("relative", "feedback"), "The rigid rotation has no steady response.")
     system = periodic_system(pair, form)
     m = len(system.coordinates)
     b = np.stack([system.torque_pinion, system.torque_gear], axis=1)
@@ -138,9 +138,7 @@ def frequency_response(pair: GearPair, frequencies: Sequence[float] | FloatArray
     import control
     import xarray as xr
 
-    f = np.asarray(frequencies, dtype=float)
-    if f.ndim != 1 or f.size == 0 or not (np.isfinite(f).all() and (f > 0).all()):
-        raise refuse("frequencies", f"shape {f.shape}", "positive frequencies in Hz", "Give a list of them.")
+    f = real_numbers("frequencies", frequencies, 0.0, above=True, unit="Hz")
     plant = averaged_state_space(pair, "feedback")
     response = control.frequency_response(plant, 2.0 * np.pi * f, squeeze=False).complex
     result = xr.Dataset(attrs={"gear_pair": pair.name})

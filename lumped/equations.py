@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lumped.arguments import some_of
 from lumped.bodies import bodies
 from lumped.errors import refuse
 from lumped.gear_geometry import geometry
@@ -52,15 +53,8 @@ def signs(as_printed: Collection[int] = ()) -> Signs:
     ------
     ParameterError : a number that has no printed alternative
     """
-    for number in as_printed:
-        if number not in PRINTED_EQUATIONS:
-            raise refuse(
-                "as_printed",
-                number,
-                f"equations {PRINTED_EQUATIONS}",
-                "Name an equation whose sign was repaired.",
-            )
-    return Signs(*(-1.0 if number in as_printed else 1.0 for number in PRINTED_EQUATIONS))
+    chosen = some_of("as_printed", as_printed, PRINTED_EQUATIONS, "Name equations whose sign was repaired.")
+    return Signs(*(-1.0 if number in chosen else 1.0 for number in PRINTED_EQUATIONS))
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import operator
 from dataclasses import dataclass
-from typing import SupportsIndex
+from pathlib import Path
+
+import numpy as np
 
 
 @dataclass(frozen=True)
@@ -31,24 +32,26 @@ class FieldProblem:
 #: Most problems that one refusal lists.
 MOST_PROBLEMS = 50
 _SHOWN_CHARACTERS = 60
+#: Longest text of a value in a refusal; a path has to fit.
+_MOST_CHARACTERS = 500
 
 
 def quoted(value: object) -> str:
     """Text of a value as code writes it, also of one that is nested deeper than Python counts."""
     try:
-        return repr(value)
+        return repr(value.item() if isinstance(value, np.generic) else value)
     except RecursionError:
         return "a value that is nested too deeply"
     except ValueError:  # Python writes no longer integers in decimals
         return "a number of thousands of digits"
 
 
-def shown(value: object) -> str:
+def shown(value: object, most: int = _SHOWN_CHARACTERS) -> str:
     """Text of a refused value, cut to a length that a message bears."""
     text = value if isinstance(value, str) else quoted(value)
-    cut = f"... ({len(text)} characters)" if len(text) > _SHOWN_CHARACTERS else ""
+    cut = f"... ({len(text)} characters)" if len(text) > most else ""
     # Line ends, control characters and halves of surrogate pairs as code writes them.
-    seen = (c if c.isprintable() else c.encode("unicode_escape").decode() for c in text[:_SHOWN_CHARACTERS])
+    seen = (c if c.isprintable() else c.encode("unicode_escape").decode() for c in text[:most])
     return "".join(seen) + cut
 
 
@@ -83,25 +86,8 @@ class ParameterError(SpurcheckError, ValueError):
 
 def refuse(field: str, value: object, allowed: str, action: str) -> ParameterError:
     """Build the ``ParameterError`` for one refused input (the caller raises it)."""
-    return ParameterError([FieldProblem(field, str(value), allowed, action)])
-
-
-def whole_number(field: str, value: object, low: int, high: int) -> int:
-    """Return a count given as any integer type, or refuse it.
-
-    Raises
-    ------
-    ParameterError : not an integer from ``low`` to ``high``
-    """
-    if (
-        isinstance(value, bool)
-        or not isinstance(value, SupportsIndex)
-        or not low <= operator.index(value) <= high
-    ):
-        raise refuse(
-            field, shown(value), f"a whole number, {low} to {high}", "Choose a number in that range."
-        )
-    return operator.index(value)
+    text = shown(str(value) if isinstance(value, Path) else value, _MOST_CHARACTERS)
+    return ParameterError([FieldProblem(field, text, allowed, action)])
 
 
 class NumericalError(SpurcheckError, ArithmeticError):

@@ -11,7 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.errors import refuse
+from lumped.arguments import real_array
+from lumped.errors import refuse, shown
 from lumped.validity import NOT_STATED, FloatArray, ValidityRange, checked
 
 #: Film thickness ratios at which the lubrication regime changes.
@@ -215,12 +216,14 @@ def regime(film_parameter: ArrayLike, thresholds: Sequence[float] = DEFAULT_THRE
     ------
     ParameterError : the thresholds are not three increasing positive numbers
     """
-    limits = np.asarray(thresholds, dtype=float)
+    limits = real_array("friction.thresholds", thresholds)
     if limits.shape != (3,) or not (np.diff(limits) > 0).all() or limits[0] <= 0:
         raise refuse(
             "friction.thresholds",
-            list(thresholds),
+            shown(thresholds),
             "three increasing positive film parameters",
             "Use for example [1, 4, 10].",
         )
-    return np.asarray(np.digitize(np.asarray(film_parameter, dtype=float), limits), dtype=np.int64)
+    return np.asarray(
+        np.digitize(checked("film_parameter", film_parameter, "", allow_zero=True), limits), dtype=np.int64
+    )

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lumped.arguments import one_of
 from lumped.equations import COORDINATES, Structure, structure
-from lumped.errors import refuse
 from lumped.gear_geometry import geometry
 from lumped.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.parameters import GearPair
@@ -148,19 +148,18 @@ def periodic_system(
     ------
     ParameterError : unknown form or equation
     """
+    one_of("form", form, get_args(Form))
     s = structure(pair, as_printed)
     g = geometry(pair)
     if form == "absolute":
         names: tuple[str, ...] = COORDINATES
         reduction = np.eye(6)
-    elif form in ("relative", "feedback"):
+    else:
         size = 5 if form == "relative" else 3
         names = ("q", "x_p", "x_g", "y_p", "y_g")[:size]
         reduction = np.zeros((size, 6))
         reduction[0, :2] = g.base_radius_pinion, -g.base_radius_gear
         reduction[1:, 2 : size + 1] = np.eye(size - 1)
-    else:
-        raise refuse("form", form, "absolute, relative or feedback", "Choose one of the three.")
     m = len(names)
     constant = np.zeros((2 * m, 2 * m))
     constant[:m, m:] = np.eye(m)

@@ -66,10 +66,10 @@ def load_gear_pair(source: str | Path | Mapping[str, Any] | GearPair) -> GearPai
         raise ParameterError([FieldProblem("pair", shown(source), allowed, "Give one of these.")])
     path = Path(source)
     if isinstance(source, str) and source in preset_names():
-        return validated(_parsed(preset_text(source), f"preset {source}"), f"preset {source}")
+        return validated(parse_toml(preset_text(source), f"preset {source}"), f"preset {source}")
     if path.suffix.lower() != ".toml" and not _exists(path) and "/" not in str(source):
         preset_text(str(source))
-    return validated(_parsed(_read(path), str(path)), str(path), path.parent)
+    return validated(parse_toml(_read(path), str(path)), str(path), path.parent)
 
 
 def json_schema() -> dict[str, Any]:
@@ -112,38 +112,10 @@ def _exists(path: Path) -> bool:
 
 
 def _read(path: Path) -> str:
-    try:
-        return read_text(path, MAX_FILE_BYTES)
-    except FileNotFoundError:
-        raise ParameterError(
-            [
-                FieldProblem(
-                    "file",
-                    shown(str(path)),
-                    "a TOML file that exists, or a preset: " + ", ".join(preset_names()),
-                    "Check the path, or start from 'spurcheck init'.",
-                )
-            ]
-        ) from None
-    except (OSError, UnicodeDecodeError, ValueError) as error:
-        if isinstance(error, ParameterError):
-            raise
-        raise ParameterError(
-            [
-                FieldProblem(
-                    "file",
-                    shown(str(path)),
-                    "a readable UTF-8 TOML file",
-                    f"It cannot be read: {getattr(error, 'strerror', None) or error}.",
-                )
-            ]
-        ) from None
-
-
-def _parsed(text: str, source: str) -> dict[str, Any]:
-    try:
-        return parse_toml(text)
-    except (RecursionError, ValueError) as error:
-        raise ParameterError(
-            [FieldProblem("file", source, "well-formed TOML", f"The TOML is malformed: {error}.")]
-        ) from None
+    return read_text(
+        path,
+        MAX_FILE_BYTES,
+        kind="TOML file",
+        instead=", or a preset: " + ", ".join(preset_names()),
+        action="Check the path, or start from 'spurcheck init'.",
+    )

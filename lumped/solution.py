@@ -6,7 +6,6 @@ Sources: docs/theory/equations.md, "Periodic motion and the brake torque".
 from __future__ import annotations
 
 import itertools
-import numbers
 from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -15,8 +14,9 @@ from numpy.typing import ArrayLike
 from scipy.integrate import DOP853
 
 from lumped import kernels
+from lumped.arguments import real_number, whole_number
 from lumped.equations import COORDINATES, static_deflection
-from lumped.errors import NumericalError, refuse, shown, whole_number
+from lumped.errors import NumericalError, refuse
 from lumped.gear_geometry import geometry
 from lumped.mesh_cycle import MeshCycle
 from lumped.parameters import GearPair
@@ -70,8 +70,7 @@ def simulate(
     NumericalError : the integration fails or is not finite
     """
     cycles = whole_number("cycles", cycles, 1, 100_000)
-    if not (isinstance(rtol, numbers.Real) and 1e-13 <= rtol <= 1e-2):
-        raise refuse("rtol", shown(rtol), "1e-13 to 1e-2", "Choose a tolerance in that range.")
+    rtol = real_number("rtol", rtol, 1e-13, 1e-2)
     system = periodic_system(pair, "absolute", as_printed=as_printed)
     grid = sample_times(system.period, samples_per_cycle)
     # The torques that hold the mean speed are those of the repaired equations: a printed sign then shows up

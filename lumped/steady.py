@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lumped.errors import NumericalError, whole_number
+from lumped.arguments import whole_number
+from lumped.errors import NumericalError
 from lumped.gear_geometry import geometry
 from lumped.parameters import GearPair
 from lumped.path_function import FloatArray

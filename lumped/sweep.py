@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lumped.errors import NumericalError, refuse, shown
+from lumped.arguments import real_numbers
+from lumped.errors import NumericalError
 from lumped.friction import friction_path_function
 from lumped.gear_geometry import geometry
 from lumped.mesh_cycle import MeshCycle
@@ -145,11 +146,4 @@ def running_speeds(speeds_rpm: Iterable[float]) -> FloatArray:
     ------
     ParameterError : something else than positive finite numbers
     """
-    try:
-        speeds = np.asarray(list(speeds_rpm), dtype=float).reshape(-1)
-    except (TypeError, ValueError):
-        raise refuse("speeds_rpm", shown(speeds_rpm), "numbers > 0 rpm", "Give running speeds.") from None
-    for value in speeds:
-        if not (np.isfinite(value) and value > 0.0):
-            raise refuse("speeds_rpm", f"{value:g} rpm", "> 0 rpm", "Give running speeds.")
-    return speeds
+    return real_numbers("speeds_rpm", speeds_rpm, 0.0, above=True, unit="rpm", action="Give running speeds.")

@@ -9,30 +9,72 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from lumped.errors import refuse, shown
+from lumped.errors import ParameterError, refuse
 
 #: Most parts of a dotted key. No schema nests half as deep, and reading a key takes the square of its parts.
 _MAX_PARTS = 50
 
 
-def parse_toml(text: str) -> dict[str, Any]:
+def parse_toml(text: str, source: str) -> dict[str, Any]:
     """Return the content of TOML text, in a time that grows no faster than the text.
+
+    Parameters
+    ----------
+    text : the TOML
+    source : where it came from, for the message
 
     Raises
     ------
-    ValueError : malformed, or a dotted key of more than 50 parts
-    RecursionError : nested too deeply
+    ParameterError : malformed, nested too deeply, or a dotted key of more than 50 parts
     """
-    parts = 0
-    for found in re.finditer(r"^[ \t]*#.*|[.,=\[\]{}\n]", text, re.MULTILINE):
-        parts = parts + 1 if found[0] == "." else 0
-        if parts > _MAX_PARTS:
-            raise ValueError(f"more than {_MAX_PARTS} dots in a row (at character {found.start()})")
-    return tomllib.loads(text)
+    try:
+        parts = 0
+        for found in re.finditer(r"^[ \t]*#.*|[.,=\[\]{}\n]", text, re.MULTILINE):
+            parts = parts + 1 if found[0] == "." else 0
+            if parts > _MAX_PARTS:
+                raise ValueError(f"more than {_MAX_PARTS} dots in a row (at character {found.start()})")
+        return tomllib.loads(text)
+    except (RecursionError, ValueError) as error:
+        raise refuse("file", source, "well-formed TOML", f"The TOML is malformed: {error}.") from None
 
 
-def read_text(path: str | Path, limit: int, encoding: str = "utf-8-sig") -> str:
-    """Return the text of an ordinary file (or of one that a link leads to).
+def read_text(
+    path: str | Path,
+    limit: int,
+    *,
+    field: str = "file",
+    kind: str = "text file",
+    instead: str = "",
+    action: str = "Check the path.",
+) -> str:
+    """Return the text of an ordinary file in UTF-8, with or without the mark that Windows puts in front.
+
+    Parameters
+    ----------
+    path, limit, field, kind, instead, action : as ``read_bytes``
+
+    Raises
+    ------
+    ParameterError : as ``read_bytes``, or not UTF-8
+    """
+    data = read_bytes(path, limit, field=field, kind=kind, instead=instead, action=action)
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        why = f"It cannot be read: byte {error.start} is no UTF-8. Save it as UTF-8 text."
+        raise refuse(field, Path(path), f"a {kind} in UTF-8", why) from None
+
+
+def read_bytes(
+    path: str | Path,
+    limit: int,
+    *,
+    field: str = "file",
+    kind: str = "file",
+    instead: str = "",
+    action: str = "Check the path.",
+) -> bytes:
+    """Return the bytes of an ordinary file (or of one that a link leads to).
 
     A pipe would block for ever and a device never ends, so both are refused before anything is read.
 
@@ -40,26 +82,36 @@ def read_text(path: str | Path, limit: int, encoding: str = "utf-8-sig") -> str:
     ----------
     path : file
     limit : largest size [bytes]
-    encoding : of the text; the default is UTF-8 with or without the mark that Windows puts in front
+    field : the argument that named it
+    kind : of file that is wanted
+    instead : what else could have been named, ", or ..."
+    action : what to do where it does not exist
 
     Raises
     ------
-    ParameterError : not an ordinary file, or larger than the limit
-    OSError : it does not exist or cannot be opened
-    ValueError : the name or the text is not what the encoding allows
+    ParameterError : no such file, not an ordinary one, not readable, or larger than the limit
     """
-    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-    descriptor = os.open(path, flags)
     try:
-        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-            raise refuse(
-                "file", shown(str(path)), "a readable ordinary file", "Name a file, no folder or device."
-            )
-        data = b""
-        while len(data) <= limit and (block := os.read(descriptor, limit + 1 - len(data))):
-            data += block
-    finally:
-        os.close(descriptor)
+        flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+        descriptor = os.open(path, flags)
+        try:
+            if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+                action = "This is a folder or a device: name an ordinary file."
+                raise refuse(field, Path(path), f"a readable {kind}", action)
+            data = b""
+            while len(data) <= limit and (block := os.read(descriptor, limit + 1 - len(data))):
+                data += block
+        finally:
+            os.close(descriptor)
+    except FileNotFoundError:
+        raise refuse(field, Path(path), f"a {kind} that exists{instead}", action) from None
+    except OSError as error:
+        why = f"It cannot be read: {error.strerror or error}."
+        raise refuse(field, Path(path), f"a readable {kind}", why) from None
+    except ParameterError:
+        raise
+    except ValueError as error:  # such as a NUL in the name
+        raise refuse(field, str(path), f"a readable {kind}", f"It cannot be read: {error}.") from None
     if len(data) > limit:
-        raise refuse("file", shown(str(path)), f"<= {limit} bytes", "Is this the right file?")
-    return data.decode(encoding)
+        raise refuse(field, Path(path), f"<= {limit} bytes", "Is this the right file?")
+    return data

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lumped.arguments import real_array
 from lumped.errors import LawRangeWarning, refuse
 
 FloatArray = NDArray[np.float64]
@@ -118,7 +119,7 @@ def checked(field: str, value: ArrayLike, unit: str, *, allow_zero: bool = False
     ------
     ParameterError : a value is not finite, negative, or zero where ``allow_zero`` is false
     """
-    array = np.asarray(value, dtype=float)
+    array = real_array(field, value, finite=False)
     # Two reductions settle the usual case; laws are evaluated thousands of times in a chart.
     if array.size == 0:
         return array

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.errors import whole_number
+from lumped.arguments import whole_number
 from lumped.parameters import GearPair
 from lumped.solution import Initial
 from multibody import kernels as kn

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lumped.arguments import real_number, real_numbers
 from lumped.errors import refuse
 from multibody._jit import compiled
 
@@ -75,9 +76,7 @@ def drive_tables(
     ParameterError : a negative spring, a ramp without a spring, or a history that is none
     """
     for name in ("stiffness", "damping"):
-        value = getattr(drive, name)
-        if not 0.0 <= value < np.inf:
-            raise refuse(f"drive.{name}", value, ">= 0", "Give a finite value that is not negative.")
+        real_number(f"drive.{name}", getattr(drive, name), 0.0)
     if drive.motor_speed is not None and drive.stiffness == 0.0:
         raise refuse(
             "drive.stiffness", 0.0, "> 0 N m/rad with a motor speed", "Couple the motor by a spring."
@@ -97,16 +96,18 @@ def _history(name: str, history: tuple[ArrayLike, ArrayLike] | None, default: fl
     if history is None:
         return np.array([[0.0, default]])
     try:
-        times, values = (np.atleast_1d(np.asarray(part, dtype=float)) for part in history)
-    except (TypeError, ValueError):  # no pair, or no numbers
-        times = values = np.empty(0)
-    good = times.ndim == 1 and times.shape == values.shape and times.size > 0
-    if not good or not (np.isfinite(times).all() and np.isfinite(values).all()):
+        given, wanted = history
+    except (TypeError, ValueError):
+        given = wanted = ()
+    times = real_numbers(f"drive.{name} times", given, 0.0, increasing=True, unit="s")
+    values = real_numbers(f"drive.{name} values", wanted)
+    if times[0] != 0.0 or times.size != values.size:
         raise refuse(
-            f"drive.{name}", "this history", "(times, values) of equal length", "Give finite numbers."
+            f"drive.{name}",
+            f"{times.size} times from {times[0]:g} s, {values.size} values",
+            "(times, values) of equal length, from 0 s",
+            "Sort the times and start at 0.",
         )
-    if times[0] != 0.0 or np.any(np.diff(times) <= 0.0):
-        raise refuse(f"drive.{name}", f"times {times[:4]}...", "increasing from 0 s", "Sort and start at 0.")
     return np.column_stack([times, values])
 
 

@@ -10,6 +10,7 @@ from collections.abc import Collection, Mapping
 
 import numpy as np
 
+from lumped.arguments import some_of
 from lumped.errors import refuse
 from multibody import kernels as kn
 
@@ -40,14 +41,13 @@ def effect_flags(effects: Collection[str] | Mapping[str, bool] | None) -> int:
     if effects is None:
         names: set[str] = set(EFFECTS)
     elif isinstance(effects, Mapping):
-        _check(effects)
+        some_of("effects", list(effects), EFFECTS)
         for name, acts in effects.items():
             if not isinstance(acts, bool | np.bool_):
                 raise refuse(f"effects.{name}", acts, "True or False", "Say whether the effect acts.")
         names = {name for name in EFFECTS if effects.get(name, True)}
     else:
-        _check(effects)
-        names = set(effects)
+        names = set(some_of("effects", effects, EFFECTS, "Name the effects to keep."))
     flags = 0
     for name in names:
         flags |= EFFECTS[name][0]
@@ -57,10 +57,3 @@ def effect_flags(effects: Collection[str] | Mapping[str, bool] | None) -> int:
 def active_effects(flags: int) -> tuple[str, ...]:
     """Names of the effects whose bits are set, in the order of ``EFFECTS``."""
     return tuple(name for name, (bits, _) in EFFECTS.items() if flags & bits == bits)
-
-
-def _check(names: Collection[str]) -> None:
-    given = names if isinstance(names, Collection) and not isinstance(names, str) else [names]
-    for name in given:
-        if given is not names or not isinstance(name, str) or name not in EFFECTS:
-            raise refuse("effects", name, f"a set out of {sorted(EFFECTS)}", "Name the effects to keep.")

@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.errors import NumericalError, whole_number
+from lumped.arguments import whole_number
+from lumped.errors import NumericalError
 from lumped.parameters import GearPair
 from lumped.periodic_system import periodic_system
 from lumped.propagation import step_maps

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.errors import refuse
+from lumped.arguments import real_numbers
+from lumped.errors import refuse, shown
 from lumped.parameters import GearPair
 from lumped.results import provenance
 from lumped.solution import Initial
@@ -59,10 +60,9 @@ def reversal_convergence(
     """
     import xarray as xr
 
-    values = np.asarray(velocities, dtype=float)
-    falling = values.ndim == 1 and values.size > 1 and np.all(np.diff(values) < 0.0)
-    if not falling or not values[-1] > 0.0:
-        raise refuse("velocities", list(velocities), "two or more, falling, > 0 m/s", "Sort them.")
+    values = real_numbers("velocities", velocities, 0.0, above=True, unit="m/s")
+    if values.size < 2 or (np.diff(values) >= 0.0).any():
+        raise refuse("velocities", shown(velocities), "two or more, falling, > 0 m/s", "Sort them.")
     runs = []
     for number, velocity in enumerate(values):
         runs.append(simulate(pair, cycles, initial=initial, rtol=rtol, friction_velocity=float(velocity)))

@@ -9,7 +9,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.errors import refuse
+from lumped.arguments import one_of, real_number
+from lumped.errors import refuse, shown
 from lumped.parameters import GearPair
 from lumped.periodic_system import periodic_system
 from lumped.results import provenance
@@ -111,12 +112,14 @@ def prepare(
     drive: Drive | None = None,
 ) -> Setup:
     """Build the model and its initial state; arguments as ``simulate``."""
-    if fidelity not in FIDELITIES:
-        raise refuse("fidelity", fidelity, f"one of {sorted(FIDELITIES)}", "Choose one of them.")
-    if not 1e-12 <= rtol <= 1e-3:
-        raise refuse("rtol", rtol, "1e-12 to 1e-3", "Choose a tolerance in that range.")
-    if friction_velocity is not None and not 0.0 <= friction_velocity < np.inf:
-        raise refuse("friction_velocity", f"{friction_velocity} m/s", ">= 0 m/s", "0 switches at once.")
+    one_of("fidelity", fidelity, FIDELITIES)
+    rtol = real_number("rtol", rtol, 1e-12, 1e-3)
+    if friction_velocity is not None:
+        friction_velocity = real_number(
+            "friction_velocity", friction_velocity, 0.0, unit="m/s", action="0 switches at once."
+        )
+    if not isinstance(drive, Drive | None):
+        raise refuse("drive", shown(drive), "a multibody.Drive", "Leave it out for constant torques.")
     if fidelity == "linear" and effects:
         raise refuse("effects", effects, "none at fidelity 'linear'", "Use fidelity='exact'.")
     flags = effect_flags(effects) if fidelity == "exact" else 0

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.errors import whole_number
+from lumped.arguments import whole_number
 from lumped.parameters import GearPair
 from lumped.solution import Initial
 from lumped.steady import sample_times

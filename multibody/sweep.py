@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.errors import refuse, whole_number
+from lumped.arguments import whole_number
 from lumped.parameters import GearPair
 from lumped.results import provenance
+from lumped.sweep import running_speeds
 from multibody.records import to_lumped_state
 from multibody.setup import MOST_CYCLES, Fidelity, prepare
 from multibody.simulation import record
@@ -69,13 +70,9 @@ def speed_sweep(
     """
     import xarray as xr
 
-    speeds = np.asarray(list(speeds_rpm), dtype=float)
+    speeds = running_speeds(speeds_rpm)
     settle = whole_number("settle", settle, 0, MOST_CYCLES)
     cycles = whole_number("cycles", cycles, 1, MOST_CYCLES)
-    if speeds.size == 0:
-        raise refuse(
-            "speeds_rpm", "no speed", "one or more speeds", "Name the speeds in the order of the sweep."
-        )
     table = {name: np.full(speeds.size, np.nan) for name in _VARIABLES}
     state: FloatArray | None = None
     for j, rpm in enumerate(speeds):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import os
+import sys
 from importlib import metadata
 from typing import Annotated
 
@@ -81,10 +82,22 @@ for command in COMMANDS:
 app.callback(help=paragraphs(spurcheck.__doc__))(spurcheck)
 
 
+def _open_streams() -> None:
+    """Give streams that a daemon closed a place: the next file opened, a journal, would take their number."""
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest number
+    sys.stdout = sys.stdout or os.fdopen(1, "w", closefd=False)
+    sys.stderr = sys.stderr or os.fdopen(2, "w", closefd=False)
+
+
 def main() -> None:
     """Entry point of the installed command."""
     # Before numpy is imported: the matrices are small, threads inside BLAS only wait for each other.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    _open_streams()
     app()
 
 

@@ -14,6 +14,7 @@ import xarray as xr
 import lumped
 import multibody
 from lumped import GearPair
+from lumped.arguments import some_of, whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.results import VARIABLES
 from validation import metrics
@@ -251,16 +252,12 @@ def _unsettled(result: xr.Dataset, samples: int) -> float:
 
 
 def _check(cycles: int, samples: int, fidelities: Sequence[str], quantities: Sequence[str]) -> None:
-    if not 6 <= cycles <= 100_000:
-        raise refuse("cycles", cycles, "6 to 100000", "Choose a number in that range.")
-    if not 32 <= samples <= 65536:
-        raise refuse("samples_per_cycle", samples, "32 to 65536", "Choose a number in that range.")
+    whole_number("cycles", cycles, 6, 100_000)
+    whole_number("samples_per_cycle", samples, 32, 65536)
     for field, given, known in (
         ("fidelities", fidelities, FIDELITIES),
         ("quantities", quantities, QUANTITIES),
     ):
-        for name in given:
-            if name not in known:
-                raise refuse(field, repr(name), ", ".join(known), "Choose among these.")
-        if not given or len(set(given)) != len(given):
-            raise refuse(field, list(given), "at least one, each once", "Correct the list.")
+        chosen = some_of(field, given, known)
+        if not chosen or len(set(chosen)) != len(chosen):
+            raise refuse(field, ", ".join(chosen), "at least one, each once", "Correct the list.")

@@ -50,7 +50,7 @@ import numpy as np
 import xarray as xr
 
 from lumped import GearPair
-from lumped.errors import refuse
+from lumped.arguments import some_of
 from lumped.mesh_cycle import mesh_cycle
 from lumped.periodic_system import periodic_system
 from lumped.results import dataset
@@ -115,11 +115,7 @@ def finite_motion(
     ParameterError : unknown effect
     NumericalError : the nominal motion is not periodic
     """
-    for name in effects:
-        if name not in PREDICTED:
-            raise refuse(
-                "effects", name, f"out of {', '.join(PREDICTED)}", "Name effects that are predicted."
-            )
+    some_of("effects", effects, PREDICTED, "Name effects that are predicted.")
     nominal = mesh_cycle(pair)
     system = periodic_system(pair, "absolute", cycle=nominal)
     balance = periodic_solution(pair, np.zeros(1), system=system, estimate_error=False)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 import lumped
 from lumped import GearPair, LawRangeWarning, geometry
-from lumped.errors import refuse
+from lumped.arguments import real_numbers
 from lumped.film import regime
 from lumped.friction import contact_path
 from lumped.results import provenance
@@ -57,13 +57,8 @@ def validity_map(
     ------
     ParameterError : speeds or torques are not positive and increasing
     """
-    axes = {}
-    for name, values in (("speeds_rpm", speeds_rpm), ("torques", torques)):
-        axis = np.atleast_1d(np.asarray(values, dtype=float))
-        if axis.ndim != 1 or not (np.isfinite(axis).all() and axis[0] > 0 and (np.diff(axis) > 0).all()):
-            raise refuse(name, values, "positive numbers, increasing", "Correct the list.")
-        axes[name] = axis
-    speed, torque = axes["speeds_rpm"], axes["torques"]
+    speed = real_numbers("speeds_rpm", speeds_rpm, 0.0, above=True, increasing=True, unit="rpm")
+    torque = real_numbers("torques", torques, 0.0, above=True, increasing=True, unit="N m")
     shape = (torque.size, speed.size)
     names = ("lowest_load", "reversal", "spectral_radius", "film_parameter")
     found: dict[str, FloatArray] = {name: np.full(shape, np.nan) for name in names}

@@ -11,7 +11,7 @@ from floquet.propagators.base import Propagator
 from floquet.propagators.gauss import GaussLegendre
 from floquet.propagators.magnus import Magnus4, Magnus6, PiecewiseExponential
 from floquet.propagators.runge_kutta import ExplicitRungeKutta, dop853, rk4
-from lumped.errors import refuse
+from lumped.arguments import one_of
 
 PROPAGATORS: dict[str, Callable[[], Propagator]] = {
     "gauss": lambda: GaussLegendre(6),
@@ -37,9 +37,7 @@ def propagator(method: str | Propagator) -> Propagator:
     """
     if isinstance(method, Propagator):
         return method
-    if method not in PROPAGATORS:
-        raise refuse("method", method, ", ".join(PROPAGATORS), "Choose one of these, or pass a Propagator.")
-    return PROPAGATORS[method]()
+    return PROPAGATORS[one_of("method", method, PROPAGATORS, "Choose one of these, or pass a Propagator.")]()
 
 
 __all__ = [

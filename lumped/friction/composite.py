@@ -12,6 +12,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lumped.arguments import real_array
 from lumped.film import DEFAULT_THRESHOLDS, RANGES, regime
 from lumped.friction import benedict_kelley, smoothed_coulomb, xu_kahraman
 from lumped.friction.base import BoolArray, ContactPath, FrictionLaw, FrictionSettings
@@ -42,10 +43,13 @@ def composite(
     mu [-]
     """
     number = regime(film_parameter, thresholds)
-    return np.asarray(
-        np.select([number == 0, number == 1], [smoothed_coulomb, benedict_kelley], xu_kahraman),
-        dtype=np.float64,
-    )
+    laws = {
+        "smoothed_coulomb": smoothed_coulomb,
+        "benedict_kelley": benedict_kelley,
+        "xu_kahraman": xu_kahraman,
+    }
+    iv, ii, iii = (real_array(name, mu) for name, mu in laws.items())
+    return np.asarray(np.select([number == 0, number == 1], [iv, ii], iii), dtype=np.float64)
 
 
 def _signed(xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> FloatArray:

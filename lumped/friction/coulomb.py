@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lumped.arguments import real_array
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.fitted import average_coefficient
 from lumped.validity import FloatArray, checked
@@ -26,7 +27,7 @@ def coulomb(coefficient: ArrayLike, distance: ArrayLike) -> FloatArray:
     mu [-], negative in approach, positive in recess, 0 at the pitch point
     """
     mu = checked("coefficient", coefficient, "", allow_zero=True)
-    return np.asarray(mu * np.sign(distance), dtype=np.float64)
+    return np.asarray(mu * np.sign(real_array("distance", distance)), dtype=np.float64)
 
 
 def _signed(xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> FloatArray:

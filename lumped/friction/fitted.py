@@ -11,6 +11,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.interpolate import PPoly
 
+from lumped.arguments import real_number
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.benedict_kelley import LAW as BENEDICT_KELLEY
 from lumped.friction.graded_fit import graded_fit
@@ -42,8 +43,8 @@ def mean_coefficient(function: PathFunction, low: float | None = None, high: flo
     middles = 0.5 * (breaks[:-1] + breaks[1:])
     signs = np.where(function(middles) < 0.0, -1.0, 1.0)
     magnitude = PPoly(function.coefficients * signs, breaks)
-    a = breaks[0] if low is None else low
-    b = breaks[-1] if high is None else high
+    a = breaks[0] if low is None else real_number("low", low, *function.interval)
+    b = breaks[-1] if high is None else real_number("high", high, a, function.interval[1], above=True)
     return float(magnitude.integrate(a, b)) / float(b - a)
 
 

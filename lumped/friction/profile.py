@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lumped import film
+from lumped.arguments import some_of, whole_number
 from lumped.errors import ParameterError
 from lumped.friction.along_path import (
     contact_path,
@@ -56,7 +57,7 @@ def friction_profile(
     path, settings = contact_path(pair, geometry), friction_settings(pair)
     functions: dict[str, PathFunction] = {}
     left_out: list[str] = []
-    names = [name for name in LAWS if name != "none"] if laws is None else list(laws)
+    names = [name for name in LAWS if name != "none"] if laws is None else some_of("laws", laws, LAWS)
     for name in names:
         try:
             functions[name] = fit_law(path, settings, name)
@@ -64,7 +65,7 @@ def friction_profile(
             if laws is not None:
                 raise
             left_out.append(f"{LAWS[name].title}: {error}")
-    grid = np.linspace(path.L_XA, path.L_XD, points)
+    grid = np.linspace(path.L_XA, path.L_XD, whole_number("points", points, 2, 1_000_000))
     # Just below the end: a path function is right-continuous and zero beyond it.
     grid[-1] = np.nextafter(path.L_XD, 0.0)
     xi = np.unique(np.concatenate([grid, *(f.switches for f in functions.values())]))

@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from lumped.errors import refuse
+from lumped.arguments import one_of
 from lumped.friction import benedict_kelley, composite, coulomb, smoothed_coulomb, xu_kahraman
 from lumped.friction.base import FrictionLaw
 
@@ -42,7 +42,4 @@ def law_named(name: str) -> FrictionLaw:
     ------
     ParameterError : no law has this name
     """
-    try:
-        return LAWS[name]
-    except KeyError:
-        raise refuse("friction.law", name, ", ".join(LAWS), "Pick one of them.") from None
+    return LAWS[one_of("friction.law", name, LAWS)]

@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lumped.arguments import real_array
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.fitted import average_coefficient
 from lumped.validity import FloatArray, checked
@@ -30,7 +31,7 @@ def smoothed_coulomb(coefficient: ArrayLike, distance: ArrayLike, sharpness: Arr
     """
     mu = checked("coefficient", coefficient, "", allow_zero=True)
     phi = checked("sharpness", sharpness, "1/length")
-    scaled = phi * np.asarray(distance, dtype=float)
+    scaled = phi * real_array("distance", distance)
     return np.asarray(2.0 * mu / np.pi * (np.arctan(scaled) + scaled / (1.0 + scaled**2)), dtype=np.float64)
 
 

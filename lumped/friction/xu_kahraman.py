@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lumped.arguments import real_array
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.validity import NOT_STATED, FloatArray, ValidityRange, checked
 
@@ -62,7 +63,7 @@ def xu_kahraman(
     0.01039515
     """
     p_h = checked("pressure", pressure, "GPa")
-    sr = checked("slide_to_roll", np.abs(slide_to_roll), "", allow_zero=True)
+    sr = checked("slide_to_roll", np.abs(real_array("slide_to_roll", slide_to_roll)), "", allow_zero=True)
     v_e = checked("entraining_velocity", entraining_velocity, "m/s")
     eta = checked("viscosity", viscosity, "mPa s")
     s = checked("roughness", roughness, "um", allow_zero=True)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lumped.arguments import some_of
 from lumped.errors import ParameterError, refuse
 from lumped.friction import LAWS
 from lumped.gear_geometry import geometry
@@ -133,7 +134,7 @@ def losses_of_laws(
     """
     import xarray as xr
 
-    names = [name for name in LAWS if name != "none"] if laws is None else list(laws)
+    names = [name for name in LAWS if name != "none"] if laws is None else some_of("laws", laws, LAWS)
     rows: dict[str, dict[str, float]] = {}
     left_out: list[str] = []
     for name in names:

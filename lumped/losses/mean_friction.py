@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lumped.arguments import real_number
 from lumped.friction import contact_path
 from lumped.gear_geometry import geometry
 from lumped.losses.loss_factor import loss_factor
@@ -96,5 +97,6 @@ def iso_14179_mesh_loss(pair: GearPair, oil_factor: float = 1.0) -> float:
     pair : the gear pair
     oil_factor : X_L of the standard [-]
     """
+    oil_factor = real_number("oil_factor", oil_factor, 0.0, above=True)
     power = pair.operating.pinion_torque * pair.operating.pinion_speed
     return power * iso_14179_of(pair, oil_factor) * loss_factor(pair, "uniform")

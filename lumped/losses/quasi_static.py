@@ -69,6 +69,7 @@ def quasi_static_losses(
     exact quadrature between the switches, not from the samples.
     """
     g = geometry(pair)
+    time = sample_times(g.mesh_period, samples_per_cycle)
     mu = friction_path_function(pair, g, law)
     teeth = springs(pair, g, sharing)
     torque = pair.operating.pinion_torque
@@ -78,7 +79,6 @@ def quasi_static_losses(
     loss = -nodes.mean(exact.power.sum(axis=0))
     factor = mean_loss_factor(g, nodes, exact.share)
     at = samples(g, samples_per_cycle)
-    time = sample_times(g.mesh_period, samples_per_cycle)
     loads = _loads(g, torque, mu, teeth, at)
     touching = at.contact
     result = labelled(

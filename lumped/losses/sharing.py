@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from lumped.errors import refuse
+from lumped.arguments import one_of
 from lumped.losses.cycle import CyclePositions
 from lumped.mesh_elements import mesh_elements
 from lumped.path_function import FloatArray, PathFunction
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from lumped.gear_geometry import Geometry
     from lumped.parameters import GearPair
 
+_KINDS = ("elements", "loaded", "stiffness", "uniform")
 #: "elements": stiffness and tooth error as the dynamic model has them; "loaded": with the relief of the
 #: flanks under the operating torque; "stiffness": the stiffness model without tooth errors; "uniform": equal
 #: shares; or a path function of relative stiffness.
@@ -71,6 +72,7 @@ def springs(pair: GearPair, g: Geometry, sharing: Sharing) -> Springs:
     force = pair.operating.pinion_torque / g.base_radius_pinion
     if isinstance(sharing, PathFunction):
         return Springs(sharing, None, force)
+    one_of("sharing", sharing, _KINDS, "Choose one of them, or pass a PathFunction.")
     if sharing == "uniform":
         return Springs(PathFunction.constant(1.0, g.L_XA, g.L_XD), None, force)
     if sharing == "stiffness":
@@ -78,12 +80,5 @@ def springs(pair: GearPair, g: Geometry, sharing: Sharing) -> Springs:
     if sharing == "loaded":
         mesh = loaded_mesh(pair)
         return Springs(mesh.stiffness, mesh.error, force)
-    if sharing == "elements":
-        elements = mesh_elements(pair)
-        return Springs(elements.stiffness, elements.error, force)
-    raise refuse(
-        "sharing",
-        sharing,
-        "'elements', 'loaded', 'stiffness', 'uniform' or a PathFunction",
-        "Choose one of them.",
-    )
+    elements = mesh_elements(pair)
+    return Springs(elements.stiffness, elements.error, force)

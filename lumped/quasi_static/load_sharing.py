@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lumped.arguments import real_array
 from lumped.errors import NumericalError
 from lumped.path_function import FloatArray
 
@@ -45,13 +46,13 @@ def share_load(stiffness: ArrayLike, error: ArrayLike, force: ArrayLike) -> Load
     ------
     NumericalError : nowhere a pair that can carry the load
     """
-    k, e = np.broadcast_arrays(np.asarray(stiffness, dtype=float), np.asarray(error, dtype=float))
+    k, e = np.broadcast_arrays(real_array("stiffness", stiffness), real_array("error", error, finite=False))
     order = np.argsort(e, axis=-1, kind="stable")
     k_sorted, e_sorted = np.take_along_axis(k, order, -1), np.take_along_axis(e, order, -1)
     reach = np.isfinite(e_sorted)
     k_sorted, e_sorted = np.where(reach, k_sorted, 0.0), np.where(reach, e_sorted, 0.0)
     stiff, preload = np.cumsum(k_sorted, axis=-1), np.cumsum(k_sorted * e_sorted, axis=-1)
-    applied = np.asarray(force, dtype=float)[..., None]
+    applied = real_array("force", force)[..., None]
     with np.errstate(divide="ignore", invalid="ignore"):
         candidates = np.where(stiff > 0.0, (applied + preload) / stiff, np.inf)
     delta = candidates.min(axis=-1)

@@ -12,12 +12,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize
 
+from lumped.arguments import one_of, real_number, real_numbers
 from lumped.errors import refuse
 from lumped.gear_geometry import Geometry, geometry
 from lumped.parameters import GearPair
@@ -85,13 +86,12 @@ def relief_map(
     """
     import xarray as xr
 
-    amount, length = np.atleast_1d(np.asarray(amounts, float)), np.atleast_1d(np.asarray(lengths, float))
-    g, bare, force = _prepared(pair, torque, phases)
+    amount = real_numbers("amounts", amounts, 0.0, unit="m", action="Give the material removed at the tip.")
+    length = real_numbers("lengths", lengths, 0.0, above=True, unit="m")
+    g, bare, force = _prepared(pair, torque, shape, phases)
     path = g.L_XD - g.L_XA
-    if not ((length > 0.0).all() and (length < path).all()):
+    if not (length < path).all():
         raise refuse("lengths", length, f"> 0 and < {path:.6g} m, the path of contact", "Shorten the relief.")
-    if not (amount >= 0.0).all():
-        raise refuse("amounts", amount, ">= 0 m", "Give the material removed at the tip.")
     values = np.stack([_peak_to_peak(bare, g, force, amount, float(one), shape) for one in length], axis=1)
     return xr.Dataset(
         {
@@ -129,7 +129,7 @@ def optimal_relief(
     ------
     ParameterError : the design torque is not positive
     """
-    g, bare, force = _prepared(pair, torque, phases)
+    g, bare, force = _prepared(pair, torque, shape, phases)
     plain = share_load(bare.stiffness, bare.error, force).transmission_error
     scale, path = float(plain.max() - min(bare.error.min(), 0.0)), g.L_XD - g.L_XA
     amounts, lengths = np.linspace(0.0, 2.0 * scale, 41), np.linspace(0.02, 0.6, 40) * path
@@ -186,10 +186,12 @@ def with_tip_relief(pair: GearPair, optimum: OptimalRelief) -> GearPair:
     )
 
 
-def _prepared(pair: GearPair, torque: float | None, phases: int) -> tuple[Geometry, MeshPositions, float]:
-    moment = pair.operating.pinion_torque if torque is None else torque
-    if not moment > 0.0:
-        raise refuse("torque", f"{moment:g} N m", "> 0", "Give the design torque.")
+def _prepared(
+    pair: GearPair, torque: float | None, shape: Shape, phases: int
+) -> tuple[Geometry, MeshPositions, float]:
+    one_of("shape", shape, get_args(Shape))
+    given = pair.operating.pinion_torque if torque is None else torque
+    moment = real_number("torque", given, 0.0, above=True, unit="N m", action="Give the design torque.")
     bare = pair.with_(pinion__tip_relief=None, gear__tip_relief=None, operating__pinion_torque=moment)
     g = geometry(bare)
     return g, mesh_positions(bare, phases=phases), moment / g.base_radius_pinion

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.errors import NumericalError, refuse
+from lumped.arguments import real_numbers, whole_number
+from lumped.errors import NumericalError
 from lumped.gear_geometry import Geometry, geometry
 from lumped.parameters import GearPair
 from lumped.path_function import FloatArray
@@ -73,19 +74,19 @@ def mesh_positions(
     ------
     ParameterError : a relief starts outside the active flank, or too few phases
     """
-    if phases < 2:
-        raise refuse("phases", phases, ">= 2", "Give the number of positions per mesh cycle.")
+    phases = whole_number("phases", phases, 2, 65536, "Give the number of positions per mesh cycle.")
+    errors = real_numbers("pitch_errors", pitch_errors, unit="m")
     g = geometry(pair)
     reach = REACH if extended else 0.0
     ahead = np.arange(math.floor(-reach), math.ceil(g.contact_ratio + reach) + 1)
-    phase = np.arange(phases * len(pitch_errors)) / phases
+    phase = np.arange(phases * errors.size) / phases
     cycle = np.floor(phase).astype(np.int64)[:, None]
     tooth = cycle - ahead
     xi = g.L_XA + (phase[:, None] - cycle + ahead) * g.base_pitch
     inside = _INSIDE * g.base_pitch
     k = pair_stiffness(pair, g)(np.clip(xi, g.L_XA + inside, g.L_XD - inside))
     e = corner_gap(g, xi) + relief_error(pair, g, np.clip(xi, g.L_XA, g.L_XD))
-    e = e + np.asarray(pitch_errors, dtype=float)[tooth % len(pitch_errors)]
+    e = e + errors[tooth % errors.size]
     margin = reach * g.base_pitch + inside
     apart = (xi < g.L_XA - margin) | (xi > g.L_XD + margin)
     return MeshPositions(phase, ahead, tooth, xi, np.where(apart, 0.0, k), np.where(apart, np.inf, e))
@@ -124,11 +125,8 @@ def static_transmission_error(
     """
     import xarray as xr
 
-    torque = np.atleast_1d(
-        np.asarray(pair.operating.pinion_torque if torques is None else torques, dtype=float)
-    )
-    if not (np.isfinite(torque).all() and (torque >= 0.0).all()):
-        raise refuse("torques", f"{torque.min():g} N m", ">= 0 and finite", "Give driving torques.")
+    given = pair.operating.pinion_torque if torques is None else torques
+    torque = real_numbers("torques", given, 0.0, unit="N m", action="Give driving torques.")
     g = geometry(pair)
     mesh = mesh_positions(pair, phases=phases, pitch_errors=pitch_errors, extended=extended)
     force = torque / g.base_radius_pinion

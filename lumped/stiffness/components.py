@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lumped.arguments import whole_number
 from lumped.gear_geometry import geometry
 from lumped.stiffness import iso6336, pair_stiffness
 from lumped.stiffness.pair_compliance import Contact, pair_compliance
@@ -35,7 +36,9 @@ def stiffness_components(pair: GearPair, points: int = 201, hertz: Contact = "we
     import xarray as xr
 
     g = geometry(pair)
-    found = pair_compliance(pair, g, np.linspace(g.L_XA, g.L_XD, points), hertz=hertz)
+    found = pair_compliance(
+        pair, g, np.linspace(g.L_XA, g.L_XD, whole_number("points", points, 2, 100_000)), hertz=hertz
+    )
     parts = ("bending", "shear", "axial", "foundation")
     names = ["contact"] + [f"{part} {which}" for which in ("pinion", "gear") for part in parts]
     values = [found.hertz, *(getattr(tooth, part) for tooth in (found.pinion, found.gear) for part in parts)]
@@ -87,6 +90,7 @@ def mesh_stiffness(pair: GearPair, samples: int = 512) -> xr.Dataset:
 
     g = geometry(pair)
     curve = pair_stiffness(pair, g)
+    samples = whole_number("samples", samples, 1, 1_000_000)
     phase = (np.arange(samples) + 0.5) / samples
     ahead = np.arange(g.pairs)
     each = curve(g.L_XA + (phase[:, None] + ahead) * g.base_pitch)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lumped.arguments import one_of
 from lumped.path_function import FloatArray
 from lumped.stiffness.contact import contact_half_width, linear_hertz_compliance, local_compliance
 from lumped.stiffness.foundation import foundation_compliance
@@ -119,7 +120,7 @@ def _contact(pair: GearPair, geometry: Geometry, xi: FloatArray, hertz: Contact)
     width = geometry.face_width
     moduli = (pair.pinion.youngs_modulus, pair.gear.youngs_modulus)
     ratios = (pair.pinion.poisson_ratio, pair.gear.poisson_ratio)
-    if hertz == "linear":
+    if one_of("hertz", hertz, get_args(Contact)) == "linear":
         return np.full(xi.shape, linear_hertz_compliance(moduli, ratios) / width)
     load = pair.operating.pinion_torque / geometry.base_radius_pinion / width
     radius = xi * (geometry.L_XY - xi) / geometry.L_XY

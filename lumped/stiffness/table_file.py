@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from lumped.errors import ParameterError, refuse, shown
+from lumped.errors import refuse, shown
 from lumped.text_file import read_text
 from lumped.units import to_si
 
@@ -46,12 +46,7 @@ def read_stiffness_table(file: object, folder: str | Path = ".") -> dict[str, ob
     if not isinstance(file, str):
         raise refuse("file", file, "the name of a CSV file", "Write the name as text.")
     path = Path(folder) / file
-    try:
-        text = read_text(path, _MAX_BYTES, "utf-8-sig")
-    except (OSError, ValueError) as error:
-        if isinstance(error, ParameterError):
-            raise
-        raise refuse("file", path, "a readable CSV file", f"It cannot be read: {error}.") from None
+    text = read_text(path, _MAX_BYTES, kind="CSV file")
     lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
     if not lines:
         raise refuse("file", path, _FORMAT, "The file is empty.")

@@ -11,7 +11,7 @@ from floquet.gear_campbell import campbell
 from floquet.gear_friction_effect import friction_effect
 from lumped import load_gear_pair
 from lumped.averaged import modes
-from lumped.errors import ParameterError
+from lumped.errors import NumericalError, ParameterError
 
 
 @pytest.fixture(scope="module")
@@ -81,3 +81,8 @@ def test_difference_chart_is_the_difference(pair) -> None:
         friction_effect(pair, axes, ["sticky"])
     with pytest.raises(ParameterError, match="axes"):
         friction_effect(pair, {"friction_coefficient": [0.1, 0.2]})
+
+
+def test_a_speed_at_which_a_mode_dies_out_in_one_cycle_is_no_row_of_nan() -> None:
+    with pytest.raises(NumericalError, match=r"At 1\.5 rpm"):
+        campbell(load_gear_pair("nasa_28_28"), [1.5])

@@ -145,5 +145,5 @@ def test_largest_multiplier_off_the_line_of_action(pair) -> None:
 
 
 def test_unknown_parameter_is_refused(pair) -> None:
-    with pytest.raises(ParameterError, match="axes"):
+    with pytest.raises(ParameterError, match="parameters = moon_phase"):
         gear_sensitivities(pair, ["moon_phase"])

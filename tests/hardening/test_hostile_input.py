@@ -14,7 +14,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from lumped import GearPair, geometry, load_gear_pair, preset_names
-from lumped.errors import ParameterError, SpurcheckError
+from lumped.errors import ParameterError
 from lumped.parameters import field_at
 from lumped.serialise import preset_text
 from lumped.text_file import parse_toml
@@ -218,7 +218,7 @@ def test_the_mark_that_windows_puts_before_utf_8_is_no_text(tmp_path):
 def test_dots_in_comments_and_numbers_are_no_keys(tmp_path):
     dots = "# " + "." * 200 + "\n" + "# a" + ".a" * 200 + "\n"
     numbers = "points = [" + ", ".join(["1.5"] * 200) + "]\n"
-    assert parse_toml(dots + numbers) == {"points": [1.5] * 200}
+    assert parse_toml(dots + numbers, "text") == {"points": [1.5] * 200}
 
 
 @given(data=st.binary(max_size=300))
@@ -260,23 +260,6 @@ def test_broken_stiffness_tables(within, tmp_path_factory, text):
     data["mesh"]["stiffness"] = {"model": "table", "file": str(folder / "curve.csv")}
     with within(SECONDS):
         check_pair(accepted_or_refused(load_gear_pair, data))
-
-
-HOSTILE_NUMBERS = [math.nan, math.inf, -1.0, 0.0, 1e308, "x", None, [], 10**400]
-
-
-@pytest.mark.parametrize("value", HOSTILE_NUMBERS, ids=lambda value: str(value)[:9])
-@pytest.mark.parametrize("argument", ["cycles", "samples_per_cycle", "initial", "rtol"])
-def test_hostile_arguments_of_simulate(within, argument, value):
-    from lumped import simulate
-
-    arguments = {"cycles": 1, "samples_per_cycle": 8} | {argument: value}
-    with within(60.0):
-        try:
-            result = simulate(load_gear_pair("nasa_28_28"), **arguments)
-        except (SpurcheckError, TypeError):
-            return
-    assert np.isfinite(result.dte).all()
 
 
 def test_a_refusal_survives_the_way_between_processes():

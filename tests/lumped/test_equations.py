@@ -208,5 +208,5 @@ def test_only_repaired_equations_have_a_printed_sign(nasa, number):
 
 
 def test_unknown_form_is_refused(nasa):
-    with pytest.raises(ParameterError, match="absolute, relative or feedback"):
+    with pytest.raises(ParameterError, match="absolute, relative, feedback"):
         periodic_system(nasa, "modal")

@@ -272,7 +272,7 @@ def test_a_law_that_cannot_take_the_roughness_is_left_out_with_its_reason(pair):
 
 
 def test_unknown_law_is_refused_by_name(pair):
-    with pytest.raises(ParameterError, match=r"friction.law = amontons: allowed none, coulomb"):
+    with pytest.raises(ParameterError, match=r"friction.law = amontons: allowed one of none, coulomb"):
         friction_path_function(pair, law="amontons")
 
 

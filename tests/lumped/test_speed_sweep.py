@@ -79,15 +79,14 @@ def test_a_speed_without_periodic_motion_is_marked(nasa):
     assert np.isfinite(result["dte_rms"][0])
 
 
-def test_progress_and_empty_sweep(nasa):
+def test_progress(nasa):
     seen = []
     speed_sweep(nasa, [1000, 2000], samples_per_cycle=8, progress=seen.append)
     assert seen == [0.5, 1.0]
-    assert speed_sweep(nasa, []).sizes["speed"] == 0
 
 
 @pytest.mark.parametrize(
-    "speeds", [[0.0], [-1000.0], [1000.0, math.nan], [math.inf], ["fast"], [None], 3.0, None]
+    "speeds", [[0.0], [-1000.0], [1000.0, math.nan], [math.inf], ["fast"], [None], [], None]
 )
 def test_speeds_are_positive_numbers(nasa, speeds):
     with pytest.raises(ParameterError, match="speed"):

@@ -140,7 +140,7 @@ def test_wrong_files_are_refused(tmp_path, text, match):
 
 
 def test_missing_file_is_refused(tmp_path):
-    with pytest.raises(ParameterError, match="cannot be read"):
+    with pytest.raises(ParameterError, match="CSV file that exists"):
         read_stiffness_table("none.csv", tmp_path)
 
 

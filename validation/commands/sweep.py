@@ -94,5 +94,8 @@ def sweep(
         fail(str(error), NUMERICAL)
     except KeyboardInterrupt:
         fail(f"Stopped. What was computed is in {folder}; run the same command with --resume.", INTERRUPTED)
-    print_summary(summary, stdout())
+    try:
+        print_summary(summary, stdout())
+    except OSError as error:
+        fail(f"The results are whole, but what they are cannot be printed: {error.strerror}.", NUMERICAL)
     raise typer.Exit(summary.exit_code)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped import geometry
+from lumped.arguments import real_number, some_of
 from lumped.errors import NumericalError, refuse
 from lumped.parameters import GearPair
 from validation.measurements.prediction import Prediction
@@ -99,10 +100,11 @@ def align(
     NumericalError : the channels do not vary, or the best shift explains less than half of their variation
     """
     raw = mesh_cycles(measurement, prediction.pair)
-    for field, farthest in (("abscissa", np.abs(raw).max()), ("shift", abs(shift or 0.0))):
-        if not farthest < _FARTHEST:
-            raise refuse(field, f"{farthest:g} mesh cycles", f"< {_FARTHEST:g}", "Check its unit.")
+    farthest = float(np.abs(raw).max())
+    real_number("abscissa", farthest, 0.0, _FARTHEST, unit="mesh cycles", action="Check its unit.")
     if shift is not None:
+        advice = "Check its unit."
+        shift = real_number("shift", shift, -_FARTHEST, _FARTHEST, unit="mesh cycles", action=advice)
         return Alignment(raw + shift, shift, 0.0)
     chosen = _chosen(measurement, channels)
     labels = {c.name: (c.quantity, c.pair) for c in measurement.spec.channel}
@@ -160,9 +162,7 @@ def _chosen(measurement: Measurement, channels: Sequence[str] | None) -> list[st
     if channels is None:
         loads = [name for name, _ in measurement.named("normal_load")]
         return loads or known
-    for name in channels:
-        if name not in known:
-            raise refuse("channels", name, "names out of " + ", ".join(known), "Correct the name.")
-    if not channels:
+    chosen = some_of("channels", channels, known)
+    if not chosen:
         raise refuse("channels", "none", "names out of " + ", ".join(known), "Name a channel, or a shift.")
-    return list(channels)
+    return list(chosen)

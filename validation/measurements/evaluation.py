@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import xarray as xr
 
-from lumped.errors import refuse
+from lumped.arguments import some_of
 from lumped.friction import LAWS
 from lumped.parameters import GearPair
 from validation.measurements.alignment import Alignment, align
@@ -72,10 +72,7 @@ def evaluate(
     NumericalError : the record does not fit the prediction in any phase, or carries no friction
     """
     laws = [name for name in LAWS if name != "none"]
-    for name in identify:
-        if name != CONSTANT and name not in laws:
-            allowed = f"{CONSTANT} (constant) or a law to scale: " + ", ".join(laws)
-            raise refuse("identify", name, allowed, "Correct the name.")
+    some_of("identify", identify, [CONSTANT, *laws], "Name mu, a constant coefficient, or a law to scale.")
     spec = measurement.spec
     prediction = predict(pair, spec.pinion_speed, spec.pinion_torque, recurrence=spec.recurrence)
     phase = align(measurement, prediction, shift=shift)

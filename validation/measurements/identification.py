@@ -19,12 +19,13 @@ noise that hardly changes while a tooth pair is in contact looks like friction.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import t as student
 
+from lumped.arguments import one_of, real_number
 from lumped.errors import NumericalError, refuse
 from lumped.friction import friction_path_function, mean_coefficient
 from validation.measurements.alignment import Alignment
@@ -113,14 +114,11 @@ def identify_friction(
     ParameterError : channels are missing, or arguments out of range
     NumericalError : too few samples in contact, or samples that carry no friction
     """
-    if not 0.5 <= level < 1.0:
-        raise refuse("level", level, "0.5 to 1", "Use 0.95.")
-    if normal not in ("measured", "predicted"):
-        raise refuse("normal", normal, "'measured' or 'predicted'", "Choose one of them.")
+    level = real_number("level", level, 0.5, 1.0 - 1e-12, action="Use 0.95.")
+    one_of("normal", normal, get_args(NormalSource))
     if guard is None:
         guard = (3.0 * alignment.standard_error + alignment.sample_spacing) * prediction.geometry.base_pitch
-    if guard < 0.0:
-        raise refuse("guard", f"{guard} m", ">= 0 m", "Use 0 to keep every sample.")
+    guard = real_number("guard", guard, 0.0, unit="m", action="Use 0 to keep every sample.")
     samples = _collect(measurement, prediction, alignment, law, normal, guard)
     count = 1 + (int(samples.channel.max()) + 1 if zero else 0)
     estimate = estimate_parameters(samples, count)

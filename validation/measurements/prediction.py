@@ -12,6 +12,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from lumped import Geometry, PathFunction, geometry, mesh_elements, steady_state
+from lumped.arguments import real_number, whole_number
 from lumped.errors import refuse
 from lumped.parameters import GearPair
 from validation.measurements.specification import PAIR_LABELS, QUANTITIES
@@ -110,18 +111,16 @@ def predict(
     """
     at = pair
     if speed is not None:
+        speed = real_number("speed", speed, 0.0, above=True, unit="rad/s")
         at = at.with_({"operating.pinion_speed": f"{speed!r} rad/s"})
     if torque is not None:
-        at = at.with_({"operating.pinion_torque": float(torque)})
+        torque = real_number("torque", torque, 0.0, above=True, unit="N m")
+        at = at.with_({"operating.pinion_torque": torque})
     g = geometry(at)
-    again = at.pinion.teeth if recurrence is None else recurrence
-    if again < g.pairs:
-        raise refuse(
-            "recurrence",
-            again,
-            f">= {g.pairs} mesh cycles, the pairs in contact at once",
-            "Count the mesh cycles until the same labelled pair is in contact again.",
-        )
+    again = at.pinion.teeth
+    if recurrence is not None:  # no fewer than the pairs in contact at once
+        advice = "Count the mesh cycles until the same labelled pair is in contact again."
+        again = whole_number("recurrence", recurrence, g.pairs, 1_000_000, advice)
     return Prediction(
         pair=at,
         geometry=g,

@@ -74,14 +74,7 @@ def load_measurement(source: str | Path | Mapping[str, Any], data: str | Path | 
     if data is None and not spec.data:
         raise refuse("data", "", "the CSV file of the record", "Name it in the description.")
     path = Path(data) if data is not None else folder / spec.data
-    try:
-        text = read_text(path, _MAX_BYTES)
-    except ParameterError:
-        raise
-    except (OSError, ValueError) as error:
-        why = f"It cannot be read: {getattr(error, 'strerror', None) or error}."
-        # The end of a long path is the file's name.
-        raise refuse("data", str(path)[-200:], "a readable UTF-8 CSV file", why) from None
+    text = read_text(path, _MAX_BYTES, field="data", kind="CSV file")
     try:
         return parse_measurement(spec, text)
     except ParameterError as error:

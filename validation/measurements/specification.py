@@ -158,14 +158,7 @@ def read_specification(source: str | Path | Mapping[str, Any]) -> tuple[Measurem
     else:
         path = Path(source)
         folder, name = path.parent, str(path)
-        try:
-            data = parse_toml(read_text(path, MAX_FILE_BYTES))
-        except ParameterError:
-            raise
-        except OSError as error:
-            raise refuse("file", name, "a readable TOML file", f"It cannot be read: {error}.") from None
-        except (ValueError, RecursionError) as error:
-            raise refuse("file", name, "well-formed TOML", f"The TOML is malformed: {error}.") from None
+        data = parse_toml(read_text(path, MAX_FILE_BYTES, kind="TOML file"), name)
     try:
         return MeasurementSpec.model_validate(data), folder
     except ParameterError as error:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import binom
 
-from lumped.errors import refuse
+from lumped.arguments import some_of, whole_number
 from lumped.parameters import GearPair
 from validation.measurements.alignment import align
 from validation.measurements.identification import Identification, identify_friction
@@ -89,11 +89,8 @@ def identification_study(
     scale : true scale on the Xu-Kahraman law
     level : of the intervals
     """
-    if seeds < 10:
-        raise refuse("seeds", seeds, ">= 10", "Use 200.")
-    for name in cases:
-        if name not in CASES:
-            raise refuse("cases", name, "names out of " + ", ".join(CASES), "Correct the name.")
+    seeds = whole_number("seeds", seeds, 10, 1_000_000, "Use 200.")
+    some_of("cases", cases, CASES)
     constant = {"friction.law": "coulomb", "friction.coefficient": mu}
     truths = {
         "coulomb": predict(pair.with_(constant), recurrence=4),

@@ -13,6 +13,7 @@ import tomli_w
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
+from lumped.arguments import real_number, whole_number
 from lumped.errors import refuse
 from validation.measurements.prediction import Prediction
 from validation.measurements.record import Measurement
@@ -55,14 +56,14 @@ def synthetic_measurement(
     -------
     Measurement with time as abscissa, channels normal_A, friction_A, normal_B, ...
     """
-    if engagements < 1 or not 0.0 <= correlation < 1.0 or samples_per_cycle <= 4.0:
-        raise refuse(
-            "engagements, correlation, samples_per_cycle",
-            (engagements, correlation, samples_per_cycle),
-            ">= 1, 0 to 1, > 4",
-            "Correct them.",
-        )
-    rng = np.random.default_rng(seed)
+    engagements = whole_number("engagements", engagements, 1, 1_000_000)
+    real_number("correlation", correlation, 0.0, 1.0 - 1e-9)
+    real_number("samples_per_cycle", samples_per_cycle, 4.0, 65536.0, above=True)
+    for name, value in (("noise_normal", noise_normal), ("noise_friction", noise_friction)):
+        real_number(name, value, 0.0)
+    for name, value in (("start", start), ("scale", scale), ("zero", zero)):
+        real_number(name, value)
+    rng = np.random.default_rng(whole_number("seed", seed, 0, 2**63 - 1))
     g = truth.geometry
     count = int(engagements * truth.recurrence * samples_per_cycle)
     time = np.arange(count, dtype=np.float64) * (g.mesh_period / samples_per_cycle)

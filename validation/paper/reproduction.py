@@ -10,6 +10,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from lumped import GearPair, load_gear_pair
+from lumped.arguments import some_of
 from lumped.errors import refuse
 from validation.measurements import Measurement
 from validation.paper.figures.figure2 import figure2
@@ -84,9 +85,7 @@ def figure_records(
     ParameterError : an unknown figure
     NumericalError : a model fails; the text says what to try
     """
-    for name in figures:
-        if name not in DRAW:
-            raise refuse("figures", name, "numbers out of " + ", ".join(DRAW), "Correct the number.")
+    some_of("figures", figures, DRAW, "Correct the number.")
     gears = load_gear_pair("nasa_28_28") if pair is None else pair
     if runs is None and _NEED_RUNS & set(figures):
         runs = law_runs(gears, with_multibody=with_multibody)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError, bodies, geometry
-from lumped.errors import refuse
+from lumped.arguments import whole_number
 from validation.paper import claim_numbers as numbers
 from validation.paper.operating_points import FIGURE_4
 
@@ -194,8 +194,8 @@ def sample_assumptions(
     ParameterError : samples out of range
     NumericalError : fewer than half of the samples have a periodic motion
     """
-    if not 8 <= samples <= 100_000:
-        raise refuse("samples", samples, "8 to 100000", "Use 100 for shares to 5 %.")
+    samples = whole_number("samples", samples, 8, 100_000, "Use 100 for shares to 5 %.")
+    seed = whole_number("seed", seed, 0, 2**63 - 1)
     quantiles = qmc.LatinHypercube(len(ASSUMPTIONS), rng=np.random.default_rng(seed)).random(samples)
     rows: list[dict[str, float]] = []
     kept: list[FloatArray] = []

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any, Never
 
-from lumped.errors import ParameterError, refuse
+from lumped.errors import refuse
 from lumped.text_file import read_text
 from validation.reporting.compare import leaves
 from validation.reporting.folder import FORMAT, FORMAT_VERSION, REPORT
@@ -30,12 +30,9 @@ def load_report(source: str | Path, *, quick: bool | None = None) -> dict[str, A
     path = Path(source)
     if path.is_dir():
         path = path / REPORT.file
+    text = read_text(path, _MAX_BYTES, field="--compare", kind="report.json", action=_ACTION)
     try:
-        data = json.loads(read_text(path, _MAX_BYTES), parse_constant=_refuse_constant)
-    except ParameterError:
-        raise
-    except OSError as error:
-        raise refuse("--compare", source, "a readable report.json", f"{error.strerror}. {_ACTION}") from None
+        data = json.loads(text, parse_constant=_refuse_constant)
     except (ValueError, RecursionError) as error:
         why = f"This is no JSON, or only a part of it ({error}). {_ACTION}"
         raise refuse("--compare", source, "a report.json", why) from None

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from lumped.errors import refuse
+from lumped.arguments import real_number
 from validation.reporting.blocks import REMARKS, STATES
 
 #: Relative change of a number that passes; numbers are compared as computed, not as shown.
@@ -100,8 +100,8 @@ def compare(old: Mapping[str, Any], new: Mapping[str, Any], *, tolerance: float 
     ------
     ParameterError : the tolerance is out of range
     """
-    if not 0.0 <= tolerance <= 1.0:
-        raise refuse("--tolerance", tolerance, "0 to 1", "0.001 lets numbers change by a tenth of a percent.")
+    advice = "0.001 lets numbers change by a tenth of a percent."
+    tolerance = real_number("--tolerance", tolerance, 0.0, 1.0, action=advice)
     before, after = dict(leaves(old)), dict(leaves(new))
     scales = _scales(before)
     changes = [

@@ -36,25 +36,10 @@ def load_study(source: str | Path | Mapping[str, Any] | Study, *, name: str = ""
     if isinstance(source, Mapping):
         return _validated(dict(source), name or "mapping", Path())
     if isinstance(source, str) and "\n" in source:
-        return _validated(_parsed(source, name or "study"), name or "study", Path())
+        return _validated(parse_toml(source, name or "study"), name or "study", Path())
     path = Path(source)
-    try:
-        text = read_text(path, MAX_FILE_BYTES)
-    except ParameterError:
-        raise
-    except (OSError, ValueError) as error:
-        allowed = "a readable UTF-8 TOML file"
-        raise refuse("study", shown(str(path)), allowed, f"It cannot be read: {error}.") from None
-    return _validated(_parsed(text, str(path)), str(path), path.parent)
-
-
-def _parsed(text: str, source: str) -> dict[str, Any]:
-    try:
-        return parse_toml(text)
-    except (ValueError, RecursionError) as error:
-        raise ParameterError(
-            [FieldProblem("file", source, "well-formed TOML", f"The TOML is malformed: {error}.")]
-        ) from None
+    text = read_text(path, MAX_FILE_BYTES, field="study", kind="TOML file")
+    return _validated(parse_toml(text, str(path)), str(path), path.parent)
 
 
 def _validated(data: dict[str, Any], source: str, folder: Path) -> Study:

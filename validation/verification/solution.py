@@ -14,6 +14,7 @@ import lumped
 import multibody
 from floquet import gear_pair_system, monodromy
 from lumped import GearPair
+from lumped.arguments import whole_number
 from lumped.periodic_system import LTVSystem, periodic_system
 from lumped.propagation import STAGES, STEP_ANGLE, step_maps
 from validation.periodic import periodic_cycle
@@ -40,6 +41,7 @@ def refinements(pair: GearPair, samples: int) -> tuple[Refinement, ...]:
     ------
     NumericalError : a model fails; the text says what to try
     """
+    samples = whole_number("samples", samples, 8, 8192)
     return (
         _stages(pair),
         _sampling(pair, samples),

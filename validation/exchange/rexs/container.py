@@ -9,7 +9,7 @@ import zlib
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from lumped.errors import ParameterError, refuse, shown
-from lumped.text_file import read_text
+from lumped.text_file import read_bytes
 from validation.exchange.rexs.json_form import parse_json
 from validation.exchange.rexs.model import RexsModel, broken
 from validation.exchange.rexs.xml_form import parse_xml
@@ -44,16 +44,7 @@ def read_rexs(path: str | Path) -> RexsModel:
         REXS model, or one before version 1.4
     """
     path = Path(path)
-    try:
-        # latin-1 maps every byte to one character and back, so this is a bounded read of bytes.
-        data = read_text(path, MAX_BYTES, "latin-1").encode("latin-1")
-    except FileNotFoundError:
-        raise refuse("REXS file", shown(str(path)), "a file that exists", "Check the path.") from None
-    except (OSError, ValueError) as error:
-        if isinstance(error, ParameterError):
-            raise
-        reason = getattr(error, "strerror", None) or str(error)
-        raise refuse("REXS file", shown(str(path)), "a readable file", f"It is not: {reason}.") from None
+    data = read_bytes(path, MAX_BYTES, field="REXS file")
     if data[:2] == b"PK":
         data = _unzipped(data, path.name)
     model = _parsed(data, path.name)

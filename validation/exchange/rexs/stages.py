@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from lumped.errors import ParameterError, refuse, whole_number
+from lumped.arguments import whole_number
+from lumped.errors import ParameterError, refuse
 from lumped.units import to_stated
 from validation.exchange.rexs.container import read_rexs
 from validation.exchange.rexs.model import Component, RexsModel, broken

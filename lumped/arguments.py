@@ -1,0 +1,180 @@
+"""Arguments of public functions: numbers, lists and names, each read or refused before work starts."""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Collection, Hashable, Iterable, Iterator, Set, ValuesView
+from typing import Any, SupportsIndex, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.errors import refuse, shown
+
+FloatArray = NDArray[np.float64]
+Name = TypeVar("Name", str, int)
+
+
+def whole_number(
+    field: str, value: object, low: int, high: int, action: str = "Choose a number in that range."
+) -> int:
+    """Return a count given as any integer type, or refuse it.
+
+    Raises
+    ------
+    ParameterError : not an integer from ``low`` to ``high``
+    """
+    try:
+        if isinstance(value, bool) or not isinstance(value, SupportsIndex):
+            raise TypeError
+        number = operator.index(value)  # arrays have the method and refuse
+        if low <= number <= high:
+            return number
+    except TypeError:
+        pass
+    raise refuse(field, shown(value), f"a whole number, {low} to {high}", action)
+
+
+def real_number(
+    field: str,
+    value: object,
+    low: float = -math.inf,
+    high: float = math.inf,
+    *,
+    above: bool = False,
+    unit: str = "",
+    action: str = "Choose a number in that range.",
+) -> float:
+    """Return a finite number given as any real type, or refuse it; text is no number.
+
+    Parameters
+    ----------
+    field : name of the argument
+    value : what was given
+    low, high : allowed range
+    above : whether ``low`` itself is refused
+    unit : of the number
+
+    Raises
+    ------
+    ParameterError : no number, not finite, or outside the range
+    """
+    array = _real(value)
+    if array is None or array.ndim or not _inside(array, low, high, above):
+        raise refuse(field, shown(value), _allowed(low, high, above, unit), action)
+    return float(array)
+
+
+def real_numbers(
+    field: str,
+    value: object,
+    low: float = -math.inf,
+    high: float = math.inf,
+    *,
+    above: bool = False,
+    increasing: bool = False,
+    unit: str = "",
+    action: str = "Correct the list.",
+) -> FloatArray:
+    """Return one or more finite numbers as a list (n,), or refuse them; one number is a list of one.
+
+    Parameters
+    ----------
+    field : name of the argument
+    value : what was given
+    low, high : allowed range
+    above : whether ``low`` itself is refused
+    increasing : whether each must be larger than the one before
+    unit : of the numbers
+
+    Raises
+    ------
+    ParameterError : no list of numbers, an empty one, or a number not finite or outside the range
+    """
+    array = _real(value)
+    if array is not None and array.ndim <= 1 and array.size:
+        array = np.atleast_1d(array)
+        if _inside(array, low, high, above) and not (increasing and (np.diff(array) <= 0.0).any()):
+            return array
+    allowed = (
+        f"one or more {'increasing ' if increasing else ''}numbers, each {_allowed(low, high, above, unit)}"
+    )
+    raise refuse(field, shown(value), allowed, action)
+
+
+def real_array(field: str, value: object, *, finite: bool = True) -> FloatArray:
+    """Return an array of real numbers of any shape, or refuse it.
+
+    Raises
+    ------
+    ParameterError : anything but real numbers, such as text, or where ``finite``, one that is not finite
+    """
+    array = _real(value)
+    if array is None or (finite and not np.isfinite(array).all()):
+        raise refuse(
+            field, shown(value), f"{'finite ' if finite else ''}numbers of any shape", "Give numbers."
+        )
+    return array
+
+
+def one_of(field: str, value: object, names: Iterable[str], action: str = "Choose one of them.") -> str:
+    """Return a name, or refuse it.
+
+    Raises
+    ------
+    ParameterError : not one of ``names``
+    """
+    known = tuple(names)
+    if not isinstance(value, str) or value not in known:
+        raise refuse(field, shown(value), "one of " + ", ".join(known), action)
+    return value
+
+
+def some_of(
+    field: str, values: Collection[Name], names: Iterable[Name], action: str = "Correct the name."
+) -> tuple[Name, ...]:
+    """Return a selection of names or numbers, or refuse it; a single text is none.
+
+    Raises
+    ------
+    ParameterError : no list, or a member that is not one of ``names``
+    """
+    known = tuple(names)
+    single = (
+        not isinstance(values, Iterable)
+        or isinstance(values, (str, bytes))
+        or getattr(values, "ndim", 1) == 0
+    )
+    chosen: list[Any] = []
+    for value in [values] if single else values:
+        if single or not isinstance(value, Hashable) or value not in known:
+            raise refuse(field, shown(value), "a list out of " + ", ".join(map(str, known)), action)
+        chosen.append(value)
+    return tuple(chosen)
+
+
+def _real(value: object) -> FloatArray | None:
+    """Array of a value that holds real numbers and nothing else; None for any other."""
+    try:
+        array: NDArray[Any] = np.asarray(
+            list(value) if isinstance(value, (Iterator, Set, ValuesView)) else value
+        )
+    except (TypeError, ValueError, OverflowError, MemoryError):
+        return None
+    return array.astype(np.float64, copy=False) if array.dtype.kind in "iuf" else None
+
+
+def _inside(array: FloatArray, low: float, high: float, above: bool) -> bool:
+    inside = np.isfinite(array) & (array <= high) & ((array > low) if above else (array >= low))
+    return bool(inside.all())
+
+
+def _allowed(low: float, high: float, above: bool, unit: str) -> str:
+    if low == -math.inf:
+        text = "finite" if high == math.inf else f"<= {high:g}"
+    elif high == math.inf:
+        text = f"{'>' if above else '>='} {low:g}"
+    else:
+        text = f"> {low:g} and <= {high:g}" if above else f"{low:g} to {high:g}"
+    return f"{text} {unit}".rstrip()

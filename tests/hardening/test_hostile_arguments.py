@@ -1,0 +1,222 @@
+"""Does every public function refuse by name what is no number, no list or no name, before it starts?"""
+
+from __future__ import annotations
+
+import inspect
+import math
+
+import numpy as np
+import pytest
+
+import floquet
+import lumped
+import multibody
+from floquet.sensitivity import multiplier_derivatives
+from lumped import film, friction, losses, quasi_static
+from lumped.arguments import one_of, real_array, real_number, real_numbers, some_of, whole_number
+from lumped.averaged import averaged_state_space, frequency_response
+from lumped.errors import ParameterError, SpurcheckError
+from lumped.text_file import read_bytes, read_text
+from validation import crosscheck
+from validation.measurements import predict
+from validation.verification import refinements
+
+PAIR = lumped.load_gear_pair("nasa_28_28")
+SYSTEM = floquet.PeriodicSystem(lambda t: np.array([[0.0, 1.0], [-1.0 - np.cos(t), -0.1]]), 2.0 * np.pi)
+
+#: What no argument of any public function may be, whatever it means: from a form, a file or a slip.
+NOTHING = {
+    "text": "abc",
+    "empty text": "",
+    "nan": math.nan,
+    "infinite": -math.inf,
+    "imaginary": 1j,
+    "bytes": b"x",
+    "too large": 10**400,
+    "no numbers": [None, "x"],
+    "a solid": np.ones((2, 2, 2)),
+    "objects": np.array([None, "x"], dtype=object),
+}
+_RUN = "cycles samples_per_cycle initial effects fidelity rtol friction_velocity"
+#: Function -> (arguments that it needs besides, arguments that are tried).
+CALLS = {
+    lumped.simulate: ({"pair": PAIR}, "cycles samples_per_cycle initial rtol as_printed"),
+    lumped.steady_state: ({"pair": PAIR}, "samples_per_cycle as_printed"),
+    lumped.speed_sweep: ({"pair": PAIR, "speeds_rpm": [4000.0]}, "speeds_rpm samples_per_cycle"),
+    lumped.periodic_system: ({"pair": PAIR}, "form as_printed"),
+    averaged_state_space: ({"pair": PAIR}, "form"),
+    frequency_response: ({"pair": PAIR}, "frequencies"),
+    lumped.mesh_stiffness: ({"pair": PAIR}, "samples"),
+    lumped.stiffness_components: ({"pair": PAIR}, "points hertz"),
+    lumped.static_transmission_error: ({"pair": PAIR}, "torques phases pitch_errors"),
+    lumped.optimal_relief: ({"pair": PAIR}, "torque shape phases"),
+    quasi_static.relief_map: (
+        {"pair": PAIR, "amounts": 1e-5, "lengths": 1e-3},
+        "amounts lengths torque shape phases",
+    ),
+    friction.friction_profile: ({"pair": PAIR}, "laws points"),
+    losses.quasi_static_losses: ({"pair": PAIR}, "sharing samples_per_cycle"),
+    losses.losses_of_laws: ({"pair": PAIR}, "laws"),
+    losses.loss_factor: ({"pair": PAIR}, "sharing"),
+    losses.iso_14179_mesh_loss: ({"pair": PAIR}, "oil_factor"),
+    multibody.simulate: ({"pair": PAIR}, _RUN),
+    multibody.power_balance: ({"pair": PAIR}, "cycles initial effects fidelity rtol friction_velocity"),
+    multibody.steady_state: (
+        {"pair": PAIR, "fidelity": "linear"},
+        "samples_per_cycle fidelity rtol friction_velocity",
+    ),
+    multibody.monodromy: ({"pair": PAIR}, "fidelity effects rtol friction_velocity iterations"),
+    multibody.speed_sweep: (
+        {"pair": PAIR, "speeds_rpm": [4000.0]},
+        "speeds_rpm settle cycles samples_per_cycle fidelity effects rtol",
+    ),
+    multibody.attribution: ({"pair": PAIR}, "cycles initial samples_per_cycle rtol"),
+    multibody.reversal_convergence: ({"pair": PAIR}, "cycles velocities initial rtol"),
+    floquet.PeriodicSystem: ({"A": SYSTEM.A, "period": 1.0}, "A period breakpoints b"),
+    floquet.monodromy: ({"system": SYSTEM}, "rtol method max_substeps"),
+    floquet.periodic_motion: ({"system": SYSTEM}, "times rtol method max_substeps"),
+    floquet.floquet_modes: ({"system": SYSTEM}, "samples rtol method max_substeps"),
+    floquet.gear_pair_system: ({"source": PAIR}, "form"),
+    floquet.gear_pair_multipliers: ({"source": PAIR}, "rtol method"),
+    floquet.stability_chart: (
+        {"pair": PAIR, "axes": {"speed_rpm": [4000.0]}},
+        "axes friction_law rtol method store n_jobs",
+    ),
+    floquet.stability_boundaries: ({"pair": PAIR}, "speed_rpm axes nodes orders xtol rtol"),
+    floquet.predicted_lines: ({"pair": PAIR}, "orders"),
+    floquet.chart: ({"factory": lambda _: SYSTEM, "axes": {"a": [1.0]}}, "axes rtol method n_jobs"),
+    floquet.critical_damping: ({"pair": PAIR}, "speed_rpm damping_ratios orders rtol"),
+    floquet.campbell: ({"pair": PAIR, "speeds_rpm": [4000.0]}, "speeds_rpm mesh_orders orders rtol"),
+    floquet.multiplier_paths: (
+        {"pair": PAIR, "name": "speed_rpm", "values": [4000.0]},
+        "name values rtol",
+    ),
+    floquet.friction_effect: ({"pair": PAIR, "axes": {"speed_rpm": [4e3]}}, "axes laws reference rtol"),
+    floquet.gear_sensitivities: ({"pair": PAIR}, "parameters rtol"),
+    multiplier_derivatives: (
+        {"system": SYSTEM, "derivative": lambda t: np.zeros((t.size, 2, 2))},
+        "rtol magnitude",
+    ),
+    floquet.CoulombGearPair: ({}, "contact_ratio damping_ratio friction pressure_angle sign"),
+    floquet.gear_block: ({"source": PAIR}, "rtol friction_level"),
+    floquet.stress_test: ({"count": 1, "seed": 1}, "count seed"),
+    crosscheck: ({"pair": PAIR}, "cycles samples_per_cycle fidelities quantities"),
+    predict: ({"pair": PAIR}, "speed torque recurrence samples_per_cycle"),
+    refinements: ({"pair": PAIR}, "samples"),
+}
+#: Names that a refusal gives where a pair's own field takes the argument in.
+OWN = {"friction_law": "friction.law", "name": "axes", "thresholds": "friction.thresholds"}
+
+
+@pytest.mark.parametrize(
+    ("function", "argument"),
+    [(function, name) for function, (_, names) in CALLS.items() for name in names.split()],
+    ids=lambda value: value if isinstance(value, str) else f"{value.__module__}.{value.__name__}",
+)
+def test_what_can_be_no_argument_is_refused_by_name(within, function, argument):
+    for kind, value in NOTHING.items():
+        with within(60.0), pytest.raises(ParameterError) as caught:
+            function(**CALLS[function][0] | {argument: value})
+        first = caught.value.problems[0]
+        assert first.field.startswith(OWN.get(argument, argument)), (kind, str(caught.value))
+        assert first.allowed
+        assert first.action
+        assert len(str(caught.value)) < 1500, kind
+
+
+@pytest.mark.parametrize("value", [v for kind, v in NOTHING.items() if kind != "a solid"], ids=str)
+def test_what_is_no_number_is_no_argument_of_a_law(value):
+    laws = (
+        film.hertz_pressure, film.film_parameter, film.regime, friction.coulomb, friction.smoothed_coulomb,
+        friction.benedict_kelley, friction.xu_kahraman, friction.composite,
+        losses.anderson_loewenthal_coefficient, losses.iso_14179_mean_coefficient,
+    )  # fmt: skip
+    for law in laws:
+        parameters = inspect.signature(law).parameters.items()
+        good = {name: 0.5 for name, parameter in parameters if parameter.default is parameter.empty}
+        for name in good:
+            with pytest.raises(ParameterError, match=name):
+                law(**good | {name: value})
+
+
+@pytest.mark.parametrize("argument", ["stiffness", "damping", "motor_speed", "pinion_torque", "brake_torque"])
+def test_a_drive_that_is_none_is_refused_by_name(argument):
+    for value in [*NOTHING.values(), -1.0, ([0.0], [1.0, 2.0]), ([1.0], [1.0]), ([0.0, 0.0], [1.0, 1.0])]:
+        drive = multibody.Drive(**{"stiffness": 1.0, argument: value})
+        with pytest.raises(ParameterError, match=rf"drive\.{argument}"):
+            multibody.simulate(PAIR, 1, drive=drive)
+
+
+@pytest.mark.parametrize(
+    "argument", ["periods", "damping_factors", "gain_factors", "tolerance", "threads", "max_steps"]
+)
+def test_variants_that_are_none_are_refused_by_name(argument):
+    block = floquet.gear_block(PAIR)
+    for function in (floquet.fast_multipliers, floquet.fast_monodromies, floquet.fast_periodic_motions):
+        for value in NOTHING.values():
+            with pytest.raises(ParameterError, match=argument):
+                function(block, **{argument: value})
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -1.0, 0.0, 1e308, "x", None, [], 10**400])
+@pytest.mark.parametrize("argument", ["cycles", "samples_per_cycle", "initial", "rtol"])
+def test_hostile_arguments_of_simulate(within, argument, value):
+    arguments = {"cycles": 1, "samples_per_cycle": 8} | {argument: value}
+    with within(60.0):
+        try:
+            result = lumped.simulate(PAIR, **arguments)
+        except SpurcheckError:
+            return
+    assert np.isfinite(result.dte).all()
+
+
+def test_numbers_of_every_kind_are_read():
+    for number in (2, 2.0, np.float32(2.0), np.int8(2), np.array(2.0)):
+        assert real_number("a", number, 1, 3) == 2.0
+        assert real_numbers("a", number).tolist() == [2.0]
+    for numbers in ([1, 2], (1.0, 2.0), range(1, 3), iter([1, 2]), {1: 0, 2: 0}.keys(), np.array([1, 2])):
+        assert real_numbers("a", numbers, 1, 2, increasing=True).tolist() == [1.0, 2.0]
+    assert real_array("a", [[1, 2], [3, 4]]).shape == (2, 2)
+    assert whole_number("a", np.int64(3), 0, 3) == 3
+    assert one_of("a", "b", ("b", "c")) == "b"
+    assert some_of("a", {"b": 0}, ("b", "c")) == ("b",)
+    assert some_of("a", np.array([1, 2]), (1, 2, 7)) == (1, 2)
+
+
+def test_ends_of_ranges():
+    assert real_number("a", 1.0, 1.0, 2.0) == 1.0
+    for refused in (0.5, 2.5, True, np.bool_(True), "1.5", [1.5], math.nan):
+        with pytest.raises(ParameterError, match="1 to 2"):
+            real_number("a", refused, 1.0, 2.0)
+    with pytest.raises(ParameterError, match="> 0 m"):
+        real_number("a", 0.0, 0.0, above=True, unit="m")
+    for refused in ([], [2.0, 1.0], [1.0, 1.0], [[1.0, 2.0]], ["1"], range(10**15)):
+        with pytest.raises(ParameterError, match="increasing numbers"):
+            real_numbers("a", refused, increasing=True)
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda path: None, "that exists"),
+        (lambda path: path.mkdir(), "folder or a device"),
+        (lambda path: path.symlink_to(path), "levels of symbolic links"),
+        (lambda path: path.symlink_to("/dev/zero"), "folder or a device"),
+        (lambda path: path.write_bytes(b"a = 'caf\xe9'"), "byte 8 is no UTF-8"),
+        (lambda path: path.write_bytes(b"x" * 11), "<= 10 bytes"),
+    ],
+)
+def test_files_that_are_no_text_say_why(tmp_path, make, words):
+    make(tmp_path / "file")
+    with pytest.raises(ParameterError, match=words) as caught:
+        read_text(tmp_path / "file", 10 if "10 bytes" in words else 100, field="data", kind="CSV file")
+    assert caught.value.problems[0].field == "data"
+    assert str(tmp_path / "file") in caught.value.problems[0].value
+
+
+@pytest.mark.parametrize(
+    ("name", "words"), [("a\0b", "cannot be read: embedded null byte"), ("a" * 5000, "name too long")]
+)
+def test_names_that_no_file_can_have(name, words):
+    with pytest.raises(ParameterError, match=words):
+        read_bytes(name, 10)
