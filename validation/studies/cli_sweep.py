@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import time
+from contextlib import suppress
 from types import TracebackType
 from typing import Self
 
@@ -62,7 +63,8 @@ class SweepProgress:
         elif now - self._printed > _PLAIN_SECONDS:
             self._printed = now
             left = (total - done) / rate
-            self._console.print(f"{done}/{total}, {text}, {failed} failed, {left:.0f} s left")
+            with suppress(OSError):  # a full disk under a log file must not end the sweep
+                self._console.print(f"{done}/{total}, {text}, {failed} failed, {left:.0f} s left")
 
     def __enter__(self) -> Self:
         self._bar.__enter__()

@@ -229,8 +229,8 @@ class DaskPool:
             self._without_workers = time.monotonic()
         elif time.monotonic() - self._without_workers > WORKER_WAIT:
             raise SweepStopped(
-                f"The cluster has had no worker for {WORKER_WAIT:g} s: start workers, then run the same "
-                "command with --resume."
+                f"The cluster has had no worker for {WORKER_WAIT:g} s: start workers, with spurcheck installed "
+                "(one without it ends at its first case), then run the same command with --resume."
             )
 
     @staticmethod

@@ -209,3 +209,13 @@ def test_workers_that_cannot_run_cases_stop_the_sweep(sweep, monkeypatch):
         run_sweep(sweep.study, sweep.out, workers=2)
     monkeypatch.undo()
     sweep.check_resume([])
+
+
+@pytest.mark.parametrize(("redirection", "code"), [(">&-", 1), (">/dev/full", 3)])
+def test_an_output_that_takes_nothing_costs_no_result(sweep, redirection, code):
+    command = [sys.executable, "-m", "validation.cli", "sweep", sweep.file, "-o", sweep.out, "--workers", "1"]
+    shell = ["/bin/sh", "-c", f'"$@" {redirection}', "sh", *command]
+    run = subprocess.run(shell, stderr=subprocess.PIPE, text=True, check=False)
+    assert run.returncode == code, run.stderr  # some cases of this study cannot exist
+    assert "Traceback" not in run.stderr
+    assert (sweep.out / "results.nc").read_bytes() == sweep.undisturbed
