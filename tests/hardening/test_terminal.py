@@ -5,11 +5,12 @@ from __future__ import annotations
 import io
 
 import pytest
+import typer
 from typer.testing import CliRunner
 
 from lumped.serialise import preset_text
 from validation.cli import app
-from validation.commands.terminal import PlainConsole, table
+from validation.commands.terminal import PlainConsole, fail, note, table
 
 #: Text -> how it is shown: markup as it is written, characters that command a terminal as code writes them.
 TEXTS = {
@@ -31,6 +32,21 @@ def test_text_is_shown_as_it_is_written(text):
     shown.add_row(text)
     console.print(shown)
     assert console.file.getvalue().count(TEXTS[text]) == 4
+
+
+@pytest.mark.parametrize("text", TEXTS)
+def test_a_note_and_an_error_show_text_as_it_is_written(text, capsys):
+    note(text)
+    with pytest.raises(typer.Exit):
+        fail(text, 2)
+    assert capsys.readouterr().err.splitlines() == [f"note: {TEXTS[text]}", f"error: {TEXTS[text]}"]
+
+
+def test_a_name_of_a_file_that_is_no_unicode_can_be_shown():
+    console = PlainConsole(file=io.TextIOWrapper(io.BytesIO(), encoding="utf-8"), width=200)
+    console.print("a\udcffb\nc")  # how Python names the byte 255, which UTF-8 cannot write
+    console.file.flush()
+    assert console.file.buffer.getvalue() == b"a\\udcffb\nc\n"
 
 
 @pytest.mark.parametrize("name", ["[/red]", "a\x1b[31mb"])
