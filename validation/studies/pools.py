@@ -229,7 +229,7 @@ class DaskPool:
             self._without_workers = time.monotonic()
         elif time.monotonic() - self._without_workers > WORKER_WAIT:
             raise SweepStopped(
-                f"The cluster has had no worker for {WORKER_WAIT:g} s: start workers, with spurcheck installed "
+                f"The cluster has had no worker for {WORKER_WAIT:g} s: start workers that have spurcheck "
                 "(one without it ends at its first case), then run the same command with --resume."
             )
 
