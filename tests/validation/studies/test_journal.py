@@ -301,18 +301,18 @@ def test_a_failed_replacement_keeps_the_old_file(tmp_path):
     path = tmp_path / "results.nc"
     path.write_bytes(b"old")
 
-    def half() -> None:
+    def fail(error: BaseException, *, taken_away: bool) -> None:
         with replaced(path) as part:
             part.write_bytes(b"half")
-            raise OSError(28, "No space left on device")
+            if taken_away:
+                part.unlink()
+            raise error
 
-    def taken_away() -> None:
-        with replaced(path) as part:
-            part.unlink()
-
-    for fails in (half, taken_away):
-        with pytest.raises(StoreError, match="--resume"):
-            fails()
+    for taken_away in (False, True):
+        with pytest.raises(StoreError, match=r"No space.*--resume"):
+            fail(OSError(28, "No space left on device"), taken_away=taken_away)
+        with pytest.raises(KeyboardInterrupt):
+            fail(KeyboardInterrupt(), taken_away=taken_away)
         assert path.read_bytes() == b"old"
         assert [p.name for p in tmp_path.iterdir()] == ["results.nc"]
 
