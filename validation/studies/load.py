@@ -47,7 +47,7 @@ def _validated(data: dict[str, Any], source: str, folder: Path) -> Study:
     pair = data.get("gear_pair")
     try:
         if isinstance(pair, str):
-            data["gear_pair"] = load_gear_pair(pair if pair in preset_names() else folder / _inside(pair))
+            data["gear_pair"] = load_gear_pair(pair if pair in preset_names() else folder / pair)
         elif isinstance(pair, Mapping):
             data["gear_pair"] = load_gear_pair(pair)
         elif pair is not None and not isinstance(pair, GearPair):
@@ -72,9 +72,3 @@ def _validated(data: dict[str, Any], source: str, folder: Path) -> Study:
     if problems:
         raise ParameterError(problems, source)
     return study
-
-
-def _inside(name: str) -> str:
-    if not name or "\0" in name or len(name) > 1000:
-        raise refuse("file", shown(repr(name)), "a preset or the path of a TOML file", "Correct the path.")
-    return name

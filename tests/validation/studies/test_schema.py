@@ -253,6 +253,9 @@ REFUSED = {
     "no word": (["axes", 0, "name"], "../x", "axes.0.name", "match"),
     "kept cycles": (["settings"], {"cycles": 3, "kept_cycles": 4}, "settings.kept_cycles", "<= cycles"),
     "bad pair": (["gear_pair"], "nasa_28_29", "gear_pair", "nasa_28_28"),
+    "pair without a name": (["gear_pair"], "", "gear_pair", "folder"),
+    "pair of no possible name": (["gear_pair"], "a\0b", "gear_pair", "a file that exists"),
+    "pair of a name too long": (["gear_pair"], "a" * 1001, "gear_pair", "a file that exists"),
     "pair is a number": (["gear_pair"], 3, "gear_pair", "table"),
     "no name": (["name"], "", "name", "1 character"),
 }
