@@ -9,7 +9,7 @@ import typer
 from typer.testing import CliRunner
 
 from lumped.serialise import preset_text
-from validation.cli import app
+from validation.cli import _open_streams, app
 from validation.commands.terminal import PlainConsole, fail, note, table
 
 #: Text -> how it is shown: markup as it is written, characters that command a terminal as code writes them.
@@ -66,3 +66,12 @@ def test_what_is_unknown_is_quoted_in_the_refusal(tmp_path):
     run = CliRunner().invoke(app, ["simulate", str(tmp_path / "x.toml")])
     assert run.exit_code == 2, run.output
     assert r"a\x1b[31m[/red]\nerror: b" in run.output
+
+
+def test_an_encoding_without_box_drawing_characters_ends_no_command(monkeypatch):
+    stream = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
+    monkeypatch.setattr("sys.stdout", stream)
+    _open_streams()
+    stream.write("─ é")
+    stream.flush()
+    assert stream.buffer.getvalue() == b"? ?"
