@@ -22,6 +22,7 @@ from validation.commands.reversal import reversal
 from validation.commands.simulate import simulate
 from validation.commands.stability import stability
 from validation.commands.sweep import sweep
+from validation.stop_signals import interrupt_once
 
 app = typer.Typer(
     name="spurcheck",
@@ -53,7 +54,8 @@ def spurcheck(
     Speeds are pinion speeds in rpm, torques pinion torques in N m; other units may be written out ("200
     lbf*in").
 
-    Exit codes: 0 done, 1 a verdict fails, 2 an input is refused, 3 a computation fails.
+    Exit codes: 0 done, 1 a verdict fails, 2 an input is refused, 3 a computation fails, 130 stopped by a
+    signal.
     """
 
 
@@ -102,6 +104,7 @@ def main() -> None:
     # Before numpy is imported: the matrices are small, threads inside BLAS only wait for each other.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     _open_streams()
+    interrupt_once()  # to the end of the process: an impatient Ctrl-C prints no traceback
     app()
 
 

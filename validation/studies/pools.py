@@ -16,9 +16,9 @@ from multiprocessing import resource_tracker
 from typing import Any, Protocol
 
 from lumped.errors import SpurcheckError, refuse
+from validation.stop_signals import undisturbed
 from validation.studies.batch import Batch
 from validation.studies.case_process import end_idle
-from validation.studies.stop_signals import undisturbed
 
 Work = Callable[..., Batch]
 #: How long a cluster may be without workers, or its scheduler without an answer, before the sweep stops [s].

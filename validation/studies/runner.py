@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from lumped.errors import refuse
+from validation.stop_signals import stopping_as_interrupt
 from validation.studies.batch import versions
 from validation.studies.cases import CaseList, case_list
 from validation.studies.dispatch import Dispatcher
@@ -23,7 +24,6 @@ from validation.studies.pools import pool_of
 from validation.studies.record import Record, Status
 from validation.studies.results import JOURNAL, RESULTS, STUDY, Table, results_dataset, write_results
 from validation.studies.schema import Study
-from validation.studies.stop_signals import stopping_as_interrupt
 
 #: Called after every block of records with (cases computed in this run, cases to compute, failed so far).
 Progress = Callable[[int, int, int], None]

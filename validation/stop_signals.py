@@ -1,4 +1,4 @@
-"""The signals that ask a sweep to stop: Ctrl-C, SIGTERM of batch systems, SIGHUP of a closed terminal."""
+"""The signals that ask a program to stop: Ctrl-C, SIGTERM of batch systems, SIGHUP of a closed terminal."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
+from typing import Any
 
 _NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
 _OURS = (signal.SIG_DFL, signal.default_int_handler)
@@ -20,9 +21,13 @@ def _signals() -> list[signal.Signals]:
     return [signal.Signals[name] for name in _NAMES]
 
 
-@contextmanager
-def stopping_as_interrupt() -> Iterator[None]:
-    """Let the first signal raise KeyboardInterrupt; those after it must not interrupt the clean end."""
+def interrupt_once() -> dict[signal.Signals, Any]:
+    """Let the first signal raise KeyboardInterrupt; those after it must not interrupt the clean end.
+
+    Returns
+    -------
+    signal -> handler before, of those that are ours to set
+    """
     before = {number: signal.getsignal(number) for number in _signals()}
     before = {number: handler for number, handler in before.items() if handler in _OURS}
 
@@ -33,6 +38,13 @@ def stopping_as_interrupt() -> Iterator[None]:
 
     for number in before:
         signal.signal(number, stop)
+    return before
+
+
+@contextmanager
+def stopping_as_interrupt() -> Iterator[None]:
+    """Let the first signal in the block raise KeyboardInterrupt, and no other until its end."""
+    before = interrupt_once()
     try:
         yield
     finally:
