@@ -51,12 +51,26 @@ def effective_modulus(
     Returns
     -------
     E' in the unit of the moduli. For equal bodies E' = E/(1 - nu^2).
+
+    Raises
+    ------
+    ParameterError : a modulus not finite and positive, a Poisson's ratio outside -1 to 0.5 or at -1
     """
-    pinion = (1.0 - np.square(poisson_ratio_pinion)) / checked(
+    pinion = _strain("poisson_ratio_pinion", poisson_ratio_pinion) / checked(
         "youngs_modulus_pinion", youngs_modulus_pinion, ""
     )
-    gear = (1.0 - np.square(poisson_ratio_gear)) / checked("youngs_modulus_gear", youngs_modulus_gear, "")
+    gear = _strain("poisson_ratio_gear", poisson_ratio_gear) / checked(
+        "youngs_modulus_gear", youngs_modulus_gear, ""
+    )
     return np.asarray(2.0 / (pinion + gear), dtype=np.float64)
+
+
+def _strain(field: str, poisson_ratio: ArrayLike) -> FloatArray:
+    """1 - nu^2 of plane strain."""
+    nu = real_array(field, poisson_ratio)
+    if not ((nu > -1.0) & (nu <= 0.5)).all():
+        raise refuse(field, shown(poisson_ratio), "> -1 and <= 0.5", "Steel has 0.3.")
+    return np.asarray(1.0 - np.square(nu), dtype=np.float64)
 
 
 def _line_contact(

@@ -120,9 +120,11 @@ def prepare(
         )
     if not isinstance(drive, Drive | None):
         raise refuse("drive", shown(drive), "a multibody.Drive", "Leave it out for constant torques.")
-    if fidelity == "linear" and effects:
-        raise refuse("effects", effects, "none at fidelity 'linear'", "Use fidelity='exact'.")
-    flags = effect_flags(effects) if fidelity == "exact" else 0
+    flags = effect_flags(effects)
+    if fidelity == "linear":
+        if flags and effects is not None and len(effects):
+            raise refuse("effects", shown(effects), "none at fidelity 'linear'", "Use fidelity='exact'.")
+        flags = 0
     numbers = machine(pair, pair.operating.pinion_torque, pair.operating.pinion_torque)
     call_limit = _call_limit(pair, numbers)
     system = periodic_system(pair, "absolute")

@@ -110,7 +110,8 @@ def friction_path_function(
     -----
     LawRangeWarning : the contact leaves a validity range of the law, see ``law_range_violations``
     """
-    path, settings, name = contact_path(pair, geometry), friction_settings(pair), law or pair.friction.law
+    path, settings = contact_path(pair, geometry), friction_settings(pair)
+    name = _name(pair, law)
     function = fit_law(path, settings, name)
     warn_violations(violations_of(path, settings, name))
     return function
@@ -129,7 +130,11 @@ def law_range_violations(
     law : name of a friction law; default ``pair.friction.law``
     geometry : its geometry, if it is at hand
     """
-    return violations_of(contact_path(pair, geometry), friction_settings(pair), law or pair.friction.law)
+    return violations_of(contact_path(pair, geometry), friction_settings(pair), _name(pair, law))
+
+
+def _name(pair: GearPair, law: str | None) -> str:
+    return pair.friction.law if law is None else law_named(law).name
 
 
 @lru_cache(maxsize=256)

@@ -7,7 +7,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lumped.errors import refuse
+from lumped.arguments import real_array
+from lumped.errors import refuse, shown
 from lumped.friction.base import PITCH_RESOLUTION, ContactPath, FrictionLaw, FrictionSettings
 from lumped.validity import NOT_STATED, FloatArray, ValidityRange, checked
 
@@ -72,7 +73,7 @@ def benedict_kelley(
 
     Raises
     ------
-    ParameterError : roughness at or above 1.13 um, or an argument negative or not finite
+    ParameterError : roughness at or above 1.13 um; an argument negative, or not finite (``maximum`` may be)
 
     References
     ----------
@@ -85,8 +86,11 @@ def benedict_kelley(
     0.06235267
     """
     number = friction_number(unit_load, viscosity, sliding_velocity, entraining_velocity)
+    upper = real_array("maximum", maximum, finite=False)
+    if not (upper >= 0.0).all():
+        raise refuse("maximum", shown(maximum), ">= 0", "Use inf for none.")
     magnitude = _factor(roughness) * np.log10(number)
-    return np.asarray(np.clip(magnitude, 0.0, maximum), dtype=np.float64)
+    return np.asarray(np.clip(magnitude, 0.0, upper), dtype=np.float64)
 
 
 def _factor(roughness: ArrayLike) -> FloatArray:

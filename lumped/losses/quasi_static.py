@@ -95,7 +95,7 @@ def quasi_static_losses(
         provenance(pair, samples_per_cycle=samples_per_cycle)
         | {
             "model": "quasi-static",
-            "law": law or pair.friction.law,
+            "law": pair.friction.law if law is None else law,
             "mesh_efficiency": 1.0 - loss / power_in,
             "power_loss": loss,
             "input_power": power_in,

@@ -159,7 +159,7 @@ def static_transmission_error(
             "phase": (axes[1], mesh.phase, _attrs("1", "mesh cycles after a pair was at A")),
             "pair": (axes[2], mesh.ahead, _attrs("1", "pitches ahead of the pair that was at A")),
         },
-        attrs={"pair": pair.name, "extended_contact": int(extended)},
+        attrs={"pair": pair.name, "extended_contact": int(bool(extended))},
     )
 
 

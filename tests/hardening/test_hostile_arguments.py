@@ -55,7 +55,7 @@ CALLS = {
         "amounts lengths torque shape phases",
     ),
     friction.friction_profile: ({"pair": PAIR}, "laws points"),
-    losses.quasi_static_losses: ({"pair": PAIR}, "sharing samples_per_cycle"),
+    losses.quasi_static_losses: ({"pair": PAIR}, "law sharing samples_per_cycle"),
     losses.losses_of_laws: ({"pair": PAIR}, "laws"),
     losses.loss_factor: ({"pair": PAIR}, "sharing"),
     losses.iso_14179_mesh_loss: ({"pair": PAIR}, "oil_factor"),
@@ -63,7 +63,7 @@ CALLS = {
     multibody.power_balance: ({"pair": PAIR}, "cycles initial effects fidelity rtol friction_velocity"),
     multibody.steady_state: (
         {"pair": PAIR, "fidelity": "linear"},
-        "samples_per_cycle fidelity rtol friction_velocity",
+        "samples_per_cycle fidelity effects rtol friction_velocity",
     ),
     multibody.monodromy: ({"pair": PAIR}, "fidelity effects rtol friction_velocity iterations"),
     multibody.speed_sweep: (
@@ -105,7 +105,12 @@ CALLS = {
     refinements: ({"pair": PAIR}, "samples"),
 }
 #: Names that a refusal gives where a pair's own field takes the argument in.
-OWN = {"friction_law": "friction.law", "name": "axes", "thresholds": "friction.thresholds"}
+OWN = {
+    "friction_law": "friction.law",
+    "law": "friction.law",
+    "name": "axes",
+    "thresholds": "friction.thresholds",
+}
 
 
 @pytest.mark.parametrize(
@@ -127,8 +132,8 @@ def test_what_can_be_no_argument_is_refused_by_name(within, function, argument):
 @pytest.mark.parametrize("value", [v for kind, v in NOTHING.items() if kind != "a solid"], ids=str)
 def test_what_is_no_number_is_no_argument_of_a_law(value):
     laws = (
-        film.hertz_pressure, film.film_parameter, film.regime, friction.coulomb, friction.smoothed_coulomb,
-        friction.benedict_kelley, friction.xu_kahraman, friction.composite,
+        film.hertz_pressure, film.effective_modulus, film.film_parameter, film.regime, friction.coulomb,
+        friction.smoothed_coulomb, friction.benedict_kelley, friction.xu_kahraman, friction.composite,
         losses.anderson_loewenthal_coefficient, losses.iso_14179_mean_coefficient,
     )  # fmt: skip
     for law in laws:
