@@ -142,6 +142,8 @@ def test_what_is_no_number_is_no_argument_of_a_law(value):
         for name in good:
             with pytest.raises(ParameterError, match=name):
                 law(**good | {name: value})
+    with pytest.raises(ParameterError, match="maximum"):
+        friction.benedict_kelley(100, 10, 2, 10, 0.4, maximum=value)
 
 
 @pytest.mark.parametrize("argument", ["stiffness", "damping", "motor_speed", "pinion_torque", "brake_torque"])
