@@ -63,8 +63,8 @@ def test_included_files_are_written_by_the_build_or_exist(page, root, monkeypatc
     monkeypatch.syspath_prepend(str(root / "docs"))
     written = importlib.import_module("computed").writers()
     for target in _INCLUDE.findall(page.read_text(encoding="utf-8")):
-        place, _, name = target.rpartition("_generated/")
-        assert name in written if place else (page.parent / target).exists(), f"{target} in {page}"
+        _, generated, name = target.rpartition("_generated/")
+        assert name in written if generated else (page.parent / target).exists(), f"{target} in {page}"
 
 
 def test_the_checks_see_what_is_broken(tmp_path):
