@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -96,6 +98,9 @@ def sweep(
         fail(f"Stopped. What was computed is in {folder}; run the same command with --resume.", INTERRUPTED)
     try:
         print_summary(summary, stdout())
+        sys.stdout.flush()
     except OSError as error:
+        # Else what is left in the buffer fails again, and decides the exit code, when the process ends.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         fail(f"The results are whole, but what they are cannot be printed: {error.strerror}.", NUMERICAL)
     raise typer.Exit(summary.exit_code)

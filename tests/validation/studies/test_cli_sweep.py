@@ -109,7 +109,8 @@ def test_dry_run_only_counts(command, tmp_path):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["study.toml"]
 
 
-def test_progress_shows_rate_failures_and_time_left():
+def test_progress_shows_rate_failures_and_time_left(monkeypatch):
+    monkeypatch.setenv("TERM", "xterm")
     text = io.StringIO()
     with SweepProgress(Console(file=text, width=200, force_terminal=True)) as progress:
         progress(30, 120, 2)
