@@ -6,7 +6,7 @@
 Rates are per second of processor time, times the cores of the machine, so that other work on the machine does
 not enter. The solvers get every help they can use on the same points: polynomials ready to evaluate, and
 restarts at the switches (without that they would lose their order). Accuracy is measured in extended
-precision (`floquet.gear_reference`).
+precision (`floquet.gear.reference`).
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ from scipy.integrate import solve_ivp
 
 import lumped
 from floquet import fast_multipliers, fast_periodic_motions, gear_block, stability_chart
-from floquet.gear_reference import extended_monodromy, stress_test
+from floquet.gear.reference import extended_monodromy, stress_test
 from lumped.errors import LawRangeWarning
-from lumped.parameters import GearPair
+from lumped.schema.pair import GearPair
 
 CORES = os.cpu_count() or 1
 SPEEDS = (500.0, 20000.0)

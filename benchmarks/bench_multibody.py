@@ -23,12 +23,12 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import lumped
-from multibody import kernels as kn
-from multibody.integration import Segment
-from multibody.kernels_linear import linear_forces
-from multibody.kinematics import MAX_PAIRS
-from multibody.setup import Setup, prepare
-from multibody.simulation import record
+from multibody.contact import kernels as kn
+from multibody.contact.kernels_linear import linear_forces
+from multibody.contact.kinematics import MAX_PAIRS
+from multibody.run.integration import Segment
+from multibody.run.setup import Setup, prepare
+from multibody.run.simulation import record
 
 RTOL = 1e-8
 JUMPS = lumped.load_gear_pair("nasa_28_28").with_(friction__law="coulomb", friction__coefficient=0.05)

@@ -12,7 +12,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import lumped
-from lumped.averaged import modes
+from lumped.model.averaged import modes
 
 
 def compute() -> xr.Dataset:

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from scipy.linalg import eigh
 
 import lumped
-from floquet.gear_axes import vary
-from floquet.gear_tongues import critical_damping
+from floquet.gear.axes import vary
+from floquet.gear.tongues import critical_damping
 
 
 def compute() -> xr.Dataset:

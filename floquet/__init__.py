@@ -9,54 +9,54 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 # Names that modules have as well must be here from the start: the import of a module takes its place.
-from floquet.chart import chart, load_chart, save_chart, scan
-from floquet.gear_block import gear_block
-from floquet.monodromy import Monodromy, monodromy
-from floquet.propagators import PROPAGATORS, Propagator
-from floquet.spectrum import Spectrum
-from floquet.system import PeriodicSystem
+from floquet.engine.chart import chart, load_chart, save_chart, scan
+from floquet.engine.monodromy import Monodromy, monodromy
+from floquet.engine.propagators import PROPAGATORS, Propagator
+from floquet.engine.spectrum import Spectrum
+from floquet.engine.system import PeriodicSystem
+from floquet.gear.block import gear_block
 
 if TYPE_CHECKING:
-    from floquet.coarsening import coarsened
-    from floquet.fast import FastMonodromy, FastMultipliers, fast_monodromies, fast_multipliers
-    from floquet.fast_steady import FastPeriodicMotion, fast_periodic_motions
-    from floquet.forced import PeriodicMotion, periodic_motion
-    from floquet.gear_axes import GEAR_AXES
-    from floquet.gear_boundaries import predicted_lines, stability_boundaries
-    from floquet.gear_campbell import campbell
-    from floquet.gear_chart import stability_chart
-    from floquet.gear_coverage import boundary_coverage
-    from floquet.gear_friction_effect import friction_effect
-    from floquet.gear_multipliers import GearPairMultipliers, gear_pair_multipliers, gear_pair_system
-    from floquet.gear_paths import multiplier_paths
-    from floquet.gear_reference import extended_monodromy, stress_test
-    from floquet.gear_sensitivity import gear_sensitivities
-    from floquet.gear_tongues import critical_damping, label_regions
-    from floquet.modes import FloquetModes, floquet_modes
-    from floquet.rank_one import Gains, ModalForm, RankOneSystem
-    from floquet.tongues import Tongue
-    from floquet.vaishya_singh import CoulombGearPair, stability_zones
+    from floquet.engine.forced import PeriodicMotion, periodic_motion
+    from floquet.engine.modes import FloquetModes, floquet_modes
+    from floquet.engine.tongues import Tongue
+    from floquet.gear.axes import GEAR_AXES
+    from floquet.gear.boundaries import predicted_lines, stability_boundaries
+    from floquet.gear.campbell import campbell
+    from floquet.gear.chart import stability_chart
+    from floquet.gear.coverage import boundary_coverage
+    from floquet.gear.friction_effect import friction_effect
+    from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers, gear_pair_system
+    from floquet.gear.paths import multiplier_paths
+    from floquet.gear.reference import extended_monodromy, stress_test
+    from floquet.gear.sensitivities import gear_sensitivities
+    from floquet.gear.tongues import critical_damping, label_regions
+    from floquet.gear.vaishya_singh import CoulombGearPair, stability_zones
+    from floquet.rank_one.batch import FastMonodromy, FastMultipliers, fast_monodromies, fast_multipliers
+    from floquet.rank_one.batch_steady import FastPeriodicMotion, fast_periodic_motions
+    from floquet.rank_one.coarsening import coarsened
+    from floquet.rank_one.system import Gains, ModalForm, RankOneSystem
 
 _LATER = {
-    "coarsening": ["coarsened"],
-    "fast": ["FastMonodromy", "FastMultipliers", "fast_monodromies", "fast_multipliers"],
-    "fast_steady": ["FastPeriodicMotion", "fast_periodic_motions"],
-    "forced": ["PeriodicMotion", "periodic_motion"],
-    "gear_axes": ["GEAR_AXES"],
-    "gear_boundaries": ["predicted_lines", "stability_boundaries"],
-    "gear_campbell": ["campbell"],
-    "gear_paths": ["multiplier_paths"],
-    "gear_chart": ["stability_chart"],
-    "gear_coverage": ["boundary_coverage"],
-    "gear_friction_effect": ["friction_effect"],
-    "gear_multipliers": ["GearPairMultipliers", "gear_pair_multipliers", "gear_pair_system"],
-    "gear_reference": ["extended_monodromy", "stress_test"],
-    "gear_sensitivity": ["gear_sensitivities"],
-    "gear_tongues": ["critical_damping", "label_regions"],
-    "modes": ["FloquetModes", "floquet_modes"],
-    "rank_one": ["Gains", "ModalForm", "RankOneSystem"],
-    "tongues": ["Tongue"],
-    "vaishya_singh": ["CoulombGearPair", "stability_zones"],
+    "rank_one.coarsening": ["coarsened"],
+    "rank_one.batch": ["FastMonodromy", "FastMultipliers", "fast_monodromies", "fast_multipliers"],
+    "rank_one.batch_steady": ["FastPeriodicMotion", "fast_periodic_motions"],
+    "engine.forced": ["PeriodicMotion", "periodic_motion"],
+    "gear.axes": ["GEAR_AXES"],
+    "gear.boundaries": ["predicted_lines", "stability_boundaries"],
+    "gear.campbell": ["campbell"],
+    "gear.paths": ["multiplier_paths"],
+    "gear.chart": ["stability_chart"],
+    "gear.coverage": ["boundary_coverage"],
+    "gear.friction_effect": ["friction_effect"],
+    "gear.multipliers": ["GearPairMultipliers", "gear_pair_multipliers", "gear_pair_system"],
+    "gear.reference": ["extended_monodromy", "stress_test"],
+    "gear.sensitivities": ["gear_sensitivities"],
+    "gear.tongues": ["critical_damping", "label_regions"],
+    "engine.modes": ["FloquetModes", "floquet_modes"],
+    "rank_one.system": ["Gains", "ModalForm", "RankOneSystem"],
+    "engine.tongues": ["Tongue"],
+    "gear.vaishya_singh": ["CoulombGearPair", "stability_zones"],
 }
 _MODULES = {name: module for module, names in _LATER.items() for name in names}
 

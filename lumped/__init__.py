@@ -1,18 +1,18 @@
 """Spur gear pairs with sliding friction: schema, kinematics, stiffness, friction laws and the LTV model."""
 
-from lumped.bodies import Bodies, bodies
 from lumped.errors import FieldProblem, LawRangeWarning, NumericalError, ParameterError, SpurcheckError
-from lumped.gear_geometry import Geometry, geometry
-from lumped.mesh_cycle import MeshCycle, mesh_cycle
-from lumped.mesh_elements import MeshElements, mesh_elements
-from lumped.parameters import GearPair
+from lumped.gear_geometry.geometry import Geometry, geometry
+from lumped.model.bodies import Bodies, bodies
+from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
+from lumped.model.mesh_elements import MeshElements, mesh_elements
+from lumped.model.periodic_system import LTVSystem, periodic_system
+from lumped.model.solution import simulate, steady_state
+from lumped.model.sweep import speed_sweep
 from lumped.path_function import PathFunction
-from lumped.periodic_system import LTVSystem, periodic_system
 from lumped.quasi_static import optimal_relief, static_transmission_error
-from lumped.serialise import json_schema, load_gear_pair, preset_names
-from lumped.solution import simulate, steady_state
+from lumped.schema.files import json_schema, load_gear_pair, preset_names
+from lumped.schema.pair import GearPair
 from lumped.stiffness.components import mesh_stiffness, stiffness_components
-from lumped.sweep import speed_sweep
 
 __all__ = [
     "Bodies",

@@ -1,13 +1,13 @@
 """Independent multibody reference of a spur gear pair in exudyn, at two fidelities."""
 
-from multibody.balance import PowerBalance, power_balance
-from multibody.causes import attribution
-from multibody.drive import Drive
-from multibody.effects import EFFECTS
-from multibody.flow_map import FlowMap, monodromy, steady_state
-from multibody.reversal_convergence import reversal_convergence
-from multibody.simulation import simulate
-from multibody.sweep import speed_sweep
+from multibody.contact.effects import EFFECTS
+from multibody.run.drive import Drive
+from multibody.run.flow_map import FlowMap, monodromy, steady_state
+from multibody.run.simulation import simulate
+from multibody.run.sweep import speed_sweep
+from multibody.study.balance import PowerBalance, power_balance
+from multibody.study.causes import attribution
+from multibody.study.reversal_convergence import reversal_convergence
 
 __all__ = [
     "EFFECTS",

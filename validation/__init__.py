@@ -9,19 +9,19 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from validation.comparison import CrossCheck, crosscheck
+    from validation.cross_check.comparison import CrossCheck, crosscheck
     from validation.interactive import write_interactive_page
     from validation.reporting import Report, report
-    from validation.validity import validity_flags
-    from validation.validity_flag import Flag
+    from validation.validity.flag import Flag
+    from validation.validity.flags import validity_flags
 
 _HOMES = {
-    "CrossCheck": "validation.comparison",
-    "crosscheck": "validation.comparison",
+    "CrossCheck": "validation.cross_check.comparison",
+    "crosscheck": "validation.cross_check.comparison",
     "Report": "validation.reporting",
     "report": "validation.reporting",
-    "Flag": "validation.validity_flag",
-    "validity_flags": "validation.validity",
+    "Flag": "validation.validity.flag",
+    "validity_flags": "validation.validity.flags",
     "write_interactive_page": "validation.interactive",
 }
 

@@ -13,7 +13,7 @@ import multibody
 import validation
 from computed.markdown import must_pass, table
 from lumped import GearPair
-from validation.comparison import MEANINGS
+from validation.cross_check.comparison import MEANINGS
 
 _TORQUE = 56.5
 _QUANTITIES = ("dte", "x_p", "y_p")

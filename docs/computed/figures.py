@@ -12,18 +12,18 @@ import lumped
 from computed import GENERATED
 from computed.agreement import torque_series
 from computed.diagrams import svg
-from floquet.gear_paths import multiplier_paths
+from floquet.gear.dense_chart import dense_chart
+from floquet.gear.margins import stability_margins
+from floquet.gear.paths import multiplier_paths
 from lumped import GearPair
 from lumped.friction import friction_profile
+from validation.files.output import write_dataset
 from validation.interactive.page import render
 from validation.interactive.results import compute
-from validation.output import write_dataset
 from validation.plots.multiplier_paths import multiplier_paths_figure
 from validation.plots.path_of_contact import friction_laws_figure, path_figure
 from validation.plots.style import BLUE, DASHES, GREY, LINES, RED, legend, new_figure
 from validation.plots.tongue_chart import tongue_chart_figure
-from validation.stability_charts import dense_chart
-from validation.stability_margins import stability_margins
 
 
 def _pair() -> GearPair:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import lumped
 from computed.markdown import Cell, greek, table, text
-from validation.paper.claims import claims
+from validation.paper.claims.judge import claims
 
 _SAMPLES = 40
 

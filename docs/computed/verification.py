@@ -5,7 +5,7 @@ from __future__ import annotations
 import lumped
 from computed.markdown import must_pass, table
 from lumped import GearPair
-from validation import floquet_page
+from validation.reporting import floquet_page
 from validation.verification import code_checks, order_checks, refinements
 
 _SAMPLES = 256

@@ -11,21 +11,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped import film
 from lumped.errors import refuse
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.benedict_kelley import friction_number
 from lumped.friction.fitted import fit_signed, mean_coefficient
+from lumped.friction.lubricant import dynamic_viscosity
 from lumped.friction.registry import law_named
-from lumped.gear_geometry import Geometry
-from lumped.gear_geometry import geometry as gear_geometry
-from lumped.lubricant import dynamic_viscosity
+from lumped.gear_geometry.geometry import Geometry
+from lumped.gear_geometry.geometry import geometry as gear_geometry
+from lumped.lubrication import film
+from lumped.lubrication.roughness import composite_roughness, mean_roughness
 from lumped.path_function import PathFunction
-from lumped.roughness import composite_roughness, mean_roughness
-from lumped.validity import FloatArray, RangeViolation, range_violations, warn_violations
+from lumped.ranges import FloatArray, RangeViolation, range_violations, warn_violations
 
 if TYPE_CHECKING:
-    from lumped.parameters import GearPair
+    from lumped.schema.pair import GearPair
 
 __all__ = [
     "contact_path",

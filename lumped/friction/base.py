@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from lumped import film
-from lumped.validity import FloatArray, ValidityRange
+from lumped.lubrication import film
+from lumped.ranges import FloatArray, ValidityRange
 
 BoolArray = NDArray[np.bool_]
 

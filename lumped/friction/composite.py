@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import real_array
-from lumped.film import DEFAULT_THRESHOLDS, RANGES, regime
 from lumped.friction import benedict_kelley, smoothed_coulomb, xu_kahraman
 from lumped.friction.base import BoolArray, ContactPath, FrictionLaw, FrictionSettings
-from lumped.validity import FloatArray
+from lumped.lubrication.film import DEFAULT_THRESHOLDS, RANGES, regime
+from lumped.ranges import FloatArray
 
 
 def composite(

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from lumped.arguments import real_array
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.fitted import average_coefficient
-from lumped.validity import FloatArray, checked
+from lumped.ranges import FloatArray, checked
 
 
 def coulomb(coefficient: ArrayLike, distance: ArrayLike) -> FloatArray:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped import film
 from lumped.arguments import some_of, whole_number
 from lumped.errors import ParameterError
 from lumped.friction.along_path import (
@@ -21,13 +20,14 @@ from lumped.friction.along_path import (
     violations_of,
 )
 from lumped.friction.registry import LAWS
+from lumped.lubrication import film
 from lumped.path_function import PathFunction
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from lumped.gear_geometry import Geometry
-    from lumped.parameters import GearPair
+    from lumped.gear_geometry.geometry import Geometry
+    from lumped.schema.pair import GearPair
 
 
 def friction_profile(

@@ -11,15 +11,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.friction import contact_path
-from lumped.gear_geometry import geometry
+from lumped.gear_geometry.geometry import geometry
 from lumped.losses.cycle import CyclePositions, quadrature
 from lumped.losses.loss_factor import sliding_velocity
 from lumped.losses.sharing import springs
 from lumped.path_function import PathFunction
-from lumped.validity import FloatArray, checked
+from lumped.ranges import FloatArray, checked
 
 if TYPE_CHECKING:
-    from lumped.parameters import GearPair
+    from lumped.schema.pair import GearPair
 
 _HALVINGS = 40
 

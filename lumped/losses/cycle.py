@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.gear_geometry import Geometry
+from lumped.gear_geometry.geometry import Geometry
 from lumped.path_function import FloatArray, PathFunction
 
 #: Exact to degree 15: a fitted mu of degree 8 times a sliding velocity of degree 1, and a load share.

@@ -13,14 +13,14 @@ import numpy as np
 from lumped.arguments import some_of
 from lumped.errors import ParameterError, refuse
 from lumped.friction import LAWS
-from lumped.gear_geometry import geometry
+from lumped.gear_geometry.geometry import geometry
 from lumped.losses.quasi_static import quasi_static_losses
 from lumped.losses.sharing import Sharing
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from lumped.parameters import GearPair
+    from lumped.schema.pair import GearPair
 
 
 def dynamic_losses(pair: GearPair, solution: xr.Dataset) -> xr.Dataset:
@@ -142,7 +142,7 @@ def losses_of_laws(
             static = quasi_static_losses(pair, name, sharing, samples_per_cycle=8).attrs
             rows[name] = {key: static[key] for key in ("mesh_efficiency", "power_loss", "mean_coefficient")}
             if dynamic:
-                from lumped.solution import steady_state
+                from lumped.model.solution import steady_state
 
                 run = steady_state(pair.with_(friction__law=name), samples_per_cycle=8)
                 rows[name]["mesh_efficiency_dynamic"] = run.attrs["mesh_efficiency"]

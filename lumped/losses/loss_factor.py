@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.gear_geometry import Geometry, geometry
+from lumped.gear_geometry.geometry import Geometry, geometry
 from lumped.losses.cycle import CyclePositions, quadrature
 from lumped.losses.sharing import Sharing, springs
 from lumped.path_function import FloatArray
 
 if TYPE_CHECKING:
-    from lumped.parameters import GearPair
+    from lumped.schema.pair import GearPair
 
 
 def ohlendorf(

@@ -10,12 +10,12 @@ from numpy.typing import ArrayLike
 
 from lumped.arguments import real_number
 from lumped.friction import contact_path
-from lumped.gear_geometry import geometry
+from lumped.gear_geometry.geometry import geometry
 from lumped.losses.loss_factor import loss_factor
-from lumped.validity import NOT_STATED, FloatArray, ValidityRange, checked
+from lumped.ranges import NOT_STATED, FloatArray, ValidityRange, checked
 
 if TYPE_CHECKING:
-    from lumped.parameters import GearPair
+    from lumped.schema.pair import GearPair
 
 RANGES = (
     ValidityRange("unit_load", "N/mm", None, None, NOT_STATED),

@@ -11,18 +11,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lumped.friction import friction_path_function
-from lumped.gear_geometry import Geometry, geometry
+from lumped.gear_geometry.geometry import Geometry, geometry
 from lumped.losses.cycle import CyclePositions, quadrature, samples
 from lumped.losses.loss_factor import mean_loss_factor, sliding_velocity
 from lumped.losses.sharing import Sharing, Springs, springs
+from lumped.model.results import labelled, provenance
+from lumped.model.steady import sample_times
 from lumped.path_function import FloatArray, PathFunction
-from lumped.results import labelled, provenance
-from lumped.steady import sample_times
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from lumped.parameters import GearPair
+    from lumped.schema.pair import GearPair
 
 
 @dataclass(frozen=True, eq=False)

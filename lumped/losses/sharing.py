@@ -12,14 +12,14 @@ import numpy as np
 
 from lumped.arguments import one_of
 from lumped.losses.cycle import CyclePositions
-from lumped.mesh_elements import mesh_elements
+from lumped.model.mesh_elements import mesh_elements
 from lumped.path_function import FloatArray, PathFunction
 from lumped.quasi_static.loaded_mesh import loaded_mesh
 from lumped.stiffness import pair_stiffness
 
 if TYPE_CHECKING:
-    from lumped.gear_geometry import Geometry
-    from lumped.parameters import GearPair
+    from lumped.gear_geometry.geometry import Geometry
+    from lumped.schema.pair import GearPair
 
 _KINDS = ("elements", "loaded", "stiffness", "uniform")
 #: "elements": stiffness and tooth error as the dynamic model has them; "loaded": with the relief of the

@@ -18,11 +18,11 @@ import numpy as np
 from scipy.optimize import brentq
 
 from lumped.errors import NumericalError
-from lumped.gear_geometry import Geometry, geometry
-from lumped.parameters import GearPair
+from lumped.gear_geometry.geometry import Geometry, geometry
 from lumped.path_function import FloatArray, PathFunction
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.tooth_error import error_function
+from lumped.schema.pair import GearPair
 from lumped.stiffness import pair_stiffness
 
 #: Samples over the path of contact between which contact begins or ends at most once.

@@ -19,9 +19,9 @@ from lumped.errors import refuse
 from lumped.path_function import FloatArray, PathFunction
 
 if TYPE_CHECKING:
-    from lumped.gear_geometry import Geometry
-    from lumped.gear_parameters import ProfileRelief
-    from lumped.parameters import GearPair
+    from lumped.gear_geometry.geometry import Geometry
+    from lumped.schema.gear import ProfileRelief
+    from lumped.schema.pair import GearPair
 
 
 def flank_relief(relief: ProfileRelief, end: float, roll: FloatArray) -> FloatArray:

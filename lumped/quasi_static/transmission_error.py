@@ -16,11 +16,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import real_numbers, whole_number
 from lumped.errors import NumericalError
-from lumped.gear_geometry import Geometry, geometry
-from lumped.parameters import GearPair
+from lumped.gear_geometry.geometry import Geometry, geometry
 from lumped.path_function import FloatArray
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.tooth_error import corner_gap, relief_error
+from lumped.schema.pair import GearPair
 from lumped.stiffness import pair_stiffness
 from lumped.stiffness.energy import contact_softening
 

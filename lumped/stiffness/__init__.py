@@ -16,10 +16,10 @@ from lumped.stiffness.rectangular import rectangular
 from lumped.stiffness.table import table
 
 if TYPE_CHECKING:
-    from lumped.gear_geometry import Geometry
-    from lumped.parameters import GearPair
+    from lumped.gear_geometry.geometry import Geometry
     from lumped.path_function import PathFunction
-    from lumped.validity import RangeViolation
+    from lumped.ranges import RangeViolation
+    from lumped.schema.pair import GearPair
 
 #: ``mesh.stiffness.model`` -> function (model parameters, pair, geometry) -> k_i(xi) [N/m].
 MODELS: dict[str, Callable[[Any, GearPair, Geometry], PathFunction]] = {

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lumped.arguments import whole_number
-from lumped.gear_geometry import geometry
+from lumped.gear_geometry.geometry import geometry
 from lumped.stiffness import iso6336, pair_stiffness
 from lumped.stiffness.pair_compliance import Contact, pair_compliance
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from lumped.parameters import GearPair
+    from lumped.schema.pair import GearPair
 
 
 def stiffness_components(pair: GearPair, points: int = 201, hertz: Contact = "weber_banaschek") -> xr.Dataset:

@@ -20,8 +20,8 @@ from lumped.stiffness.foundation import ring_twist
 from lumped.stiffness.neighbours import neighbour_breaks
 
 if TYPE_CHECKING:
-    from lumped.gear_geometry import Geometry
-    from lumped.parameters import GearPair
+    from lumped.gear_geometry.geometry import Geometry
+    from lumped.schema.pair import GearPair
 
 _FIT_TOLERANCE = 1e-10
 

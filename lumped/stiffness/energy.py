@@ -20,17 +20,17 @@ from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
 from lumped.path_function import FloatArray, PathFunction
+from lumped.ranges import RangeViolation, range_violations
 from lumped.stiffness import iso6336
 from lumped.stiffness.coupling import coupled, twist_compliance
 from lumped.stiffness.foundation import BODY_RATIO, HALF_ANGLE
 from lumped.stiffness.pair_compliance import Contact, pair_compliance, tooth_profile
 from lumped.stiffness.ramp import ramped
-from lumped.validity import RangeViolation, range_violations
 
 if TYPE_CHECKING:
-    from lumped.gear_geometry import Geometry
-    from lumped.mesh_parameters import EnergyStiffness
-    from lumped.parameters import GearPair
+    from lumped.gear_geometry.geometry import Geometry
+    from lumped.schema.mesh import EnergyStiffness
+    from lumped.schema.pair import GearPair
 
 #: Fit error of k over its largest value.
 _FIT_TOLERANCE = 1e-10

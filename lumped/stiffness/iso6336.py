@@ -12,11 +12,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from lumped.validity import RangeViolation, ValidityRange, range_violations
+from lumped.ranges import RangeViolation, ValidityRange, range_violations
 
 if TYPE_CHECKING:
-    from lumped.gear_geometry import Geometry
-    from lumped.parameters import GearPair
+    from lumped.gear_geometry.geometry import Geometry
+    from lumped.schema.pair import GearPair
 
 #: C1 to C9 of q', eq. (84), in the order of the terms.
 COEFFICIENTS = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.gear_geometry import geometry
+from lumped.gear_geometry.geometry import geometry
 from lumped.path_function import FloatArray
 from lumped.stiffness import iso6336
 from lumped.stiffness.energy import energy_curve, violations
@@ -26,8 +26,8 @@ from lumped.stiffness.pair_compliance import Contact
 if TYPE_CHECKING:
     import xarray as xr
 
-    from lumped.gear_geometry import Geometry
-    from lumped.parameters import GearPair
+    from lumped.gear_geometry.geometry import Geometry
+    from lumped.schema.pair import GearPair
 
 #: Ends of the range in which the standard's c' does not depend on the load [N/mm].
 LOADS = (iso6336.LOW_LOAD, 1600.0)

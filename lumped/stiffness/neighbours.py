@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from lumped.path_function import FloatArray
 
 if TYPE_CHECKING:
-    from lumped.gear_geometry import Geometry
+    from lumped.gear_geometry.geometry import Geometry
 
 #: Positions closer than this fraction of a base pitch are one.
 _SAME = 1e-9

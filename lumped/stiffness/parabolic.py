@@ -17,9 +17,9 @@ from lumped.stiffness import iso6336
 from lumped.stiffness.ramp import RAMP, check_ramp_length
 
 if TYPE_CHECKING:
-    from lumped.gear_geometry import Geometry
-    from lumped.mesh_parameters import ParabolicStiffness
-    from lumped.parameters import GearPair
+    from lumped.gear_geometry.geometry import Geometry
+    from lumped.schema.mesh import ParabolicStiffness
+    from lumped.schema.pair import GearPair
 
 
 def iso_end_ratio(contact_ratio: float) -> float:

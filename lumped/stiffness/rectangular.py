@@ -8,9 +8,9 @@ from lumped.path_function import PathFunction
 from lumped.stiffness import iso6336
 
 if TYPE_CHECKING:
-    from lumped.gear_geometry import Geometry
-    from lumped.mesh_parameters import RectangularStiffness
-    from lumped.parameters import GearPair
+    from lumped.gear_geometry.geometry import Geometry
+    from lumped.schema.mesh import RectangularStiffness
+    from lumped.schema.pair import GearPair
 
 
 def rectangular(model: RectangularStiffness, pair: GearPair, geometry: Geometry) -> PathFunction:

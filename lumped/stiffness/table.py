@@ -18,9 +18,9 @@ from lumped.stiffness.neighbours import neighbour_breaks
 from lumped.stiffness.ramp import check_ramp_length, ramped
 
 if TYPE_CHECKING:
-    from lumped.gear_geometry import Geometry
-    from lumped.mesh_parameters import TableStiffness
-    from lumped.parameters import GearPair
+    from lumped.gear_geometry.geometry import Geometry
+    from lumped.schema.mesh import TableStiffness
+    from lumped.schema.pair import GearPair
 
 #: A pair's table may miss the ends of the path of contact by this fraction of the path; it is then continued
 #: with its end value's polynomial.

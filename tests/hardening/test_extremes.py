@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import multibody
-from floquet.gear_pair import gear_pair_multipliers
+from floquet.gear.multipliers import gear_pair_multipliers
 from lumped import geometry, load_gear_pair, simulate, steady_state
 from lumped.errors import LawRangeWarning, SpurcheckError
-from multibody.kinematics import mesh_phase
+from multibody.contact.kinematics import mesh_phase
 
 #: Longest time that any analysis of any pair may take here [s]; ordinary ones take well under one.
 SECONDS = 60.0

@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 
 from lumped import GearPair, geometry, load_gear_pair, preset_names
 from lumped.errors import ParameterError
-from lumped.parameters import field_at
-from lumped.serialise import preset_text
-from lumped.text_file import parse_toml
+from lumped.schema.files import preset_text
+from lumped.schema.pair import field_at
+from lumped.schema.text_file import parse_toml
 from validation.measurements import load_measurement
 from validation.studies import Study, load_study
 
@@ -86,7 +86,7 @@ def test_hostile_values_of_one_field(within, hostile_values, data):
 
 
 def _paths():
-    from lumped.serialise import leaf_paths
+    from lumped.schema.files import leaf_paths
 
     return [
         *leaf_paths(load_gear_pair("fzg_c")),

@@ -9,8 +9,8 @@ import numpy as np
 from hypothesis import event, given
 from hypothesis import strategies as st
 
-from floquet.gear_pair import gear_pair_multipliers, gear_pair_system
-from floquet.monodromy import monodromy
+from floquet.engine.monodromy import monodromy
+from floquet.gear.multipliers import gear_pair_multipliers, gear_pair_system
 from lumped import geometry, mesh_cycle, steady_state
 from lumped.errors import LawRangeWarning, SpurcheckError
 

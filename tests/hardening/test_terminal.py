@@ -8,7 +8,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from lumped.serialise import preset_text
+from lumped.schema.files import preset_text
 from validation.cli import _open_streams, app
 from validation.commands.terminal import PlainConsole, fail, note, table
 

@@ -14,15 +14,16 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 import lumped
-from floquet.gear_axes import vary
-from floquet.gear_pair import gear_pair_multipliers, stability_chart
+from floquet.gear.axes import vary
+from floquet.gear.chart import stability_chart
+from floquet.gear.multipliers import gear_pair_multipliers
 from lumped import NumericalError
 from validation.cli import app
 from validation.interactive import compute, page, write_interactive_page
 from validation.interactive import results as interactive_results
 from validation.interactive.payload import payload, script_json
 from validation.interactive.results import COARSE, Sampling
-from validation.validity_map import validity_map
+from validation.validity.map import validity_map
 
 TINY = Sampling(speeds=5, dampings=3, slices=2, sweep_speeds=4)
 

@@ -14,10 +14,10 @@ import lumped
 PACKAGES = ("lumped", "multibody", "floquet", "validation")
 #: Modules that hold no mathematics of gears, so that there is nothing to cite.
 BOOKKEEPING = re.compile(
-    r"lumped\.(errors|parameters|serialise)"
-    r"|floquet\.chart"
-    r"|validation\.(exchange|studies|plots|reporting|commands|interactive|measurements\.(record|specification))\b.*"
-    r"|validation\.paper\.(records|reproduction|claims|plots|figures)\b.*"
+    r"lumped\.(errors|schema\.(pair|files))"
+    r"|floquet\.engine\.chart"
+    r"|validation\.(files|exchange|studies|plots|reporting|commands|interactive|measurements\.(record|specification))\b.*"
+    r"|validation\.paper\.(records|figure_record|reproduction|claims|plots|figures)\b.*"
     r"|validation\.verification\.checks"
 )
 SOURCE = re.compile(r"\beqs?\. |\bISO\b|\b(18|19|20)\d\d\b|docs/theory/\w+\.md")

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from lumped.contact_parameters import FrictionLaw
 from lumped.friction import LAWS
-from lumped.mesh_parameters import StiffnessModel
-from lumped.serialise import load_gear_pair, preset_names
+from lumped.schema.contact import FrictionLaw
+from lumped.schema.files import load_gear_pair, preset_names
+from lumped.schema.mesh import StiffnessModel
 from lumped.stiffness import MODELS
 from validation.commands.options import Law
 

@@ -3,7 +3,7 @@
 import pytest
 
 import lumped
-from validation.comparison import crosscheck
+from validation.cross_check.comparison import crosscheck
 
 
 @pytest.fixture(scope="session")

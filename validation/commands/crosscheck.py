@@ -12,8 +12,8 @@ from validation.commands import options as opt
 from validation.commands.terminal import FAILED, guarded, progress_bar, stderr, stdout, table
 
 if TYPE_CHECKING:
-    from validation.agreement import Agreement
-    from validation.comparison import CrossCheck
+    from validation.cross_check.agreement import Agreement
+    from validation.cross_check.comparison import CrossCheck
 
 _SUFFIXES = (".json", ".png", ".svg")
 
@@ -82,9 +82,9 @@ def crosscheck(
     from rich.text import Text
 
     from lumped.errors import refuse
-    from validation.agreement import MEANINGS
-    from validation.comparison import crosscheck as run
-    from validation.output import check_file
+    from validation.cross_check.agreement import MEANINGS
+    from validation.cross_check.comparison import crosscheck as run
+    from validation.files.output import check_file
     from validation.reporting.formatting import number
 
     if checkpoint is not None:
@@ -136,8 +136,8 @@ def crosscheck(
 
 def _write(check: CrossCheck, target: Path) -> None:
     from lumped import geometry
-    from validation.agreement import off_switch_samples
-    from validation.output import whole_file, write_text
+    from validation.cross_check.agreement import off_switch_samples
+    from validation.files.output import whole_file, write_text
 
     if target.suffix.lower() == ".json":
         data = {"verdict": check.verdict, "agreements": [_data(a) for a in check.agreements]}

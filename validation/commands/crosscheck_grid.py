@@ -13,7 +13,7 @@ from validation.commands.terminal import FAILED, progress_bar, stderr, stdout, t
 if TYPE_CHECKING:
     import xarray as xr
 
-    from validation.grid_summary import GridSummary
+    from validation.cross_check.grid.summary import GridSummary
 
 
 def crosscheck_grid(
@@ -30,11 +30,11 @@ def crosscheck_grid(
     force : overwrite
     """
     from lumped.errors import refuse
-    from validation.agreement import MEANINGS
-    from validation.grid import Grid
-    from validation.grid import crosscheck_grid as run
-    from validation.grid_summary import explain, failures, outside_tolerance, summarise_grid
-    from validation.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
+    from validation.cross_check.agreement import MEANINGS
+    from validation.cross_check.grid.run import Grid
+    from validation.cross_check.grid.run import crosscheck_grid as run
+    from validation.cross_check.grid.summary import explain, failures, outside_tolerance, summarise_grid
+    from validation.files.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
 
     if given:
         raise refuse("--grid", " ".join(given), "no options of a single pair", "The grid covers all presets.")
@@ -68,8 +68,8 @@ def crosscheck_grid(
 def _tables(result: xr.Dataset) -> object:
     from rich.console import Group
 
-    from validation.grid import COMPARED, SEPARATED, STICKING
-    from validation.grid_summary import law_of_torque
+    from validation.cross_check.grid.run import COMPARED, SEPARATED, STICKING
+    from validation.cross_check.grid.summary import law_of_torque
     from validation.reporting.formatting import number
 
     # A table a pair, narrow enough for a terminal of 80 columns.
@@ -107,7 +107,7 @@ def _tables(result: xr.Dataset) -> object:
 
 
 def _sentences(found: GridSummary, result: xr.Dataset) -> list[str]:
-    from validation.grid import SCALING_TOLERANCE
+    from validation.cross_check.grid.run import SCALING_TOLERANCE
 
     seconds, workers, resumed = (result.attrs[name] for name in ("seconds", "workers", "resumed"))
     kept = f" ({resumed} points kept from before)" if resumed else ""
@@ -150,7 +150,7 @@ def _named(point: Mapping[str, str | float]) -> str:
 
 
 def _write(result: xr.Dataset, target: Path) -> None:
-    from validation.output import DATA_SUFFIXES, whole_file, write_dataset
+    from validation.files.output import DATA_SUFFIXES, whole_file, write_dataset
 
     if target.suffix.lower() in DATA_SUFFIXES:
         write_dataset(result, target)

@@ -88,7 +88,7 @@ def _export_pair(
     from validation.exchange.linear_model import STATE_SPACE_SUFFIXES
     from validation.exchange.rexs.container import FORMS
     from validation.exchange.rexs.vocabulary import WRITTEN
-    from validation.output import check_file
+    from validation.files.output import check_file
 
     if output.suffix.lower() in STATE_SPACE_SUFFIXES:
         if rexs_version is not None:
@@ -106,7 +106,7 @@ def _export_pair(
 
 def _export_result(source: str, output: Path, *, force: bool) -> None:
     from validation.exchange.results import one_table, read_netcdf, write_results
-    from validation.output import DATA_SUFFIXES, check_file
+    from validation.files.output import DATA_SUFFIXES, check_file
 
     check_file(output, DATA_SUFFIXES, force=force)
     result = read_netcdf(source)

@@ -52,9 +52,9 @@ def figures(
 
     spurcheck figures --figures 2,7 --no-multibody --measured record.toml -o figures
     """
+    from validation.files.folder import FIGURES, check_target, whole_folder
     from validation.measurements import load_measurement
     from validation.paper import DRAW, paper_figures
-    from validation.reporting.folder import FIGURES, check_target, whole_folder
 
     check_target(output, force=force, kind=FIGURES)
     chosen = _chosen(only, tuple(DRAW))

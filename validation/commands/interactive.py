@@ -34,8 +34,8 @@ def interactive(
 
     spurcheck interactive my_pair.toml --set mesh.damping_ratio=0.02 -o low_damping.html
     """
+    from validation.files.output import check_file
     from validation.interactive import write_interactive_page
-    from validation.output import check_file
 
     check_file(output, (".html",), force=force)
     data = check_file(output.with_suffix(".nc"), (".nc",), force=force)

@@ -76,8 +76,8 @@ def measurement(
 
     spurcheck measurement tooth_forces/measurement.toml --identify mu --identify xu_kahraman -o evaluation
     """
+    from validation.files.folder import MEASUREMENT, check_target, whole_folder
     from validation.measurements import evaluate, load_measurement
-    from validation.reporting.folder import MEASUREMENT, check_target, whole_folder
 
     if output is not None:
         check_target(output, force=force, kind=MEASUREMENT)
@@ -98,8 +98,8 @@ def measurement(
 
 def _write_example(gear_pair: Any, record: Path, *, force: bool) -> None:
     """Write a computed record whose truth is stated."""
+    from validation.files.folder import MEASUREMENT, check_target, whole_folder
     from validation.measurements import predict, synthetic_measurement, write_measurement
-    from validation.reporting.folder import MEASUREMENT, check_target, whole_folder
 
     check_target(record, force=force, kind=MEASUREMENT)
     truth = predict(gear_pair)
@@ -164,10 +164,10 @@ def _write(found: Evaluation, folder: Path) -> None:
 
     import numpy as np
 
-    from validation.output import write_dataset
+    from validation.files.folder import MEASUREMENT
+    from validation.files.output import write_dataset
     from validation.plots import save
     from validation.plots.overlay import overlay_figure
-    from validation.reporting.folder import MEASUREMENT
 
     write_dataset(found.points, folder / "overlay.nc")
     found.points.to_dataframe().reset_index().to_csv(

@@ -87,6 +87,6 @@ def value_of(text: str) -> Any:
 
 def figure_or_data(output: Path | None, *, force: bool) -> Path | None:
     """Check an output file that may be data or a figure, before any work."""
-    from validation.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
+    from validation.files.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
 
     return None if output is None else check_file(output, DATA_SUFFIXES + FIGURE_SUFFIXES, force=force)

@@ -25,7 +25,7 @@ def presets(
     spurcheck presets nasa_28_28
     """
     from lumped import geometry, load_gear_pair, preset_names
-    from lumped.serialise import preset_text
+    from lumped.schema.files import preset_text
 
     if name is not None:
         typer.echo(preset_text(name), nl=False)
@@ -73,8 +73,8 @@ def init(
 
     spurcheck init --from-rexs gearbox.rexs --stage 2 -o my_pair.toml
     """
-    from lumped.serialise import preset_text
-    from validation.output import check_file, write_text
+    from lumped.schema.files import preset_text
+    from validation.files.output import check_file, write_text
 
     text, name = preset_text(preset), preset
     if from_rexs is not None or stage is not None:
@@ -105,7 +105,7 @@ def schema(
     spurcheck schema -o spurcheck.schema.json
     """
     from lumped import json_schema
-    from validation.output import check_file, write_text
+    from validation.files.output import check_file, write_text
 
     text = json.dumps(json_schema(), indent=2, ensure_ascii=False) + "\n"
     if output is None:

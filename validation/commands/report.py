@@ -68,8 +68,8 @@ def report(
 
     spurcheck report my_pair.toml -o new --compare old/report.json --tolerance 0.01
     """
+    from validation.files.folder import check_target
     from validation.reporting import report as write
-    from validation.reporting.folder import check_target
 
     check_target(output, force=force)
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings)

@@ -31,7 +31,7 @@ def reversal(
 
     spurcheck reversal fzg_c --speed 650 --torque 135 --law benedict_kelley
     """
-    from multibody.reversal_convergence import reversal_convergence
+    from multibody.study.reversal_convergence import reversal_convergence
     from validation.reporting.formatting import number
 
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings)

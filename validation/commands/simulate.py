@@ -56,7 +56,7 @@ def simulate(
     """
     import lumped
     from lumped.errors import refuse
-    from validation.output import FIGURE_SUFFIXES, whole_file, write_dataset
+    from validation.files.output import FIGURE_SUFFIXES, whole_file, write_dataset
 
     target = opt.figure_or_data(output, force=force)
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
@@ -85,7 +85,7 @@ def simulate(
                 progress=lambda f: tell(f, ""),
             )
     from validation.reporting.formatting import number, quantity
-    from validation.validity import contact_loss
+    from validation.validity.flags import contact_loss
 
     g = lumped.geometry(gear_pair)
     last = result.isel(time=slice(-samples, None))

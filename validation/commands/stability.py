@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from floquet.gear_pair import GearPairMultipliers
+    from floquet.gear.multipliers import GearPairMultipliers
     from lumped import GearPair
 
 _LARGEST_COUNT = 5000
@@ -99,9 +99,9 @@ def stability(
 
     spurcheck stability --view laws --law composite --against coulomb -o difference.png
     """
-    from floquet.gear_pair import gear_pair_multipliers
+    from floquet.gear.multipliers import gear_pair_multipliers
     from validation.commands.stability_views import VIEWS, Request, show
-    from validation.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
+    from validation.files.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
 
     if view not in VIEWS:
         from lumped.errors import refuse
@@ -151,7 +151,7 @@ def _axis(text: str) -> tuple[str, NDArray[np.float64]]:
     """Name and values of an axis written NAME=FROM:TO:COUNT."""
     import numpy as np
 
-    from floquet.gear_axes import gear_axis
+    from floquet.gear.axes import gear_axis
     from lumped.errors import refuse
 
     name, separator, values = text.partition("=")

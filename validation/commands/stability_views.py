@@ -12,18 +12,20 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from floquet import predicted_lines, stability_boundaries
-from floquet.gear_axes import GEAR_AXES, operating_value
-from floquet.gear_campbell import campbell
-from floquet.gear_friction_effect import friction_effect
-from floquet.gear_paths import multiplier_paths
-from floquet.gear_tongues import LabelledRegion, label_regions
+from floquet.gear.axes import GEAR_AXES, operating_value
+from floquet.gear.campbell import campbell
+from floquet.gear.chart_axes import chart_axes
+from floquet.gear.coulomb_zones import coulomb_gear_pair, zones
+from floquet.gear.dense_chart import METHODS, dense_chart
+from floquet.gear.friction_effect import friction_effect
+from floquet.gear.margins import StabilityMargins, margins_dataset, stability_margins
+from floquet.gear.paths import multiplier_paths
+from floquet.gear.tongues import LabelledRegion, label_regions
 from lumped import GearPair
 from lumped.errors import refuse
 from lumped.friction import LAWS
-from validation.chart_axes import chart_axes
 from validation.commands.terminal import progress_bar, stdout, table
-from validation.coulomb_zones import coulomb_gear_pair, zones
-from validation.output import DATA_SUFFIXES, whole_file, write_dataset
+from validation.files.output import DATA_SUFFIXES, whole_file, write_dataset
 from validation.plots.boundaries import boundaries_figure
 from validation.plots.campbell import campbell_figure
 from validation.plots.friction_effect import friction_effect_figure
@@ -33,8 +35,6 @@ from validation.plots.style import save
 from validation.plots.tongue_chart import mark_operating_range, tongue_chart_figure
 from validation.plots.tongues import tongues_figure
 from validation.plots.zones import zones_figure
-from validation.stability_charts import METHODS, dense_chart
-from validation.stability_margins import StabilityMargins, margins_dataset, stability_margins
 
 FloatArray = NDArray[np.float64]
 View = tuple[xr.Dataset, Callable[[], Figure]]

@@ -10,7 +10,7 @@ from typing import Any
 import tomli_w
 
 from lumped.errors import ParameterError
-from lumped.parameters import stated_unit
+from lumped.schema.pair import stated_unit
 
 _SECTION = re.compile(r"\[([\w.]+)\]$")
 _ENTRY = re.compile(r"(\w+) = ")

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import scipy.signal
 
-from lumped.averaged import averaged_state_space
 from lumped.errors import refuse
-from lumped.parameters import GearPair
-from lumped.periodic_system import Form
-from validation.exchange.matlab import save_mat
-from validation.output import check_file, whole_file
+from lumped.model.averaged import averaged_state_space
+from lumped.model.periodic_system import Form
+from lumped.schema.pair import GearPair
+from validation.files.matlab import save_mat
+from validation.files.output import check_file, whole_file
 
 STATE_SPACE_SUFFIXES = (".mat", ".npz")
 
@@ -21,7 +21,8 @@ STATE_SPACE_SUFFIXES = (".mat", ".npz")
 def scipy_state_space(pair: GearPair, form: Form = "relative") -> scipy.signal.StateSpace:
     """Return the time-averaged pair as a SciPy state space.
 
-    For python-control, ``lumped.averaged.averaged_state_space`` returns the same model with named signals.
+    For python-control, ``lumped.model.averaged.averaged_state_space`` returns the same model with named
+    signals.
 
     Parameters
     ----------

@@ -7,7 +7,7 @@ from pathlib import Path
 import xarray as xr
 
 from lumped.errors import refuse, shown
-from validation.output import COLUMN_DIMENSIONS, DATA_SUFFIXES, check_file, write_dataset
+from validation.files.output import COLUMN_DIMENSIONS, DATA_SUFFIXES, check_file, write_dataset
 
 
 def write_results(result: xr.Dataset, path: str | Path, *, force: bool = False) -> Path:

@@ -13,12 +13,12 @@ import xarray as xr
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from floquet.gear.chart_axes import operating_rpm
 from lumped import GearPair, load_gear_pair
-from validation.chart_axes import operating_rpm
+from validation.files.output import write_dataset, write_text
 from validation.interactive.payload import LAW_NAMES, payload, script_json
 from validation.interactive.results import FINE, PageResults, Sampling, compute
-from validation.output import write_dataset, write_text
-from validation.validity_map import STATES
+from validation.validity.map import STATES
 
 #: Parts of the page's own script, in this order.
 _SCRIPTS = ("data.js", "chart.js", "stability.js", "sweep.js", "start.js")

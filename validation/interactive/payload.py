@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from validation.chart_axes import operating_rpm
+from floquet.gear.chart_axes import operating_rpm
 from validation.interactive.results import PageResults
 from validation.interactive.slices import Slices
-from validation.tongue_names import pretty
-from validation.validity import LOAD_NOISE, REVERSAL_LIMITS
-from validation.validity_map import STATES
+from validation.plots.tongue_names import pretty
+from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
+from validation.validity.map import STATES
 
 #: Decimals of a largest multiplier, and significant digits of everything else.
 DECIMALS, DIGITS = 6, 6

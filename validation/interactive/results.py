@@ -11,14 +11,14 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import lumped
-from floquet.gear_pair import GearPairMultipliers, gear_pair_multipliers
+from floquet.gear.chart_axes import chart_axes, operating_rpm, speed_range
+from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
 from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError
-from lumped.averaged import modes
 from lumped.friction import LAWS, law_range_violations
-from lumped.results import provenance
-from validation.chart_axes import chart_axes, operating_rpm, speed_range
+from lumped.model.averaged import modes
+from lumped.model.results import provenance
 from validation.interactive.slices import SLICES, Slices
-from validation.validity_map import STATES, validity_state
+from validation.validity.map import STATES, validity_state
 
 FloatArray = NDArray[np.float64]
 Progress = Callable[[float, str], None]
@@ -55,7 +55,7 @@ class PageResults:
     found : Floquet multipliers at the operating point
     stability : third parameter -> its charts
     sweep : response over (law, speed): dte_peak_to_peak, y_p_peak_to_peak [m]; lowest_load over the static
-        load; reversal over the base pitch; validity, index into ``validation.validity_map.STATES``;
+        load; reversal over the base pitch; validity, index into ``validation.validity.map.STATES``;
         spectral_radius, above 1 where the motion is unstable
     own_law : index of the pair's law in the sweep
     notes : for each law of the sweep, where it is used outside its range; empty where it is not

@@ -9,12 +9,12 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from floquet.gear_axes import gear_axis, operating_value
-from floquet.gear_chart import stability_chart
-from floquet.gear_tongues import LabelledRegion, label_regions
+from floquet.gear.axes import gear_axis, operating_value
+from floquet.gear.chart import stability_chart
+from floquet.gear.chart_axes import with_point
+from floquet.gear.tongues import LabelledRegion, label_regions
 from lumped import GearPair
 from lumped.errors import ParameterError
-from validation.chart_axes import with_point
 
 FloatArray = NDArray[np.float64]
 Grid = dict[str, FloatArray]

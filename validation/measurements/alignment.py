@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from lumped import geometry
 from lumped.arguments import real_number, some_of
 from lumped.errors import NumericalError, refuse
-from lumped.parameters import GearPair
+from lumped.schema.pair import GearPair
 from validation.measurements.prediction import Prediction
 from validation.measurements.record import Measurement
 

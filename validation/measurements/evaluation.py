@@ -12,7 +12,7 @@ import xarray as xr
 
 from lumped.arguments import some_of
 from lumped.friction import LAWS
-from lumped.parameters import GearPair
+from lumped.schema.pair import GearPair
 from validation.measurements.alignment import Alignment, align
 from validation.measurements.identification import Identification, NormalSource, identify_friction
 from validation.measurements.overlay import overlay, overlay_metrics

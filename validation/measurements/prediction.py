@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from lumped import Geometry, PathFunction, geometry, mesh_elements, steady_state
 from lumped.arguments import real_number, whole_number
 from lumped.errors import refuse
-from lumped.parameters import GearPair
+from lumped.schema.pair import GearPair
 from validation.measurements.specification import PAIR_LABELS, QUANTITIES
 
 FloatArray = NDArray[np.float64]

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import ParameterError, refuse, shown
-from lumped.text_file import read_text
+from lumped.schema.text_file import read_text
 from validation.measurements.specification import (
     QUANTITIES,
     MeasurementSpec,

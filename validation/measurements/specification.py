@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 from pydantic import Field, ValidationError, model_validator
 
 from lumped.errors import ParameterError, refuse, shown
-from lumped.section import Section, Text
-from lumped.text_file import parse_toml, read_text
-from lumped.units import Quantity
-from validation.schema_problems import translated
+from lumped.schema.section import Section, Text
+from lumped.schema.text_file import parse_toml, read_text
+from lumped.schema.units import Quantity
+from validation.files.problems import translated
 
 if TYPE_CHECKING:
     import pint

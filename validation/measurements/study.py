@@ -13,7 +13,7 @@ import numpy as np
 from scipy.stats import binom
 
 from lumped.arguments import some_of, whole_number
-from lumped.parameters import GearPair
+from lumped.schema.pair import GearPair
 from validation.measurements.alignment import align
 from validation.measurements.identification import Identification, identify_friction
 from validation.measurements.prediction import predict

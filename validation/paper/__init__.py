@@ -1,9 +1,9 @@
 """Reproduction of the paper: figures 2 to 7, claims with verdicts, errata by computation."""
 
-from validation.paper.claims import claims
-from validation.paper.errata import errata_chapter
+from validation.paper.claims.judge import claims
+from validation.paper.errata.catalogue import errata_chapter
+from validation.paper.figure_record import FigureRecord
 from validation.paper.figures.law_runs import law_runs
-from validation.paper.figures.record import FigureRecord
 from validation.paper.plots.errata import draw_errata
 from validation.paper.records import PAPER, Claim, ClaimsTable, ErrataChapter, Erratum, Evidence
 from validation.paper.reproduction import DRAW, PaperFigure, figure_records, paper_figures

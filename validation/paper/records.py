@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import xarray as xr
 
-from validation.paper.figures.record import Number
+from validation.paper.figure_record import Number
 
 #: The paper that is reproduced.
 PAPER = (

@@ -13,6 +13,7 @@ from lumped import GearPair, load_gear_pair
 from lumped.arguments import some_of
 from lumped.errors import refuse
 from validation.measurements import Measurement
+from validation.paper.figure_record import FigureRecord
 from validation.paper.figures.figure2 import figure2
 from validation.paper.figures.figure3 import figure3
 from validation.paper.figures.figure4 import figure4
@@ -20,7 +21,6 @@ from validation.paper.figures.figure5 import figure5
 from validation.paper.figures.figure6 import figure6
 from validation.paper.figures.figure7 import figure7
 from validation.paper.figures.law_runs import law_runs
-from validation.paper.figures.record import FigureRecord
 from validation.paper.plots.figure2 import draw_figure2
 from validation.paper.plots.figure3 import draw_figure3
 from validation.paper.plots.figure4 import draw_figure4

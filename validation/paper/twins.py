@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 import multibody
 from lumped import GearPair, NumericalError, geometry, steady_state
-from validation import metrics
-from validation.paper.figures.record import Number
-from validation.periodic import UNSTABLE
+from lumped.model.periodic_cycle import UNSTABLE
+from validation.cross_check import metrics
+from validation.paper.figure_record import Number
 
 FloatArray = NDArray[np.float64]
 

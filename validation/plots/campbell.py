@@ -22,7 +22,7 @@ def campbell_figure(
 
     Parameters
     ----------
-    diagram : dataset of ``floquet.gear_campbell.campbell``
+    diagram : dataset of ``floquet.gear.campbell.campbell``
     operating_rpm : operating speed, marked [rpm]
     operating_range : speeds of operation [rpm]
     label_orders : predicted lines up to this order are named

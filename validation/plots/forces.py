@@ -6,7 +6,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from lumped import Geometry, mesh_cycle
-from lumped.parameters import GearPair
+from lumped.schema.pair import GearPair
 from validation.plots.style import (
     BLACK,
     DASHES,

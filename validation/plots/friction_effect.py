@@ -21,7 +21,7 @@ def friction_effect_figure(
 
     Parameters
     ----------
-    effect : dataset of ``floquet.gear_friction_effect.friction_effect`` over exactly the axes ``x``, ``y``
+    effect : dataset of ``floquet.gear.friction_effect.friction_effect`` over exactly the axes ``x``, ``y``
     law : which of its laws
     x, y : names of the axes
     point : operating point (x, y); None: not marked

@@ -9,7 +9,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from validation.grid import COMPARED, SEPARATED, STICKING
+from validation.cross_check.grid.run import COMPARED, SEPARATED, STICKING
 from validation.plots.style import BLACK, GREY, new_figure
 
 _MARKS = {SEPARATED: ("s", "teeth separate"), STICKING: ("o", "friction may hold the teeth")}
@@ -32,7 +32,7 @@ def grid_figure(result: xr.Dataset, quantity: str = "dte", fidelity: str = "exac
 
     Parameters
     ----------
-    result : dataset of ``validation.grid.crosscheck_grid``
+    result : dataset of ``validation.cross_check.grid.run.crosscheck_grid``
     quantity, fidelity : what to show above
     """
     rows, columns = ("preset", "stiffness"), ("law", "speed", "torque")

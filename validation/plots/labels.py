@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from validation.plots.style import BLACK, GREY, WIDTH
-from validation.tongue_names import pretty
+from validation.plots.tongue_names import pretty
 
 FloatArray = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from lumped import Geometry
-from validation.metrics import MeshOrders
+from validation.cross_check.metrics import MeshOrders
 from validation.plots.style import BLUE, DASHES, RED, legend, mesh_cycles, new_figure, scaled
 
 _PANELS = (("x", "along the line of action"), ("y", "off the line of action"))

@@ -17,7 +17,7 @@ def multiplier_paths_figure(paths: xr.Dataset, operating: float | None = None) -
 
     Parameters
     ----------
-    paths : dataset of ``floquet.gear_paths.multiplier_paths``
+    paths : dataset of ``floquet.gear.paths.multiplier_paths``
     operating : value of the parameter at the operating point, marked
     """
     figure, axes = new_figure(1, 2, height=4.0, gridspec_kw={"width_ratios": [1.0, 1.25]})

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from floquet.gear_pair import GearPairMultipliers
+from floquet.gear.multipliers import GearPairMultipliers
 from validation.plots.style import BLACK, BLUE, GREY, RED, legend, new_figure
 
 

@@ -9,11 +9,11 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from floquet.gear_tongues import LabelledRegion
+from floquet.gear.margins import TongueMargin
+from floquet.gear.tongues import LabelledRegion
 from validation.plots.labels import WHITE_BOX, label_above
 from validation.plots.stability import UNSTABLE, stability_figure
 from validation.plots.style import BLACK, BLUE, GREY, RED, new_figure
-from validation.stability_margins import TongueMargin
 
 
 def tongue_chart_figure(
@@ -31,8 +31,8 @@ def tongue_chart_figure(
     ----------
     chart : dataset of ``floquet.stability_chart`` over speed_rpm and ``y``
     y : the other axis
-    regions : unstable regions of the chart (``floquet.gear_tongues.label_regions``); or, with mesh damping as
-        the other axis, the traced tongues (``validation.stability_margins``), whose edges are then drawn
+    regions : unstable regions of the chart (``floquet.gear.tongues.label_regions``); or, with mesh damping as
+        the other axis, the traced tongues (``floquet.gear.margins``), whose edges are then drawn
     lines : label -> predicted speed [rpm] (omega_i +- omega_j)/k, dotted where the tongue is named
     point : operating point (speed, y)
     operating_range : speeds of operation [rpm]
@@ -84,7 +84,7 @@ def critical_damping_figure(tips: xr.Dataset, damping_ratio: float | None = None
 
     Parameters
     ----------
-    tips : dataset of ``floquet.gear_tongues.critical_damping``
+    tips : dataset of ``floquet.gear.tongues.critical_damping``
     damping_ratio : mesh damping ratio of the pair, drawn as a line
     """
     figure, axes = new_figure(height=3.2)

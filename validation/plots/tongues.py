@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
+from floquet.gear.margins import StabilityMargins
 from validation.plots.labels import label_above
 from validation.plots.stability import UNSTABLE, mark_operating_point
 from validation.plots.style import GREY, RED, new_figure
 from validation.plots.tongue_chart import mark_operating_range
-from validation.stability_margins import StabilityMargins
 
 
 def tongues_figure(margins: StabilityMargins, operating_range: tuple[float, float] | None = None) -> Figure:
@@ -16,7 +16,7 @@ def tongues_figure(margins: StabilityMargins, operating_range: tuple[float, floa
 
     Parameters
     ----------
-    margins : of ``validation.stability_margins.stability_margins``
+    margins : of ``floquet.gear.margins.stability_margins``
     operating_range : speeds of operation [rpm]
     """
     figure, axes = new_figure(height=3.2)

@@ -7,8 +7,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from lumped import Geometry, mesh_cycle
-from lumped.parameters import GearPair
-from validation.metrics import MeshOrders
+from lumped.schema.pair import GearPair
+from validation.cross_check.metrics import MeshOrders
 from validation.plots.style import BLUE, GREY, mark_switches, mesh_cycles, new_figure, scaled
 
 

@@ -10,10 +10,10 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from validation.periodic import UNSTABLE
+from lumped.model.periodic_cycle import UNSTABLE
 from validation.plots.style import BLACK, new_figure
-from validation.validity import LOAD_NOISE, REVERSAL_LIMITS
-from validation.validity_map import REGIMES
+from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
+from validation.validity.map import REGIMES
 
 #: Good, near a limit, beyond it, nothing there: told apart by lightness too, and hatched where bad.
 _STATES = ("#d5ecdf", "#f5d58a", "#c65d2e", "#b8b8b8")
@@ -25,7 +25,7 @@ def validity_map_figure(data: xr.Dataset, point: tuple[float, float] | None = No
 
     Parameters
     ----------
-    data : of ``validation.validity_map.validity_map``
+    data : of ``validation.validity.map.validity_map``
     point : operating point (rpm, N m); None: not marked
     """
     figure, axes = new_figure(1, 3, height=3.5, sharey=True)

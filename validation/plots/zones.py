@@ -22,7 +22,7 @@ def zones_figure(zones: xr.Dataset) -> Figure:
 
     Parameters
     ----------
-    zones : dataset of ``validation.coulomb_zones.zones``
+    zones : dataset of ``floquet.gear.coulomb_zones.zones``
     """
     friction = float(zones.attrs["friction_coefficient"])
     figure, axes = new_figure(2, 1, height=4.8, sharex=True, sharey=True)

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any, Never
 
 from lumped.errors import refuse
-from lumped.text_file import read_text
+from lumped.schema.text_file import read_text
+from validation.files.folder import FORMAT, FORMAT_VERSION, REPORT
 from validation.reporting.compare import leaves
-from validation.reporting.folder import FORMAT, FORMAT_VERSION, REPORT
 
 _MAX_BYTES = 100_000_000
 _ACTION = "Give the report.json of an earlier report."

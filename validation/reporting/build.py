@@ -15,7 +15,8 @@ from typing import Any
 import xarray as xr
 
 from lumped import GearPair, load_gear_pair
-from validation.output import write_dataset
+from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
+from validation.files.output import write_dataset
 from validation.plots import save
 from validation.reporting.baseline import load_report
 from validation.reporting.blocks import Chapter, Picture, chapter_data, plain
@@ -23,7 +24,6 @@ from validation.reporting.chapters import CHAPTERS
 from validation.reporting.chapters.changes import changes
 from validation.reporting.compare import TOLERANCE, Comparison
 from validation.reporting.compare import compare as compare_reports
-from validation.reporting.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.reporting.interactive import write_interactive
 from validation.reporting.judged import failures
 from validation.reporting.junit import junit

@@ -10,20 +10,20 @@ import xarray as xr
 
 import lumped
 import multibody
-from floquet.gear_pair import GearPairMultipliers, gear_pair_multipliers
+from floquet.gear.chart_axes import chart_axes, operating_rpm, speed_range, with_point
+from floquet.gear.dense_chart import dense_chart
+from floquet.gear.margins import StabilityMargins, stability_margins
+from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
 from lumped import GearPair, Geometry, NumericalError, ParameterError
-from lumped.averaged import Mode, modes
 from lumped.friction import friction_profile
-from validation.chart_axes import chart_axes, operating_rpm, speed_range, with_point
-from validation.comparison import CrossCheck, crosscheck
-from validation.mesh_physics import MeshPhysics, mesh_physics
-from validation.metrics import FloatArray, MeshOrders, mesh_orders
+from lumped.model.averaged import Mode, modes
+from validation.cross_check.comparison import CrossCheck, crosscheck
+from validation.cross_check.metrics import FloatArray, MeshOrders, mesh_orders
+from validation.reporting.mesh_physics import MeshPhysics, mesh_physics
 from validation.reporting.paper_results import PaperResults, paper_results
-from validation.stability_charts import dense_chart
-from validation.stability_margins import StabilityMargins, stability_margins
-from validation.validity import speed_drift, validity_flags
-from validation.validity_flag import Flag
-from validation.validity_map import validity_map
+from validation.validity.flag import Flag
+from validation.validity.flags import speed_drift, validity_flags
+from validation.validity.map import validity_map
 from validation.verification import (
     Check,
     OrderCheck,

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.comparison import CrossCheck
+from validation.cross_check.comparison import CrossCheck
 from validation.reporting.blocks import Badge
 from validation.reporting.chapters.cross_check import NAMES
 from validation.reporting.chapters.steady_state import separating_share
 from validation.reporting.formatting import number, quantity
 from validation.reporting.results import Results
-from validation.validity_flag import worst_state
+from validation.validity.flag import worst_state
 
 
 @dataclass(frozen=True)

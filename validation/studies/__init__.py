@@ -1,7 +1,7 @@
 """Studies: many cases of one gear pair, in parallel, resumable, on one machine or a cluster."""
 
+from validation.files.regular import StoreError
 from validation.studies.axes import Axis
-from validation.studies.files import StoreError
 from validation.studies.load import load_study
 from validation.studies.pools import SweepStopped
 from validation.studies.record import Status

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from floquet.gear_axes import GEAR_AXES, GearVariation
-from lumped.gear_geometry import geometry
-from lumped.parameters import GearPair
-from lumped.solution import steady_state
+from floquet.gear.axes import GEAR_AXES, GearVariation
+from lumped.gear_geometry.geometry import geometry
+from lumped.model.solution import steady_state
+from lumped.schema.pair import GearPair
 from validation.studies.outputs import OUTPUTS, Analysis
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from validation.studies.schema import Settings, Study
 
 Values = dict[str, float]
-_LOADED = {"multibody": "multibody", "floquet": "floquet.gear_pair"}
+_LOADED = {"multibody": "multibody", "floquet": "floquet.gear.multipliers"}
 _VERDICT = {"stable": 1.0, "undecided": 0.0, "unstable": -1.0}
 
 
@@ -117,7 +117,7 @@ def _multibody(variation: GearVariation, settings: Settings) -> Values:
 
 
 def _floquet(variation: GearVariation, settings: Settings) -> Values:
-    from floquet.gear_pair import gear_pair_multipliers
+    from floquet.gear.multipliers import gear_pair_multipliers
 
     tolerance: dict[str, Any] = {} if settings.rtol is None else {"rtol": settings.rtol}
     found = gear_pair_multipliers(variation, **tolerance)

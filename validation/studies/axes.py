@@ -12,11 +12,11 @@ import numpy as np
 from pydantic import BeforeValidator, Field, StrictFloat, StrictInt, model_validator
 from pydantic_core import PydanticCustomError
 
-from floquet.gear_axes import GEAR_AXES
+from floquet.gear.axes import GEAR_AXES
 from lumped.errors import FieldProblem, ParameterError, refuse, shown
-from lumped.parameters import field_at
-from lumped.section import Section
-from lumped.units import Quantity, to_si, to_stated
+from lumped.schema.pair import field_at
+from lumped.schema.section import Section
+from lumped.schema.units import Quantity, to_si, to_stated
 
 AxisValue = int | float | str
 #: Every integer below this is a floating-point number.

@@ -22,8 +22,8 @@ from types import TracebackType
 from typing import Any, Self
 
 from lumped.errors import refuse
+from validation.files.regular import StoreError, open_regular, storage_failure
 from validation.studies.cases import CaseList
-from validation.studies.files import StoreError, open_regular, storage_failure
 from validation.studies.record import MAGIC, Record, Status, decode, encode
 
 try:

@@ -9,10 +9,10 @@ from typing import Any
 from pydantic import ValidationError
 
 from lumped.errors import FieldProblem, ParameterError, refuse, shown
-from lumped.parameters import GearPair
-from lumped.serialise import load_gear_pair, preset_names
-from lumped.text_file import parse_toml, read_text
-from validation.schema_problems import translated
+from lumped.schema.files import load_gear_pair, preset_names
+from lumped.schema.pair import GearPair
+from lumped.schema.text_file import parse_toml, read_text
+from validation.files.problems import translated
 from validation.studies.schema import Study
 
 #: Largest study file read: a bound against a wrong path; a list of a million values fits.

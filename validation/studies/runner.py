@@ -14,11 +14,11 @@ from pathlib import Path
 import numpy as np
 
 from lumped.errors import refuse
+from validation.files.regular import StoreError, write_text
 from validation.stop_signals import stopping_as_interrupt
 from validation.studies.batch import versions
 from validation.studies.cases import CaseList, case_list
 from validation.studies.dispatch import Dispatcher
-from validation.studies.files import StoreError, write_text
 from validation.studies.journal import NOTHING, Journal, Key, scan
 from validation.studies.pools import pool_of
 from validation.studies.record import Record, Status

@@ -13,11 +13,11 @@ from scipy.special import mathieu_a, mathieu_b
 
 import multibody
 from floquet import PeriodicSystem, gear_pair_multipliers, gear_pair_system, monodromy
-from floquet.propagation import propagate_fixed
-from floquet.propagators import propagator
+from floquet.engine.propagation import propagate_fixed
+from floquet.engine.propagators import propagator
 from lumped import GearPair, geometry, steady_state
-from lumped.film import effective_modulus, film_parameter, film_thickness, hertz_half_width
 from lumped.friction import benedict_kelley, xu_kahraman
+from lumped.lubrication.film import effective_modulus, film_parameter, film_thickness, hertz_half_width
 from validation.verification.checks import Check, OrderCheck
 
 FloatArray = NDArray[np.float64]

@@ -15,9 +15,9 @@ import multibody
 from floquet import gear_pair_system, monodromy
 from lumped import GearPair
 from lumped.arguments import whole_number
-from lumped.periodic_system import LTVSystem, periodic_system
-from lumped.propagation import STAGES, STEP_ANGLE, step_maps
-from validation.periodic import periodic_cycle
+from lumped.model.periodic_cycle import periodic_cycle
+from lumped.model.periodic_system import LTVSystem, periodic_system
+from lumped.model.propagation import STAGES, STEP_ANGLE, step_maps
 from validation.verification.checks import Level, Refinement
 
 FloatArray = NDArray[np.float64]

@@ -12,7 +12,7 @@ import xarray as xr
 from typer.testing import CliRunner
 
 import lumped
-from lumped.averaged import averaged_state_space
+from lumped.model.averaged import averaged_state_space
 from validation.cli import app
 from validation.exchange import gear_pair_from_rexs
 from validation.studies import load_study, run_sweep

@@ -10,7 +10,7 @@ import xarray as xr
 
 import lumped
 from lumped import ParameterError
-from lumped.averaged import averaged_state_space, modes
+from lumped.model.averaged import averaged_state_space, modes
 from validation.exchange import scipy_state_space, write_results, write_state_space
 
 
@@ -35,7 +35,7 @@ def test_matlab_file_has_every_variable_with_unit_and_dimensions(result, tmp_pat
 
 
 def test_matlab_file_has_vectors_as_columns_and_complex_numbers(pair, tmp_path):
-    response = lumped.averaged.frequency_response(pair, [100.0, 200.0, 300.0])
+    response = lumped.model.averaged.frequency_response(pair, [100.0, 200.0, 300.0])
     read = scipy.io.loadmat(write_results(response, tmp_path / "frf.mat"))
     assert read["dte"].shape == (3, 1)
     np.testing.assert_array_equal(read["dte"][:, 0], response["dte"].to_numpy())

@@ -92,7 +92,7 @@ def test_kill_9_during_a_write(sweep):
 
 COMPILING = """
 import os, signal
-from validation.studies import files
+from validation.files import regular as files
 replace = os.replace
 def die(part, path):
     if path.name == "results.nc":

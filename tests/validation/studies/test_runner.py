@@ -13,7 +13,7 @@ import xarray as xr
 
 from lumped import LawRangeWarning, NumericalError, geometry, load_gear_pair, speed_sweep
 from lumped.errors import ParameterError
-from lumped.parameters import field_at
+from lumped.schema.pair import field_at
 from validation.studies import Status, StoreError, analyses, read_results, run_sweep, runner
 
 

@@ -8,10 +8,10 @@ from importlib import metadata
 from pathlib import Path
 
 from lumped.errors import refuse, shown
-from lumped.gear_geometry import Geometry, geometry
-from lumped.gear_parameters import Gear
-from lumped.parameters import GearPair
-from lumped.viscosity_grade import grade_viscosity
+from lumped.gear_geometry.geometry import Geometry, geometry
+from lumped.lubrication.viscosity_grade import grade_viscosity
+from lumped.schema.gear import Gear
+from lumped.schema.pair import GearPair
 from validation.exchange.rexs.container import form_of, zipped
 from validation.exchange.rexs.json_form import to_json
 from validation.exchange.rexs.model import Attribute, Component, Relation, RexsModel
@@ -45,7 +45,7 @@ def write_rexs(pair: GearPair, path: str | Path, version: str = LATEST, *, recor
     ------
     ParameterError : an unknown suffix or version
     """
-    from validation.output import whole_file
+    from validation.files.output import whole_file
 
     path = Path(path)
     form = form_of(path)

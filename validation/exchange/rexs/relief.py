@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from lumped.gear_geometry import Geometry
+from lumped.gear_geometry.geometry import Geometry
 from validation.exchange.rexs.gears import flanks_of, gear_data_of
 from validation.exchange.rexs.model import Component
 from validation.exchange.rexs.said import Said

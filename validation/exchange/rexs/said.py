@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from lumped.errors import FieldProblem, shown
-from lumped.parameters import stated_unit
+from lumped.schema.pair import stated_unit
 from validation.exchange.rexs.model import Attribute, Component, RexsModel
 from validation.exchange.rexs.vocabulary import ATTRIBUTES, file_number, si_from_rexs
 

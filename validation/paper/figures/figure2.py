@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from lumped import GearPair, geometry
 from lumped.friction import friction_path_function, mean_coefficient
-from validation.paper.figures.record import FigureRecord, Number
+from validation.paper.figure_record import FigureRecord, Number
 from validation.paper.operating_points import (
     CALIBRATIONS,
     FIGURE_2A,

@@ -7,7 +7,7 @@ import xarray as xr
 
 from lumped import GearPair, geometry
 from lumped.friction import friction_path_function, mean_coefficient
-from validation.paper.figures.record import FigureRecord, Number
+from validation.paper.figure_record import FigureRecord, Number
 from validation.paper.operating_points import FIGURE_4, LAWS
 
 _POINTS = 801

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from validation.paper.figures.record import FigureRecord, Number
+from validation.paper.figure_record import FigureRecord, Number
 from validation.paper.operating_points import FIGURE_4, LAWS
 from validation.paper.twins import agreement, quality, total
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import xarray as xr
 
+from validation.paper.figure_record import FigureRecord
 from validation.paper.figures.figure5 import histories_and_orders, motion_numbers
-from validation.paper.figures.record import FigureRecord
 from validation.paper.operating_points import FIGURE_4
 from validation.paper.twins import quality
 

@@ -9,12 +9,12 @@ import numpy as np
 import xarray as xr
 
 from lumped import GearPair, geometry
+from lumped.model.periodic_cycle import UNSTABLE
 from validation.measurements import Measurement, align, overlay, overlay_metrics, predict
 from validation.measurements.specification import PAIR_LABELS
-from validation.paper.figures.record import FigureRecord, Number
+from validation.paper.figure_record import FigureRecord, Number
 from validation.paper.operating_points import FIGURE_7, OperatingPoint
 from validation.paper.twins import SETTLED, SPAN, agreement, continuous_labels, roll_angle, twins
-from validation.periodic import UNSTABLE
 
 LAW = "xu_kahraman"
 _CYCLES = 3

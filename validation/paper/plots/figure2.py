@@ -5,7 +5,7 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from validation.paper.figures.record import FigureRecord
+from validation.paper.figure_record import FigureRecord
 from validation.paper.operating_points import SWITCH_SPEED
 from validation.plots.style import BLACK, BLUE, GREEN, GREY, RED, legend, new_figure
 

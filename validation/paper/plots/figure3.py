@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from validation.paper.figures.record import FigureRecord
+from validation.paper.figure_record import FigureRecord
 from validation.paper.operating_points import LAWS
 from validation.paper.plots.shared import LAW_LOOK
 from validation.plots.style import GREY, legend, mark_switches, new_figure

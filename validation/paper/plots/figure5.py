@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from validation.paper.figures.record import FigureRecord
+from validation.paper.figure_record import FigureRecord
 from validation.paper.plots.shared import amplitudes, histories, law_handles, model_handles
 from validation.plots.style import new_figure
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from validation.paper.figures.record import FigureRecord
+from validation.paper.figure_record import FigureRecord
 from validation.paper.plots.figure5 import draw_motions
 
 

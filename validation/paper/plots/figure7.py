@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike, NDArray
 
-from validation.paper.figures.record import FigureRecord
+from validation.paper.figure_record import FigureRecord
 from validation.paper.plots.shared import line_handles, twin_lines
 from validation.plots.style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, new_figure, scaled
 

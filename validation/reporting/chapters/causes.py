@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from multibody.pictures import gear_picture
+from multibody.study.pictures import gear_picture
 from validation.reporting.blocks import Block, Picture, Rows, Table, Text
 from validation.reporting.results import Results
 

@@ -7,9 +7,9 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from lumped.results import VARIABLES
+from lumped.model.results import VARIABLES
 from validation import plots
-from validation.comparison import MEANINGS, RTOL, Agreement, CrossCheck, off_switch_samples
+from validation.cross_check.comparison import MEANINGS, RTOL, Agreement, CrossCheck, off_switch_samples
 from validation.reporting.blocks import (
     Badge,
     Block,

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from lumped.serialise import leaf_paths
+from lumped.schema.files import leaf_paths
 from validation.reporting.blocks import Badge, Chapter, Rows, Table, Text
 from validation.reporting.chapters.parameters import is_assumed, source_of
 from validation.reporting.formatting import number
 from validation.reporting.results import Results
-from validation.validity_flag import Flag
+from validation.validity.flag import Flag
 
 
 def limitations(results: Results) -> Chapter:

@@ -6,8 +6,8 @@ import numpy as np
 
 from lumped import GearPair
 from lumped.friction import contact_path
-from lumped.lubricant import dynamic_viscosity
-from lumped.viscosity import ZERO_CELSIUS
+from lumped.friction.lubricant import dynamic_viscosity
+from lumped.lubrication.viscosity import ZERO_CELSIUS
 from validation.plots.efficiency import efficiency_figure, film_figure, sliding_power_figure
 from validation.reporting.blocks import Block, Chapter, Fact, Facts, Picture, Quantity, Rows, Table, Text
 from validation.reporting.chapters.steady_state import unstable_warning

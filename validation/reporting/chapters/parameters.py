@@ -7,8 +7,8 @@ import re
 from functools import cache
 
 from lumped import GearPair, bodies, load_gear_pair, mesh_elements
-from lumped.parameters import stated_unit
-from lumped.serialise import leaf_paths, preset_names
+from lumped.schema.files import leaf_paths, preset_names
+from lumped.schema.pair import stated_unit
 from validation.reporting.blocks import Badge, Chapter, Fact, Facts, Quantity, Rows, Table, Text
 from validation.reporting.results import Results
 

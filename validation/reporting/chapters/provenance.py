@@ -8,7 +8,7 @@ from functools import cache
 from importlib import metadata, resources
 from pathlib import Path
 
-from lumped.results import parameters_hash
+from lumped.model.results import parameters_hash
 from validation.reporting.blocks import Chapter, Fact, Facts, Table, Text
 from validation.reporting.results import Results
 

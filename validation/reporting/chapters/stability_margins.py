@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from functools import partial
 
+from floquet.gear.margins import ORDERS
 from validation.plots.tongues import tongues_figure
 from validation.reporting.blocks import Block, Chapter, Fact, Facts, Picture, Quantity, Rows, Table, Text
 from validation.reporting.results import Results
-from validation.stability_margins import ORDERS
 
 
 def stability_margins(results: Results) -> Chapter:

@@ -7,9 +7,9 @@ import math
 import numpy as np
 
 from lumped import bodies
-from lumped.results import VARIABLES
+from lumped.model.periodic_cycle import UNSTABLE
+from lumped.model.results import VARIABLES
 from validation import plots
-from validation.periodic import UNSTABLE
 from validation.reporting.blocks import (
     Badge,
     Block,
@@ -24,7 +24,7 @@ from validation.reporting.blocks import (
     Text,
 )
 from validation.reporting.results import Results
-from validation.validity import LOAD_NOISE
+from validation.validity.flags import LOAD_NOISE
 
 
 def steady_state(results: Results) -> Chapter:

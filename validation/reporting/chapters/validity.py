@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from validation.reporting.blocks import Badge, Chapter, Quantity, Table, Text
 from validation.reporting.results import Results
-from validation.validity_flag import worst_state
+from validation.validity.flag import worst_state
 
 _WORDS = {
     "ok": "the model's assumptions hold",

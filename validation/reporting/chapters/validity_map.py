@@ -6,12 +6,12 @@ from functools import partial
 
 import numpy as np
 
-from validation.periodic import UNSTABLE
+from lumped.model.periodic_cycle import UNSTABLE
 from validation.plots.validity_map import validity_map_figure
 from validation.reporting.blocks import Chapter, Fact, Facts, Picture, Quantity, Rows, Table, Text
 from validation.reporting.results import Results
-from validation.validity import LOAD_NOISE, REVERSAL_LIMITS
-from validation.validity_map import REGIMES, STATES
+from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
+from validation.validity.map import REGIMES, STATES
 
 
 def validity_map(results: Results) -> Chapter:

@@ -1,0 +1,1 @@
+"""Floquet theory of any linear system with periodic coefficients; knows no gears."""

@@ -1,0 +1,225 @@
+"""Stability charts: the multipliers of a family of periodic systems over a grid of parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from joblib import Parallel, delayed
+
+from floquet.engine.monodromy import monodromy
+from floquet.engine.multipliers import verdicts
+from floquet.engine.propagators import Propagator
+from floquet.engine.spectrum import Spectrum
+from floquet.engine.system import FloatArray, PeriodicSystem
+from lumped.arguments import real_numbers, whole_number
+from lumped.errors import NumericalError, refuse, shown
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Axes = Mapping[str, npt.ArrayLike]
+Progress = Callable[[int, int], None]
+"""Called with (points done, points in all)."""
+
+VERDICTS = {"stable": 1, "undecided": 0, "unstable": -1}
+"""Values of the chart variable ``verdict``."""
+
+
+def checked_axes(axes: Axes) -> dict[str, FloatArray]:
+    """Return the axes as 1-D float arrays.
+
+    Raises
+    ------
+    ParameterError
+        No axis, or an axis that is empty, not finite, not 1-D or has repeated values.
+    """
+    if not isinstance(axes, Mapping) or not axes:
+        raise refuse("axes", shown(axes), "at least one name -> values", "Give the parameters to vary.")
+    result = {}
+    for name, values in axes.items():
+        array = real_numbers(f"axes[{name!r}]", values)
+        if np.unique(array).size != array.size:
+            raise refuse(f"axes[{name!r}]", shown(values), "values that differ", "Remove the repetitions.")
+        result[str(name)] = array
+    return result
+
+
+def scan(
+    evaluate: Callable[[dict[str, float]], Spectrum],
+    axes: Axes,
+    *,
+    n_jobs: int = 1,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Evaluate the multipliers on the product grid of the axes.
+
+    Parameters
+    ----------
+    evaluate : parameters -> `Spectrum`; every point must give the same number of multipliers
+    axes : name -> values
+    n_jobs : processes, as in joblib; -1 for all cores. ``evaluate`` must then be picklable.
+    progress : called with (points done, points in all)
+
+    Returns
+    -------
+    xarray.Dataset over the axes, see `chart_dataset`
+
+    Raises
+    ------
+    ParameterError
+        Unusable axes.
+    NumericalError
+        A point fails; the message names it.
+    """
+    grid = checked_axes(axes)
+    names = list(grid)
+    mesh = np.stack(np.meshgrid(*grid.values(), indexing="ij"), axis=-1).reshape(-1, len(names))
+    points = [dict(zip(names, map(float, row), strict=True)) for row in mesh]
+    results: list[Spectrum] = []
+    n_jobs = whole_number("n_jobs", n_jobs, -1, 1024, "Use -1 for all cores.") or 1
+    if n_jobs == 1:
+        stream = (_at_point(evaluate, point) for point in points)
+    else:
+        stream = Parallel(n_jobs=n_jobs, return_as="generator")(
+            delayed(_at_point)(evaluate, point) for point in points
+        )
+    for spectrum in stream:
+        results.append(spectrum)
+        if progress is not None:
+            progress(len(results), len(points))
+    multipliers = np.array([r.multipliers for r in results])
+    errors = np.array([r.multiplier_errors for r in results])
+    radius = np.array([r.spectral_radius for r in results])
+    radius_error = np.array([r.error for r in results])
+    return chart_dataset(grid, multipliers, errors, radius, radius_error)
+
+
+def _at_point(evaluate: Callable[[dict[str, float]], Spectrum], point: dict[str, float]) -> Spectrum:
+    try:
+        return evaluate(point)
+    except NumericalError as failure:
+        where = ", ".join(f"{name} = {value:g}" for name, value in point.items())
+        raise NumericalError(f"at {where}: {failure}") from failure
+
+
+def chart_dataset(
+    grid: Mapping[str, FloatArray],
+    multipliers: npt.NDArray[np.complex128] | None,
+    multiplier_errors: FloatArray | None,
+    radius: FloatArray,
+    radius_error: FloatArray,
+) -> xr.Dataset:
+    """Label flat results (points in C order of the grid) as a chart.
+
+    Returns
+    -------
+    Dataset with spectral_radius, error, verdict (1 stable, 0 undecided, -1 unstable) over the axes, and where
+    given, multipliers, multiplier_errors over the axes and ``multiplier``
+    """
+    import xarray as xr
+
+    shape = tuple(values.size for values in grid.values())
+    dims = tuple(grid)
+    verdict = verdicts(radius, radius_error)
+    dataset = xr.Dataset(
+        {
+            "spectral_radius": (
+                dims,
+                radius.reshape(shape),
+                {"units": "1", "long_name": "spectral radius, largest modulus of the multipliers"},
+            ),
+            "error": (
+                dims,
+                radius_error.reshape(shape),
+                {"units": "1", "long_name": "bound on the error of the spectral radius"},
+            ),
+            "verdict": (
+                dims,
+                verdict.reshape(shape),
+                {
+                    "units": "1",
+                    "long_name": "stability verdict, undecided where the bound contains 1",
+                    "flag_values": [-1, 0, 1],
+                    "flag_meanings": "unstable undecided stable",
+                },
+            ),
+        },
+        coords={name: (name, values) for name, values in grid.items()},
+    )
+    if multipliers is not None and multiplier_errors is not None:
+        full = (*dims, "multiplier")
+        dataset["multipliers"] = (
+            full,
+            multipliers.reshape(*shape, -1),
+            {"units": "1", "long_name": "Floquet multipliers, largest modulus first"},
+        )
+        dataset["multiplier_errors"] = (
+            full,
+            multiplier_errors.reshape(*shape, -1),
+            {"units": "1", "long_name": "bound on the error of each multiplier"},
+        )
+    return dataset
+
+
+def chart(
+    factory: Callable[[dict[str, float]], PeriodicSystem],
+    axes: Axes,
+    *,
+    rtol: float = 1e-10,
+    method: str | Propagator = "gauss",
+    n_jobs: int = 1,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Stability chart of any family of periodic systems.
+
+    Parameters
+    ----------
+    factory : parameters {axis name: value} -> `PeriodicSystem`
+    axes : name -> values
+    rtol, method : as in `monodromy`
+    n_jobs, progress : as in `scan`
+
+    Returns
+    -------
+    xarray.Dataset, see `chart_dataset`
+    """
+
+    def evaluate(point: dict[str, float]) -> Spectrum:
+        return monodromy(factory(point), rtol, method=method)
+
+    return scan(evaluate, axes, n_jobs=n_jobs, progress=progress)
+
+
+def save_chart(dataset: xr.Dataset, path: str | Path) -> None:
+    """Write a chart as NetCDF, which has no complex numbers: they become ``_real`` and ``_imag``.
+
+    Parameters
+    ----------
+    dataset : the chart, as `stability_chart` or `chart` returns it
+    path : of the file
+    """
+    split = dataset.copy()
+    for name, variable in dataset.data_vars.items():
+        if np.iscomplexobj(variable.values):
+            split[f"{name}_real"] = variable.real.assign_attrs(variable.attrs)
+            split[f"{name}_imag"] = variable.imag.assign_attrs(variable.attrs)
+            split = split.drop_vars(str(name))
+    split.to_netcdf(path, engine="h5netcdf")
+
+
+def load_chart(path: str | Path) -> xr.Dataset:
+    """Read a chart written by `save_chart`."""
+    import xarray as xr
+
+    with xr.open_dataset(path, engine="h5netcdf") as opened:
+        dataset = opened.load()
+    names: Sequence[str] = [str(n)[:-5] for n in dataset.data_vars if str(n).endswith("_real")]
+    for name in names:
+        real, imag = dataset[f"{name}_real"], dataset[f"{name}_imag"]
+        dataset[name] = (real + 1j * imag).assign_attrs(real.attrs)
+        dataset = dataset.drop_vars([f"{name}_real", f"{name}_imag"])
+    return dataset

@@ -1,0 +1,162 @@
+"""Monodromy matrix and Floquet multipliers with error bounds.
+
+Sources: docs/theory/floquet.md, "Computing M".
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+
+from floquet.engine.multipliers import multipliers_with_bounds
+from floquet.engine.propagation import Propagation, error_of_product, propagate
+from floquet.engine.propagators import Propagator, propagator
+from floquet.engine.spectrum import Spectrum
+from floquet.engine.system import FloatArray, PeriodicSystem
+from lumped.arguments import real_number, whole_number
+from lumped.errors import NumericalError
+
+# Where |M| is below this, the tolerance is no longer relative: such a system is dead after one period.
+_DEAD = 1e-150
+
+
+@dataclass(frozen=True, eq=False)
+class Monodromy(Spectrum):
+    """The result of `monodromy`; multipliers, exponents, radius, error and verdict are those of `Spectrum`.
+
+    Attributes
+    ----------
+    matrix : (n, n) Phi(T, 0)
+    matrix_error : bound on the 2-norm of the error of D^-1 M D, D = diag(``scaling``): truncation (step
+        against two half steps) and rounding, carried to the end of the period
+    scaling : (n,) the balancing scales d
+    liouville_residual : |sum over substeps of log det - integral of tr A|. Taken per substep it stays
+        meaningful when M is so nearly singular that its own determinant carries no information.
+    method, rtol, substeps, evaluations : how it was computed
+    """
+
+    matrix: FloatArray
+    matrix_error: float
+    scaling: FloatArray
+    liouville_residual: float
+    method: str
+    rtol: float
+    substeps: int
+    evaluations: int
+
+
+def monodromy(
+    system: PeriodicSystem,
+    rtol: float = 1e-10,
+    *,
+    method: str | Propagator = "gauss",
+    max_substeps: int = 200_000,
+) -> Monodromy:
+    """Monodromy matrix of x' = A(t) x over one period, with multipliers and error bounds.
+
+    Parameters
+    ----------
+    system : the periodic system; its forcing, if any, plays no part
+    rtol : wanted error of the matrix relative to its norm (in balanced coordinates), 1e-14 to 1e-1
+    method : name in `floquet.engine.propagators.PROPAGATORS`, or a propagator
+    max_substeps : refuse to work harder than this
+
+    Returns
+    -------
+    Monodromy
+
+    Raises
+    ------
+    ParameterError
+        rtol out of range or unknown method.
+    NumericalError
+        Non-finite A, growth beyond floating point, too many substeps, or rounding alone exceeds rtol. The
+        text says what to try.
+    """
+    rtol, max_substeps = checked_effort(rtol, max_substeps)
+    step = propagator(method)
+    local = rtol
+    evaluations = 0
+    for _attempt in range(4):
+        propagation = propagate(system, step, local, max_substeps)
+        evaluations += propagation.evaluations
+        M, delta, rounding = error_of_product(propagation)
+        size = max(float(np.linalg.norm(M, 2)), _DEAD)
+        if delta <= rtol * size:
+            return _record(system, propagation, M, delta, step.name, rtol, evaluations)
+        if rounding > 0.9 * rtol * size:
+            break
+        # Growth and decay inside the period amplified the local errors: ask for that much more.
+        local *= max(0.3 * (rtol * size - rounding) / delta, 1e-4)
+        if local < 1e-16:
+            break
+    raise NumericalError(
+        f"rtol = {rtol:g} cannot be met: the error bound of the monodromy matrix is {delta / size:.2g} "
+        f"of its norm, of which rounding makes {rounding / size:.2g}. Ask for rtol >= "
+        f"{2.0 * max(delta, rounding) / size:.1g}, or use a method of higher order (fewer steps, less "
+        "rounding); if that is too coarse, the period is too long for double precision."
+    )
+
+
+def checked_effort(rtol: float, max_substeps: int) -> tuple[float, int]:
+    """Return tolerance and limit of a propagation, checked.
+
+    Raises
+    ------
+    ParameterError
+        One of them is out of range.
+    """
+    advice = "Use 1e-10 for verdicts, 1e-6 for a quick look."
+    return (
+        real_number("rtol", rtol, 1e-14, 0.1, action=advice),
+        whole_number("max_substeps", max_substeps, 2, 10**9, "Leave it at its default."),
+    )
+
+
+def _record(
+    system: PeriodicSystem,
+    propagation: Propagation,
+    balanced: FloatArray,
+    delta: float,
+    method: str,
+    rtol: float,
+    evaluations: int,
+) -> Monodromy:
+    d = propagation.scaling
+    multipliers, bounds = multipliers_with_bounds(balanced, delta)
+    return Monodromy(
+        multipliers=multipliers,
+        multiplier_errors=bounds,
+        period=system.period,
+        matrix=balanced * d[:, None] / d[None, :],
+        matrix_error=delta,
+        scaling=d,
+        liouville_residual=liouville_residual(system, propagation),
+        method=method,
+        rtol=float(rtol),
+        substeps=propagation.steps.shape[0],
+        evaluations=evaluations,
+    )
+
+
+def liouville_residual(system: PeriodicSystem, propagation: Propagation) -> float:
+    """|sum log det(step) - integral of tr A dt| over one period (Liouville's formula), dimensionless.
+
+    The integral is taken by an 8-point Gauss rule in every substep, independently of the propagator.
+    """
+    x, w = leggauss(8)
+    start, end = propagation.times[:-1], propagation.times[1:]
+    times = start[:, None] + (end - start)[:, None] * 0.5 * (x + 1.0)
+    total = 0.0
+    for first in range(0, start.size, 4096):
+        part = slice(first, first + 4096)
+        inside = system.inside(times[part], start[part, None], end[part, None])
+        trace = np.trace(system.evaluate(inside.ravel()), axis1=1, axis2=2).reshape(inside.shape)
+        total += float(((end - start)[part] * 0.5 * (trace @ w)).sum())
+    sign, log_det = np.linalg.slogdet(propagation.steps)
+    if (sign <= 0).any():
+        return math.inf
+    return abs(float(log_det.sum()) - total)

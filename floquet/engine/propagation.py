@@ -1,0 +1,223 @@
+"""Event-aligned propagation over one period: step sizes, local errors, products."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from floquet.engine.propagators import Propagator
+from floquet.engine.system import FloatArray, PeriodicSystem
+from lumped.errors import NumericalError
+
+_EPS = float(np.finfo(np.float64).eps)
+_CHUNK = 4_000_000  # numbers held at once by a batch of steps: about 32 MB per temporary
+_MAX_SPLIT = 16  # parts into which a refused step is cut at most
+
+
+@dataclass(frozen=True, eq=False)
+class Propagation:
+    """Transition matrices over the substeps of one period, in balanced coordinates x_i / d_i.
+
+    Attributes
+    ----------
+    times : (m+1,) ends of the substeps [s], all switches among them
+    steps : (m, n, n) transition matrix of each substep
+    truncation : (m,) estimated Frobenius norm of the truncation error of each step matrix
+    rounding : (m,) the same of its rounding error, which no smaller step can remove
+    scaling : (n,) d, powers of two (`PeriodicSystem.balancing`)
+    evaluations : how many times A was evaluated
+    """
+
+    times: FloatArray
+    steps: FloatArray
+    truncation: FloatArray
+    rounding: FloatArray
+    scaling: FloatArray
+    evaluations: int
+
+    @property
+    def matrix(self) -> FloatArray:
+        """Monodromy matrix Phi(T, 0) in the coordinates of the system."""
+        product = np.eye(self.steps.shape[1])
+        for step in self.steps:
+            product = step @ product
+        return product * self.scaling[:, None] / self.scaling[None, :]
+
+
+def _step_batch(
+    system: PeriodicSystem, method: Propagator, start: FloatArray, end: FloatArray, d: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Step matrices (k, n, n) over [start, end] and max |A| per step, (k,), in balanced coordinates."""
+    n, s = system.dimension, method.nodes.size
+    chunk = max(1, _CHUNK // (s * n) ** 2)
+    steps = np.empty((start.size, n, n))
+    size = np.empty(start.size)
+    for first in range(0, start.size, chunk):
+        part = slice(first, first + chunk)
+        t0, t1 = start[part], end[part]
+        times = t0[:, None] + (t1 - t0)[:, None] * method.nodes
+        times = system.inside(times, t0[:, None], t1[:, None]).ravel()
+        A = system.evaluate(times).reshape(t0.size, s, n, n) * (d[None, :] / d[:, None])
+        # An unstable explicit step shows as a non-finite step, which the caller refuses.
+        with np.errstate(over="ignore", invalid="ignore"):
+            steps[part] = method.step_matrices(A, t1 - t0)
+            size[part] = np.sqrt(np.square(A).sum(axis=(2, 3)).max(axis=1))
+    return steps, size
+
+
+def _initial_grid(system: PeriodicSystem, method: Propagator, d: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """First guess: steps of about order/8 radians of the largest |A|, each segment divided evenly."""
+    start, end = [], []
+    for a, b in zip(system.edges[:-1], system.edges[1:], strict=True):
+        times = a + (b - a) * (np.arange(5) + 0.5) / 5.0
+        A = system.evaluate(times) * (d[None, :] / d[:, None])
+        angle = (b - a) * np.linalg.norm(A, axis=(1, 2)).max()
+        count = max(1, math.ceil(8.0 * angle / max(method.order, 4)))
+        if count > 10_000_000:
+            raise NumericalError(
+                f"the segment {a:g} to {b:g} s spans about {angle:.3g} rad. "
+                "Check the units of A and the period."
+            )
+        grid = np.linspace(a, b, count + 1)
+        start.append(grid[:-1])
+        end.append(grid[1:])
+    return np.concatenate(start), np.concatenate(end)
+
+
+def propagate_fixed(system: PeriodicSystem, method: Propagator, substeps: int) -> FloatArray:
+    """Monodromy matrix with the given number of equal steps in each smooth segment, without error control.
+
+    For studies of convergence; `propagate` chooses its steps itself.
+    """
+    grids = [
+        np.linspace(a, b, substeps + 1) for a, b in zip(system.edges[:-1], system.edges[1:], strict=True)
+    ]
+    start = np.concatenate([g[:-1] for g in grids])
+    end = np.concatenate([g[1:] for g in grids])
+    steps, _ = _step_batch(system, method, start, end, np.ones(system.dimension))
+    product = np.eye(system.dimension)
+    for step in steps:
+        product = step @ product
+    return product
+
+
+def propagate(
+    system: PeriodicSystem,
+    method: Propagator,
+    rtol: float,
+    max_substeps: int = 200_000,
+    scaling: FloatArray | None = None,
+) -> Propagation:
+    """Transition matrices of one period, each step accurate to rtol h/T of its own norm.
+
+    The norm is taken in the coordinates x_i / scaling_i, by default those of `PeriodicSystem.balancing`.
+
+    Every step is taken once whole and once as two halves. Their difference, which is an estimate of the error
+    of the whole step and so an overestimate (by 2^p - 1 where the method shows its order) of that of the
+    halves, is the local error; the halves are what is kept. Refused steps are cut according to the order of
+    the method, so the grid is fine only where it has to be.
+
+    Raises
+    ------
+    NumericalError
+        Non-finite A, or more than ``max_substeps`` steps are needed.
+    """
+    d = system.balancing() if scaling is None else scaling
+    start, end = _initial_grid(system, method, d)
+    done: list[tuple[FloatArray, FloatArray, FloatArray, FloatArray]] = []
+    evaluations = 5 * (system.edges.size - 1)
+    accepted = 0
+    n = system.dimension
+    while start.size:
+        if accepted + 2 * start.size > max_substeps:
+            raise NumericalError(
+                f"more than {max_substeps} substeps per period are needed for rtol = {rtol:g} with method "
+                f"{method.name} of order {method.order}. Use a method of higher order (gauss), a larger "
+                "rtol or a larger max_substeps; or add missing switch times to breakpoints."
+            )
+        middle = 0.5 * (start + end)
+        whole, size = _step_batch(system, method, start, end, d)
+        first, _ = _step_batch(system, method, start, middle, d)
+        second, _ = _step_batch(system, method, middle, end, d)
+        evaluations += 3 * start.size * method.nodes.size
+        with np.errstate(over="ignore", invalid="ignore"):
+            halves = second @ first
+            truncation = np.linalg.norm(whole - halves, axis=(1, 2))
+            norm = np.linalg.norm(halves, axis=(1, 2))
+        h = end - start
+        # Rounding of one step: n eps for the product and the solve, and eps |A| h for evaluating A itself.
+        rounding = 2.0 * _EPS * (math.sqrt(n) + size * h) * norm
+        with np.errstate(invalid="ignore"):
+            ratio = truncation / np.maximum(rtol * h / system.period * norm, rounding)
+        ratio[~np.isfinite(ratio)] = np.inf
+        good = ratio <= 1.0
+        if (h[~good] < 1e3 * _EPS * system.period).any():
+            t = start[~good][0]
+            raise NumericalError(
+                f"the step size fell to rounding at t = {t:.17g} s, so A is not smooth there. "
+                "Add that time to breakpoints if A jumps, or check A for a singularity."
+            )
+        ordered = [(start, middle, first), (middle, end, second)]
+        for a, _, matrices in ordered:
+            done.append((a[good], matrices[good], 0.5 * truncation[good], 0.5 * rounding[good]))
+        accepted += 2 * int(good.sum())
+        start, end = _cut(start[~good], end[~good], ratio[~good], method.order)
+    t = np.concatenate([part[0] for part in done])
+    order = np.argsort(t)
+    rounding = np.concatenate([part[3] for part in done])[order]
+    return Propagation(
+        times=np.append(t[order], system.period),
+        steps=np.concatenate([part[1] for part in done])[order],
+        truncation=np.concatenate([part[2] for part in done])[order],
+        rounding=rounding,
+        scaling=d,
+        evaluations=evaluations,
+    )
+
+
+def _cut(start: FloatArray, end: FloatArray, ratio: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
+    """Cut each refused step into as many parts as the method's order asks for, 2 to 16."""
+    with np.errstate(over="ignore"):
+        parts = np.ceil(1.1 * np.minimum(ratio, 1e300) ** (1.0 / order))
+    parts = np.clip(parts, 2, _MAX_SPLIT).astype(int)
+    owner = np.repeat(np.arange(start.size), parts)
+    index = np.arange(owner.size) - np.repeat(np.cumsum(parts) - parts, parts)
+    width = (end - start)[owner] / parts[owner]
+    new_start = start[owner] + index * width
+    new_end = np.where(index == parts[owner] - 1, end[owner], start[owner] + (index + 1) * width)
+    return new_start, new_end
+
+
+def error_of_product(propagation: Propagation) -> tuple[FloatArray, float, float]:
+    """Monodromy matrix in balanced coordinates, a bound on its error, and the part of it due to rounding.
+
+    With S_j the product of the steps after step j and Q_j that of the steps before it, the first-order error
+    is sum S_j E_j Q_j, bounded by sum |S_j| |E_j| |Q_j|. Decay and growth along the period are thus accounted
+    for, which the plain sum of local errors would not do.
+    """
+    steps = propagation.steps
+    m, n, _ = steps.shape
+    before = np.empty((m + 1, n, n))
+    after = np.empty((m + 1, n, n))
+    before[0] = after[m] = np.eye(n)
+    with np.errstate(over="ignore", invalid="ignore", under="ignore"):
+        for j in range(m):
+            np.matmul(steps[j], before[j], out=before[j + 1])
+        for j in range(m - 1, -1, -1):
+            np.matmul(after[j + 1], steps[j], out=after[j])
+        weight = np.linalg.norm(after[1:], ord=2, axis=(1, 2)) if np.isfinite(after).all() else np.inf
+        weight = weight * np.linalg.norm(before[:-1], axis=(1, 2))
+    M = before[m]
+    if not np.isfinite(M).all() or not np.isfinite(weight).all():
+        raise NumericalError(
+            "the state grows beyond the range of floating point within one period, so the system is unstable "
+            "on any practical scale. Check the signs of damping and stiffness, or shorten the period."
+        )
+    # Multiplying m factors rounds m times; n eps per product.
+    product = 2.0 * _EPS * math.sqrt(n) * np.linalg.norm(steps, axis=(1, 2))
+    # Rounding errors of different steps are independent, unlike truncation errors, and add up like their
+    # squares; 4 is four standard deviations even if every single estimate were exact.
+    rounding = 4.0 * float(np.linalg.norm(weight * (propagation.rounding + product)))
+    return M, float(np.dot(weight, propagation.truncation)) + rounding, rounding

@@ -1,0 +1,203 @@
+"""Periodic systems whose stability is known exactly or to first order, on which the engine is verified."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import eigh
+
+from floquet.engine.monodromy import monodromy
+from floquet.engine.system import FloatArray, PeriodicSystem
+
+
+def second_order(stiffness: npt.ArrayLike, damping: npt.ArrayLike) -> FloatArray:
+    """State matrices of z'' + C z' + K z = 0, K and C of shape (..., m, m) -> (..., 2m, 2m)."""
+    K, C = np.broadcast_arrays(np.asarray(stiffness, dtype=float), np.asarray(damping, dtype=float))
+    m = K.shape[-1]
+    out = np.zeros((*K.shape[:-2], 2 * m, 2 * m))
+    out[..., :m, m:] = np.eye(m)
+    out[..., m:, :m], out[..., m:, m:] = -K, -C
+    return out
+
+
+def meissner(delta: float, epsilon: float, period: float = 2.0 * np.pi) -> PeriodicSystem:
+    """Return x'' + (delta + epsilon sgn) x = 0, + in the first half of the period and - in the second."""
+
+    def A(t: FloatArray) -> FloatArray:
+        k = np.where(t < 0.5 * period, delta + epsilon, delta - epsilon)
+        return second_order(k[:, None, None], 0.0)
+
+    return PeriodicSystem(A, period, (0.5 * period,), vectorized=True)
+
+
+def meissner_trace(delta: float, epsilon: float, period: float = 2.0 * np.pi) -> float:
+    """Trace of the monodromy matrix of `meissner`, 0 <= epsilon < delta.
+
+    Two harmonic motions w1, w2 of half a period each: 2 cos cos - (w1/w2 + w2/w1) sin sin (Meissner 1918).
+    """
+    w1, w2 = np.sqrt(delta + epsilon), np.sqrt(delta - epsilon)
+    p1, p2 = 0.5 * w1 * period, 0.5 * w2 * period
+    return float(2 * np.cos(p1) * np.cos(p2) - (w1 / w2 + w2 / w1) * np.sin(p1) * np.sin(p2))
+
+
+def mathieu(a: float, q: float, c: float = 0.0) -> PeriodicSystem:
+    """Return x'' + 2 c x' + (a - 2 q cos 2t) x = 0 with its basic period pi."""
+
+    def A(t: FloatArray) -> FloatArray:
+        return second_order((a - 2.0 * q * np.cos(2.0 * t))[:, None, None], 2.0 * c)
+
+    return PeriodicSystem(A, np.pi, vectorized=True)
+
+
+@dataclass(frozen=True, eq=False)
+class HsuSystem:
+    """z_i'' + 2 c_i z_i' + omega_i^2 z_i + epsilon cos(Omega t) sum_j d_ij z_j = 0.
+
+    The system of C. S. Hsu (J. Appl. Mech. 30 (1963) 367-372 and 32 (1965) 373-377). With d symmetric sums
+    of frequencies are unstable, with d skew (circulatory) differences are.
+
+    Attributes
+    ----------
+    omega : (m,) natural frequencies
+    coupling : (m, m) d
+    damping : (m,) c; zeros for the undamped system
+    """
+
+    omega: FloatArray
+    coupling: FloatArray
+    damping: FloatArray
+
+    def at(self, excitation: float, epsilon: float) -> PeriodicSystem:
+        """Return the system at excitation frequency Omega and strength epsilon."""
+        K, C = np.diag(self.omega**2), np.diag(2.0 * self.damping)
+
+        def A(t: FloatArray) -> FloatArray:
+            return second_order(K + epsilon * np.cos(excitation * t)[:, None, None] * self.coupling, C)
+
+        return PeriodicSystem(A, 2.0 * np.pi / excitation, vectorized=True)
+
+    def boundaries(self, i: int, j: int, sign: int, epsilon: float) -> tuple[float, float] | None:
+        """First-order ends of the tongue at omega_j + sign omega_i (modes from 0); None: there is no tongue.
+
+        Averaging gives amplitudes of mode j and of the (conjugate, for a sum) motion of mode i with
+        (s + c_j + i sigma/2)(s + c_i - i sigma/2) = sign epsilon^2 d_ij d_ji/(16 omega_i omega_j), sigma the
+        detuning Omega - omega_j - sign omega_i. On the boundary Re s = 0:
+
+            sigma = +- (c_i + c_j) sqrt(G/(c_i c_j) - 1),  G = sign epsilon^2 d_ij d_ji/(16 omega_i omega_j),
+
+        and +- 2 sqrt(G) without damping. The error is of order epsilon^2 (with c of order epsilon).
+        """
+        d = self.coupling
+        G = sign * epsilon**2 * d[i, j] * d[j, i] / (16.0 * self.omega[i] * self.omega[j])
+        ci, cj = self.damping[i], self.damping[j]
+        if ci * cj >= G:
+            return None
+        half = 2.0 * np.sqrt(G) if ci == cj == 0.0 else (ci + cj) * np.sqrt(G / (ci * cj) - 1.0)
+        centre = self.omega[j] + sign * self.omega[i]
+        return float(centre - half), float(centre + half)
+
+
+@dataclass(frozen=True, eq=False)
+class GearChain:
+    """Rotors in line, joined by meshes whose stiffness jumps with the number of tooth pairs in contact.
+
+    M x'' + (K_0 + sum_m k_m(t) v_m v_m^T) x = 0 with rectangular waves k_m: the chains of Lin and Parker
+    (Mesh stiffness variation instabilities in two-stage gear systems, J. Vib. Acoust. 124 (2002) 68-76), all
+    meshes of one mesh frequency Omega as on an idler gear.
+
+    Attributes
+    ----------
+    mass : (n,) M, diagonal
+    ground : (n, n) K_0
+    meshes : (p, n) v_m
+    stiffness : (p,) mean stiffness of each mesh
+    contact_ratio : (p,) sigma_m in 1..2: two pairs for the part sigma_m - 1 of the cycle
+    phase : (p,) parts of a cycle after which double contact of a mesh begins
+    """
+
+    mass: FloatArray
+    ground: FloatArray
+    meshes: FloatArray
+    stiffness: FloatArray
+    contact_ratio: FloatArray
+    phase: FloatArray
+
+    def modes(self) -> tuple[FloatArray, FloatArray]:
+        """Natural frequencies (n,) and mass-normalised modes (n, n) of the mean system."""
+        K = self.ground + np.einsum("p,pi,pj->ij", self.stiffness, self.meshes, self.meshes)
+        squares, shapes = eigh(K, np.diag(self.mass))
+        return np.sqrt(squares), shapes
+
+    def at(self, excitation: float, epsilon: float) -> PeriodicSystem:
+        """Return the chain at mesh frequency Omega; mesh stiffness jumps by epsilon times its mean."""
+        period = 2.0 * np.pi / excitation
+        starts, ends = self.phase % 1.0, (self.phase + self.contact_ratio - 1.0) % 1.0
+
+        def A(t: FloatArray) -> FloatArray:
+            since = (t[:, None] / period - starts) % 1.0
+            double = since < self.contact_ratio - 1.0
+            # Fluctuation of mean zero and peak to peak epsilon.
+            k = self.stiffness * (1.0 + epsilon * (double - (self.contact_ratio - 1.0)))
+            K = self.ground + np.einsum("tp,pi,pj->tij", k, self.meshes, self.meshes)
+            return second_order(K / self.mass[:, None], 0.0)
+
+        switches = np.concatenate([starts, ends])
+        return PeriodicSystem(A, period, tuple(switches * period), vectorized=True)
+
+    def coupling(self, i: int, j: int, harmonic: int) -> float:
+        """|Lambda|: amplitude, per unit epsilon, with which a harmonic of the meshes couples modes i and j.
+
+        The l-th harmonic of a rectangular wave has amplitude 2 |sin(l pi (sigma - 1))|/(l pi); meshes add up
+        with their phases and the modes' deflections in them.
+        """
+        _, shapes = self.modes()
+        width = self.contact_ratio - 1.0
+        amplitude = 2.0 * np.sin(harmonic * np.pi * width) / (harmonic * np.pi) * self.stiffness
+        angle = -2.0j * np.pi * harmonic * (self.phase + 0.5 * width)
+        deflection = self.meshes @ shapes
+        return float(abs((amplitude * np.exp(angle) * deflection[:, i] * deflection[:, j]).sum()))
+
+    def boundaries(self, i: int, j: int, harmonic: int, epsilon: float) -> tuple[float, float]:
+        """First-order ends of the tongue where harmonic * Omega = omega_i + omega_j (modes from 0).
+
+        Omega = (omega_i + omega_j +- epsilon |Lambda|/(2 sqrt(omega_i omega_j)))/harmonic, as for `HsuSystem`
+        with the harmonic as excitation.
+        """
+        omega, _ = self.modes()
+        centre = (omega[i] + omega[j]) / harmonic
+        half = epsilon * self.coupling(i, j, harmonic) / (2.0 * np.sqrt(omega[i] * omega[j]) * harmonic)
+        return float(centre - half), float(centre + half)
+
+
+def tongue_ends(
+    system: HsuSystem | GearChain, predicted: Sequence[float], epsilon: float, *, rtol: float = 1e-11
+) -> tuple[float, float]:
+    """Ends of the tongue around a predicted one, by bisection on the computed spectral radius.
+
+    Parameters
+    ----------
+    system : the system, stable outside the tongue (|multiplier| = 1 where it is undamped)
+    predicted : (lower, upper) end, good enough that the middle is unstable and half a width beyond is not
+    epsilon : strength of the excitation
+    rtol : of the monodromy matrices. Without damping a radius counts as unstable above 1 + sqrt(rtol), the
+        accuracy of multipliers that meet on the unit circle; since the radius leaves one like a square root,
+        that moves an end by about rtol times the width over (growth per cycle)^2 only.
+    """
+    damped = isinstance(system, HsuSystem) and bool((system.damping > 0.0).any())
+    limit = 1.0 if damped else 1.0 + np.sqrt(rtol)
+    middle, width = 0.5 * (predicted[0] + predicted[1]), predicted[1] - predicted[0]
+
+    def unstable(excitation: float) -> bool:
+        return monodromy(system.at(excitation, epsilon), rtol).spectral_radius > limit
+
+    found = []
+    for end in (-1.0, 1.0):
+        inside, outside = middle, middle + end * width
+        while abs(outside - inside) > 1e-9 * middle:
+            between = 0.5 * (inside + outside)
+            inside, outside = (between, outside) if unstable(between) else (inside, between)
+        found.append(0.5 * (inside + outside))
+    return found[0], found[1]

@@ -1,0 +1,55 @@
+"""Multipliers with their error bounds, and what follows from them.
+
+Sources: docs/theory/floquet.md, "From the equations to a matrix".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from floquet.engine.multipliers import radius_with_bound, verdict
+from floquet.engine.system import ComplexArray, FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Spectrum:
+    """Floquet multipliers of one periodic system.
+
+    Attributes
+    ----------
+    multipliers : (n,) complex, largest modulus first
+    multiplier_errors : (n,) bound on the error of each
+    period : T [s]
+    """
+
+    multipliers: ComplexArray
+    multiplier_errors: FloatArray
+    period: float
+
+    @cached_property
+    def _radius(self) -> tuple[float, float]:
+        return radius_with_bound(self.multipliers, self.multiplier_errors)
+
+    @property
+    def spectral_radius(self) -> float:
+        """Largest |multiplier|."""
+        return self._radius[0]
+
+    @property
+    def error(self) -> float:
+        """Bound on the error of ``spectral_radius``."""
+        return self._radius[1]
+
+    @property
+    def verdict(self) -> str:
+        """One of "stable", "unstable", and "undecided" when ``spectral_radius`` +- ``error`` contains 1."""
+        return verdict(*self._radius)
+
+    @property
+    def exponents(self) -> ComplexArray:
+        """log(multiplier)/T [1/s], (n,), principal branch; -inf for a multiplier that is zero."""
+        with np.errstate(divide="ignore"):
+            return np.asarray(np.log(self.multipliers.astype(complex)) / self.period)

@@ -1,0 +1,184 @@
+"""Tongues of instability: their names, by the shape of the growing motion, and the damping to close them.
+
+Sources: docs/theory/floquet.md, "Where instability is, and what it is called".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import brentq
+
+from floquet.engine.system import FloatArray
+from lumped.errors import NumericalError
+
+RadiusAt = Callable[[FloatArray, float], FloatArray]
+"""(places along the line (k,), damping) -> spectral radii (k,)."""
+
+# A combination tongue of relative detuning beyond this is not believed while another candidate fits.
+_DETUNING = 0.05
+
+
+@dataclass(frozen=True, order=True)
+class Tongue:
+    """Label of a tongue: excitation frequency = (omega_i + sign omega_j)/order, modes numbered from 1.
+
+    i = j with sign +1 is a parametric resonance of one mode, i < j a combination resonance: of the sum
+    (sign +1) or of the difference (sign -1, omega_j - omega_i).
+
+    Attributes
+    ----------
+    mode_i, mode_j : i <= j
+    sign : +1 or -1
+    order : k >= 1
+    """
+
+    mode_i: int
+    mode_j: int
+    sign: int
+    order: int
+
+    def __str__(self) -> str:
+        if self.mode_i == self.mode_j:
+            return f"2w{self.mode_i}/{self.order}"
+        first, second = (self.mode_i, self.mode_j) if self.sign > 0 else (self.mode_j, self.mode_i)
+        return f"(w{first}{'+' if self.sign > 0 else '-'}w{second})/{self.order}"
+
+
+@dataclass(frozen=True, eq=False)
+class ModeShares:
+    """How much each mode of the mean system takes part in a motion, forwards and backwards.
+
+    In the modal states (omega eta, eta') mode i moves as a_i exp(i omega_i t) + b_i exp(-i omega_i t) with
+    a_i = (omega eta - i eta')/2 and b_i = (omega eta + i eta')/2. Shares are of the action |.|^2/omega, not
+    of the energy: a sum resonance feeds both its modes with equal action (relations of Manley and Rowe),
+    however far apart their frequencies are.
+
+    Attributes
+    ----------
+    forward, backward : (m,) shares of the a_i and of the b_i; together they sum to one
+    """
+
+    forward: FloatArray
+    backward: FloatArray
+
+    @property
+    def total(self) -> FloatArray:
+        """Share of each mode, (m,)."""
+        return self.forward + self.backward
+
+
+def mode_shares(state: npt.ArrayLike, omega: FloatArray) -> ModeShares:
+    """Shares of the modes in a complex state vector x = (omega eta, eta'), (2m,)."""
+    x = np.asarray(state, dtype=complex)
+    m = omega.size
+    actions = np.abs(np.stack([x[:m] - 1j * x[m:], x[:m] + 1j * x[m:]])) ** 2 / omega
+    actions = actions / actions.sum()
+    return ModeShares(actions[0], actions[1])
+
+
+def label_tongue(matrix: npt.ArrayLike, omega: FloatArray, excitation: float) -> tuple[Tongue, ModeShares]:
+    """Name the instability of a monodromy matrix by the shape of its fastest growing motion.
+
+    Parametric excitation at Omega couples two rotating motions whose frequencies differ by k Omega. If they
+    are mode i turning forwards and mode j turning backwards, then omega_i + omega_j = k Omega: a sum
+    resonance, of one mode with itself if i = j. If both turn the same way it is omega_j - omega_i: a
+    difference resonance, which needs a circulatory (friction) or gyroscopic coupling. So the growing
+    eigenvector tells pair and sign; the frequencies tell the order k, and refuse pairs that are detuned by
+    more than 5 % as long as another pair takes part.
+
+    Parameters
+    ----------
+    matrix : (2m, 2m) monodromy matrix in the modal states (omega eta, eta') of the mean system
+    omega : (m,) natural frequencies of the mean system [rad/s]
+    excitation : Omega = 2 pi/T [rad/s]
+
+    Returns
+    -------
+    the label, and the shares of the modes in the growing motion
+    """
+    values, vectors = np.linalg.eig(np.asarray(matrix, dtype=float))
+    shares = mode_shares(vectors[:, np.argmax(np.abs(values))], omega)
+    fits: list[tuple[bool, float, Tongue]] = []
+    for i in range(omega.size):
+        for j in range(i, omega.size):
+            against = np.sqrt(shares.forward[i] * shares.backward[j])
+            against = max(against, np.sqrt(shares.backward[i] * shares.forward[j]))
+            along = np.sqrt(shares.forward[i] * shares.forward[j])
+            along = max(along, np.sqrt(shares.backward[i] * shares.backward[j]))
+            for sign, weight in ((1, against), (-1, along)):
+                if i == j and sign < 0:
+                    continue
+                total = float(omega[j] + sign * omega[i])
+                order = max(1, round(total / excitation))
+                near = abs(total / (order * excitation) - 1.0) <= _DETUNING
+                fits.append((near, float(weight), Tongue(i + 1, j + 1, sign, order)))
+    return max(fits)[2], shares
+
+
+@dataclass(frozen=True)
+class TongueTip:
+    """Where a tongue closes.
+
+    Attributes
+    ----------
+    damping : critical damping, at and above which no place of the window is unstable
+    place : where along the line the tongue closes
+    """
+
+    damping: float
+    place: float
+
+
+def tongue_tip(
+    radius: RadiusAt, window: tuple[float, float], bracket: tuple[float, float], *, xtol: float = 1e-9
+) -> TongueTip:
+    """Find the damping that closes a tongue: the root of max over the window of radius - 1.
+
+    Parameters
+    ----------
+    radius : spectral radius along the line at a damping
+    window : part of the line that holds this tongue and no other one
+    bracket : damping at which the tongue is open, and one at which it is closed
+    xtol : absolute accuracy of the damping
+
+    Raises
+    ------
+    NumericalError
+        The tongue is closed at the first damping, or open at the second.
+    """
+    places: dict[float, float] = {}
+
+    def excess(damping: float) -> float:
+        places[damping], top = _highest(lambda x: radius(x, damping), *window)
+        return top - 1.0
+
+    if excess(bracket[0]) <= 0.0 or excess(bracket[1]) > 0.0:
+        raise NumericalError(
+            f"the tongue between {window[0]:g} and {window[1]:g} does not close between damping "
+            f"{bracket[0]:g} and {bracket[1]:g}. Give one at which it is open and one at which it is not."
+        )
+    damping = float(brentq(excess, *bracket, xtol=xtol, rtol=1e-9))
+    excess(damping)
+    return TongueTip(damping, places[damping])
+
+
+def _highest(
+    function: Callable[[FloatArray], FloatArray], low: float, high: float, count: int = 33
+) -> tuple[float, float]:
+    """Place and value of the largest value in [low, high], by repeated sampling around the best sample.
+
+    The top of a smooth peak is known to (width)^2: four rounds of a factor 16 leave 1e-9 of its height.
+    """
+    best, top = low, -np.inf
+    for _ in range(4):
+        x = np.linspace(low, high, count)
+        values = function(x)
+        k = int(np.argmax(values))
+        if values[k] > top:
+            best, top = float(x[k]), float(values[k])
+        low, high = float(x[max(k - 1, 0)]), float(x[min(k + 1, count - 1)])
+    return best, top

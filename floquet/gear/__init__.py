@@ -1,0 +1,1 @@
+"""Stability of the gear pair: charts, tongues, margins, sensitivities."""

@@ -1,0 +1,183 @@
+"""What a stability chart of a gear pair can vary, each with its unit and how it changes the pair."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from floquet.engine.system import FloatArray
+from lumped.arguments import one_of
+from lumped.errors import refuse
+from lumped.friction.along_path import mean_coefficient
+from lumped.gear_geometry.geometry import geometry
+from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
+from lumped.schema.pair import GearPair
+
+_NOMINAL_LAWS = ("coulomb", "smoothed_coulomb")
+
+
+@dataclass(frozen=True)
+class GearVariation:
+    """A gear pair as a chart varies it.
+
+    Attributes
+    ----------
+    pair : the validated pair
+    friction_mean : wanted mean of |mu| over the path; None: as the law gives it
+    stiffness_variation : factor on the variation of the total mesh stiffness about its mean over the cycle
+    """
+
+    pair: GearPair
+    friction_mean: float | None = None
+    stiffness_variation: float = 1.0
+
+    def cycle(self) -> MeshCycle:
+        """Mesh cycle, with the friction law scaled to ``friction_mean``."""
+        cycle = mesh_cycle(self.pair)
+        if self.friction_mean is None:
+            return cycle
+        friction = cycle.elements.friction
+        mean = mean_coefficient(friction)
+        if mean == 0.0:
+            raise refuse(
+                "friction_coefficient",
+                self.friction_mean,
+                "a law that is not zero along the whole path",
+                'Choose friction.law = "coulomb".',
+            )
+        scaled = friction.scaled(self.friction_mean / mean)
+        return MeshCycle(cycle.geometry, replace(cycle.elements, friction=scaled))
+
+
+@dataclass(frozen=True)
+class GearAxis:
+    """One parameter of a gear-pair chart.
+
+    Attributes
+    ----------
+    units, long_name : labels of the axis
+    apply : (variation, value) -> variation
+    allowed : text of the allowed range, with ``low`` and ``high`` as its ends
+    """
+
+    units: str
+    long_name: str
+    apply: Callable[[GearVariation, float], GearVariation] = field(repr=False)
+    low: float = -np.inf
+    high: float = np.inf
+    open_low: bool = False
+
+    def check(self, name: str, values: FloatArray) -> None:
+        """Raise ParameterError when a value is outside the range of the axis."""
+        below = values <= self.low if self.open_low else values < self.low
+        bad = values[below | (values > self.high)]
+        if bad.size:
+            sign = ">" if self.open_low else ">="
+            allowed = f"{sign} {self.low:g}" + ("" if np.isinf(self.high) else f" and <= {self.high:g}")
+            raise refuse(f"axes[{name!r}]", f"{bad[0]:g} {self.units}", allowed, "Correct the axis values.")
+
+
+def _field(*paths: str) -> Callable[[GearVariation, float], GearVariation]:
+    def apply(variation: GearVariation, value: float) -> GearVariation:
+        return replace(variation, pair=variation.pair.with_(dict.fromkeys(paths, value)))
+
+    return apply
+
+
+def _friction(variation: GearVariation, value: float) -> GearVariation:
+    """Mean coefficient: a parameter of laws I and IV; the other laws are scaled, keeping their shape."""
+    law = variation.pair.friction.law
+    if law == "none":
+        law = "coulomb"
+        variation = replace(variation, pair=variation.pair.with_({"friction.law": law}))
+    if law in _NOMINAL_LAWS:
+        return replace(variation, pair=variation.pair.with_({"friction.coefficient": value}))
+    return replace(variation, friction_mean=value)
+
+
+def _contact_ratio(variation: GearVariation, value: float) -> GearVariation:
+    """Set the contact ratio by both tip diameters; approach and recess keep their shares of the path.
+
+    The path of contact ends where the tip circles cut the line of action: r_ap^2 = r_bp^2 + L_XD^2 and
+    r_ag^2 = r_bg^2 + (L_XY - L_XA)^2.
+    """
+    pair = variation.pair
+    g = geometry(pair)
+    factor = value / g.contact_ratio
+    recess = g.L_XP + factor * (g.L_XD - g.L_XP)
+    approach = g.L_XY - g.L_XP + factor * (g.L_XP - g.L_XA)
+    tips = {
+        "pinion": math.hypot(g.base_radius_pinion, recess),
+        "gear": math.hypot(g.base_radius_gear, approach),
+    }
+    changes: dict[str, float | None] = {}
+    for name, radius in tips.items():
+        changes |= {f"{name}.addendum": None, f"{name}.tip_diameter": 2e3 * radius}
+    return replace(variation, pair=pair.with_(changes))
+
+
+def _variation(variation: GearVariation, value: float) -> GearVariation:
+    return replace(variation, stiffness_variation=value)
+
+
+GEAR_AXES: Mapping[str, GearAxis] = {
+    "speed_rpm": GearAxis("rpm", "pinion speed", _field("operating.pinion_speed"), 0.0, open_low=True),
+    "damping_ratio": GearAxis("1", "mesh damping ratio", _field("mesh.damping_ratio"), 0.0, 1.0),
+    "friction_coefficient": GearAxis("1", "mean friction coefficient", _friction, 0.0, 1.0),
+    "torque": GearAxis("N m", "pinion torque", _field("operating.pinion_torque"), 0.0, open_low=True),
+    "stiffness_variation": GearAxis(
+        "1", "variation of mesh stiffness about its mean, 1 as given", _variation, 0.0, 2.0
+    ),
+    "contact_ratio": GearAxis("1", "contact ratio, by the tip diameters", _contact_ratio, 1.0, 3.0),
+    "bearing_stiffness": GearAxis(
+        "N/m",
+        "stiffness of all bearings, LOA and OLOA",
+        _field(*(f"bearings.{g}.{d}_stiffness" for g in ("pinion", "gear") for d in ("loa", "oloa"))),
+        0.0,
+        open_low=True,
+    ),
+}
+"""Axis name -> what it varies."""
+
+
+def gear_axis(name: str) -> GearAxis:
+    """Return the axis of this name.
+
+    Raises
+    ------
+    ParameterError
+        Unknown name.
+    """
+    return GEAR_AXES[one_of("axes", name, GEAR_AXES)]
+
+
+def vary(pair: GearPair, point: Mapping[str, float]) -> GearVariation:
+    """Return the pair at one point of a chart."""
+    variation = GearVariation(pair)
+    for name, value in point.items():
+        variation = gear_axis(name).apply(variation, value)
+    return variation
+
+
+def operating_value(pair: GearPair, name: str) -> float:
+    """Value that the pair itself has on an axis, in the units of the axis.
+
+    Raises
+    ------
+    ParameterError
+        Unknown name.
+    """
+    gear_axis(name)
+    loa = pair.bearings.pinion.loa_stiffness
+    return {
+        "speed_rpm": lambda: pair.operating.pinion_speed * 30.0 / math.pi,
+        "damping_ratio": lambda: pair.mesh.damping_ratio,
+        "friction_coefficient": lambda: mean_coefficient(mesh_cycle(pair).elements.friction),
+        "torque": lambda: pair.operating.pinion_torque,
+        "stiffness_variation": lambda: 1.0,
+        "contact_ratio": lambda: geometry(pair).contact_ratio,
+        "bearing_stiffness": lambda: loa,
+    }[name]()

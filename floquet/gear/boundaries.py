@@ -1,0 +1,261 @@
+"""Tongues of instability of a gear pair over speed: their boundaries, labelled by mode pair and order.
+
+Sources: docs/theory/floquet.md, "Where instability is, and what it is called".
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from floquet.engine.chart import Progress, checked_axes
+from floquet.engine.intervals import UnstableInterval, seeded_nodes, unstable_intervals
+from floquet.engine.system import FloatArray
+from floquet.engine.tongues import ModeShares, Tongue, label_tongue
+from floquet.gear.axes import GEAR_AXES, GearVariation, gear_axis, vary
+from floquet.gear.block import gear_block
+from floquet.gear.chart import stability_chart
+from floquet.rank_one.batch import fast_monodromies
+from floquet.rank_one.system import RankOneSystem
+from lumped.arguments import real_number, real_numbers, whole_number
+from lumped.errors import refuse, shown
+from lumped.schema.pair import GearPair
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_MOST = 20_000  # speeds of the grid of a search
+
+
+def checked_range(speed_rpm: tuple[float, float]) -> tuple[float, float]:
+    """Return a range of speeds [rpm], checked.
+
+    Raises
+    ------
+    ParameterError
+        Not two increasing positive speeds.
+    """
+    speeds = real_numbers("speed_rpm", speed_rpm, 0.0, above=True, increasing=True, unit="rpm")
+    if speeds.size != 2:
+        raise refuse("speed_rpm", shown(speed_rpm), "0 < low < high", "Give a range of speeds in rpm.")
+    return float(speeds[0]), float(speeds[1])
+
+
+def predicted_lines(pair: GearPair | GearVariation, orders: int = 12) -> dict[Tongue, float]:
+    """Pinion speeds [rpm] at which the mesh frequency is (omega_i +- omega_j)/k.
+
+    omega are the natural frequencies of the time-averaged undamped feedback block, k = 1..orders.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    orders : largest k
+    """
+    orders = whole_number("orders", orders, 1, 1000)
+    omega = gear_block(pair).modal().omega
+    teeth = (pair if isinstance(pair, GearPair) else pair.pair).pinion.teeth
+    per_rpm = teeth * 2.0 * np.pi / 60.0  # mesh frequency [rad/s] per rpm
+    lines = {}
+    for i in range(omega.size):
+        for j in range(i, omega.size):
+            for sign in (1, -1):
+                total = omega[j] + sign * omega[i]
+                if i == j and sign < 0:
+                    continue
+                for k in range(1, orders + 1):
+                    lines[Tongue(i + 1, j + 1, sign, k)] = float(total / k / per_rpm)
+    return lines
+
+
+def label_at(pair: GearPair, speed_rpm: float) -> tuple[Tongue, FloatArray]:
+    """Label the largest multiplier at a speed by its mode shape, see `label_tongue`.
+
+    Returns
+    -------
+    label, and the (m,) shares of the modes of the mean system in the growing motion, by action
+    """
+    label, shares = label_variation(GearVariation(pair.with_({"operating.pinion_speed": speed_rpm})))
+    return label, shares.total
+
+
+def label_variation(variation: GearVariation) -> tuple[Tongue, ModeShares]:
+    """Name the fastest growing motion of a pair as a chart varies it, see `label_tongue`."""
+    block = gear_block(variation)
+    matrix = fast_monodromies(block).matrices[0]
+    return label_tongue(matrix, block.modal().omega, 2.0 * np.pi / block.period)
+
+
+def stability_boundaries(
+    pair: GearPair,
+    speed_rpm: tuple[float, float] = (500.0, 20000.0),
+    axes: dict[str, npt.ArrayLike] | None = None,
+    *,
+    friction_law: str | None = None,
+    nodes: int = 400,
+    orders: int = 12,
+    xtol: float = 1e-8,
+    rtol: float = 1e-9,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Boundaries, spectral radius = 1, of the tongues of instability over speed.
+
+    Along speed the search starts from a grid that no tongue of a damped pair slips through, whatever its
+    order (`search_grid`), and from a graded cluster at every predicted line (omega_i +- omega_j)/k, for pairs
+    with hardly any damping; ends are found by bisection.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    speed_rpm : range searched [rpm]
+    axes : one more axis {name: values} out of `GEAR_AXES` other than speed, with the meaning that it has in
+        `stability_chart`; default the pair as it is
+    friction_law : law to use instead of the pair's
+    nodes : evenly spaced speeds of the search besides
+    orders : largest k of the clusters
+    xtol : relative accuracy of the boundaries
+    rtol : of the monodromy matrices
+    progress : called with (values done, values in all)
+
+    Returns
+    -------
+    Dataset over ``tongue`` (coordinates label, mode_i, mode_j, sign, order) and the axis: ``present``;
+    ``lower`` and ``upper`` [rpm], the boundaries; ``peak`` [rpm] and ``peak_radius``; ``open_end``, whether
+    the tongue runs out of the range. Where ``present`` is False the numbers are NaN. Where one label has
+    several intervals at one value, lower and upper enclose them all, ``intervals`` counts them, and
+    ``interval_lower`` and ``interval_upper`` over ``interval`` have them one by one. ``complete`` over the
+    axis: whether the grid is as fine as the damping asks for; where it is not, thin tongues of orders above
+    ``orders`` may be missing.
+
+    Raises
+    ------
+    ParameterError
+        Unusable range or axis.
+    """
+    low, high = checked_range(speed_rpm)
+    nodes = whole_number("nodes", nodes, 0, 1_000_000)
+    xtol = real_number("xtol", xtol, 1e-15, 0.1)
+    if friction_law is not None:
+        pair = pair.with_({"friction.law": friction_law})
+    checked = checked_axes(axes) if axes is not None else {}
+    if axes is not None and (len(checked) != 1 or "speed_rpm" in checked):
+        raise refuse("axes", ", ".join(checked), "one other than speed_rpm", "Scan other axes one at a time.")
+    name, values = next(iter(checked.items())) if axes else ("value", np.array([np.nan]))
+    if axes:
+        gear_axis(name).check(name, values)
+    found: dict[Tongue, dict[int, list[UnstableInterval]]] = {}
+    complete = np.ones(values.size, dtype=bool)
+    for index, value in enumerate(values):
+        point = {name: float(value)} if axes else {}
+        lines = np.array(list(predicted_lines(vary(pair, point), orders).values()))
+        dense, complete[index] = search_grid(gear_block(vary(pair, point)), low, high)
+        start = np.union1d(dense, seeded_nodes(lines, low, high, nodes))
+
+        def radius(speeds: FloatArray, point: dict[str, float] = point) -> FloatArray:
+            grid = {"speed_rpm": speeds} | {key: np.array([at]) for key, at in point.items()}
+            return np.ravel(stability_chart(pair, grid, rtol=rtol, store="radius").spectral_radius.values)
+
+        for interval in unstable_intervals(radius, start, xtol=xtol):
+            label, _ = label_variation(vary(pair, {**point, "speed_rpm": interval.peak}))
+            found.setdefault(label, {}).setdefault(index, []).append(interval)
+        if progress is not None:
+            progress(index + 1, values.size)
+    result = _dataset(pair, found, name, values)
+    result["complete"] = (name, complete, {"units": "1", "long_name": "grid as fine as the damping asks for"})
+    return result if axes else result.isel({name: 0}, drop=True)
+
+
+def search_grid(block: RankOneSystem, low: float, high: float) -> tuple[FloatArray, bool]:
+    """Speeds so dense that every tongue of instability of any order raises the radius at one of them.
+
+    Near k Omega = omega_i + omega_j two modes that decay with a and are coupled with strength g have, at the
+    detuning d = (k Omega - omega_i - omega_j)/2, the exponents -a +- sqrt(g^2 - d^2) (Hsu 1963; differences
+    likewise). They are unstable somewhere only if g > a. Then the larger one is above -b for all |d| < sqrt(2
+    a b - b^2), b <= a being the least decay of all modes: it stands out of whatever else there is over |d| <
+    b at least. From one speed to the next d changes by less than omega_max times the relative step, so that
+    steps of b/omega_max put two speeds into this window. The search climbs from there
+    (`unstable_intervals`).
+
+    Parameters
+    ----------
+    block : feedback block of the pair
+    low, high : range of speeds
+
+    Returns
+    -------
+    speeds; and whether the steps are that small, which would at times take more than 20000 of them
+    """
+    needed = -float(block.mean_exponents().real.max()) / float(block.modal().omega.max())
+    span = math.log(high / low)
+    complete = needed * _MOST > span
+    return np.geomspace(low, high, math.ceil(span / needed) + 1 if complete else _MOST), complete
+
+
+def _dataset(
+    pair: GearPair,
+    found: dict[Tongue, dict[int, list[UnstableInterval]]],
+    name: str,
+    values: FloatArray,
+) -> xr.Dataset:
+    import xarray as xr
+
+    tongues = sorted(found)
+    shape = (len(tongues), values.size)
+    numbers = {key: np.full(shape, np.nan) for key in ("lower", "upper", "peak", "peak_radius")}
+    most = max((len(parts) for columns in found.values() for parts in columns.values()), default=0)
+    ends = np.full((2, *shape, most), np.nan)
+    present, open_end = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
+    intervals = np.zeros(shape, dtype=np.int64)
+    for row, tongue in enumerate(tongues):
+        for column, parts in found[tongue].items():
+            top = max(parts, key=lambda part: part.peak_radius)
+            numbers["lower"][row, column] = min(part.lower for part in parts)
+            numbers["upper"][row, column] = max(part.upper for part in parts)
+            numbers["peak"][row, column] = top.peak
+            numbers["peak_radius"][row, column] = top.peak_radius
+            present[row, column] = True
+            open_end[row, column] = any(part.open_below or part.open_above for part in parts)
+            intervals[row, column] = len(parts)
+            for index, part in enumerate(parts):
+                ends[:, row, column, index] = part.lower, part.upper
+    dims = ("tongue", name)
+    names = {
+        "lower": ("rpm", "lower boundary of the tongue"),
+        "upper": ("rpm", "upper boundary of the tongue"),
+        "peak": ("rpm", "speed of the largest spectral radius in the tongue"),
+        "peak_radius": ("1", "largest spectral radius in the tongue"),
+    }
+    rpm = {"units": "rpm"}
+    data: dict[str, tuple[tuple[str, ...], npt.NDArray[np.generic], dict[str, str]]] = {
+        key: (dims, numbers[key], {"units": unit, "long_name": text}) for key, (unit, text) in names.items()
+    }
+    data["present"] = (dims, present, {"units": "1", "long_name": "tongue exists at this value"})
+    data["open_end"] = (dims, open_end, {"units": "1", "long_name": "tongue runs out of the range searched"})
+    data["intervals"] = (dims, intervals, {"units": "1", "long_name": "number of intervals of this label"})
+    data["interval_lower"] = (
+        (*dims, "interval"),
+        ends[0],
+        rpm | {"long_name": "lower ends of the intervals"},
+    )
+    data["interval_upper"] = (
+        (*dims, "interval"),
+        ends[1],
+        rpm | {"long_name": "upper ends of the intervals"},
+    )
+    result = xr.Dataset(
+        data,
+        coords={
+            name: values,
+            "label": ("tongue", np.array([str(t) for t in tongues], dtype=object)),
+            "mode_i": ("tongue", np.array([t.mode_i for t in tongues], dtype=np.int64)),
+            "mode_j": ("tongue", np.array([t.mode_j for t in tongues], dtype=np.int64)),
+            "sign": ("tongue", np.array([t.sign for t in tongues], dtype=np.int64)),
+            "order": ("tongue", np.array([t.order for t in tongues], dtype=np.int64)),
+        },
+        attrs={"title": f"stability boundaries of {pair.name}", "friction_law": pair.friction.law},
+    )
+    if name in GEAR_AXES:
+        result[name].attrs.update(units=GEAR_AXES[name].units, long_name=GEAR_AXES[name].long_name)
+    return result

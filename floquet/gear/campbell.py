@@ -1,0 +1,139 @@
+"""Campbell diagram of a gear pair: frequencies over speed, with the speeds at which tongues are expected.
+
+Sources: docs/theory/floquet.md, "Where instability is, and what it is called".
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from scipy.optimize import linear_sum_assignment
+
+from floquet.engine.system import ComplexArray, FloatArray
+from floquet.engine.tongues import mode_shares
+from floquet.gear.axes import vary
+from floquet.gear.block import gear_block
+from floquet.gear.boundaries import predicted_lines
+from floquet.rank_one.batch import fast_monodromies
+from lumped.arguments import real_number, real_numbers, whole_number
+from lumped.errors import NumericalError
+from lumped.schema.pair import GearPair
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def campbell(
+    pair: GearPair, speeds_rpm: npt.ArrayLike, *, mesh_orders: int = 6, orders: int = 6, rtol: float = 1e-9
+) -> xr.Dataset:
+    """Frequencies of the Floquet solutions over speed, against mesh orders and predicted tongues.
+
+    A multiplier fixes its frequency up to multiples of the mesh frequency only. The branch is resolved by the
+    mode shape: a solution belongs to the mode of the mean system in which it has the largest share of action,
+    turning forwards, and its frequency is the branch nearest to that mode's. Six multipliers make three such
+    solutions and their conjugates. In a tongue the growing solution stands for the mode.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    speeds_rpm : (k,) pinion speeds [rpm], increasing
+    mesh_orders : multiples of the mesh frequency to list
+    orders : largest order k of the predicted lines (omega_i +- omega_j)/k
+    rtol : of the monodromy matrices
+
+    Returns
+    -------
+    Dataset over ``speed_rpm``, ``mode``, ``mesh_order`` and ``line``: ``frequency`` and ``decay`` [1/s] of
+    the Floquet solution of each mode (speed_rpm, mode); ``natural_frequency`` of the mean system (mode);
+    ``mesh_frequency`` (speed_rpm, mesh_order); ``line_speed`` [rpm] and ``line_frequency``, the mesh
+    frequency there (line, with the labels in ``label``) inside the range, for modes that deflect the mesh;
+    ``spectral_radius`` of the feedback block.
+
+    Raises
+    ------
+    ParameterError
+        Speeds that are not increasing.
+    NumericalError
+        A speed so low that a multiplier is too small for a number.
+    """
+    import xarray as xr
+
+    speeds = real_numbers("speeds_rpm", speeds_rpm, 0.0, above=True, increasing=True, unit="rpm")
+    mesh_orders = whole_number("mesh_orders", mesh_orders, 1, 1000)
+    rtol = real_number("rtol", rtol, 1e-13, 1e-3)
+    mean = gear_block(pair).modal()
+    modes = mean.omega
+    # A mode that leaves the dynamic transmission error alone feeds nothing back: no tongue can involve it.
+    meshing = np.abs(mean.v) > 1e-9 * np.abs(mean.v).max()
+    frequency, decay = np.empty((speeds.size, modes.size)), np.empty((speeds.size, modes.size))
+    radius = np.empty(speeds.size)
+    for index, speed in enumerate(speeds):
+        block = gear_block(vary(pair, {"speed_rpm": float(speed)}))
+        matrix = fast_monodromies(block, tolerance=0.01 * rtol).matrices[0]
+        omega = block.modal().omega
+        exponents = _exponents_by_mode(matrix, omega, block.period)
+        if not np.isfinite(exponents).all():
+            raise NumericalError(
+                f"At {speed:g} rpm a mode dies out within one mesh cycle: its multiplier is too small for a "
+                "number. Raise the lowest speed."
+            )
+        frequency[index] = exponents.imag / (2.0 * np.pi)
+        decay[index] = -exponents.real
+        radius[index] = np.exp(exponents.real.max() * block.period)
+    teeth = pair.pinion.teeth
+    mesh_order = np.arange(1, mesh_orders + 1)
+    lines = {
+        tongue: speed
+        for tongue, speed in predicted_lines(pair, orders).items()
+        if speeds[0] <= speed <= speeds[-1] and meshing[tongue.mode_i - 1] and meshing[tongue.mode_j - 1]
+    }
+    line_speed = np.array(list(lines.values()))
+    hertz = {"units": "Hz"}
+    return xr.Dataset(
+        {
+            "frequency": (
+                ("speed_rpm", "mode"), frequency, hertz | {"long_name": "frequency of the Floquet solution"}
+            ),
+            "decay": (("speed_rpm", "mode"), decay, {"units": "1/s", "long_name": "decay rate, < 0 growth"}),
+            "natural_frequency": (
+                "mode", modes / (2.0 * np.pi), hertz | {"long_name": "natural frequency of the mean system"}
+            ),
+            "mesh_frequency": (
+                ("speed_rpm", "mesh_order"),
+                speeds[:, None] * teeth / 60.0 * mesh_order,
+                hertz | {"long_name": "multiples of the mesh frequency"},
+            ),
+            "line_speed": ("line", line_speed, {"units": "rpm", "long_name": "predicted speed of a tongue"}),
+            "line_frequency": (
+                "line", line_speed * teeth / 60.0, hertz | {"long_name": "mesh frequency on the line"}
+            ),
+            "spectral_radius": ("speed_rpm", radius, {"units": "1", "long_name": "spectral radius"}),
+        },
+        coords={
+            "speed_rpm": ("speed_rpm", speeds, {"units": "rpm", "long_name": "pinion speed"}),
+            "mode": np.arange(1, modes.size + 1),
+            "mesh_order": mesh_order,
+            "label": ("line", np.array([str(t) for t in lines], dtype=object)),
+            "mode_i": ("line", np.array([t.mode_i for t in lines], dtype=np.int64)),
+            "mode_j": ("line", np.array([t.mode_j for t in lines], dtype=np.int64)),
+            "order": ("line", np.array([t.order for t in lines], dtype=np.int64)),
+        },
+        attrs={"title": f"Campbell diagram of {pair.name}"},
+    )  # fmt: skip
+
+
+def _exponents_by_mode(matrix: FloatArray, omega: FloatArray, period: float) -> ComplexArray:
+    """Exponent (m,) [1/s] of the solution that belongs to each mode, on the branch near its frequency."""
+    values, vectors = np.linalg.eig(matrix)
+    forward = np.stack([mode_shares(x, omega).forward for x in vectors.T])
+    # Each mode gets a solution of its own. In a tongue a growing and a decaying one share the mode equally:
+    # the slight preference for the larger modulus takes the growing one.
+    modulus = np.abs(values)
+    solution, mode = linear_sum_assignment(-forward * (1.0 + 0.01 * modulus / modulus.max())[:, None])
+    chosen = values[solution[np.argsort(mode)]].astype(complex)
+    with np.errstate(divide="ignore", invalid="ignore"):  # a multiplier of zero has no exponent
+        principal = np.log(chosen) / period
+    mesh = 2.0 * np.pi / period
+    return np.asarray(principal + 1j * mesh * np.round((omega - principal.imag) / mesh))

@@ -1,0 +1,162 @@
+"""Stability charts of gear pairs: the compiled route for dense charts, the general engine as its check.
+
+Sources: docs/theory/floquet.md, "Computing M".
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import partial
+from itertools import product
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from floquet.engine.chart import Axes, Progress, chart_dataset, checked_axes, scan
+from floquet.engine.propagators import Propagator
+from floquet.engine.spectrum import Spectrum
+from floquet.engine.system import FloatArray
+from floquet.gear.axes import gear_axis, vary
+from floquet.gear.multipliers import gear_pair_multipliers
+from floquet.gear.plane import Plane, Store, plane_multipliers
+from lumped.arguments import one_of, real_number, whole_number
+from lumped.errors import refuse
+from lumped.schema.pair import GearPair
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_INNER = ("speed_rpm", "damping_ratio", "friction_coefficient")
+
+
+def stability_chart(
+    pair: GearPair,
+    axes: Axes,
+    *,
+    friction_law: str | None = None,
+    rtol: float = 1e-10,
+    method: str | Propagator = "taylor",
+    store: Literal["all", "radius"] = "all",
+    n_jobs: int | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Stability chart of a gear pair.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    axes : name -> values, names out of `GEAR_AXES`: speed_rpm, damping_ratio (mesh), friction_coefficient,
+        torque, stiffness_variation, bearing_stiffness, in their stated units
+    friction_law : law to use instead of the pair's: "coulomb" for a constant |mu| that changes sign at the
+        pitch point, the others for mu that varies along the path. With an axis friction_coefficient the law
+        is scaled to that mean of |mu|.
+    rtol : wanted accuracy of the monodromy matrices, relative to their scale; 1e-13 to 1e-3
+    method : "taylor", the compiled kernel; "chebyshev", the same at some thousand nodes with a checked
+        interpolation in speed and in damping or friction between them, for charts of many more points than
+        that (speeds at which a friction law changes its regimes are computed directly); or a method of
+        `monodromy` for an independent check
+    store : "all"; or "radius" for the spectral radius, its error and the verdict without the multipliers: 17
+        bytes a point instead of 257
+    n_jobs : threads (Taylor) or processes (others); default all cores for Taylor, 1 for the others
+    progress : called with (points done, points in all)
+
+    Returns
+    -------
+    xarray.Dataset over the axes: spectral_radius, error, verdict and, with store "all", multipliers and
+    multiplier_errors (10 each: the feedback block and the off-line-of-action block; the rigid rotation is no
+    part of them)
+
+    Raises
+    ------
+    ParameterError
+        Unknown axis, or values outside the range of an axis.
+    NumericalError
+        A point fails; the message names it.
+    """
+    grid = checked_axes(axes)
+    for name, values in grid.items():
+        gear_axis(name).check(name, values)
+    if n_jobs is not None:
+        n_jobs = whole_number("n_jobs", n_jobs, 1, 1024)
+    one_of("store", store, ("all", "radius"))
+    if friction_law is not None:
+        pair = pair.with_({"friction.law": friction_law})
+    if isinstance(method, str) and method in ("taylor", "chebyshev"):
+        rtol = real_number("rtol", rtol, 1e-13, 1e-3, action="Use 1e-8 for charts, 1e-10 for verdicts.")
+        if method == "chebyshev" and "speed_rpm" not in grid:
+            raise refuse(
+                "method", method, '"taylor" for axes without speed_rpm', "Interpolation is over speed."
+            )
+        dataset = _compiled_chart(pair, grid, rtol, n_jobs, progress, method == "chebyshev", store == "all")
+    else:
+        evaluate = partial(_evaluate, pair, rtol, method)
+        dataset = scan(evaluate, grid, n_jobs=1 if n_jobs is None else n_jobs, progress=progress)
+        if store == "radius":
+            dataset = dataset.drop_vars(["multipliers", "multiplier_errors"])
+    for name in grid:
+        axis = gear_axis(name)
+        dataset[name].attrs.update(units=axis.units, long_name=axis.long_name)
+    dataset.attrs.update(
+        title=f"stability chart of {pair.name}",
+        friction_law=pair.friction.law,
+        method=method if isinstance(method, str) else method.name,
+        rtol=rtol,
+    )
+    return dataset
+
+
+def _evaluate(pair: GearPair, rtol: float, method: str | Propagator, point: dict[str, float]) -> Spectrum:
+    return gear_pair_multipliers(vary(pair, point), rtol, method=method)
+
+
+def _compiled_chart(
+    pair: GearPair,
+    grid: Mapping[str, FloatArray],
+    rtol: float,
+    threads: int | None,
+    progress: Progress | None,
+    interpolate: bool,
+    multipliers: bool,
+) -> xr.Dataset:
+    """Fit the block once per point of the slow axes, then run the kernel over the fast ones.
+
+    Damping only scales wd, the mean friction coefficient only scales what friction adds to w, and speed only
+    changes the period, and with many friction laws scales friction too.
+    """
+    names, shape = list(grid), tuple(values.size for values in grid.values())
+    inner = [name for name in names if name in _INNER and not _is_slow(name, grid)]
+    if interpolate and len(inner) == 3:
+        inner.remove("friction_coefficient")
+    outer = [name for name in names if name not in inner]
+    mesh = np.meshgrid(*(grid[name] for name in inner), indexing="ij")
+    flat = {name: m.ravel() for name, m in zip(inner, mesh, strict=True)}
+    inner_shape = tuple(grid[name].size for name in inner)
+    whole = Store(math.prod(shape), multipliers)
+    done = 0
+
+    def report(count: int) -> None:
+        nonlocal done
+        done += count
+        if progress is not None:
+            progress(done, math.prod(shape))
+
+    for index in product(*(range(grid[name].size) for name in outer)):
+        where = dict(zip(outer, index, strict=True))
+        point = {name: float(grid[name][i]) for name, i in where.items()}
+        plane = Plane(pair, point, flat, math.prod(inner_shape))
+        if not outer:  # the plane is the whole chart
+            plane_multipliers(plane, whole, rtol, threads, report, interpolate)
+            break
+        part = Store(plane.count, multipliers)
+        plane_multipliers(plane, part, rtol, threads, report, interpolate)
+        key = tuple(where.get(name, slice(None)) for name in names)
+        for target, source in zip(whole.arrays(), part.arrays(), strict=True):
+            rest = target.shape[1:]
+            target.reshape((*shape, *rest))[key] = source.reshape((*inner_shape, *rest))
+    return chart_dataset(grid, whole.multipliers, whole.errors, whole.radius, whole.radius_error)
+
+
+def _is_slow(name: str, grid: Mapping[str, FloatArray]) -> bool:
+    """A friction axis that is zero throughout has no reference to scale."""
+    return name == "friction_coefficient" and float(grid[name].max()) == 0.0

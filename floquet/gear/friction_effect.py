@@ -1,0 +1,101 @@
+"""What each friction law does to the stability of a gear pair: difference charts.
+
+Sources: docs/theory/floquet.md, "Where instability is, and what it is called".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from floquet.engine.chart import Axes, Progress, checked_axes
+from floquet.gear.chart import stability_chart
+from lumped.arguments import one_of, some_of
+from lumped.errors import refuse
+from lumped.friction import LAWS
+from lumped.schema.pair import GearPair
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def friction_effect(
+    pair: GearPair,
+    axes: Axes,
+    laws: Sequence[str] = ("coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"),
+    *,
+    reference: str = "none",
+    rtol: float = 1e-9,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Difference charts: the effect of friction laws on the growth of the fastest motion.
+
+    Growth is log(spectral radius) per mesh cycle, so that the effect of a law adds to that of damping.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    axes : as in `stability_chart`; not friction_coefficient, which the reference law "none" lacks
+    laws : friction laws to compare
+    reference : law from which the differences are taken
+    rtol : as in `stability_chart`
+    progress : called with (laws done, laws in all)
+
+    Returns
+    -------
+    Dataset over ``law`` and the axes: ``growth`` [per mesh cycle]; ``growth_change`` from the reference;
+    ``growth_error``, bound on the error of the change; ``verdict_change``, +1 where the law stabilises what
+    was unstable, -1 where it makes unstable what was stable, 0 elsewhere (also where one is undecided).
+    ``reference_growth`` over the axes.
+
+    Raises
+    ------
+    ParameterError
+        Unknown law, or an unusable axis.
+    """
+    import xarray as xr
+
+    grid = checked_axes(axes)
+    laws = some_of("laws", laws, LAWS)
+    one_of("reference", reference, LAWS)
+    if "friction_coefficient" in grid and reference == "none":
+        raise refuse("axes", "friction_coefficient", "axes other than friction", "Choose another reference.")
+    charts = []
+    for index, law in enumerate((reference, *laws)):
+        charts.append(stability_chart(pair, grid, friction_law=law, rtol=rtol))
+        if progress is not None:
+            progress(index + 1, len(laws) + 1)
+    base, others = charts[0], charts[1:]
+    dims = tuple(grid)
+    growth = np.stack([np.log(c.spectral_radius.values) for c in others])
+    error = np.stack([_log_error(c) + _log_error(base) for c in others])
+    verdict = np.stack([c.verdict.values for c in others])
+    before = base.verdict.values
+    flips = np.where((before == -1) & (verdict == 1), 1, np.where((before == 1) & (verdict == -1), -1, 0))
+    reference_growth = np.log(base.spectral_radius.values)
+    full = ("law", *dims)
+    return xr.Dataset(
+        {
+            "growth": (full, growth, {"units": "1", "long_name": "growth per mesh cycle, log of the radius"}),
+            "growth_change": (
+                full, growth - reference_growth, {"units": "1", "long_name": "change of growth per cycle"}
+            ),
+            "growth_error": (full, error, {"units": "1", "long_name": "bound on the error of the change"}),
+            "verdict_change": (
+                full, flips.astype(np.int8), {"units": "1", "long_name": "+1 stabilised, -1 destabilised"}
+            ),
+            "reference_growth": (
+                dims, reference_growth, {"units": "1", "long_name": f"growth per cycle, law {reference}"}
+            ),
+        },
+        coords={"law": np.array(list(laws), dtype=object), **{n: base[n] for n in dims}},
+        attrs={"title": f"effect of friction on {pair.name}", "reference": reference},
+    )  # fmt: skip
+
+
+def _log_error(chart: xr.Dataset) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    """Bound on the error of log(radius): |d log r| <= e/(r - e) while e < r."""
+    radius, error = chart.spectral_radius.values, chart.error.values
+    return np.asarray(np.where(error < radius, error / np.maximum(radius - error, 1e-300), np.inf))

@@ -1,0 +1,136 @@
+"""Multipliers of a gear pair: the 6 states that feed back, the off-line-of-action block in closed form.
+
+Sources: docs/theory/floquet.md, "Structure".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from floquet.engine.monodromy import monodromy
+from floquet.engine.propagators import Propagator
+from floquet.engine.spectrum import Spectrum
+from floquet.engine.system import ComplexArray, FloatArray, PeriodicSystem
+from floquet.gear.axes import GearVariation
+from lumped.model.periodic_system import Form, LTVSystem, periodic_system
+from lumped.schema.pair import GearPair
+
+
+@dataclass(frozen=True, eq=False)
+class GearPairMultipliers(Spectrum):
+    """Multipliers of a gear pair over one mesh cycle, 10 in all.
+
+    Attributes
+    ----------
+    feedback : (6,) of q = r_bp theta_p - r_bg theta_g, x_p, x_g, which alone can become unstable
+    oloa : (4,) of y_p, y_g, two each: driven by friction without acting back, so those of their bearings
+    rigid_body : (2,) of the free rotation, a defective double +1 that the relative coordinate q removes; no
+        part of ``multipliers``, the radius or the verdict, since it means a free choice of angle and speed
+    liouville_residual : of the feedback block, see `Monodromy`
+    """
+
+    feedback: ComplexArray
+    oloa: ComplexArray
+    rigid_body: ComplexArray
+    liouville_residual: float
+
+
+def gear_pair_system(source: GearPair | GearVariation, form: Form = "relative") -> PeriodicSystem:
+    """Return the gear pair (or a variation of it) as a `PeriodicSystem`.
+
+    Parameters
+    ----------
+    source : the pair
+    form : "relative" (10 states), "feedback" (6) or "absolute" (12), as in ``lumped.periodic_system``
+    """
+    variation = GearVariation(source) if isinstance(source, GearPair) else source
+    cycle = variation.cycle()
+    system = periodic_system(variation.pair, form, cycle=cycle)
+    factor = variation.stiffness_variation
+    coefficients = system.matrices if factor == 1.0 else _VariedStiffness(system, factor)
+    return PeriodicSystem(coefficients, system.period, tuple(system.breakpoints), vectorized=True)
+
+
+@dataclass(frozen=True, eq=False)
+class _VariedStiffness:
+    """A(t) with the total mesh stiffness k replaced by mean + factor (k - mean).
+
+    Every pair keeps its share of k, so k_i is multiplied by f = (mean + factor (k - mean))/k and c_i, which
+    goes with sqrt(k_i), by sqrt(f).
+    """
+
+    system: LTVSystem
+    factor: float
+
+    def __call__(self, times: FloatArray) -> FloatArray:
+        system = self.system
+        total = system.cycle.sample(times).stiffness.sum(axis=0)
+        mean = mean_mesh_stiffness(system)
+        f = (mean + self.factor * (total - mean)) / total
+        gain = system.gain(times)
+        m = len(system.coordinates)
+        A = np.repeat(system.constant[None], times.size, axis=0)
+        A[:, m:, :m] += (f[:, None] * gain.stiffness)[:, :, None] * system.deflection
+        A[:, m:, m:] += (np.sqrt(f)[:, None] * gain.damping)[:, :, None] * system.deflection
+        return A
+
+
+def mean_mesh_stiffness(system: LTVSystem) -> float:
+    """Mean over the mesh cycle of the total stiffness: integral of k_i over the path, over one base pitch."""
+    k = system.cycle.elements.stiffness
+    low, high = k.interval
+    return k.mean() * (high - low) / system.cycle.geometry.base_pitch
+
+
+def oloa_exponents(system: LTVSystem) -> ComplexArray:
+    """Exponents (4,) [1/s] of the motions y_p, y_g off the line of action, closed form.
+
+    m y'' + c y' + K y = 0 for each: s = -c/(2 m) +- sqrt((c/(2 m))^2 - K/m), multipliers exp(s T).
+    """
+    s = system.structure
+    decay = s.damping[4:] / (2.0 * s.mass[4:])
+    root = np.sqrt((decay**2 - s.stiffness[4:] / s.mass[4:]).astype(complex))
+    return np.concatenate([-decay + root, -decay - root])
+
+
+def gear_pair_multipliers(
+    source: GearPair | GearVariation, rtol: float = 1e-10, *, method: str | Propagator = "gauss"
+) -> GearPairMultipliers:
+    """Floquet multipliers of a gear pair over one mesh cycle.
+
+    The equations of y_p and y_g contain q, x_p, x_g but not the other way round, so the 10 x 10 matrix is
+    block triangular: its multipliers are those of the 6 x 6 feedback block and of the bearings of y.
+
+    Parameters
+    ----------
+    source : a gear pair, or a variation from a chart
+    rtol, method : as in `monodromy`
+
+    Returns
+    -------
+    GearPairMultipliers
+
+    Raises
+    ------
+    NumericalError
+        As in `monodromy`.
+    """
+    variation = GearVariation(source) if isinstance(source, GearPair) else source
+    block = monodromy(gear_pair_system(variation, "feedback"), rtol, method=method)
+    angle = oloa_exponents(periodic_system(variation.pair, "relative")) * block.period
+    oloa = np.exp(angle)
+    values = np.concatenate([block.multipliers, oloa])
+    # The closed form is exact up to the rounding of the exponent.
+    errors = np.concatenate([block.multiplier_errors, 4e-16 * (1.0 + np.abs(angle)) * np.abs(oloa)])
+    order = np.argsort(-np.abs(values), kind="stable")
+    return GearPairMultipliers(
+        multipliers=values[order],
+        multiplier_errors=errors[order],
+        period=block.period,
+        feedback=block.multipliers,
+        oloa=oloa,
+        rigid_body=np.ones(2, dtype=complex),
+        liouville_residual=block.liouville_residual,
+    )

@@ -1,0 +1,251 @@
+"""Multipliers of a gear pair over speed, damping and friction, which cost the compiled kernel no new fit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from floquet.engine.multipliers import radii_with_bounds
+from floquet.engine.system import ComplexArray, FloatArray
+from floquet.gear.axes import GearVariation, vary
+from floquet.gear.block import gear_block
+from floquet.gear.friction import FrictionFamily, factors_at, friction_families
+from floquet.gear.multipliers import oloa_exponents
+from floquet.rank_one.batch import FastMonodromy, FastMultipliers, fast_monodromies, fast_multipliers
+from floquet.rank_one.coarsening import coarsened
+from floquet.rank_one.interpolation import interpolated_multipliers
+from floquet.rank_one.system import RankOneSystem
+from lumped.model.periodic_system import periodic_system
+from lumped.schema.pair import GearPair
+
+Put = Callable[[npt.NDArray[np.intp], FastMultipliers], None]
+"""(indices (k,) of points, their multipliers)."""
+
+_REFERENCE_DAMPING = 1.0
+# Periods that share one coarsened block differ by at most this factor: short ones need fewer pieces still.
+_BAND = 1.5
+_CHUNK = 32_768  # points in memory with their matrices
+_FEW_PIECES = 6  # not worth joining
+_FEW_POINTS = 300  # for which joining costs more than it saves
+_FEW_SPEEDS = 64  # for which interpolation would cost more
+
+
+@dataclass(frozen=True, eq=False)
+class Plane:
+    """Points that differ in speed, mesh damping and mean friction only.
+
+    Attributes
+    ----------
+    pair : the gear pair
+    point : name -> value of the axes that are the same for all points
+    flat : name -> values (count,) of those that are not
+    count : number of points
+    """
+
+    pair: GearPair
+    point: Mapping[str, float]
+    flat: Mapping[str, FloatArray]
+    count: int
+
+    def variation(self, speed_rpm: float | None = None) -> GearVariation:
+        """The pair with the reference values of damping and friction, to which the factors relate."""
+        values = dict(self.point)
+        if "damping_ratio" in self.flat:
+            values["damping_ratio"] = _REFERENCE_DAMPING
+        if "friction_coefficient" in self.flat:
+            values["friction_coefficient"] = float(self.flat["friction_coefficient"].max())
+        if speed_rpm is not None and "speed_rpm" in self.flat:
+            values["speed_rpm"] = speed_rpm
+        return vary(self.pair, values)
+
+    def damping(self) -> FloatArray:
+        """Factors (count,) on the damping of the reference."""
+        given = self.flat.get("damping_ratio")
+        return np.ones(self.count) if given is None else given / _REFERENCE_DAMPING
+
+    def friction(self) -> FloatArray:
+        """Factors (count,) on the mean friction of the reference."""
+        given = self.flat.get("friction_coefficient")
+        return np.ones(self.count) if given is None else given / given.max()
+
+
+class Store:
+    """Multipliers of many points, or no more than their spectral radius.
+
+    Parameters
+    ----------
+    count : number of points
+    multipliers : whether to keep the multipliers and their errors
+
+    Attributes
+    ----------
+    radius, radius_error : (count,)
+    multipliers, errors : (count, 10) the largest modulus first, or None
+    """
+
+    def __init__(self, count: int, multipliers: bool) -> None:
+        self.radius, self.radius_error = np.empty(count), np.empty(count)
+        self.multipliers = np.empty((count, 10), dtype=complex) if multipliers else None
+        self.errors = np.empty((count, 10)) if multipliers else None
+
+    def arrays(self) -> list[npt.NDArray[np.generic]]:
+        """Whatever is kept."""
+        given = (self.radius, self.radius_error, self.multipliers, self.errors)
+        return [array for array in given if array is not None]
+
+    def put(self, points: npt.NDArray[np.intp], found: FastMultipliers, exponents: ComplexArray) -> None:
+        """Take the feedback block of some points, and the exponents times period of the other bearings."""
+        oloa = np.exp(exponents)
+        values = np.concatenate([found.multipliers, oloa], axis=1)
+        # 4e-16: rounding of the exponent.
+        errors = np.concatenate([found.errors, 4e-16 * (1.0 + np.abs(exponents)) * np.abs(oloa)], axis=1)
+        self.radius[points], self.radius_error[points] = radii_with_bounds(values, errors)
+        if self.multipliers is not None and self.errors is not None:
+            ranking = np.argsort(-np.abs(values), axis=1, kind="stable")
+            self.multipliers[points] = np.take_along_axis(values, ranking, 1)
+            self.errors[points] = np.take_along_axis(errors, ranking, 1)
+
+
+def plane_multipliers(
+    plane: Plane,
+    store: Store,
+    rtol: float,
+    threads: int | None,
+    report: Callable[[int], None],
+    interpolate: bool,
+) -> None:
+    """Multipliers of all points: the feedback block and the bearings off the line of action.
+
+    Parameters
+    ----------
+    plane : the points
+    store : takes the multipliers
+    rtol : wanted error relative to the scale of the monodromy matrices
+    threads : default one per core
+    report : called with the number of points done since the last call
+    interpolate : over speed and over damping or friction, where speeds are many and share one friction law
+    """
+    first = plane.variation()
+    own = first.pair.operating.pinion_speed * 30.0 / np.pi
+    speeds = plane.flat.get("speed_rpm", np.full(plane.count, own))
+    unique, which = np.unique(speeds, return_inverse=True)
+    damping, friction = plane.damping(), plane.friction()
+    for family in friction_families(first, unique):
+        row = np.full(unique.size, -1)
+        row[family.members] = np.arange(family.members.size)
+        part = np.flatnonzero(row[which] >= 0)
+        variation = plane.variation(family.speed_rpm)
+        several = interpolate and family.members.size > _FEW_SPEEDS
+        # Interpolation multiplies the bounds at its nodes, most of which is the fit of the law, by 9 to 13.
+        block = gear_block(
+            variation,
+            rtol=max((0.002 if several else 0.01) * rtol, 1e-12),
+            friction_apart=variation.pair.friction.law != "none",
+            friction_level=family.level,
+        )
+        periods = block.period * variation.pair.operating.pinion_speed * 30.0 / np.pi / speeds[part]
+        exponents = oloa_exponents(periodic_system(variation.pair, "relative"))
+
+        def put(
+            index: npt.NDArray[np.intp],
+            found: FastMultipliers,
+            part: npt.NDArray[np.intp] = part,
+            periods: FloatArray = periods,
+            exponents: ComplexArray = exponents,
+        ) -> None:
+            store.put(part[index], found, exponents[None, :] * periods[index, None])
+
+        done = False
+        if several:
+            done = _interpolated(
+                block, variation, family, periods, damping[part], friction[part], rtol, threads, put
+            )
+        if not done:
+            factors = friction[part, None] * family.factors[row[which[part]]]
+            _direct(block, periods, damping[part], factors, rtol, threads, put)
+        report(part.size)
+
+
+def _direct(
+    block: RankOneSystem,
+    periods: FloatArray,
+    damping: FloatArray,
+    factors: FloatArray,
+    rtol: float,
+    threads: int | None,
+    put: Put,
+) -> None:
+    """The kernel at every point, in bands of periods with a coarser block for each."""
+    if not block.parts[1:]:
+        factors = np.ones((periods.size, 0))
+    worth = periods.size >= _FEW_POINTS and block.phases.size - 1 > _FEW_PIECES
+    rest = np.arange(periods.size)
+    while rest.size:
+        longest = float(periods[rest].max())
+        inside = periods[rest] > (longest / _BAND if worth else 0.0)
+        band, rest = rest[inside], rest[~inside]
+        system = block
+        if worth and band.size >= _FEW_POINTS:
+            most = np.abs(factors[band]).max(axis=0)
+            system = coarsened(block, longest, float(damping[band].max()), most, 0.05 * rtol)
+        for first in range(0, band.size, _CHUNK):
+            part = band[first : first + _CHUNK]
+            found = fast_multipliers(
+                system, periods[part], damping[part], factors[part], tolerance=2e-4 * rtol, threads=threads
+            )
+            put(part, found)
+
+
+class _AnotherFamily(Exception):
+    """A node of the interpolation has another friction law than the speeds around it."""
+
+
+def _interpolated(
+    block: RankOneSystem,
+    variation: GearVariation,
+    family: FrictionFamily,
+    periods: FloatArray,
+    damping: FloatArray,
+    friction: FloatArray,
+    rtol: float,
+    threads: int | None,
+    put: Put,
+) -> bool:
+    """`_direct` by interpolation over periods and over damping or friction, whichever varies.
+
+    Returns False where friction between the given speeds is not of the family; what was put then is void.
+    """
+    by_friction = bool(np.ptp(friction) > 0.0)
+    unique, row = np.unique(periods, return_inverse=True)
+    other, column = np.unique(friction if by_friction else damping, return_inverse=True)
+    fixed = float(damping[0] if by_friction else friction[0])
+    scale = block.period * family.speed_rpm
+
+    def flow(T: FloatArray, parameters: FloatArray) -> FastMonodromy:
+        nodes, index = np.unique(T, return_inverse=True)
+        factors = factors_at(variation, family, scale / nodes)
+        if factors is None:
+            raise _AnotherFamily
+        strength = parameters if by_friction else np.full(T.size, fixed)
+        zeta = np.full(T.size, fixed) if by_friction else parameters
+        gains = strength[:, None] * factors[index] if block.parts[1:] else np.ones((T.size, 0))
+        tolerance = max(1e-5 * rtol, 1e-14)
+        return fast_monodromies(block, T, zeta, gains, tolerance=tolerance, threads=threads)
+
+    # The points are all combinations of both.
+    points = np.empty((unique.size, other.size), dtype=np.intp)
+    points[row, column] = np.arange(periods.size)
+
+    def receive(rows: npt.NDArray[np.intp], found: FastMultipliers) -> None:
+        put(points[rows].ravel(), found)
+
+    try:
+        interpolated_multipliers(
+            flow, unique, other, float(block.modal().omega.max()), 1e-3 * rtol, receive, threads
+        )
+    except _AnotherFamily:
+        return False
+    return True

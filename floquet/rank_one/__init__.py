@@ -1,0 +1,1 @@
+"""The fast family: modes coupled by one periodic feedback of rank one."""

@@ -1,0 +1,255 @@
+"""Monodromy matrices of rank-one feedback systems by the compiled Taylor kernel, for many points at once.
+
+Sources: docs/theory/floquet.md, "Computing M".
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from floquet.engine.multipliers import multipliers_with_bounds
+from floquet.engine.system import ComplexArray, FloatArray
+from floquet.rank_one.kernels.eigen import spectra
+from floquet.rank_one.kernels.gains import Limits, Problem
+from floquet.rank_one.kernels.taylor import propagate_points
+from floquet.rank_one.packing import own, packed
+from floquet.rank_one.system import Coarsening, RankOneSystem
+from lumped.arguments import real_array, real_number, real_numbers, whole_number
+from lumped.errors import NumericalError, refuse, shown
+
+_T = TypeVar("_T")
+
+
+@dataclass(frozen=True, eq=False)
+class FastMonodromy:
+    """Monodromy matrices of N variants of one system, in energy coordinates.
+
+    Attributes
+    ----------
+    matrices : (N, 2m, 2m) in x = (omega eta, eta') of `ModalForm`, dimensionless
+    errors : (N,) bound on the Frobenius norm of the error of each: majorant of the truncation, misfit of the
+        polynomials, rounding
+    forced : (N, 2m) state at T from rest under the forcing
+    """
+
+    matrices: FloatArray
+    errors: FloatArray
+    forced: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """N variants of one system as the kernels take them: what is shared, and one row per variant.
+
+    Attributes
+    ----------
+    problem, limits : what the kernels share
+    periods, damping_factors, gain_factors : (N,), (N,), (N, Q)
+    threads : default one per core
+    """
+
+    problem: Problem
+    limits: Limits
+    periods: FloatArray
+    damping_factors: FloatArray
+    gain_factors: FloatArray
+    threads: int | None
+
+    @classmethod
+    def of(
+        cls,
+        system: RankOneSystem,
+        periods: npt.ArrayLike | None,
+        damping_factors: npt.ArrayLike,
+        gain_factors: npt.ArrayLike,
+        tolerance: float,
+        threads: int | None,
+        max_steps: int,
+    ) -> Points:
+        """Check and arrange the arguments of `fast_monodromies`."""
+        if system.v.size > 3:
+            raise refuse(
+                "coordinates", system.v.size, "at most 3", "Use floquet.monodromy for larger systems."
+            )
+        given = system.period if periods is None else periods
+        T = own(real_numbers("periods", given, 0.0, above=True, unit="s"))
+        tolerance = real_number("tolerance", tolerance, 1e-16, 0.1)
+        max_steps = whole_number("max_steps", max_steps, 1, 2**31 - 1)
+        if threads is not None:
+            threads = whole_number("threads", threads, 1, 1024)
+        parts = len(system.parts)
+        factors = np.ones((T.size, parts))
+        gains = _factors("gain_factors", gain_factors, T.shape, (T.size, parts - 1))
+        factors[:, 1:] = gains if gains.ndim == 2 else gains[:, None]
+        zeta = own(_factors("damping_factors", damping_factors, T.shape))
+        _within(system.coarsening, T, zeta, factors)
+        # Longer steps have fewer terms per unit of time, but amplify rounding, 30 eps = exp(-32.6), by
+        # exp(angle): to an eighth of the tolerance.
+        angle = min(max(math.log(tolerance) + 30.5, 3.0), 9.0)
+        return cls(
+            problem=packed(system),
+            limits=Limits(tolerance, angle, max_steps),
+            periods=T,
+            damping_factors=zeta,
+            gain_factors=factors,
+            threads=threads,
+        )
+
+    def row_arguments(self, part: slice) -> tuple[Problem, FloatArray, FloatArray, FloatArray, Limits]:
+        """Leading arguments of a kernel for a slice of the variants."""
+        return (
+            self.problem, self.gain_factors[part], self.damping_factors[part], self.periods[part], self.limits
+        )  # fmt: skip
+
+    def refuse_failures(self, failures: Sequence[int]) -> None:
+        """Raise NumericalError for the first index that is not negative."""
+        bad = [index for index in failures if index >= 0]
+        if bad:
+            raise NumericalError(
+                f"period {self.periods[bad[0]]:g} s needs more than {self.limits.max_steps} Taylor steps, or "
+                "a step more terms than the kernel has. Raise max_steps, loosen the tolerance, or raise the "
+                "speed."
+            )
+
+
+def fast_monodromies(
+    system: RankOneSystem,
+    periods: npt.ArrayLike | None = None,
+    damping_factors: npt.ArrayLike = 1.0,
+    gain_factors: npt.ArrayLike = 1.0,
+    *,
+    tolerance: float = 1e-13,
+    threads: int | None = None,
+    max_steps: int = 20_000,
+) -> FastMonodromy:
+    """Monodromy matrices for many periods T and factors on wd and on the varied gains.
+
+    Parameters
+    ----------
+    system : the system; its phases, w and wd are taken as independent of T
+    periods : (N,) [s]; default the system's own
+    damping_factors : (N,) or scalar, factor on wd (and on fr)
+    gain_factors : (N,) or scalar, factor on the gains ``system.varied``, or (N, Q-1), one for each set
+    tolerance : largest neglected remainder of one step, in units of the energy norm
+    threads : default one per core
+    max_steps : steps per period at most
+
+    Raises
+    ------
+    NumericalError
+        Too many steps or terms, or a result that is not finite.
+    """
+    points = Points.of(system, periods, damping_factors, gain_factors, tolerance, threads, max_steps)
+    n, N = 2 * system.v.size, points.periods.size
+    M, bound, forced = np.empty((N, n, n)), np.empty(N), np.empty((N, n))
+
+    def run(part: slice) -> int:
+        failed = propagate_points(*points.row_arguments(part), M[part], bound[part], forced[part])
+        return -1 if failed < 0 else part.start + failed
+
+    points.refuse_failures(in_threads(run, N, threads))
+    if not np.isfinite(M).all():
+        raise NumericalError(
+            "the state grows beyond floating point within one period; shorten the period (raise the speed)."
+        )
+    return FastMonodromy(M, bound, forced)
+
+
+@dataclass(frozen=True, eq=False)
+class FastMultipliers:
+    """Multipliers of N variants of one system.
+
+    Attributes
+    ----------
+    multipliers, errors : (N, 2m) with a bound on the error of each, dimensionless, in no particular order
+    matrix_errors : (N,) bound on the error of the monodromy matrix in energy coordinates
+    """
+
+    multipliers: ComplexArray
+    errors: FloatArray
+    matrix_errors: FloatArray
+
+
+def fast_multipliers(
+    system: RankOneSystem,
+    periods: npt.ArrayLike | None = None,
+    damping_factors: npt.ArrayLike = 1.0,
+    gain_factors: npt.ArrayLike = 1.0,
+    *,
+    tolerance: float = 1e-13,
+    threads: int | None = None,
+    max_steps: int = 20_000,
+) -> FastMultipliers:
+    """Floquet multipliers for many periods and factors on wd, with error bounds.
+
+    Parameters and errors as in `fast_monodromies`. Where multipliers are so close together that the quick
+    bound of the kernel does not separate them (defective ones at the edges of tongues),
+    `multipliers_with_bounds` decides.
+    """
+    flow = fast_monodromies(
+        system, periods, damping_factors, gain_factors,
+        tolerance=tolerance, threads=threads, max_steps=max_steps,
+    )  # fmt: skip
+    parts: list[FastMultipliers] = in_threads(
+        lambda part: multipliers_of(flow.matrices[part], flow.errors[part]), flow.errors.size, threads
+    )
+    return FastMultipliers(
+        np.concatenate([part.multipliers for part in parts]),
+        np.concatenate([part.errors for part in parts]),
+        flow.errors,
+    )
+
+
+def multipliers_of(matrices: FloatArray, errors: FloatArray) -> FastMultipliers:
+    """Eigenvalues of monodromy matrices (N, n, n), each with a bound, when these are wrong by errors (N,)."""
+    values, radii = np.empty(matrices.shape[:2], dtype=complex), np.empty(matrices.shape[:2])
+    safe = np.empty(errors.size, dtype=bool)
+    spectra(matrices, errors, values, radii, safe)
+    for point in np.flatnonzero(~safe):
+        values[point], radii[point] = multipliers_with_bounds(matrices[point], float(errors[point]))
+    return FastMultipliers(values, radii, errors)
+
+
+def _factors(
+    name: str, given: npt.ArrayLike, each: tuple[int, ...], parts: tuple[int, ...] | None = None
+) -> FloatArray:
+    """Factors, one per variant, or where ``parts`` is a shape, one per variant and part."""
+    array = real_array(name, given)
+    if np.isfinite(array).all():
+        if parts is not None and array.shape == parts:
+            return array
+        if array.shape in ((), (1,), each):
+            return np.broadcast_to(array, each)
+    raise refuse(name, shown(given), f"finite, one or {each[0]}", "Give one factor per period.")
+
+
+def _within(coarsening: Coarsening | None, T: FloatArray, zeta: FloatArray, factors: FloatArray) -> None:
+    """Refuse variants for which the bounds of a coarsened system do not hold."""
+    if coarsening is None:
+        return
+    given = [T.max(), np.abs(zeta).max(), *np.abs(factors[:, 1:]).max(axis=0)]
+    most = [coarsening.period, coarsening.damping, *coarsening.factors]
+    for name, value, limit in zip(
+        ("periods", "damping_factors", *["gain_factors"] * len(given)), given, most, strict=False
+    ):
+        if value > limit * (1.0 + 1e-12):
+            raise refuse(name, f"{value:g}", f"at most {limit:g}", "Coarsen the system for a wider range.")
+
+
+def in_threads(run: Callable[[slice], _T], size: int, threads: int | None = None) -> list[_T]:
+    """Call ``run`` on slices of range(size) by threads (the kernels release the interpreter lock)."""
+    count = threads or os.cpu_count() or 1
+    chunk = max(1, min(512, -(-size // count)))
+    parts = [slice(first, min(first + chunk, size)) for first in range(0, size, chunk)]
+    if count == 1 or len(parts) == 1:
+        return [run(part) for part in parts]
+    with ThreadPoolExecutor(count) as pool:
+        return list(pool.map(run, parts))

@@ -1,0 +1,238 @@
+"""Fewer polynomial pieces for the same flow: gains replaced by ones with the same moments.
+
+What a gain does within a short time depends on its first few moments only, not on its shape. With delta = w -
+w~ the flows over a piece differ by
+
+    int Phi(1, u) dA(u) Phi~(u, -1) du,   dA = delta times a fixed row,
+
+and if delta is orthogonal to all polynomials up to degree d, then to first order only that part of K(u) =
+Phi~(1, u) . Phi~(u, -1) contributes which no such polynomial matches. A logarithm at the pitch point then
+needs no graded mesh: the mesh only has to be fine against the motion. K is an entire function of u. With a_j
+the majorant of A~ about the middle of the piece (`floquet.rank_one.kernels.majorant`) and e^g a bound on the
+growth of energy, |K| <= e^g exp(2 sum_j a_j R^(j+1)/(j+1)) on the ellipse of Bernstein with semi-axis R =
+(rho + 1/rho)/2, so that (Trefethen, Approximation Theory and Approximation Practice, theorem 8.2) its
+distance from degree d is at most
+
+    2 e^g exp(2 sum_j a_j R^(j+1)/(j+1)) rho^-d/(rho - 1)   for every rho > 1.
+
+Terms of second order are at most e^(g + eta) eta^2/2, eta the integral of |dA|.
+
+Sources: docs/theory/floquet.md, "Computing M".
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from numpy.polynomial import legendre
+
+from floquet.engine.system import FloatArray
+from floquet.rank_one.system import Coarsening, Gains, RankOneSystem
+from lumped.arguments import real_number, real_numbers
+from lumped.errors import refuse, shown
+
+_DEGREE = 8
+_RHO = np.array([1.3, 1.6, 2.0, 2.5, 3.0, 4.0, 5.5, 8.0, 12.0, 20.0, 40.0])
+_R = 0.5 * (_RHO + 1.0 / _RHO)
+# Sums over j of a_j R^(j+1)/(j+1), one row per rho.
+_ELLIPSE = _R[:, None] ** np.arange(1, _DEGREE + 2) / np.arange(1, _DEGREE + 2)
+_DECAY = 2.0 * _RHO[:, None] ** -np.arange(_DEGREE + 1.0) / (_RHO[:, None] - 1.0)  # (rho, d)
+_NODES, _WEIGHTS = legendre.leggauss(_DEGREE + 1)  # exact for the square of a polynomial of degree 8
+_SHORT = 1.0 / 16.0  # of the period: shorter pieces may err as much as this one
+
+
+def coarsened(
+    system: RankOneSystem, longest: float, damping: float, factors: npt.ArrayLike, tolerance: float
+) -> RankOneSystem:
+    """Join pieces of a system as far as its flow allows.
+
+    Parameters
+    ----------
+    system : with polynomials of degree 8 at most
+    longest : longest period [s] for which the bounds are to hold
+    damping : largest factor on wd
+    factors : (Q-1,) largest |factor| on each varied part
+    tolerance : wanted sum of the bounds on the errors of the flow over the pieces, energy norm; met where the
+        errors of the given polynomials allow it
+
+    Returns
+    -------
+    The system without forcing and balance, with the bounds as its `Coarsening`
+    """
+    longest = real_number("longest", longest, 0.0, above=True, unit="s")
+    damping = real_number("damping", damping, 0.0)
+    tolerance = real_number("tolerance", tolerance, 0.0, above=True)
+    varied = real_numbers("factors", factors, 0.0) if np.size(factors) else np.empty(0)
+    if varied.size != len(system.parts) - 1:
+        raise refuse(
+            "factors", shown(factors), f"{len(system.parts) - 1} numbers", "Give one for each varied part."
+        )
+    most = np.concatenate([[1.0], varied])
+    fine = _Fine.of(system, longest, damping, most)
+    bounds, pieces = [0], []
+    while bounds[-1] < fine.pieces:
+        piece = fine.longest_piece(bounds[-1], tolerance)
+        pieces.append(piece)
+        bounds.append(piece.stop)
+    m, Q = system.v.size, len(system.parts)
+    powers = np.stack([piece.powers for piece in pieces]).reshape(len(pieces), 2, Q, m, _DEGREE + 1)
+    misfits = np.stack([piece.misfits for piece in pieces])
+    parts = []
+    none = np.zeros((len(pieces), m, 1))
+    for q in range(Q):
+        w, wd = (_trimmed(powers[:, j, q]) for j in (0, 1))
+        parts.append(Gains(w, wd, none, none, np.pad(misfits[:, :, q], ((0, 0), (0, 2)))))
+    return RankOneSystem(
+        stiffness=system.stiffness,
+        damping=system.damping,
+        v=system.v,
+        phases=system.phases[bounds],
+        gains=parts[0],
+        period=system.period,
+        metric=system.metric,
+        varied=tuple(parts[1:]),
+        coarsening=Coarsening(np.array([piece.error for piece in pieces]), longest, damping, most[1:]),
+    )
+
+
+class _Piece(NamedTuple):
+    stop: int
+    powers: FloatArray  # (2, Q, m, d+1) of w and wd
+    misfits: FloatArray  # (2, Q) left to the kernel to account for
+    error: float
+
+
+class _Fine(NamedTuple):
+    """The given pieces, as the search for longer ones needs them.
+
+    Attributes
+    ----------
+    phases : (P+1,)
+    powers : (P, 2, Q, m, d+1) of w and wd
+    values : (P, s, 2, Q, m) at Gauss nodes
+    misfits : (P, 2, Q)
+    weights : (2, Q) what turns the norm of a gain into that of A times the longest period
+    reference : (m,) constant part of w that is none of A's
+    root : (m,) square roots of the metric
+    calm : max omega + |C| times the longest period
+    """
+
+    phases: FloatArray
+    powers: FloatArray
+    values: FloatArray
+    misfits: FloatArray
+    weights: FloatArray
+    reference: FloatArray
+    root: FloatArray
+    calm: float
+
+    @classmethod
+    def of(cls, system: RankOneSystem, longest: float, damping: float, most: FloatArray) -> _Fine:
+        form = system.modal()
+        powers = np.stack(
+            [np.stack([_padded(getattr(part, key)) for part in system.parts], axis=1) for key in ("w", "wd")],
+            axis=1,
+        )
+        rows = np.array([np.linalg.norm(form.v / form.omega), damping * np.linalg.norm(form.v)])
+        misfits = np.stack([part.fit_errors[:, :2] for part in system.parts], axis=2)
+        return cls(
+            phases=system.phases,
+            powers=powers,
+            values=np.einsum("ijqmk,sk->isjqm", powers, _NODES[:, None] ** np.arange(_DEGREE + 1)),
+            misfits=misfits,
+            weights=longest * rows[:, None] * most,
+            reference=form.shapes @ form.reference,
+            root=np.sqrt(system.metric),
+            calm=longest * float(form.omega.max() + np.linalg.norm(form.C)),
+        )
+
+    @property
+    def pieces(self) -> int:
+        """Number of pieces."""
+        return self.phases.size - 1
+
+    def longest_piece(self, start: int, tolerance: float) -> _Piece:
+        """Join as many pieces from ``start`` on as the tolerance allows: by doubling, then by bisection."""
+        best, step = self._single(start), 1
+        bad = self.pieces + 1
+        while best.stop < self.pieces and best.stop + 1 < bad:
+            stop = min(best.stop + step, self.pieces) if bad > self.pieces else (best.stop + bad) // 2
+            piece = self._joined(start, stop, tolerance)
+            if piece is None:
+                bad = stop
+            else:
+                best, step = piece, 2 * step
+        return best
+
+    def _single(self, start: int) -> _Piece:
+        return _Piece(start + 1, self.powers[start], self.misfits[start], 0.0)
+
+    def _joined(self, start: int, stop: int, tolerance: float) -> _Piece | None:
+        """One piece in place of several, of the smallest degree that will do; None where none will."""
+        low, high = self.phases[start], self.phases[stop]
+        length = high - low
+        widths = np.diff(self.phases[start : stop + 1])
+        middles = 0.5 * (self.phases[start:stop] + self.phases[start + 1 : stop + 1])
+        u = (2.0 * (middles[:, None] + 0.5 * widths[:, None] * _NODES) - low - high) / length
+        weight = (widths / length)[:, None] * 0.5 * _WEIGHTS  # they sum to one
+        P = legendre.legvander(u.ravel(), _DEGREE)
+        values = self.values[start:stop].reshape(u.size, -1)
+        series = (2.0 * np.arange(_DEGREE + 1) + 1.0)[:, None] * ((P * weight.reshape(-1, 1)).T @ values)
+        shape = (_DEGREE + 1, *self.values.shape[2:])
+        powers = np.einsum("kd,djqm->jqmk", _POWERS, series.reshape(shape))
+        # The mean square over the piece bounds the square of the mean modulus. What is missing at degree d is
+        # the rest beyond degree 8 and the terms between.
+        rest = np.square((values - P @ series).reshape(u.size, *shape[1:]) * self.root).sum(axis=3)
+        beyond = np.einsum("s,sjq->jq", weight.ravel(), rest)
+        terms = np.square(series.reshape(shape) * self.root).sum(axis=3)
+        terms /= (2.0 * np.arange(_DEGREE + 1) + 1.0)[:, None, None]
+        missing = beyond + np.concatenate(
+            [np.cumsum(terms[:0:-1], axis=0)[::-1], np.zeros((1, *beyond.shape))]
+        )
+        eta = length * (np.sqrt(missing) * self.weights).sum(axis=(1, 2))  # (d,)
+        misfit = float((widths @ self.misfits[start:stop].reshape(widths.size, -1)) @ self.weights.ravel())
+        a = 0.5 * length * self._majorant(powers)
+        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is no good
+            growth = np.exp(2.0 * a.sum() - length * self.calm)
+            distance = (np.exp(2.0 * _ELLIPSE @ a)[:, None] * _DECAY).min(axis=0)
+            error = growth * (
+                np.minimum(distance, 1.0) * eta + 0.5 * np.exp(eta) * eta**2 + np.exp(eta + misfit) * misfit
+            )
+        good = np.flatnonzero(error <= tolerance * max(length, _SHORT))
+        if good.size == 0:
+            return None
+        degree = int(good[0])
+        powers = np.einsum("kd,djqm->jqmk", _POWERS[:, : degree + 1], series.reshape(shape)[: degree + 1])
+        return _Piece(stop, powers, np.zeros_like(self.misfits[0]), float(error[degree]))
+
+    def _majorant(self, powers: FloatArray) -> FloatArray:
+        """Bounds (d+1,) on the coefficients of A in powers of u, times the longest period."""
+        centred = powers.copy()
+        centred[0, 0, :, 0] -= self.reference
+        norms = np.sqrt(np.square(centred * self.root[:, None]).sum(axis=2))  # (2, Q, d+1)
+        a = np.einsum("jq,jqk->k", self.weights, norms)
+        a[0] += self.calm
+        return np.asarray(a)
+
+
+def _power_matrix() -> FloatArray:
+    """Column n: the Legendre polynomial P_n in powers, lowest first."""
+    matrix = np.zeros((_DEGREE + 1, _DEGREE + 1))
+    for n in range(_DEGREE + 1):
+        poly = legendre.leg2poly(np.eye(_DEGREE + 1)[n])
+        matrix[: poly.size, n] = poly
+    return matrix
+
+
+_POWERS = _power_matrix()
+
+
+def _padded(poly: FloatArray) -> FloatArray:
+    return np.pad(poly, ((0, 0), (0, 0), (0, _DEGREE + 1 - poly.shape[2])))
+
+
+def _trimmed(poly: FloatArray) -> FloatArray:
+    used = np.flatnonzero(np.abs(poly).max(axis=(0, 1)))
+    return np.ascontiguousarray(poly[:, :, : 1 + (int(used[-1]) if used.size else 0)])

@@ -1,0 +1,262 @@
+"""Taylor propagation of a rank-one feedback system with a majorant error bound, compiled.
+
+In modal coordinates of a reference problem (`floquet.rank_one.system`) the system reads
+
+    eta'' + C eta' + omega^2 eta + w(t) (v . eta) + wd(t) (v . eta') = f(t),
+
+with w, wd, f polynomials on every piece of the period. In the energy coordinates x = (omega eta, eta') the
+part omega^2 is skew, so that one step of length 2 h has the matrix A(u) = sum_j A_j u^j, -1 <= u <= 1, with
+
+    |A_0| <= a_0 = h (max omega + |C| + |w_0| |v/omega| + |wd_0| |v|),   |A_j| <= a_j likewise without
+    omega, C,
+
+which is what `floquet.rank_one.kernels.majorant` needs.
+
+The series starts in the middle of the step, where it needs fewer terms and where powers of u are small. Its
+sums at u = 1 and -1 are the flows E and S from the middle to the end and back to the start, and P = E S^-1 is
+that of the step. Let E and S be wrong by at most d each, and let r be what P S - E comes to. Then P is wrong
+by at most (r + (1 + |P|) d) |S^-1|, and |S^-1|, the flow from the start to the middle, is bounded by the
+growth of energy. A motion from rest in the middle, e at the end and s at the start, is e - P s at the end
+when it is at rest at the start.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from floquet.engine.system import FloatArray
+from floquet.rank_one.kernels.compiled import compiled
+from floquet.rank_one.kernels.gains import (
+    Limits,
+    Piece,
+    Problem,
+    load_piece,
+    load_step,
+    row_norm,
+    scratch_for,
+)
+from floquet.rank_one.kernels.lanes import LANES, load, plus, scaled, store, zero
+from floquet.rank_one.kernels.majorant import enough_terms, norm
+from floquet.rank_one.kernels.product import FORCED, carry, divide
+
+_EPS = 2.220446049250313e-16
+
+
+@compiled(fastmath={"contract"}, _nrt=False)
+def series(problem: Problem, piece: Piece, terms: int, h: float, ratio: float) -> None:
+    """Fill Z[k] (3, LANES), the Taylor coefficients in step time, k = 2..terms+1, from Z[0] and Z[1].
+
+    With wd = ratio w the two convolutions merge into one with s + (ratio/h) s'. All three coordinates side by
+    side, and the newest values last in every sum: what is older need not wait for them.
+    """
+    v, C, o, ref = piece.v, piece.hC, piece.h2_omega2, piece.h2_reference
+    Z, s, sd, w, wd, f = piece.Z, piece.s, piece.sd, piece.ws, piece.wds, piece.fs
+    merged = not math.isnan(ratio)
+    lag = ratio / h if merged else 0.0
+    dw, dd, df = piece.degrees[0], piece.degrees[1], piece.degrees[2]
+    x0, x1, x2 = load(Z, (0, 0)), load(Z, (0, 1)), load(Z, (0, 2))
+    y0, y1, y2 = load(Z, (1, 0)), load(Z, (1, 1)), load(Z, (1, 2))
+    here = plus(v[2], x2, plus(v[1], x1, scaled(v[0], x0)))
+    there = plus(v[2], y2, plus(v[1], y1, scaled(v[0], y0)))
+    for k in range(terms):
+        c = k + 1.0
+        rate = scaled(c, there)
+        t0, t1, t2 = scaled(o[0], x0), scaled(o[1], x1), scaled(o[2], x2)
+        t0, t1, t2 = plus(ref[0], here, t0), plus(ref[1], here, t1), plus(ref[2], here, t2)
+        if merged:
+            for i in range(min(dw, k), 0, -1):
+                old = load(sd, (k - i,))
+                t0, t1, t2 = plus(w[i, 0], old, t0), plus(w[i, 1], old, t1), plus(w[i, 2], old, t2)
+            rate = plus(lag * c, there, here)
+            t0, t1, t2 = plus(w[0, 0], rate, t0), plus(w[0, 1], rate, t1), plus(w[0, 2], rate, t2)
+        else:
+            for i in range(min(dw, k), 0, -1):
+                old = load(s, (k - i,))
+                t0, t1, t2 = plus(w[i, 0], old, t0), plus(w[i, 1], old, t1), plus(w[i, 2], old, t2)
+            for i in range(min(dd, k), 0, -1):
+                old = load(sd, (k - i,))
+                t0, t1, t2 = plus(wd[i, 0], old, t0), plus(wd[i, 1], old, t1), plus(wd[i, 2], old, t2)
+            t0, t1, t2 = plus(w[0, 0], here, t0), plus(w[0, 1], here, t1), plus(w[0, 2], here, t2)
+            t0, t1, t2 = plus(wd[0, 0], rate, t0), plus(wd[0, 1], rate, t1), plus(wd[0, 2], rate, t2)
+        store(s, (k,), here)
+        store(sd, (k,), rate)
+        t0 = plus(c * C[0, 2], y2, plus(c * C[0, 1], y1, plus(c * C[0, 0], y0, t0)))
+        t1 = plus(c * C[1, 2], y2, plus(c * C[1, 1], y1, plus(c * C[1, 0], y0, t1)))
+        t2 = plus(c * C[2, 2], y2, plus(c * C[2, 1], y1, plus(c * C[2, 0], y0, t2)))
+        factor = -1.0 / (c * (c + 1.0))
+        x0, x1, x2 = y0, y1, y2
+        y0, y1, y2 = scaled(factor, t0), scaled(factor, t1), scaled(factor, t2)
+        store(Z, (k + 2, 0), y0)
+        store(Z, (k + 2, 1), y1)
+        store(Z, (k + 2, 2), y2)
+        if k <= df:
+            for r in range(problem.v.size):
+                Z[k + 2, r, FORCED] -= factor * f[k, r]
+                if k == 0:
+                    Z[2, r, FORCED + 1] -= factor * h * h * problem.input[r]
+            y0, y1, y2 = load(Z, (k + 2, 0)), load(Z, (k + 2, 1)), load(Z, (k + 2, 2))
+        here, there = there, plus(v[2], y2, plus(v[1], y1, scaled(v[0], y0)))
+    store(s, (terms,), here)
+    store(s, (terms + 1,), there)
+
+
+@compiled(_nrt=False)
+def start_from_rest(problem: Problem, piece: Piece, h: float) -> None:
+    """Unit initial states x = (omega eta, eta') in the first 2m columns, rest in the others."""
+    m = problem.v.size
+    for q in range(m):
+        store(piece.Z, (0, q), scaled(1.0 / problem.omega[q], load(piece.unit, (q,))))
+        store(piece.Z, (1, q), scaled(h, load(piece.unit, (m + q,))))
+
+
+@compiled(fastmath={"contract"}, _nrt=False)
+def ends_of_step(
+    problem: Problem, piece: Piece, terms: int, h: float, end: FloatArray, start: FloatArray
+) -> None:
+    """Energy coordinates at both ends of the step, (2m, LANES), summed from the smallest terms on."""
+    m = problem.v.size
+    top = terms + 1 - (terms + 1) % 2  # the largest even power
+    for q in range(m):
+        even, odd, even_rate, odd_rate = zero(), zero(), zero(), zero()
+        if top == terms:
+            odd = load(piece.Z, (terms + 1, q))
+            even_rate = scaled(terms + 1.0, odd)
+        for k in range(top, 0, -2):
+            x, y = load(piece.Z, (k, q)), load(piece.Z, (k - 1, q))
+            even, odd_rate = plus(1.0, x, even), plus(float(k), x, odd_rate)
+            odd, even_rate = plus(1.0, y, odd), plus(float(k - 1), y, even_rate)
+        even = plus(1.0, load(piece.Z, (0, q)), even)
+        store(end, (q,), scaled(problem.omega[q], plus(1.0, odd, even)))
+        store(start, (q,), scaled(problem.omega[q], plus(-1.0, odd, even)))
+        store(end, (m + q,), scaled(1.0 / h, plus(1.0, odd_rate, even_rate)))
+        store(start, (m + q,), scaled(1.0 / h, plus(-1.0, odd_rate, even_rate)))
+
+
+@compiled(_nrt=False)
+def steps_of_period(
+    problem: Problem,
+    gains: FloatArray,
+    zeta: float,
+    T: float,
+    limits: Limits,
+    piece: Piece,
+    steps: FloatArray,
+    local: FloatArray,
+    layout: FloatArray,
+) -> int:
+    """All steps of one period at one point.
+
+    Parameters
+    ----------
+    gains, zeta, T : weights (Q,) of the parts, damping factor, period [s]
+    steps : (max_steps, 2m, LANES), out: transition matrix, and states from rest under f and
+        under the input in the columns from FORCED on
+    local : (max_steps, 3), out: bounds on the errors of the matrix and of both states from rest
+    layout : (max_steps, 4), out: piece, number of the step in it, number of steps in it, and the bound on
+        what the error of the piece has besides those of its steps
+
+    Returns
+    -------
+    number of steps; -1 if there would be more than max_steps or MAX_TERMS
+    """
+    m = problem.v.size
+    count = 0
+    size_input, log_tolerance = norm(problem.input), math.log(limits.tolerance)
+    for i in range(problem.phases.size - 1):
+        length = (problem.phases[i + 1] - problem.phases[i]) * T
+        rate, misfit, misfit_f, ratio = load_piece(problem, i, gains, zeta, T, piece)
+        parts = max(1, math.ceil(0.5 * length * rate / limits.angle))
+        part = 0
+        while part < parts:
+            if count + parts - part > limits.max_steps:
+                return -1
+            h = 0.5 * length / parts
+            degree = load_step(problem, piece, part, parts, h, ratio)
+            terms, factor_f, size = enough_terms(piece.a, degree, log_tolerance, piece.powers, piece.ends[0])
+            if terms < 0:
+                # The polynomials vary too much within the step: begin the piece again with half of it.
+                count -= part
+                parts *= 2
+                part = 0
+                continue
+            start_from_rest(problem, piece, h)
+            series(problem, piece, terms, h, ratio)
+            end, start, scratch = piece.ends[0], piece.ends[1], piece.ends[2:]
+            ends_of_step(problem, piece, terms, h, end, start)
+            size_step, residual = divide(end, start, piece.unit, scratch, steps[count])
+            # Every coefficient is a sum of at most 2 d + 2 m + 4 rounded products of size r_k.
+            rounding = _EPS * (2.0 * degree + 2.0 * m + 8.0) * size
+            # Neither the skew part of A nor damping lets the energy grow; what is left of a at most does.
+            growth = h * (problem.drive - piece.sizes[2])
+            for j in range(degree + 1):
+                growth += piece.a[j]
+            back = math.exp(growth)
+            spread = 2.0 * h * back * back
+            twice = 1.0 + size_step
+            error = (residual + twice * (limits.tolerance + rounding)) * back
+            size_f = 0.0
+            for j in range(piece.degrees[2] + 1):
+                size_f += row_norm(piece.fs, j, m)
+            size_f /= h  # fs holds h^2 f
+            local[count, 0] = error + misfit * spread
+            for c in range(2):
+                # The motion from rest in the middle, and its error; misfits act for all of the step.
+                force = size_f if c == 0 else h * size_input
+                own = (factor_f * limits.tolerance + rounding) * force
+                reach = 0.0
+                for q in range(2 * m):
+                    reach += start[q, FORCED + c] ** 2
+                reach = own + math.sqrt(reach)
+                error_f = twice * own + (error + 2.0 * m * _EPS * twice) * reach
+                local[count, 1 + c] = error_f + misfit * spread * 2.0 * force
+            local[count, 1] += misfit_f * spread
+            layout[count, 0], layout[count, 1], layout[count, 2] = i, part, parts
+            layout[count, 3] = problem.flow_error[i]
+            count += 1
+            part += 1
+    return count
+
+
+@compiled(nogil=True)
+def propagate_points(
+    problem: Problem,
+    gains: FloatArray,
+    damping_factor: FloatArray,
+    periods: FloatArray,
+    limits: Limits,
+    M: FloatArray,
+    bound: FloatArray,
+    forced: FloatArray,
+) -> int:
+    """Monodromy matrices in energy coordinates for many points.
+
+    Parameters
+    ----------
+    gains, damping_factor, periods : (N, Q), (N,), (N,) [s]
+    M : (N, 2m, 2m), out: Phi(T, 0) in x = (omega eta, eta')
+    bound : (N,), out: bound on the Frobenius norm of the error of M: truncation, fit and rounding
+    forced : (N, 2m), out: state at T from rest at 0 under f
+
+    Returns
+    -------
+    index of the first point that needs more than max_steps or MAX_TERMS, -1 if none
+    """
+    n = 2 * problem.v.size
+    piece = scratch_for(problem)
+    steps = np.empty((limits.max_steps, n, LANES))
+    local, layout = np.empty((limits.max_steps, 3)), np.empty((limits.max_steps, 4))
+    weights, work, flow = np.empty((limits.max_steps, 2)), np.zeros((3, n, LANES)), np.zeros((n, LANES))
+    for point in range(periods.size):
+        count = steps_of_period(
+            problem, gains[point], damping_factor[point], periods[point], limits, piece, steps, local, layout
+        )
+        if count < 0:
+            return point
+        bound[point] = carry(steps, local[:, 0], layout, count, flow, weights, work)
+        for i in range(n):
+            forced[point, i] = flow[i, FORCED]
+            for j in range(n):
+                M[point, i, j] = flow[i, j]
+    return -1

@@ -1,0 +1,246 @@
+"""Second-order systems with rank-one periodic feedback: the structure that the fast kernel exploits.
+
+Sources: docs/theory/floquet.md, "Structure".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import eigh
+
+from floquet.engine.system import ComplexArray, FloatArray, PeriodicSystem
+from lumped.errors import refuse
+
+
+@dataclass(frozen=True, eq=False)
+class Gains:
+    """Periodic gains and forcing on the pieces of one period; polynomials in powers of u in [-1, 1].
+
+    Attributes
+    ----------
+    w, wd : (P, m, d+1) feedback of v . z [1/s^2] and of v . z' [1/s], lowest power first
+    f, fr : (P, m, d+1) forcing f + fr/T, fr for what goes with a rate of change over the period
+    fit_errors : (P, 4) largest error of w, wd, f and fr on each piece, norm sqrt(sum metric e^2)
+    """
+
+    w: FloatArray
+    wd: FloatArray
+    f: FloatArray
+    fr: FloatArray
+    fit_errors: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Balance:
+    """A constant input whose amplitude is not given but follows from a mean over the periodic motion.
+
+    The input adds a ``input`` to the forcing; a is such that the mean over the period of f + fr/T - w (v . z)
+    - wd (v . z') is -known - a own, w, wd, f and fr being those of ``gains``, which have one row.
+
+    Attributes
+    ----------
+    input : (m,)
+    gains : one `Gains` for each of `RankOneSystem.parts`, (P, 1, d+1)
+    known, own : numbers, own not zero
+    """
+
+    input: FloatArray
+    gains: tuple[Gains, ...]
+    known: float
+    own: float
+
+
+@dataclass(frozen=True, eq=False)
+class Coarsening:
+    """What joining pieces (`floquet.rank_one.coarsening`) did to the flow, and for which variants that holds.
+
+    Attributes
+    ----------
+    errors : (P,) bound on the error of the transition matrix over each piece, energy norm
+    period, damping : largest period [s] and largest factor on wd
+    factors : (Q-1,) largest |factor| on each varied part
+    """
+
+    errors: FloatArray
+    period: float
+    damping: float
+    factors: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class RankOneSystem:
+    """z'' + D z' + L z + w(t) (v . z) + wd(t) (v . z') = f(t), periodic w, wd and f, m <= 3 coordinates.
+
+    Attributes
+    ----------
+    stiffness, damping : (m,) L [1/s^2] and D [1/s]
+    v : (m,) how the coordinates feed back
+    phases : (P+1,) ends of the pieces as parts of the period, switches among them
+    gains : w, wd and f
+    period : T [s]
+    metric : (m,) positive weights g (masses): diag(g) makes the mean feedback symmetric as nearly as can
+        be, so that the energy of the mean system measures errors well
+    varied : one or more further sets of gains that a chart adds, each times a factor of its own for every
+        point, as where the friction coefficient goes up and down with speed; the system by itself has them
+        with factor 1
+    balance : an input that forced motion needs, as the brake torque that holds a mean speed; no part of
+        `to_periodic_system`
+    coarsening : where pieces have been joined, what that costs; such a system has no forcing
+    """
+
+    stiffness: FloatArray
+    damping: FloatArray
+    v: FloatArray
+    phases: FloatArray
+    gains: Gains
+    period: float
+    metric: FloatArray
+    varied: Gains | tuple[Gains, ...] = ()
+    balance: Balance | None = None
+    coarsening: Coarsening | None = None
+
+    @property
+    def parts(self) -> tuple[Gains, ...]:
+        """The gains whose sum acts."""
+        return (self.gains, *((self.varied,) if isinstance(self.varied, Gains) else self.varied))
+
+    @cached_property
+    def total(self) -> Gains:
+        """The sum of the parts, each with factor 1."""
+        w, wd, f, fr = (_added([getattr(part, key) for part in self.parts]) for key in ("w", "wd", "f", "fr"))
+        return Gains(w, wd, f, fr, np.sum([part.fit_errors for part in self.parts], axis=0))
+
+    def to_periodic_system(self) -> PeriodicSystem:
+        """Return the same system for the general engine, which checks the kernel independently."""
+        m = self.v.size
+        T = self.period
+        gains = self.total
+
+        def place(t: FloatArray) -> tuple[npt.NDArray[np.intp], FloatArray]:
+            phase = t / T
+            piece = np.clip(np.searchsorted(self.phases, phase, side="right") - 1, 0, self.phases.size - 2)
+            low, high = self.phases[piece], self.phases[piece + 1]
+            return piece, (2.0 * phase - low - high) / (high - low)
+
+        def A(t: FloatArray) -> FloatArray:
+            piece, u = place(t)
+            out = np.zeros((t.size, 2 * m, 2 * m))
+            out[:, :m, m:] = np.eye(m)
+            out[:, m:, :m] = -np.diag(self.stiffness)
+            out[:, m:, m:] = -np.diag(self.damping)
+            out[:, m:, :m] -= _horner(gains.w, piece, u)[:, :, None] * self.v
+            out[:, m:, m:] -= _horner(gains.wd, piece, u)[:, :, None] * self.v
+            return out
+
+        def b(t: FloatArray) -> FloatArray:
+            piece, u = place(t)
+            out = np.zeros((t.size, 2 * m))
+            out[:, m:] = _horner(gains.f, piece, u) + _horner(gains.fr, piece, u) / T
+            return out
+
+        return PeriodicSystem(A, T, tuple(self.phases[1:-1] * T), vectorized=True, b=b)
+
+    def mean_exponents(self) -> ComplexArray:
+        """Exponents (2m,) [1/s] of the system with gains averaged over the period."""
+        m = self.v.size
+        A = np.zeros((2 * m, 2 * m))
+        A[:m, m:] = np.eye(m)
+        A[m:, :m] = -np.diag(self.stiffness) - np.outer(self._mean(self.total.w), self.v)
+        A[m:, m:] = -np.diag(self.damping) - np.outer(self._mean(self.total.wd), self.v)
+        return np.asarray(np.linalg.eigvals(A), dtype=complex)
+
+    def _mean(self, poly: FloatArray) -> FloatArray:
+        """Mean over the period of polynomials (P, m, d+1)."""
+        powers = np.arange(poly.shape[2])
+        moments = np.where(powers % 2 == 0, 1.0 / (powers + 1.0), 0.0)  # mean of u^j over [-1, 1]
+        return np.asarray(np.einsum("p,pmj,j->m", np.diff(self.phases), poly, moments))
+
+    def modal(self) -> ModalForm:
+        """Return the system in modal coordinates of its time average, see `ModalForm`."""
+        g, mean = self.metric, self._mean(self.total.w)
+        k = float(g @ (mean * self.v)) / float(self.v @ self.v) if (g * mean) @ self.v > 0 else 0.0
+        K = np.diag(g * self.stiffness) + k * np.outer(self.v, self.v)
+        squares, Phi = eigh(K, np.diag(g))
+        if squares.min() <= 0.0:
+            raise refuse(
+                "stiffness",
+                self.stiffness,
+                "a mean system that is statically stable",
+                "Use the general engine.",
+            )
+        inverse = Phi.T * g
+        polys = [_stacked([getattr(part, key) for part in self.parts]) for key in ("w", "wd", "f", "fr")]
+        w, wd, f, fr = (np.ascontiguousarray(np.einsum("ab,qpbj->qpaj", inverse, x)) for x in polys)
+        return ModalForm(
+            omega=np.sqrt(squares),
+            C=inverse @ (self.damping[:, None] * Phi),
+            v=Phi.T @ self.v,
+            w=w,
+            wd=wd,
+            f=f,
+            fr=fr,
+            # The mean feedback k g^-1 v v^T is part of omega^2.
+            reference=inverse @ (k * self.v / g),
+            input=np.zeros(self.v.size) if self.balance is None else inverse @ self.balance.input,
+            shapes=Phi,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class ModalForm:
+    """eta'' + C eta' + omega^2 eta + (w - reference) (v . eta) + wd (v . eta') = f + fr/T, z = shapes @ eta.
+
+    In the states x = (omega eta, eta') the squared norm is twice the energy of the mean undamped
+    frictionless system, the natural measure of errors.
+
+    Attributes
+    ----------
+    omega : (m,) natural frequencies of that system [rad/s]
+    C : (m, m) damping of the supports [1/s]
+    v : (m,) the deflection is v . eta
+    w, wd, f, fr : (Q, P, m, d+1) polynomials of the Q parts of `RankOneSystem.parts` on P pieces
+    reference : (m,) constant part of w that omega^2 has already
+    input : (m,) constant forcing that is balanced, see `Balance`
+    shapes : (m, m) modes of that system as columns, orthonormal in the metric
+    """
+
+    omega: FloatArray
+    C: FloatArray
+    v: FloatArray
+    w: FloatArray
+    wd: FloatArray
+    f: FloatArray
+    fr: FloatArray
+    reference: FloatArray
+    input: FloatArray
+    shapes: FloatArray
+
+    def state_matrix(self) -> FloatArray:
+        """Matrix (2m, 2m) that turns x = (omega eta, eta') into (z, z')."""
+        m = self.omega.size
+        out = np.zeros((2 * m, 2 * m))
+        out[:m, :m] = self.shapes / self.omega
+        out[m:, m:] = self.shapes
+        return out
+
+
+def _stacked(polys: list[FloatArray]) -> FloatArray:
+    """Polynomials (P, m, d+1) of several degrees as one array (Q, P, m, d+1)."""
+    degree = max(poly.shape[2] for poly in polys)
+    return np.stack([np.pad(poly, ((0, 0), (0, 0), (0, degree - poly.shape[2]))) for poly in polys])
+
+
+def _added(polys: list[FloatArray]) -> FloatArray:
+    return np.asarray(_stacked(polys).sum(axis=0))
+
+
+def _horner(poly: FloatArray, piece: npt.NDArray[np.intp], u: FloatArray) -> FloatArray:
+    coefficients = poly[piece]
+    value = np.zeros(coefficients.shape[:2])
+    for j in range(coefficients.shape[2] - 1, -1, -1):
+        value = value * u[:, None] + coefficients[:, :, j]
+    return value

@@ -1,0 +1,1 @@
+"""The gears at rest: circles, line of action, tooth outline; numbers in, no schema."""

@@ -1,0 +1,1 @@
+"""Film thickness, roughness and viscosity, each by its published formula."""

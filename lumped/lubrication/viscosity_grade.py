@@ -1,0 +1,164 @@
+"""Oils by ISO viscosity grade and viscosity index: from the name on the drum to a viscosity."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+from lumped.errors import refuse
+from lumped.lubrication.viscosity import kinematic_viscosity, walther_constants
+from lumped.ranges import FloatArray, ValidityRange
+
+#: ISO 3448 grade -> mid-point kinematic viscosity at 40 degC [mm^2/s]; limits are 10 per cent either side.
+ISO_VG_MIDPOINT = {
+    2: 2.2,
+    3: 3.2,
+    5: 4.6,
+    7: 6.8,
+    10: 10.0,
+    15: 15.0,
+    22: 22.0,
+    32: 32.0,
+    46: 46.0,
+    68: 68.0,
+    100: 100.0,
+    150: 150.0,
+    220: 220.0,
+    320: 320.0,
+    460: 460.0,
+    680: 680.0,
+    1000: 1000.0,
+    1500: 1500.0,
+    2200: 2200.0,
+    3200: 3200.0,
+}
+
+#: Viscosity index of a plain mineral gear oil, where a data sheet does not give one.
+DEFAULT_VISCOSITY_INDEX = 95.0
+
+# ASTM D2270, appendix: L = a Y^2 + b Y + c and H = d Y^2 + e Y + f from the viscosity Y at 100 degC; upper
+# end of Y [mm^2/s], then a..f. The first row starts at Y = 2.
+_INDEX_TABLE = (
+    (3.8, 1.14673, 1.7576, -0.109, 0.84155, 1.5521, -0.077),
+    (4.4, 3.38095, -15.4952, 33.196, 0.78571, 1.7929, -0.183),
+    (5.0, 2.5, -7.2143, 13.812, 0.82143, 1.5679, 0.119),
+    (6.4, 0.101, 16.635, -45.469, 0.04985, 9.1613, -18.557),
+    (7.0, 3.35714, -23.5643, 78.466, 0.22619, 7.7369, -16.656),
+    (7.7, 0.01191, 21.475, -72.870, 0.79762, -0.7321, 14.61),
+    (9.0, 0.41858, 16.1558, -56.040, 0.05794, 10.5156, -28.240),
+    (12.0, 0.88779, 7.5527, -16.600, 0.26665, 6.7015, -10.810),
+    (15.0, 0.76720, 10.7972, -38.180, 0.20073, 8.4658, -22.490),
+    (18.0, 0.97305, 5.3135, -2.200, 0.28889, 5.9741, -4.930),
+    (22.0, 0.97256, 5.25, -0.980, 0.24504, 7.416, -16.730),
+    (28.0, 0.91413, 7.4759, -21.820, 0.20323, 9.1267, -34.230),
+    (40.0, 0.87031, 9.7157, -50.770, 0.18411, 10.1015, -46.750),
+    (55.0, 0.84703, 12.6752, -133.310, 0.17029, 11.4866, -80.620),
+    (70.0, 0.85921, 11.1009, -83.190, 0.17130, 11.368, -76.940),
+    (math.inf, 0.83531, 14.6731, -216.246, 0.16841, 11.8493, -96.947),
+)
+_LOWEST_Y = 2.0
+
+
+def iso_vg(grade: int) -> ValidityRange:
+    """Kinematic viscosity at 40 degC that ISO 3448 allows for a grade [mm^2/s].
+
+    Raises
+    ------
+    ParameterError : not a grade of ISO 3448
+    """
+    middle = _midpoint(grade)
+    return ValidityRange("kinematic_viscosity_40", "mm^2/s", 0.9 * middle, 1.1 * middle, "ISO 3448")
+
+
+def viscosity_index(viscosity_40: float, viscosity_100: float) -> float:
+    """Viscosity index of an oil (ASTM D2270).
+
+    Up to 100: VI = 100 (L - U)/(L - H). Above: VI = 100 + (10^N - 1)/0.00715, N = log(H/U)/log(Y), with U and
+    Y the viscosities at 40 and 100 degC, L and H those at 40 degC of the reference oils of index 0 and 100
+    with the same Y.
+
+    Parameters
+    ----------
+    viscosity_40, viscosity_100 : kinematic viscosities [mm^2/s], viscosity_100 >= 2
+
+    Returns
+    -------
+    VI [-], not rounded
+
+    Raises
+    ------
+    ParameterError : less than 2 mm^2/s at 100 degC, or not less than at 40 degC
+    """
+    u, y = viscosity_40, viscosity_100
+    if not (_LOWEST_Y <= y < u and math.isfinite(u)):
+        raise refuse(
+            "kinematic_viscosity_100",
+            f"{y:g} mm^2/s, {u:g} mm^2/s at 40 degC",
+            f"from {_LOWEST_Y:g} mm^2/s to the viscosity at 40 degC",
+            "Check the oil's data sheet.",
+        )
+    low, high = _reference_oils(y)
+    if u >= high:
+        return 100.0 * (low - u) / (low - high)
+    exponent = math.log10(high / u) / math.log10(y)
+    return 100.0 + (math.pow(10.0, exponent) - 1.0) / 0.00715
+
+
+def viscosity_at_100(viscosity_40: float, index: float = DEFAULT_VISCOSITY_INDEX) -> float:
+    """Kinematic viscosity at 100 degC from that at 40 degC and the viscosity index [mm^2/s].
+
+    The inverse of ``viscosity_index``; the pieces of the standard's table join within 0.2 per cent.
+
+    Raises
+    ------
+    ParameterError : no oil with at least 2 mm^2/s at 100 degC has this viscosity and index
+    """
+    top = 0.9 * viscosity_40
+
+    def excess(y: float) -> float:
+        return viscosity_index(viscosity_40, y) - index
+
+    if top <= _LOWEST_Y or excess(_LOWEST_Y) > 0.0 or excess(top) < 0.0:
+        raise refuse(
+            "viscosity_index",
+            f"{index:g} at {viscosity_40:g} mm^2/s and 40 degC",
+            f"an oil of at least {_LOWEST_Y:g} mm^2/s at 100 degC (ASTM D2270)",
+            "Give the viscosity at 100 degC instead.",
+        )
+    return float(brentq(excess, _LOWEST_Y, top, xtol=1e-12, rtol=1e-12))
+
+
+def grade_viscosity(grade: int, temperature: ArrayLike, index: float = DEFAULT_VISCOSITY_INDEX) -> FloatArray:
+    """Kinematic viscosity of an oil of an ISO viscosity grade at a temperature [mm^2/s].
+
+    The grade's mid-point at 40 degC, the viscosity index's viscosity at 100 degC, and Walther's law through
+    both (ISO 3448, ASTM D2270, ASTM D341).
+
+    Parameters
+    ----------
+    grade : ISO VG, 2 to 3200
+    temperature : [degC], any shape
+    index : viscosity index
+
+    Raises
+    ------
+    ParameterError : not a grade, or an index that this grade cannot have
+    """
+    middle = _midpoint(grade)
+    constants = walther_constants(middle, 40.0, viscosity_at_100(middle, index), 100.0)
+    return np.asarray(kinematic_viscosity(temperature, constants), dtype=np.float64)
+
+
+def _midpoint(grade: int) -> float:
+    if grade not in ISO_VG_MIDPOINT:
+        raise refuse("iso_vg", grade, ", ".join(map(str, ISO_VG_MIDPOINT)), "Pick a grade of ISO 3448.")
+    return ISO_VG_MIDPOINT[grade]
+
+
+def _reference_oils(y: float) -> tuple[float, float]:
+    """L and H: viscosities at 40 degC of the oils with index 0 and 100 [mm^2/s]."""
+    _, a, b, c, d, e, f = next(row for row in _INDEX_TABLE if y <= row[0])
+    return (a * y + b) * y + c, (d * y + e) * y + f

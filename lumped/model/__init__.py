@@ -1,0 +1,1 @@
+"""The linear time-varying model: equations, periodic motion, transients, sweeps."""

@@ -1,0 +1,149 @@
+"""The time-averaged gear pair as a state space of python-control: modes, damping, frequency response."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lumped.arguments import one_of, real_numbers
+from lumped.errors import NumericalError
+from lumped.model.periodic_system import Form, LTVSystem, periodic_system
+from lumped.path_function import FloatArray
+from lumped.schema.pair import GearPair
+
+if TYPE_CHECKING:
+    import control
+    import xarray as xr
+
+#: Gauss-Legendre rule per smooth segment of the average, exact to degree 47.
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
+INPUTS = ("torque_pinion", "torque_gear")
+OUTPUTS = ("dte", "x_p", "x_g")
+
+
+def averaged_matrix(system: LTVSystem) -> FloatArray:
+    """Mean of A(t) over one mesh cycle, integrated segment by segment."""
+    edges = system.cycle.edges
+    total = np.zeros((system.size, system.size))
+    for segment, (low, high) in enumerate(itertools.pairwise(edges)):
+        nodes = 0.5 * (low + high) + 0.5 * (high - low) * _NODES
+        total += 0.5 * (high - low) * np.tensordot(_WEIGHTS, system.matrices(nodes, segment), axes=1)
+    return total / system.period
+
+
+def averaged_state_space(pair: GearPair, form: Form = "relative") -> control.StateSpace:
+    """Time-averaged linear model from the torques T_p, T_g to the transmission error and the LOA motions.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    form : "relative" (10 states) or "feedback" (6 states); the rigid rotation is left out
+
+    Returns
+    -------
+    control.StateSpace with named inputs [N m], outputs [m] and states
+
+    Raises
+    ------
+    ParameterError : form "absolute", whose rigid rotation has no frequency response at rest
+    """
+    import control  # takes longer to import than all else of lumped; modes do without
+
+    one_of("form", form, ("relative", "feedback"), "The rigid rotation has no steady response.")
+    system = periodic_system(pair, form)
+    m = len(system.coordinates)
+    b = np.stack([system.torque_pinion, system.torque_gear], axis=1)
+    c = np.zeros((3, system.size))
+    c[0, :m] = system.deflection
+    c[1, 1] = c[2, 2] = 1.0
+    return control.ss(
+        averaged_matrix(system),
+        b,
+        c,
+        np.zeros((3, 2)),
+        inputs=list(INPUTS),
+        outputs=list(OUTPUTS),
+        states=list(system.state_names),
+        name=pair.name.replace(".", "_"),  # python-control refuses a dot
+    )
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One mode of the averaged system.
+
+    Attributes
+    ----------
+    natural_frequency : undamped [Hz]
+    damping_ratio : [-]
+    resonant_speed : pinion speed at which the mesh frequency meets it [rpm]
+    shape : coordinate -> real amplitude relative to the largest; q, x_p, x_g, y_p, y_g
+    """
+
+    natural_frequency: float
+    damping_ratio: float
+    resonant_speed: float
+    shape: dict[str, float]
+
+
+def modes(pair: GearPair) -> tuple[Mode, ...]:
+    """Natural frequencies, damping and shapes of the averaged pair, by increasing frequency.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+
+    Raises
+    ------
+    NumericalError : a mode of the averaged system is overdamped, so it has no natural frequency
+    """
+    system = periodic_system(pair, "relative")
+    m = len(system.coordinates)
+    values, vectors = np.linalg.eig(averaged_matrix(system))
+    found = []
+    for value, vector in zip(values, vectors.T, strict=True):
+        if value.imag <= 0.0:
+            continue
+        shape = vector[:m] / vector[:m][np.argmax(np.abs(vector[:m]))]
+        frequency = float(abs(value)) / (2.0 * np.pi)
+        found.append(
+            Mode(
+                natural_frequency=frequency,
+                damping_ratio=float(-value.real / abs(value)),
+                resonant_speed=60.0 * frequency / pair.pinion.teeth,
+                shape={name: float(a.real) for name, a in zip(system.coordinates, shape, strict=True)},
+            )
+        )
+    if len(found) != m:
+        raise NumericalError("A mode of the averaged pair is overdamped: lower the damping ratios.")
+    return tuple(sorted(found, key=lambda mode: mode.natural_frequency))
+
+
+def frequency_response(pair: GearPair, frequencies: Sequence[float] | FloatArray) -> xr.Dataset:
+    """Response of transmission error and LOA motions to a fluctuating pinion torque.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    frequencies : (k,) [Hz], positive
+
+    Returns
+    -------
+    xarray.Dataset over ``frequency`` [Hz]: complex receptances ``dte``, ``x_p``, ``x_g`` [m/(N m)]
+    """
+    import control
+    import xarray as xr
+
+    f = real_numbers("frequencies", frequencies, 0.0, above=True, unit="Hz")
+    plant = averaged_state_space(pair, "feedback")
+    response = control.frequency_response(plant, 2.0 * np.pi * f, squeeze=False).complex
+    result = xr.Dataset(attrs={"gear_pair": pair.name})
+    result["frequency"] = xr.DataArray(f, dims="frequency", attrs={"units": "Hz", "long_name": "frequency"})
+    for j, name in enumerate(OUTPUTS):
+        attrs = {"units": "m/(N m)", "long_name": f"receptance of {name} to the pinion torque"}
+        result[name] = xr.DataArray(response[j, 0], dims="frequency", attrs=attrs)
+    return result

@@ -1,0 +1,157 @@
+"""The repaired equations of motion of the 6-DOF model, as forces (docs/theory/equations.md, eqs. 1 to 9).
+
+The printed signs of eqs. 1, 2, 7 and 9 can be put back one at a time, to show what each does.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+
+from lumped.arguments import some_of
+from lumped.errors import refuse
+from lumped.gear_geometry.geometry import geometry
+from lumped.model.bodies import bodies
+from lumped.path_function import FloatArray
+from lumped.schema.pair import GearPair
+
+#: Order of the coordinates; states are coordinates followed by their rates.
+COORDINATES = ("theta_p", "theta_g", "x_p", "x_g", "y_p", "y_g")
+#: Equations of the paper whose printed sign differs from the repaired one.
+PRINTED_EQUATIONS = (1, 2, 7, 9)
+
+
+@dataclass(frozen=True)
+class Signs:
+    """Sign of the disputed term of each equation: +1 as repaired, -1 as printed.
+
+    Attributes
+    ----------
+    pinion_friction : of the friction moment in eq. 1
+    gear_mesh : of the mesh moment in eq. 2
+    gear_loa : of the mesh force in eq. 7
+    gear_oloa : of the friction force in eq. 9
+    """
+
+    pinion_friction: float = 1.0
+    gear_mesh: float = 1.0
+    gear_loa: float = 1.0
+    gear_oloa: float = 1.0
+
+
+def signs(as_printed: Collection[int] = ()) -> Signs:
+    """Return the signs with the named equations as printed.
+
+    Parameters
+    ----------
+    as_printed : equation numbers out of 1, 2, 7, 9
+
+    Raises
+    ------
+    ParameterError : a number that has no printed alternative
+    """
+    chosen = some_of("as_printed", as_printed, PRINTED_EQUATIONS, "Name equations whose sign was repaired.")
+    return Signs(*(-1.0 if number in chosen else 1.0 for number in PRINTED_EQUATIONS))
+
+
+@dataclass(frozen=True, eq=False)
+class Structure:
+    """Constant data of the equations of motion, SI, in the order of ``COORDINATES``.
+
+    Attributes
+    ----------
+    mass : (6,) J_p, J_g, m_p, m_g, m_p, m_g
+    damping, stiffness : (6,) of the bearings; zero for the rotations
+    deflection : (6,) u with delta = u . z, the dynamic transmission error
+    normal : (6,) generalised force on each coordinate per unit normal load of a pair
+    friction_arm : (6, 2) generalised force per unit friction force, a[:, 0] + a[:, 1] * xi
+    """
+
+    mass: FloatArray
+    damping: FloatArray
+    stiffness: FloatArray
+    deflection: FloatArray
+    normal: FloatArray
+    friction_arm: FloatArray
+
+    def friction(self, position: FloatArray) -> FloatArray:
+        """Generalised force per unit friction force at positions xi (...,) -> (..., 6)."""
+        return self.friction_arm[:, 0] + np.multiply.outer(position, self.friction_arm[:, 1])
+
+
+def structure(pair: GearPair, as_printed: Collection[int] = ()) -> Structure:
+    """Return the constant part of the equations of motion.
+
+    Each column of forces reads like the paper: per unit N_i the pinion gets -r_bp (1), the gear +r_bg (2),
+    x_p -1 (6), x_g +1 (7); per unit F_i the pinion gets -X_pi (1), the gear +X_gi = L_XY - X_pi (2),
+    y_p +1 (8), y_g -1 (9).
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    as_printed : equations out of 1, 2, 7, 9 whose printed sign is used
+    """
+    g, b, s = geometry(pair), bodies(pair), signs(as_printed)
+    r_bp, r_bg = g.base_radius_pinion, g.base_radius_gear
+    mass = np.array(
+        [b.inertia_pinion, b.inertia_gear, b.mass_pinion, b.mass_gear, b.mass_pinion, b.mass_gear]
+    )
+    pinion, gear = pair.bearings.pinion, pair.bearings.gear
+    bearing = np.array(
+        [0.0, 0.0, pinion.loa_stiffness, gear.loa_stiffness, pinion.oloa_stiffness, gear.oloa_stiffness]
+    )
+    ratio = np.array(
+        [
+            0.0,
+            0.0,
+            pinion.loa_damping_ratio,
+            gear.loa_damping_ratio,
+            pinion.oloa_damping_ratio,
+            gear.oloa_damping_ratio,
+        ]
+    )
+    arm = np.zeros((6, 2))
+    arm[0] = 0.0, -s.pinion_friction
+    arm[1] = g.L_XY, -1.0
+    arm[4:, 0] = 1.0, -s.gear_oloa
+    return Structure(
+        mass=mass,
+        damping=2.0 * ratio * np.sqrt(bearing * mass),
+        stiffness=bearing,
+        deflection=np.array([r_bp, -r_bg, 1.0, -1.0, 0.0, 0.0]),
+        normal=np.array([-r_bp, s.gear_mesh * r_bg, -1.0, s.gear_loa, 0.0, 0.0]),
+        friction_arm=arm,
+    )
+
+
+def static_deflection(
+    pair: GearPair, total_stiffness: float, pinion_torque: float | None = None
+) -> FloatArray:
+    """At rest under the mean mesh load T_p / r_bp: the 12 states, rates zero.
+
+    The rotations split the wind-up so that J_p theta_p / r_bp + J_g theta_g / r_bg = 0, as two free rotors
+    would.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    total_stiffness : mean of the mesh stiffness of all pairs [N/m]
+    pinion_torque : T_p [N m]; default the operating point's
+    """
+    if not math.isfinite(total_stiffness) or total_stiffness <= 0.0:
+        raise refuse("mesh.stiffness", total_stiffness, "> 0 N/m", "Give a stiffness that carries the load.")
+    g, b = geometry(pair), bodies(pair)
+    torque = pair.operating.pinion_torque if pinion_torque is None else pinion_torque
+    load = torque / g.base_radius_pinion
+    x_p = -load / pair.bearings.pinion.loa_stiffness
+    x_g = load / pair.bearings.gear.loa_stiffness
+    wind_up = load / total_stiffness - x_p + x_g
+    share_p = b.effective_mass * g.base_radius_pinion**2 / b.inertia_pinion
+    theta_p = share_p * wind_up / g.base_radius_pinion
+    theta_g = -(1.0 - share_p) * wind_up / g.base_radius_gear
+    state = np.zeros(12)
+    state[:4] = theta_p, theta_g, x_p, x_g
+    return state

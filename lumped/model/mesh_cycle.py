@@ -1,0 +1,152 @@
+"""One mesh cycle: where each tooth pair is, when the coefficients switch, and what they are in between.
+
+Sources: Abbas Al-Zubaidi 2008, eqs. 5a and 5b; docs/theory/equations.md, "Frame".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.gear_geometry.geometry import Geometry, geometry
+from lumped.model.mesh_elements import MeshElements, mesh_elements
+from lumped.path_function import FloatArray
+from lumped.schema.pair import GearPair
+
+#: One-sided limits are taken this fraction of a base pitch inside a segment.
+_INSIDE = 1e-12
+#: Switch times closer than this fraction of a cycle are one.
+_SAME = 1e-10
+
+
+@dataclass(frozen=True)
+class PairState:
+    """Coefficients of every tooth pair; each array (pairs, k), zero for a pair out of contact.
+
+    Attributes
+    ----------
+    position : xi_i, also for a pair out of contact [m]
+    contact : whether the pair is within [L_XA, L_XD]
+    stiffness, damping, friction, error, error_rate : k_i [N/m], c_i [N s/m], mu_i [-], e_i [m], de_i/dt [m/s]
+    """
+
+    position: FloatArray
+    contact: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]
+    stiffness: FloatArray
+    damping: FloatArray
+    friction: FloatArray
+    error: FloatArray
+    error_rate: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class MeshCycle:
+    """The mesh cycle of a gear pair at nominal rotation; t = 0 is pair n at A.
+
+    Attributes
+    ----------
+    geometry : of the pair
+    elements : stiffness, damping, friction coefficient and error of a tooth pair over the path
+    """
+
+    geometry: Geometry
+    elements: MeshElements
+
+    @property
+    def period(self) -> float:
+        """T_m = lambda / (Omega_p r_bp) [s]."""
+        return self.geometry.mesh_period
+
+    @cached_property
+    def offsets(self) -> FloatArray:
+        """xi_i at t = 0, L_XA + (n - i) lambda for i = 0..n; (pairs,) [m]."""
+        g = self.geometry
+        return np.asarray(g.L_XA + np.arange(g.pairs - 1, -1, -1) * g.base_pitch, dtype=np.float64)
+
+    @cached_property
+    def switch_times(self) -> FloatArray:
+        """Times strictly inside (0, T_m) at which a coefficient jumps or has a kink; increasing [s].
+
+        A pair leaves contact at D, passes P, and crosses the switches of its k, c, mu and e. Entry at A is
+        t = 0.
+        """
+        g, e = self.geometry, self.elements
+        functions = (e.stiffness, e.damping, e.friction, e.error)
+        return self._times([np.array([g.L_XP, g.L_XD]), *(f.switches for f in functions)])
+
+    @cached_property
+    def knot_times(self) -> FloatArray:
+        """Times strictly inside (0, T_m) at which a pair passes from one polynomial piece to the next [s]."""
+        e = self.elements
+        return self._times([f.breaks for f in (e.stiffness, e.damping, e.friction, e.error)])
+
+    def _times(self, positions: list[FloatArray]) -> FloatArray:
+        """Increasing times strictly inside (0, T_m) at which any pair is at any of the positions [s]."""
+        g = self.geometry
+        phases = np.sort(np.mod((np.concatenate(positions) - g.L_XA) / g.base_pitch, 1.0))
+        phases = phases[(phases > _SAME) & (phases < 1.0 - _SAME)]
+        keep = np.diff(phases, prepend=-1.0) > _SAME
+        return np.asarray(phases[keep] * self.period, dtype=np.float64)
+
+    @cached_property
+    def edges(self) -> FloatArray:
+        """Ends of the smooth segments, 0 and T_m included [s]."""
+        return np.concatenate([[0.0], self.switch_times, [self.period]])
+
+    @property
+    def events(self) -> dict[str, float]:
+        """Times in [0, T_m) at which a pair is at A, B, P, C or D [s]."""
+        g = self.geometry
+        marks = {"A": g.L_XA, "B": g.L_XB, "P": g.L_XP, "C": g.L_XC, "D": g.L_XD}
+        return {
+            name: float(np.mod((xi - g.L_XA) / g.base_pitch, 1.0) * self.period) for name, xi in marks.items()
+        }
+
+    def sample(self, time: ArrayLike, segment: int | NDArray[np.int64] | None = None) -> PairState:
+        """Return the coefficients of all pairs at times t [s], any number of cycles.
+
+        Parameters
+        ----------
+        time : (k,) times [s]
+        segment : the smooth segment to which all times belong, or each (k,), so that values at its ends are
+            its one-sided limits; by default each time's own segment, right-continuous at switches
+        """
+        g = self.geometry
+        t = np.atleast_1d(np.asarray(time, dtype=float))
+        if segment is None:
+            # Multiples of the period round to either side of an edge; just before it counts as at it.
+            same = _SAME * self.period
+            tau = np.mod(t, self.period)
+            tau = np.where(tau > self.period - same, 0.0, tau)
+            index = np.searchsorted(self.edges[1:-1], tau + same, side="right")
+        else:
+            tau, index = t, np.broadcast_to(segment, t.shape)
+        speed, inside = g.omega_pinion * g.base_radius_pinion, _INSIDE * g.base_pitch
+        low, high = speed * self.edges[index] + inside, speed * self.edges[index + 1] - inside
+        shift = np.clip(speed * tau, low, high)
+        xi = self.offsets[:, None] + shift
+        # Which pairs touch is decided in the middle of the segment: it cannot change inside.
+        middle = self.offsets[:, None] + 0.5 * (low + high)
+        contact = middle <= g.L_XD
+        e = self.elements
+
+        def of(values: FloatArray) -> FloatArray:
+            return np.where(contact, values, 0.0)
+
+        return PairState(
+            position=self.offsets[:, None] + speed * tau,
+            contact=contact,
+            stiffness=of(e.stiffness(xi)),
+            damping=of(e.damping(xi)),
+            friction=of(e.friction(xi)),
+            error=of(e.error(xi)),
+            error_rate=of(e.error.derivative()(xi) * speed),
+        )
+
+
+def mesh_cycle(pair: GearPair) -> MeshCycle:
+    """Return the mesh cycle of a gear pair."""
+    return MeshCycle(geometry(pair), mesh_elements(pair))

@@ -1,0 +1,185 @@
+"""The gear pair as a linear system with periodic coefficients, x' = A(t) x + b(t).
+
+Sources: Abbas Al-Zubaidi 2008, eqs. 1 to 9, repaired and derived in docs/theory/equations.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.arguments import one_of
+from lumped.gear_geometry.geometry import geometry
+from lumped.model.equations import COORDINATES, Structure, structure
+from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
+from lumped.path_function import FloatArray
+from lumped.schema.pair import GearPair
+
+Form = Literal["absolute", "relative", "feedback"]
+
+
+@dataclass(frozen=True, eq=False)
+class MeshGain:
+    """Rank-one feedback of the mesh: z'' = ... + gain_k (u.z) + gain_c (u.z') + gain_0, arrays (k, m).
+
+    Attributes
+    ----------
+    stiffness : acceleration per unit dynamic transmission error [1/s^2] (rotations: [rad/(m s^2)])
+    damping : acceleration per unit rate of it
+    error : acceleration by the unloaded tooth error
+    """
+
+    stiffness: FloatArray
+    damping: FloatArray
+    error: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class LTVSystem:
+    """x' = A(t) x + b(t) with x = (z, z'), z the coordinates of ``form``; SI.
+
+    Attributes
+    ----------
+    form : "absolute" (theta_p, theta_g, x_p, x_g, y_p, y_g: 12 states, with the rigid rotation),
+        "relative" (q = r_bp theta_p - r_bg theta_g instead of the rotations: 10 states) or
+        "feedback" (q, x_p, x_g: the 6 states that decide stability)
+    coordinates : names of z, (m,)
+    cycle : mesh cycle with positions, switch times and coefficients of the tooth pairs
+    constant : (2m, 2m) part of A that does not depend on time
+    torque_pinion, torque_gear : (2m,) b per unit T_p and per unit T_g
+    deflection : (m,) u with dynamic transmission error u . z
+    reduction : (m, 6) rows that make z of the six coordinates
+    structure : constant data of the equations of motion
+    pinion_torque : T_p [N m]
+    """
+
+    form: Form
+    coordinates: tuple[str, ...]
+    cycle: MeshCycle
+    constant: FloatArray
+    torque_pinion: FloatArray
+    torque_gear: FloatArray
+    deflection: FloatArray
+    reduction: FloatArray
+    structure: Structure
+    pinion_torque: float
+
+    @property
+    def size(self) -> int:
+        """Number of states 2m."""
+        return 2 * len(self.coordinates)
+
+    @property
+    def state_names(self) -> tuple[str, ...]:
+        """Names of the states: coordinates, then rates with the suffix ``_dot``."""
+        return self.coordinates + tuple(f"{name}_dot" for name in self.coordinates)
+
+    @property
+    def period(self) -> float:
+        """One mesh cycle [s]."""
+        return self.cycle.period
+
+    @property
+    def breakpoints(self) -> FloatArray:
+        """Switch times strictly inside the period [s]."""
+        return self.cycle.switch_times
+
+    def gain(self, time: ArrayLike, segment: int | NDArray[np.int64] | None = None) -> MeshGain:
+        """Rank-one feedback of the mesh at times (k,) [s]; ``segment`` as in ``MeshCycle.sample``."""
+        pairs = self.cycle.sample(time, segment)
+        s = self.structure
+        # Accelerations per unit N, F and F xi.
+        basis = np.vstack([s.normal, s.friction_arm.T]) / s.mass @ self.reduction.T
+
+        def acceleration(load: FloatArray) -> FloatArray:
+            friction = pairs.friction * load
+            return np.stack([v.sum(0) for v in (load, friction, friction * pairs.position)], axis=-1) @ basis
+
+        error = pairs.stiffness * pairs.error + pairs.damping * pairs.error_rate
+        return MeshGain(acceleration(pairs.stiffness), acceleration(pairs.damping), -acceleration(error))
+
+    def matrices(self, time: ArrayLike, segment: int | None = None) -> FloatArray:
+        """A at times (k,) [s] -> (k, 2m, 2m)."""
+        gain = self.gain(time, segment)
+        m = len(self.coordinates)
+        a = np.repeat(self.constant[None], gain.stiffness.shape[0], axis=0)
+        a[:, m:, :m] += gain.stiffness[:, :, None] * self.deflection
+        a[:, m:, m:] += gain.damping[:, :, None] * self.deflection
+        return a
+
+    def forcing(self, time: ArrayLike, segment: int | None = None) -> FloatArray:
+        """The part of b without the brake torque, at times (k,) [s] -> (k, 2m)."""
+        gain = self.gain(time, segment)
+        b = np.zeros((gain.error.shape[0], self.size))
+        b[:, len(self.coordinates) :] = gain.error
+        return np.asarray(b + self.torque_pinion * self.pinion_torque, dtype=np.float64)
+
+    def A(self, time: float) -> FloatArray:
+        """System matrix at one time [s] -> (2m, 2m)."""
+        return np.asarray(self.matrices([time])[0], dtype=np.float64)
+
+    def b(self, time: float, brake_torque: float) -> FloatArray:
+        """Forcing at one time [s] with a brake torque T_g [N m] -> (2m,)."""
+        return np.asarray(self.forcing([time])[0] + self.torque_gear * brake_torque, dtype=np.float64)
+
+
+def periodic_system(
+    pair: GearPair,
+    form: Form = "relative",
+    *,
+    as_printed: Collection[int] = (),
+    cycle: MeshCycle | None = None,
+) -> LTVSystem:
+    """Return the gear pair as a linear time-varying periodic system (docs/theory/equations.md, eqs. 1 to 9).
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    form : coordinates, see ``LTVSystem``; the rigid rotation is only in "absolute"
+    as_printed : equations out of 1, 2, 7, 9 whose printed sign is used; every form stays exact, because all
+        forces depend on the rotations through the dynamic transmission error only
+    cycle : the pair's mesh cycle where it is known already
+
+    Raises
+    ------
+    ParameterError : unknown form or equation
+    """
+    one_of("form", form, get_args(Form))
+    s = structure(pair, as_printed)
+    g = geometry(pair)
+    if form == "absolute":
+        names: tuple[str, ...] = COORDINATES
+        reduction = np.eye(6)
+    else:
+        size = 5 if form == "relative" else 3
+        names = ("q", "x_p", "x_g", "y_p", "y_g")[:size]
+        reduction = np.zeros((size, 6))
+        reduction[0, :2] = g.base_radius_pinion, -g.base_radius_gear
+        reduction[1:, 2 : size + 1] = np.eye(size - 1)
+    m = len(names)
+    constant = np.zeros((2 * m, 2 * m))
+    constant[:m, m:] = np.eye(m)
+    # Bearings act on translations, which every form keeps as coordinates of their own.
+    lift = np.linalg.pinv(reduction)
+    constant[m:, :m] = -reduction @ np.diag(s.stiffness / s.mass) @ lift
+    constant[m:, m:] = -reduction @ np.diag(s.damping / s.mass) @ lift
+    torque = np.zeros((2, 2 * m))
+    torque[0, m:] = reduction[:, 0] / s.mass[0]
+    torque[1, m:] = -reduction[:, 1] / s.mass[1]
+    deflection = np.array([1.0, 1.0, -1.0, 0.0, 0.0])[:m] if form != "absolute" else s.deflection
+    return LTVSystem(
+        form=form,
+        coordinates=names,
+        cycle=cycle or mesh_cycle(pair),
+        constant=constant,
+        torque_pinion=torque[0],
+        torque_gear=torque[1],
+        deflection=deflection,
+        reduction=reduction,
+        structure=s,
+        pinion_torque=pair.operating.pinion_torque,
+    )

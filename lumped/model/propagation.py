@@ -1,0 +1,252 @@
+"""Gauss-Legendre collocation for linear systems with smooth coefficients, blocks of steps at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+from lumped.errors import NumericalError
+from lumped.model.periodic_system import LTVSystem
+from lumped.path_function import FloatArray
+
+IntArray = NDArray[np.int64]
+
+#: Largest angle per step of the fastest frequency [rad]. With 4 stages (order 8) the local error constant is
+#: (4!)^4 / (9 (8!)^3) = 5.6e-10, so a step of 0.5 rad errs by about 1e-12.
+STEP_ANGLE = 0.5
+STAGES = 4
+#: Steps solved together, a bound on memory.
+_BLOCK = 1024
+#: Most steps of a mesh cycle: some ten seconds of work.
+_MAX_STEPS = 1_000_000
+
+
+@cache
+def gauss_tableau(stages: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Butcher tableau (a, b, c) of the Gauss method with s stages, order 2 s, on [0, 1]."""
+    nodes, weights = legendre.leggauss(stages)
+    c, b = 0.5 * (nodes + 1.0), 0.5 * weights
+    # a_ij integrates the j-th Lagrange polynomial, written in Legendre polynomials: no rounding is amplified.
+    values, odd = legendre.legvander(nodes, stages), 2 * np.arange(stages) + 1
+    integrals = np.column_stack([nodes + 1.0, (values[:, 2:] - values[:, :-2]) / odd[1:]])
+    a = 0.5 * (integrals * odd) @ (values[:, :-1].T * b)
+    return a, b, c
+
+
+@dataclass(frozen=True, eq=False)
+class StepMaps:
+    """Affine maps x(end) = transition x(start) + forced of consecutive intervals, each of one or more steps.
+
+    Attributes
+    ----------
+    edges : (steps + 1,) ends of the steps [s]
+    times : (intervals + 1,) ends of the intervals, 0 and the period included [s]
+    maps : (intervals, n, n + columns) transition, then forced for each forcing: the own one and one per unit
+        of each extra column
+    """
+
+    edges: FloatArray
+    times: FloatArray
+    maps: FloatArray
+
+    def over_all(self) -> tuple[FloatArray, FloatArray]:
+        """Map over all steps: transition (n, n) and forced (n, columns)."""
+        whole = _merged(self.maps, np.zeros(self.maps.shape[0], dtype=np.int64))[0]
+        n = whole.shape[0]
+        return whole[:, :n], whole[:, n:]
+
+    def states(self, initial: FloatArray, weights: FloatArray) -> FloatArray:
+        """States (intervals + 1, n) at ``times`` from x(0) and the weight (columns,) of each forcing."""
+        n = initial.size
+        x = np.empty((self.times.size, n))
+        x[0] = initial
+        forced = self.maps[..., n:] @ weights
+        for j, phi in enumerate(self.maps[..., :n]):
+            x[j + 1] = phi @ x[j] + forced[j]
+        return x
+
+
+def _merged(maps: FloatArray, group: IntArray) -> FloatArray:
+    """Maps of which consecutive ones of the same group (k,), numbered 0, 1, ..., are made one."""
+    n = maps.shape[1]
+    while group.size > group[-1] + 1:  # neighbours are merged two by two
+        rank = np.arange(group.size) - np.searchsorted(group, group)
+        first = rank % 2 == 0
+        later = np.flatnonzero(~first)
+        merged = maps[later, :, :n] @ maps[later - 1]
+        merged[..., n:] += maps[later, :, n:]
+        maps = maps.copy()
+        maps[later - 1] = merged
+        maps, group = maps[first], group[first]
+    return maps
+
+
+def fastest_frequency(system: LTVSystem) -> float:
+    """Bound on the fastest natural frequency over the cycle [rad/s].
+
+    Frozen-time eigenvalues at the stiffest of three times on each polynomial piece, in each smooth segment.
+    """
+    switches = system.cycle.edges
+    marks = np.union1d(switches, system.cycle.knot_times)
+    times = (marks[:-1] + np.multiply.outer([0.05, 0.5, 0.95], np.diff(marks))).ravel()
+    segment = np.searchsorted(switches, times, side="right") - 1
+    stiffness = np.abs(system.gain(times, segment).stiffness @ system.deflection)
+    order = np.lexsort((stiffness, segment))
+    stiffest = order[np.flatnonzero(np.diff(segment[order], append=-1))]
+    values = np.linalg.eigvals(system.matrices(times[stiffest]))
+    return float(np.abs(values).max()) * 1.1
+
+
+def step_maps(
+    system: LTVSystem,
+    extra: FloatArray,
+    *,
+    outputs: FloatArray | None = None,
+    step_angle: float = STEP_ANGLE,
+    stages: int = STAGES,
+) -> StepMaps:
+    """Propagate all unit states and forcings over one mesh cycle, step by step, aligned with the switches.
+
+    Parameters
+    ----------
+    system : the periodic system
+    extra : (n, columns) constant forcings of the rates to carry beside the system's own
+    outputs : times in [0, T_m] that end an interval [s]; by default there is one interval
+    step_angle : largest angle of the fastest frequency per step [rad]
+    stages : of the Gauss method; the order is twice as large
+
+    Raises
+    ------
+    NumericalError : the result is not finite
+    """
+    grid = _step_grid(system, np.empty(0) if outputs is None else outputs, step_angle)
+    parts, groups = [], []
+    for low in range(0, grid.length.size, _BLOCK):
+        block = slice(low, low + _BLOCK)
+        maps = _steps(system, grid.segment[block], grid.edges[:-1][block], grid.length[block], extra, stages)
+        group = grid.interval[block]
+        parts.append(_merged(maps, group - group[0]))
+        groups.append(np.unique(group))
+    maps = _merged(np.concatenate(parts), np.concatenate(groups))
+    if not np.isfinite(maps).all():
+        raise NumericalError(
+            "The mesh cycle could not be integrated: check stiffness and inertia for extremes."
+        )
+    return StepMaps(grid.edges, grid.times, maps)
+
+
+def _steps(
+    system: LTVSystem, segment: IntArray, start: FloatArray, h: FloatArray, extra: FloatArray, stages: int
+) -> FloatArray:
+    """Maps (k, 2m, 2m + columns) of Gauss steps of lengths h (k,) from the times ``start``.
+
+    In x = (z, v) with z' = v only the stage accelerations W_i are unknown. With A's constant part (K, C), the
+    deflections delta = u.z and delta' = u.v at the stages and the feedback (g_k, g_c, g_0) of the mesh,
+
+        W_i = K (z + h c_i v + h^2 (a a)_ij W_j) + C (v + h a_ij W_j) + f + n_i,
+        n_i = g_k,i delta_i + g_c,i delta'_i + g_0,i.
+
+    The part without n depends on h alone, and few lengths differ. W reaches n through the numbers p_i = u.W_i
+    only, so each step solves s equations instead of s m, for all unit states and forcings together.
+    """
+    m, k = system.size // 2, h.size
+    lengths, which = np.unique(h, return_inverse=True)
+    gauss = gauss_tableau(stages)
+    fixed = [part[which] for part in _without_mesh(system, lengths, extra, gauss)]
+    free_end, free_p, by_feedback, start_deflection, by_p = fixed
+    times = (start[:, None] + h[:, None] * gauss[2]).ravel()
+    gain = system.gain(times, np.repeat(segment, stages))
+    weights = np.stack([gain.stiffness, gain.damping, gain.error], axis=-1).reshape(k, stages, m, 3)
+    driven = by_feedback @ weights  # (k, stages, stages + 2m, 3)
+    by_deflection = driven[..., :2].transpose(0, 2, 3, 1).reshape(k, -1, 2 * stages)
+    error = driven[..., 2].sum(axis=1)
+    to_p, to_end = by_deflection[:, :stages], by_deflection[:, stages:]
+    right = free_p + to_p @ start_deflection
+    right[..., 2 * m] += error[:, :stages]
+    p = np.linalg.solve(np.eye(stages) - to_p @ by_p, right)
+    maps: FloatArray = free_end + to_end @ (start_deflection + by_p @ p)
+    maps[..., 2 * m] += error[:, stages:]
+    return maps
+
+
+def _without_mesh(
+    system: LTVSystem, h: FloatArray, extra: FloatArray, gauss: tuple[FloatArray, FloatArray, FloatArray]
+) -> tuple[FloatArray, ...]:
+    """What ``_steps`` needs of step lengths h (k,); columns are unit states and forcings, s stages.
+
+    Returns
+    -------
+    end (k, 2m, columns) and p (k, s, columns) without feedback; what p, then the end take from the feedback
+    n_i (k, s, s + 2m, m); stage deflections, then their rates, by the start (k, 2s, columns) and by p
+    (k, 2s, s)
+    """
+    a, b, c = gauss
+    s, m, k, u = c.size, system.size // 2, h.size, system.deflection
+    h = h[:, None, None]
+    stiffness, damping = system.constant[m:, :m], system.constant[m:, m:]
+    left = np.eye(s * m) - h**2 * np.kron(a @ a, stiffness) - h * np.kron(a, damping)
+    states = np.hstack([np.tile(stiffness, (s, 1)), np.tile(damping, (s, 1))])
+    forces = np.column_stack([system.torque_pinion * system.pinion_torque, extra])[m:]
+    right = np.concatenate([np.tile(states, (k, 1, 1)), np.tile(forces, (k, s, 1))], axis=2)
+    right[..., m : 2 * m] += h * np.kron(c[:, None], stiffness)
+    inverse = np.linalg.inv(left)
+    stage_p = np.kron(np.eye(s), u)
+    to_end = np.concatenate([h**2 * np.kron(b @ a, np.eye(m)), h * np.kron(b, np.eye(m))], axis=1)
+    accelerations = inverse @ right
+    end = to_end @ accelerations
+    end[:, :, : 2 * m] += np.eye(2 * m)
+    end[:, :m, m : 2 * m] += h * np.eye(m)
+    start = np.zeros((k, 2 * s, right.shape[2]))
+    start[:, :s, :m] = start[:, s:, m : 2 * m] = u
+    start[:, :s, m : 2 * m] = h * np.multiply.outer(c, u)
+    by_feedback = np.concatenate([stage_p @ inverse, to_end @ inverse], axis=1)
+    by_feedback = np.ascontiguousarray(by_feedback.reshape(k, s + 2 * m, s, m).swapaxes(1, 2))
+    by_p = np.concatenate([h**2 * (a @ a), h * a], axis=1)
+    return end, stage_p @ accelerations, by_feedback, start, by_p
+
+
+@dataclass(frozen=True, eq=False)
+class _StepGrid:
+    """Steps of a mesh cycle: ends [s]; length [s], smooth segment and interval of each; interval ends [s]."""
+
+    edges: FloatArray
+    length: FloatArray
+    segment: IntArray
+    interval: IntArray
+    times: FloatArray
+
+
+def _step_grid(system: LTVSystem, outputs: FloatArray, step_angle: float) -> _StepGrid:
+    """Steps that end at every switch, knot and output."""
+    period, switches = system.period, system.cycle.edges
+    # Within a step each coefficient is one polynomial: where a law varies fast, its pieces are short.
+    marks = np.unique(np.concatenate([switches, system.cycle.knot_times, outputs]))
+    # Marks that differ by rounding are one, and a switch stays where it is exactly.
+    close = np.flatnonzero(np.diff(marks) < 1e-13 * period)
+    drop = [j if marks[j + 1] in switches else j + 1 for j in close]
+    marks = np.delete(marks, drop)
+    largest = step_angle / fastest_frequency(system)
+    pieces = np.maximum(1.0, np.ceil(np.diff(marks) / largest))
+    if not pieces.sum() <= _MAX_STEPS:
+        raise NumericalError(
+            f"A mesh cycle of {period:.3g} s takes {pieces.sum():.3g} steps at the fastest vibration, more "
+            f"than {_MAX_STEPS}: raise the speed, or lower stiffness or damping where they are extreme."
+        )
+    count = pieces.astype(np.int64)
+    first = np.concatenate([[0], np.cumsum(count)])
+    length = np.repeat(np.diff(marks) / count, count)
+    start = np.repeat(marks[:-1], count) + length * (np.arange(first[-1]) - np.repeat(first[:-1], count))
+    ends = np.searchsorted(marks, outputs - 1e-13 * period)
+    ends = np.unique(np.concatenate([[0], ends, [count.size]]))
+    mark = np.repeat(np.arange(count.size), count)
+    return _StepGrid(
+        edges=np.append(start, marks[-1]),
+        length=length,
+        segment=np.searchsorted(switches, marks[mark], side="right") - 1,
+        interval=np.searchsorted(ends, mark, side="right") - 1,
+        times=marks[ends],
+    )

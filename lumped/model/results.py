@@ -1,0 +1,155 @@
+"""Labelled results: one table of variables with units, shared by the lumped and the multibody model."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from collections.abc import Mapping
+from functools import cache
+from importlib import metadata
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lumped.gear_geometry.geometry import geometry
+from lumped.model.equations import COORDINATES
+from lumped.model.periodic_system import LTVSystem
+from lumped.path_function import FloatArray
+from lumped.schema.pair import GearPair
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: Variable -> (dimensions, unit, plain name). Every model of the pair returns these.
+VARIABLES: dict[str, tuple[tuple[str, ...], str, str]] = {
+    "theta_p": (("time",), "rad", "pinion rotation, deviation from nominal"),
+    "theta_g": (("time",), "rad", "gear rotation, deviation from nominal"),
+    "x_p": (("time",), "m", "pinion displacement along the line of action"),
+    "x_g": (("time",), "m", "gear displacement along the line of action"),
+    "y_p": (("time",), "m", "pinion displacement off the line of action"),
+    "y_g": (("time",), "m", "gear displacement off the line of action"),
+    "theta_p_dot": (("time",), "rad/s", "pinion speed, deviation from nominal"),
+    "theta_g_dot": (("time",), "rad/s", "gear speed, deviation from nominal"),
+    "x_p_dot": (("time",), "m/s", "pinion velocity along the line of action"),
+    "x_g_dot": (("time",), "m/s", "gear velocity along the line of action"),
+    "y_p_dot": (("time",), "m/s", "pinion velocity off the line of action"),
+    "y_g_dot": (("time",), "m/s", "gear velocity off the line of action"),
+    "dte": (("time",), "m", "dynamic transmission error"),
+    "dte_dot": (("time",), "m/s", "rate of the dynamic transmission error"),
+    "mesh_stiffness": (("time",), "N/m", "mesh stiffness of all tooth pairs"),
+    "position": (("pair", "time"), "m", "contact position from the pinion's tangent point"),
+    "contact": (("pair", "time"), "1", "whether the tooth pair is in contact"),
+    "mu": (("pair", "time"), "1", "friction coefficient, signed"),
+    "normal_load": (("pair", "time"), "N", "normal load"),
+    "friction_force": (("pair", "time"), "N", "friction force on the pinion, off the line of action"),
+    "sliding_velocity": (("pair", "time"), "m/s", "sliding velocity, vibration included"),
+    "friction_power": (("pair", "time"), "W", "friction power, vibration included"),
+    "friction_power_nominal": (("pair", "time"), "W", "friction power at the nominal sliding velocity"),
+    "bearing_force_x_p": (("time",), "N", "pinion bearing force on the pinion, along the line of action"),
+    "bearing_force_x_g": (("time",), "N", "gear bearing force on the gear, along the line of action"),
+    "bearing_force_y_p": (("time",), "N", "pinion bearing force on the pinion, off the line of action"),
+    "bearing_force_y_g": (("time",), "N", "gear bearing force on the gear, off the line of action"),
+}
+
+
+def provenance(pair: GearPair, **settings: Any) -> dict[str, Any]:
+    """Attributes that say what a result was made from: parameters, hash, versions, settings."""
+    text = pair.to_toml()
+    return {
+        "gear_pair": pair.name,
+        "parameters": text,
+        "parameters_sha256": _sha256(text),
+        "versions": _versions(),
+        "settings": ", ".join(f"{key}={value}" for key, value in sorted(settings.items())),
+    }
+
+
+@cache
+def _versions() -> str:
+    names = ("spurcheck", "numpy", "scipy", "exudyn")
+    versions = [f"{name} {metadata.version(name)}" for name in names]
+    return ", ".join([f"python {platform.python_version()}", *versions])
+
+
+def parameters_hash(pair: GearPair) -> str:
+    """SHA-256 of the pair's TOML text: the same parameters give the same hash everywhere."""
+    return _sha256(pair.to_toml())
+
+
+def _sha256(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def labelled(time: FloatArray, values: Mapping[str, FloatArray], attributes: Mapping[str, Any]) -> xr.Dataset:
+    """Put arrays under their names, units and dimensions.
+
+    Parameters
+    ----------
+    time : (k,) [s]
+    values : variable name -> array of the dimensions in ``VARIABLES``; pair 0 is the one ahead
+    attributes : of the dataset
+    """
+    import xarray as xr
+
+    variables = {
+        name: (dims, values[name], {"units": unit, "long_name": long_name})
+        for name, (dims, unit, long_name) in VARIABLES.items()
+        if name in values
+    }
+    pairs = next((v.shape[0] for n, v in values.items() if VARIABLES[n][0][0] == "pair"), 0)
+    coordinates = {
+        "time": ("time", time, {"units": "s", "long_name": "time"}),
+        "pair": ("pair", np.arange(pairs), {"units": "1", "long_name": "tooth pair, 0 is ahead"}),
+    }
+    return xr.Dataset(variables, coords=coordinates, attrs=dict(attributes))
+
+
+def dataset(
+    pair: GearPair, system: LTVSystem, time: FloatArray, states: FloatArray, attributes: Mapping[str, Any]
+) -> xr.Dataset:
+    """Return states of the 12-state lumped model with all loads and velocities that follow from them.
+
+    Parameters
+    ----------
+    pair, system : the gear pair and its "absolute" system
+    time : (k,) [s]
+    states : (k, 12)
+    attributes : of the dataset
+    """
+    return labelled(time, response(pair, system, time, states), attributes)
+
+
+def response(
+    pair: GearPair, system: LTVSystem, time: FloatArray, states: FloatArray
+) -> dict[str, FloatArray]:
+    """Return the arrays of ``dataset`` by name, without labels; arguments as there."""
+    g, s = geometry(pair), system.structure
+    z, rates = states[:, :6], states[:, 6:]
+    dte, dte_dot = z @ s.deflection, rates @ s.deflection
+    pairs = system.cycle.sample(time)
+    normal = pairs.stiffness * (dte - pairs.error) + pairs.damping * (dte_dot - pairs.error_rate)
+    friction = pairs.friction * normal
+    arm_g = g.L_XY - pairs.position
+    sliding = (
+        (g.omega_pinion + rates[:, 0]) * pairs.position
+        - (g.omega_gear + rates[:, 1]) * arm_g
+        - (rates[:, 4] - rates[:, 5])
+    )
+    bearing = -(s.stiffness * z + s.damping * rates)
+    values: dict[str, FloatArray] = {name: z[:, j] for j, name in enumerate(COORDINATES)}
+    values |= {f"{name}_dot": rates[:, j] for j, name in enumerate(COORDINATES)}
+    values |= {f"bearing_force_{name}": bearing[:, j] for j, name in enumerate(COORDINATES) if j > 1}
+    values |= {
+        "dte": dte,
+        "dte_dot": dte_dot,
+        "mesh_stiffness": pairs.stiffness.sum(0),
+        "position": pairs.position,
+        "contact": pairs.contact.astype(np.float64),
+        "mu": pairs.friction,
+        "normal_load": normal,
+        "friction_force": friction,
+        "sliding_velocity": np.where(pairs.contact, sliding, 0.0),
+        "friction_power": np.where(pairs.contact, -friction * sliding, 0.0),
+        "friction_power_nominal": -friction * (g.omega_pinion * pairs.position - g.omega_gear * arm_g),
+    }
+    return values

@@ -1,0 +1,247 @@
+"""Solutions of the lumped model as labelled results: transient and periodic motion.
+
+Sources: docs/theory/equations.md, "Periodic motion and the brake torque".
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Collection
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.integrate import DOP853
+
+from lumped.arguments import real_number, whole_number
+from lumped.errors import NumericalError, refuse
+from lumped.gear_geometry.geometry import geometry
+from lumped.model import kernels
+from lumped.model.equations import COORDINATES, static_deflection
+from lumped.model.mesh_cycle import MeshCycle
+from lumped.model.periodic_system import LTVSystem, periodic_system
+from lumped.model.results import dataset, provenance
+from lumped.model.steady import PeriodicSolution, periodic_solution, sample_times
+from lumped.path_function import FloatArray, PathFunction
+from lumped.schema.pair import GearPair
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Progress = Callable[[float], None]
+Initial = Literal["static", "periodic"]
+_MAX_STEPS_PER_SEGMENT = 200_000
+
+
+def simulate(
+    pair: GearPair,
+    cycles: int = 20,
+    *,
+    samples_per_cycle: int = 256,
+    initial: Initial | ArrayLike = "static",
+    rtol: float = 1e-10,
+    as_printed: Collection[int] = (),
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Transient of the 6-DOF linear time-varying model (docs/theory/equations.md, eqs. 1 to 9).
+
+    Each smooth segment between two switch times is integrated on its own (scipy's DOP853), so no step
+    straddles a jump.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    cycles : mesh cycles, 1 to 100000
+    samples_per_cycle : output times per mesh cycle; the grid ends on the last cycle's end
+    initial : "static" (at rest relative to nominal rotation, mesh wound up by the mean load), "periodic"
+        (the periodic solution at t = 0) or 12 states in SI
+    rtol : relative tolerance of the integration
+    as_printed : equations out of 1, 2, 7, 9 whose printed sign is used
+    progress : called with the finished fraction
+
+    Returns
+    -------
+    xarray.Dataset over ``time`` [s] and ``pair``, see ``lumped.model.results.VARIABLES``; the attributes
+    carry the balanced brake torque and the provenance
+
+    Raises
+    ------
+    ParameterError : arguments out of range
+    NumericalError : the integration fails or is not finite
+    """
+    cycles = whole_number("cycles", cycles, 1, 100_000)
+    rtol = real_number("rtol", rtol, 1e-13, 1e-2)
+    system = periodic_system(pair, "absolute", as_printed=as_printed)
+    grid = sample_times(system.period, samples_per_cycle)
+    # The torques that hold the mean speed are those of the repaired equations: a printed sign then shows up
+    # as a drift instead of being balanced away.
+    repaired = system if not as_printed else periodic_system(pair, "absolute", cycle=system.cycle)
+    balance = periodic_solution(pair, grid[:1], system=repaired, estimate_error=False)
+    state = initial_state(pair, system, initial, balance)
+    time = np.concatenate([grid + j * system.period for j in range(cycles)] + [[cycles * system.period]])
+    states = np.empty((time.size, 12))
+    states[0] = state
+    rate = _rate_function(pair, system, balance)
+    scale = np.abs(static_deflection(pair, mean_mesh_stiffness(system.cycle)))[:6]
+    length = max(float(scale.max()), 1e-12)
+    atol = rtol * length * np.concatenate([np.ones(6), np.full(6, 1.0 / system.period)])
+    outputs = np.append(grid[1:], system.period)  # t = T_m is the next cycle's first output
+    row = 1
+    for cycle in range(cycles):
+        for segment, (low, high) in enumerate(itertools.pairwise(system.cycle.edges.tolist())):
+            inside = outputs[(outputs > low) & (outputs <= high)]
+            values = _integrate(rate(segment), low, high, state, np.union1d(inside, high), rtol, atol)
+            states[row : row + inside.size] = values[: inside.size]
+            row += inside.size
+            state = values[-1]
+        if progress is not None:
+            progress((cycle + 1) / cycles)
+    attributes = provenance(
+        pair,
+        cycles=cycles,
+        samples_per_cycle=samples_per_cycle,
+        initial=initial if isinstance(initial, str) else "given",
+        rtol=rtol,
+        as_printed=tuple(as_printed),
+    )
+    attributes |= balance_attributes(pair, balance) | {"model": "lumped"}
+    return dataset(pair, system, time, states, attributes)
+
+
+def initial_state(
+    pair: GearPair, system: LTVSystem, initial: Initial | ArrayLike, balance: PeriodicSolution
+) -> FloatArray:
+    """Return the 12 states at t = 0 for ``initial`` as ``simulate`` takes it.
+
+    Raises
+    ------
+    ParameterError : not one of the names, not 12 states, or not finite
+    """
+    if isinstance(initial, str):
+        if initial == "static":
+            return static_deflection(pair, mean_mesh_stiffness(system.cycle), balance.pinion_torque)
+        if initial == "periodic":
+            return np.array(balance.states[0])
+        raise refuse("initial", initial, "'static', 'periodic' or 12 states", "Choose one of them.")
+    try:
+        state = np.array(initial, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        state = np.empty(0)
+    if state.shape != (12,) or not np.isfinite(state).all():
+        raise refuse(
+            "initial",
+            f"shape {state.shape}",
+            "12 finite states " + ", ".join(COORDINATES) + " and rates",
+            "Fix it.",
+        )
+    return state
+
+
+def mean_mesh_stiffness(cycle: MeshCycle) -> float:
+    """Mean over the mesh cycle of the stiffness of all pairs [N/m]."""
+    return cycle.elements.stiffness.mean() * cycle.geometry.contact_ratio
+
+
+def _rate_function(
+    pair: GearPair, system: LTVSystem, balance: PeriodicSolution
+) -> Callable[[int], Callable[[float, FloatArray], FloatArray]]:
+    """For a segment, the function (time, state) -> rates on the compiled equations of motion."""
+    g, s, cycle = geometry(pair), system.structure, system.cycle
+    e = cycle.elements
+    speed = g.omega_pinion * g.base_radius_pinion
+    functions: list[PathFunction] = [e.stiffness, e.damping, e.friction, e.error, e.error.derivative()]
+    tables = [array for f in functions for array in (f.breaks, f.coefficients)]
+    external = np.array([balance.pinion_torque, -balance.brake_torque, 0.0, 0.0, 0.0, 0.0])
+    constants = (s.mass, s.damping, s.stiffness, s.deflection, s.normal, s.friction_arm, external)
+
+    def of(segment: int) -> Callable[[float, FloatArray], FloatArray]:
+        margin = 1e-12 * g.base_pitch
+        start = speed * float(cycle.edges[segment]) + margin
+        end = speed * float(cycle.edges[segment + 1]) - margin
+
+        def rate(time: float, state: FloatArray) -> FloatArray:
+            values: FloatArray = kernels.state_rate(
+                time, state, start, end, cycle.offsets, speed, g.L_XD, *tables, *constants
+            )
+            return values
+
+        return rate
+
+    return of
+
+
+def _integrate(
+    rate: Callable[[float, FloatArray], FloatArray],
+    low: float,
+    high: float,
+    state: FloatArray,
+    targets: FloatArray,
+    rtol: float,
+    atol: FloatArray,
+) -> FloatArray:
+    """States at the increasing ``targets`` in (low, high], the last of which is ``high``."""
+    solver = DOP853(rate, low, state, high, rtol=rtol, atol=atol)  # type: ignore[arg-type]  # stubs: scalar only
+    values = np.empty((targets.size, state.size))
+    row = 0
+    for _ in range(_MAX_STEPS_PER_SEGMENT):
+        message = solver.step()
+        if solver.status == "failed" or not np.isfinite(solver.y).all():
+            raise NumericalError(
+                f"Integration stopped at t = {solver.t:.6g} s of the mesh cycle ({message}): "
+                "raise rtol, or check stiffness, damping and inertia for extremes."
+            )
+        if row < targets.size and targets[row] <= solver.t:
+            dense = solver.dense_output()
+            while row < targets.size and targets[row] <= solver.t:
+                values[row] = solver.y if targets[row] == solver.t else dense(targets[row])
+                row += 1
+        if solver.status == "finished":
+            return values
+    raise NumericalError("More than 200000 steps in one segment of the mesh cycle: raise rtol or the speed.")
+
+
+def steady_state(
+    pair: GearPair, *, samples_per_cycle: int = 512, as_printed: Collection[int] = ()
+) -> xr.Dataset:
+    """Periodic motion over one mesh cycle, without settling.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    samples_per_cycle : output times in [0, T_m)
+    as_printed : equations out of 1, 2, 7, 9 whose printed sign is used
+
+    Returns
+    -------
+    xarray.Dataset as of ``simulate`` over one cycle; the attributes carry ``brake_torque`` and
+    ``pinion_torque`` [N m] that hold the mean speed, ``mesh_efficiency`` = T_g Omega_g / (T_p Omega_p),
+    ``error_estimate``, the relative error of the dynamic transmission error, and ``spectral_radius``, the
+    largest modulus of the Floquet multipliers: above 1 the motion is unstable, and a pair leaves it
+
+    Raises
+    ------
+    NumericalError : the speed sits on a stability boundary, where no periodic motion exists
+    """
+    system = periodic_system(pair, "absolute", as_printed=as_printed)
+    times = sample_times(system.period, samples_per_cycle)
+    solution = periodic_solution(pair, times, system=system)
+    attributes = provenance(pair, samples_per_cycle=samples_per_cycle, as_printed=tuple(as_printed))
+    attributes |= balance_attributes(pair, solution)
+    attributes |= {
+        "model": "lumped",
+        "closure": solution.closure,
+        "error_estimate": solution.error,
+        "spectral_radius": solution.spectral_radius,
+    }
+    return dataset(pair, system, times, solution.states, attributes)
+
+
+def balance_attributes(pair: GearPair, solution: PeriodicSolution) -> dict[str, Any]:
+    """Return the torques that hold the mean speed [N m] and the mesh efficiency, by name."""
+    g = geometry(pair)
+    efficiency = solution.brake_torque * g.omega_gear / (solution.pinion_torque * g.omega_pinion)
+    return {
+        "brake_torque": solution.brake_torque,
+        "pinion_torque": solution.pinion_torque,
+        "mesh_efficiency": efficiency,
+    }

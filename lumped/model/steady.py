@@ -1,0 +1,179 @@
+"""Periodic motion of the gear pair without settling, with the brake torque balanced as an unknown."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+
+from lumped.arguments import whole_number
+from lumped.errors import NumericalError
+from lumped.gear_geometry.geometry import geometry
+from lumped.model.periodic_system import LTVSystem, periodic_system
+from lumped.model.propagation import STAGES, step_maps
+from lumped.path_function import FloatArray
+from lumped.schema.pair import GearPair
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicSolution:
+    """Periodic motion over one mesh cycle.
+
+    Attributes
+    ----------
+    system : the 12-state system
+    time : (k,) [s]
+    states : (k, 12)
+    pinion_torque, brake_torque : mean torques that hold the mean speed [N m]
+    closure : largest mismatch of state and state one cycle later, over the largest displacement or rate
+    error : estimate of the largest relative error of the dynamic transmission error; None where not asked for
+    spectral_radius : largest modulus of the Floquet multipliers, the rigid rotation taken out; above 1 the
+        motion is unstable, and a pair leaves it
+    """
+
+    system: LTVSystem
+    time: FloatArray
+    states: FloatArray
+    pinion_torque: float
+    brake_torque: float
+    closure: float
+    error: float | None
+    spectral_radius: float
+
+
+def periodic_solution(
+    pair: GearPair,
+    times: FloatArray,
+    *,
+    as_printed: Collection[int] = (),
+    system: LTVSystem | None = None,
+    estimate_error: bool = True,
+) -> PeriodicSolution:
+    """Periodic motion at given times of the mesh cycle.
+
+    The 12-state map over one cycle has a defective double multiplier +1 (rigid rotation), so one torque must
+    balance: the brake torque, or, where the brake torque is given, the mean driving torque that holds the
+    speed. Bordering the map with that torque and with the position of the rigid rotation
+    (J_p theta_p / r_bp + J_g theta_g / r_bg = 0 at t = 0) makes it regular.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    times : increasing, within [0, T_m) [s]
+    as_printed : equations out of 1, 2, 7, 9 whose printed sign is used
+    system : the pair's 12-state system where it is known already
+    estimate_error : whether to compute ``error``, by a second integration of lower order
+
+    Raises
+    ------
+    NumericalError : the speed sits on a stability boundary, where no periodic motion exists
+    """
+    system = system or periodic_system(pair, "absolute", as_printed=as_printed)
+    torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
+    maps = step_maps(system, torques, outputs=times)
+    transition, forced = maps.over_all()
+    initial, weights = _bordered(pair, system, transition, forced)
+    states = maps.states(initial, weights)
+    closure = _closure(system, states)
+    at = np.searchsorted(maps.times, times - 1e-9 * system.period)
+    result = states[at]
+    error = None
+    if estimate_error:
+        low = step_maps(system, torques, outputs=times, stages=STAGES - 1)
+        other = low.states(*_bordered(pair, system, *low.over_all()))[at]
+        dte, dte_low = result[:, :6] @ system.deflection, other[:, :6] @ system.deflection
+        error = float(np.abs(dte - dte_low).max() / np.abs(dte).max())
+    return PeriodicSolution(
+        system=system,
+        time=times,
+        states=result,
+        pinion_torque=system.pinion_torque + float(weights[1]),
+        brake_torque=float(weights[2]),
+        closure=closure,
+        error=error,
+        spectral_radius=relative_spectral_radius(system, transition),
+    )
+
+
+def _closure(system: LTVSystem, states: FloatArray) -> float:
+    """Mismatch of the last and the first state; rotations count by their way on the base circle."""
+    radius = np.append(np.abs(system.structure.deflection[:2]), np.ones(4))
+    z, rates = states[:, :6] * radius, states[:, 6:] * radius
+    length = np.abs(z).max()
+    # A pair at rest but for rounding has no rate of its own to compare with.
+    velocity = max(np.abs(rates).max(), length / system.period)
+    return float(max(np.abs(z[-1] - z[0]).max() / length, np.abs(rates[-1] - rates[0]).max() / velocity))
+
+
+def relative_spectral_radius(system: LTVSystem, phi: FloatArray) -> float:
+    """Largest modulus of the multipliers of a 12-state map without its rigid rotation.
+
+    Nothing depends on the rotations but through q = r_bp theta_p - r_bg theta_g, so with S from the 12 states
+    to those of q and the translations, S phi = phi_rel S; any right inverse R of S gives phi_rel = S phi R.
+
+    Parameters
+    ----------
+    system : the 12-state system
+    phi : (12, 12) map of the states over one mesh cycle
+    """
+    to_relative = np.zeros((5, 6))
+    to_relative[0, :2] = system.structure.deflection[:2]
+    to_relative[1:, 2:] = np.eye(4)
+    back = np.zeros((6, 5))
+    back[0, 0] = 1.0 / system.structure.deflection[0]
+    back[2:, 1:] = np.eye(4)
+    twice = np.eye(2)
+    relative = np.kron(twice, to_relative) @ phi @ np.kron(twice, back)
+    return float(np.abs(np.linalg.eigvals(relative)).max())
+
+
+def _bordered(
+    pair: GearPair, system: LTVSystem, phi: FloatArray, forced: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Initial state (12,) and weights (3,) of own forcing, extra T_p and T_g, from the map over the cycle."""
+    brake = pair.operating.brake_torque
+    unknown = 2 if brake == "balanced" else 1
+    known = np.array([1.0, 0.0, 0.0 if brake == "balanced" else brake])
+    matrix = np.zeros((13, 13))
+    matrix[:12, :12] = np.eye(12) - phi
+    matrix[:12, 12] = -forced[:, unknown]
+    inertia = system.structure.mass[:2] / np.abs(system.structure.deflection[:2])
+    matrix[12, :2] = inertia
+    right = np.append(forced @ known, 0.0)
+    # Angles, lengths and their rates differ by many decades; equilibrate before judging the rank.
+    g = geometry(pair)
+    unit = np.array([1 / g.base_radius_pinion, 1 / g.base_radius_gear, 1.0, 1.0, 1.0, 1.0])
+    rate = 1.0 / system.period
+    columns = np.concatenate([unit, unit * rate, [0.0]])
+    columns[12] = system.pinion_torque / _static(system)
+    rows = np.append(columns[:12], inertia[0] * unit[0])
+    scaled = matrix * columns / rows[:, None]
+    condition = float(np.linalg.cond(scaled))
+    if not condition < 1e13:
+        raise NumericalError(
+            f"No periodic motion at {pair.operating.pinion_speed * 30 / np.pi:.6g} rpm "
+            f"(condition {condition:.1e}): a multiplier is at +1. Change the speed slightly or add damping."
+        )
+    solution = np.linalg.solve(scaled, right / rows) * columns
+    weights = known.copy()
+    weights[unknown] = solution[12]
+    return solution[:12], weights
+
+
+def _static(system: LTVSystem) -> float:
+    """Order of the static deflection [m], for scaling only."""
+    k = system.cycle.elements.stiffness
+    load = system.pinion_torque / abs(float(system.structure.deflection[0]))
+    return load / max(float(k(k.breaks[:-1]).max()), k.mean())
+
+
+def sample_times(period: float, samples: int) -> FloatArray:
+    """Evenly spaced times over one period, the end left out; (samples,) [s].
+
+    Raises
+    ------
+    ParameterError : not a whole number from 8 to 65536
+    """
+    count = whole_number("samples_per_cycle", samples, 8, 65536)
+    return np.asarray(np.arange(count) * (period / count), dtype=np.float64)

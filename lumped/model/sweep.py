@@ -1,0 +1,149 @@
+"""Periodic motion of a gear pair over pinion speed.
+
+Sources: docs/theory/equations.md, "Periodic motion and the brake torque".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from lumped.arguments import real_numbers
+from lumped.errors import NumericalError
+from lumped.friction import friction_path_function
+from lumped.gear_geometry.geometry import geometry
+from lumped.model.mesh_cycle import MeshCycle
+from lumped.model.mesh_elements import MeshElements, mesh_elements
+from lumped.model.periodic_system import LTVSystem, periodic_system
+from lumped.model.results import provenance, response
+from lumped.model.solution import Progress, balance_attributes
+from lumped.model.steady import periodic_solution, sample_times
+from lumped.path_function import FloatArray
+from lumped.schema.pair import GearPair
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def speed_sweep(
+    pair: GearPair,
+    speeds_rpm: Iterable[float],
+    *,
+    samples_per_cycle: int = 128,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Periodic motion over pinion speed.
+
+    Parameters
+    ----------
+    pair : a validated gear pair; its speed is replaced
+    speeds_rpm : pinion speeds [rpm], positive
+    samples_per_cycle : times per cycle at which extremes are taken
+    progress : called with the finished fraction
+
+    Returns
+    -------
+    xarray.Dataset over ``speed`` [rpm]: peak-to-peak and root mean square (about the mean) of the
+    transmission error and the translations, largest and smallest normal load of a pair in contact,
+    ``sliding_reversal``, largest distance from the pitch point at which a loaded pair slides against its
+    nominal direction, mesh efficiency, and ``spectral_radius``, above 1 where the motion is unstable. A speed
+    without periodic motion is NaN with ``periodic`` False.
+
+    Raises
+    ------
+    ParameterError : a speed or the number of samples is out of range, before any work starts
+    """
+    speeds = running_speeds(speeds_rpm)
+    pairs = [pair.with_({"operating.pinion_speed": float(rpm)}) for rpm in speeds]
+    names = ("dte", "x_p", "x_g", "y_p", "y_g")
+    table = {f"{n}_{kind}": np.full(speeds.size, np.nan) for n in names for kind in ("peak_to_peak", "rms")}
+    table |= {
+        n: np.full(speeds.size, np.nan)
+        for n in (
+            "normal_load_max",
+            "normal_load_min",
+            "sliding_reversal",
+            "mesh_efficiency",
+            "spectral_radius",
+        )
+    }
+    periodic = np.zeros(speeds.size, dtype=bool)
+    for j, (at, system) in enumerate(zip(pairs, _systems(pairs), strict=True)):
+        times = sample_times(system.period, samples_per_cycle)
+        try:
+            solution = periodic_solution(at, times, system=system, estimate_error=False)
+        except NumericalError:
+            continue
+        finally:
+            if progress is not None:
+                progress((j + 1) / speeds.size)
+        periodic[j] = True
+        run = response(at, system, times, solution.states)
+        for name in names:
+            table[f"{name}_peak_to_peak"][j] = np.ptp(run[name])
+            table[f"{name}_rms"][j] = np.std(run[name])
+        loads = run["normal_load"][run["contact"] > 0]
+        table["normal_load_max"][j], table["normal_load_min"][j] = loads.max(), loads.min()
+        table["sliding_reversal"][j] = _reversal(run, geometry(at).L_XP)
+        table["mesh_efficiency"][j] = balance_attributes(at, solution)["mesh_efficiency"]
+        table["spectral_radius"][j] = solution.spectral_radius
+    return _sweep_dataset(pair, speeds, table, periodic)
+
+
+def _systems(pairs: Iterable[GearPair]) -> Iterator[LTVSystem]:
+    """Systems of pairs that differ in speed alone: of the element laws only friction changes with it."""
+    elements: MeshElements | None = None
+    for at in pairs:
+        g = geometry(at)
+        if elements is None:
+            elements = mesh_elements(at)
+        else:
+            elements = replace(elements, friction=friction_path_function(at, g))
+        yield periodic_system(at, "absolute", cycle=MeshCycle(g, elements))
+
+
+def _reversal(run: Mapping[str, FloatArray], pitch_point: float) -> float:
+    """Largest distance from the pitch point at which a loaded pair slides backwards [m], or 0."""
+    distance = run["position"] - pitch_point
+    loaded = (run["contact"] > 0) & (run["normal_load"] > 0)
+    backwards = loaded & (run["sliding_velocity"] * np.sign(distance) < 0.0)
+    return float(np.where(backwards, np.abs(distance), 0.0).max())
+
+
+def _sweep_dataset(
+    pair: GearPair, speeds: FloatArray, table: dict[str, FloatArray], periodic: Any
+) -> xr.Dataset:
+    import xarray as xr
+
+    result = xr.Dataset(attrs=provenance(pair) | {"model": "lumped"})
+    result["speed"] = xr.DataArray(speeds, dims="speed", attrs={"units": "rpm", "long_name": "pinion speed"})
+    for name, values in table.items():
+        unit = (
+            "1"
+            if name in ("mesh_efficiency", "spectral_radius")
+            else "N"
+            if name.startswith("normal")
+            else "m"
+        )
+        attrs = {
+            "units": unit,
+            "long_name": name.replace("_", " ").replace("dte", "transmission error"),
+        }
+        result[name] = xr.DataArray(values, dims="speed", attrs=attrs)
+    result["periodic"] = xr.DataArray(
+        periodic, dims="speed", attrs={"units": "1", "long_name": "whether a periodic motion exists"}
+    )
+    return result
+
+
+def running_speeds(speeds_rpm: Iterable[float]) -> FloatArray:
+    """Return speeds [rpm] as an array, each checked to be positive and finite.
+
+    Raises
+    ------
+    ParameterError : something else than positive finite numbers
+    """
+    return real_numbers("speeds_rpm", speeds_rpm, 0.0, above=True, unit="rpm", action="Give running speeds.")

@@ -1,0 +1,1 @@
+"""The parameters of a gear pair: fields, units, refusals, files."""

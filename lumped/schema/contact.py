@@ -1,0 +1,124 @@
+"""Schema of the contact between the teeth: lubricant and friction."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal, Self
+
+from pydantic import BeforeValidator, Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from lumped.errors import FieldProblem, ParameterError, shown
+from lumped.lubrication.viscosity_grade import ISO_VG_MIDPOINT
+from lumped.schema.section import Section
+from lumped.schema.units import Quantity
+
+
+class ViscosityLaw(Section):
+    """Dynamic viscosity from temperature (Walther, ASTM D341): of an ISO VG grade, or of two viscosities."""
+
+    iso_vg: Annotated[int, Field(strict=True)] | None = Field(
+        None, description="ISO 3448 viscosity grade, e.g. 100; or give the two kinematic viscosities"
+    )
+    viscosity_index: Annotated[float, Quantity("1", at_least=0, at_most=400)] = Field(
+        95.0, description="viscosity index of the grade, ASTM D2270"
+    )
+    kinematic_viscosity_40: Annotated[
+        float | None, Quantity("mm**2/s", at_least=2, at_most=2e4, optional=True)
+    ] = Field(None, description="kinematic viscosity at 40 degC, instead of iso_vg")
+    kinematic_viscosity_100: Annotated[
+        float | None, Quantity("mm**2/s", at_least=1, at_most=2e3, optional=True)
+    ] = Field(None, description="kinematic viscosity at 100 degC, instead of iso_vg")
+    density: Annotated[float, Quantity("kg/m**3", at_least=500, at_most=1500)] = Field(
+        870.0, description="density at 15 degC"
+    )
+    temperature: Annotated[float, Quantity("degC", at_least=-40, at_most=200)] = Field(
+        description="oil temperature in the contact inlet"
+    )
+
+    @model_validator(mode="after")
+    def _grade_or_two_points(self) -> Self:
+        points = (self.kinematic_viscosity_40, self.kinematic_viscosity_100)
+        given = [v is not None for v in points]
+        if not (all(given) if self.iso_vg is None else not any(given)):
+            allowed = "iso_vg, or kinematic_viscosity_40 and kinematic_viscosity_100"
+            raise ParameterError(
+                [FieldProblem("iso_vg", shown(self.iso_vg), allowed, "Give one of the two descriptions.")]
+            )
+        if self.iso_vg is not None and self.iso_vg not in ISO_VG_MIDPOINT:
+            grades = ", ".join(str(grade) for grade in ISO_VG_MIDPOINT)
+            raise ParameterError(
+                [FieldProblem("iso_vg", str(self.iso_vg), f"a grade of ISO 3448: {grades}", "Take a grade.")]
+            )
+        return self
+
+
+class Lubricant(Section):
+    """Lubricant: dynamic viscosity (a number or a law) and pressure-viscosity constants alpha = k eta^s."""
+
+    viscosity: Annotated[float | None, Quantity("mPa*s", above=0, at_most=1e5, optional=True)] = Field(
+        None, description="dynamic viscosity at the contact inlet"
+    )
+    viscosity_law: ViscosityLaw | None = Field(
+        None, description="viscosity from temperature, instead of viscosity"
+    )
+    pressure_viscosity_k: Annotated[float, Quantity("1", above=0)] = Field(
+        0.010471, description="k in alpha = k eta^s, alpha in mm^2/N, eta in mPa s"
+    )
+    pressure_viscosity_s: Annotated[float, Quantity("1", at_least=0, at_most=1)] = Field(
+        0.1348, description="s in alpha = k eta^s"
+    )
+
+    @model_validator(mode="after")
+    def _one_viscosity(self) -> Self:
+        if (self.viscosity is None) == (self.viscosity_law is None):
+            given = "both" if self.viscosity is not None else "neither"
+            problem = FieldProblem(
+                "viscosity", given, "viscosity or viscosity_law", "Give exactly one of them."
+            )
+            raise ParameterError([problem])
+        return self
+
+
+FrictionLaw = Literal["none", "coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"]
+
+
+def _increasing(value: object) -> object:
+    """Three increasing positive numbers; pydantic alone would take booleans and text for numbers."""
+    numbers = list(value) if isinstance(value, (list, tuple)) else []
+    real = all(isinstance(n, (int, float)) and not isinstance(n, bool) for n in numbers)
+    if len(numbers) == 3 and real and 0 < numbers[0] < numbers[1] < numbers[2] < math.inf:
+        return tuple(float(n) for n in numbers)
+    context = {
+        "value": shown(value),
+        "allowed": "three increasing positive numbers",
+        "action": "Correct the list.",
+    }
+    raise PydanticCustomError("quantity", "{value}: allowed {allowed}. {action}", context)
+
+
+class Friction(Section):
+    """Sliding friction between the teeth: the law and the parameters of all laws (they are compared)."""
+
+    law: FrictionLaw = Field(
+        description="I coulomb, II benedict_kelley, III xu_kahraman, IV smoothed_coulomb, V composite"
+    )
+    coefficient: Annotated[float | None, Quantity("1", at_least=0, at_most=1, optional=True)] = Field(
+        None, description="mean coefficient of laws I and IV; default the mean of law II over the path"
+    )
+    sharpness: Annotated[float, Quantity("1/mm", above=0)] = Field(
+        50e3, description="Phi of law IV, the steepness of the sign change at the pitch point"
+    )
+    maximum: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
+        0.2, description="upper bound of law II, which is infinite at the pitch point"
+    )
+    thresholds: Annotated[tuple[float, float, float], BeforeValidator(_increasing)] = Field(
+        (1.0, 4.0, 10.0), description="film parameters at which law V changes: IV | II | III | III"
+    )
+    composite_roughness: Annotated[float | None, Quantity("um", above=0, optional=True)] = Field(
+        None,
+        description="composite roughness R_comp of the film parameter; default root sum square of both Ra",
+    )
+    film_length: Annotated[float, Quantity("mm", above=0)] = Field(
+        0.8e-3, description="cut-off length L_x of the roughness filter in the film parameter"
+    )

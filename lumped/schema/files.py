@@ -1,0 +1,121 @@
+"""Reading gear pairs from presets, files and mappings; the schema and the fields of a pair as plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from lumped.errors import FieldProblem, ParameterError, shown
+from lumped.schema.pair import GearPair, validated
+from lumped.schema.refusals import nearest
+from lumped.schema.text_file import parse_toml, read_text
+from lumped.schema.units import to_stated
+
+#: Largest parameter file read, a bound against a wrong path rather than a limit of the format.
+MAX_FILE_BYTES = 1_000_000
+
+
+@cache
+def preset_names() -> tuple[str, ...]:
+    """Return the names of the built-in gear pairs."""
+    folder = resources.files("lumped") / "presets"
+    return tuple(sorted(f.name.removesuffix(".toml") for f in folder.iterdir() if f.name.endswith(".toml")))
+
+
+def preset_text(name: str) -> str:
+    """Return the TOML text of a built-in gear pair.
+
+    Raises
+    ------
+    ParameterError : unknown name; the nearest one is suggested
+    """
+    if name not in preset_names():
+        raise ParameterError(
+            [
+                FieldProblem(
+                    "preset",
+                    shown(repr(name)),
+                    "a file that exists or one of " + ", ".join(preset_names()),
+                    nearest(name, preset_names()) or "Check the path, or see 'spurcheck presets'.",
+                )
+            ]
+        )
+    return (resources.files("lumped") / "presets" / f"{name}.toml").read_text(encoding="utf-8")
+
+
+def load_gear_pair(source: str | Path | Mapping[str, Any] | GearPair) -> GearPair:
+    """Read a gear pair from a preset name, a TOML file or a mapping, and validate it.
+
+    Parameters
+    ----------
+    source : preset name, path of a TOML file, nested mapping in file units, or a GearPair (returned as is)
+
+    Raises
+    ------
+    ParameterError : everything that is refused, with field, value, allowed range and next action
+    """
+    if isinstance(source, GearPair):
+        return source
+    if isinstance(source, Mapping):
+        return validated(dict(source), "mapping")
+    if not isinstance(source, (str, Path)):
+        allowed = "a preset name, a TOML file, a mapping or a GearPair"
+        raise ParameterError([FieldProblem("pair", shown(source), allowed, "Give one of these.")])
+    path = Path(source)
+    if isinstance(source, str) and source in preset_names():
+        return validated(parse_toml(preset_text(source), f"preset {source}"), f"preset {source}")
+    if path.suffix.lower() != ".toml" and not _exists(path) and "/" not in str(source):
+        preset_text(str(source))
+    return validated(parse_toml(_read(path), str(path)), str(path), path.parent)
+
+
+def json_schema() -> dict[str, Any]:
+    """Return the JSON Schema of a parameter file; every quantity carries ``unit`` and ``si_unit``.
+
+    A default is what the file would say: a bare number in the stated unit.
+    """
+    schema = GearPair.model_json_schema()
+    for section in (schema, *schema["$defs"].values()):
+        for field in section["properties"].values():
+            default = field.get("default")
+            if default in (None, []):  # held so inside, but nothing that a file can say
+                field.pop("default", None)
+            elif "unit" in field and not isinstance(default, str):
+                field["default"] = to_stated(default, field["unit"])
+    return schema
+
+
+def leaf_paths(pair: GearPair) -> dict[str, Any]:
+    """Return every set field of a pair as dotted path -> value in file units, ``sources`` apart."""
+    found: dict[str, Any] = {}
+
+    def walk(data: Mapping[str, Any], prefix: str) -> None:
+        for key, value in data.items():
+            path = f"{prefix}{key}"
+            if isinstance(value, Mapping):
+                walk(value, f"{path}.")
+            else:
+                found[path] = value
+
+    walk({k: v for k, v in pair.to_mapping().items() if k != "sources"}, "")
+    return found
+
+
+def _exists(path: Path) -> bool:
+    try:
+        return path.exists()
+    except OSError:  # such as a name that is too long
+        return False
+
+
+def _read(path: Path) -> str:
+    return read_text(
+        path,
+        MAX_FILE_BYTES,
+        kind="TOML file",
+        instead=", or a preset: " + ", ".join(preset_names()),
+        action="Check the path, or start from 'spurcheck init'.",
+    )

@@ -1,0 +1,156 @@
+"""Schema of the gears: basic rack, blank, material, roughness and flank modifications."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import ConfigDict, Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from lumped.errors import FieldProblem, ParameterError, refuse
+from lumped.schema.section import Section
+from lumped.schema.units import Quantity, to_stated
+
+_SIZE = "Give the size as drawn; check the unit."
+
+
+class ProfileRelief(Section):
+    """Deviation of a flank from the involute by design, growing from a roll angle to the flank's end."""
+
+    shape: Literal["linear", "parabolic"] = Field("linear", description="growth over roll angle")
+    amount: Annotated[float, Quantity("um", at_least=0, at_most=1000)] = Field(
+        description="material removed at the end of the flank, normal to it"
+    )
+    start_roll_angle: Annotated[float, Quantity("deg", above=0, at_most=180)] = Field(
+        description="roll angle at which the relief starts"
+    )
+
+
+_PITCH = Quantity("1/inch", at_least=0.254, at_most=200)
+
+
+def _with_diametral_pitch(schema: dict[str, Any]) -> None:
+    """Let the JSON Schema take what ``_diametral_pitch`` takes."""
+    described = {"description": "diametral pitch, instead of module"}
+    schema["properties"]["diametral_pitch"] = described | _PITCH.json_schema()
+    others = [name for name in schema.pop("required") if name != "module"]
+    schema["anyOf"] = [{"required": [*others, name]} for name in ("module", "diametral_pitch")]
+
+
+class BasicRack(Section):
+    """Basic rack of both gears (ISO 53). ``diametral_pitch`` may be given instead of ``module``."""
+
+    model_config = ConfigDict(json_schema_extra=_with_diametral_pitch)
+
+    module: Annotated[float, Quantity("mm", above=0, at_most=100, action=_SIZE)] = Field(
+        description="normal module; or give diametral_pitch [1/inch] instead"
+    )
+    pressure_angle: Annotated[float, Quantity("deg", at_least=10, at_most=35)] = Field(
+        0.3490658503988659, description="pressure angle of the basic rack"
+    )
+    addendum_coefficient: Annotated[float, Quantity("1", above=0, at_most=2)] = Field(
+        1.0, description="addendum over module"
+    )
+    dedendum_coefficient: Annotated[float, Quantity("1", above=0, at_most=2.5)] = Field(
+        1.25, description="dedendum over module"
+    )
+    fillet_radius_coefficient: Annotated[float, Quantity("1", at_least=0, at_most=0.6)] = Field(
+        0.38, description="root fillet radius of the rack over module"
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _diametral_pitch(cls, data: Any) -> Any:
+        if not isinstance(data, dict) or "diametral_pitch" not in data:
+            return data
+        rest = dict(data)
+        given = rest.pop("diametral_pitch")
+        if "module" in rest:
+            problem = FieldProblem(
+                "basic_rack.diametral_pitch",
+                str(given),
+                "either module or diametral_pitch",
+                "Remove one of the two.",
+            )
+            raise ParameterError([problem])
+        try:
+            pitch = _PITCH.parse(given)
+        except PydanticCustomError as error:
+            reason = error.context or {}
+            problem = FieldProblem("diametral_pitch", reason["value"], reason["allowed"], reason["action"])
+            raise ParameterError([problem]) from None
+        assert pitch is not None  # only optional quantities are None
+        return {**rest, "module": 25.4 / to_stated(pitch, "1/inch")}
+
+    @model_validator(mode="after")
+    def _tip_has_room(self) -> Self:
+        # Half the rack tooth's width at its tip, over module, is pi/4 - h tan a; a tip radius rho between
+        # flank and tip takes rho (1 - sin a)/cos a of it.
+        sine, cosine = math.sin(self.pressure_angle), math.cos(self.pressure_angle)
+        room = 0.25 * math.pi - self.dedendum_coefficient * sine / cosine
+        largest = room * cosine / (1.0 - sine)
+        if room < 0.0:
+            raise refuse(
+                "dedendum_coefficient",
+                f"{self.dedendum_coefficient:g}",
+                f"<= {0.25 * math.pi * cosine / sine:.4f} at this pressure angle",
+                "The rack's teeth are pointed above their tips: lower the dedendum or the pressure angle.",
+            )
+        if self.fillet_radius_coefficient > largest:
+            raise refuse(
+                "fillet_radius_coefficient",
+                f"{self.fillet_radius_coefficient:g}",
+                f"<= {largest:.4f} (full tip radius) for this pressure angle and dedendum",
+                "Lower the fillet radius or the dedendum of the rack.",
+            )
+        return self
+
+
+class Gear(Section):
+    """One gear. Mass and inertia default to a solid steel disc of the reference diameter."""
+
+    teeth: Annotated[int, Field(ge=5, le=1000, strict=True)] = Field(description="number of teeth")
+    face_width: Annotated[float, Quantity("mm", above=0, at_most=2000, action=_SIZE)] = Field(
+        description="face width"
+    )
+    profile_shift: Annotated[float, Quantity("1", at_least=-1.5, at_most=2)] = Field(
+        0.0, description="profile shift coefficient x"
+    )
+    addendum: Annotated[float | None, Quantity("mm", above=0, optional=True)] = Field(
+        None, description="addendum, reference to tip circle; default module * (addendum_coefficient + x)"
+    )
+    tip_diameter: Annotated[float | None, Quantity("mm", above=0, optional=True)] = Field(
+        None, description="tip diameter, instead of addendum"
+    )
+    bore: Annotated[float, Quantity("mm", at_least=0)] = Field(0.0, description="bore diameter; 0 is solid")
+    mass: Annotated[float | None, Quantity("kg", above=0, optional=True)] = Field(
+        None, description="mass; default disc of the reference diameter and face width"
+    )
+    inertia: Annotated[float | None, Quantity("kg*m**2", above=0, optional=True)] = Field(
+        None, description="polar moment of inertia; default as for mass"
+    )
+    density: Annotated[float, Quantity("kg/m**3", above=0)] = Field(
+        7850.0, description="density, for the disc"
+    )
+    youngs_modulus: Annotated[float, Quantity("GPa", above=0)] = Field(206e9, description="Young's modulus")
+    poisson_ratio: Annotated[float, Quantity("1", at_least=0, below=0.5)] = Field(
+        0.3, description="Poisson ratio"
+    )
+    roughness: Annotated[float, Quantity("um", at_least=0, at_most=50)] = Field(
+        description="arithmetic mean roughness Ra of the flanks"
+    )
+    tip_relief: ProfileRelief | None = Field(None, description="material removed towards the tip")
+    root_relief: ProfileRelief | None = Field(None, description="material removed towards the root")
+
+    @model_validator(mode="after")
+    def _one_tip(self) -> Self:
+        if self.addendum is not None and self.tip_diameter is not None:
+            problem = FieldProblem(
+                "tip_diameter",
+                f"{self.tip_diameter * 1e3:g} mm",
+                "either addendum or tip_diameter",
+                "Remove one.",
+            )
+            raise ParameterError([problem])
+        return self

@@ -1,0 +1,270 @@
+"""The schema of a gear pair: one frozen, validated, hashable model shared by every part of spurcheck.
+
+Values are SI inside. In files and keyword arguments a bare number means the field's stated unit and a string
+may carry any unit of that dimension (``lumped.schema.units``).
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, PlainSerializer, ValidationError, model_validator
+from pydantic.fields import FieldInfo
+from pydantic_core import PydanticCustomError
+
+from lumped.errors import FieldProblem, ParameterError
+from lumped.gear_geometry.geometry import geometry
+from lumped.schema.contact import Friction, FrictionLaw, Lubricant, ViscosityLaw
+from lumped.schema.gear import BasicRack, Gear, ProfileRelief
+from lumped.schema.mesh import Mesh
+from lumped.schema.refusals import field_of, translated, unknown_key
+from lumped.schema.section import Section, Text
+from lumped.schema.units import Quantity
+
+
+class Bearing(Section):
+    """Radial support of one gear, along (LOA) and off (OLOA) the line of action."""
+
+    loa_stiffness: Annotated[float, Quantity("N/m", above=0)] = Field(description="stiffness along the LOA")
+    oloa_stiffness: Annotated[float, Quantity("N/m", above=0)] = Field(description="stiffness off the LOA")
+    loa_damping_ratio: Annotated[float, Quantity("1", at_least=0, at_most=2)] = Field(
+        description="damping ratio of the gear mass on the LOA stiffness"
+    )
+    oloa_damping_ratio: Annotated[float, Quantity("1", at_least=0, at_most=2)] = Field(
+        description="damping ratio of the gear mass on the OLOA stiffness"
+    )
+
+
+class Bearings(Section):
+    """Bearings of both shafts."""
+
+    pinion: Bearing
+    gear: Bearing
+
+
+_BRAKE = Quantity("N*m", above=0, action="Correct the value, or write 'balanced'.")
+
+
+def _brake(value: object) -> object:
+    if value == "balanced":
+        return value
+    try:
+        return _BRAKE.parse(value)
+    except PydanticCustomError as error:
+        context = error.context or {}
+        allowed = f"{context['allowed']} or 'balanced'"
+        raise PydanticCustomError(
+            "quantity", "{value}: allowed {allowed}", context | {"allowed": allowed}
+        ) from None
+
+
+class OperatingPoint(Section):
+    """Where the pair runs. The pinion drives, in its positive sense."""
+
+    pinion_speed: Annotated[
+        float,
+        Quantity(
+            "rpm",
+            above=0,
+            at_most=200000,
+            action="Give the running speed; the pinion drives in its positive sense.",
+        ),
+    ] = Field(description="nominal speed of the pinion")
+    pinion_torque: Annotated[float, Quantity("N*m", above=0)] = Field(description="torque driving the pinion")
+    brake_torque: Annotated[
+        Literal["balanced"] | float, BeforeValidator(_brake, json_schema_input_type=float | str)
+    ] = Field(
+        "balanced",
+        description="torque braking the gear [N*m], or 'balanced': no drift of the mean speed",
+        json_schema_extra={"unit": "N*m", "si_unit": "N*m"},
+    )
+
+
+#: Fields that a file may give in another form -> the field that is kept.
+STORED_AS = {"basic_rack.diametral_pitch": "basic_rack.module"}
+
+
+def _sources_in(value: object) -> object:
+    if not isinstance(value, dict):
+        return value
+    return tuple(sorted((STORED_AS.get(path, path), text) for path, text in value.items()))
+
+
+#: Fields of which only one can be given: naming one removes the others.
+_ALTERNATIVES = (
+    ("basic_rack.module", "basic_rack.diametral_pitch"),
+    ("pinion.addendum", "pinion.tip_diameter"),
+    ("gear.addendum", "gear.tip_diameter"),
+    ("lubricant.viscosity", "lubricant.viscosity_law"),
+)
+
+Sources = Annotated[
+    tuple[tuple[str, str], ...],
+    BeforeValidator(_sources_in, json_schema_input_type=dict[str, str]),
+    PlainSerializer(dict, return_type=dict[str, str]),
+]
+
+
+class GearPair(Section):
+    """A spur gear pair with everything that spurcheck needs to know about it."""
+
+    name: Text = Field(min_length=1, max_length=80, description="short name")
+    description: Text = Field("", max_length=2000, description="what this pair is")
+    basic_rack: BasicRack
+    pinion: Gear = Field(description="the driving gear")
+    gear: Gear = Field(description="the driven gear")
+    centre_distance: Annotated[float | None, Quantity("mm", above=0, optional=True)] = Field(
+        None, description="centre distance; default free of backlash for the profile shifts"
+    )
+    bearings: Bearings
+    mesh: Mesh
+    lubricant: Lubricant
+    friction: Friction
+    operating: OperatingPoint
+    sources: Sources = Field((), description="field path -> where its value comes from, or 'assumed'")
+
+    @model_validator(mode="after")
+    def _must_exist(self) -> GearPair:
+        geometry(self)
+        wrong = [problem for path, _ in self.sources for problem in _source_problems(path)]
+        if wrong:
+            raise ParameterError(wrong)
+        return self
+
+    def to_mapping(self) -> dict[str, Any]:
+        """Return the pair as nested plain data for TOML or JSON; reading it back gives an equal pair."""
+        data = super().to_mapping()
+        sources = dict(data.pop("sources"))
+        return data | {"sources": sources} if sources else data
+
+    def to_toml(self) -> str:
+        """Return the pair as TOML text; reading it back gives an equal pair."""
+        import tomli_w
+
+        return tomli_w.dumps(self.to_mapping())
+
+    def with_(self, changes: dict[str, Any] | None = None, /, **fields: Any) -> GearPair:
+        """Return a validated variation of this pair.
+
+        Parameters
+        ----------
+        changes : dotted field paths -> values, e.g. ``{"operating.pinion_speed": "2000 rpm"}``
+        **fields : the same with ``__`` for the dot: ``operating__pinion_speed=2000``. A bare number means
+            the field's stated unit; a dict replaces a whole section; ``None`` restores the default.
+
+        Raises
+        ------
+        ParameterError : an unknown path or a value that a file could not have either
+        """
+        return _varied(self, {**(changes or {}), **{key.replace("__", "."): v for key, v in fields.items()}})
+
+
+def validated(data: Mapping[str, Any], source: str, folder: Path = Path()) -> GearPair:
+    """Return the gear pair of plain data, or refuse it in the user's words.
+
+    Parameters
+    ----------
+    data : nested mapping in file units
+    source : where it comes from, for the refusal
+    folder : data files that the parameters name are read relative to it
+
+    Raises
+    ------
+    ParameterError : everything that is refused, with field, value, allowed range and next action
+    """
+    try:
+        return GearPair.model_validate(data, context={"folder": folder})
+    except ParameterError as error:
+        raise ParameterError(list(error.problems), error.source or source) from None
+    except ValidationError as error:
+        raise ParameterError(translated(error, GearPair), source) from None
+
+
+def _varied(pair: GearPair, changes: Mapping[str, Any]) -> GearPair:
+    data = pair.to_mapping()
+    sources: dict[str, str] = data.setdefault("sources", {})
+    for path, value in changes.items():
+        outdated = [path]
+        for group in _ALTERNATIVES:
+            if path in group and value is not None:
+                outdated += group
+                for other in group:
+                    _assign(data, other, None)
+        _assign(data, path, value)
+        for known in [key for key in sources if any(key == p or key.startswith(f"{p}.") for p in outdated)]:
+            del sources[known]
+        if path not in ("name", "description", "sources") and value is not None:
+            sources[STORED_AS.get(path, path)] = "varied by the user"
+    return validated(data, f"{pair.name} varied")
+
+
+def _assign(data: dict[str, Any], path: str, value: Any) -> None:
+    *parents, leaf = path.split(".")
+    node = data
+    for part in parents:
+        inner = node.setdefault(part, {})
+        if not isinstance(inner, dict):
+            raise ParameterError([unknown_key(path, list(node), part)])
+        node = inner
+    if value is None:
+        if path not in STORED_AS:
+            field_at(path)  # a name that does not exist is an error also where nothing is set
+        node.pop(leaf, None)
+    else:
+        node[leaf] = value.to_mapping() if isinstance(value, Section) else copy.deepcopy(value)
+
+
+def field_at(path: str) -> FieldInfo:
+    """Return pydantic's description of a field of a gear pair by dotted path.
+
+    Raises
+    ------
+    ParameterError : no such field; the nearest is suggested
+    """
+    return field_of(GearPair, path)
+
+
+@lru_cache(maxsize=1024)  # every variation of a pair has the same paths
+def _source_problems(path: str) -> tuple[FieldProblem, ...]:
+    """A misspelt path would leave its value without a source."""
+    try:
+        field_at(path)
+    except ParameterError as error:
+        return tuple(replace(problem, field=f"sources.{problem.field}") for problem in error.problems)
+    return ()
+
+
+def stated_unit(path: str) -> str | None:
+    """Return the stated unit of a field by dotted path, or None where the field has none."""
+    info = field_at(path)
+    for marker in info.metadata:
+        if isinstance(marker, Quantity):
+            return marker.unit
+    # A quantity that may also be a word has its unit in the JSON Schema alone.
+    extra = info.json_schema_extra
+    return str(extra["unit"]) if isinstance(extra, dict) and "unit" in extra else None
+
+
+__all__ = [
+    "BasicRack",
+    "Bearing",
+    "Bearings",
+    "Friction",
+    "FrictionLaw",
+    "Gear",
+    "GearPair",
+    "Lubricant",
+    "Mesh",
+    "OperatingPoint",
+    "ProfileRelief",
+    "Section",
+    "ViscosityLaw",
+    "field_at",
+    "stated_unit",
+    "validated",
+]

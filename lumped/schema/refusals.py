@@ -1,0 +1,166 @@
+"""Refusals of the schema in the user's words: field, value, range and action of each of pydantic's errors."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from types import UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
+
+from lumped.errors import MOST_PROBLEMS, FieldProblem, ParameterError, quoted, shown
+from lumped.schema.units import Quantity
+
+_RENAMED = {"model_type": "a table", "model_attributes_type": "a table", "dict_type": "a table"}
+
+
+def translated(error: ValidationError, root: type[BaseModel]) -> list[FieldProblem]:
+    """Return one problem per field that pydantic refused.
+
+    Parameters
+    ----------
+    error : what pydantic raised
+    root : the model that was to be made
+    """
+    items = error.errors(include_url=False)[:MOST_PROBLEMS]
+    found = [problem for item in items for problem in _problems(item, root)]
+    first: dict[str, FieldProblem] = {}
+    for problem in found:
+        first.setdefault(problem.field, problem)
+    return list(first.values())
+
+
+def field_of(root: type[BaseModel], path: str) -> FieldInfo:
+    """Return pydantic's description of a field by dotted path (through every member of a union).
+
+    Raises
+    ------
+    ParameterError : no such field; the nearest is suggested
+    """
+    models = [root]
+    info: FieldInfo | None = None
+    for part in path.split("."):
+        names = {name: field for model in models for name, field in model.model_fields.items()}
+        if part not in names:
+            raise ParameterError([unknown_key(path, list(names), part)])
+        info = names[part]
+        models = models_in(info.annotation)
+    assert info is not None  # "".split(".") has one part, which is unknown
+    return info
+
+
+def models_in(annotation: Any) -> list[type[BaseModel]]:
+    """Schema sections that a field of this type may hold."""
+    origin = get_origin(annotation)
+    if origin is Annotated:
+        return models_in(get_args(annotation)[0])
+    if origin in (Union, UnionType):
+        return [model for part in get_args(annotation) for model in models_in(part)]
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return []
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Return the question whether the nearest known name was meant, or nothing."""
+    close = difflib.get_close_matches(name[:80], list(known), n=1, cutoff=0.5)
+    return f"Did you mean '{close[0]}'?" if close else ""
+
+
+def unknown_key(path: str, known: list[str], part: str) -> FieldProblem:
+    """Return the problem of a key that the schema does not have."""
+    names = list(dict.fromkeys(known))
+    allowed = "one of " + ", ".join(names) if names else "no key below a value"
+    return FieldProblem(
+        shown(path) or "(empty)",
+        "unknown key",
+        allowed,
+        nearest(part, names) or "Remove the key, or correct its name.",
+    )
+
+
+def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
+    parts, models = _location(item["loc"], root)
+    path, kind, context = ".".join(parts), item["type"], item.get("ctx", {})
+    cause = context.get("error")
+    if isinstance(cause, ParameterError):
+        prefix = f"{path}." if parts else ""
+        return [
+            FieldProblem(
+                p.field if p.field.startswith(prefix) else prefix + p.field, p.value, p.allowed, p.action
+            )
+            for p in cause.problems
+        ]
+    value = shown(quoted(item.get("input")))
+    if kind == "quantity":
+        return [FieldProblem(path, context["value"], context["allowed"], context["action"])]
+    if kind == "extra_forbidden":
+        known = [name for model in models for name in model.model_fields]
+        return [unknown_key(path, known, parts[-1])]
+    if kind == "missing" and parts and parts[-1].isidentifier():
+        return [
+            FieldProblem(path, "missing", _description(field_of(root, path)), "Add it to the parameter file.")
+        ]
+    if kind in ("union_tag_invalid", "union_tag_not_found"):
+        given = context.get("tag", "missing")
+        tags = [str(tag) for model in models_in(field_of(root, path).annotation) for tag in _tags(model)]
+        return [_choice(f"{path}.model", given, tags)]
+    if kind == "literal_error":
+        names = [str(name) for name in get_args(field_of(root, path).annotation)]
+        return [_choice(path, item.get("input"), names)]
+    if kind in _RENAMED:
+        return [
+            FieldProblem(path or "file", value, f"{_RENAMED[kind]} of keys and values", "Write a section.")
+        ]
+    if parts and not models and field_of(root, path).annotation is int:
+        point = isinstance(item.get("input"), float)
+        action = "Write it without a point." if point else "Write a whole number in that range."
+        return [FieldProblem(path, value, _whole_number(field_of(root, path)), action)]
+    allowed = item["msg"].removeprefix("Input should be ").removeprefix("Value should be ")
+    return [FieldProblem(path or "file", value, allowed, "Correct the value.")]
+
+
+def _location(
+    location: tuple[int | str, ...], root: type[BaseModel]
+) -> tuple[list[str], list[type[BaseModel]]]:
+    """Path of pydantic's location without union tags and tuple indices, and the sections that it ends in."""
+    models = [root]
+    parts: list[str] = []
+    for item in location:
+        part = str(item)
+        tagged = [model for model in models if len(models) > 1 and part in _tags(model)]
+        if tagged:
+            models = tagged
+            continue
+        owner = [model for model in models if part in model.model_fields]
+        if not owner and parts and not models:
+            continue  # an index into a tuple or a member of a plain union: the field itself is named
+        parts.append(part)
+        if owner:
+            models = [m for model in owner for m in models_in(model.model_fields[part].annotation)]
+    return parts, models
+
+
+def _tags(model: type[BaseModel]) -> tuple[Any, ...]:
+    """Values of ``model`` in a parameter file that choose this member of a union."""
+    info = model.model_fields.get("model")
+    return get_args(info.annotation) if info and get_origin(info.annotation) is Literal else ()
+
+
+def _choice(path: str, given: object, names: list[str]) -> FieldProblem:
+    action = nearest(str(given), names) or "Choose one of them."
+    return FieldProblem(path, shown(given), "one of " + ", ".join(names), action)
+
+
+def _whole_number(info: FieldInfo) -> str:
+    limits = {type(marker).__name__: marker for marker in info.metadata}
+    low, high = getattr(limits.get("Ge"), "ge", "-inf"), getattr(limits.get("Le"), "le", "inf")
+    return f"a whole number from {low} to {high}"
+
+
+def _description(info: FieldInfo) -> str:
+    quantity = next((m for m in info.metadata if isinstance(m, Quantity)), None)
+    text = info.description or "a section of the parameter file"
+    return f"{quantity.allowed} ({text})" if quantity else text

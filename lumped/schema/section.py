@@ -1,0 +1,44 @@
+"""The base of every part of the schema."""
+
+from __future__ import annotations
+
+import unicodedata
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, BaseModel, ConfigDict
+from pydantic_core import PydanticCustomError
+
+from lumped.schema.units import Quantity, to_file
+
+
+class Section(BaseModel):
+    """Base of every part of the schema: frozen, and unknown keys are errors."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    def to_mapping(self) -> dict[str, Any]:
+        """Return nested plain data in file units; None is left out, as a file cannot say it."""
+        result: dict[str, Any] = {}
+        for name, info in type(self).model_fields.items():
+            value = getattr(self, name)
+            quantity = next((m for m in info.metadata if isinstance(m, Quantity)), None)
+            if isinstance(value, Section):
+                result[name] = value.to_mapping()
+            elif isinstance(value, tuple):
+                result[name] = list(value)
+            elif value is not None:
+                result[name] = value if quantity is None else to_file(value, quantity.unit)
+        return result
+
+
+def _readable(text: str) -> str:
+    if any(unicodedata.category(c) == "Cc" and c not in "\t\n\r" for c in text):
+        context = {"value": ascii(text)[:60], "allowed": "text without control characters"}
+        raise PydanticCustomError(
+            "quantity", "{value}: allowed {allowed}. {action}", {**context, "action": "Remove them."}
+        )
+    return text
+
+
+#: Free text. Terminals obey control characters, and result files cannot hold them all.
+Text = Annotated[str, AfterValidator(_readable)]

@@ -1,0 +1,141 @@
+"""When the contact force will next jump or bend: a tooth enters or leaves, passes a switch, or sliding turns.
+
+A step that straddles a jump of the force is no longer of the integrator's order: it is repeated until it is
+tiny, and what it leaves behind is larger than the tolerance. The motion of the gears themselves, continued
+from the present state by its Taylor polynomial, says when that will be, so that the integrator can stop there
+and start again behind it. A wrong prediction costs time and nothing else: the force does not depend on it.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.path_function import PathFunction
+from multibody.contact import kernels as kn
+from multibody.contact.compiled import compiled
+from multibody.contact.kernels import mesh_position
+from multibody.contact.kinematics import DRIVE, sliding_velocity, wrap
+
+FloatArray = NDArray[np.float64]
+
+#: Kinds of events, the first column of an event table; the second is the place xi [m] of the last two.
+ENTRY, EXIT, SWITCH, SLIDING = 0.0, 1.0, 2.0, 3.0
+#: Length of an ordinary step over the base pitch. Where the jumps of a law and its first two derivatives come
+#: to less than this share of its largest value within a step, nothing happens.
+_STEP, _NEGLIGIBLE = 0.005, 1e-6
+#: Most switches per mesh cycle at which to stop, the largest; to stop at each of a table's hundreds would
+#: cost more than it saves.
+_MOST_SWITCHES = 12
+#: A prediction is repeated until it moves by less than this share of the mesh cycle, or so often.
+_SHARP, _MOST_ITERATIONS = 1e-13, 10
+
+
+def event_table(
+    stiffness: PathFunction, damping: PathFunction, friction: PathFunction, error: PathFunction, pitch: float
+) -> FloatArray:
+    """Rows (kind, place) of what makes the force jump or bend once per mesh cycle, (n, 2).
+
+    Parameters
+    ----------
+    stiffness, damping, friction, error : element laws over the path of contact
+    pitch : base pitch [m]
+    """
+    step = _STEP * pitch
+    found = []
+    for kind, law in ((SWITCH, stiffness), (SWITCH, damping), (SWITCH, error), (SLIDING, friction)):
+        for j in np.searchsorted(law.breaks, law.switches):
+            found.append((_change(law, int(j), step), kind, float(law.breaks[j])))
+    sizes = {(kind, place): size for size, kind, place in sorted(found) if size > _NEGLIGIBLE}
+    rows = sorted(sizes, key=lambda row: -sizes[row])[:_MOST_SWITCHES]
+    if (
+        max(_change(law, j, step) for law in (stiffness, damping) for j in (0, law.breaks.size - 1))
+        > _NEGLIGIBLE
+    ):
+        rows += [(ENTRY, 0.0), (EXIT, 0.0)]
+    return np.array(rows, dtype=float).reshape(-1, 2)
+
+
+def _change(law: PathFunction, j: int, step: float) -> float:
+    """Bound on the difference, a step away, of the polynomials that meet at break j, over the largest value.
+
+    It sums the jumps of value, slope and curvature. Outside its path of contact a law is zero.
+    """
+    total = 0.0
+    for order in range(3):
+        before = after = 0.0
+        if j > 0:
+            width = law.breaks[j] - law.breaks[j - 1]
+            before = float(np.polyval(np.polyder(law.coefficients[:, j - 1], order), width))
+        if j < law.breaks.size - 1:
+            after = float(np.polyval(np.polyder(law.coefficients[:, j], order), 0.0))
+        total += abs(after - before) * step**order / math.factorial(order)
+    largest = float(np.abs(law(law.breaks[:-1])).max())
+    return total / largest if largest > 0.0 else 0.0
+
+
+@compiled
+def distance(
+    kind: float, place: float, t: float, q: FloatArray, v: FloatArray, p: FloatArray, flags: int
+) -> float:
+    """How far one tooth pair has to travel along the path of contact to an event, modulo the base pitch [m].
+
+    Friction is read where the nominal motion slides as fast as the teeth do, xi = L_XP + v_s/(Omega_p +
+    Omega_g). The sliding velocity v_s is linear along the line of action, so the place where it takes a given
+    value is exact.
+    """
+    ex, ey, length, delta, rho, xi = mesh_position(t, q, p, flags, DRIVE)
+    if kind == EXIT:
+        return float(p[kn.TIP_P] if flags & kn.ENTRY_SHIFT else p[kn.L_XD]) - rho
+    if kind == ENTRY:
+        return float(length + delta - p[kn.TIP_G] if flags & kn.ENTRY_SHIFT else p[kn.L_XA]) - rho
+    if kind == SLIDING and flags & kn.SLIDING:
+        omega_p, omega_g = v[2] - p[kn.OMEGA_P], v[5] + p[kn.OMEGA_G]
+        arm = xi + 0.5 * (length - p[kn.L_XY])
+        slide = sliding_velocity(ex, ey, v[0] - v[3], v[1] - v[4], omega_p, omega_g, arm, length - arm, DRIVE)
+        wanted = (place - p[kn.L_XP]) * (p[kn.OMEGA_P] + p[kn.OMEGA_G])
+        return float((wanted - slide) / (omega_g - omega_p))
+    return place - xi
+
+
+@compiled
+def time_to_event(
+    t: float,
+    q: FloatArray,
+    v: FloatArray,
+    a: FloatArray,
+    p: FloatArray,
+    flags: int,
+    events: FloatArray,
+    near: float,
+) -> float:
+    """Time to the next event [s], infinite when there is none.
+
+    Parameters
+    ----------
+    t : time [s]
+    q, v, a : (6,) coordinates, velocities, accelerations
+    p, flags : as ``kernels.contact_forces``
+    events : (n, 2) from ``event_table``
+    near : time over which a Taylor polynomial foretells the vibration [s]; further ahead only the nominal
+        speed is asked
+    """
+    pitch, speed = float(p[kn.PITCH]), float(p[kn.OMEGA_P] * p[kn.RADIUS_P])
+    way, which = math.inf, 0
+    for i in range(events.shape[0]):
+        d = distance(events[i, 0], events[i, 1], t, q, v, p, flags) % pitch
+        if d < way:
+            way, which = d, i
+    wait = way / speed
+    if not wait < near:
+        return wait
+    for _ in range(_MOST_ITERATIONS):
+        later, moving = q + wait * (v + 0.5 * wait * a), v + wait * a
+        d = distance(events[which, 0], events[which, 1], t + wait, later, moving, p, flags)
+        change = wrap(d, pitch) / speed
+        wait += change
+        if abs(change) * speed < _SHARP * pitch:
+            break
+    return max(wait, 0.0)

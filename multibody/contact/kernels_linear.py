@@ -1,0 +1,91 @@
+"""The linear mesh: N_i = k(xi_i(t)) (delta - e) + c (delta' - e'), F_i = mu N_i, on fixed directions.
+
+Independent of ``kernels.contact_forces``: generalised forces from constant incidence vectors, with the
+pair's contact moving along the nominal path as a function of time alone.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from multibody.contact import kernels as kn
+from multibody.contact.compiled import compiled
+from multibody.contact.kernels import FloatArray, IntArray, law
+
+
+@compiled
+def linear_forces(
+    t: float,
+    q: FloatArray,
+    v: FloatArray,
+    p: FloatArray,
+    flags: int,
+    table: FloatArray,
+    offsets: IntArray,
+    wrench: FloatArray,
+    contacts: FloatArray,
+) -> int:
+    """Generalised forces on (x_p, y_p, phi_p, x_g, y_g, phi_g); arguments as ``kernels.contact_forces``.
+
+    ``flags`` is not read, and the recorded sliding velocity does not act on the friction. With phi_p =
+    -theta_p and phi_g = theta_g the overlap is the dynamic transmission error delta = r_bp theta_p - r_bg
+    theta_g + x_p - x_g.
+    """
+    wrench[:] = 0.0
+    rp, rg, pitch = p[kn.RADIUS_P], p[kn.RADIUS_G], p[kn.PITCH]
+    tau = min(max(t, p[kn.T_LOW]), p[kn.T_HIGH])
+    speed = p[kn.OMEGA_P] * rp
+    advance = speed * tau
+    advance -= pitch * math.floor(advance / pitch)
+    delta = q[0] - q[3] - rp * q[2] - rg * q[5]
+    rate = v[0] - v[3] - rp * v[2] - rg * v[5]
+    count = 0
+    xi = p[kn.L_XA] + advance
+    while xi <= p[kn.L_XD]:
+        error, slope = law(table, offsets, kn.ERROR, xi)
+        stiffness = law(table, offsets, kn.STIFFNESS, xi)[0]
+        damping = law(table, offsets, kn.DAMPING, xi)[0]
+        mu = law(table, offsets, kn.FRICTION, xi)[0]
+        pressed, pressing = delta - error, rate - slope * speed
+        normal = stiffness * pressed + damping * pressing
+        friction = mu * normal
+        wrench[0] -= normal
+        wrench[1] += friction
+        wrench[2] += rp * normal + xi * friction
+        wrench[3] += normal
+        wrench[4] -= friction
+        wrench[5] += rg * normal + (p[kn.L_XY] - xi) * friction
+        record = contacts[count]
+        record[kn.XI], record[kn.LOAD], record[kn.FRICTION_FORCE], record[kn.MU] = xi, normal, friction, mu
+        record[kn.K], record[kn.C], record[kn.FLANK] = stiffness, damping, 1.0
+        record[kn.OVERLAP], record[kn.OVERLAP_RATE], record[kn.CLOSING] = pressed, pressing, rate
+        gear_arm = p[kn.L_XY] - xi
+        slide = (p[kn.OMEGA_P] - v[2]) * xi - (p[kn.OMEGA_G] + v[5]) * gear_arm - (v[1] - v[4])
+        record[kn.SLIDE] = slide
+        count += 1
+        xi += pitch
+    total = 0.0
+    for i in range(6):
+        total += wrench[i]
+    return count if math.isfinite(total) else -1
+
+
+@compiled
+def linear_forces_over(
+    times: FloatArray,
+    q: FloatArray,
+    v: FloatArray,
+    p: FloatArray,
+    flags: int,
+    table: FloatArray,
+    offsets: IntArray,
+    wrenches: FloatArray,
+    contacts: FloatArray,
+) -> IntArray:
+    """``linear_forces`` at n states; arguments as ``kernels.contact_forces_over``."""
+    counts = np.empty(times.size, np.int64)
+    for i in range(times.size):
+        counts[i] = linear_forces(times[i], q[i], v[i], p, flags, table, offsets, wrenches[i], contacts[i])
+    return counts

@@ -1,0 +1,232 @@
+r"""Contact kinematics of two involute gears as rigid bodies in the plane, exact for finite motions.
+
+Nothing here knows a stiffness, a load or a nominal motion: only centre positions, rotation angles (counter-
+clockwise, rad), velocities, base radii and tip radii.
+
+Derivation
+----------
+Let :math:`d = c_g - c_p` be the vector between the actual centres, :math:`a = |d|`, :math:`R = r_{bp} +
+r_{bg}` and :math:`J` the rotation by +90 degrees. A drive flank (s = +1) and its mirror image, the coast
+flank (s = -1), each have their own line of action, the crossed common tangent of the base circles. With its
+unit vector :math:`e` pointing from the pinion's tangent point X to the gear's tangent point Y, :math:`n = s
+J e` and :math:`L = |XY|`,
+
+.. math:: X = c_p + r_{bp} n, \quad Y = c_g - r_{bg} n, \quad d = L e + s R J e
+          \;\Rightarrow\; L = \sqrt{a^2 - R^2}, \quad e = (L d - s R J d)/a^2 .
+
+An involute is traced by the end of a taut string, so a flank crosses the line of action at right angles, at a
+distance :math:`\rho` from the tangent point that equals the arc unwound from its base circle. With
+:math:`\psi` the angle of e and :math:`\chi` a constant of the flank (where its involute starts, in the body
+frame),
+
+.. math:: \rho_p = s r_{bp} (\psi - \phi_p - \chi_p), \qquad
+          \rho_g = s r_{bg} (\psi + \pi - \phi_g - \chi_g), \qquad \delta = \rho_p + \rho_g - L ,
+
+modulo the base pitch. :math:`\delta > 0` is the overlap of the two flanks along their common normal; it is
+the same for every pair of teeth in contact, because involutes are conjugate at any centre distance.
+Differentiating, all terms with :math:`\dot\psi` and :math:`\dot L` combine to
+
+.. math:: \dot\delta = e \cdot (\dot c_p - \dot c_g) - s (r_{bp} \dot\phi_p + r_{bg} \dot\phi_g) ,
+
+which is minus the power of a unit force pair along the line of action: the wrench is the gradient of the
+overlap.
+
+The overlap is shared by both flanks, so the contact point lies in its middle:
+:math:`P = X + (\rho_p - \delta/2) e = Y - (\rho_g - \delta/2) e`. The formulas do not change when pinion
+and gear are exchanged.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.contact.compiled import compiled
+
+FloatArray = NDArray[np.float64]
+
+#: Flanks: the one that drives in the pinion's running sense, and the back side.
+DRIVE, COAST = 1.0, -1.0
+#: Most tooth pairs in contact at once: contact ratio below 4.
+MAX_PAIRS = 4
+
+
+@compiled
+def line_of_action(
+    px: float, py: float, gx: float, gy: float, base_sum: float, flank: float
+) -> tuple[float, float, float, float]:
+    """Unit vector e (from X to Y), length L [m] and angle psi [rad] of the actual line of action.
+
+    Parameters
+    ----------
+    px, py, gx, gy : actual centre positions [m]
+    base_sum : sum R of the base radii [m]; the centre distance must be larger
+    flank : +1 drive, -1 coast
+
+    Returns
+    -------
+    (ex, ey, length, psi); length is NaN when the base circles overlap
+    """
+    dx, dy = gx - px, gy - py
+    square = dx * dx + dy * dy
+    length = math.sqrt(square - base_sum * base_sum) if square > base_sum * base_sum else math.nan
+    ex = (length * dx + flank * base_sum * dy) / square
+    ey = (length * dy - flank * base_sum * dx) / square
+    return ex, ey, length, math.atan2(ey, ex)
+
+
+@compiled
+def wrap(value: float, period: float) -> float:
+    """``value`` modulo ``period``, in [-period/2, period/2)."""
+    return value - period * math.floor(value / period + 0.5)
+
+
+@compiled
+def mesh_phase(
+    psi: float,
+    length: float,
+    phi_p: float,
+    phi_g: float,
+    radius_p: float,
+    radius_g: float,
+    pitch: float,
+    chi_p: float,
+    chi_g: float,
+    flank: float,
+) -> tuple[float, float]:
+    """Where the teeth stand on the line of action.
+
+    Every pinion flank is paired with the nearest gear flank, so whole turns and whole pitches drop out.
+
+    Parameters
+    ----------
+    psi, length : angle [rad] and length [m] of the line of action
+    phi_p, phi_g : rotation angles [rad]
+    radius_p, radius_g, pitch : base radii and base pitch [m]
+    chi_p, chi_g : angles [rad] of the flanks' constants
+    flank : +1 drive, -1 coast
+
+    Returns
+    -------
+    (rho, delta) : distance rho [m] of the first pinion flank from X, in [0, pitch): the others follow at
+        whole pitches; overlap delta [m] of the flanks, positive when pressed
+    """
+    rho_p = flank * radius_p * (psi - phi_p - chi_p)
+    rho_g = flank * radius_g * (psi + math.pi - phi_g - chi_g)
+    # % is exact for any number of turns; subtracting whole pitches leaves metres after 1e16 of them.
+    return rho_p % pitch, wrap(rho_p + rho_g - length, pitch)
+
+
+@compiled
+def overlap_rate(
+    ex: float,
+    ey: float,
+    vx: float,
+    vy: float,
+    omega_p: float,
+    omega_g: float,
+    radius_p: float,
+    radius_g: float,
+    flank: float,
+) -> float:
+    """Rate of the overlap [m/s]; (vx, vy) is the velocity of the pinion's centre relative to the gear's."""
+    return ex * vx + ey * vy - flank * (radius_p * omega_p + radius_g * omega_g)
+
+
+@compiled
+def sliding_velocity(
+    ex: float,
+    ey: float,
+    vx: float,
+    vy: float,
+    omega_p: float,
+    omega_g: float,
+    arm_p: float,
+    arm_g: float,
+    flank: float,
+) -> float:
+    """Sliding velocity at the contact point from rigid-body motion [m/s].
+
+    Velocity of the pinion's material relative to the gear's along -n: negative in approach, positive in
+    recess on the drive flank. ``arm_p`` and ``arm_g`` are the distances of the contact point from X and Y
+    [m].
+    """
+    nx, ny = -flank * ey, flank * ex
+    return -(nx * vx + ny * vy) - flank * (omega_p * arm_p + omega_g * arm_g)
+
+
+@compiled
+def add_wrench(
+    wrench: FloatArray,
+    ex: float,
+    ey: float,
+    normal: float,
+    friction: float,
+    arm_p: float,
+    arm_g: float,
+    radius_p: float,
+    radius_g: float,
+    flank: float,
+) -> None:
+    """Add one contact's forces to ``wrench`` = (Fx, Fy, M) of the pinion, (Fx, Fy, M) of the gear [N, N m].
+
+    The pinion receives -N e + F n, the gear the opposite, both at the contact point; moments are about the
+    centres, counter-clockwise. ``friction`` F has the sign of the sliding velocity.
+    """
+    nx, ny = -flank * ey, flank * ex
+    fx, fy = -normal * ex + friction * nx, -normal * ey + friction * ny
+    wrench[0] += fx
+    wrench[1] += fy
+    wrench[2] += flank * (radius_p * normal + arm_p * friction)
+    wrench[3] -= fx
+    wrench[4] -= fy
+    wrench[5] += flank * (radius_g * normal + arm_g * friction)
+
+
+@compiled
+def overlap(
+    pose: FloatArray,
+    radius_p: float,
+    radius_g: float,
+    pitch: float,
+    chi_p: float,
+    chi_g: float,
+    flank: float,
+) -> float:
+    """Overlap delta [m] of two gears in the pose (xp, yp, phi_p, xg, yg, phi_g) [m, m, rad]."""
+    _, _, length, psi = line_of_action(pose[0], pose[1], pose[3], pose[4], radius_p + radius_g, flank)
+    _, delta = mesh_phase(psi, length, pose[2], pose[5], radius_p, radius_g, pitch, chi_p, chi_g, flank)
+    return delta
+
+
+@compiled
+def pairs_in_contact(
+    rho: float, delta: float, length: float, pitch: float, tip_p: float, tip_g: float, arms: FloatArray
+) -> int:
+    """Find every pair of teeth whose flanks meet within both tip circles.
+
+    A flank reaches from its base circle (rho = 0) to its tip circle (rho = tip_p, tip_g: the tangent length
+    sqrt(r_a^2 - r_b^2)). Contact off the line of action, when a tip edge strikes early, is not modelled.
+
+    Parameters
+    ----------
+    rho, delta, length, pitch : from ``mesh_phase`` and ``line_of_action`` [m]
+    tip_p, tip_g : tangent lengths of the tip circles [m]
+    arms : (MAX_PAIRS, 2) array that receives the flank distances (rho_p, rho_g), newest pair first [m]
+
+    Returns
+    -------
+    number of pairs
+    """
+    count = 0
+    rho_p = rho
+    while rho_p <= tip_p and count < MAX_PAIRS:
+        rho_g = length + delta - rho_p
+        if 0.0 <= rho_g <= tip_g:
+            arms[count, 0] = rho_p
+            arms[count, 1] = rho_g
+            count += 1
+        rho_p += pitch
+    return count

@@ -1,0 +1,1 @@
+"""One machine in exudyn: set up, integrated, recorded."""

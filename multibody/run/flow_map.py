@@ -1,0 +1,285 @@
+"""Periodic motion and stability as the multibody model sees them: perturbed states over one mesh cycle.
+
+The 12-state map has a double multiplier +1, the rigid rotation of the free gear train. The verdict is taken
+on the 10 states of the relative form (q, x_p, x_g, y_p, y_g and rates, q = r_bp theta_p - r_bg theta_g):
+the rotations are perturbed with the rigid rotation J_p theta_p/r_bp + J_g theta_g/r_bg held fixed, and q is
+read off.
+
+Sources: docs/theory/multibody.md, "Stability".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.arguments import whole_number
+from lumped.errors import NumericalError
+from lumped.model.periodic_system import periodic_system
+from lumped.model.propagation import step_maps
+from lumped.schema.pair import GearPair
+from multibody.contact import kernels as kn
+from multibody.contact.machine import Machine
+from multibody.run.model import build
+from multibody.run.records import from_lumped_state, to_lumped_state
+from multibody.run.setup import Fidelity, Setup, prepare
+from multibody.run.simulation import record
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+#: Perturbation over the static deflection: large for the linear level, where size does not matter; at the
+#: exact level central differences err by its square times the nonlinearity, and by rtol over it.
+_STEP = {"linear": 1.0, "exact": 1e-3}
+#: Mismatch over one cycle, relative to the scale of each state: the iteration stops at this multiple of
+#: rtol ...
+_CLOSED = 10.0
+#: ... and accepts this much where it stops falling before.
+_ACCEPTED = 1e-5
+#: Steps without a smaller mismatch before the iteration is given up.
+_PATIENCE = 8
+
+
+@dataclass(frozen=True, eq=False)
+class FlowMap:
+    """Periodic motion and its linearised map over one mesh cycle.
+
+    Attributes
+    ----------
+    matrix : (10, 10) map of (q, x_p, x_g, y_p, y_g and rates)
+    full : (12, 12) map of the lumped states (theta_p, theta_g, x_p, x_g, y_p, y_g and rates)
+    state : (12,) state of the motion at t = 0 about which the map is taken
+    brake_torque : torque that balances that motion [N m]
+    closure : largest change of the state over one cycle, relative to its scale
+    read, lift : (10, 12) reads the relative states off the lumped ones; (12, 10) perturbs the lumped states
+        by relative ones, with the rigid rotation held fixed
+    """
+
+    matrix: FloatArray
+    full: FloatArray
+    read: FloatArray
+    lift: FloatArray
+    state: FloatArray
+    brake_torque: float
+    closure: float
+
+    @property
+    def multipliers(self) -> ComplexArray:
+        """Characteristic multipliers of the relative form, largest modulus first."""
+        values = np.linalg.eigvals(self.matrix).astype(np.complex128)
+        return values[np.argsort(-np.abs(values), kind="stable")]
+
+    @property
+    def spectral_radius(self) -> float:
+        """Largest modulus of a multiplier: above 1 the motion is unstable."""
+        return float(np.abs(self.multipliers[0]))
+
+
+def monodromy(
+    pair: GearPair,
+    *,
+    fidelity: Fidelity = "exact",
+    effects: Collection[str] | Mapping[str, bool] | None = None,
+    rtol: float = 1e-10,
+    friction_velocity: float | None = None,
+    iterations: int = 40,
+) -> FlowMap:
+    """Monodromy matrix by perturbed runs over one mesh cycle, about the model's own periodic motion.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    fidelity, effects, rtol, friction_velocity : as ``multibody.simulate``
+    iterations : most Newton steps from the lumped periodic motion to the multibody one, with the brake
+        torque as unknown; 0 takes the map about the lumped motion
+
+    Raises
+    ------
+    NumericalError : no periodic motion is found near the lumped one
+    """
+    iterations = whole_number("iterations", iterations, 0, 1000)
+    setup = prepare(
+        pair,
+        fidelity=fidelity,
+        initial="periodic",
+        effects=effects,
+        rtol=rtol,
+        friction_velocity=friction_velocity,
+    )
+    orbit = find_orbit(pair, setup, iterations)
+    full = _differences(orbit.flow, orbit.state, _scale(setup) * _STEP[fidelity])
+    read, lift = _relative(orbit.machine)
+    torque = orbit.machine.torque_gear
+    return FlowMap(read @ full @ lift, full, read, lift, orbit.state, torque, orbit.closure)
+
+
+@dataclass(frozen=True, eq=False)
+class Orbit:
+    """A motion that closes after one mesh cycle.
+
+    Attributes
+    ----------
+    state : (12,) lumped states at t = 0
+    machine : numbers of the pair, with the brake torque that balances this motion
+    flow : its flow map
+    closure : largest change of the state over one cycle, relative to its scale
+    """
+
+    state: FloatArray
+    machine: Machine
+    flow: Flow
+    closure: float
+
+
+def find_orbit(pair: GearPair, setup: Setup, iterations: int = 40) -> Orbit:
+    """Periodic motion near the initial state of ``setup``, with the brake torque as unknown.
+
+    Broyden's method: it starts from the monodromy matrix of the lumped model, which differs from the own one
+    by a few per cent, and much where friction holds the teeth for a time; each step, at one mesh cycle,
+    corrects it along the way it went. What it converges to does not depend on the matrix.
+
+    References
+    ----------
+    C. G. Broyden, "A class of methods for solving nonlinear simultaneous equations", Math. Comp. 19 (1965)
+    577-593.
+
+    Raises
+    ------
+    NumericalError : the iteration does not close the cycle
+    """
+    scale = _scale(setup)
+    state, machine = to_lumped_state(setup.q, setup.v), setup.machine
+    system = periodic_system(pair, "absolute")
+    maps = step_maps(system, np.stack([system.torque_pinion, system.torque_gear], axis=1))
+    transition, forced = maps.over_all()
+    matrix = _bordered(transition, forced[:, 2], machine, scale)
+    best, age = Orbit(state, machine, Flow(setup, machine), np.inf), 0
+    change = np.zeros(13)
+    for step in range(iterations + 1):
+        flow = Flow(setup, machine)
+        mismatch = np.append((flow(state) - state) / scale, 0.0)
+        closure = float(np.abs(mismatch).max())
+        if closure < best.closure:
+            best, age = Orbit(state, machine, flow, closure), step
+        if closure < _CLOSED * setup.rtol or step - age > _PATIENCE:
+            break
+        if step > 0:  # Broyden: along the last change the matrix must explain all of the mismatch left
+            matrix -= np.outer(mismatch, change) / (change @ change)
+        change = np.linalg.solve(matrix, mismatch)
+        state = state + change[:12] * scale
+        machine = replace(machine, torque_gear=machine.torque_gear * (1.0 + float(change[12])))
+    if iterations > 0 and not best.closure < _ACCEPTED:
+        raise NumericalError(
+            f"No periodic multibody motion near the lumped one (mismatch {best.closure:.1e}): the pair may "
+            "separate or sit on a stability boundary. Change the speed or the torque, or run "
+            "multibody.simulate."
+        )
+    return best
+
+
+def steady_state(
+    pair: GearPair,
+    *,
+    fidelity: Fidelity = "exact",
+    samples_per_cycle: int = 512,
+    effects: Collection[str] | Mapping[str, bool] | None = None,
+    rtol: float = 1e-9,
+    friction_velocity: float | None = None,
+) -> xr.Dataset:
+    """Periodic motion over one mesh cycle, without settling: the counterpart of ``lumped.steady_state``.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    fidelity, effects, rtol, friction_velocity : as ``multibody.simulate``
+    samples_per_cycle : output times in [0, T_m)
+
+    Returns
+    -------
+    xarray.Dataset as of ``multibody.simulate`` over one cycle; the attributes ``brake_torque`` and
+    ``mesh_efficiency`` are those that hold the mean speed of this model, ``closure`` the relative mismatch
+    after the cycle
+
+    Raises
+    ------
+    NumericalError : no periodic motion is found near the lumped one
+    """
+    setup = prepare(
+        pair,
+        fidelity=fidelity,
+        initial="periodic",
+        effects=effects,
+        rtol=rtol,
+        friction_velocity=friction_velocity,
+    )
+    orbit = find_orbit(pair, setup)
+    q, v = from_lumped_state(orbit.state)
+    run, _, _ = record(replace(orbit.flow.setup, q=q, v=v), 1, samples_per_cycle)
+    m, p = orbit.machine, orbit.machine.parameters
+    run.attrs |= {
+        "brake_torque": m.torque_gear,
+        "mesh_efficiency": m.torque_gear * p[kn.OMEGA_G] / (m.torque_pinion * p[kn.OMEGA_P]),
+        "closure": orbit.closure,
+    }
+    return run.isel(time=slice(None, -1))
+
+
+class Flow:
+    """State (12,) -> state after one mesh cycle."""
+
+    def __init__(self, setup: Setup, machine: Machine) -> None:
+        model = build(machine, setup.model.fidelity, setup.model.flags, setup.model.budget.limit)
+        self.setup = replace(setup, model=model)
+        self.edges = setup.edges(1)
+
+    def __call__(self, state: FloatArray) -> FloatArray:
+        q, v = from_lumped_state(state)
+        return to_lumped_state(*replace(self.setup, q=q, v=v).run(self.edges, lambda *_: None))
+
+
+def _scale(setup: Setup) -> FloatArray:
+    """Sizes of the 12 states in a vibration: static deflection, and that over the mesh cycle times 2 pi."""
+    p = setup.machine.parameters
+    lengths = setup.deflection * np.array([1 / p[kn.RADIUS_P], 1 / p[kn.RADIUS_G], 1, 1, 1, 1])
+    return np.concatenate([lengths, lengths * 2 * np.pi / setup.machine.period])
+
+
+def _differences(flow: Flow, state: FloatArray, steps: FloatArray) -> FloatArray:
+    columns = []
+    for i, h in enumerate(steps):
+        ahead, behind = state.copy(), state.copy()
+        ahead[i] += h
+        behind[i] -= h
+        columns.append((flow(ahead) - flow(behind)) / (2.0 * h))
+    return np.stack(columns, axis=1)
+
+
+def _bordered(full: FloatArray, by_torque: FloatArray, machine: Machine, scale: FloatArray) -> FloatArray:
+    """I - map, (13, 13), bordered by the brake torque as unknown and the rigid rotation as held; scaled."""
+    p = machine.parameters
+    matrix = np.zeros((13, 13))
+    matrix[:12, :12] = (np.eye(12) - full) * scale / scale[:, None]
+    matrix[:12, 12] = -by_torque * machine.torque_gear / scale
+    rigid = machine.inertia / np.array([p[kn.RADIUS_P], p[kn.RADIUS_G]])
+    matrix[12, :2] = rigid * scale[:2] / (rigid * scale[:2]).max()
+    return matrix
+
+
+def _relative(machine: Machine) -> tuple[FloatArray, FloatArray]:
+    """Matrices (10, 12) that reads the relative states off, and (12, 10) that perturbs them."""
+    p = machine.parameters
+    radii = np.array([p[kn.RADIUS_P], -p[kn.RADIUS_G]])
+    by_inertia = radii / machine.inertia
+    down, up = np.zeros((5, 6)), np.zeros((6, 5))
+    down[0, :2] = radii
+    up[:2, 0] = by_inertia / (radii @ by_inertia)
+    down[1:, 2:] = up[2:, 1:] = np.eye(4)
+    two = np.eye(2)
+    return np.asarray(np.kron(two, down), dtype=float), np.asarray(np.kron(two, up), dtype=float)

@@ -1,0 +1,269 @@
+"""Time integration by exudyn's DOPRI5, interval by interval, with dense output.
+
+Each interval ends where the nominal element laws switch (linear) or at the end of a mesh cycle (exact). The
+latter is cut further where the motion itself will make the contact force jump or bend
+(``multibody.contact.events``): the integrator stops just before, one Taylor step leads across, and the
+integrator starts again. Between the integrator's own steps the state is a quintic Hermite polynomial through
+coordinates, velocities and accelerations; its error, of sixth order in the step, stays below the
+integrator's, of fifth.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import exudyn as exu
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.errors import NumericalError
+from multibody.contact import kernels as kn
+from multibody.contact.events import time_to_event
+from multibody.run.model import ExudynModel, accelerations
+
+FloatArray = NDArray[np.float64]
+
+#: Smallest step over the mesh cycle. A floor that is not tiny hangs where friction changes sign: the step
+#: cannot shrink enough to be accepted and the solver tries it for ever.
+_STEP_FLOOR = 1e-14
+_FIRST_STEP = 1e-4
+#: Most predictions in one interval. A mesh cycle takes some ten; friction that holds the teeth at zero
+#: sliding would take them without end.
+_MOST_EVENTS = 64
+#: A Taylor polynomial of second order foretells vibration over this share of a swing of the fastest mode.
+_NEAR = 0.2
+#: exudyn takes an interval as finished so long before its end [s].
+_EXUDYN_END = 1e-10
+
+
+@dataclass(frozen=True)
+class Segment:
+    """Accepted steps of one interval: times (n,), q and v (n, 6), and its dense output."""
+
+    times: FloatArray
+    q: FloatArray
+    v: FloatArray
+    a: FloatArray
+
+    def at(self, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Coordinates and velocities at times t (m,) inside the interval, each (m, 6)."""
+        if self.times.size == 1:
+            return np.repeat(self.q, t.size, axis=0), np.repeat(self.v, t.size, axis=0)
+        j = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, self.times.size - 2)
+        h = (self.times[j + 1] - self.times[j])[:, None]
+        s = (t - self.times[j])[:, None] / h
+        # Coefficients of s^3, s^4, s^5 from what the Taylor start (q, v, a) leaves at the far end.
+        start, speed, bend = self.q[j], h * self.v[j], h * h * self.a[j]
+        gap = self.q[j + 1] - start - speed - 0.5 * bend
+        gap_1 = h * self.v[j + 1] - speed - bend
+        gap_2 = h * h * self.a[j + 1] - bend
+        c3 = 10.0 * gap - 4.0 * gap_1 + 0.5 * gap_2
+        c4 = -15.0 * gap + 7.0 * gap_1 - gap_2
+        c5 = 6.0 * gap - 3.0 * gap_1 + 0.5 * gap_2
+        q = start + s * (speed + s * (0.5 * bend + s * (c3 + s * (c4 + s * c5))))
+        v = (speed + s * (bend + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))) / h
+        return q, v
+
+    @classmethod
+    def joined(cls, parts: list[Segment]) -> Segment:
+        """Join parts of one interval, each of which starts with the last row of the one before."""
+        rows = [slice(None)] + [slice(1, None)] * (len(parts) - 1)
+        return cls(
+            *(
+                np.concatenate([getattr(part, name)[row] for part, row in zip(parts, rows, strict=True)])
+                for name in ("times", "q", "v", "a")
+            )
+        )
+
+
+def settings(rtol: float, atol: float, period: float) -> exu.SimulationSettings:
+    """Settings of the explicit integrator: no files, every step stored by the sensors."""
+    s = exu.SimulationSettings()
+    ti = s.timeIntegration
+    ti.solverType = exu.DynamicSolverType.DOPRI5
+    ti.automaticStepSize = True
+    ti.relativeTolerance, ti.absoluteTolerance = rtol, atol
+    ti.minimumStepSize = _STEP_FLOOR * period
+    ti.numberOfSteps = 1
+    ti.verboseMode = 0
+    ti.explicit.computeEndOfStepAccelerations = False
+    s.solution.file.write = False
+    s.solution.sensors.writePeriod = _STEP_FLOOR * period
+    s.show.computationTime = False
+    return s
+
+
+def integrate(
+    model: ExudynModel,
+    q: FloatArray,
+    v: FloatArray,
+    edges: FloatArray,
+    *,
+    rtol: float,
+    atol: float,
+    clamp: bool,
+    visit: Callable[[int, Segment], None],
+) -> tuple[FloatArray, FloatArray]:
+    """Integrate over consecutive intervals.
+
+    Parameters
+    ----------
+    model : assembled model
+    q, v : (6,) initial state
+    edges : (m + 1,) ends of the intervals [s]
+    rtol, atol : tolerances of the step-size control
+    clamp : evaluate the nominal phase strictly inside each interval (the edges are switches)
+    visit : called with (interval number, its segment)
+
+    Returns
+    -------
+    (q, v) at the last edge
+
+    Raises
+    ------
+    NumericalError : a force or a state is not finite, or the force was evaluated more often than allowed
+    """
+    s = settings(rtol, atol, model.machine.period)
+    step = _FIRST_STEP * model.machine.period
+    for number, (start, stop) in enumerate(itertools.pairwise(edges)):
+        if clamp:
+            margin = 1e-12 * model.machine.period
+            model.parameters[kn.T_LOW], model.parameters[kn.T_HIGH] = start + margin, stop - margin
+        model.budget.reset()
+        segment, step = _interval(model, s, q, v, float(start), float(stop), step, locate=not clamp)
+        visit(number, segment)
+        q, v = segment.q[-1], segment.v[-1]
+    return q, v
+
+
+def _interval(
+    model: ExudynModel,
+    s: exu.SimulationSettings,
+    q: FloatArray,
+    v: FloatArray,
+    start: float,
+    stop: float,
+    step: float,
+    locate: bool,
+) -> tuple[Segment, float]:
+    """Integrate over one interval, from event to event; returns it and a step size to go on with."""
+    m, parts, t = model.machine, [], start
+    a = accelerations(model, np.array([t]), q[None], v[None])[0]
+    # Times in swings of the fastest mode. A Taylor step of second order errs by the square of the radians it
+    # spans, so one to an event so close errs by less than a tenth of rtol.
+    swing = m.period / max(m.vibrations_per_cycle, 1.0)
+    close = max(0.05 * np.sqrt(s.timeIntegration.relativeTolerance) * swing, _EXUDYN_END)
+    if not np.isfinite(a).all():
+        model.budget.reason = "not finite"
+        raise _failure(model, start, stop)
+    for _ in range(_MOST_EVENTS if locate else 0):
+        wait = time_to_event(t, q, v, a, model.parameters, model.flags, m.events, _NEAR * swing)
+        if wait < close:
+            beyond = t + wait + 1e-12 * m.period + 1e-15 * t
+            if not beyond < stop:
+                break
+            part = _across(model, t, q, v, a, t + wait, beyond)
+        else:
+            # Stop short of it by what vibration may shift it: the third order of the Taylor polynomial.
+            ahead = wait / swing
+            short = max(0.5 * ahead**3, 0.5 * close / swing) if ahead < _NEAR else 0.15
+            until = t + wait - swing * min(0.5 * ahead, short)
+            if not until < stop:  # or no event at all
+                break
+            part = _run(model, s, q, v, t, until, step)
+            step = _middle_step(part, step)
+        parts.append(part)
+        t, q, v, a = float(part.times[-1]), part.q[-1], part.v[-1], part.a[-1]
+    part = _run(model, s, q, v, t, stop, step)
+    return Segment.joined([*parts, part]), _middle_step(part, step)
+
+
+def _middle_step(part: Segment, default: float) -> float:
+    """Step size from the middle of a run, where neither its start nor its end cut it short."""
+    middle = part.times.size // 2
+    return float(part.times[middle] - part.times[middle - 1]) if part.times.size > 3 else default
+
+
+def _across(
+    model: ExudynModel, t: float, q: FloatArray, v: FloatArray, a: FloatArray, event: float, beyond: float
+) -> Segment:
+    """Taylor step from t to an event, and a hair beyond it, where the force is another."""
+    times = np.array([t, event, beyond])
+    h = (times - t)[:, None]
+    states_q, states_v = q + h * (v + 0.5 * h * a), v + h * a
+    states_a = np.repeat(a[None], 3, axis=0)
+    states_a[2:] = accelerations(model, times[2:], states_q[2:], states_v[2:])
+    return Segment(times, states_q, states_v, states_a)
+
+
+def _run(
+    model: ExudynModel,
+    s: exu.SimulationSettings,
+    q: FloatArray,
+    v: FloatArray,
+    start: float,
+    stop: float,
+    step: float,
+) -> Segment:
+    ti, system, budget = s.timeIntegration, model.system, model.budget
+    ti.startTime, ti.endTime = start, stop
+    ti.initialStepSize = min(step, stop - start)
+    system.systemData.SetODE2Coordinates(q.tolist(), configuration=exu.ConfigurationType.Initial)
+    system.systemData.SetODE2Coordinates_t(v.tolist(), configuration=exu.ConfigurationType.Initial)
+    try:
+        with _quiet():
+            finished = system.SolveDynamic(s)
+    except Exception as error:  # exudyn wraps whatever a user function raises in its own types
+        if "KeyboardInterrupt" in str(error):  # Ctrl-C lands in the user function and is wrapped as well
+            raise KeyboardInterrupt from None
+        raise _failure(model, start, stop) from error
+    if not finished:
+        raise _failure(model, start, stop)
+    position, velocity = (np.asarray(system.GetSensorStoredData(number)) for number in model.sensors)
+    times, states_q, states_v = position[:, 0], position[:, 1:], velocity[:, 1:]
+    if not (np.isfinite(states_q).all() and np.isfinite(states_v).all()):
+        budget.reason = "not finite"
+        raise _failure(model, start, stop)
+    keep = np.diff(times, prepend=-np.inf) > 0.0
+    times, states_q, states_v = times[keep], states_q[keep], states_v[keep]
+    states_a = accelerations(model, times, states_q, states_v)
+    if times[-1] < stop:
+        # exudyn counts an interval as finished up to 1e-10 s before its end. Left out, that would shift every
+        # later time; a Taylor step over so little is exact to rounding.
+        gap = stop - float(times[-1])
+        last_q = states_q[-1] + gap * (states_v[-1] + 0.5 * gap * states_a[-1])
+        last_v = states_v[-1] + gap * states_a[-1]
+        times = np.append(times, stop)
+        states_q, states_v = np.vstack([states_q, last_q]), np.vstack([states_v, last_v])
+        states_a = np.vstack([states_a, accelerations(model, times[-1:], last_q[None], last_v[None])])
+    return Segment(times, states_q, states_v, states_a)
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep exudyn from writing to the console; what went wrong is in the exception."""
+    before = exu.config.printToConsole
+    exu.config.printToConsole = False
+    try:
+        yield
+    finally:
+        exu.config.printToConsole = before
+
+
+def _failure(model: ExudynModel, start: float, stop: float) -> NumericalError:
+    budget = model.budget
+    where = f"between t = {start:.6g} and {stop:.6g} s"
+    if budget.reason == "not finite":
+        text = "A contact force or a state is not finite; check torque, stiffness and the initial state."
+    elif budget.reason == "too many calls":
+        text = (
+            f"More than {budget.limit} force evaluations in one interval: the steps keep shrinking. "
+            "Loosen rtol, or smooth the friction at the pitch point (friction_velocity) or the engagement "
+            "(mesh.stiffness.ramp_length)."
+        )
+    else:
+        text = "exudyn's integrator stopped; loosen rtol or shorten the run."
+    return NumericalError(f"Multibody run stopped {where}. {text}")

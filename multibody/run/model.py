@@ -1,0 +1,262 @@
+"""The exudyn model: two planar rigid bodies in bearings, one massless object that carries the tooth contacts.
+
+Coordinates are deviations from the nominal rotation, q = (x_p, y_p, phi_p, x_g, y_g, phi_g): the bodies
+turn through finite angles (the contact core adds the nominal rotation), while the integrator's relative
+tolerance acts on the vibration and not on the many turns of the shafts. A frame that turns at constant
+speed about each body's own centre of mass adds no inertia terms in the plane.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import exudyn as exu
+import exudyn.itemInterface as items
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.contact import kernels as kn
+from multibody.contact.kernels import IntArray, contact_forces, contact_forces_over
+from multibody.contact.kernels_linear import linear_forces, linear_forces_over
+from multibody.contact.kinematics import MAX_PAIRS
+from multibody.contact.machine import Machine
+from multibody.run.drive import DriveTables, drive_torques
+
+FloatArray = NDArray[np.float64]
+#: (t, q, v, parameters, flags, table, offsets, wrench, contacts) -> number of contacts or -1
+ForceCore = Callable[..., int]
+#: The same at n states: (times, q, v, parameters, flags, table, offsets, wrenches, contacts) -> numbers
+ForceCoreOver = Callable[..., IntArray]
+
+FIDELITIES: dict[str, tuple[ForceCore, ForceCoreOver]] = {
+    "linear": (linear_forces, linear_forces_over),
+    "exact": (contact_forces, contact_forces_over),
+}
+
+
+@dataclass
+class CallBudget:
+    """Counts force evaluations, so that no run can hang, and remembers why one was stopped.
+
+    Attributes
+    ----------
+    limit : most calls allowed until the next ``reset``
+    calls : calls since the start
+    reason : empty, or the first problem met ("not finite", "too many calls")
+    """
+
+    limit: int
+    calls: int = 0
+    allowed: int = field(init=False)
+    reason: str = ""
+
+    def __post_init__(self) -> None:
+        self.allowed = self.limit
+
+    def reset(self) -> None:
+        """Allow ``limit`` more calls."""
+        self.allowed = self.calls + self.limit
+
+
+class _Stop(Exception):
+    """Leaves exudyn's solver from inside a user function."""
+
+
+@dataclass(eq=False)
+class ExudynModel:
+    """An assembled exudyn system and the buffers its user function writes.
+
+    Attributes
+    ----------
+    machine : the numbers it was built from
+    fidelity, flags : which force core, and its effect switches
+    system : exudyn MainSystem
+    container : exudyn SystemContainer (must stay alive; also holds the renderer)
+    sensors : numbers of the sensors that store coordinates and velocities of both gears at every step
+    nodes : numbers of the nodes of pinion and gear
+    drive : torques beyond the constant ones
+    parameters : the core's parameter vector, may be changed between runs
+    budget : counter of force evaluations
+    """
+
+    machine: Machine
+    fidelity: str
+    flags: int
+    container: exu.SystemContainer
+    system: exu.MainSystem
+    sensors: tuple[int, int]
+    nodes: tuple[int, int]
+    drive: DriveTables | None
+    parameters: FloatArray
+    budget: CallBudget
+
+
+def build(
+    machine: Machine, fidelity: str, flags: int, call_limit: int, drive: DriveTables | None = None
+) -> ExudynModel:
+    """Assemble the exudyn system.
+
+    Parameters
+    ----------
+    machine : numbers of the gear pair
+    fidelity : "linear" or "exact"
+    flags : effect switches of the exact core (bits of ``kernels``)
+    call_limit : most force evaluations of one integration interval
+    drive : torques beyond the constant ones; they act on the same two nodes as the contacts
+    """
+    container = exu.SystemContainer()
+    system = container.AddSystem()
+    p = machine.parameters
+    ground = system.AddObject(items.ObjectGround())
+    centres = ((p[kn.CENTRE_PX], p[kn.CENTRE_PY]), (p[kn.CENTRE_GX], p[kn.CENTRE_GY]))
+    # The pinion turns clockwise: its driving torque is -T_p. The brake acts against the gear: also negative.
+    torques = (-machine.torque_pinion, -machine.torque_gear)
+    nodes = tuple(_add_gear(system, ground, machine, i, centres[i], torques[i]) for i in range(2))
+    parameters = p.copy()
+    budget = CallBudget(call_limit)
+    mesh = system.AddObject(
+        items.ObjectGenericODE2(
+            nodeNumbers=list(nodes),
+            massMatrix=np.zeros((6, 6)),
+            forceUserFunction=_force_function(
+                machine, FIDELITIES[fidelity][0], flags, parameters, budget, drive
+            ),
+        )
+    )
+    position, velocity = (
+        system.AddSensor(
+            items.SensorBody(bodyNumber=mesh, outputVariableType=kind, storeInternal=True, writeToFile=False)
+        )
+        for kind in (exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t)
+    )
+    system.Assemble()
+    return ExudynModel(
+        machine=machine,
+        fidelity=fidelity,
+        flags=flags,
+        container=container,
+        system=system,
+        sensors=(int(position), int(velocity)),
+        nodes=(nodes[0], nodes[1]),
+        drive=drive,
+        parameters=parameters,
+        budget=budget,
+    )
+
+
+def _add_gear(
+    system: exu.MainSystem,
+    ground: int,
+    machine: Machine,
+    which: int,
+    centre: tuple[float, float],
+    torque: float,
+) -> int:
+    """Add one gear: node, rigid body, bearing to ground, torque; returns the node."""
+    node = system.AddNode(items.NodeRigidBody2D(referenceCoordinates=[*centre, 0.0]))
+    system.AddObject(
+        items.ObjectRigidBody2D(
+            mass=float(machine.mass[which]), inertia=float(machine.inertia[which]), nodeNumber=node
+        )
+    )
+    # Markers on nodes and coordinates cost exudyn half of what markers on bodies do.
+    at_node = system.AddMarker(items.MarkerNodePosition(nodeNumber=node))
+    at_ground = system.AddMarker(items.MarkerBodyPosition(bodyNumber=ground, localPosition=[*centre, 0.0]))
+    system.AddObject(
+        items.ObjectConnectorCartesianSpringDamper(
+            markerNumbers=[at_ground, at_node],
+            stiffness=[*machine.bearing_stiffness[which].tolist(), 0.0],
+            damping=[*machine.bearing_damping[which].tolist(), 0.0],
+        )
+    )
+    angle = system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=2))
+    system.AddLoad(items.LoadCoordinate(markerNumber=angle, load=torque))
+    return int(node)
+
+
+def _force_function(
+    machine: Machine,
+    core: ForceCore,
+    flags: int,
+    p: FloatArray,
+    budget: CallBudget,
+    drive: DriveTables | None,
+) -> Callable[..., FloatArray]:
+    """Return the user function of the contact object; it writes into its own buffers.
+
+    It is called some thousand times per mesh cycle, so the two lists it gets are packed into one buffer,
+    twice as fast as by assignment to arrays.
+    """
+    buffer = bytearray(struct.calcsize("12d"))
+    q, v = np.frombuffer(buffer).reshape(2, 6)
+    wrench = np.empty(6)
+    contacts = np.empty((2 * MAX_PAIRS, kn.N_RECORD))
+    table, offsets, pack = machine.table, machine.offsets, struct.Struct("12d").pack_into
+
+    def forces(
+        _system: exu.MainSystem, t: float, _item: int, coordinates: list[float], rates: list[float]
+    ) -> FloatArray:
+        budget.calls += 1
+        pack(buffer, 0, *coordinates, *rates)
+        if core(t, q, v, p, flags, table, offsets, wrench, contacts) < 0:
+            budget.reason = "not finite"
+            raise _Stop
+        if budget.calls > budget.allowed:
+            budget.reason = "too many calls"
+            raise _Stop
+        if drive is not None:
+            add_drive(drive, t, q, v, wrench)
+        return wrench
+
+    return forces
+
+
+def add_drive(drive: DriveTables, t: float, q: FloatArray, v: FloatArray, wrench: FloatArray) -> None:
+    """Add a drive's torques to the wrench; both act against the counter-clockwise angles."""
+    driving, braking = drive_torques(t, -q[2], -v[2], drive.spring, drive.motor, drive.pinion, drive.gear)
+    wrench[2] -= driving
+    wrench[5] -= braking
+
+
+def contact_state(
+    model: ExudynModel, times: FloatArray, q: FloatArray, v: FloatArray
+) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Evaluate the force core at given states, without exudyn.
+
+    Parameters
+    ----------
+    times : (n,) [s]
+    q, v : (n, 6) coordinates and velocities
+
+    Returns
+    -------
+    (wrenches, contacts, counts) : (n, 6) contact wrench of pinion and gear [N, N m]; contact records
+        (n, 2 MAX_PAIRS, kernels.N_RECORD), of which the first counts (n,) are valid
+    """
+    m = model.machine
+    wrenches, contacts = np.empty((times.size, 6)), np.zeros((times.size, 2 * MAX_PAIRS, kn.N_RECORD))
+    core_over = FIDELITIES[model.fidelity][1]
+    counts = core_over(times, q, v, model.parameters, model.flags, m.table, m.offsets, wrenches, contacts)
+    return wrenches, contacts, counts
+
+
+def accelerations(model: ExudynModel, times: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
+    """Accelerations from Newton's and Euler's laws at given states, without exudyn.
+
+    Parameters
+    ----------
+    times : (n,) [s]
+    q, v : (n, 6) coordinates and velocities
+
+    Returns
+    -------
+    (n, 6) second derivatives of the coordinates
+    """
+    force = contact_state(model, times, q, v)[0]
+    if model.drive is not None:
+        for i, t in enumerate(times):
+            add_drive(model.drive, t, q[i], v[i], force[i])
+    inertia, stiffness, damping, load = model.machine.bodies
+    return np.asarray((force + load - stiffness * q - damping * v) / inertia, dtype=np.float64)

@@ -1,0 +1,200 @@
+"""Make a multibody model ready to run: loads, initial state, switches, tolerances, provenance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.arguments import one_of, real_number
+from lumped.errors import refuse, shown
+from lumped.model.periodic_system import periodic_system
+from lumped.model.results import provenance
+from lumped.model.solution import Initial, initial_state, mean_mesh_stiffness
+from lumped.model.steady import periodic_solution
+from lumped.schema.pair import GearPair
+from multibody.contact import kernels as kn
+from multibody.contact.effects import active_effects, effect_flags
+from multibody.contact.machine import Machine, loaded_phase, machine
+from multibody.contact.reversal import friction_velocity as choose_friction_velocity
+from multibody.run.drive import Drive, drive_tables
+from multibody.run.integration import Segment, integrate
+from multibody.run.model import FIDELITIES, ExudynModel, build
+from multibody.run.records import from_lumped_state
+
+FloatArray = NDArray[np.float64]
+Fidelity = Literal["linear", "exact"]
+
+#: Most mesh cycles of a run.
+MOST_CYCLES = 100_000
+#: Force evaluations allowed in one interval; more in proportion where a mesh cycle has more vibrations of the
+#: fastest mode than this. One takes some 500 at rtol 1e-8, and an ordinary mesh cycle has some five.
+CALL_LIMIT, _ORDINARY_VIBRATIONS = 400_000, 80
+#: Most vibrations in a mesh cycle: up to half a million force evaluations, a second or two.
+_MOST_VIBRATIONS = 500
+#: Largest static deflection over the base pitch: the pairing of flanks is lost at half a pitch.
+_MOST_DEFLECTION = 0.25
+#: exudyn has one absolute tolerance for coordinates and rates. It is set for the rates: this share of a
+#: static deflection per mesh cycle, times rtol. With a tenth of it the step shrinks to nothing where little
+#: moves off the line of action (50/50 pair, law III, low speed and torque, rtol 1e-9); with much less, a rate
+#: that is zero when an impact starts would have to be found to the last bit. The coordinates are the rates'
+#: integrals and no less accurate for it.
+_ATOL_SHARE = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class Setup:
+    """A multibody model ready to run, with the lumped model's loads and initial state.
+
+    Attributes
+    ----------
+    model : assembled exudyn model
+    q, v : (6,) initial state in the model's coordinates
+    rtol : relative tolerance of the integration
+    deflection : static deflection of the mesh under the driving torque [m]
+    attributes : provenance of results
+    """
+
+    model: ExudynModel
+    q: FloatArray
+    v: FloatArray
+    rtol: float
+    deflection: float
+    attributes: dict[str, Any]
+
+    @property
+    def atol(self) -> float:
+        """Absolute tolerance of the integration, see ``_ATOL_SHARE`` [m/s]."""
+        return self.rtol * _ATOL_SHARE * self.deflection / self.machine.period
+
+    @property
+    def machine(self) -> Machine:
+        """The numbers the model was built from."""
+        return self.model.machine
+
+    @property
+    def position_is_nominal(self) -> bool:
+        """Whether contact positions depend on time alone, so that the switches are known beforehand."""
+        moved = kn.ROTATION_PHASE | kn.MOVING_LINE | kn.SLIDING | kn.ENTRY_SHIFT | kn.CONTACT_LOSS
+        return self.model.fidelity == "linear" or not self.model.flags & moved
+
+    def edges(self, cycles: int) -> FloatArray:
+        """Ends of the integration intervals [s]: at the switches where those are known, else whole cycles."""
+        phases = self.machine.switches if self.position_is_nominal else np.zeros(1)
+        starts = (np.arange(cycles)[:, None] + phases).ravel()
+        return np.asarray(np.append(starts, float(cycles)) * self.machine.period)
+
+    def run(self, edges: FloatArray, visit: Callable[[int, Segment], None]) -> tuple[FloatArray, FloatArray]:
+        """Integrate over the intervals from the initial state; returns (q, v) at the end."""
+        return integrate(
+            self.model,
+            self.q,
+            self.v,
+            edges,
+            rtol=self.rtol,
+            atol=self.atol,
+            clamp=self.position_is_nominal,
+            visit=visit,
+        )
+
+
+def prepare(
+    pair: GearPair,
+    *,
+    fidelity: Fidelity = "exact",
+    initial: Initial | ArrayLike = "static",
+    effects: Collection[str] | Mapping[str, bool] | None = None,
+    rtol: float = 1e-8,
+    friction_velocity: float | None = None,
+    drive: Drive | None = None,
+) -> Setup:
+    """Build the model and its initial state; arguments as ``simulate``."""
+    one_of("fidelity", fidelity, FIDELITIES)
+    rtol = real_number("rtol", rtol, 1e-12, 1e-3)
+    if friction_velocity is not None:
+        friction_velocity = real_number(
+            "friction_velocity", friction_velocity, 0.0, unit="m/s", action="0 switches at once."
+        )
+    if not isinstance(drive, Drive | None):
+        raise refuse("drive", shown(drive), "a multibody.Drive", "Leave it out for constant torques.")
+    flags = effect_flags(effects)
+    if fidelity == "linear":
+        if flags and effects is not None and len(effects):
+            raise refuse("effects", shown(effects), "none at fidelity 'linear'", "Use fidelity='exact'.")
+        flags = 0
+    numbers = machine(pair, pair.operating.pinion_torque, pair.operating.pinion_torque)
+    call_limit = _call_limit(pair, numbers)
+    system = periodic_system(pair, "absolute")
+    balance = periodic_solution(pair, np.zeros(1), system=system, estimate_error=False)
+    numbers = replace(numbers, torque_pinion=balance.pinion_torque, torque_gear=balance.brake_torque)
+    velocity, reason = _friction_velocity(numbers, flags, friction_velocity)
+    numbers = numbers.with_parameter(kn.V_REG, velocity)
+    static, _ = from_lumped_state(initial_state(pair, system, "static", balance))
+    numbers = loaded_phase(numbers, flags, static)
+    state = initial_state(pair, system, initial, balance)
+    tables = None
+    if drive is not None:
+        omega = numbers.parameters[kn.OMEGA_P]
+        tables = drive_tables(drive, omega, numbers.torque_pinion, numbers.torque_gear, float(state[0]))
+        if isinstance(initial, str):  # both gears start at the motor's speed
+            state[6] += tables.motor[0, 1]
+            state[7] += tables.motor[0, 1] * numbers.parameters[kn.OMEGA_G] / omega
+    q, v = from_lumped_state(state)
+    deflection = numbers.torque_pinion / numbers.parameters[kn.RADIUS_P] / mean_mesh_stiffness(system.cycle)
+    if fidelity == "exact" and deflection > _MOST_DEFLECTION * numbers.parameters[kn.PITCH]:
+        raise refuse(
+            "operating.pinion_torque",
+            f"{numbers.torque_pinion:.4g} N m",
+            f"a static deflection below {_MOST_DEFLECTION:g} of a base pitch",
+            f"The mesh would yield by {deflection * 1e3:.3g} mm and skip teeth. Lower it.",
+        )
+    names = active_effects(flags)
+    attributes = provenance(
+        pair, fidelity=fidelity, effects=names, rtol=rtol, friction_velocity=velocity, drive=drive
+    )
+    attributes |= {
+        "model": "multibody",
+        "fidelity": fidelity,
+        "effects": ", ".join(names),
+        "friction_velocity": velocity,
+        "friction_velocity_reason": reason,
+        "brake_torque": balance.brake_torque,
+        "pinion_torque": balance.pinion_torque,
+        "mesh_efficiency": balance.brake_torque
+        * numbers.parameters[kn.OMEGA_G]
+        / (balance.pinion_torque * numbers.parameters[kn.OMEGA_P]),
+    }
+    return Setup(
+        model=build(numbers, fidelity, flags, call_limit, tables),
+        q=q,
+        v=v,
+        rtol=rtol,
+        deflection=deflection,
+        attributes=attributes,
+    )
+
+
+def _call_limit(pair: GearPair, numbers: Machine) -> int:
+    """Most force evaluations of one interval; refuses a speed at which a mesh cycle would take minutes."""
+    vibrations = numbers.vibrations_per_cycle
+    if vibrations > _MOST_VIBRATIONS:
+        rpm = pair.operating.pinion_speed * 30.0 / np.pi
+        raise refuse(
+            "operating.pinion_speed",
+            f"{rpm:.4g} rpm",
+            f"at least {rpm * vibrations / _MOST_VIBRATIONS:.3g} rpm for the multibody model of this pair",
+            f"The fastest mode would swing {vibrations:.0f} times in a mesh cycle: the motion is "
+            "quasi-static. Use lumped.static_transmission_error, or raise the speed.",
+        )
+    return int(CALL_LIMIT * max(1.0, vibrations / _ORDINARY_VIBRATIONS))
+
+
+def _friction_velocity(numbers: Machine, flags: int, given: float | None) -> tuple[float, str]:
+    if not flags & kn.SLIDING:
+        return 0.0, "sign of the nominal sliding velocity"
+    if given is not None:
+        return given, "as given"
+    return choose_friction_velocity(numbers)

@@ -1,0 +1,1 @@
+"""What runs are for: power balance, causes of differences, reversed sliding, pictures."""

@@ -1,0 +1,186 @@
+"""Is the true error never above the reported bound, in easy and in awkward cases?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from floquet import PROPAGATORS, PeriodicSystem, monodromy
+from floquet.engine.multipliers import (
+    _cluster_data,
+    multipliers_with_bounds,
+    radii_with_bounds,
+    radius_with_bound,
+    verdict,
+    verdicts,
+)
+
+
+def distances(computed: np.ndarray, exact: np.ndarray) -> np.ndarray:
+    """For each computed multiplier the distance to the nearest exact one."""
+    return np.abs(computed[:, None] - exact[None, :]).min(axis=1)
+
+
+@pytest.mark.parametrize("shape", ["sine", "triangle"])
+@pytest.mark.parametrize(
+    ("method", "rtol"),
+    [
+        ("gauss", 1e-4),
+        ("gauss", 1e-7),
+        ("gauss", 1e-10),
+        ("gauss8", 1e-7),
+        ("magnus6", 1e-5),
+        ("dop853", 1e-8),
+    ],
+)
+def test_bounds_hold_on_random_systems(known_system, method: str, rtol: float, shape: str) -> None:
+    rng = np.random.default_rng(101)
+    for _ in range(10):
+        n = int(rng.integers(2, 7))
+        B, S = rng.normal(size=(2, n, n))
+        period = float(rng.uniform(0.5, 3.0))
+        system, exact = known_system(B, 0.4 * S, period, shape)
+        result = monodromy(system, rtol=rtol, method=method)
+        d = result.scaling
+        scaled_error = (result.matrix - exact) * d[None, :] / d[:, None]
+        assert np.linalg.norm(scaled_error, 2) <= result.matrix_error
+        assert result.matrix_error <= rtol * np.linalg.norm(result.matrix * d[None, :] / d[:, None], 2)
+        true = np.exp(np.linalg.eigvals(B) * period)
+        assert (distances(result.multipliers, true) <= result.multiplier_errors).all()
+        assert abs(result.spectral_radius - np.abs(true).max()) <= result.error
+
+
+def test_defective_multiplier_gets_a_root_law_bound(known_system) -> None:
+    # A double multiplier with one eigenvector moves like the square root of a perturbation, so an honest
+    # bound is of order sqrt(matrix_error), and a bound of order matrix_error would be a lie.
+    B = np.array([[-0.1, 5.0, 0.3], [0.0, -0.1, 0.2], [0.0, 0.0, -2.0]])
+    S = np.random.default_rng(1).normal(size=(3, 3))
+    system, exact = known_system(B, 0.2 * S, 1.0)
+    result = monodromy(system, rtol=1e-12)
+    assert np.linalg.norm((result.matrix - exact) * result.scaling / result.scaling[:, None]) < 1e-10
+    assert abs(result.spectral_radius - np.exp(-0.1)) <= result.error
+    assert 0.1 * np.sqrt(result.matrix_error) < result.error < 1e-4  # 100 sqrt(1e-12)
+    assert result.multiplier_errors[2] < 1e-9  # the simple multiplier exp(-2) keeps its own accuracy
+    assert result.verdict == "stable"
+
+
+def test_marginal_system_is_undecided() -> None:
+    # An undamped oscillator has |multiplier| = 1 exactly; no finite computation can say which side it is on.
+    result = monodromy(PeriodicSystem(lambda t: [[0.0, 1.0], [-1.0, 0.0]], 1.0))
+    assert result.verdict == "undecided"
+    assert result.error < 1e-9
+
+
+@pytest.mark.parametrize(("damping", "expected"), [(1e-7, "stable"), (-1e-7, "unstable")])
+def test_verdict_near_the_boundary(damping: float, expected: str) -> None:
+    system = PeriodicSystem(lambda t: [[0.0, 1.0], [-1.0, -damping]], 2.0)
+    assert monodromy(system, rtol=1e-11).verdict == expected
+
+
+def test_low_speed_hundreds_of_radians(known_system) -> None:
+    # Three modes with 200 to 900 rad per period, 1 to 5 % damping, mixed by a periodic change of variables.
+    period = 1.0
+    blocks = [(200.0, 0.010), (450.0, 0.015), (900.0, 0.05)]
+    B = np.zeros((6, 6))
+    for i, (w, zeta) in enumerate(blocks):
+        B[2 * i : 2 * i + 2, 2 * i : 2 * i + 2] = [[-zeta * w, w], [-w, -zeta * w]]
+    S = np.random.default_rng(9).normal(size=(6, 6))
+    system, _ = known_system(B, 0.1 * S, period, "triangle")
+    result = monodromy(system, rtol=1e-9)
+    true = np.exp(np.linalg.eigvals(B) * period)  # |.| = exp(-2), exp(-6.75), exp(-45) = 3e-20
+    assert (distances(result.multipliers, true) <= result.multiplier_errors).all()
+    assert result.spectral_radius == pytest.approx(np.exp(-2.0), rel=1e-9)  # rtol
+    assert result.error < 1e-8
+    # det M = exp(-107.5) is far below what the determinant of M can show; per substep it is exact.
+    assert result.liouville_residual < 1e-8
+
+
+def test_transient_growth_inside_the_period_is_accounted_for() -> None:
+    # Growth by exp(20) in the first half, decay by exp(-21) in the second: local errors of the first half are
+    # amplified 5e8-fold before they decay, and rotate between. The result must still be as accurate as asked.
+    def A(t: float) -> np.ndarray:
+        return np.array([[40.0, 3.0], [-3.0, 40.0]]) if t < 0.5 else np.array([[-42.0, 1.0], [-1.0, -42.0]])
+
+    result = monodromy(PeriodicSystem(A, 1.0, (0.5,)), rtol=1e-9)
+    exact = expm(0.5 * A(0.75)) @ expm(0.5 * A(0.25))
+    assert np.linalg.norm(result.matrix - exact, 2) <= 1e-9 * np.linalg.norm(exact, 2)
+
+
+@pytest.mark.parametrize("method", sorted(set(PROPAGATORS) - {"expm"}))
+def test_tolerance_is_met_by_every_method(known_system, method: str) -> None:
+    rng = np.random.default_rng(21)
+    B, S = rng.normal(size=(2, 3, 3))
+    system, exact = known_system(B, 0.3 * S, 1.0)
+    result = monodromy(system, rtol=1e-7, method=method)
+    assert np.linalg.norm(result.matrix - exact, 2) < 1e-6 * np.linalg.norm(exact, 2)  # rtol, other norm
+
+
+@pytest.mark.parametrize("share", [0.01, 0.5, 0.99])
+def test_the_bound_of_a_multiplier_holds_for_the_worst_error_of_the_matrix(share: float) -> None:
+    # M has the multipliers 0 and 1 with projectors of norm p. E = delta y x' with the left and right vectors
+    # of 0 moves it by p delta and, as tr(M + E) = 1 + delta / p and det(M + E) = p delta, by a positive rest.
+    a = 2.0
+    p = np.sqrt(1.0 + a**2)
+    delta = share * 0.25 / p  # 4 p delta < 1, the distance of the two: beyond it they share one bound
+    values, bounds = multipliers_with_bounds(np.array([[0.0, a], [0.0, 1.0]]), delta)
+    E = delta / p * np.array([[1.0, 0.0], [-a, 0.0]])
+    assert np.linalg.norm(E, 2) == pytest.approx(delta, rel=1e-14)
+    trace = 1.0 + delta / p
+    moved = 2.0 * p * delta / (trace + np.sqrt(trace**2 - 4.0 * p * delta))
+    assert moved > p * delta
+    assert values[1] == 0.0
+    assert moved <= bounds[1] <= 2.0 * p * delta  # nor is it more than 2 (p delta)^2 / (1 / 2) above p delta
+
+
+def test_rounding_of_the_eigenvalues_themselves_is_in_the_bound() -> None:
+    # Unimodular changes of variables: integer matrices, exact in floating point, with multipliers 1 to 5.
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        U, L = (np.eye(5) + np.triu(rng.integers(-2, 3, (5, 5)), 1) for _ in range(2))
+        S = U @ L.T
+        M = S @ np.diag([1.0, 2.0, 3.0, 4.0, 5.0]) @ np.rint(np.linalg.inv(S))
+        values, bounds = multipliers_with_bounds(M, 0.0)
+        assert (np.abs(values - [5.0, 4.0, 3.0, 2.0, 1.0]) <= bounds).all()
+
+
+def test_the_separation_of_a_cluster_is_never_overestimated() -> None:
+    # LAPACK's estimate of 1/|inv(T22 - T11)| may be too large by sqrt(2) here, and is for the first matrix:
+    # of inv(T22) = [[1, 1], [0, e]] the 1-norm is 1 + e, the 2-norm about sqrt(2).
+    rng = np.random.default_rng(5)
+    random = [np.triu(rng.normal(size=(3, 3))) for _ in range(20)]
+    for T in [np.array([[0.0, 0.0, 0.0], [0.0, 1.0, -100.0], [0.0, 0.0, 100.0]]), *random]:
+        true = np.linalg.svd(T[1:, 1:] - T[0, 0] * np.eye(2), compute_uv=False)[-1]
+        _, separation, _ = _cluster_data(T.astype(complex), np.eye(3, dtype=complex), [0])
+        assert 0.0 < separation <= true * (1.0 + 1e-12)  # rounding
+
+
+def test_a_radius_whose_interval_ends_at_1_is_undecided() -> None:
+    ends = [(0.75, 0.25), (1.25, 0.25), (1.0, 0.0)]
+    inside = [(0.5, 0.25), (1.5, 0.25)]
+    assert [verdict(*each) for each in ends + inside] == ["undecided"] * 3 + ["stable", "unstable"]
+    assert verdicts(*np.array(ends + inside).T).tolist() == [0, 0, 0, 1, -1]
+
+
+@pytest.mark.parametrize("size", [2, 3])
+def test_a_defective_multiplier_alone_has_elsners_bound(size: int) -> None:
+    # Of a Jordan block with g beside the diagonal |B - mean| = g and the projector is 1.
+    g, delta = 4.0, 1e-8
+    _, bounds = multipliers_with_bounds(0.5 * np.eye(size) + g * np.eye(size, k=1), delta)
+    # Rounding adds 4 n eps |M| < 2e-14 to delta, 2e-6 of it.
+    assert bounds == pytest.approx((2.0 * g + delta) ** (1 - 1 / size) * delta ** (1 / size), rel=2e-6)
+    assert (g ** (size - 1) * delta) ** (1 / size) <= bounds[0]  # what delta in the corner does
+
+
+def test_the_order_of_equal_moduli_is_fixed() -> None:
+    values, _ = multipliers_with_bounds(
+        np.array([[-0.5, 0, 0, 0], [0, 0, 0.5, 0], [0, -0.5, 0, 0], [0, 0, 0, 0.5]]), 0.0
+    )
+    np.testing.assert_allclose(values, [0.5j, 0.5, -0.5, -0.5j], atol=1e-15)
+
+
+def test_the_radius_may_be_that_of_another_multiplier_within_its_bound() -> None:
+    values, bounds = np.array([1.0, -0.875]), np.array([0.0625, 0.25])
+    assert radius_with_bound(values, bounds) == (1.0, 0.125)
+    radii, errors = radii_with_bounds(np.array([values, [0.5, 0.25]]), np.array([bounds, bounds[::-1]]))
+    assert (radii.tolist(), errors.tolist()) == ([1.0, 0.5], [0.125, 0.25])

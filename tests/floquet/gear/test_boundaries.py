@@ -1,0 +1,234 @@
+"""Are the tongues of instability found where they are, all of them, and under their right names?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.special import mathieu_a, mathieu_b
+
+from floquet import gear_block, monodromy, predicted_lines, stability_boundaries, stability_chart
+from floquet.engine.intervals import seeded_nodes, unstable_intervals
+from floquet.engine.tongues import Tongue
+from floquet.gear.boundaries import label_at, search_grid
+from floquet.gear.coverage import boundary_coverage
+from lumped import load_gear_pair
+from lumped.errors import ParameterError
+
+PRESETS = ["nasa_28_28", "nasa_art_25_31", "kahraman_blankenship_50_50", "fzg_c"]
+
+
+@pytest.fixture(scope="module")
+def pair():
+    """The default pair with friction off and light mesh damping, so that tongues exist."""
+    return load_gear_pair("nasa_28_28").with_(friction__law="none", mesh__damping_ratio=0.002)
+
+
+def test_mathieu_tongues_end_on_the_characteristic_values(mathieu) -> None:
+    q = 0.8
+
+    def radius(a: np.ndarray) -> np.ndarray:
+        return np.array([monodromy(mathieu(float(x), q), rtol=1e-11).spectral_radius for x in a])
+
+    found = unstable_intervals(radius, np.linspace(0.3, 5.0, 48), xtol=1e-8, threshold=1e-6)
+    expected = [(mathieu_b(1, q), mathieu_a(1, q)), (mathieu_b(2, q), mathieu_a(2, q))]
+    ends = sorted(float(x) for pair_of_ends in expected for x in pair_of_ends)
+    inside = [x for x in ends if 0.3 < x < 5.0]
+    computed = [i.lower for i in found if not i.open_below] + [i.upper for i in found if not i.open_above]
+    assert len(computed) == len(inside)
+    # The radius leaves one like a square root, so the threshold 1e-6 moves an end by far less than 1e-7.
+    assert np.abs(np.array(sorted(computed)) - np.array(inside)).max() < 1e-7
+
+
+@pytest.mark.parametrize("offset", [0.0, 3e-5, -2e-3])
+def test_a_thin_tongue_near_its_line_is_not_lost(offset: float) -> None:
+    # Width 1e-5 of the speed, ten thousand times narrower than the even grid; displaced by damping or
+    # friction.
+    line = 3141.0
+    centre, half = line * (1 + offset), 0.5e-5 * line + 0.3 * abs(offset) * line
+
+    def radius(x: np.ndarray) -> np.ndarray:
+        return 0.999 + 0.01 * np.sqrt(np.clip(1 - ((x - centre) / half) ** 2, 0, None))
+
+    nodes = seeded_nodes(np.array([line]), 500.0, 20000.0, 100)
+    found = unstable_intervals(radius, nodes)
+    assert len(found) == 1
+    reach = half * np.sqrt(1 - 0.1**2)  # 0.01 sqrt(1 - s^2) = 0.001
+    assert found[0].lower == pytest.approx(centre - reach, rel=1e-8)
+    assert found[0].upper == pytest.approx(centre + reach, rel=1e-8)
+    assert not unstable_intervals(radius, np.linspace(500.0, 20000.0, 100))  # the even grid alone loses it
+
+
+def test_a_peak_above_one_between_two_samples_below_one_is_found() -> None:
+    def radius(x: np.ndarray) -> np.ndarray:
+        return 0.999 + 0.002 * np.exp(-np.square(x - 5.0))
+
+    nodes = np.arange(0.0, 11.0, 2.0)
+    assert radius(nodes).max() < 1.0
+    (found,) = unstable_intervals(radius, nodes)
+    reach = np.sqrt(np.log(2.0))
+    assert (found.lower, found.upper) == pytest.approx((5.0 - reach, 5.0 + reach), rel=1e-6)
+    assert found.peak == pytest.approx(5.0, abs=0.01)
+    assert not found.open_below
+    assert not found.open_above
+    (cut,) = unstable_intervals(radius, np.array([0.0, 3.0, 4.5, 5.0]))
+    assert cut.open_above
+    assert cut.upper == 5.0
+    assert not unstable_intervals(lambda x: 1.0 + 1e-10 * np.cos(x), nodes)  # below the threshold
+
+
+def test_lines_are_sums_and_differences_of_frequencies(pair) -> None:
+    lines = predicted_lines(pair, orders=3)
+    assert len(lines) == 3 * (6 + 3)  # 6 sums of 3 modes, 3 differences
+    for k in (1, 2, 3):
+        combination = lines[Tongue(1, 3, 1, k)]
+        assert combination == pytest.approx(0.5 * (lines[Tongue(1, 1, 1, k)] + lines[Tongue(3, 3, 1, k)]))
+        difference = 0.5 * (lines[Tongue(3, 3, 1, k)] - lines[Tongue(1, 1, 1, k)])
+        assert lines[Tongue(1, 3, -1, k)] == pytest.approx(difference)
+
+
+def test_radius_is_one_on_every_boundary(pair) -> None:
+    found = stability_boundaries(pair, (2000.0, 19000.0))
+    assert found.sizes["tongue"] >= 3
+    for side, inward in (("lower", 1.0), ("upper", -1.0)):
+        for speed in found[side].values:
+            around = speed * (1 + inward * np.array([-1e-6, 1e-6]))
+            radius = stability_chart(pair, {"speed_rpm": np.sort(around)}).spectral_radius.values
+            outside, inside = radius if inward > 0 else radius[::-1]
+            assert outside < 1.0 < inside
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("preset", PRESETS)
+def test_no_unstable_node_of_a_dense_chart_is_missed(preset: str) -> None:
+    pair = load_gear_pair(preset).with_(friction__law="coulomb", friction__coefficient=0.05)
+    axes = {"damping_ratio": [0.002, 0.006, 0.02]}
+    found = stability_boundaries(pair, (500.0, 20000.0), axes)
+    chart = stability_chart(pair, {"speed_rpm": np.linspace(500.0, 20000.0, 2000), **axes}, store="radius")
+    coverage = boundary_coverage(found, chart)
+    print({key: value for key, value in coverage.attrs.items() if key.endswith("nodes")})
+    assert coverage.unstable_nodes > 20
+    assert coverage.missed_nodes == 0
+    assert coverage.excess_nodes == 0
+
+
+def test_coverage_counts_what_is_missed(pair) -> None:
+    # A boundary that is taken away or moved leaves its nodes behind.
+    low, high = 15000.0, 18500.0
+    found = stability_boundaries(pair, (low, high))
+    chart = stability_chart(pair, {"speed_rpm": np.linspace(low, high, 400)})
+    whole = boundary_coverage(found, chart)
+    assert whole.missed_nodes == whole.excess_nodes == 0
+    without = boundary_coverage(found.isel(tongue=[]), chart)
+    assert without.missed_nodes == without.unstable_nodes == whole.unstable_nodes > 20
+    width = found.interval_upper - found.interval_lower
+    half = boundary_coverage(found.assign(interval_upper=found.interval_upper - 0.5 * width), chart)
+    # Counting error of one node at the moved end.
+    assert half.missed_nodes == pytest.approx(0.5 * whole.unstable_nodes, abs=1)
+    wide = boundary_coverage(found.assign(interval_upper=found.interval_upper + 0.5 * width), chart)
+    assert wide.missed_nodes == 0
+    assert wide.excess_nodes > 0
+    with pytest.raises(ParameterError, match="chart"):
+        boundary_coverage(found, chart.expand_dims(torque=[30.0]))
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("stiffness_variation", [0.0, 0.5, 1.0]),
+        ("torque", [30.0, 80.0]),
+        ("contact_ratio", [1.3, 1.55]),
+        ("bearing_stiffness", [5e7, 2e8]),
+        ("friction_coefficient", [0.0, 0.1]),
+    ],
+)
+@pytest.mark.parametrize("law", ["coulomb", "benedict_kelley"])
+def test_boundaries_over_every_axis_are_those_of_the_chart(pair, name: str, values, law: str) -> None:
+    here = pair.with_(friction__law=law)
+    found = stability_boundaries(here, (13000.0, 19500.0), {name: values}, nodes=60, orders=2)
+    speeds = np.linspace(13000.0, 19500.0, 120)
+    coverage = boundary_coverage(found, stability_chart(here, {name: values, "speed_rpm": speeds}))
+    assert coverage.missed_nodes == coverage.excess_nodes == 0
+    if name == "stiffness_variation":
+        # Without variation nothing is parametric. With it width^2 = (a variation)^2 - d^2 to first order, d
+        # by damping (Hsu), so that twice the variation makes a little more than twice the width.
+        width = (found.upper - found.lower).sel(tongue=found.label == "2w3/2").values[0]
+        assert np.isnan(width[0])
+        assert 1.95 * width[1] < width[2] < 3.0 * width[1]
+    else:
+        assert coverage.unstable_nodes > 5
+
+
+def test_principal_tongue_is_named_by_its_mode_shape(pair) -> None:
+    found = stability_boundaries(pair, (15000.0, 18500.0))
+    assert found.label.values.tolist() == ["2w3/2"]
+    label, shares = label_at(pair, float(found.peak.values[0]))
+    assert label == Tongue(3, 3, 1, 2)
+    assert shares[2] > 0.8
+    # Its line lies within the tongue or close by: damping and detuning shift it by a few percent at most.
+    assert predicted_lines(pair)[label] == pytest.approx(float(found.peak.values[0]), rel=0.03)
+
+
+def test_damping_closes_tongues_and_absence_is_marked(pair) -> None:
+    found = stability_boundaries(pair, (15000.0, 18500.0), {"damping_ratio": [0.01, 0.1]})
+    assert found.present.values.tolist() == [[True, False]]
+    assert np.isnan(found.lower.values[0, 1])
+    assert found.lower.attrs["units"] == "rpm"
+    assert found.damping_ratio.attrs["long_name"]
+
+
+def test_friction_that_varies_with_speed_is_followed() -> None:
+    law = load_gear_pair("nasa_28_28").with_(friction__law="xu_kahraman", mesh__damping_ratio=0.005)
+    found = stability_boundaries(law, (15500.0, 18000.0), nodes=12, orders=2, xtol=1e-5)
+    assert found.label.values.tolist() == ["2w3/2"]
+    plain = stability_boundaries(law.with_(friction__law="none"), (15500.0, 18000.0))
+    # Friction of a few percent moves tongues by well under a percent (it scales k_i by 1 +- mu tan alpha).
+    assert float(found.lower.values[0]) == pytest.approx(float(plain.lower.values[0]), rel=0.01)
+
+
+@pytest.mark.parametrize("speeds", [(0.0, 1000.0), (2000.0, 1000.0), (1000.0, np.inf)])
+def test_bad_ranges_are_refused(pair, speeds: tuple[float, float]) -> None:
+    with pytest.raises(ParameterError, match="speed_rpm"):
+        stability_boundaries(pair, speeds)
+
+
+@pytest.mark.parametrize(
+    "axes", [{"speed_rpm": [1000.0]}, {"unknown": [1.0]}, {"torque": [30.0], "damping_ratio": [0.1]}]
+)
+def test_bad_axes_are_refused(pair, axes: dict[str, list[float]]) -> None:
+    with pytest.raises(ParameterError, match="axes"):
+        stability_boundaries(pair, (1000.0, 2000.0), axes)
+
+
+def test_no_tongue_of_any_order_is_lost_at_low_speed_and_low_damping() -> None:
+    # Tongues of orders up to 67 here, the thinnest a part in 3000 wide.
+    changes = {"friction.law": "coulomb", "friction.coefficient": 0.05, "mesh.damping_ratio": 5e-4}
+    changes |= {f"bearings.{gear}.loa_damping_ratio": 5e-4 for gear in ("pinion", "gear")}
+    pair = load_gear_pair("nasa_28_28").with_(changes)
+    ends = (500.0, 900.0)
+    found = stability_boundaries(pair, ends)
+    assert found.complete
+    assert found.order.max() > 40
+    speeds = np.geomspace(*ends, 20_001)  # steps of 3e-5, a quarter of those of the search
+
+    def radius(x: np.ndarray) -> np.ndarray:
+        return np.ravel(stability_chart(pair, {"speed_rpm": x}, rtol=1e-9, store="radius").spectral_radius)
+
+    coverage = boundary_coverage(found, stability_chart(pair, {"speed_rpm": speeds}, rtol=1e-9))
+    assert coverage.attrs["unstable_nodes"] > 500
+    assert coverage.attrs["missed_nodes"] == 0
+    lines = np.array(list(predicted_lines(pair).values()))
+    seeded = unstable_intervals(radius, seeded_nodes(lines, *ends, 400))
+    assert len(seeded) < int(found.intervals.sum())  # what the grid is for
+
+
+def test_search_says_when_damping_is_too_low_for_its_grid() -> None:
+    undamped = {"mesh.damping_ratio": 0.0}
+    undamped |= {f"bearings.{gear}.loa_damping_ratio": 0.0 for gear in ("pinion", "gear")}
+    pair = load_gear_pair("nasa_28_28").with_({"friction.law": "none", **undamped})
+    _, complete = search_grid(gear_block(pair), 500.0, 20000.0)
+    assert not complete
+    # With damped bearings every mode decays: the grid is fine enough, and small.
+    damped = pair.with_(bearings__pinion__loa_damping_ratio=0.05)
+    grid, complete = search_grid(gear_block(damped), 500.0, 20000.0)
+    assert complete
+    assert grid.size < 2000

@@ -1,0 +1,155 @@
+"""Is one fit with factors on its friction the law at every speed, and refitted where it is not?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from floquet import gear_block, gear_pair_multipliers, stability_chart
+from floquet.gear.axes import GearVariation, vary
+from floquet.gear.friction import friction_families
+from lumped import load_gear_pair
+from lumped.errors import ParameterError
+from lumped.friction.along_path import friction_path_function
+
+PRESETS = ["nasa_28_28", "nasa_art_25_31", "kahraman_blankenship_50_50", "fzg_c"]
+SPEEDS = np.array([500.0, 1300.0, 2000.0, 2030.0, 6000.0, 9000.0, 20000.0])
+
+
+def with_law(law: str, preset: str = "nasa_28_28", **changes: object) -> GearVariation:
+    return GearVariation(load_gear_pair(preset).with_(friction__law=law, **changes))
+
+
+@pytest.mark.filterwarnings("ignore::lumped.errors.LawRangeWarning")  # law II at 20000 rpm
+@pytest.mark.parametrize("preset", PRESETS)
+@pytest.mark.parametrize(
+    "law", ["coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"]
+)
+def test_families_give_the_law_of_every_speed(law: str, preset: str) -> None:
+    variation = with_law(law, preset)
+    families = friction_families(variation, SPEEDS)
+    seen = np.concatenate([family.members for family in families])
+    assert sorted(seen) == list(range(SPEEDS.size))  # every speed once
+    for family in families:
+        reference = friction_path_function(vary(variation.pair, {"speed_rpm": family.speed_rpm}).pair)
+        low, high = reference.interval
+        xi = np.linspace(low, high, 300)[1:-1]  # none at the pitch point of equal gears
+        sign = np.sign(xi - _pitch(variation))
+        for member, factors in zip(family.members, family.factors, strict=True):
+            fitted = friction_path_function(vary(variation.pair, {"speed_rpm": float(SPEEDS[member])}).pair)
+            if family.level is None:
+                ours = factors[0] * reference(xi)
+            else:
+                ours = factors[0] * (reference(xi) - family.level * sign) + factors[1] * family.level * sign
+            # Both are fits within 1e-10 of the law; the factors are below 5.
+            assert np.abs(ours - fitted(xi)).max() < 1e-9
+
+
+def _pitch(variation: GearVariation) -> float:
+    return float(variation.cycle().geometry.L_XP)
+
+
+def test_factors_follow_the_equations() -> None:
+    # Law III goes with the entraining velocity to the power b6 = -0.100601 (equation 18). In law II speed is
+    # inside a logarithm only, to the power -3 (equation 14).
+    variation = with_law("xu_kahraman")
+    (family,) = friction_families(variation, SPEEDS)
+    assert family.factors[:, 0] == pytest.approx((SPEEDS / family.speed_rpm) ** -0.100601, rel=1e-11)
+    (family,) = friction_families(with_law("benedict_kelley"), SPEEDS)
+    assert family.factors[:, 0] == pytest.approx(1.0, rel=1e-12)
+    slope = np.diff(family.factors[:, 1] * family.level) / np.diff(np.log10(SPEEDS))
+    roughness = 0.5e6 * (variation.pair.pinion.roughness + variation.pair.gear.roughness)
+    assert slope == pytest.approx(-3.0 * 0.0127 * 1.13 / (1.13 - roughness), rel=1e-9)
+
+
+def test_given_coefficient_does_not_change() -> None:
+    for law in ("none", "coulomb", "smoothed_coulomb"):
+        variation = with_law(law, friction__coefficient=0.06)
+        (family,) = friction_families(variation, SPEEDS)
+        assert (family.factors == 1.0).all()
+        assert family.level is None
+
+
+def test_moving_regimes_are_fitted_apart() -> None:
+    # Lambda = 4 falls inside the path near 2500 rpm for this pair: there law V changes from II to III.
+    variation = with_law("composite")
+    speeds = np.linspace(500.0, 20000.0, 60)
+    families = friction_families(variation, speeds)
+    sizes = sorted(family.members.size for family in families)
+    assert sizes[-1] > 30  # full film
+    assert sizes[0] == 1  # a switch on the path
+    for family in families:
+        if family.members.size > 1:
+            # No family joins speeds on either side of another one's.
+            inside = (speeds >= speeds[family.members].min()) & (speeds <= speeds[family.members].max())
+            assert inside.sum() == family.members.size
+
+
+@pytest.mark.parametrize("law", ["benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"])
+def test_charts_over_speed_are_those_of_single_speeds(law: str) -> None:
+    pair = load_gear_pair("nasa_28_28").with_(friction__law=law)
+    axes = {"damping_ratio": [0.0, 0.03]}
+    many = stability_chart(pair, {"speed_rpm": SPEEDS, **axes})
+    for speed in SPEEDS:
+        one = stability_chart(pair, {"speed_rpm": [speed], **axes})
+        here = many.sel(speed_rpm=speed)
+        difference = np.abs(here.spectral_radius - one.spectral_radius.isel(speed_rpm=0)).values
+        assert (difference <= (here.error + one.error.isel(speed_rpm=0)).values).all()
+        assert difference.max() < 1e-9
+
+
+@pytest.mark.parametrize("law", ["benedict_kelley", "xu_kahraman", "composite"])
+@pytest.mark.parametrize("method", ["taylor", "chebyshev"])
+def test_dense_charts_against_the_general_engine(law: str, method: str) -> None:
+    # Many points: the blocks are coarsened, or interpolated. The check is the general engine at some of them.
+    pair = load_gear_pair("nasa_28_28").with_(friction__law=law)
+    speeds, damping = np.linspace(1000.0, 18000.0, 120), np.linspace(0.0, 0.08, 6)
+    chart = stability_chart(pair, {"speed_rpm": speeds, "damping_ratio": damping}, rtol=1e-8, method=method)
+    rng = np.random.default_rng(3)
+    for _ in range(12):
+        i, j = int(rng.integers(speeds.size)), int(rng.integers(damping.size))
+        point = {"speed_rpm": float(speeds[i]), "damping_ratio": float(damping[j])}
+        exact = gear_pair_multipliers(vary(pair, point), rtol=1e-10)
+        found = chart.isel(speed_rpm=i, damping_ratio=j)
+        distance = np.abs(found.multipliers.values[:, None] - exact.multipliers).min(axis=1)
+        assert (distance <= found.multiplier_errors.values + exact.multiplier_errors.max()).all()
+        assert distance.max() < 1e-8  # rtol
+    assert np.median(chart.error) < 1e-8
+
+
+def test_friction_axis_keeps_its_mean_at_every_speed() -> None:
+    # Scaled to a mean of 0.05 at each speed, law II still changes its shape with speed.
+    pair = load_gear_pair("nasa_28_28").with_(friction__law="benedict_kelley", mesh__damping_ratio=0.002)
+    axes = {"speed_rpm": [1500.0, 4000.0, 16000.0], "friction_coefficient": [0.02, 0.05]}
+    fast, slow = stability_chart(pair, axes), stability_chart(pair, axes, method="gauss")
+    difference = np.abs(fast.spectral_radius - slow.spectral_radius)
+    assert (difference <= fast.error + slow.error).all()
+    assert float(difference.max()) < 1e-9
+
+
+def test_level_apart_changes_nothing() -> None:
+    variation = with_law("benedict_kelley")
+    whole, apart = gear_block(variation), gear_block(variation, friction_apart=True, friction_level=0.04)
+    assert len(apart.parts) == 3
+    t = np.linspace(0.01, 0.99, 50) * whole.period
+    one, other = (block.to_periodic_system().evaluate(t) for block in (whole, apart))
+    assert np.abs(one - other).max() <= 1e-10 * np.abs(one).max()
+
+
+@pytest.mark.parametrize("method", ["taylor", "chebyshev"])
+@pytest.mark.parametrize("extra", [{}, {"torque": [40.0, 60.0]}])
+def test_radius_alone_is_that_of_all_multipliers(method: str, extra: dict[str, list[float]]) -> None:
+    pair = load_gear_pair("nasa_28_28").with_(friction__law="xu_kahraman")
+    axes = {"damping_ratio": [0.0, 0.03], **extra, "speed_rpm": np.linspace(900.0, 15000.0, 80)}
+    whole = stability_chart(pair, axes, rtol=1e-8, method=method)
+    alone = stability_chart(pair, axes, rtol=1e-8, method=method, store="radius")
+    assert set(alone.data_vars) == {"spectral_radius", "error", "verdict"}
+    for name in alone.data_vars:
+        assert (alone[name] == whole[name]).all()
+    assert (np.abs(whole.multipliers).max("multiplier") == whole.spectral_radius).all()
+    assert (np.diff(np.abs(whole.multipliers), axis=-1) <= 0.0).all()
+
+
+def test_unknown_store_is_refused() -> None:
+    with pytest.raises(ParameterError, match="store"):
+        stability_chart(load_gear_pair("nasa_28_28"), {"speed_rpm": [900.0]}, store="some")

@@ -1,0 +1,207 @@
+"""Are the multipliers of the gear pair those of its equations of motion, with the rotation kept apart?"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.linalg import expm
+
+from floquet import gear_pair_multipliers, gear_pair_system, monodromy, stability_chart
+from floquet.gear.axes import GEAR_AXES, GearVariation, vary
+from floquet.gear.multipliers import mean_mesh_stiffness
+from lumped import geometry, load_gear_pair, periodic_system
+from lumped.errors import ParameterError
+
+LAWS = ["none", "coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"]
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return load_gear_pair("nasa_28_28")
+
+
+def unmatched(computed: np.ndarray, reference: np.ndarray) -> float:
+    """Largest distance when every multiplier is paired with a partner of the other set."""
+    left = list(reference)
+    worst = 0.0
+    for value in computed:
+        nearest = int(np.argmin([abs(value - other) for other in left]))
+        worst = max(worst, abs(value - left.pop(nearest)))
+    return worst
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("preset", ["nasa_28_28", "nasa_art_25_31", "fzg_c"])
+def test_block_and_closed_form_equal_the_ten_states(preset: str, law: str) -> None:
+    one = load_gear_pair(preset).with_(friction__law=law, bearings__gear__oloa_stiffness=1.7e8)
+    parts = gear_pair_multipliers(one)
+    whole = monodromy(gear_pair_system(one, "relative"))
+    assert parts.multipliers.shape == (10,)
+    # 1e-8: both runs at rtol 1e-10; where bearings make two multipliers coincide, rounding is magnified.
+    assert unmatched(parts.multipliers, whole.multipliers) < 1e-8
+    assert abs(parts.spectral_radius - whole.spectral_radius) <= parts.error + whole.error
+    assert parts.verdict == whole.verdict
+
+
+def test_against_an_independent_integrator(pair) -> None:
+    # scipy's DOP853 column by column from switch to switch, on matrices from lumped's own scalar interface.
+    slow = pair.with_(operating__pinion_speed=3000)
+    system = periodic_system(slow, "feedback")
+    edges = system.cycle.edges
+    M = np.eye(6)
+    scale = np.array([1, 1, 1, 1e4, 1e4, 1e4])  # rates are 1e4 rad/s times displacements
+    for j, (a, b) in enumerate(pairwise(edges)):
+
+        def rate(t: float, x: np.ndarray, j: int = j) -> np.ndarray:
+            A = system.matrices([t], j)[0] * scale[None, :] / scale[:, None]
+            return (A @ x.reshape(6, 6)).ravel()
+
+        M = solve_ivp(rate, (a, b), M.ravel(), method="DOP853", rtol=1e-11, atol=1e-13).y[:, -1].reshape(6, 6)
+    result = gear_pair_multipliers(slow)
+    # 1e-8: the integrator's own global error at rtol 1e-11 over about 30 rad.
+    assert unmatched(result.feedback, np.linalg.eigvals(M)) < 1e-8
+
+
+def test_rigid_rotation_is_a_defective_double_one_in_twelve_states(pair) -> None:
+    whole = monodromy(gear_pair_system(pair, "absolute"))
+    apart = np.abs(whole.multipliers - 1.0) < 1e-4  # a double multiplier splits by about sqrt(1e-10)
+    assert apart.sum() == 2
+    # One eigenvector only: M - I keeps rank 11 after the ten stable states are removed from the count.
+    d = whole.scaling
+    singular = np.linalg.svd((whole.matrix - np.eye(12)) / d[:, None] * d[None, :], compute_uv=False)
+    assert singular[-1] < 1e-8 * singular[0]
+    assert singular[-2] > 1e-6 * singular[0]
+    assert whole.verdict == "undecided"  # honest: twelve states cannot decide
+    reduced = gear_pair_multipliers(pair)
+    assert unmatched(whole.multipliers[~apart], reduced.multipliers) < 1e-7
+    assert reduced.verdict == "stable"
+    assert reduced.rigid_body.tolist() == [1, 1]
+
+
+def test_constant_stiffness_without_friction_is_lti(pair) -> None:
+    # Both variations off, the mesh is a constant spring and the multipliers are exp(eig(A) T).
+    quiet = pair.with_(friction__law="none", mesh__damping_ratio=0.0)
+    variation = GearVariation(quiet, stiffness_variation=0.0)
+    system = gear_pair_system(variation, "feedback")
+    constant = system.evaluate(np.array([0.3 * system.period]))[0]
+    d = np.repeat([1.0, 1e4], 3)
+    exact = np.linalg.eigvals(expm(constant * system.period * d[None, :] / d[:, None]))
+    assert unmatched(gear_pair_multipliers(variation).feedback, exact) < 1e-9  # rtol 1e-10
+
+
+@pytest.mark.parametrize("factor", [0.0, 0.5, 1.0, 1.7])
+def test_stiffness_variation_keeps_the_mean(pair, factor: float) -> None:
+    system = periodic_system(pair, "feedback")
+    edges = system.cycle.edges
+    times = np.concatenate([a + (b - a) * (np.arange(400) + 0.5) / 400 for a, b in pairwise(edges)])
+    weights = np.repeat(np.diff(edges) / 400, 400)
+    total = -gear_pair_system(GearVariation(pair, stiffness_variation=factor), "feedback").evaluate(times)
+    # Row of x_p: m_p x_p'' = -sum N_i, so the q column holds k(t)/m_p whatever the friction.
+    k = total[:, 4, 0] * system.structure.mass[2]
+    mean = mean_mesh_stiffness(system)
+    assert weights @ k / system.period == pytest.approx(mean, rel=1e-12)  # piecewise constant: rounding only
+    ratio = 2.0  # double against single contact with the rectangular model
+    full = np.ptp(k) / factor if factor else 0.0
+    if factor:
+        single = mean / 1.6380  # contact ratio 1.638 pairs on average
+        assert full == pytest.approx((ratio - 1) * single, rel=1e-3)  # contact ratio given to 4 digits
+    else:
+        assert np.ptp(k) < 1e-9 * mean
+
+
+def test_stiffness_variation_keeps_the_damping_law(pair) -> None:
+    # c_i goes with sqrt(k_i): scaling every k_i by f scales every c_i by sqrt(f), in the same row of x_p.
+    given = gear_pair_system(pair, "feedback")
+    varied = gear_pair_system(GearVariation(pair, stiffness_variation=0.4), "feedback")
+    times = np.array([0.1, 0.5, 0.9]) * given.period
+    before, after = given.evaluate(times)[:, 4], varied.evaluate(times)[:, 4]
+    f = after[:, 0] / before[:, 0]
+    assert np.abs(f - 1.0).min() > 0.05
+    assert np.allclose(after[:, 3] / before[:, 3], np.sqrt(f), rtol=1e-12)  # rounding
+
+
+def test_friction_axis_sets_the_mean(pair) -> None:
+    for law in LAWS:
+        variation = vary(pair.with_(friction__law=law), {"friction_coefficient": 0.07})
+        xi = np.linspace(*variation.cycle().elements.friction.interval, 20001)
+        mean = np.abs(variation.cycle().elements.friction(xi)).mean()
+        # 1 %: law IV rounds the sign change off within 1/Phi = 0.02 mm of the pitch point, on a 15 mm path;
+        # the sum over 20001 points adds 1e-4.
+        assert mean == pytest.approx(0.07, rel=0.01)
+
+
+def test_contact_ratio_axis_moves_both_tips(pair) -> None:
+    # Approach and recess grow alike, the centre distance stays; the path is contact ratio times base pitch.
+    before = geometry(pair)
+    for value in (1.2, 1.3, 1.45):
+        varied = vary(load_gear_pair("fzg_c"), {"contact_ratio": value}).pair
+        assert geometry(varied).contact_ratio == pytest.approx(value, rel=1e-12)
+        after = geometry(vary(pair, {"contact_ratio": value}).pair)
+        length = after.L_XD - after.L_XA
+        assert length == pytest.approx(value * before.base_pitch, rel=1e-12)
+        share = (after.L_XP - after.L_XA) / (after.L_XD - after.L_XA)
+        assert share == pytest.approx((before.L_XP - before.L_XA) / (before.L_XD - before.L_XA), rel=1e-12)
+        assert after.centre_distance == before.centre_distance
+    with pytest.raises(ParameterError, match="tip_diameter"):
+        vary(pair, {"contact_ratio": 2.5})
+
+
+def test_weak_friction_acts_linearly(pair) -> None:
+    # Friction scales a pair's k_i and c_i in the q equation by 1 + s mu tan(alpha_i) (unity ratio, equal
+    # inertias): a law of zero strength is no friction, and a weak one changes the multipliers linearly.
+    base = gear_pair_multipliers(pair.with_(friction__law="none")).spectral_radius
+    radius = stability_chart(
+        pair, {"friction_coefficient": [0.0, 1e-3, 2e-3]}, friction_law="coulomb"
+    ).spectral_radius.values
+    assert radius[0] == pytest.approx(base, abs=1e-10)  # rtol
+    assert radius[2] - radius[0] == pytest.approx(2 * (radius[1] - radius[0]), rel=0.02)  # second order in mu
+
+
+def test_chart_axes_are_labelled_and_match_single_points(pair) -> None:
+    axes = {"speed_rpm": [3000.0, 6000.0], "damping_ratio": [0.01, 0.05]}
+    result = stability_chart(pair, axes)
+    assert result.speed_rpm.attrs == {"units": "rpm", "long_name": "pinion speed"}
+    one = gear_pair_multipliers(pair.with_(operating__pinion_speed=6000, mesh__damping_ratio=0.01))
+    at = result.sel(speed_rpm=6000, damping_ratio=0.01)
+    assert abs(at.spectral_radius.item() - one.spectral_radius) <= at.error.item() + one.error
+    assert set(result.data_vars) >= {"spectral_radius", "error", "multipliers"}
+
+
+def test_every_axis_acts(pair) -> None:
+    values = {
+        "speed_rpm": [3000, 3100], "damping_ratio": [0.03, 0.04], "friction_coefficient": [0.05, 0.1],
+        "torque": [50.0, 100.0], "stiffness_variation": [0.8, 1.0], "bearing_stiffness": [1e8, 2e8],
+        "contact_ratio": [1.5, 1.6],
+    }  # fmt: skip
+    assert set(values) == set(GEAR_AXES)
+    for name, pair_of_values in values.items():
+        radius = stability_chart(pair, {name: pair_of_values}, rtol=1e-9).spectral_radius.values
+        assert abs(np.diff(radius)).item() > 1e-7  # far above rtol
+
+
+def test_damping_stabilises_the_principal_tongue(pair) -> None:
+    # Near 17000 rpm (mesh frequency = 2 w3 / 1) the pair without mesh damping is parametrically unstable.
+    chart = stability_chart(pair, {"speed_rpm": [17000.0], "damping_ratio": [0.0, 0.05]}, friction_law="none")
+    assert chart.verdict.values.ravel().tolist() == [-1, 1]
+
+
+def test_motion_that_misses_the_mesh_keeps_its_bearing_damping(pair) -> None:
+    # Without friction the two gears of equal mass and bearings can move together (x_p = x_g, q = 0) without
+    # touching the mesh: a pure bearing oscillator, whatever the mesh does.
+    result = gear_pair_multipliers(pair.with_(friction__law="none"))
+    s = periodic_system(pair, "feedback").structure
+    decay = s.damping[2] / (2 * s.mass[2])
+    frequency = np.sqrt(s.stiffness[2] / s.mass[2] - decay**2)
+    expected = np.exp((-decay + 1j * frequency) * result.period)
+    assert np.abs(result.feedback - expected).min() < 1e-10  # rtol
+
+
+@pytest.mark.parametrize(
+    "axes", [{"speed": [1000.0]}, {"speed_rpm": [0.0]}, {"damping_ratio": [-0.1]}, {"torque": [0.0]}]
+)
+def test_bad_axes_are_refused(pair, axes: dict[str, list[float]]) -> None:
+    with pytest.raises(ParameterError, match="axes"):
+        stability_chart(pair, axes)

@@ -1,0 +1,141 @@
+"""Are the margins of stability what closed forms and an independent integrator say?"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq, minimize_scalar
+
+from floquet.gear.margins import margins_dataset, stability_margins
+from floquet.gear.multipliers import gear_pair_multipliers
+from floquet.gear.vaishya_singh import CoulombGearPair
+from lumped import geometry, load_gear_pair, periodic_system
+from lumped.model.bodies import bodies
+from validation.plots.tongues import tongues_figure
+
+MU = 0.2
+
+
+def test_tip_on_rigid_bearings_is_that_of_the_closed_form() -> None:
+    # On rigid bearings the pair is one damped Meissner equation (Vaishya and Singh), whose multipliers are in
+    # closed form: speed and damping of the tip of the tongue at twice the natural frequency follow from them
+    # by root finding. There c_i = 2 zeta k_i/omega with omega^2 = sigma k/m_e; here c_i = 2 zeta sqrt(k m_e).
+    base = load_gear_pair("nasa_28_28").with_(
+        friction__law="coulomb", friction__coefficient=MU, mesh__damping_ratio=0.004
+    )
+    g, system = geometry(base), periodic_system(base, "feedback")
+    k = float(system.cycle.sample(np.array([0.9 * system.period])).stiffness.max())
+    omega = np.sqrt(k * g.contact_ratio / bodies(base).effective_mass)
+    exact = CoulombGearPair(g.contact_ratio, 0.0, MU, g.operating_pressure_angle)
+
+    def radius(ratio, damping):
+        return np.abs(
+            replace(exact, damping_ratio=damping * np.sqrt(g.contact_ratio)).multipliers(ratio)[..., 0]
+        )
+
+    def top(damping):
+        return minimize_scalar(lambda r: -radius(r, damping), bounds=(1.9, 2.1), options={"xatol": 1e-9})
+
+    critical = brentq(lambda z: -top(z).fun - 1.0, 0.01, 0.2, xtol=1e-12)
+    rpm = omega * 60.0 / (2.0 * np.pi * 28)
+    low = brentq(lambda r: radius(r, 0.004) - 1.0, 1.75, 1.95, xtol=1e-12) * rpm
+    errors = []
+    for stiffness in (2e3 * k, 1e4 * k):
+        changes = {f"bearings.{w}.loa_stiffness": stiffness for w in ("pinion", "gear")}
+        changes |= {f"bearings.{w}.loa_damping_ratio": 0.5 for w in ("pinion", "gear")}
+        margins = stability_margins(base.with_(changes), (1.8 * rpm, 2.2 * rpm))
+        (tongue,) = margins.tongues
+        assert tongue.label == "2w1/1"
+        errors.append(
+            [
+                tongue.critical_damping / critical - 1.0,
+                tongue.tip_speed / (top(critical).x * rpm) - 1.0,
+                margins.speed_margin / (low - margins.rpm) - 1.0,
+            ]
+        )
+    coarse, fine = np.abs(errors)
+    assert (fine < 3e-4).all()
+    assert (coarse < 1.1e-3).all()
+    # What is left is the give of the bearings, k/K: five times stiffer, five times closer. The damping also
+    # feels that of the bearings, which goes with a higher power and the other sign.
+    assert np.allclose(coarse[1:] / fine[1:], 5.0, rtol=0.05)
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return load_gear_pair("nasa_28_28").with_(
+        friction__law="coulomb", friction__coefficient=0.06, mesh__damping_ratio=0.004
+    )
+
+
+@pytest.fixture(scope="module")
+def margins(pair):
+    return stability_margins(pair, (6000.0, 9000.0))
+
+
+def independent(pair, rpm: float, damping: float) -> float:
+    """Spectral radius by Gauss collocation on the matrices, not by the compiled kernel."""
+    there = pair.with_({"operating.pinion_speed": float(rpm), "mesh.damping_ratio": float(damping)})
+    return gear_pair_multipliers(there, 1e-9, method="gauss").spectral_radius
+
+
+def test_tips_are_the_roots_that_an_independent_integrator_finds(pair, margins) -> None:
+    assert [t.label for t in margins.tongues] == ["2w3/5", "2w3/4"]
+    for tongue in margins.tongues:
+
+        def top(damping, tongue=tongue):
+            return -minimize_scalar(
+                lambda rpm: -independent(pair, rpm, damping),
+                bounds=(tongue.tip_speed - 5.0, tongue.tip_speed + 5.0),
+                options={"xatol": 0.05},
+            ).fun
+
+        critical = tongue.critical_damping
+        # Growth changes by about 0.2 per 0.01 of damping: a part in 1e4 of the damping is 1e-5, and shows.
+        assert top(critical * (1.0 - 1e-4)) > 1.0 > top(critical * (1.0 + 1e-4))
+
+
+def test_edges_of_tongues_are_where_the_spectral_radius_is_one(pair, margins) -> None:
+    for tongue in margins.tongues:
+        for row in (0, 8, 16):
+            for rpm in (tongue.left[row], tongue.right[row]):
+                assert independent(pair, rpm, tongue.damping[row]) == pytest.approx(1.0, abs=2e-3)
+        assert tongue.left[-1] == tongue.right[-1] == tongue.tip_speed
+        assert (np.diff(tongue.left) > 0).all()
+        assert (np.diff(tongue.right) < 0).all()
+
+
+def test_damping_at_the_operating_speed_is_a_root(pair) -> None:
+    inside = stability_margins(pair.with_(operating__pinion_speed="6720 rpm"), (6000.0, 9000.0))
+    limit = inside.damping_at_speed
+    assert limit is not None
+    assert independent(pair, 6720.0, limit * (1 - 1e-5)) > 1.0 > independent(pair, 6720.0, limit * (1 + 1e-5))
+    assert limit < inside.critical_damping
+    assert inside.speed_margin == 0.0
+
+
+def test_tongues_are_drawn_to_their_tips(margins) -> None:
+    figure = tongues_figure(margins)
+    assert {t.get_text() for t in figure.axes[0].texts} >= {"2ω₃/5", "2ω₃/4"}
+
+
+@pytest.mark.parametrize(
+    ("rpm", "nearest"),
+    [(5000.0, 6500.0), (6600.0, 6600.0), (7400.0, 6800.0), (7800.0, 8300.0), (9e3, 8400.0)],
+)
+def test_the_nearest_unstable_speed_is_the_nearest_edge(margins, rpm: float, nearest: float) -> None:
+    intervals = np.array([[6500.0, 6800.0], [8300.0, 8400.0]])
+    here = replace(margins, rpm=rpm, unstable_here=intervals)
+    assert here.nearest_unstable == nearest
+    assert here.speed_margin == abs(rpm - nearest)
+    assert replace(margins, unstable_here=np.empty((0, 2))).speed_margin is None
+
+
+def test_a_range_without_a_tongue_has_no_margins_but_an_answer(pair) -> None:
+    found = stability_margins(pair, (1000.0, 1100.0))
+    assert found.tongues == ()
+    assert found.critical_damping == 0.0
+    assert (found.nearest, found.nearest_unstable, found.law_difference) == (None, None, None)
+    assert margins_dataset(found).sizes["tongue"] == 0

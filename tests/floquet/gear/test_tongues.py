@@ -1,0 +1,146 @@
+"""Are tongues named by the motion that grows, and closed at the damping that closes them?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+
+from floquet import PeriodicSystem, monodromy, stability_chart
+from floquet.engine.tongues import Tongue, label_tongue, mode_shares, tongue_tip
+from floquet.gear.tongues import critical_damping, label_regions
+from lumped import load_gear_pair
+from lumped.errors import NumericalError, ParameterError
+
+
+def coupled(omega: np.ndarray, coupling: np.ndarray, excitation: float, damping: float = 0.0):
+    """eta'' + 2 c eta' + omega^2 eta + cos(Omega t) E eta = 0 as a monodromy matrix in (omega eta, eta')."""
+    m = omega.size
+
+    def A(t: np.ndarray) -> np.ndarray:
+        out = np.zeros((t.size, 2 * m, 2 * m))
+        out[:, :m, m:] = np.eye(m)
+        out[:, m:, :m] = -np.diag(omega**2) - np.cos(excitation * t)[:, None, None] * coupling
+        out[:, m:, m:] = -2 * damping * np.eye(m)
+        return out
+
+    scale = np.concatenate([omega, np.ones(m)])
+    M = monodromy(PeriodicSystem(A, 2 * np.pi / excitation, vectorized=True), 1e-11).matrix
+    return M * scale[:, None] / scale[None, :]
+
+
+OMEGA = np.array([1.0, 2.3, 7.9])
+
+
+@pytest.mark.parametrize(
+    ("i", "j", "sign"), [(1, 1, 1), (3, 3, 1), (1, 2, 1), (1, 3, 1), (2, 3, 1), (1, 2, -1), (1, 3, -1)]
+)
+def test_each_resonance_is_named(i: int, j: int, sign: int) -> None:
+    coupling = np.zeros((3, 3))
+    coupling[i - 1, j - 1], coupling[j - 1, i - 1] = 0.08, 0.08 * sign  # a difference needs a skew coupling
+    excitation = OMEGA[j - 1] + sign * OMEGA[i - 1]
+    M = coupled(OMEGA, coupling, excitation)
+    assert np.abs(np.linalg.eigvals(M)).max() > 1 + 1e-3
+    label, shares = label_tongue(M, OMEGA, excitation)
+    assert label == Tongue(i, j, sign, 1)
+    if i != j:
+        # Manley and Rowe: equal action, though the energies are in the ratio of the frequencies. Terms off
+        # resonance add a few percent at this strength.
+        assert shares.total[i - 1] == pytest.approx(0.5, abs=0.03)
+        assert shares.total[j - 1] == pytest.approx(0.5, abs=0.03)
+        same_way = (shares.forward[i - 1] > 0.25) == (shares.forward[j - 1] > 0.25)
+        assert same_way == (sign < 0)
+
+
+def test_shape_decides_where_two_lines_cross() -> None:
+    # 2 omega_1 = omega_2 - omega_3' by construction: 2.0 is both 2 w1 and w2 - w1 with omega = (1, 3). The
+    # frequencies cannot tell; the coupling, and with it the motion, can.
+    omega = np.array([1.0, 3.0])
+    own, skew = np.zeros((2, 2)), np.zeros((2, 2))
+    own[0, 0] = 0.1
+    skew[0, 1], skew[1, 0] = 0.2, -0.2
+    assert label_tongue(coupled(omega, own, 2.0), omega, 2.0)[0] == Tongue(1, 1, 1, 1)
+    assert label_tongue(coupled(omega, skew, 2.0), omega, 2.0)[0] == Tongue(1, 2, -1, 1)
+
+
+def test_shares_of_a_pure_rotation() -> None:
+    # eta = exp(i w t): (omega eta, eta') = omega (1, i); of one mode only.
+    state = np.array([0.0, 2.3, 0.0, 0.0, 2.3j, 0.0])
+    shares = mode_shares(state, OMEGA)
+    assert shares.forward.tolist() == [0, 1, 0]
+    assert shares.backward.tolist() == [0, 0, 0]
+    assert mode_shares(state.conj(), OMEGA).backward.tolist() == [0, 1, 0]
+
+
+def test_tip_of_the_damped_mathieu_tongue(mathieu) -> None:
+    # x = exp(-c t) y takes the damping out (a -> a - c^2), so the tongue closes at the largest growth rate
+    # of the undamped equation, arccosh(|tr M|/2)/pi, wherever it is.
+    q = 0.3
+
+    def growth(a: float) -> float:
+        return float(np.arccosh(max(1.0, abs(np.trace(monodromy(mathieu(a, q), 1e-12).matrix)) / 2)) / np.pi)
+
+    top = minimize_scalar(lambda a: -growth(a), bounds=(0.8, 1.2), method="bounded", options={"xatol": 1e-9})
+
+    def radius(a: np.ndarray, c: float) -> np.ndarray:
+        return np.array([monodromy(mathieu(float(x), q, c), 1e-11).spectral_radius for x in a])
+
+    tip = tongue_tip(radius, (0.7, 1.3), (0.01, 0.5))
+    # 1e-8: the top of the peak is sampled to 1e-9 of its height, the root taken to 1e-9.
+    assert tip.damping == pytest.approx(-top.fun, abs=1e-8)
+    assert tip.place == pytest.approx(top.x + top.fun**2, abs=1e-3)  # a flat top: place to its square root
+    with pytest.raises(NumericalError, match="does not close"):
+        tongue_tip(radius, (0.7, 1.3), (0.01, 0.02))
+
+
+@pytest.fixture(scope="module")
+def pair():
+    """Default pair without friction and with lightly damped bearings: several kinds of tongues."""
+    changes = {f"bearings.{g}.loa_damping_ratio": 0.01 for g in ("pinion", "gear")}
+    return load_gear_pair("nasa_28_28").with_({"friction.law": "none", **changes})
+
+
+@pytest.fixture(scope="module")
+def tips(pair):
+    return critical_damping(pair, (8000.0, 18000.0), damping_ratios=(0.0, 0.01, 0.02, 0.08), orders=6)
+
+
+def test_tongue_is_open_below_and_closed_above_its_critical_damping(pair, tips) -> None:
+    assert tips.sizes["tongue"] >= 4
+    assert bool(tips.closed.all())
+    assert (np.diff(tips.critical_damping.values) <= 0).all()
+    for row in range(tips.sizes["tongue"]):
+        one = tips.isel(tongue=row)
+        speeds = np.linspace(float(one.lower), float(one.upper), 801)
+        critical = float(one.critical_damping)
+        damping = [0.98 * critical, 1.02 * critical]
+        radius = stability_chart(pair, {"speed_rpm": speeds, "damping_ratio": damping}).spectral_radius
+        assert (radius.max("speed_rpm").values > 1.0).tolist() == [True, False]
+
+
+def test_labels_of_the_gear_pair(tips) -> None:
+    labels = set(tips.label.values)
+    assert {"2w1/1", "2w3/2", "(w1+w3)/2", "2w3/4", "2w3/3"} <= labels
+    # Mode 2, both gears moving together, leaves the mesh alone: it cannot take part.
+    assert 2 not in set(tips.mode_i.values) | set(tips.mode_j.values)
+
+
+def test_every_unstable_region_of_a_chart_is_named(pair, tips) -> None:
+    axes = {"speed_rpm": np.linspace(8000.0, 18000.0, 401), "damping_ratio": np.linspace(0.0, 0.04, 21)}
+    chart = stability_chart(pair, axes)
+    regions = label_regions(pair, chart)
+    assert sum(region.nodes for region in regions) == int((chart.verdict == -1).sum())
+    assert {str(region.label) for region in regions} <= set(tips.label.values)
+    assert regions[0].label == Tongue(3, 3, 1, 2)
+    assert not label_regions(pair, chart, min_nodes=10**6)
+
+
+def test_tip_beyond_the_ladder_is_left_open(pair) -> None:
+    found = critical_damping(pair, (15000.0, 18000.0), damping_ratios=(0.0, 0.01))
+    assert found.closed.values.tolist() == [False]
+    assert np.isinf(found.critical_damping.values).all()
+
+
+def test_bad_ladder_is_refused(pair) -> None:
+    with pytest.raises(ParameterError, match="damping_ratios"):
+        critical_damping(pair, damping_ratios=(0.1, 0.1))

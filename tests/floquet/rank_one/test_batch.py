@@ -1,0 +1,304 @@
+"""Does the compiled kernel agree with the general engine, within the bound it reports, everywhere?"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.linalg import eig, expm
+from scipy.optimize import linear_sum_assignment
+
+from floquet import (
+    RankOneSystem,
+    fast_monodromies,
+    fast_multipliers,
+    gear_block,
+    gear_pair_system,
+    monodromy,
+    stability_chart,
+)
+from floquet.gear.axes import GearVariation
+from floquet.rank_one.kernels.eigen import spectra
+from floquet.rank_one.system import Gains
+from lumped import load_gear_pair
+from lumped.errors import NumericalError, ParameterError
+
+LAWS = ["none", "coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"]
+PRESETS = ["nasa_28_28", "nasa_art_25_31", "kahraman_blankenship_50_50", "fzg_c"]
+
+
+def random_system(rng: np.random.Generator) -> RankOneSystem:
+    """Random rank-one feedback with jumps: m coordinates, P pieces, polynomials of degree up to 4."""
+    m, pieces, degree = int(rng.integers(1, 4)), int(rng.integers(1, 5)), int(rng.integers(0, 5))
+    phases = np.concatenate([[0.0], np.sort(rng.uniform(0.05, 0.95, pieces - 1)), [1.0]])
+    metric = rng.uniform(0.5, 2.0, m)
+    v = rng.normal(size=m)
+    w = 0.3 * rng.normal(size=(pieces, m, degree + 1))
+    w[:, :, 0] += rng.uniform(0.5, 2.0) * v / metric
+    wd = 0.05 * rng.normal(size=(pieces, m, int(rng.integers(1, 4))))
+    if rng.random() < 0.3:
+        wd = rng.uniform(0.0, 0.1) * w  # damping proportional to stiffness, a case of its own in the kernel
+    return RankOneSystem(
+        stiffness=rng.uniform(0.5, 4.0, m),
+        damping=rng.uniform(-0.02, 0.2, m),
+        v=v,
+        phases=phases,
+        gains=Gains(
+            w=w,
+            wd=wd,
+            f=rng.normal(size=(pieces, m, int(rng.integers(1, 4)))),
+            fr=rng.normal(size=(pieces, m, int(rng.integers(1, 4)))),
+            fit_errors=np.zeros((pieces, 4)),
+        ),
+        period=float(10.0 ** rng.uniform(-0.5, 1.5)),
+        metric=metric,
+    )
+
+
+def in_energy_coordinates(system: RankOneSystem, matrix: np.ndarray) -> np.ndarray:
+    S = system.modal().state_matrix()
+    return np.linalg.solve(S, matrix @ S)
+
+
+def random_pair(rng: np.random.Generator) -> GearVariation:
+    """A random gear pair: preset, law, speed, torque, damping, bearings, stiffness and its variation."""
+    pair = load_gear_pair(str(rng.choice(PRESETS)))
+    changes = {
+        "operating.pinion_speed": float(np.exp(rng.uniform(np.log(500), np.log(20000)))),
+        "operating.pinion_torque": float(rng.uniform(20, 200)),
+        "mesh.damping_ratio": float(rng.choice([0.0, rng.uniform(0, 0.1)])),
+        "friction.law": str(rng.choice(LAWS)),
+    }
+    for gear in ("pinion", "gear"):
+        changes[f"bearings.{gear}.loa_stiffness"] = float(10 ** rng.uniform(7.3, 9))
+        changes[f"bearings.{gear}.loa_damping_ratio"] = float(rng.uniform(0, 0.1))
+    if rng.random() < 0.5:
+        changes["mesh.stiffness"] = {"model": "parabolic"}
+    factor = float(rng.choice([1.0, rng.uniform(0, 1.5)]))
+    return GearVariation(pair.with_(changes), stiffness_variation=factor)
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9, 1e-13])
+def test_kernel_error_is_below_its_bound_on_random_systems(tolerance: float) -> None:
+    rng = np.random.default_rng(2024)
+    for _ in range(40):
+        system = random_system(rng)
+        fast = fast_monodromies(system, tolerance=tolerance)
+        slow = monodromy(system.to_periodic_system(), rtol=1e-11)
+        exact = in_energy_coordinates(system, slow.matrix)
+        # The reference is itself uncertain by 1e-11 of its norm, times the change of coordinates (below 100).
+        assert np.linalg.norm(fast.matrices[0] - exact) <= fast.errors[0] + 1e-9 * np.linalg.norm(exact)
+
+
+def test_bound_is_not_idle() -> None:
+    # A bound that is always huge would pass the test above.
+    rng = np.random.default_rng(5)
+    for _ in range(20):
+        fast = fast_monodromies(random_system(rng), tolerance=1e-12)
+        assert fast.errors[0] < 1e-8 * max(1.0, np.linalg.norm(fast.matrices[0]) ** 2)
+
+
+def test_declared_misfit_of_the_polynomials_enters_the_bound() -> None:
+    # w is wrong by e in norm: the bound must cover the effect when e is declared, and cannot when it is not.
+    rng = np.random.default_rng(6)
+    for _ in range(10):
+        system = random_system(rng)
+        e = 1e-6
+        direction = rng.normal(size=system.v.size)
+        direction /= np.sqrt(system.metric @ direction**2)
+        wrong = system.gains.w.copy()
+        wrong[:, :, 0] += e * direction
+        declared = np.zeros((system.phases.size - 1, 4))
+        declared[:, 0] = e
+        # Energy coordinates depend on the mean of w: carry the exact result to those of the wrong system.
+        exact = fast_monodromies(system)
+        S = system.modal().state_matrix()
+        approximate = replace(system, gains=replace(system.gains, w=wrong, fit_errors=declared))
+        silent = replace(system, gains=replace(system.gains, w=wrong))
+        P = np.linalg.solve(approximate.modal().state_matrix(), S)
+        moved = P @ exact.matrices[0] @ np.linalg.inv(P)
+        result = fast_monodromies(approximate)
+        distance = np.linalg.norm(result.matrices[0] - moved)
+        assert distance <= result.errors[0]
+        assert distance > fast_monodromies(silent).errors[0]
+
+
+def test_constant_coefficients() -> None:
+    rng = np.random.default_rng(8)
+    system = random_system(rng)
+    first = (getattr(system.gains, key)[:1, :, :1] for key in ("w", "wd", "f", "fr"))
+    still = replace(system, gains=Gains(*first, np.zeros((1, 4))), phases=np.array([0.0, 1.0]))
+    A = still.to_periodic_system().evaluate(np.array([0.4 * still.period]))[0]
+    exact = in_energy_coordinates(still, expm(A * still.period))
+    result = fast_monodromies(still)
+    assert np.linalg.norm(result.matrices[0] - exact) <= result.errors[0] + 1e-12 * np.linalg.norm(exact)
+    multipliers = np.exp(still.mean_exponents() * still.period)
+    assert np.abs(np.sort_complex(multipliers) - np.sort_complex(np.linalg.eigvals(exact))).max() < 1e-11
+
+
+def test_many_points_equal_single_systems() -> None:
+    # One call over periods and damping factors is the same as one system each; threads change nothing.
+    system = random_system(np.random.default_rng(3))
+    periods = system.period * np.linspace(0.3, 1.2, 7)
+    factors = np.linspace(0.0, 2.0, 7)
+    many = fast_monodromies(system, periods, factors, threads=2)
+    for i in range(7):
+        scaled = replace(system.gains, wd=factors[i] * system.gains.wd)
+        one = fast_monodromies(replace(system, period=periods[i], gains=scaled))
+        assert np.linalg.norm(many.matrices[i] - one.matrices[0]) <= many.errors[i] + one.errors[0]
+
+
+@pytest.mark.slow
+def test_random_gear_pairs_against_the_general_engine() -> None:
+    seed = 77
+    rng = np.random.default_rng(seed)
+    worst = 0.0
+    for _ in range(60):
+        variation = random_pair(rng)
+        slow = monodromy(gear_pair_system(variation, "feedback"), rtol=1e-10)
+        fast = fast_multipliers(gear_block(variation))
+        distance = np.abs(fast.multipliers[0][:, None] - slow.multipliers[None, :]).min(axis=1)
+        assert (distance <= fast.errors[0] + slow.multiplier_errors.max()).all(), (seed, variation)
+        worst = max(worst, abs(np.abs(fast.multipliers[0]).max() - slow.spectral_radius))
+    assert worst < 1e-9  # required accuracy of the fast route
+
+
+@pytest.mark.parametrize(
+    "axes",
+    [
+        {"speed_rpm": [900.0, 4000.0, 17000.0], "damping_ratio": [0.0, 0.02]},
+        {"damping_ratio": [0.01, 0.05], "speed_rpm": [3000.0, 8000.0]},
+        {"friction_coefficient": [0.0, 0.1], "speed_rpm": [2500.0]},
+        {"torque": [30.0, 90.0], "damping_ratio": [0.03]},
+        {"stiffness_variation": [0.0, 0.6, 1.3]},
+        {"bearing_stiffness": [5e7, 4e8], "speed_rpm": [6000.0, 12000.0]},
+    ],
+)
+@pytest.mark.parametrize("law", ["coulomb", "benedict_kelley", "xu_kahraman", "composite"])
+def test_charts_of_both_routes_agree(law: str, axes: dict[str, list[float]]) -> None:
+    pair = load_gear_pair("nasa_28_28").with_(friction__law=law)
+    fast = stability_chart(pair, axes)
+    slow = stability_chart(pair, axes, method="gauss")
+    assert fast.spectral_radius.dims == slow.spectral_radius.dims == tuple(axes)
+    difference = np.abs(fast.spectral_radius - slow.spectral_radius)
+    assert (difference <= fast.error + slow.error).all()
+    assert fast.error.max() < 1e-8  # rtol = 1e-10 over up to 100 rad per cycle, times the conditioning
+    assert (fast.verdict == slow.verdict).all()
+
+
+def test_eigenvalue_kernel_against_lapack() -> None:
+    rng = np.random.default_rng(14)
+    for n in (1, 2, 3, 4, 6):
+        M = rng.normal(size=(300, n, n))
+        values, radii = np.empty((300, n), dtype=complex), np.empty((300, n))
+        safe = np.empty(300, dtype=bool)
+        spectra(M, np.full(300, 1e-10), values, radii, safe)
+        E = rng.normal(size=M.shape)
+        E *= 1e-10 / np.linalg.norm(E, ord=2, axis=(1, 2))[:, None, None]
+        exact = np.linalg.eigvals(M + E)  # some matrix within delta of M
+        distance = np.abs(values[:, :, None] - exact[:, None, :]).min(axis=2)
+        assert safe.mean() > 0.95
+        assert (distance <= radii)[safe].all()
+        # Not idle: for random matrices the condition numbers are moderate.
+        assert np.median(radii) < 1e-8
+
+
+def near_defective(rng: np.random.Generator, gap: float) -> np.ndarray:
+    """6 x 6 with two eigenvalues this far apart that nearly share an eigenvector, as at a tongue's edge."""
+    core = np.diag(rng.uniform(-0.9, 0.9, 6))
+    core[:2, :2] = [[0.8, 1.0], [0.0, 0.8 + gap]]
+    Q = np.linalg.qr(rng.normal(size=(6, 6)))[0]
+    return np.asarray(Q @ core @ Q.T)
+
+
+@pytest.mark.parametrize("gap", [1e-2, 1e-4, 3e-5])
+def test_every_disk_holds_as_many_eigenvalues_as_it_says(gap: float) -> None:
+    # Overlapping disks are widened around all that hang together: then each computed eigenvalue can be
+    # matched with an exact one in its own disk, one to one, which nearest distances alone would not show.
+    rng = np.random.default_rng(17)
+    overlapping = 0
+    for _ in range(200):
+        M = near_defective(rng, gap)
+        delta = float(10.0 ** rng.uniform(-12, -7))
+        values, radii = np.empty((1, 6), dtype=complex), np.empty((1, 6))
+        safe = np.empty(1, dtype=bool)
+        spectra(M[None], np.array([delta]), values, radii, safe)
+        if not safe[0]:
+            continue
+        E = rng.normal(size=(6, 6))
+        # The direction that moves the pair most, and a random one.
+        left, _, right = np.linalg.svd(M - 0.8 * np.eye(6))
+        E = (
+            np.outer(left[:, -1], right[-1]) * delta
+            if rng.random() < 0.5
+            else E * delta / np.linalg.norm(E, 2)
+        )
+        exact = np.linalg.eigvals(M + E)
+        distance = np.abs(values[0][:, None] - exact[None, :])
+        rows, columns = linear_sum_assignment(np.where(distance <= radii[0][:, None], 0.0, 1.0))
+        assert (distance[rows, columns] <= radii[0]).all()
+        pairs = np.abs(values[0][:, None] - values[0]) <= radii[0][:, None] + radii[0]
+        overlapping += int(pairs.sum() > 6)
+    assert overlapping > 5 or gap > 1e-3
+
+
+def test_separate_disks_are_of_first_order() -> None:
+    # Well separated, each eigenvalue moves by at most kappa delta to first order when M changes by delta, and
+    # a perturbation that does so exists: y x^H/(|x||y|).
+    rng = np.random.default_rng(18)
+    delta = 1e-9
+    M = rng.normal(size=(40, 6, 6))
+    values, radii = np.empty((40, 6), dtype=complex), np.empty((40, 6))
+    safe = np.empty(40, dtype=bool)
+    spectra(M, np.full(40, delta), values, radii, safe)
+    for i in range(40):
+        lam, left, right = eig(M[i], left=True)
+        kappa = 1.0 / np.abs((left.conj() * right).sum(axis=0))
+        order = [int(np.argmin(np.abs(lam - v))) for v in values[i]]
+        if np.abs(lam[:, None] - lam + 10 * np.eye(6)).min() > 0.05:
+            assert (radii[i] <= 1.03 * delta * kappa[order]).all()  # 1.01, and the second order
+            assert (radii[i] >= delta * kappa[order] * (1.0 - 1e-6)).all()
+
+
+def test_varied_gains_add_with_their_factor() -> None:
+    # g times a second set of gains is the system whose gains are the sum.
+    rng = np.random.default_rng(12)
+    for _ in range(10):
+        system = random_system(rng)
+        extra = 0.2 * rng.normal(size=system.gains.w.shape)
+        zeros = [np.zeros_like(getattr(system.gains, key)) for key in ("wd", "f", "fr", "fit_errors")]
+        family = replace(system, varied=Gains(extra, *zeros))
+        g = float(rng.uniform(-1.0, 1.0))
+        many = fast_monodromies(family, [system.period], gain_factors=g)
+        summed = replace(system, gains=replace(system.gains, w=system.gains.w + g * extra))
+        # Other mean gains, other energy coordinates: compare in (z, z').
+        S = family.modal().state_matrix()
+        slow = monodromy(summed.to_periodic_system(), rtol=1e-11).matrix
+        exact = np.linalg.solve(S, slow @ S)
+        assert np.linalg.norm(many.matrices[0] - exact) <= many.errors[0] + 1e-9 * np.linalg.norm(exact)
+
+
+@pytest.mark.parametrize("kind", ["defective", "double", "diagonal", "zero", "rotation"])
+def test_eigenvalue_kernel_in_awkward_cases(kind: str) -> None:
+    block = {
+        "defective": np.array([[0.5, 1.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.1]]),
+        "double": np.diag([0.5, 0.5, 0.1]),
+        "diagonal": np.diag([3.0, 2.0, 1.0]),
+        "zero": np.zeros((3, 3)),
+        "rotation": np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]),
+    }[kind]
+    values, radii, safe = np.empty((1, 3), dtype=complex), np.empty((1, 3)), np.empty(1, dtype=bool)
+    spectra(block[None], np.array([1e-12]), values, radii, safe)
+    exact = np.linalg.eigvals(block)
+    assert np.abs(np.sort_complex(values[0]) - np.sort_complex(exact)).max() < 1e-7  # sqrt(eps) if defective
+    assert bool(safe[0]) == (kind in ("diagonal", "rotation"))  # the others go to the careful bound
+
+
+def test_limits_are_reported() -> None:
+    system = random_system(np.random.default_rng(3))
+    with pytest.raises(NumericalError, match="max_steps"):
+        fast_monodromies(system, [1e4 * system.period], max_steps=50)
+    unstable = replace(system, stiffness=-5.0 - system.stiffness)
+    with pytest.raises(ParameterError, match="statically stable"):
+        fast_monodromies(unstable)

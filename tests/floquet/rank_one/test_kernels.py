@@ -1,0 +1,135 @@
+"""Do the parts of the compiled kernel keep what they promise, each by itself?"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from floquet import RankOneSystem, fast_monodromies
+from floquet.rank_one.kernels.eigen import spectra
+from floquet.rank_one.kernels.lanes import LANES
+from floquet.rank_one.kernels.majorant import MAX_TERMS, enough_terms, powers_of_radii
+from floquet.rank_one.kernels.product import FORCED, divide
+from floquet.rank_one.system import Gains
+
+
+def majorant(a: np.ndarray, count: int) -> np.ndarray:
+    """r_k of (k+1) r_{k+1} = sum_j a_j r_{k-j}, k < count."""
+    r = [1.0]
+    for k in range(count - 1):
+        r.append(sum(a[j] * r[k - j] for j in range(min(len(a), k + 1))) / (k + 1))
+    return np.array(r)
+
+
+@pytest.mark.parametrize("degree", [0, 1, 4, 10])
+def test_terms_are_enough_and_not_many_more(degree: int) -> None:
+    rng = np.random.default_rng(degree)
+    work, powers = np.empty((2, LANES)), powers_of_radii(degree + 1)
+    for _ in range(100):
+        a = rng.uniform(0.1, 5.0) * 10.0 ** -np.sort(rng.uniform(0.0, 4.0, degree + 1))
+        tolerance = 10.0 ** rng.uniform(-13.0, -3.0)
+        p, factor, size = enough_terms(a, degree, np.log(tolerance), powers, work)
+        r = majorant(a, 400)
+        fewest = int(np.flatnonzero(np.cumsum(r[::-1])[::-1] > tolerance)[-1])
+        if p < 0:
+            assert fewest > MAX_TERMS / 1.3 - 4
+            continue
+        assert r[p + 1 :].sum() <= tolerance
+        assert r[p:].sum() <= factor * tolerance
+        assert size == pytest.approx(r.sum(), rel=1e-12)
+        assert p <= 1.3 * fewest + 4  # the estimate by one radius loses a factor of a few tens
+
+
+def test_too_many_terms_are_said() -> None:
+    work = np.empty((2, LANES))
+    for a in (40.0, np.nan, np.inf):
+        assert enough_terms(np.array([a]), 0, np.log(1e-10), powers_of_radii(1), work)[0] == -1
+    assert enough_terms(np.array([20.0]), 0, np.log(1e-4), powers_of_radii(1), work)[0] <= MAX_TERMS
+
+
+@pytest.mark.parametrize("n", [2, 4, 6])
+def test_step_from_its_halves(n: int) -> None:
+    rng = np.random.default_rng(n)
+    for trial in range(50):
+        end, start = np.zeros((n, LANES)), np.zeros((n, LANES))
+        end[:, :n] = rng.normal(size=(n, n))
+        start[:, :n] = np.roll(np.eye(n), 1, axis=0)  # nothing on the diagonal: rows must change places
+        if trial:
+            start[:, :n] += 0.3 * rng.normal(size=(n, n))
+        end[:, FORCED:], start[:, FORCED:] = rng.normal(size=(2, n, 2))
+        step = np.empty((n, LANES))
+        size, residual = divide(end, start, np.eye(LANES), np.empty((2, n, LANES)), step)
+        P, E, S = (x[:, :n].astype(np.longdouble) for x in (step, end, start))
+        assert size == pytest.approx(np.linalg.norm(step[:, :n]), rel=1e-14)
+        # Summed in extended precision: what is left of P S - E, not its rounding.
+        exact = float(np.sqrt(np.square(P @ S - E).sum()))
+        assert exact <= residual <= exact + 100 * n * 2.2e-16 * size * np.linalg.norm(start)
+        inverse = np.linalg.norm(np.linalg.inv(start[:, :n]), 2)
+        assert (
+            np.linalg.norm(step[:, :n] - end[:, :n] @ np.linalg.inv(start[:, :n])) < 1e-13 * inverse**2 * size
+        )
+        assert np.abs(step[:, FORCED:] - (end - step[:, :n] @ start)[:, FORCED:]).max() < 1e-13 * size
+        assert not step[:, n:FORCED].any()
+
+
+def test_supports_that_feed_energy_in_enter_the_bound() -> None:
+    # x'' - 4 x' + (0.25 + e) x = 0 over T = 1, with e declared as the misfit of the gain. The state grows by
+    # e^4 within the one step that this takes.
+    e, zero = 1e-6, np.zeros((1, 1, 1))
+    declared = Gains(np.array([[[0.25]]]), zero, zero, zero, np.array([[e, 0.0, 0.0, 0.0]]))
+    system = RankOneSystem(
+        stiffness=np.array([1e-3]), damping=np.array([-4.0]), v=np.array([1.0]), phases=np.array([0.0, 1.0]),
+        gains=declared, period=1.0, metric=np.array([1.0]),
+    )  # fmt: skip
+    found = fast_monodromies(system)
+    S = system.modal().state_matrix()
+    exact = np.linalg.solve(S, expm(np.array([[0.0, 1.0], [-0.251 - e, 4.0]])) @ S)
+    distance = np.linalg.norm(found.matrices[0] - exact)
+    assert distance <= found.errors[0]
+    silent = fast_monodromies(replace(system, gains=replace(declared, fit_errors=np.zeros((1, 4)))))
+    assert distance > 1000 * silent.errors[0]
+    assert found.errors[0] < 1000 * distance
+
+
+def spectrum(M: np.ndarray, delta: float = 0.0) -> tuple[np.ndarray, np.ndarray, bool]:
+    """Eigenvalues, radii of their disks, and whether these are safe."""
+    n = len(M)
+    values, radii, safe = np.empty((1, n), dtype=complex), np.empty((1, n)), np.empty(1, dtype=bool)
+    spectra(M[None], np.array([delta]), values, radii, safe)
+    return values[0], radii[0], bool(safe[0])
+
+
+@pytest.mark.parametrize("n", [3, 4, 6])
+def test_cyclic_permutations_do_not_stall_the_iteration(n: int) -> None:
+    # Both shifts of the corner are zero, with which a sweep leaves an orthogonal matrix as it is.
+    values, _, safe = spectrum(np.roll(np.eye(n), 1, axis=0))
+    assert safe
+    roots = np.exp(2j * np.pi * np.arange(n) / n)
+    assert np.abs(values[:, None] - roots).min(axis=0).max() < 1e-14
+
+
+def test_rounding_of_the_eigenvalues_is_inside_their_disks() -> None:
+    # L D L^-1 with whole numbers, L of unit diagonal: no rounding in the matrix, eigenvalues 1 to 6.
+    rng = np.random.default_rng(21)
+    D, worst = np.diag(np.arange(1.0, 7.0)), 0.0
+    for _ in range(40):
+        L = np.eye(6) + np.tril(rng.integers(-3, 4, (6, 6)), -1)
+        M = L @ D @ np.round(np.linalg.inv(L))
+        assert (M @ L == L @ D).all()
+        values, radii, safe = spectrum(M)
+        if safe:
+            error = np.abs(np.sort(values.real) - np.arange(1, 7))
+            assert (error <= radii[np.argsort(values.real)]).all()
+            worst = max(worst, float(error.max()))
+    assert worst > 1e-13
+
+
+def test_nearly_defective_eigenvalues_are_left_to_the_careful_bound() -> None:
+    # Condition number 1/gap: beyond 1e6 rounding of the recurrence decides it.
+    for gap, trusted in ((1e-4, True), (1e-8, False)):
+        M = np.diag([0.5, 0.5 + gap, -0.3])
+        M[0, 1] = 1.0
+        assert spectrum(M)[2] == trusted

@@ -1,0 +1,313 @@
+"""Does mu_i(xi) of a pair carry the laws, their signs and their switches?"""
+
+import warnings
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from lumped import geometry, load_gear_pair
+from lumped.errors import LawRangeWarning, ParameterError
+from lumped.friction import (
+    LAWS,
+    benedict_kelley,
+    composite,
+    contact_path,
+    friction_path_function,
+    friction_profile,
+    friction_settings,
+    law_range_violations,
+    mean_coefficient,
+    xu_kahraman,
+)
+from lumped.friction.base import PITCH_RESOLUTION
+from lumped.friction.benedict_kelley import friction_number
+from lumped.lubrication.film import regime
+from lumped.ranges import warn_violations
+
+FIVE = [name for name in LAWS if name != "none"]
+# The fits are asked for 1e-10; between the probes of the fit the error may be a few times that.
+FIT = 1e-9
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return load_gear_pair("nasa_28_28")
+
+
+@pytest.fixture(scope="module")
+def unequal(pair):
+    return pair.with_(pinion__teeth=25, gear__teeth=31, pinion__tip_relief=None, gear__tip_relief=None)
+
+
+def direct(pair, law, xi):
+    path, settings = contact_path(pair), friction_settings(pair)
+    return LAWS[law].signed(xi, path, settings)
+
+
+@pytest.mark.parametrize("law", FIVE)
+@pytest.mark.parametrize("speed", [300, 2000, 6000])
+@pytest.mark.parametrize("which", ["pair", "unequal"])
+def test_path_function_is_the_law(law, speed, which, request):
+    pair = request.getfixturevalue(which).with_(operating__pinion_speed=speed)
+    function = friction_path_function(pair, law=law)
+    low, high = function.interval
+    g = geometry(pair)
+    assert (low, high) == (g.L_XA, g.L_XD)
+    seed = 20080614
+    rng = np.random.default_rng(seed)
+    uniform = rng.uniform(low, high, 400)
+    near = g.L_XP + rng.choice([-1, 1], 400) * 10 ** rng.uniform(-7, -3, 400)
+    xi = np.concatenate([uniform, near])
+    switches = function.switches
+    if switches.size:  # a switch is a jump: either side of it is right within its own rounding
+        xi = xi[np.abs(xi[:, None] - switches).min(axis=1) > 1e-12]
+    np.testing.assert_allclose(function(xi), direct(pair, law, xi), atol=FIT, rtol=0, err_msg=f"seed {seed}")
+
+
+def test_laws_get_the_kinematics_and_units_they_are_published_in(unequal):
+    # Everything again from rolling velocities and Hertz's formulas in the laws' own units.
+    pair = unequal.with_(pinion__roughness=0.3, gear__roughness=0.5, operating__pinion_speed=1500)
+    g = geometry(pair)
+    xi = np.array([0.3, 0.6, 0.9]) * (g.L_XD - g.L_XA) + g.L_XA
+    omega_p = 1500 * np.pi / 30
+    v_p, v_g = omega_p * xi, omega_p * 25 / 31 * (g.L_XY - xi)
+    rho = 1e3 / (1 / xi + 1 / (g.L_XY - xi))  # mm
+    w = pair.operating.pinion_torque / (6.35 * g.base_radius_pinion)  # N/mm
+    s, eta = 0.4, 10.0  # um, the mean of both Ra; mPa s
+    np.testing.assert_allclose(
+        np.abs(friction_path_function(pair, law="benedict_kelley")(xi)),
+        benedict_kelley(w, eta, np.abs(v_p - v_g), v_p + v_g, s),
+        atol=FIT,
+    )
+    p_h = np.sqrt(w * (206.0 / 0.91) / (2000 * np.pi * rho))  # GPa
+    half_sum = (v_p + v_g) / 2
+    np.testing.assert_allclose(
+        np.abs(friction_path_function(pair, law="xu_kahraman")(xi)),
+        xu_kahraman(p_h, (v_p - v_g) / half_sum, half_sum, eta, s, rho * 1e-3),
+        atol=FIT,
+    )
+
+
+@pytest.mark.parametrize("law", FIVE)
+def test_friction_opposes_sliding_everywhere(unequal, law):
+    # s_i = -1 in approach, +1 in recess: the sign that makes -F (v_p - v_g) <= 0
+    g = geometry(unequal)
+    function = friction_path_function(unequal, law=law)
+    d = np.geomspace(1e-6, 0.9 * min(g.L_XP - g.L_XA, g.L_XD - g.L_XP), 60)
+    assert (function(g.L_XP - d) < 0).all()
+    assert (function(g.L_XP + d) > 0).all()
+
+
+@pytest.mark.parametrize("law", FIVE)
+def test_equal_gears_have_odd_friction(pair, law):
+    g = geometry(pair)
+    function = friction_path_function(pair, law=law)
+    d = np.linspace(1e-5, 0.99 * (g.L_XP - g.L_XA), 101)
+    np.testing.assert_allclose(function(g.L_XP + d), -function(g.L_XP - d), atol=FIT, rtol=0)
+
+
+def test_average_of_coulomb_is_benedict_kelleys(pair):
+    # the paper's mu_avg; quadrature of the law itself, with the pitch point and the bounds as end points
+    path, g = contact_path(pair), geometry(pair)
+
+    def law(xi):
+        return abs(float(direct(pair, "benedict_kelley", np.array(xi))))
+
+    parts = [
+        quad(law, a, b, epsabs=1e-14, limit=200)[0]
+        for a, b in ((g.L_XA, g.L_XP - PITCH_RESOLUTION), (g.L_XP + PITCH_RESOLUTION, g.L_XD))
+    ]
+    average = sum(parts) / (path.L_XD - path.L_XA)
+    mu = friction_path_function(pair, law="coulomb")(np.array([g.L_XA, g.L_XC]))
+    # the gap of 2e-8 m around P holds 1e-6 of the path with mu about 0.15
+    np.testing.assert_allclose(mu, [-average, average], rtol=1e-5)
+
+
+def test_given_coefficient_replaces_the_average(pair):
+    g = geometry(pair)
+    fixed = pair.with_(friction__coefficient=0.07)
+    function = friction_path_function(fixed, law="coulomb")
+    np.testing.assert_allclose(function([g.L_XB, g.L_XC]), [-0.07, 0.07], rtol=1e-12)  # rounding of the fit
+    assert mean_coefficient(function) == pytest.approx(0.07, rel=1e-12)
+    # law IV is within 4/(3 pi (Phi d)^3) of its coefficient: 7e-7 at Phi d = 50/mm * 1.7 mm
+    smooth = friction_path_function(fixed, law="smoothed_coulomb")
+    assert smooth(g.L_XC) == pytest.approx(0.07, rel=1e-5)
+
+
+def test_switches_of_the_simple_laws(pair):
+    g = geometry(pair)
+    for law in ("coulomb", "xu_kahraman"):
+        np.testing.assert_array_equal(friction_path_function(pair, law=law).switches, [g.L_XP])
+    assert friction_path_function(pair, law="smoothed_coulomb").switches.size == 0
+    assert friction_path_function(pair, law="none").switches.size == 0
+
+
+def test_benedict_kelley_switches_where_it_meets_its_upper_bound(pair):
+    # mu = maximum <=> v_s = 29700 w/(eta v_e^2) 10^(-maximum/c), c = 0.0127 * 1.13/(1.13 - S)
+    bounded = pair.with_(friction__maximum=0.08)
+    path = contact_path(bounded)
+    function = friction_path_function(bounded, law="benedict_kelley")
+    below, at, above = function.switches
+    assert at == path.L_XP
+    c = 0.0127 * 1.13 / (1.13 - path.roughness * 1e6)
+    for xi in (below, above):
+        v_e = float(path.entraining_velocity(np.array(xi)))
+        v_s = 29700 * path.unit_load * 1e-3 / (path.viscosity * 1e3 * v_e**2) * 10 ** (-0.08 / c)
+        assert abs(xi - path.L_XP) * (path.omega_pinion + path.omega_gear) == pytest.approx(v_s, rel=1e-11)
+    between = np.linspace(below, above, 12)[1:-1]
+    np.testing.assert_allclose(np.abs(function(between)), 0.08, rtol=1e-12)  # the bound, to rounding
+
+
+def test_benedict_kelley_switches_where_its_logarithm_turns_negative(pair):
+    fast = pair.with_(operating__pinion_speed=30000, operating__pinion_torque=10)
+    path = contact_path(fast)
+    with pytest.warns(LawRangeWarning, match="friction_number"):
+        function = friction_path_function(fast, law="benedict_kelley")
+    first, last = function.switches[[0, -1]]
+    for xi in (first, last):
+        number = friction_number(
+            path.unit_load * 1e-3,
+            path.viscosity * 1e3,
+            path.sliding_velocity(np.array(xi)),
+            path.entraining_velocity(np.array(xi)),
+        )
+        assert number == pytest.approx(1.0, rel=1e-11)
+    np.testing.assert_array_equal(function(np.linspace(path.L_XA, first, 9)[:-1]), 0.0)
+    np.testing.assert_array_equal(function(np.linspace(last, path.L_XD, 9)[1:]), 0.0)
+    assert law_range_violations(fast, "benedict_kelley")[0].range.quantity == "friction_number"
+
+
+def test_composite_answers_for_the_laws_in_force_only(pair):
+    # At 30000 rpm the film is thick: law V is III everywhere, and II's negative logarithm does not matter.
+    fast = pair.with_(operating__pinion_speed=30000, operating__pinion_torque=10)
+    assert (friction_profile(fast, ["xu_kahraman"]).film_parameter > 4).all()
+    assert law_range_violations(fast, "composite") == ()
+    # Rough flanks at the same speed bring law II back, on part of the path or all of it.
+    mixed = fast.with_(friction__composite_roughness=1.5)
+    assert (friction_profile(mixed, ["xu_kahraman"]).regime == 1).all()
+    (violation,) = law_range_violations(mixed, "composite")
+    assert violation.law == "V composite (II Benedict-Kelley)"
+    assert violation.share == law_range_violations(fast, "benedict_kelley")[0].share
+
+
+def test_composite_switches_at_its_film_parameters(unequal):
+    # Walk through the speeds where the path straddles a threshold and look at every switch but P.
+    seen = set()
+    for speed in np.geomspace(150, 8000, 30):
+        pair = unequal.with_(operating__pinion_speed=float(speed))
+        path = contact_path(pair)
+        function = friction_path_function(pair, law="composite")
+        film = path.film_parameter(function.switches)
+        for limit in (1.0, 4.0):
+            hits = np.abs(film - limit) < 1e-12  # roots are found to 1e-14 of their distance from P
+            seen |= {limit} if hits.any() else set()
+        values = path.film_parameter(np.linspace(path.L_XA, path.L_XD, 2001))
+        crossings = sum(int(np.abs(np.diff(np.sign(values - limit))).sum() / 2) for limit in (1.0, 4.0))
+        assert (np.abs(film[:, None] - [1.0, 4.0]).min(axis=1) < 1e-12).sum() == crossings
+    assert seen == {1.0, 4.0}
+
+
+@pytest.mark.parametrize("speed", [200, 1200, 3000])
+def test_composite_is_made_of_the_other_laws(unequal, speed):
+    pair = unequal.with_(operating__pinion_speed=speed)
+    path, settings = contact_path(pair), friction_settings(pair)
+    xi = np.linspace(path.L_XA, path.L_XD, 402)[1:-1]
+    four, two, three = (
+        direct(pair, name, xi) for name in ("smoothed_coulomb", "benedict_kelley", "xu_kahraman")
+    )
+    np.testing.assert_array_equal(
+        direct(pair, "composite", xi),
+        composite(path.film_parameter(xi), four, two, three, settings.thresholds),
+    )
+
+
+def test_composite_changes_regime_where_the_paper_says(pair):
+    # Fig. 2b: at 22.6 N m the switch to law III falls near 2500 rpm. Read off a figure: 5 per cent.
+    def film_at_pitch(speed):
+        at = pair.with_(operating__pinion_torque=22.6, operating__pinion_speed=float(speed))
+        path = contact_path(at)
+        return float(path.film_parameter(np.array(path.L_XP)))
+
+    speeds = np.linspace(2000, 3000, 41)
+    changeover = np.interp(4.0, [film_at_pitch(s) for s in speeds], speeds)
+    assert changeover == pytest.approx(2500, rel=0.05)
+
+
+def test_xu_kahraman_switches_do_not_include_smooth_knots(pair):
+    function = friction_path_function(pair, law="xu_kahraman")
+    assert function.breaks.size > 10  # graded towards P, where mu ~ |xi - L_XP|^1.036
+    assert function.switches.size == 1
+
+
+def test_profile_is_labelled(pair):
+    profile = friction_profile(pair)
+    assert list(profile.law.values) == FIVE
+    for name in profile.data_vars:
+        assert profile[name].attrs["units"], name
+        assert profile[name].attrs["long_name"], name
+        assert np.isfinite(profile[name].values).all(), name
+    np.testing.assert_array_equal(profile.regime, regime(profile.film_parameter))
+    xi = profile.xi.values
+    np.testing.assert_allclose(
+        profile.mu.sel(law="xu_kahraman"), direct(pair, "xu_kahraman", xi), atol=FIT, rtol=0
+    )
+    assert profile.mean_mu.sel(law="coulomb") == pytest.approx(
+        float(profile.mean_mu.sel(law="benedict_kelley")), rel=1e-10
+    )
+
+
+def test_a_law_that_cannot_take_the_roughness_is_left_out_with_its_reason(pair):
+    rough = pair.with_(pinion__roughness=1.3, gear__roughness=1.3, friction__coefficient=0.06)
+    profile = friction_profile(rough)
+    assert "benedict_kelley" not in profile.law
+    # law V asks law II only where the film parameter does: at 0.144 um composite roughness it is III here
+    assert "composite" in profile.law
+    (reason,) = profile.attrs["left_out"]
+    assert "1.13 um" in reason
+    with pytest.raises(ParameterError, match="roughness"):
+        friction_path_function(rough, law="benedict_kelley")
+    with pytest.raises(ParameterError, match="roughness"):
+        friction_profile(rough, laws=["benedict_kelley"])
+
+
+def test_unknown_law_is_refused_by_name(pair):
+    with pytest.raises(ParameterError, match=r"friction.law = amontons: allowed one of none, coulomb"):
+        friction_path_function(pair, law="amontons")
+
+
+def test_thin_oil_leaves_the_range_of_law_three_and_says_so(pair):
+    thin = pair.with_(lubricant__viscosity=0.5)
+    violations = law_range_violations(thin, "xu_kahraman")
+    assert [v.range.quantity for v in violations] == ["viscosity"]
+    assert violations[0].share == 1.0
+    with pytest.warns(LawRangeWarning, match="III Xu-Kahraman: viscosity"):
+        warn_violations(violations)
+    assert any("viscosity" in text for text in friction_profile(thin).attrs["range_warnings"])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert law_range_violations(pair, "xu_kahraman") == ()
+
+
+def test_a_law_that_leaves_all_bounds_is_refused_with_its_reason(pair):
+    # exp(-|SR| p_h log10(eta)) with eta < 1 mPa s: law III's double exponential, mu of 1e5 and more
+    thin = pair.with_(lubricant__viscosity=0.15, operating__pinion_torque=3000)
+    with pytest.raises(
+        ParameterError, match=r"friction.law = xu_kahraman with mu up to .*viscosity >= 1 mPa s"
+    ):
+        friction_path_function(thin, law="xu_kahraman")
+
+
+def test_ranges_of_every_law_are_complete_records():
+    for law in LAWS.values():
+        for limits in law.ranges:
+            assert limits.quantity
+            assert limits.unit
+            assert limits.source
+            assert limits.stated or limits.source == "not stated"
+
+
+def test_unit_load_is_the_full_static_load(pair):
+    # w_n = T_p/(Z r_wp cos alpha) = T_p/(Z r_bp): 22.6 N m on 6.35 mm at 41.7693 mm
+    at = pair.with_(operating__pinion_torque=22.6)
+    assert contact_path(at).unit_load * 1e-3 == pytest.approx(22.6e3 / (6.35 * 41.7693), rel=1e-6)

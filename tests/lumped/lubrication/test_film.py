@@ -1,0 +1,89 @@
+"""Do Hertz contact, film thickness and film parameter obey their closed forms and their published numbers?"""
+
+import math
+
+import numpy as np
+import pytest
+
+from lumped.errors import ParameterError
+from lumped.lubrication.film import (
+    effective_modulus,
+    film_parameter,
+    film_thickness,
+    hertz_half_width,
+    hertz_pressure,
+    pressure_viscosity,
+    regime,
+)
+
+STEEL = float(effective_modulus(206e3, 0.3, 206e3, 0.3))  # N/mm^2
+
+
+def test_check_values():
+    # computed twice, independently: w 100 N/mm, rho 8 mm, eta 10 mPa s, v_e 10 m/s, E 206 GPa, nu 0.3;
+    # half a unit of the last stated place
+    h_c = film_thickness(100, 8, 10, 10, STEEL)
+    b_h = hertz_half_width(100, 8, STEEL)
+    assert h_c == pytest.approx(0.312115, abs=5e-7)
+    assert b_h == pytest.approx(0.0948642, abs=5e-8)
+    assert film_parameter(h_c, b_h, 0.5, 0.8) == pytest.approx(1.281808, abs=5e-7)
+
+
+def test_film_does_not_depend_on_the_unit_system():
+    # the same dimensionless groups from SI quantities; a wrong power of ten in equation (21) shows here
+    modulus, eta, v_e, rho, w = STEEL * 1e6, 10e-3, 10.0, 8e-3, 100e3
+    alpha = 0.010471 * 10**0.1348 * 1e-6  # mm^2/N -> m^2/N
+    groups = (
+        (alpha * modulus) ** 0.56 * (eta * v_e / (2 * modulus * rho)) ** 0.69 * (w / (modulus * rho)) ** -0.1
+    )
+    assert film_thickness(100, 8, 10, 10, STEEL) * 1e-6 == pytest.approx(3.06 * groups * rho, rel=1e-13)
+
+
+def test_hertz_pressure_carries_the_load():
+    # the elliptic pressure over the band integrates to (pi/2) p_h b_H = w
+    w, rho = np.array([20.0, 100.0, 700.0]), np.array([3.0, 8.0, 20.0])
+    carried = 0.5 * np.pi * hertz_pressure(w, rho, STEEL) * 1e3 * hertz_half_width(w, rho, STEEL)
+    np.testing.assert_allclose(carried, w, rtol=1e-14)
+
+
+def test_hertz_pressure_in_the_mixed_units_of_the_print():
+    # equation (16): p_h[GPa] = sqrt(w[N/mm] E'[GPa]/(2000 pi rho[mm]))
+    assert hertz_pressure(85.0, 7.6, STEEL) == pytest.approx(
+        math.sqrt(85.0 * STEEL * 1e-3 / (2000 * math.pi * 7.6)), rel=1e-14
+    )
+
+
+def test_effective_modulus_limits():
+    assert effective_modulus(206.0, 0.3, 206.0, 0.3) == pytest.approx(206.0 / 0.91, rel=1e-15)
+    # against a rigid body the compliance halves, so E' doubles
+    assert effective_modulus(206.0, 0.3, 1e30, 0.3) == pytest.approx(2 * 206.0 / 0.91, rel=1e-15)
+
+
+def test_pressure_viscosity_exponent():
+    assert pressure_viscosity(100.0) / pressure_viscosity(10.0) == pytest.approx(10**0.1348, rel=1e-14)
+    assert pressure_viscosity(1.0) == pytest.approx(0.010471, rel=1e-15)  # k is alpha at 1 mPa s
+
+
+def test_film_parameter_scales_the_roughness_to_the_contact_width():
+    # Lambda = h_c/R where the contact is as wide as the cut-off length
+    assert film_parameter(0.4, 0.4, 0.5, 0.8) == pytest.approx(0.8, rel=1e-15)
+    assert film_parameter(0.4, 0.1, 0.5, 0.8) == pytest.approx(1.6, rel=1e-15)
+
+
+def test_regime_boundaries_belong_to_the_thicker_film():
+    np.testing.assert_array_equal(regime([0.5, 1.0, 3.9, 4.0, 9.9, 10.0, 99.0]), [0, 1, 1, 2, 2, 3, 3])
+
+
+@pytest.mark.parametrize("thresholds", [(1, 4), (1, 1, 10), (4, 1, 10), (0, 4, 10)])
+def test_regime_refuses_thresholds_out_of_order(thresholds):
+    with pytest.raises(ParameterError, match="three increasing positive film parameters"):
+        regime(2.0, thresholds)
+
+
+def test_bad_arguments_are_named():
+    with pytest.raises(ParameterError, match="entraining_velocity"):
+        film_thickness(100, 8, 10, 0.0, STEEL)
+    with pytest.raises(ParameterError, match="composite_roughness"):
+        film_parameter(0.3, 0.1, 0.0)
+    with pytest.raises(ParameterError, match="radius"):
+        hertz_pressure(100, -8, STEEL)

@@ -1,0 +1,83 @@
+"""Do the averaged modes and receptances agree with closed forms?"""
+
+import control
+import numpy as np
+import pytest
+
+import lumped
+from lumped.errors import ParameterError
+from lumped.model.averaged import averaged_state_space, frequency_response, modes
+
+
+@pytest.fixture(scope="module")
+def symmetric():
+    """28/28 pair without friction: the averaged system splits in closed form."""
+    return lumped.load_gear_pair("nasa_28_28").with_(friction__law="none", mesh__damping_ratio=0.0)
+
+
+def closed_form(pair):
+    """For equal gears x_p + x_g sees the bearing only; (q, d = x_p - x_g) is a 2x2 eigenproblem."""
+    body, g = lumped.bodies(pair), lumped.geometry(pair)
+    k = lumped.mesh_elements(pair).stiffness.mean() * g.contact_ratio
+    bearing, m = pair.bearings.pinion.loa_stiffness, body.mass_pinion
+    # q'' = -k/m_e (q + d);  d'' = -2k/m (q + d) - K/m d
+    reduced = np.array(
+        [
+            [k / body.effective_mass, k / body.effective_mass],
+            [2 * k / m, 2 * k / m + bearing / m],
+        ]
+    )
+    coupled = np.sqrt(np.linalg.eigvals(reduced).real)
+    return np.sort(np.concatenate([coupled, np.full(3, np.sqrt(bearing / m))])) / (2 * np.pi)
+
+
+def test_natural_frequencies_of_the_symmetric_pair(symmetric):
+    found = np.array([m.natural_frequency for m in modes(symmetric)])
+    # Bearing damping of 5 % leaves |eigenvalue| of a decoupled mode unchanged; the two coupled ones shift by
+    # the order of zeta^2 = 0.0025.
+    np.testing.assert_allclose(found, closed_form(symmetric), rtol=2.5e-3)
+    undamped = symmetric.with_(
+        {f"bearings.{g}.{d}_damping_ratio": 0.0 for g in ("pinion", "gear") for d in ("loa", "oloa")}
+    )
+    exact = np.array([m.natural_frequency for m in modes(undamped)])
+    np.testing.assert_allclose(exact, closed_form(undamped), rtol=1e-9)  # rounding of the eigenproblem
+
+
+def test_bearing_mode_keeps_its_damping_ratio(symmetric):
+    bearing = [m for m in modes(symmetric) if abs(m.damping_ratio - 0.05) < 1e-9]
+    assert len(bearing) == 3  # y_p, y_g and x_p + x_g
+
+
+def test_modes_agree_with_python_control(symmetric):
+    frequency, damping, _ = control.damp(averaged_state_space(symmetric), doprint=False)
+    mine = sorted((m.natural_frequency, m.damping_ratio) for m in modes(symmetric))
+    theirs = sorted(zip(np.asarray(frequency)[::2] / (2 * np.pi), np.asarray(damping)[::2], strict=True))
+    np.testing.assert_allclose(np.array(mine)[:, 0], np.array(theirs)[:, 0], rtol=1e-9)
+
+
+def test_low_frequency_receptance_is_the_static_mesh_deflection(symmetric):
+    f = np.array([1e-3])  # Hz; the inertia terms are (1e-3 / 2e3)^2 = 2.5e-13 of the stiffness
+    response = frequency_response(symmetric, f)
+    plant = averaged_state_space(symmetric, "feedback")
+    static = -plant.C @ np.linalg.solve(plant.A, plant.B)
+    np.testing.assert_allclose(response["dte"].values[0].real, static[0, 0], rtol=1e-9)
+    k = lumped.mesh_elements(symmetric).stiffness.mean() * lumped.geometry(symmetric).contact_ratio
+    body, g = lumped.bodies(symmetric), lumped.geometry(symmetric)
+    # q'' = 0: r_bp T_p / J_p = k delta / m_e
+    assert static[0, 0] == pytest.approx(
+        g.base_radius_pinion / body.inertia_pinion * body.effective_mass / k, rel=1e-9
+    )
+
+
+def test_the_rigid_form_and_bad_frequencies_are_refused(symmetric):
+    with pytest.raises(ParameterError, match="form"):
+        averaged_state_space(symmetric, "absolute")
+    with pytest.raises(ParameterError, match="frequencies"):
+        frequency_response(symmetric, [0.0])
+
+
+def test_a_dot_in_the_name_of_a_pair_is_no_matter(symmetric):
+    """python-control reads a dot in a system's name as that of a subsystem, and refuses it."""
+    named = symmetric.with_(name="stage 1.5")
+    assert averaged_state_space(named).name == "stage 1_5"
+    assert modes(named) == modes(symmetric)

@@ -1,0 +1,220 @@
+"""Does Gauss collocation converge as theory says, on smooth systems and across the switches of the pair?"""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.linalg import expm
+
+from lumped import NumericalError, geometry, periodic_system
+from lumped.model import propagation
+from lumped.model.periodic_system import MeshGain
+from lumped.model.propagation import fastest_frequency, gauss_tableau, step_maps
+
+
+def system_of(constant, gain, deflection, edges):
+    """What ``step_maps`` needs of a system, for equations that are not a gear pair's."""
+    size = constant.shape[0]
+    column = np.asarray(deflection)
+
+    def matrices(t):
+        a = np.repeat(constant[None], t.size, axis=0)
+        lower = np.concatenate([g[..., None] * column for g in gain(t)[:2]], axis=2)
+        a[:, size // 2 :] += lower
+        return a
+
+    return SimpleNamespace(
+        size=size,
+        period=float(edges[-1]),
+        cycle=SimpleNamespace(edges=np.asarray(edges, dtype=float), knot_times=np.empty(0)),
+        constant=constant,
+        deflection=column,
+        torque_pinion=np.zeros(size),
+        pinion_torque=0.0,
+        gain=lambda t, segment: MeshGain(*gain(t)),
+        matrices=matrices,
+    )
+
+
+def mathieu(t):
+    """z'' + (0.4 + 0.2 sin(2 t)) z' + (9 + 4 cos(2 t)) z = cos(2 t)^2: smooth, stiffness and damping vary."""
+    return tuple(v[:, None] for v in (-4.0 * np.cos(2 * t), -0.2 * np.sin(2 * t), np.cos(2 * t) ** 2))
+
+
+SMOOTH = system_of(np.array([[0.0, 1.0], [-9.0, -0.4]]), mathieu, [1.0], [0.0, np.pi])
+EXTRA = np.array([[0.0], [1.0]])
+
+
+def reference():
+    """Map over the period by an explicit method of another family at its tightest tolerance."""
+
+    def rate(t, x):
+        z, v = x.reshape(2, 4)
+        acceleration = -(9.0 + 4.0 * np.cos(2 * t)) * z - (0.4 + 0.2 * np.sin(2 * t)) * v
+        return np.concatenate([v, acceleration + np.array([0.0, 0.0, np.cos(2 * t) ** 2, 1.0])])
+
+    start = np.zeros((2, 4))
+    start[:, :2] = np.eye(2)
+    run = solve_ivp(rate, (0.0, np.pi), start.ravel(), method="DOP853", rtol=2.3e-14, atol=1e-15)
+    return run.y[:, -1].reshape(2, 4)
+
+
+@pytest.mark.parametrize(
+    ("stages", "angles"), [(1, (0.17, 0.085)), (2, (0.34, 0.17)), (3, (0.68, 0.34)), (4, (0.68, 0.34))]
+)
+def test_order_is_twice_the_stages(stages, angles):
+    exact = reference()
+    steps, errors = [], []
+    for angle in angles:
+        maps = step_maps(SMOOTH, EXTRA, step_angle=angle, stages=stages)
+        steps.append(maps.edges.size - 1)
+        errors.append(np.abs(np.hstack(maps.over_all()) - exact).max())
+    assert errors[1] > 1e-12  # above the reference's own error
+    order = np.log(errors[0] / errors[1]) / np.log(steps[1] / steps[0])
+    # Next terms of the error are a few per cent at these steps.
+    assert order == pytest.approx(2 * stages, rel=0.06)
+
+
+@pytest.mark.parametrize("stages", [1, 2, 3, 4, 6])
+def test_tableau_meets_the_simplifying_assumptions(stages):
+    """B(2s), C(s) and D(s) of Butcher, which give order 2 s."""
+    a, b, c = gauss_tableau(stages)
+    for k in range(1, 2 * stages + 1):
+        assert b @ c ** (k - 1) == pytest.approx(1 / k, rel=1e-12)
+    for k in range(1, stages + 1):
+        np.testing.assert_allclose(a @ c ** (k - 1), c**k / k, rtol=1e-11, atol=1e-15)
+        np.testing.assert_allclose((b * c ** (k - 1)) @ a, b * (1 - c**k) / k, rtol=1e-9, atol=1e-13)
+
+
+def test_constant_coefficients_give_the_matrix_exponential():
+    rng = np.random.default_rng(3)
+    lower = -np.hstack([np.diag([40.0, 90.0, 10.0]) + rng.normal(size=(3, 3)), 0.3 * np.eye(3)])
+    a = np.vstack([np.hstack([np.zeros((3, 3)), np.eye(3)]), lower])
+    force = np.concatenate([np.zeros(3), rng.normal(size=3)])
+    constant = system_of(a, lambda t: (np.zeros((t.size, 3)),) * 3, np.zeros(3), [0.0, 2.0])
+    constant.torque_pinion, constant.pinion_torque = 0.5 * force, 2.0
+    # The same matrix with one column of its stiffness and of its damping as feedback of a coordinate.
+    split = a.copy()
+    split[3:, 1] = split[3:, 4] = 0.0
+
+    def gain(t):
+        return tuple(np.repeat(v[None], t.size, axis=0) for v in (a[3:, 1], a[3:, 4], force[3:]))
+
+    feedback = system_of(split, gain, [0.0, 1.0, 0.0], [0.0, 2.0])
+    augmented = np.zeros((7, 7))
+    augmented[:6, :6], augmented[:6, 6] = 2.0 * a, 2.0 * force
+    exact = expm(augmented)[:6]
+    for system in (constant, feedback):
+        found = np.hstack(step_maps(system, np.zeros((6, 0)), step_angle=0.4).over_all())
+        # Order 8 at 0.4 rad a step: 1e-12 a step, about 50 steps.
+        np.testing.assert_allclose(found, exact, atol=1e-9 * np.abs(exact).max())
+
+
+def test_a_jump_at_an_edge_costs_no_order():
+    """z'' + w(t)^2 z with w = 3 then 5: the map is the product of two rotations."""
+
+    def rotation(w, t):
+        return np.array([[np.cos(w * t), np.sin(w * t) / w], [-w * np.sin(w * t), np.cos(w * t)]])
+
+    def jump(t):
+        return np.where(t < 0.7, -9.0, -25.0)[:, None], np.zeros((t.size, 1)), np.zeros((t.size, 1))
+
+    system = system_of(np.array([[0.0, 1.0], [0.0, 0.0]]), jump, [1.0], [0.0, 0.7, 2.0])
+    phi, _ = step_maps(system, np.zeros((2, 0)), step_angle=0.3).over_all()
+    np.testing.assert_allclose(phi, rotation(5.0, 1.3) @ rotation(3.0, 0.7), atol=1e-12)
+
+
+class TestSteps:
+    def test_switches_knots_and_outputs_are_edges(self, nasa):
+        system = periodic_system(nasa, "absolute")
+        outputs = np.linspace(0.0, system.period, 37, endpoint=False)
+        edges = step_maps(system, np.zeros((12, 0)), outputs=outputs).edges
+        for wanted in (system.cycle.edges, system.cycle.knot_times, outputs):
+            nearest = np.abs(edges[:, None] - wanted).min(axis=0)
+            assert nearest.max() < 1e-12 * system.period
+        assert set(system.cycle.edges) <= set(edges)  # bit for bit: a step must not straddle a switch
+        assert np.all(np.diff(edges) > 0)
+
+    @pytest.mark.parametrize("off", [-1e-14, -1e-15, 1e-15, 1e-14])
+    def test_outputs_beside_a_switch_do_not_move_it(self, nasa, off):
+        system = periodic_system(nasa, "absolute")
+        outputs = system.cycle.switch_times + off * system.period
+        edges = step_maps(system, np.zeros((12, 0)), outputs=outputs).edges
+        assert set(system.cycle.edges) <= set(edges)
+        # No step as short as a rounding is left between the two.
+        assert np.diff(edges).min() > 1e-13 * system.period
+
+    def test_no_step_exceeds_the_angle(self, nasa):
+        system = periodic_system(nasa.with_(operating__pinion_speed=300), "absolute")
+        edges = step_maps(system, np.zeros((12, 0)), step_angle=0.3).edges
+        assert np.diff(edges).max() * fastest_frequency(system) <= 0.3 * (1 + 1e-9)
+
+    @pytest.mark.parametrize("peak", [0.0, 5e9])
+    def test_fastest_frequency_bounds_every_frozen_one(self, unequal, peak):
+        phase = np.linspace(0.0, geometry(unequal).contact_ratio, 60)
+        stiffness = 1e8 + peak * np.exp(-(((phase - 0.6) / 0.05) ** 2))
+        table = {"model": "table", "axis": "phase", "points": list(phase), "stiffness": list(stiffness)}
+        for pair in (unequal, unequal.with_(mesh__stiffness=table)):
+            system = periodic_system(pair, "absolute")
+            times = np.linspace(0.0, system.period, 1000)
+            fastest = np.abs(np.linalg.eigvals(system.matrices(times))).max()
+            assert fastest <= fastest_frequency(system) <= 1.3 * fastest
+
+    def test_states_follow_the_maps(self, unequal):
+        system = periodic_system(unequal, "absolute")
+        maps = step_maps(system, np.zeros((12, 0)))
+        x = np.linspace(-1e-5, 1e-5, 12)
+        states = maps.states(x, np.array([1.0]))
+        phi, forced = maps.over_all()
+        end = phi @ x + forced[:, 0]
+        np.testing.assert_allclose(states[-1], end, rtol=1e-9, atol=1e-12 * np.abs(end).max())
+        np.testing.assert_array_equal(states[0], x)
+
+    def test_intervals_and_blocks_only_group_the_steps(self, unequal, monkeypatch):
+        system = periodic_system(unequal.with_(operating__pinion_speed=300), "absolute")
+        x, outputs = np.linspace(-1e-5, 1e-5, 12), np.array([0.0, 0.1, 0.15, 0.8]) * system.period
+        maps = step_maps(system, np.zeros((12, 0)), outputs=outputs)
+        # Memory goes with the intervals, however many steps a slow cycle takes.
+        assert maps.edges.size > 300
+        assert maps.maps.shape[0] == 4
+        np.testing.assert_allclose(maps.times, [*outputs, system.period], rtol=1e-12)
+        monkeypatch.setattr(propagation, "_BLOCK", 7)
+        again = step_maps(system, np.zeros((12, 0)), outputs=outputs)
+        a, b = (m.states(x, np.array([1.0])) for m in (maps, again))
+        # Rounding over some hundred steps.
+        assert np.all(np.abs(a - b) <= 1e-10 * np.abs(a).max(axis=0))
+
+    def test_a_standstill_is_refused_before_memory_runs_out(self, nasa):
+        system = periodic_system(nasa.with_(operating__pinion_speed=1e-3), "absolute")
+        with pytest.raises(NumericalError, match="raise the speed"):
+            step_maps(system, np.zeros((12, 0)))
+
+
+@pytest.mark.parametrize("name", ["nasa", "unequal", "high_contact"])
+def test_rigid_rotation_is_a_defective_double_multiplier(name, request):
+    """M v = v and M w = w + T_m v: a Jordan block at +1, to rounding; nothing else is at +1."""
+    system = periodic_system(request.getfixturevalue(name), "absolute")
+    monodromy, _ = step_maps(system, np.zeros((12, 0))).over_all()
+    g = geometry(request.getfixturevalue(name))
+    v, w = np.zeros(12), np.zeros(12)
+    v[:2] = w[6:8] = 1 / g.base_radius_pinion, 1 / g.base_radius_gear
+    np.testing.assert_allclose(monodromy @ v, v, rtol=0, atol=1e-8 * np.abs(v).max())
+    expected = w + system.period * v
+    # In rates a rounding of the position is multiplied by the fastest frequency, some 1e5 rad/s.
+    np.testing.assert_allclose(monodromy @ w, expected, rtol=0, atol=1e-8 * np.abs(w).max())
+    multipliers = np.linalg.eigvals(monodromy)
+    assert np.sum(np.abs(multipliers - 1.0) < 1e-4) == 2
+    assert np.sort(np.abs(multipliers))[:-2].max() < 1.0
+
+
+@pytest.mark.parametrize("law", ["coulomb", "benedict_kelley", "smoothed_coulomb", "xu_kahraman"])
+def test_relative_map_is_the_reduced_absolute_map(nasa, law):
+    pair = nasa.with_(friction__law=law, friction__coefficient=0.05 if "coulomb" in law else None)
+    full, relative = periodic_system(pair, "absolute"), periodic_system(pair, "relative")
+    m12, _ = step_maps(full, np.zeros((12, 0))).over_all()
+    m10, _ = step_maps(relative, np.zeros((10, 0))).over_all()
+    rows = np.kron(np.eye(2), relative.reduction)
+    left, right = rows @ m12, m10 @ rows
+    scale = np.abs(right).max(axis=1, keepdims=True)
+    np.testing.assert_allclose(left / scale, right / scale, atol=1e-9)

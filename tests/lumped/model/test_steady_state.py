@@ -1,0 +1,244 @@
+"""Is the periodic solution the motion that the pair settles to, and are its torques in balance?"""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from lumped import (
+    NumericalError,
+    geometry,
+    load_gear_pair,
+    periodic_system,
+    simulate,
+    speed_sweep,
+    steady_state,
+)
+from lumped.model.propagation import step_maps
+from lumped.model.steady import _bordered, periodic_solution, sample_times
+
+MOTION = ("dte", "x_p", "x_g", "y_p", "y_g")
+
+
+@pytest.mark.parametrize("name", ["coulomb_pair", "unequal", "high_contact"])
+def test_a_long_transient_settles_to_it(name, request):
+    pair = request.getfixturevalue(name).with_(
+        {f"bearings.{g}.{d}_damping_ratio": 0.2 for g in ("pinion", "gear") for d in ("loa", "oloa")}
+    )
+    settled = simulate(pair, 120, samples_per_cycle=64)
+    steady = steady_state(pair, samples_per_cycle=64)
+    last = slice(119 * 64, 120 * 64)
+    for variable in (*MOTION, "dte_dot", "normal_load", "friction_force"):
+        a = settled[variable].to_numpy()[..., last]
+        b = steady[variable].to_numpy()
+        # Bearings at 20 % damping: exp(-0.2 w t) falls below 1e-9 within these cycles; rtol is 1e-10.
+        assert np.abs(a - b).max() < 3e-7 * np.abs(b).max(), variable
+
+
+@pytest.mark.parametrize("law", ["coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb"])
+@pytest.mark.parametrize("speed", [800, 4875, 12000])
+def test_the_period_closes(nasa, law, speed):
+    coefficient = 0.05 if "coulomb" in law else None
+    pair = nasa.with_(friction__law=law, friction__coefficient=coefficient, operating__pinion_speed=speed)
+    run = steady_state(pair, samples_per_cycle=32)
+    # Rounding of the bordered system, whose condition is about 1e4.
+    assert run.attrs["closure"] < 1e-10
+    start = np.concatenate([run[n].to_numpy()[:1] for n in list(run)[:12]])
+    ahead = simulate(pair, 2, samples_per_cycle=32, initial=start)
+    scale = float(np.abs(run["dte"]).max())
+    for variable in MOTION:
+        again, once = ahead[variable].to_numpy()[32:64], run[variable].to_numpy()
+        # The transient errs by 1e-10 of the largest deflection a step, some hundred steps a cycle.
+        assert np.abs(again - once).max() <= 1e-8 * scale, variable
+
+
+def test_a_pair_that_does_not_move_closes(high_contact):
+    """Contact ratio 2, equal pairs, P in the middle: stiffness and friction are constant, so is all."""
+    g = geometry(high_contact)
+    tip = 2e3 * math.hypot(g.base_radius_pinion, g.L_XP + g.base_pitch)
+    pair = high_contact.with_(pinion__tip_diameter=tip, gear__tip_diameter=tip)
+    assert geometry(pair).contact_ratio == pytest.approx(2.0, rel=1e-12)
+    run = steady_state(pair, samples_per_cycle=8)
+    assert np.ptp(run["dte"].to_numpy()) < 1e-12 * float(run["dte"].mean())
+    # Its rates are rounding of nothing; the mismatch is judged by displacement over period.
+    assert run.attrs["closure"] < 1e-10
+
+
+@pytest.mark.parametrize("speed", [500, 4000, 4875, 20000])
+@pytest.mark.parametrize("damping", [0.0, 0.05])
+def test_without_friction_nothing_is_lost(nasa, unequal, speed, damping):
+    """Mean torques balance exactly, whatever the dampers do: constant torques do no net work on vibration.
+
+    What the dampers take is fed in by the changing stiffness, not by the drive.
+    """
+    for pair in (nasa, unequal):
+        run = steady_state(
+            pair.with_(friction__law="none", mesh__damping_ratio=damping, operating__pinion_speed=speed),
+            samples_per_cycle=8,
+        )
+        assert run.attrs["mesh_efficiency"] == pytest.approx(1.0, abs=1e-9)  # condition times rounding
+
+
+def test_efficiency_at_creeping_speed_in_closed_form(nasa):
+    """Equal pairs, equal gears, slow: q is in equilibrium at every instant.
+
+    With SUM N_i (1 + s_i mu tan(alpha)) = N_0 from the q equation, pairs share the load equally, so
+    double contact carries N_0 and single contact N_0/(1 + s mu tan(alpha)); the torques are mean moments.
+    """
+    mu = 0.1
+    pair = nasa.with_(friction__law="coulomb", friction__coefficient=mu, mesh__damping_ratio=0.3)
+    pair = pair.with_(
+        {f"bearings.{g}.{d}_damping_ratio": 0.5 for g in ("pinion", "gear") for d in ("loa", "oloa")}
+    )
+    g = geometry(pair)
+    slope = mu * math.tan(g.operating_pressure_angle)
+
+    def sign(xi):
+        return math.copysign(1.0, xi - g.L_XP)
+
+    def single(xi):
+        return 1.0 / (1.0 + sign(xi) * slope)
+
+    def moment(arm):
+        """Mean over the cycle of SUM (r_b + s_i mu arm_i) N_i for N_0 = 1."""
+        total = 0.0
+        for low, high, load in (
+            (g.L_XA, g.L_XB, lambda xi: 0.5),
+            (g.L_XB, g.L_XP, single),
+            (g.L_XP, g.L_XC, single),
+            (g.L_XC, g.L_XD, lambda xi: 0.5),
+        ):
+            part, _ = quad(
+                lambda xi, load=load: (g.base_radius_pinion + sign(xi) * mu * arm(xi)) * load(xi), low, high
+            )
+            total += part
+        return total / g.base_pitch
+
+    expected = moment(lambda xi: g.L_XY - xi) / moment(lambda xi: xi)
+    errors = []
+    for speed in (200, 100):
+        slow = steady_state(pair.with_(operating__pinion_speed=speed), samples_per_cycle=8)
+        errors.append(slow.attrs["mesh_efficiency"] - expected)
+    # What is left is the inertia of slow changes: second order in speed.
+    assert abs(errors[1]) < 1e-6
+    assert errors[1] == pytest.approx(0.25 * errors[0], rel=0.05)
+
+
+@pytest.mark.parametrize("mu", [0.05, 0.1])
+def test_loss_at_4000_rpm_is_near_the_static_one(nasa, mu):
+    """Mean of mu N |sliding| with equal sharing: 2 mu / r_b times 3.297 mm, 0.789 % at mu = 0.05."""
+    pair = nasa.with_(friction__law="coulomb", friction__coefficient=mu, operating__pinion_speed=4000)
+    g = geometry(pair)
+    ends = (g.L_XP - g.L_XA) ** 2 - (g.L_XP - g.L_XB) ** 2
+    mean_distance = (0.5 * ends + (g.L_XP - g.L_XB) ** 2) / g.base_pitch
+    static = 2 * mu * mean_distance / g.base_radius_pinion
+    loss = 1 - steady_state(pair, samples_per_cycle=8).attrs["mesh_efficiency"]
+    # Vibration moves load along the path by some per cent; second order in mu is mu/2 of the loss.
+    assert loss == pytest.approx(static, rel=0.05)
+
+
+@pytest.fixture(scope="module")
+def with_brake(unequal):
+    """The same pair with balanced brake and with a given one."""
+    pair = unequal.with_(operating__brake_torque=40.0)
+    return steady_state(unequal, samples_per_cycle=16), steady_state(pair, samples_per_cycle=16)
+
+
+def test_the_drive_balances_a_given_brake(with_brake, unequal):
+    free, given = with_brake
+    assert given.attrs["brake_torque"] == 40.0
+    # The balance is linear in the load: same efficiency, other size.
+    assert given.attrs["mesh_efficiency"] == pytest.approx(free.attrs["mesh_efficiency"], rel=1e-10)
+    g = geometry(unequal)
+    expected = 40.0 * g.omega_gear / g.omega_pinion / given.attrs["mesh_efficiency"]
+    assert given.attrs["pinion_torque"] == pytest.approx(expected, rel=1e-12)
+
+
+def test_the_motion_scales_with_the_torque(with_brake):
+    free, given = with_brake
+    factor = given.attrs["pinion_torque"] / free.attrs["pinion_torque"]
+    for name in MOTION:
+        a, b = given[name].to_numpy(), factor * free[name].to_numpy()
+        assert np.abs(a - b).max() < 1e-9 * np.abs(b).max(), name
+
+
+@pytest.mark.parametrize("law", ["none", "coulomb", "smoothed_coulomb", "benedict_kelley", "xu_kahraman"])
+@pytest.mark.parametrize(("speed", "samples"), [(500, 8), (4875, 8), (4875, 128), (30000, 8)])
+def test_the_estimate_bounds_the_error(nasa, law, speed, samples):
+    """Against the same equations at steps 25 times shorter, far into the tail of order 8."""
+    coefficient = 0.05 if "coulomb" in law else None
+    pair = nasa.with_(friction__law=law, friction__coefficient=coefficient, operating__pinion_speed=speed)
+    system = periodic_system(pair, "absolute")
+    times = sample_times(system.period, samples)
+    torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
+    fine = step_maps(system, torques, outputs=times, step_angle=0.02)
+    states = fine.states(*_bordered(pair, system, *fine.over_all()))
+    exact = states[np.searchsorted(fine.times, times - 1e-9 * system.period)][:, :6] @ system.deflection
+    solution = periodic_solution(pair, times, system=system)
+    dte = solution.states[:, :6] @ system.deflection
+    error = np.abs(dte - exact).max() / np.abs(exact).max()
+    assert error < 1e-9
+    assert error <= solution.error + 1e-12  # rounding of two solves
+
+
+def test_mean_speed_is_held(coulomb_pair):
+    run = steady_state(coulomb_pair, samples_per_cycle=2048)
+    for name in ("theta_p_dot", "theta_g_dot"):
+        values = run[name].to_numpy()
+        # Mean of a periodic function with kinks by 2048 samples.
+        assert abs(values.mean()) < 1e-4 * np.abs(values).max()
+
+
+def test_a_stability_boundary_is_refused(nasa):
+    """With no damping at all and no friction the map at a resonance T w = 2 pi k has a multiplier at +1."""
+    stiff = nasa.with_(
+        {
+            "friction.law": "none",
+            "mesh.damping_ratio": 0.0,
+            **{f"bearings.{g}.{d}_damping_ratio": 0.0 for g in ("pinion", "gear") for d in ("loa", "oloa")},
+        }
+    )
+    # y is a plain oscillator: its multiplier is at +1 where a whole number of periods fits the mesh cycle.
+    mass = periodic_system(stiff, "absolute").structure.mass[4]
+    speed = math.sqrt(1e8 / mass) * 60 / (2 * math.pi * 28) / 3
+    with pytest.raises(NumericalError, match="Change the speed slightly or add damping"):
+        steady_state(stiff.with_(operating__pinion_speed=speed), samples_per_cycle=8)
+    assert steady_state(stiff.with_(operating__pinion_speed=1.01 * speed), samples_per_cycle=8)
+
+
+@pytest.mark.parametrize("name", ["nasa_art_25_31", "kahraman_blankenship_50_50", "fzg_c"])
+def test_presets_have_a_periodic_motion(name):
+    run = steady_state(load_gear_pair(name), samples_per_cycle=64)
+    assert 0.98 < run.attrs["mesh_efficiency"] < 1.0
+    assert run.attrs["error_estimate"] < 1e-6
+    assert all(np.isfinite(run[v].to_numpy()).all() for v in run)
+
+
+@pytest.mark.parametrize("name", ["nasa", "unequal", "high_contact"])
+def test_an_unstable_periodic_motion_says_so(name, request):
+    """Undamped pairs have unstable speeds; the transient leaves the periodic motion exactly there.
+
+    A disturbance grows over a cycle by the largest multiplier in the end, so over many cycles by its power.
+    """
+    pair = request.getfixturevalue(name).with_(mesh__damping_ratio=0.0, friction__law="none")
+    speeds = np.linspace(3000.0, 20000.0, 69)
+    radii = speed_sweep(pair, speeds, samples_per_cycle=8)["spectral_radius"].to_numpy()
+    worst = int(np.argmax(radii))
+    assert radii[worst] > 1.01
+    assert radii.min() < 1.0
+    for place in (worst, int(np.argmin(radii))):
+        at = pair.with_(operating__pinion_speed=float(speeds[place]))
+        motion = steady_state(at, samples_per_cycle=8)
+        assert motion.attrs["spectral_radius"] == radii[place]
+        start = np.array([float(motion[n][0]) for n in list(motion)[:12]])
+        start[2:4] += 1e-6, -1e-6
+        run = simulate(at, 200, samples_per_cycle=8, initial=start)
+        rest = run["x_p"].to_numpy()[:-1].reshape(200, 8) - motion["x_p"].to_numpy()
+        size = np.abs(rest).max(axis=1)
+        if place == worst:
+            # Windows of 20 cycles see the envelope; whatever else was excited has died away by the first.
+            growth = (size[180:].max() / size[80:100].max()) ** (1.0 / 100.0)
+            assert growth == pytest.approx(radii[place], rel=2e-3)
+        else:
+            assert size[-1] < 1e-3 * size[0]

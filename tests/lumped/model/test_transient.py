@@ -1,0 +1,184 @@
+"""Does the transient keep its order across the switches, start where it says and land on its grid?"""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from lumped import ParameterError, geometry, mesh_cycle, simulate, steady_state
+from lumped.model.equations import COORDINATES, static_deflection
+from lumped.model.solution import mean_mesh_stiffness
+from lumped.model.steady import sample_times
+
+STATES = (*COORDINATES, *(f"{n}_dot" for n in COORDINATES))
+
+
+def states(run):
+    return np.stack([run[name].to_numpy() for name in STATES], axis=1)
+
+
+def test_grid(coulomb_pair):
+    run = simulate(coulomb_pair, 3, samples_per_cycle=16, rtol=1e-6)
+    period = geometry(coulomb_pair).mesh_period
+    expected = np.arange(3 * 16 + 1) * period / 16
+    np.testing.assert_allclose(run["time"], expected, rtol=1e-14)
+    assert run["time"].attrs["units"] == "s"
+
+
+@pytest.mark.parametrize("samples", [8, 37, 100])
+def test_every_sample_is_filled_whatever_the_grid(unequal, samples):
+    """Samples of a coarse run are those of a fine one: none is skipped, doubled or shifted at a switch."""
+    fine = simulate(unequal, 2, samples_per_cycle=10 * samples)
+    coarse = simulate(unequal, 2, samples_per_cycle=samples)
+    a, b = states(fine)[::10], states(coarse)
+    assert np.isfinite(b).all()
+    # Same solution, other output points: dense output has the accuracy of the steps.
+    assert (np.abs(a - b) / np.abs(a).max(axis=0)).max() < 1e-7
+
+
+def test_samples_on_a_switch(coulomb_pair):
+    """A pair that leaves exactly on a sample: 8 equal samples with contact ratio 1.5."""
+    g = geometry(coulomb_pair)
+    length = 0.5 * (1.5 * g.base_pitch + g.L_XY)
+    tip = f"{2 * math.hypot(g.base_radius_pinion, length)!r} m"
+    pair = coulomb_pair.with_(
+        pinion__tip_diameter=tip, gear__tip_diameter=tip, pinion__tip_relief=None, gear__tip_relief=None
+    )
+    assert mesh_cycle(pair).events["D"] == pytest.approx(0.5 * g.mesh_period, rel=1e-12)
+    run = simulate(pair, 5, samples_per_cycle=8)
+    steps = np.diff(run["time"])
+    assert np.ptp(steps) < 1e-12 * steps.mean()
+    contacts = run["contact"].sum("pair").to_numpy()
+    np.testing.assert_array_equal(contacts[:-1].reshape(5, 8), np.tile([2, 2, 2, 2, 1, 1, 1, 1], (5, 1)))
+
+
+def test_samples_at_the_very_bits_of_the_switches(coulomb_pair, monkeypatch):
+    """A grid that holds every switch bit for bit: none of its samples is lost between two segments."""
+    switches = mesh_cycle(coulomb_pair).switch_times
+
+    def with_switches(period, samples):
+        return np.union1d(sample_times(period, samples), switches)
+
+    plain = states(simulate(coulomb_pair, 2, samples_per_cycle=8))
+    monkeypatch.setattr("lumped.model.solution.sample_times", with_switches)
+    run = simulate(coulomb_pair, 2, samples_per_cycle=8)
+    assert run.sizes["time"] == 2 * (8 + switches.size) + 1
+    period = geometry(coulomb_pair).mesh_period
+    on_grid = np.abs(np.mod(run["time"].to_numpy() / period * 8 + 0.5, 1.0) - 0.5) < 1e-9
+    difference = np.abs(states(run)[on_grid] - plain) / np.abs(plain).max(axis=0)
+    assert difference.max() < 1e-7  # accuracy of the dense output
+    between = states(run)[~on_grid]
+    # Displacements move by no more than their rates allow since the sample before.
+    before = states(run)[np.flatnonzero(~on_grid) - 1]
+    steps = run["time"].to_numpy()[~on_grid] - run["time"].to_numpy()[np.flatnonzero(~on_grid) - 1]
+    fastest = np.abs(plain[:, 6:]).max(axis=0)
+    assert np.all(np.abs(between - before)[:, :6] <= 3 * fastest * steps[:, None] + 1e-12)
+
+
+def test_error_follows_the_tolerance(coulomb_pair):
+    """Steps that straddled a switch would leave an error of order one in the step, whatever the tolerance."""
+    exact = states(simulate(coulomb_pair, 4, samples_per_cycle=32, rtol=1e-13))
+    scale = np.abs(exact).max(axis=0)
+    errors = []
+    for rtol in (1e-5, 1e-7, 1e-9, 1e-11):
+        run = states(simulate(coulomb_pair, 4, samples_per_cycle=32, rtol=rtol))
+        errors.append(float((np.abs(run - exact) / scale).max()))
+    assert errors[0] < 1e-2
+    for coarse, fine in itertools.pairwise(errors):
+        assert fine < 0.1 * coarse  # 100 times tighter: nominally 100, with DOP853's dense output at least 10
+    assert errors[-1] < 1e-8
+
+
+def test_static_start(unequal):
+    run = simulate(unequal, 1, samples_per_cycle=8)
+    start = states(run)[0]
+    np.testing.assert_array_equal(start, static_deflection(unequal, mean_mesh_stiffness(mesh_cycle(unequal))))
+    assert np.all(start[6:] == 0.0)
+    g = geometry(unequal)
+    k = mean_mesh_stiffness(mesh_cycle(unequal))
+    assert float(run["dte"][0]) * k == pytest.approx(56.5 / g.base_radius_pinion, rel=1e-12)
+
+
+def test_static_start_carries_the_given_brake(nasa):
+    """With a brake torque given, the mean load is the brake's, not the one of the nominal pinion torque."""
+    pair = nasa.with_(operating__brake_torque=20.0, friction__law="none")
+    run = simulate(pair, 1, samples_per_cycle=8)
+    g, k = geometry(pair), mean_mesh_stiffness(mesh_cycle(pair))
+    assert float(run["dte"][0]) * k == pytest.approx(20.0 / g.base_radius_gear, rel=1e-9)
+
+
+def test_mean_mesh_stiffness_is_the_mean_of_the_total(high_contact):
+    cycle = mesh_cycle(high_contact)
+    times = (np.arange(20000) + 0.5) * cycle.period / 20000
+    total = cycle.sample(times).stiffness.sum(axis=0).mean()
+    assert mean_mesh_stiffness(cycle) == pytest.approx(total, rel=1e-4)  # midpoint rule across jumps
+
+
+@pytest.mark.parametrize("name", ["coulomb_pair", "unequal", "high_contact"])
+def test_a_periodic_start_stays_periodic(name, request):
+    pair = request.getfixturevalue(name)
+    run = states(simulate(pair, 6, samples_per_cycle=16, initial="periodic"))
+    first, last = run[:16], run[80:96]
+    scale = np.abs(first).max(axis=0)
+    # Rotations drift by the rounding of their rate: 1e-10 a step over some 500 steps.
+    assert (np.abs(last - first) / scale).max() < 1e-6
+    steady = states(steady_state(pair, samples_per_cycle=16))
+    assert (np.abs(first - steady) / scale).max() < 1e-7
+
+
+def test_a_given_start_is_taken(coulomb_pair):
+    start = np.linspace(-1e-5, 1e-5, 12)
+    run = simulate(coulomb_pair, 1, samples_per_cycle=8, initial=start)
+    np.testing.assert_array_equal(states(run)[0], start)
+
+
+def test_solutions_superpose(coulomb_pair):
+    """The model is linear: the difference of two runs from different starts obeys the unforced equations."""
+    a, b = np.linspace(-1e-5, 1e-5, 12), np.linspace(2e-5, -3e-5, 12)
+    runs = [states(simulate(coulomb_pair, 2, samples_per_cycle=8, initial=s)) for s in (a, b, 0.5 * (a + b))]
+    middle = 0.5 * (runs[0] + runs[1])
+    assert np.abs(runs[2] - middle).max() < 1e-7 * np.abs(middle).max()
+
+
+def test_mean_speed_does_not_drift(coulomb_pair):
+    run = simulate(coulomb_pair, 60, samples_per_cycle=16)
+    speed = run["theta_g_dot"].to_numpy()
+    first, last = speed[:320].mean(), speed[-321:-1].mean()
+    assert abs(last - first) < 0.01 * np.abs(speed).max()
+
+
+def test_progress_is_reported(coulomb_pair):
+    seen = []
+    simulate(coulomb_pair, 4, samples_per_cycle=8, rtol=1e-4, progress=seen.append)
+    assert seen == [0.25, 0.5, 0.75, 1.0]
+
+
+class TestArguments:
+    @pytest.mark.parametrize("cycles", [0, -1, 100_001, 2.5, math.nan, math.inf, True, "3", None])
+    def test_cycles(self, nasa, cycles):
+        with pytest.raises(ParameterError, match=r"^cycles.*1 to 100000"):
+            simulate(nasa, cycles)
+
+    @pytest.mark.parametrize("samples", [7, 0, -8, 65537, 100.5, math.nan, True, "64", None])
+    def test_samples(self, nasa, samples):
+        with pytest.raises(ParameterError, match=r"samples_per_cycle.*8 to 65536"):
+            simulate(nasa, 1, samples_per_cycle=samples)
+        with pytest.raises(ParameterError, match=r"samples_per_cycle.*8 to 65536"):
+            steady_state(nasa, samples_per_cycle=samples)
+
+    @pytest.mark.parametrize("rtol", [0.0, -1e-8, 1e-14, 0.1, math.nan, "tight", None])
+    def test_rtol(self, nasa, rtol):
+        with pytest.raises(ParameterError, match=r"rtol.*1e-13 to 0\.01"):
+            simulate(nasa, 1, rtol=rtol)
+
+    @pytest.mark.parametrize(
+        "initial", ["rest", "", None, 3.0, [0.0] * 11, [[0.0] * 12], [math.nan] * 12, ["a"] * 12, [None] * 12]
+    )
+    def test_initial(self, nasa, initial):
+        with pytest.raises(ParameterError, match="initial"):
+            simulate(nasa, 1, initial=initial)
+
+    def test_numpy_numbers_are_numbers(self, nasa):
+        run = simulate(nasa, np.int64(1), samples_per_cycle=np.int32(8), rtol=np.float64(1e-4))
+        assert run.sizes["time"] == 9

@@ -1,0 +1,294 @@
+"""Does the schema give one value to one input: units, alternatives, defaults, variations?"""
+
+import math
+import tomllib
+
+import pytest
+from pydantic import ValidationError
+
+from lumped import GearPair, ParameterError, bodies, geometry, json_schema, load_gear_pair
+from lumped.schema.files import preset_text
+from lumped.schema.pair import stated_unit
+from lumped.schema.refusals import models_in
+from lumped.schema.units import UNITS
+
+
+def test_pair_is_frozen_and_hashable(nasa):
+    with pytest.raises(ValidationError):
+        nasa.name = "other"
+    with pytest.raises(ValidationError):
+        nasa.pinion.teeth = 30
+    again = load_gear_pair("nasa_28_28")
+    assert again == nasa
+    assert hash(again) == hash(nasa)
+    assert len({nasa, again, nasa.with_(mesh__damping_ratio=0.06)}) == 2
+
+
+def test_a_pair_loads_as_itself(nasa):
+    assert load_gear_pair(nasa) is nasa
+
+
+def test_the_same_pair_from_name_file_and_mapping(nasa, tmp_path):
+    path = tmp_path / "pair.toml"
+    path.write_text(nasa.to_toml(), encoding="utf-8")
+    assert load_gear_pair(path) == load_gear_pair(str(path)) == load_gear_pair(nasa.to_mapping()) == nasa
+
+
+def test_units_reach_the_fields(edited):
+    pair = load_gear_pair(edited("operating.pinion_torque", "200 lbf*in"))
+    assert pair.operating.pinion_torque == pytest.approx(22.596965805523336, rel=1e-15)  # one rounding
+    pair = load_gear_pair(edited("operating.pinion_speed", "1000 rpm"))
+    assert pair.operating.pinion_speed == pytest.approx(1000 * math.pi / 30, rel=1e-15)
+    assert pair.basic_rack.module == 3.175e-3
+
+
+def test_diametral_pitch_is_the_module(edited, nasa):
+    data = edited("basic_rack.module", ...)
+    for given in (8, 8.0, "8 1/inch"):
+        data["basic_rack"]["diametral_pitch"] = given
+        assert load_gear_pair(data).basic_rack.module == 3.175e-3  # 25.4/8 exactly
+    assert nasa.with_(basic_rack__diametral_pitch=8).basic_rack == nasa.basic_rack
+
+
+def test_diametral_pitch_replaces_the_source_of_the_module(nasa):
+    sources = dict(nasa.with_(basic_rack__diametral_pitch=8).sources)
+    assert sources["basic_rack.module"] == "varied by the user"
+    assert "basic_rack.diametral_pitch" not in sources
+
+
+def test_an_alternative_drops_the_source_of_what_it_replaces(nasa):
+    law = {"kinematic_viscosity_40": 32, "kinematic_viscosity_100": 5.4, "temperature": 60}
+    varied = nasa.with_(lubricant__viscosity_law=law)
+    assert varied.lubricant.viscosity is None
+    assert "lubricant.viscosity" not in dict(varied.sources)
+    assert dict(varied.sources)["lubricant.viscosity_law"] == "varied by the user"
+    back = varied.with_(lubricant__viscosity="10 cP")
+    assert back.lubricant == nasa.lubricant
+
+
+def test_addendum_and_tip_diameter_say_the_same(nasa):
+    by_addendum = nasa.with_(pinion__addendum=3.5)
+    by_diameter = by_addendum.with_(pinion__tip_diameter=28 * 3.175 + 7.0)
+    assert by_diameter.pinion.addendum is None
+    # Half of a diameter against a sum of radius and addendum: two roundings.
+    assert geometry(by_diameter).tip_radius_pinion == pytest.approx(
+        geometry(by_addendum).tip_radius_pinion, rel=1e-15
+    )
+
+
+def test_default_addendum_follows_the_profile_shift(nasa):
+    pair = nasa.with_(pinion__profile_shift=0.2, gear__profile_shift=-0.2)
+    g = geometry(pair)
+    assert g.tip_radius_pinion == pytest.approx((14 + 1 + 0.2) * 3.175e-3, rel=1e-15)
+    assert g.tip_radius_gear == pytest.approx((14 + 1 - 0.2) * 3.175e-3, rel=1e-15)
+
+
+class TestVariations:
+    def test_forms_of_naming_a_field_agree(self, nasa):
+        expected = nasa.with_(operating__pinion_speed=2000)
+        assert nasa.with_({"operating.pinion_speed": 2000}) == expected
+        assert nasa.with_(operating__pinion_speed="2000 rpm") == expected
+        assert expected.operating.pinion_speed == pytest.approx(2000 * math.pi / 30, rel=1e-15)
+        section = nasa.to_mapping()["operating"] | {"pinion_speed": 2000}
+        assert nasa.with_(operating=section).operating == expected.operating
+
+    def test_the_original_is_untouched(self, nasa):
+        before = nasa.to_toml()
+        nasa.with_(operating__pinion_speed=2000, pinion__teeth=26, centre_distance=None)
+        assert nasa.to_toml() == before
+
+    def test_the_callers_dict_is_untouched(self, nasa):
+        mesh = {"damping_ratio": 0.1, "stiffness": {"model": "rectangular"}}
+        varied = nasa.with_({"mesh": mesh, "mesh.damping_ratio": 0.2})
+        assert varied.mesh.damping_ratio == 0.2
+        assert mesh["damping_ratio"] == 0.1
+
+    def test_only_the_named_field_changes(self, nasa):
+        varied = nasa.with_(bearings__gear__loa_stiffness=2e8)
+        assert varied.bearings.gear.loa_stiffness == 2e8
+        data, expected = varied.to_mapping(), nasa.to_mapping()
+        del data["sources"], expected["sources"]
+        expected["bearings"]["gear"]["loa_stiffness"] = 2e8
+        assert data == expected
+
+    def test_none_restores_the_default(self, nasa):
+        assert nasa.with_(centre_distance=None).centre_distance is None
+        assert nasa.with_(pinion__tip_relief=None).pinion.tip_relief is None
+        assert nasa.with_(friction__maximum=0.1).with_(friction__maximum=None).friction.maximum == 0.2
+
+    def test_a_dict_replaces_the_section(self, nasa):
+        pair = nasa.with_(mesh__stiffness={"model": "parabolic", "peak": 8e7})
+        back = pair.with_(mesh__stiffness={"model": "rectangular"})
+        assert back.mesh == nasa.mesh
+
+    def test_a_section_object_replaces_the_section(self, nasa):
+        other = nasa.with_(friction__law="coulomb", friction__coefficient=0.05)
+        assert nasa.with_(friction=other.friction).friction == other.friction
+
+    def test_several_variations_name_their_source(self, nasa):
+        sources = dict(nasa.with_(mesh__damping_ratio=0.1).sources)
+        assert sources["mesh.damping_ratio"] == "varied by the user"
+        assert sources["pinion.teeth"] == dict(nasa.sources)["pinion.teeth"]
+
+    @pytest.mark.parametrize("value", [None, 3])
+    @pytest.mark.parametrize(
+        ("path", "near"),
+        [
+            ("operating.pinon_speed", "pinion_speed"),
+            ("pinion.tip_reief", "tip_relief"),
+            ("frictin.law", "friction"),
+            ("pinion.tip_relief.amont", "amount"),
+        ],
+    )
+    def test_an_unknown_path_suggests_the_nearest(self, nasa, path, near, value):
+        with pytest.raises(ParameterError, match=f"Did you mean '{near}'"):
+            nasa.with_({path: value})
+
+    def test_a_path_through_a_value_is_refused(self, nasa):
+        for path in ("name.length", "pinion.teeth.number"):
+            with pytest.raises(ParameterError, match="unknown key"):
+                nasa.with_({path: 3})
+
+    def test_a_variation_is_validated_like_a_file(self, nasa):
+        with pytest.raises(ParameterError, match=r"operating.pinion_speed = -5 rpm: allowed > 0 rpm"):
+            nasa.with_(operating__pinion_speed=-5)
+        with pytest.raises(ParameterError, match="contact_ratio"):
+            nasa.with_(centre_distance=93.0)
+
+
+def test_disc_defaults_are_those_of_solid_steel(nasa):
+    b = bodies(nasa)
+    # J = pi rho b r^4/2 = 3.06e-4 kg m^2, m = 0.309 kg, three digits printed.
+    assert b.mass_pinion == pytest.approx(0.309, abs=5e-4)
+    assert b.inertia_pinion == pytest.approx(3.06e-4, abs=5e-7)
+
+
+class TestJsonSchema:
+    def test_every_quantity_carries_its_unit(self, quantity_field):
+        path, quantity = quantity_field
+        schema = json_schema()
+        node = schema
+        for part in path.split("."):
+            node = next(n["properties"][part] for n in _alternatives(node, schema) if part in n["properties"])
+        assert node["unit"] == quantity.unit
+        assert node["si_unit"] == UNITS[quantity.unit][0]
+        number, text = node["anyOf"]
+        assert (number["type"], text["type"]) == ("number", "string")
+        assert number.get("exclusiveMinimum") == quantity.above
+        assert number.get("minimum") == quantity.at_least
+        assert number.get("exclusiveMaximum") == quantity.below
+        assert number.get("maximum") == quantity.at_most
+
+    def test_brake_torque_carries_its_unit_too(self):
+        node = json_schema()["$defs"]["OperatingPoint"]["properties"]["brake_torque"]
+        assert (node["unit"], node["si_unit"]) == ("N*m", "N*m")
+
+    @pytest.mark.parametrize("name", ["nasa_28_28", "nasa_art_25_31", "kahraman_blankenship_50_50", "fzg_c"])
+    def test_presets_conform(self, name):
+        schema = json_schema()
+        # As written in the file, and as written back by the schema.
+        for data in (tomllib.loads(preset_text(name)), load_gear_pair(name).to_mapping()):
+            assert list(_violations(data, schema, schema, "")) == []
+
+    def test_a_default_written_out_changes_nothing(self):
+        schema = json_schema()
+        silent, written = (tomllib.loads(preset_text("nasa_28_28")) for _ in range(2))
+        count = 0
+        for key, reference in schema["properties"].items():
+            for section in _alternatives(reference, schema):
+                for name, field in section["properties"].items():
+                    if isinstance(silent.get(key), dict) and "default" in field:
+                        assert list(_violations(field["default"], field, schema, name)) == []
+                        silent[key].pop(name, None)
+                        written[key][name] = field["default"]
+                        count += 1
+        assert count > 20
+        assert load_gear_pair(written) == load_gear_pair(silent)
+        rack = schema["$defs"]["BasicRack"]["properties"]
+        assert rack["pressure_angle"]["default"] == 20.0
+        assert "default" not in schema["properties"]["centre_distance"]
+
+    def test_the_check_itself_can_fail(self, edited):
+        schema = json_schema()
+        for path, value in [("pinion.teeth", "many"), ("pinion.teth", 3), ("pinion.face_width", ...)]:
+            assert list(_violations(edited(path, value), schema, schema, ""))
+
+
+def test_stated_unit_of_a_field():
+    assert stated_unit("operating.pinion_speed") == "rpm"
+    assert stated_unit("pinion.tip_relief.amount") == "um"
+    assert stated_unit("mesh.stiffness.pair_stiffness") == "N/m"
+    assert stated_unit("name") is None
+    with pytest.raises(ParameterError, match="Did you mean 'pinion_speed'"):
+        stated_unit("operating.pinion_sped")
+
+
+def test_every_field_is_described():
+    def models(model, seen):
+        seen.add(model)
+        for info in model.model_fields.values():
+            for inner in models_in(info.annotation):
+                if inner not in seen:
+                    models(inner, seen)
+        return seen
+
+    for model in models(GearPair, set()):
+        assert model.__doc__
+        for name, info in model.model_fields.items():
+            # A section is described by its own docstring, the tag of a union by the member's.
+            if name != "model" and not models_in(info.annotation):
+                assert info.description, f"{model.__name__}.{name}"
+
+
+def _alternatives(node, root):
+    """Object schemas that a node may stand for, through references and unions."""
+    if "$ref" in node:
+        yield from _alternatives(root["$defs"][node["$ref"].rsplit("/", 1)[1]], root)
+    for key in ("anyOf", "oneOf", "allOf"):
+        for inner in node.get(key, ()):
+            yield from _alternatives(inner, root)
+    if "properties" in node:
+        yield node
+
+
+def _violations(value, node, root, path):
+    """The part of JSON Schema that the parameter schema uses: references, unions, objects, bounds, enums."""
+    if "$ref" in node:
+        yield from _violations(value, root["$defs"][node["$ref"].rsplit("/", 1)[1]], root, path)
+        return
+    unions = node.get("anyOf") or node.get("oneOf")
+    if unions and all(list(_violations(value, inner, root, path)) for inner in unions):
+        yield f"{path}: none of the alternatives"
+    kind = node.get("type")
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    fits = {
+        "object": isinstance(value, dict),
+        "array": isinstance(value, (list, tuple)),
+        "string": isinstance(value, str),
+        "number": number,
+        "integer": number and float(value).is_integer(),
+        "null": value is None,
+        None: True,
+    }[kind]
+    if not fits:
+        yield f"{path}: {value!r} is no {kind}"
+        return
+    if "const" in node and value != node["const"]:
+        yield f"{path}: not {node['const']}"
+    if "enum" in node and value not in node["enum"]:
+        yield f"{path}: not in {node['enum']}"
+    if kind in ("number", "integer"):
+        low, high = node.get("minimum", -math.inf), node.get("maximum", math.inf)
+        inner = node.get("exclusiveMinimum", -math.inf) < value < node.get("exclusiveMaximum", math.inf)
+        if not (low <= value <= high and inner):
+            yield f"{path}: {value} out of bounds"
+    for key in node.get("required", ()):
+        if key not in value:
+            yield f"{path}.{key}: missing"
+    if kind == "object" and "properties" in node:
+        known = node["properties"]
+        for key, item in value.items():
+            if key in known:
+                yield from _violations(item, known[key], root, f"{path}.{key}")
+            elif node.get("additionalProperties") is False:
+                yield f"{path}.{key}: unknown"

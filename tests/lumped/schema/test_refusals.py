@@ -1,0 +1,406 @@
+"""Is every input that cannot be right refused, with field, value, allowed range and next action?"""
+
+import copy
+import math
+
+import pytest
+
+from lumped import ParameterError, load_gear_pair
+from lumped.schema.units import Quantity
+
+
+def problem(source, field, **expected):
+    """The one problem of a refused source that concerns ``field``."""
+    with pytest.raises(ParameterError) as caught:
+        load_gear_pair(source)
+    found = [p for p in caught.value.problems if p.field == field]
+    assert len(found) == 1, f"{field} not named once in: {caught.value}"
+    one = found[0]
+    # Every part that the user needs is there, and the message shows all of it.
+    for part in (one.field, one.value, one.allowed, one.action):
+        assert part
+        assert part in str(caught.value)
+    assert len(str(one)) < 700
+    for name, text in expected.items():
+        assert text in getattr(one, name), f"{name}: {getattr(one, name)!r}"
+    return one
+
+
+#: Sections that the default pair leaves out, so that their fields can be set.
+LAW = {"kinematic_viscosity_40": 32.0, "kinematic_viscosity_100": 5.4, "temperature": 60.0, "density": 870.0}
+RELIEF = {"shape": "linear", "amount": 23.0, "start_roll_angle": 24.0}
+STIFFNESS = {
+    "pair_stiffness": {"model": "rectangular"},
+    "peak": {"model": "parabolic"},
+    "end_ratio": {"model": "parabolic"},
+    "ramp_length": {"model": "parabolic"},
+}
+
+
+@pytest.fixture(scope="module")
+def complete(nasa):
+    """The default pair's data with a given leaf set, whatever section it needs."""
+
+    def build(path, value):
+        data = copy.deepcopy(nasa.to_mapping())
+        *parents, leaf = path.split(".")
+        if parents[:2] == ["lubricant", "viscosity_law"]:
+            del data["lubricant"]["viscosity"]
+            data["lubricant"]["viscosity_law"] = dict(LAW)
+        if parents and parents[-1] in ("tip_relief", "root_relief"):
+            data[parents[0]][parents[-1]] = dict(RELIEF)
+        if parents[:2] == ["mesh", "stiffness"]:
+            data["mesh"]["stiffness"] = dict(STIFFNESS[leaf])
+        node = data
+        for part in parents:
+            node = node[part]
+        node[leaf] = value
+        return data
+
+    return build
+
+
+MAY_BE_NEGATIVE = {"pinion.profile_shift", "gear.profile_shift", "lubricant.viscosity_law.temperature"}
+
+
+class TestEveryQuantity:
+    def test_negative_is_refused(self, quantity_field, complete):
+        path, quantity = quantity_field
+        if path in MAY_BE_NEGATIVE:  # a profile shift and a Celsius temperature, each with a lower bound
+            assert quantity.at_least is not None
+            problem(complete(path, quantity.at_least - 1.0), path, allowed=quantity.allowed)
+            return
+        problem(complete(path, -1.0), path, value="-1", allowed=quantity.allowed)
+        if quantity.unit != "1":
+            problem(complete(path, f"-1 {quantity.unit}"), path, value="-1")
+
+    @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+    def test_not_finite_is_refused(self, quantity_field, complete, value):
+        path, quantity = quantity_field
+        problem(complete(path, value), path, allowed=quantity.allowed, action="finite")
+
+    @pytest.mark.parametrize("value", [True, False])
+    def test_boolean_is_refused(self, quantity_field, complete, value):
+        path, _ = quantity_field
+        problem(complete(path, value), path, value=str(value), action="Give a number")
+
+    @pytest.mark.parametrize("value", [[1.0], {"value": 1.0}])
+    def test_containers_are_refused(self, quantity_field, complete, value):
+        path, _ = quantity_field
+        problem(complete(path, value), path, action="Give a number")
+
+    def test_wrong_dimension_is_refused(self, quantity_field, complete):
+        path, quantity = quantity_field
+        wrong = "1 A" if quantity.unit == "1" else "1 ampere"
+        problem(complete(path, wrong), path, value="1 a" if quantity.unit != "1" else "1 A")
+
+    def test_text_is_refused(self, quantity_field, complete):
+        path, _ = quantity_field
+        problem(complete(path, "plenty"), path, value="plenty")
+
+    def test_bounds_are_kept(self, quantity_field, complete):
+        path, quantity = quantity_field
+        for bound, beyond in (
+            (quantity.above, quantity.above),
+            (quantity.below, quantity.below),
+            (quantity.at_least, None if quantity.at_least is None else quantity.at_least - 1e-3),
+            (quantity.at_most, None if quantity.at_most is None else quantity.at_most * 1.001),
+        ):
+            if bound is not None:
+                problem(complete(path, beyond), path, allowed=quantity.allowed)
+
+    def test_huge_text_is_refused_briefly(self, quantity_field, complete):
+        path, _ = quantity_field
+        problem(complete(path, "9" * 100_000), path)
+
+    def test_its_name_is_checked(self, quantity_field, complete):
+        path, _ = quantity_field
+        data = complete(path, 1.0)
+        *parents, leaf = path.split(".")
+        node = data
+        for part in parents:
+            node = node[part]
+        node[leaf + "x"] = node.pop(leaf)
+        with pytest.raises(ParameterError) as caught:
+            load_gear_pair(data)
+        named = [p for p in caught.value.problems if p.field == f"{path}x"]
+        assert named
+        assert named[0].action == f"Did you mean '{leaf}'?"
+
+
+@pytest.mark.parametrize("speed", [0, -0.0, -1000, "0 rpm", "-3 rad/s"])
+def test_zero_and_negative_speed(edited, speed):
+    problem(
+        edited("operating.pinion_speed", speed), "operating.pinion_speed", allowed="> 0 rpm", action="drive"
+    )
+
+
+@pytest.mark.parametrize("value", [0, -5.0, "balancd", True, math.nan, "3 m", [1]])
+def test_brake_torque_is_balanced_or_positive(edited, value):
+    one = problem(edited("operating.brake_torque", value), "operating.brake_torque")
+    assert "balanced" in one.allowed + one.action
+
+
+class TestOtherFields:
+    @pytest.mark.parametrize("value", [4, 1001, 0, -28, 28.0, 28.5, "28", True, None, math.nan])
+    def test_teeth(self, edited, value):
+        one = problem(edited("pinion.teeth", value), "pinion.teeth", allowed="5")
+        assert ("without a point" in one.action) == isinstance(value, float)
+
+    @pytest.mark.parametrize(
+        ("path", "value", "near"),
+        [
+            ("friction.law", "colomb", "coulomb"),
+            ("friction.law", "Xu-Kahraman", "xu_kahraman"),
+            ("mesh.stiffness", {"model": "parabolc"}, "parabolic"),
+            ("pinion.tip_relief.shape", "liner", "linear"),
+        ],
+    )
+    def test_a_misspelt_choice_suggests_the_nearest(self, edited, path, value, near):
+        one = problem(edited(path, value), path if path != "mesh.stiffness" else "mesh.stiffness.model")
+        assert f"'{near}'" in one.action
+
+    @pytest.mark.parametrize(
+        ("path", "near"),
+        [
+            ("pinion.teth", "teeth"),
+            ("operating.pinion_sped", "pinion_speed"),
+            ("mesh.stifness", "stiffness"),
+            ("lubrication", "lubricant"),
+            ("pinion.tip_relief.amout", "amount"),
+            ("bearings.pinion.loa_stifness", "loa_stiffness"),
+        ],
+    )
+    def test_an_unknown_key_suggests_the_nearest(self, edited, path, near):
+        problem(edited(path, 1.0), path, value="unknown key", action=f"Did you mean '{near}'?")
+
+    def test_an_unknown_key_named_like_a_model(self, edited):
+        problem(
+            edited("mesh.rectangular", 1.0), "mesh.rectangular", value="unknown key", allowed="damping_ratio"
+        )
+
+    def test_the_other_models_key_is_not_suggested(self, edited):
+        one = problem(edited("mesh.stiffness", {"model": "rectangular", "peak": 8e7}), "mesh.stiffness.peak")
+        assert "pair_stiffness" in one.allowed
+        assert "peak" not in one.allowed
+        assert "Did you mean 'peak'" not in one.action
+
+    @pytest.mark.parametrize("value", [[1.0, 4.0], [1.0, 4.0, 10.0, 11.0], 3.0, "many", [], {"a": 1}])
+    def test_thresholds_are_three_numbers(self, edited, value):
+        problem(edited("friction.thresholds", value), "friction.thresholds", allowed="three")
+
+    @pytest.mark.parametrize(
+        "value",
+        [
+            [4, 1, 10],
+            [1, 1, 10],
+            [0, 4, 10],
+            [-1, 4, 10],
+            [True, 4, 10],
+            ["1", 4, 10],
+            [1.0, 4.0, math.inf],
+            [math.nan, 4.0, 10.0],
+        ],
+    )
+    def test_thresholds_increase(self, edited, value):
+        problem(edited("friction.thresholds", value), "friction.thresholds", allowed="increasing")
+
+    @pytest.mark.parametrize("value", [3, "", None, "x" * 81, ["a"]])
+    def test_name(self, edited, value):
+        problem(edited("name", value), "name")
+
+    @pytest.mark.parametrize("path", ["pinion", "bearings.gear", "mesh", "mesh.stiffness", "friction"])
+    @pytest.mark.parametrize("value", [3, None, "text", [1, 2]])
+    def test_a_section_is_a_table(self, edited, path, value):
+        problem(edited(path, value), path, allowed="table")
+
+    @pytest.mark.parametrize("path", ["pinion.face_width", "mesh.damping_ratio", "operating", "friction.law"])
+    def test_a_missing_field(self, edited, path):
+        problem(edited(path, ...), path, value="missing", action="Add it")
+
+    def test_every_problem_is_listed(self, edited):
+        data = edited("pinion.face_width", -1)
+        data["gear"]["teeth"] = 2
+        data["surprise"] = 1
+        with pytest.raises(ParameterError) as caught:
+            load_gear_pair(data)
+        assert {p.field for p in caught.value.problems} == {"pinion.face_width", "gear.teeth", "surprise"}
+        assert "3 problems" in str(caught.value)
+
+
+class TestAlternatives:
+    def test_module_and_diametral_pitch(self, edited):
+        problem(edited("basic_rack.diametral_pitch", 8), "basic_rack.diametral_pitch", allowed="either")
+
+    @pytest.mark.parametrize("value", [-8, 0, True, None, "8 mm", "x", math.nan, math.inf, 1e9, [8]])
+    def test_diametral_pitch_itself(self, edited, value):
+        data = edited("basic_rack.module", ...)
+        data["basic_rack"]["diametral_pitch"] = value
+        problem(data, "basic_rack.diametral_pitch", allowed="1/inch")
+
+    def test_addendum_and_tip_diameter(self, edited):
+        data = edited("pinion.addendum", 3.0)
+        data["pinion"]["tip_diameter"] = 95.0
+        problem(data, "pinion.tip_diameter", allowed="either")
+
+    def test_viscosity_and_law(self, edited):
+        problem(edited("lubricant.viscosity_law", LAW), "lubricant.viscosity", value="both")
+        problem(edited("lubricant.viscosity", ...), "lubricant.viscosity", value="neither")
+
+
+class TestFiles:
+    @pytest.mark.parametrize("name", ["pair.toml", "/no/such/folder/pair.toml", "folder/pair"])
+    def test_missing_file(self, name):
+        problem(name, "file", value=name, action="spurcheck init")
+
+    def test_unknown_preset_suggests_the_nearest(self):
+        problem("nasa_28_29", "preset", value="nasa_28_29", action="Did you mean 'nasa_28_28'?")
+        problem("fzgc", "preset", action="Did you mean 'fzg_c'?")
+        problem("zzzzzz", "preset", allowed="nasa_28_28", action="spurcheck presets")
+
+    @pytest.mark.parametrize(
+        "text",
+        ["name = ", "[pinion", "a = 1\na = 2", "x = {", "= 3", "[" * 5000, "a" * 10, "\x00", "x = 1e"],
+    )
+    def test_malformed_toml(self, tmp_path, text):
+        path = tmp_path / "pair.toml"
+        path.write_text(text, encoding="utf-8")
+        problem(path, "file", value=str(path), allowed="TOML")
+
+    def test_empty_file_lists_what_is_missing(self, tmp_path):
+        path = tmp_path / "pair.toml"
+        path.write_text("", encoding="utf-8")
+        problem(path, "basic_rack", value="missing")
+
+    def test_not_text(self, tmp_path):
+        path = tmp_path / "pair.toml"
+        path.write_bytes(b"\xff\xfe\x00\x81")
+        problem(path, "file", allowed="UTF-8")
+
+    def test_a_folder(self, tmp_path):
+        problem(tmp_path, "file", allowed="file")
+
+    def test_a_huge_file(self, tmp_path):
+        path = tmp_path / "pair.toml"
+        path.write_text("# " + "x" * 1_100_000, encoding="utf-8")
+        problem(path, "file", allowed="bytes")
+
+    @pytest.mark.parametrize(
+        "source", ["", "\x00", "a\x00.toml", "a" * 5000, "a" * 5000 + ".toml", "..", "/", "\n", "😀"]
+    )
+    def test_hostile_names(self, source):
+        with pytest.raises(ParameterError) as caught:
+            load_gear_pair(source)
+        assert caught.value.problems[0].field in ("file", "preset")
+        assert len(str(caught.value)) < 1000
+
+    @pytest.mark.parametrize("source", [None, 3, 1.5, ["nasa_28_28"], b"nasa_28_28"])
+    def test_other_types(self, source):
+        problem(source, "pair", allowed="preset")
+
+
+class TestGeometryThatCannotExist:
+    def test_contact_ratio_below_one(self, edited):
+        # Spread until the tip circles no longer overlap one base pitch on the line of action.
+        problem(edited("centre_distance", 92.0), "contact_ratio", allowed="1 to 3", action="centre distance")
+
+    def test_contact_ratio_above_three(self, edited):
+        data = edited("basic_rack.addendum_coefficient", 2.0)
+        data["basic_rack"] |= {
+            "pressure_angle": 14.5,
+            "dedendum_coefficient": 2.2,
+            "fillet_radius_coefficient": 0.1,
+        }
+        for gear in ("pinion", "gear"):
+            data[gear] |= {"teeth": 150, "tip_relief": None}
+            del data[gear]["tip_relief"]
+        del data["centre_distance"]
+        problem(data, "contact_ratio", value="4.50", allowed="1 to 3")
+
+    def test_undercut_past_the_form_circle(self, edited):
+        # Standard gears at 20 deg are undercut below z = 2/sin^2(alpha) = 17.1 teeth.
+        data = edited("pinion.teeth", 13)
+        data["gear"]["teeth"] = 13
+        del data["centre_distance"]
+        for gear in ("pinion", "gear"):
+            problem(data, f"{gear}.profile_shift", value="diameter", allowed="form circle", action="undercut")
+
+    def test_involute_interference(self, edited):
+        # A 10-tooth pinion under a large standard gear: the gear's tip passes the tangent point X.
+        data = edited("pinion.teeth", 10)
+        data["gear"]["teeth"] = 100
+        del data["centre_distance"]
+        problem(data, "gear.tip_diameter", action="interference")
+
+    def test_tip_hits_the_mates_root(self, edited):
+        data = edited("basic_rack.dedendum_coefficient", 0.95)
+        problem(data, "pinion.tip_diameter", action="root")
+
+    def test_pointed_tooth(self, edited):
+        data = edited("pinion.addendum", 5.6)
+        data["basic_rack"]["dedendum_coefficient"] = 2.0
+        data["basic_rack"]["fillet_radius_coefficient"] = 0.05
+        problem(data, "pinion.tip_diameter", allowed="tip thickness", action="pointed")
+
+    def test_tip_within_the_base_circle(self, edited):
+        problem(edited("pinion.tip_diameter", 83.0), "pinion.tip_diameter", allowed="83.5387")
+
+    def test_centre_distance_within_the_base_circles(self, edited):
+        problem(edited("centre_distance", 80.0), "centre_distance", allowed="> 83.5387 mm")
+
+    def test_wedged_teeth(self, edited):
+        data = edited("pinion.profile_shift", 0.1)
+        problem(data, "centre_distance", allowed="backlash >= 0", action="wedge")
+
+    def test_profile_shifts_without_any_centre_distance(self, edited):
+        data = edited("pinion.profile_shift", -1.5)
+        data["gear"]["profile_shift"] = -1.5
+        del data["centre_distance"]
+        problem(data, "pinion.profile_shift", allowed="sum >")
+
+    def test_bore_beyond_the_root(self, edited):
+        problem(edited("gear.bore", 82.0), "gear.bore", allowed="root diameter")
+
+    def test_rack_tip_without_room_for_its_radius(self, edited):
+        # Full tip radius of the rack: (pi/4 - h tan a) cos a/(1 - sin a) = 0.3179 at 25 deg and h = 1.25.
+        data = edited("basic_rack.pressure_angle", 25.0)
+        problem(data, "basic_rack.fillet_radius_coefficient", allowed="<= 0.3179")
+        data["basic_rack"]["fillet_radius_coefficient"] = 0.3178
+        load_gear_pair(data)
+
+    def test_rack_tooth_pointed_above_its_tip(self, edited):
+        data = edited("basic_rack.pressure_angle", 30.0)
+        data["basic_rack"] |= {"dedendum_coefficient": 1.4, "fillet_radius_coefficient": 0.0}
+        problem(data, "basic_rack.dedendum_coefficient", allowed="<= 1.36")  # pi/4 / tan(30 deg) = 1.3603
+
+
+@pytest.mark.parametrize("factor", [0.3, 1.0])
+def test_quantity_text_names_its_range(factor):
+    assert Quantity("mm", above=0, at_most=factor).allowed == f"> 0 mm and <= {factor:g} mm"
+    assert Quantity("1").allowed == "any finite number"
+
+
+@pytest.mark.parametrize(
+    ("path", "suggestion"),
+    [
+        ("mesh.dampin_ratio", "damping_ratio"),
+        ("bearings.pinon", "pinion"),
+        ("operating.pinion_speed.rpm", "Remove"),
+        ("", "Remove"),
+    ],
+)
+def test_a_source_of_a_field_that_does_not_exist_is_refused(nasa, path, suggestion):
+    data = nasa.to_mapping()
+    data["sources"] = {**data["sources"], path: "measured"}
+    problem(data, f"sources.{path or '(empty)'}", value="unknown key", action=suggestion)
+
+
+def test_a_source_may_name_what_the_file_gives(nasa):
+    data = nasa.to_mapping()
+    data["basic_rack"] = {**data["basic_rack"], "diametral_pitch": 8}
+    del data["basic_rack"]["module"]
+    data["sources"] = {"basic_rack.diametral_pitch": "drawing", "mesh.stiffness.pair_stiffness": "test"}
+    assert dict(load_gear_pair(data).sources) == {
+        "basic_rack.module": "drawing",
+        "mesh.stiffness.pair_stiffness": "test",
+    }

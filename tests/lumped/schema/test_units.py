@@ -1,0 +1,150 @@
+"""Does a number at the file boundary become the SI value that its unit says, or a refusal?"""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pydantic_core import PydanticCustomError
+
+from lumped.schema.pair import stated_unit
+from lumped.schema.units import UNITS, Quantity, to_file, to_si, to_stated
+
+# A correctly rounded conversion is exact to half a unit in the last place of the float it gives.
+ULP = 2.0**-52
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "si"),
+    [
+        ("200 lbf*in", "N*m", 200 * 4.4482216152605 * 0.0254),  # pound-force and inch by definition
+        ("1000 rpm", "rpm", 1000 * 2 * math.pi / 60),
+        (1000, "rpm", 1000 * 2 * math.pi / 60),
+        ("104.7 rad/s", "rpm", 104.7),
+        ("50 turn/s", "rpm", 50 * 2 * math.pi),
+        (3.175, "mm", 3.175e-3),
+        ("3.175 mm", "mm", 3.175e-3),
+        ("0.125 inch", "mm", 3.175e-3),
+        (23.0, "um", 23e-6),
+        ("16 microinch", "um", 16 * 25.4e-9),
+        (20, "deg", math.pi / 9),
+        ("0.349 rad", "deg", 0.349),
+        (8, "1/inch", 8 / 0.0254),
+        (206, "GPa", 206e9),
+        ("30e6 psi", "GPa", 30e6 * 4.4482216152605 / 0.0254**2),
+        ("10 cP", "mPa*s", 0.01),
+        ("32 cSt", "mm**2/s", 32e-6),
+        ("0.7 lb", "kg", 0.7 * 0.45359237),
+        ("7.85 g/cm**3", "kg/m**3", 7850.0),
+        (60, "degC", 333.15),
+        ("140 degF", "degC", 333.15),
+        ("-40 degF", "degC", 233.15),
+        ("-40 degC", "degC", 233.15),
+        ("300 K", "degC", 300.0),
+        ("0.05", "1", 0.05),
+        ("1e-3", "1", 1e-3),
+    ],
+)
+def test_value_in_si(value, unit, si):
+    assert to_si(value, unit) == pytest.approx(si, rel=2 * ULP)
+
+
+def test_a_string_with_the_stated_unit_is_the_bare_number():
+    for unit in UNITS:
+        for number in (3.175, 0.1, 88.9, 4875.0, 1e-3):
+            text = f"{number!r}" if unit == "1" else f"{number!r} {unit}"
+            assert to_si(text, unit) == to_si(number, unit), text
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_example_of_every_unit_is_accepted(unit):
+    assert math.isfinite(to_si(UNITS[unit][3], unit))
+
+
+@pytest.mark.parametrize(
+    ("text", "unit"),
+    [
+        ("3.175", "mm"),  # no unit
+        ("mm", "mm"),  # no number
+        ("", "mm"),
+        ("", "1"),
+        ("   ", "1"),
+        ("200 lbf", "N*m"),
+        ("10 mm", "1"),
+        ("5 kg", "mm"),
+        ("20 percent", "deg"),
+        ("50 Hz", "rpm"),  # a frequency is not a rotational speed: it would be taken for rad/s, 6.28 off
+        ("50 1/s", "rpm"),
+        ("3 count", "deg"),
+        ("5 sr", "deg"),
+        ("1,5 mm", "mm"),  # a decimal comma must not become 15 mm
+        ("1,000 mm", "mm"),
+        ("3 parsnips", "mm"),
+        ("__import__('os')", "mm"),
+        ("mm; import os", "mm"),
+        ("9**9**9**9 mm", "mm"),
+        ("10**400 mm", "mm"),
+        ("1/0 mm", "mm"),
+        ("((((((((((", "mm"),
+        ("\x00", "mm"),
+        ("😀 mm", "mm"),
+        ("2 😀 mm", "mm"),  # nor may an unknown character vanish
+        ("2 ? mm", "mm"),
+        ("1 mm " + "* 1" * 100, "mm"),
+    ],
+)
+def test_text_that_is_no_such_quantity_is_refused_with_an_example(text, unit):
+    with pytest.raises(ValueError, match=r"string such as|without a unit"):
+        to_si(text, unit)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, "nan mm", "inf mm", "1e400 mm", 10**400])
+def test_not_finite_is_refused(value):
+    with pytest.raises(PydanticCustomError):
+        Quantity("mm", above=0).parse(value)
+
+
+@pytest.mark.parametrize("value", [True, False, None, [1.0], {"value": 1}, 1j, b"1 mm"])
+def test_other_types_are_refused(value):
+    with pytest.raises(PydanticCustomError, match="Give a number"):
+        Quantity("mm").parse(value)
+
+
+@pytest.mark.parametrize("unit", UNITS)
+@pytest.mark.parametrize("bound", [0.3, 10, 35, 180, 1000, 200000])
+def test_a_closed_bound_admits_itself(unit, bound):
+    # Angles and speeds come back from SI off by a rounding: the comparison must not notice.
+    assert Quantity(unit, at_least=bound).parse(bound) == to_si(bound, unit)
+    assert Quantity(unit, at_most=bound).parse(bound) == to_si(bound, unit)
+    for open_bound in ({"above": bound}, {"below": bound}):
+        with pytest.raises(PydanticCustomError):
+            Quantity(unit, **open_bound).parse(bound)
+
+
+def test_a_bound_is_kept_in_any_unit():
+    limit = Quantity("mm", above=0, at_most=25.4)
+    assert limit.parse("1 inch") == pytest.approx(0.0254, rel=ULP)
+    with pytest.raises(PydanticCustomError, match=r"allowed > 0 mm and <= 25.4 mm"):
+        limit.parse("1.001 inch")
+    with pytest.raises(PydanticCustomError, match=r"-1 inch"):
+        limit.parse("-1 inch")
+
+
+@pytest.mark.parametrize("unit", UNITS)
+@given(value=st.floats(min_value=1e-300, max_value=1e300))
+def test_writing_and_reading_keeps_every_bit(unit, value):
+    text = to_file(value, unit)
+    assert to_si(text, unit) == value
+
+
+@pytest.mark.parametrize("unit", UNITS)
+@given(stated=st.floats(min_value=1e-6, max_value=1e9))
+def test_stated_value_is_shown_as_it_was_given(unit, stated):
+    # Offset units lose the digits that the offset swallows: 273.15 against 1e-6 leaves 5e-14 absolute.
+    assert to_stated(to_si(stated, unit), unit) == pytest.approx(stated, rel=4 * ULP, abs=1e-13)
+
+
+def test_a_field_that_may_be_a_word_has_its_unit_too():
+    assert stated_unit("operating.brake_torque") == "N*m"
+    assert stated_unit("mesh.damping_ratio") == "1"
+    assert stated_unit("friction.law") is None

@@ -1,0 +1,167 @@
+"""Does the contact core combine kinematics and element laws as the model says?"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import lumped
+from lumped import PathFunction
+from multibody.contact import kernels as kn
+from multibody.contact import kinematics as kin
+from multibody.contact.effects import effect_flags
+from multibody.contact.machine import machine, pack_laws
+from multibody.run.records import from_lumped_state, to_lumped_state
+
+PAIR = lumped.load_gear_pair("nasa_28_28").with_(friction__law="coulomb", friction__coefficient=0.1)
+UNEQUAL = PAIR.with_(
+    gear__teeth=41, pinion__profile_shift=0.2, gear__profile_shift=0.1, centre_distance="110.5 mm"
+)
+ALL = effect_flags(None)
+
+
+def make(pair, error=None):
+    numbers = machine(pair, 56.5, 56.0)
+    if error is not None:
+        e = lumped.mesh_elements(pair)
+        table, offsets = pack_laws((e.stiffness, e.damping, e.friction, error))
+        numbers = replace(numbers, table=table, offsets=offsets)
+    return numbers
+
+
+def forces(numbers, t, q, v, flags=ALL):
+    wrench, contacts = np.zeros(6), np.zeros((2 * kin.MAX_PAIRS, kn.N_RECORD))
+    count = kn.contact_forces(
+        t, q, v, numbers.parameters, flags, numbers.table, numbers.offsets, wrench, contacts
+    )
+    assert count >= 0
+    return wrench, contacts[:count]
+
+
+def pressed_state(numbers, rng, flank=1.0):
+    """Bodies off their places by some 10 um, flanks pressed by some 10 um."""
+    q, v = rng.normal(size=6) * 1e-5, rng.normal(size=6) * 0.01
+    q[5] -= flank * 6e-5 / numbers.parameters[kn.RADIUS_G]
+    v[[2, 5]] *= 10
+    return q, v
+
+
+@pytest.mark.parametrize("pair", [PAIR, UNEQUAL], ids=["equal", "unequal, shifted"])
+@pytest.mark.parametrize("flags", [ALL, ALL & ~kn.MOVING_LINE, 0], ids=["all", "fixed line", "none"])
+def test_wrench_power_is_what_the_contacts_take(pair, flags, rng):
+    """Virtual power: forces times velocities of the bodies = -(load x closing + friction x sliding)."""
+    numbers = make(pair)
+    p = numbers.parameters
+    for t in np.linspace(0, numbers.period, 7):
+        q, v = pressed_state(numbers, rng)
+        wrench, c = forces(numbers, t, q, v, flags)
+        assert len(c) >= 1
+        total = v.copy()
+        total[2] -= p[kn.OMEGA_P]
+        total[5] += p[kn.OMEGA_G]
+        taken = c[:, kn.LOAD] @ c[:, kn.CLOSING] + c[:, kn.FRICTION_FORCE] @ c[:, kn.SLIDE]
+        # Powers of single forces are some 20 kW here and cancel to watts.
+        assert wrench @ total == pytest.approx(-taken, abs=1e-9 * np.abs(wrench * total).sum())
+
+
+@pytest.mark.parametrize("pair", [PAIR, UNEQUAL], ids=["equal", "unequal, shifted"])
+def test_third_law_holds_about_any_point(pair, rng):
+    """Forces cancel, and moments about the origin cancel with the bodies at their actual places."""
+    numbers = make(pair)
+    p = numbers.parameters
+    for t in np.linspace(0, numbers.period, 7):
+        q, v = pressed_state(numbers, rng)
+        w, _ = forces(numbers, t, q, v)
+        px, py = p[kn.CENTRE_PX] + q[0], p[kn.CENTRE_PY] + q[1]
+        gx, gy = p[kn.CENTRE_GX] + q[3], p[kn.CENTRE_GY] + q[4]
+        np.testing.assert_allclose(w[:2], -w[3:5], rtol=1e-14)
+        moment = w[2] + w[5] + px * w[1] - py * w[0] + gx * w[4] - gy * w[3]
+        assert abs(moment) < 1e-14 * np.abs(w).max()  # an arm wrong by 1 um would give 1e-6
+
+
+@pytest.mark.parametrize(
+    "flags", [ALL, ALL & ~kn.ROTATION_PHASE & ~kn.MOVING_LINE, 0], ids=["all", "nominal", "none"]
+)
+def test_pressing_velocity_is_the_rate_of_the_pressed_overlap(flags, rng):
+    """With a tooth error that varies along the path, d/dt (delta - e(xi)) along a motion of the bodies."""
+    g = lumped.geometry(PAIR)
+    error = PathFunction(np.array([g.L_XA, g.L_XD]), np.array([[0.2], [1e-3], [-5e-6]]), np.empty(0))
+    numbers = make(PAIR, error)
+    h = 1e-7
+    for t in np.linspace(0.05, 0.3, 4) * numbers.period:
+        q, v = pressed_state(numbers, rng)
+        q[[2, 5]] -= 1e-3
+        _, c = forces(numbers, t, q, v, flags)
+        _, after = forces(numbers, t + h, q + h * v, v, flags)
+        _, before = forces(numbers, t - h, q - h * v, v, flags)
+        rate = (after[:, kn.OVERLAP] - before[:, kn.OVERLAP]) / (2 * h)
+        assert np.abs(c[:, kn.CLOSING] - c[:, kn.OVERLAP_RATE]).max() > 1e-3
+        # Central difference of a length known to 1e-17 m.
+        np.testing.assert_allclose(c[:, kn.OVERLAP_RATE], rate, rtol=1e-6, atol=1e-8)
+
+
+def test_teeth_push_but_do_not_pull(rng):
+    numbers = make(PAIR)
+    q, v = np.zeros(6), np.zeros(6)
+    q[2] = 2e-5 / numbers.parameters[kn.RADIUS_P]  # pinion 20 um behind: inside the backlash of 100 um
+    wrench, _ = forces(numbers, 0.3 * numbers.period, q, v)
+    np.testing.assert_array_equal(wrench, 0.0)
+    wrench, _ = forces(numbers, 0.3 * numbers.period, q, v, effect_flags({"contact_loss": False}))
+    assert wrench[0] > 0  # pulled
+
+
+def test_back_sides_touch_after_the_backlash():
+    numbers = make(PAIR)
+    radius = numbers.parameters[kn.RADIUS_P]
+    backlash = lumped.geometry(PAIR).normal_backlash
+    q, v = np.zeros(6), np.zeros(6)
+    for excess, touching in ((-1e-9, False), (1e-6, True)):
+        q[2] = (backlash + excess) / radius
+        wrench, c = forces(numbers, 0.3 * numbers.period, q, v)
+        loads = c[c[:, kn.FLANK] < 0, kn.LOAD]
+        assert (loads.sum() > 0) == touching
+    # The back side pushes the pinion forward (clockwise: negative) along its own line of action.
+    assert wrench[2] < 0
+    assert wrench[2] == pytest.approx(-radius * loads.sum(), rel=0.05)  # and a little friction
+    stiffness = c[c[:, kn.FLANK] < 0, kn.K]
+    np.testing.assert_allclose(loads, stiffness * 1e-6, rtol=1e-6)
+
+
+def test_entry_is_where_the_deflected_flank_crosses_the_tip_circle():
+    """Pressed flanks enter half an overlap later: the gear's flank ends at its tip, xi = L_XA + delta/2."""
+    numbers = make(PAIR)
+    p, delta = numbers.parameters, 2e-5
+    # Half the overlap from each gear, so that the contact point itself is not moved.
+    q = np.array([0, 0, -delta / 2 / p[kn.RADIUS_P], 0, 0, -delta / 2 / p[kn.RADIUS_G]])
+    t = np.linspace(0, 0.01, 2001) * numbers.period
+    entered = []
+    one_sided = ALL & ~kn.BACK_SIDE
+    for flags in (one_sided, one_sided & ~kn.ENTRY_SHIFT):
+        pairs = [len(forces(numbers, ti, q, np.zeros(6), flags)[1]) for ti in t]
+        assert pairs[-1] == 2
+        _, c = forces(numbers, t[pairs.index(2)], q, np.zeros(6), flags)
+        entered.append(c[:, kn.XI].min() - p[kn.L_XA])
+    step = p[kn.PITCH] * 0.01 / 2000
+    assert entered[0] == pytest.approx(delta / 2, abs=step)
+    assert entered[1] == pytest.approx(0.0, abs=step)
+
+
+def test_states_convert_back():
+    state = np.arange(12.0)
+    np.testing.assert_array_equal(to_lumped_state(*from_lumped_state(state)), state)
+
+
+def test_unequal_pair_has_lumped_geometry():
+    """Path of contact, pitch point and backlash derived here equal those of lumped."""
+    g, numbers = lumped.geometry(UNEQUAL), make(UNEQUAL)
+    p = numbers.parameters
+    for place, value in ((kn.L_XA, g.L_XA), (kn.L_XP, g.L_XP), (kn.L_XD, g.L_XD), (kn.L_XY, g.L_XY)):
+        assert p[place] == pytest.approx(value, rel=1e-13)
+    pose = np.array([p[kn.CENTRE_PX], p[kn.CENTRE_PY], 0, p[kn.CENTRE_GX], p[kn.CENTRE_GY], 0])
+    both = sum(
+        kin.overlap(pose, p[kn.RADIUS_P], p[kn.RADIUS_G], p[kn.PITCH], p[a], p[b], flank)
+        for a, b, flank in ((kn.CHI_P, kn.CHI_G, 1.0), (kn.CHI_P_BACK, kn.CHI_G_BACK, -1.0))
+    )
+    assert -kin.wrap(both, p[kn.PITCH]) == pytest.approx(g.normal_backlash, abs=1e-16 * 50)

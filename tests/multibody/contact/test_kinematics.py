@@ -1,0 +1,268 @@
+"""Are the contact kinematics those of two rigid involute gears? Gradients, invariances, drawn flanks."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+
+from multibody.contact import kinematics as kin
+
+FLANKS = [kin.DRIVE, kin.COAST]
+
+
+def random_pose(teeth, rng, flank):
+    """Centres displaced by up to 0.2 mm, flanks pressed by some micrometres."""
+    direction = rng.uniform(-math.pi, math.pi)
+    a = teeth.centre_distance + rng.uniform(-2e-5, 2e-4)
+    pose = np.array([*rng.uniform(-1, 1, 2), rng.uniform(-20, 20), 0, 0, rng.uniform(-20, 20)])
+    pose[3:5] = pose[:2] + a * np.array([math.cos(direction), math.sin(direction)])
+    delta = overlap(teeth, pose, flank)
+    pose[5] += flank * (delta - rng.uniform(1e-6, 5e-5)) / teeth.radius_g
+    return pose
+
+
+def overlap(teeth, pose, flank):
+    return kin.overlap(pose, teeth.radius_p, teeth.radius_g, teeth.pitch, *teeth.chi[flank], flank)
+
+
+def contact(teeth, pose, flank):
+    """(line, arms of every pair, overlap) in one pose."""
+    line = kin.line_of_action(pose[0], pose[1], pose[3], pose[4], teeth.radius_p + teeth.radius_g, flank)
+    rho, delta = kin.mesh_phase(
+        line[3],
+        line[2],
+        pose[2],
+        pose[5],
+        teeth.radius_p,
+        teeth.radius_g,
+        teeth.pitch,
+        *teeth.chi[flank],
+        flank,
+    )
+    arms = np.zeros((kin.MAX_PAIRS, 2))
+    count = kin.pairs_in_contact(rho, delta, line[2], teeth.pitch, teeth.tip_p, teeth.tip_g, arms)
+    return line, arms[:count] - 0.5 * delta, delta
+
+
+def wrench(teeth, pose, flank, normal, friction, pair=0):
+    line, arms, _ = contact(teeth, pose, flank)
+    result = np.zeros(6)
+    kin.add_wrench(
+        result, line[0], line[1], normal, friction, *arms[pair], teeth.radius_p, teeth.radius_g, flank
+    )
+    return result
+
+
+def contact_point(teeth, pose, flank, pair=0):
+    line, arms, _ = contact(teeth, pose, flank)
+    e = np.array(line[:2])
+    n = flank * np.array([-e[1], e[0]])
+    return pose[:2] + teeth.radius_p * n + arms[pair, 0] * e, e, n
+
+
+@pytest.mark.parametrize("flank", FLANKS)
+def test_wrench_is_minus_gradient_of_overlap(teeth, rng, flank):
+    for _ in range(20):
+        pose = random_pose(teeth, rng, flank)
+        gradient = np.empty(6)
+        for i in range(6):
+            # Richardson on central differences: truncation ~ h^4, rounding ~ 1e-17/h; both < 1e-9 at these
+            # steps.
+            h = 2e-5 if i % 3 < 2 else 2e-4
+            d = [
+                (
+                    overlap(teeth, pose + s * np.eye(6)[i], flank)
+                    - overlap(teeth, pose - s * np.eye(6)[i], flank)
+                )
+                / (2 * s)
+                for s in (h, h / 2)
+            ]
+            gradient[i] = (4 * d[1] - d[0]) / 3
+        np.testing.assert_allclose(wrench(teeth, pose, flank, 1.0, 0.0), -gradient, rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("flank", FLANKS)
+def test_overlap_rate_is_time_derivative(teeth, rng, flank):
+    for _ in range(20):
+        pose, velocity = random_pose(teeth, rng, flank), rng.normal(size=6)
+        line = kin.line_of_action(pose[0], pose[1], pose[3], pose[4], teeth.radius_p + teeth.radius_g, flank)
+        rate = kin.overlap_rate(
+            *line[:2],
+            *(velocity[:2] - velocity[3:5]),
+            velocity[2],
+            velocity[5],
+            teeth.radius_p,
+            teeth.radius_g,
+            flank,
+        )
+        assert rate == pytest.approx(-wrench(teeth, pose, flank, 1.0, 0.0) @ velocity, abs=1e-12)
+
+
+@pytest.mark.parametrize("flank", FLANKS)
+def test_forces_obey_newtons_third_law(teeth, rng, flank):
+    for _ in range(20):
+        pose = random_pose(teeth, rng, flank)
+        w = wrench(teeth, pose, flank, rng.uniform(0, 1e3), rng.normal() * 100)
+        moments = w[2] + w[5]
+        moments += pose[0] * w[1] - pose[1] * w[0] + pose[3] * w[4] - pose[4] * w[3]
+        np.testing.assert_array_equal(w[:2] + w[3:5], 0.0)
+        assert abs(moments) < 1e-11  # N m; forces up to 1 kN at arms up to 1 m, double precision
+
+
+@pytest.mark.parametrize("flank", FLANKS)
+def test_friction_power_is_force_times_sliding_velocity(teeth, rng, flank):
+    """Rigid-body velocities of both bodies at the contact point, written out, give the sliding velocity."""
+    for _ in range(20):
+        pose, velocity = random_pose(teeth, rng, flank), rng.normal(size=6)
+        point, _, n = contact_point(teeth, pose, flank)
+        line, arms, _ = contact(teeth, pose, flank)
+        slide = kin.sliding_velocity(
+            *line[:2], *(velocity[:2] - velocity[3:5]), velocity[2], velocity[5], *arms[0], flank
+        )
+        at_p, at_g = point - pose[:2], point - pose[3:5]
+        v_p = velocity[:2] + velocity[2] * np.array([-at_p[1], at_p[0]])
+        v_g = velocity[3:5] + velocity[5] * np.array([-at_g[1], at_g[0]])
+        assert slide == pytest.approx(-(v_p - v_g) @ n, abs=1e-12)
+        power = wrench(teeth, pose, flank, 0.0, math.copysign(7.0, slide)) @ velocity
+        assert power == pytest.approx(-7.0 * abs(slide), abs=1e-11)
+
+
+@pytest.mark.parametrize("flank", FLANKS)
+def test_whole_machine_may_turn_and_shift(teeth, rng, flank):
+    for _ in range(10):
+        pose, beta, shift = random_pose(teeth, rng, flank), rng.uniform(-3, 3), rng.uniform(-1, 1, 2)
+        turn = np.array([[math.cos(beta), -math.sin(beta)], [math.sin(beta), math.cos(beta)]])
+        moved = pose.copy()
+        moved[:2], moved[3:5] = turn @ pose[:2] + shift, turn @ pose[3:5] + shift
+        moved[[2, 5]] += beta
+        w, w_moved = wrench(teeth, pose, flank, 100.0, 5.0), wrench(teeth, moved, flank, 100.0, 5.0)
+        # Angles of 20 rad carry rounding of 4e-15 rad, some 1e-16 m.
+        assert overlap(teeth, moved, flank) == pytest.approx(overlap(teeth, pose, flank), abs=2e-15)
+        np.testing.assert_allclose(turn @ w[:2], w_moved[:2], atol=1e-11)
+        np.testing.assert_allclose(w[[2, 5]], w_moved[[2, 5]], atol=1e-11)
+
+
+def test_exchanging_the_gears_exchanges_the_forces(teeth, rng):
+    """Pinion and gear have no special roles in the geometry: renaming them changes nothing."""
+    from dataclasses import replace
+
+    other = replace(
+        teeth, radius_p=teeth.radius_g, radius_g=teeth.radius_p, tip_p=teeth.tip_g, tip_g=teeth.tip_p
+    )
+    for _ in range(10):
+        pose = random_pose(teeth, rng, kin.DRIVE)
+        swapped = np.roll(pose, 3)
+        w = wrench(teeth, pose, kin.DRIVE, 100.0, 5.0, pair=-1)
+        w_swapped = wrench(other, swapped, kin.DRIVE, 100.0, 5.0, pair=0)
+        assert overlap(other, swapped, kin.DRIVE) == pytest.approx(overlap(teeth, pose, kin.DRIVE), abs=1e-15)
+        np.testing.assert_allclose(np.roll(w, 3), w_swapped, atol=1e-11)
+
+
+def test_mirror_image_works_on_the_other_flank(teeth, rng):
+    """Reflecting the whole machine in the x axis turns drive flanks into coast flanks."""
+    from dataclasses import replace
+
+    mirrored = replace(teeth, chi={kin.COAST: tuple(-c for c in teeth.chi[kin.DRIVE])})
+    sign = np.array([1, -1, -1, 1, -1, -1.0])
+    for _ in range(10):
+        pose = random_pose(teeth, rng, kin.DRIVE)
+        w = wrench(teeth, pose, kin.DRIVE, 100.0, 5.0)
+        np.testing.assert_allclose(wrench(mirrored, sign * pose, kin.COAST, 100.0, 5.0), sign * w, atol=1e-11)
+
+
+def involute_flank(centre, body_angle, radius, chi, flank, rho):
+    """Points of a drawn flank: a string of length rho, tangent to the base circle where it was unwound."""
+    # String direction psi' = phi + chi + flank rho/r; the tangent point is at flank*90 deg from it.
+    direction = body_angle + chi + flank * rho / radius
+    e = np.array([np.cos(direction), np.sin(direction)])
+    n = flank * np.array([-e[1], e[0]])
+    return centre[:, None] + radius * n + rho * e
+
+
+@pytest.mark.parametrize("flank", FLANKS)
+def test_drawn_flanks_touch_where_the_formulas_say(teeth, rng, flank):
+    """With zero overlap, the two drawn involutes have exactly one common point, the contact point."""
+    for _ in range(3):
+        pose = random_pose(teeth, rng, flank)
+        pose[5] += flank * overlap(teeth, pose, flank) / teeth.radius_g
+        point, _, _ = contact_point(teeth, pose, flank)
+        _, arms, delta = contact(teeth, pose, flank)
+        assert abs(delta) < 1e-15
+
+        def drawn(rho, teeth=teeth, pose=pose, arms=arms):
+            # The pinion flank in contact is the one whose string is arms[0, 0] long on the line of action.
+            _, _, _, psi = kin.line_of_action(*pose[:2], *pose[3:5], teeth.radius_p + teeth.radius_g, flank)
+            chi = psi - pose[2] - flank * arms[0, 0] / teeth.radius_p
+            return involute_flank(pose[:2], pose[2], teeth.radius_p, chi, flank, np.atleast_1d(rho))
+
+        def gap(rho, pose=pose):
+            # Distance of a pinion flank point from the gear flank, measured as string length on the gear
+            # side: a point at distance d from the gear's centre unwinds sqrt(d^2 - r^2) from the base circle.
+            q = drawn(rho)[:, 0] - pose[3:5]
+            length = math.sqrt(q @ q - teeth.radius_g**2)
+            direction = math.atan2(q[1], q[0]) + flank * (-math.pi / 2 + math.atan2(length, teeth.radius_g))
+            unwound = flank * teeth.radius_g * (direction - pose[5] - teeth.chi[flank][1])
+            return kin.wrap(length - unwound, teeth.pitch)
+
+        low, high = max(1e-4, arms[0, 0] - 2e-3), arms[0, 0] + 2e-3
+        best = minimize_scalar(gap, bounds=(low, high), method="bounded", options={"xatol": 1e-9})
+        assert best.fun == pytest.approx(0.0, abs=1e-13)
+        # The gap is quadratic about the contact, so its minimiser is known to the root of the rounding.
+        np.testing.assert_allclose(drawn(best.x)[:, 0], point, atol=5e-7)
+
+
+def test_backlash_is_the_room_between_both_flanks(teeth, rng):
+    """Drive and coast overlap add up to minus the normal backlash; at standard distance that is the thinning.
+
+    Opening the centres by da opens the backlash by 2 R (inv alpha' - inv alpha), the standard backlash
+    formula.
+    """
+    pose = random_pose(teeth, rng, kin.DRIVE)
+    a, base = np.hypot(*(pose[3:5] - pose[:2])), teeth.radius_p + teeth.radius_g
+    angle = math.acos(base / a)
+    room = -kin.wrap(overlap(teeth, pose, kin.DRIVE) + overlap(teeth, pose, kin.COAST), teeth.pitch)
+    thick = sum(
+        r * (chi - math.pi)
+        for r, chi in zip((teeth.radius_p, teeth.radius_g), teeth.chi[kin.COAST], strict=True)
+    )
+    expected = teeth.pitch + 2 * base * (math.tan(angle) - angle) - thick
+    assert room == pytest.approx(expected, abs=2e-15 * 20)
+
+
+def test_backlash_of_the_standard_pair_is_its_thinning(rng):
+    from types import SimpleNamespace
+
+    module, alpha, z, thinning = 3.175e-3, math.radians(20), 28, 1e-4
+    r = 0.5 * module * z * math.cos(alpha)
+    inv = math.tan(alpha) - alpha
+    thickness = module * math.cos(alpha) * math.pi / 2 + 2 * r * inv - thinning / 2
+    chi = math.pi + thickness / r
+    teeth = SimpleNamespace(
+        radius_p=r,
+        radius_g=r,
+        pitch=math.pi * module * math.cos(alpha),
+        chi={kin.DRIVE: (0.0, 0.0), kin.COAST: (chi, chi)},
+    )
+    pose = np.array([0, 0, 0.3, module * z, 0, 0.1])
+    room = -kin.wrap(overlap(teeth, pose, kin.DRIVE) + overlap(teeth, pose, kin.COAST), teeth.pitch)
+    assert room == pytest.approx(thinning, abs=1e-15)
+
+
+def test_number_of_pairs_averages_to_the_contact_ratio(teeth):
+    a, base = teeth.centre_distance, teeth.radius_p + teeth.radius_g
+    length = math.sqrt(a * a - base * base)
+    ratio = (teeth.tip_p + teeth.tip_g - length) / teeth.pitch
+    n, total = 4000, 0
+    for i in range(n):
+        pose = np.array([0, 0, -(i + 0.5) / n * teeth.pitch / teeth.radius_p, a, 0, 0.0])
+        pose[5] += overlap(teeth, pose, kin.DRIVE) / teeth.radius_g
+        total += len(contact(teeth, pose, kin.DRIVE)[1])
+    # Each of the two ends of the path is resolved to one of n phases.
+    assert total / n == pytest.approx(ratio, abs=2 / n)
+
+
+def test_overlapping_base_circles_give_nan():
+    assert math.isnan(kin.line_of_action(0.0, 0.0, 0.08, 0.0, 0.0835, kin.DRIVE)[2])

@@ -1,0 +1,234 @@
+"""Does the command do what its help says, and refuse bad input with one message and the right exit code?"""
+
+import dataclasses
+import json
+import re
+import subprocess
+import sys
+
+import pytest
+from typer.testing import CliRunner
+
+import lumped
+from lumped import NumericalError
+from validation.cli import app
+from validation.commands import options
+
+COMMANDS = ("report", "presets", "init", "simulate", "crosscheck", "stability", "schema")
+
+
+def run(*arguments):
+    result = CliRunner().invoke(app, list(map(str, arguments)), env={"COLUMNS": "200", "NO_COLOR": "1"})
+    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
+    return result
+
+
+def refused(*arguments):
+    """Message of a refused call: one line on stderr, nothing on stdout, exit code 2."""
+    result = run(*arguments)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert "Traceback" not in result.stderr
+    assert result.stderr.count("error:") == 1
+    return result.stderr
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_explains_itself_with_an_example(command):
+    text = run(command, "--help").stdout
+    assert "Example" in text
+    assert f"spurcheck {command}" in text
+
+
+def test_help_does_not_load_the_numerics():
+    heavy = "('numpy', 'lumped', 'matplotlib')"
+    code = f"import sys, validation.cli; print([m for m in {heavy} if m in sys.modules])"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == "[]"
+
+
+def test_version():
+    assert re.fullmatch(r"spurcheck \d+\.\d+\.\d+\S*\n", run("--version").stdout)
+
+
+def test_presets_are_listed_and_shown():
+    listed = run("presets").stdout
+    assert all(name in listed for name in lumped.preset_names())
+    shown = run("presets", "nasa_28_28").stdout
+    assert "# mm" in shown
+    assert "[sources]" in shown
+
+
+def test_init_writes_a_file_that_loads_and_never_overwrites(tmp_path, pair):
+    path = tmp_path / "mine.toml"
+    assert run("init", "-o", path).exit_code == 0
+    assert lumped.load_gear_pair(path) == pair
+    path.write_text("edited")
+    assert "--force" in refused("init", "-o", path)
+    assert path.read_text() == "edited"
+    assert run("init", "-o", path, "--force").exit_code == 0
+    assert lumped.load_gear_pair(path) == pair
+
+
+def test_schema_is_json_schema(tmp_path):
+    data = json.loads(run("schema").stdout)
+    assert data == lumped.json_schema()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (("no_such_file.toml",), "file = no_such_file.toml"),
+        (("nasa_28_29",), "Did you mean 'nasa_28_28'?"),
+        (("--speed", "0"), "operating.pinion_speed = 0 rpm: allowed > 0 rpm"),
+        (("--speed", "-100"), "operating.pinion_speed = -100 rpm: allowed > 0 rpm"),
+        (("--speed", "3 kg"), "is not a rotational speed"),
+        (("--torque", "-5"), "operating.pinion_torque = -5 N*m: allowed > 0 N*m"),
+        (("--law", "sandpaper"), "friction.law"),
+        (("--set", "pinion.tip_diameter=90", "--set", "gear.tip_diameter=90"), "contact_ratio = 0.3"),
+        (("--set", "mesh.damping=3"), "Did you mean 'damping_ratio'?"),
+        (("--set", "mesh.damping_ratio"), "FIELD=VALUE"),
+        (
+            ("--law", "benedict_kelley", "--set", "pinion.roughness=1.13", "--set", "gear.roughness=1.13"),
+            "1.13 um (law II",
+        ),
+        (("--cycles", "0"), "cycles = 0: allowed"),
+        (("-o", "result.xlsx"), "output = result.xlsx"),
+        (("-o", "no/such/folder/result.nc"), "Make the folder"),
+        (("--steady", "--model", "multibody"), "--steady"),
+    ],
+)
+def test_bad_input_is_refused_with_field_value_and_range(arguments, expected):
+    assert expected in refused("simulate", *arguments)
+
+
+def test_malformed_toml_is_refused_with_its_place(tmp_path):
+    path = tmp_path / "bad.toml"
+    path.write_text("[pinion\nteeth = 28\n")
+    message = refused("report", path, "-o", tmp_path / "out")
+    assert "malformed" in message
+    assert "line 1" in message
+    assert not (tmp_path / "out").exists()
+
+
+def test_report_refuses_a_folder_with_content_and_one_that_cannot_be_written(tmp_path):
+    (tmp_path / "notes.txt").write_text("mine")
+    assert "--force" in refused("report", "-o", tmp_path)
+    assert "does not delete" in refused("report", "-o", tmp_path, "--force")
+    assert "cannot be written" in refused("report", "-o", tmp_path / "notes.txt" / "below")
+    assert [p.name for p in tmp_path.iterdir()] == ["notes.txt"]
+
+
+def test_a_numerical_failure_says_what_to_try_and_exits_3(monkeypatch):
+    def fail(*_, **__):
+        raise NumericalError("No periodic motion. Change the speed slightly.")
+
+    monkeypatch.setattr(lumped, "simulate", fail)
+    result = run("simulate")
+    assert result.exit_code == 3
+    assert "Change the speed slightly" in result.stderr
+
+
+def test_simulate_prints_numbers_and_writes_by_suffix(tmp_path):
+    for suffix in ("nc", "csv", "png", "svg"):
+        path = tmp_path / f"run.{suffix}"
+        result = run("simulate", "--cycles", 2, "--samples", 64, "-o", path)
+        assert result.exit_code == 0, result.stderr
+        assert path.stat().st_size > 1000
+    assert "transmission error, peak to peak" in result.stdout
+    assert sorted(p.suffix for p in tmp_path.iterdir()) == [".csv", ".nc", ".png", ".svg"]
+
+
+def test_simulate_says_where_its_motion_is_not_to_be_relied_on():
+    assert run("simulate", "--steady").stderr == ""
+    separated = run("simulate", "--steady", "--speed", 8500, "--torque", 5)
+    assert "teeth would separate: lowest load -50" in separated.stderr
+    assert "--model multibody" in separated.stderr
+    undamped = ["nasa_art_25_31", "--speed", 18000, "--set", "mesh.damping_ratio=0"]
+    assert "is unstable: a disturbance grows 1.081 times" in run("simulate", *undamped, "--steady").stderr
+
+
+def test_multibody_runs_from_the_command():
+    result = run("simulate", "--model", "multibody", "--cycles", 1, "--samples", 32, "--initial", "periodic")
+    assert result.exit_code == 0, result.stderr
+    assert "mesh efficiency" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("verdict", "strict", "code"),
+    [("confirmed", True, 0), ("bounded", False, 0), ("bounded", True, 1), ("not confirmed", False, 1)],
+)
+def test_crosscheck_exits_by_its_verdict(check, monkeypatch, tmp_path, verdict, strict, code):
+    class Judged(type(check)):
+        pass
+
+    judged = Judged(**vars(check))
+    Judged.verdict = property(lambda self: verdict)
+    monkeypatch.setattr("validation.cross_check.comparison.crosscheck", lambda *_, **__: judged)
+    path = tmp_path / "agreement.json"
+    result = run("crosscheck", "-o", path, *(["--strict"] if strict else []))
+    assert result.exit_code == code
+    assert verdict in result.stdout
+    assert json.loads(path.read_text())["verdict"] == verdict
+
+
+def test_stability_exits_by_the_operating_point(tmp_path):
+    assert run("stability").exit_code == 0
+    free = [f"bearings.{g}.{d}_damping_ratio=0" for g in ("pinion", "gear") for d in ("loa", "oloa")]
+    changes = [item for field in ["mesh.damping_ratio=0", *free] for item in ("--set", field)]
+    assert run("stability", "--speed", 18000, *changes).exit_code == 1
+    path = tmp_path / "chart.csv"
+    result = run("stability", "--axis", "torque=20:40:2", "--axis", "speed_rpm=4000:5000:2", "-o", path)
+    assert result.exit_code == 0, result.stderr
+    assert len(path.read_text().splitlines()) == 5
+
+
+@pytest.mark.parametrize(
+    "axis", ["speed_rpm", "speed_rpm=1:2", "speed_rpm=1:2:x", "speed_rpm=1:1:5", "speed_rpm=1:nan:5"]
+)
+def test_axes_are_checked(axis):
+    assert "NAME=FROM:TO:COUNT" in refused("stability", "--axis", axis)
+
+
+def test_unknown_axes_are_refused():
+    assert "speed_rpm" in refused("stability", "--axis", "moon_phase=0:1:3")
+
+
+def test_report_from_the_command(tmp_path, monkeypatch):
+    from validation.reporting import build, results
+
+    effort = dataclasses.replace(
+        results.QUICK, samples=64, cycles=6, sweep_speeds=4, chart_speeds=4, chart_dampings=2, chart_rtol=1e-6
+    )
+    monkeypatch.setattr(build, "QUICK", effort)
+    out = tmp_path / "out"
+    result = run("report", "nasa_28_28", "-o", out, "--quick", "--speed", "3000 rpm", "--law", "coulomb")
+    assert result.exit_code == 0, result.stderr
+    assert "At 3000 rpm" in result.stdout
+    assert (
+        json.loads((out / "report.json").read_text(encoding="utf-8"))["parameters"]["friction"]["law"]
+        == "coulomb"
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("2000", 2000),
+        ("0.03", 0.03),
+        ("200 lbf*in", "200 lbf*in"),
+        ("coulomb", "coulomb"),
+        ('{ model = "parabolic" }', {"model": "parabolic"}),
+        ("[1.0, 4.0, 10.0]", [1.0, 4.0, 10.0]),
+    ],
+)
+def test_values_of_the_command_line_are_read_like_a_file(text, value):
+    assert options.value_of(text) == value
+
+
+def test_overrides_reach_the_pair():
+    changed = options.gear_pair("nasa_28_28", "2000", "200 lbf*in", "coulomb", ["mesh.damping_ratio=0.03"])
+    assert changed.operating.pinion_speed == pytest.approx(2000 * 3.141592653589793 / 30)
+    assert changed.operating.pinion_torque == pytest.approx(200 * 0.1129848290276167)  # lbf in -> N m
+    assert changed.friction.law == "coulomb"
+    assert changed.mesh.damping_ratio == 0.03

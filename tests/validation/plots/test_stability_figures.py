@@ -1,0 +1,169 @@
+"""Do the figures of stability show what was computed, under the right names?"""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import QuadMesh
+from typer.testing import CliRunner
+
+from floquet import predicted_lines, stability_chart
+from floquet.gear.campbell import campbell
+from floquet.gear.margins import stability_margins
+from floquet.gear.paths import multiplier_paths
+from floquet.gear.tongues import critical_damping, label_regions
+from lumped import load_gear_pair
+from validation.cli import app
+from validation.plots.campbell import campbell_figure
+from validation.plots.labels import spread
+from validation.plots.multiplier_paths import multiplier_paths_figure
+from validation.plots.stability import stability_figure
+from validation.plots.tongue_chart import critical_damping_figure, tongue_chart_figure
+from validation.plots.tongue_names import pretty
+from validation.plots.tongues import tongues_figure
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return load_gear_pair("nasa_28_28").with_(friction__law="none", mesh__damping_ratio=0.01)
+
+
+def texts(figure) -> set[str]:
+    return {text.get_text() for ax in figure.axes for text in ax.texts}
+
+
+def test_labels_are_written_as_in_print() -> None:
+    assert pretty("2w3/5") == "2ω₃/5"
+    assert pretty("(w1+w3)/2") == "(ω₁+ω₃)/2"
+    assert pretty("2w12/1") == "2ω₁₂"
+
+
+def test_tongues_are_named_in_the_chart(pair) -> None:
+    axes = {"speed_rpm": np.linspace(6000.0, 18000.0, 121), "damping_ratio": np.linspace(0.0, 0.03, 7)}
+    chart = stability_chart(pair, axes)
+    lines = {str(t): s for t, s in predicted_lines(pair).items()}
+    figure = tongue_chart_figure(
+        chart,
+        "damping_ratio",
+        label_regions(pair, chart),
+        lines,
+        point=(7000.0, 0.01),
+        operating_range=(6e3, 8e3),
+    )
+    assert {"2ω₃/2", "2ω₃/5", "operating point", "operating range"} <= texts(figure)
+    assert figure.axes[0].get_xlabel() == "pinion speed [rpm]"
+
+
+def test_names_moved_apart_keep_order_distance_and_mean() -> None:
+    assert np.array_equal(spread([1.0, 5.0, 9.0], 2.0, 0.0, 10.0), [1.0, 5.0, 9.0])  # nothing to do
+    assert np.allclose(spread([4.0, 4.2], 2.0, 0.0, 10.0), [3.1, 5.1])  # about their mean, 4.1
+    rng = np.random.default_rng(3)
+    for count in (1, 2, 7, 20):
+        places = np.sort(rng.uniform(0.0, 10.0, count))
+        moved = spread(places, 0.5, 0.0, 10.0)
+        assert (np.diff(moved) >= 0.5 - 1e-12).all()
+        assert moved[0] >= 0.0
+        assert moved[-1] <= 10.0
+    crowd = spread(np.full(100, 5.0), 0.5, 0.0, 10.0)  # more than fit: evenly, from end to end
+    assert np.allclose(crowd, np.linspace(0.0, 10.0, 100))
+    assert spread([], 0.5, 0.0, 10.0).size == 0
+
+
+def test_no_label_of_a_tongue_covers_another() -> None:
+    # The pair with the most tongues of all presets, crowded at low speed.
+    pair = load_gear_pair("nasa_art_25_31").with_(friction__law="coulomb", friction__coefficient=0.05)
+    margins = stability_margins(pair, (1000.0, 20000.0))
+    figure = tongues_figure(margins)
+    FigureCanvasAgg(figure).draw()
+    names = {pretty(t.label) for t in margins.tongues}
+    boxes = [t.get_window_extent() for t in figure.axes[0].texts if t.get_text() in names]
+    assert len(boxes) == len(names) > 15
+    assert not any(a.overlaps(b) for a, b in combinations(boxes, 2))
+    assert all(figure.bbox.x0 <= box.x0 and box.x1 <= figure.bbox.x1 for box in boxes)
+
+
+def over_speed_and_damping(speeds, dampings, radius) -> xr.Dataset:
+    data = {"spectral_radius": (("speed_rpm", "damping_ratio"), radius)}
+    return xr.Dataset(data, {"speed_rpm": speeds, "damping_ratio": dampings})
+
+
+def test_a_large_chart_is_one_image_and_not_a_polygon_per_point() -> None:
+    x, y = np.linspace(1000.0, 20000.0, 1000), np.linspace(0.0, 0.05, 500)
+    radius = 0.9 + 0.15 * np.exp(-(((x[:, None] - 9000.0) / 500.0) ** 2) - (y / 0.01) ** 2)
+    chart = xr.Dataset(
+        {"spectral_radius": (("speed_rpm", "damping_ratio"), radius)}, {"speed_rpm": x, "damping_ratio": y}
+    )
+    ax = stability_figure(chart, "speed_rpm", "damping_ratio", (5000.0, 0.05)).axes[0]
+    (image,) = ax.images
+    assert image.get_array().shape == (500, 1000)
+    # Nodes lie in the middle of their pixels.
+    left, right, bottom, top = image.get_extent()
+    assert (left, right) == pytest.approx((1000.0 - 9.51, 20000.0 + 9.51), abs=0.01)
+    assert bottom == pytest.approx(-top + 0.05)
+    assert not [c for c in ax.collections if isinstance(c, QuadMesh)]
+    assert sum(len(c.get_paths()) for c in ax.collections) < 10
+    # The boundary that is drawn is where the radius is one: exp(-s^2) = 2/3 on the axis.
+    (line,) = [c for c in ax.collections if c.get_linewidths().max() == 1.0 and not c.filled]
+    vertices = np.concatenate([path.vertices for path in line.get_paths()])
+    assert vertices[:, 0].min() == pytest.approx(9000.0 - 500.0 * np.sqrt(np.log(1.5)), abs=5.0)
+    assert vertices[:, 1].max() == pytest.approx(0.01 * np.sqrt(np.log(1.5)), abs=2e-5)
+
+
+def test_uneven_axes_and_falling_ones_are_drawn_at_their_values() -> None:
+    x, y = np.array([3000.0, 1000.0, 1100.0]), np.array([0.0, 0.01, 0.05])
+    values = np.array([[0.3, 0.3, 0.3], [0.1, 0.1, 0.1], [0.2, 0.2, 0.2]])
+    chart = xr.Dataset(
+        {"spectral_radius": (("speed_rpm", "damping_ratio"), values)}, {"speed_rpm": x, "damping_ratio": y}
+    )
+    ax = stability_figure(chart, "speed_rpm", "damping_ratio", None).axes[0]
+    (mesh,) = [c for c in ax.collections if isinstance(c, QuadMesh)]
+    assert np.allclose(mesh.get_array()[0], [0.1, 0.2, 0.3])
+    assert ax.get_xlim() == (1000.0, 3000.0)
+
+
+def test_an_operating_point_outside_the_chart_is_left_out(pair) -> None:
+    chart = stability_chart(pair, {"speed_rpm": [6e3, 7e3, 8e3], "damping_ratio": [0.0, 0.01, 0.02]})
+    inside, outside = (
+        texts(stability_figure(chart, "speed_rpm", "damping_ratio", point))
+        for point in ((7e3, 0.01), (7e3, 0.05))
+    )
+    assert "operating point" in inside
+    assert "operating point" not in outside
+
+
+def test_campbell_diagram_marks_lines_and_range(pair) -> None:
+    figure = campbell_figure(
+        campbell(pair, np.linspace(14000.0, 18000.0, 21)), operating_rpm=15000.0, operating_range=(14e3, 16e3)
+    )
+    assert {"2ω₃/2", "operating point", "operating range", "1×"} <= texts(figure)
+    assert "[rpm]" in figure.axes[1].get_xlabel()
+
+
+def test_paths_leave_the_unit_circle_in_the_tongue(pair) -> None:
+    figure = multiplier_paths_figure(
+        multiplier_paths(pair, "speed_rpm", np.linspace(15000, 18000, 61)), 16000.0
+    )
+    left, right = figure.axes[:2]
+    assert left.get_xlim()[1] > 1.1
+    assert "pinion speed [rpm]" in right.get_xlabel()
+
+
+def test_critical_damping_is_drawn_for_every_closed_tongue(pair) -> None:
+    tips = critical_damping(pair, (15000.0, 18000.0), damping_ratios=(0.0, 0.02, 0.08), orders=3)
+    assert {"2ω₃/2", "this pair"} <= texts(critical_damping_figure(tips, 0.01))
+
+
+def test_command_names_the_tongues(tmp_path) -> None:
+    path = tmp_path / "chart.svg"
+    result = CliRunner().invoke(
+        app,
+        ["stability", "--tongues", "--law", "none", "--axis", "speed_rpm=15000:18500:36", "--axis",
+         "damping_ratio=0:0.03:5", "-o", str(path)],
+    )  # fmt: skip
+    assert result.exit_code == 0, result.output
+    assert "2w3/2" in result.output
+    assert path.read_bytes().startswith(b"<?xml")

@@ -1,0 +1,1 @@
+"""Lumped against multibody: differences, tolerances, verdicts."""

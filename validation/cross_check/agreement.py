@@ -1,0 +1,173 @@
+"""How one quantity of the multibody model agrees with the lumped model, and the verdict on all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import xarray as xr
+
+import lumped
+from lumped import GearPair
+from lumped.errors import NumericalError
+from lumped.model.results import VARIABLES
+from validation.cross_check import metrics
+from validation.cross_check.metrics import FloatArray, SpragueGeers
+from validation.cross_check.tolerances import GROUPS, LOST, Tolerance
+
+Fidelity = Literal["linear", "exact"]
+Verdict = Literal["confirmed", "bounded", "not confirmed"]
+
+QUANTITIES: tuple[str, ...] = tuple(GROUPS)
+FIDELITIES: tuple[Fidelity, ...] = ("linear", "exact")
+#: Verdict -> what it means.
+MEANINGS: Mapping[str, str] = {
+    "confirmed": "the multibody model gives the same motion within the stated tolerances",
+    "bounded": "the equations agree, and the effect of finite motions is stated but larger than expected",
+    "not confirmed": "the multibody model does not support the lumped prediction",
+}
+#: A sample this close to a switch, in mesh cycles, may lie on either side of the jump by rounding alone.
+_SWITCH_MARGIN = 1e-6
+#: Quantity whose size scales the difference when the reference does not vary, as y without friction.
+_COMPANION = {
+    "y_p": "x_p",
+    "y_g": "x_g",
+    "friction_force": "normal_load",
+}
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """How one quantity of the multibody model agrees with the lumped model.
+
+    Attributes
+    ----------
+    quantity, unit, long_name : what is compared
+    fidelity : "linear" or "exact"
+    relative_l2 : L2 norm of the difference over that of the lumped history
+    remainder_l2 : the same after what finite motions must change (``validation.cross_check.finite_motion``)
+        is added to the lumped history
+    maximum_over_span, rms_over_span, mean_shift : difference over the peak to peak of the lumped history:
+        largest, root mean square, of the means (signed)
+    peak_to_peak_ratio : multibody over lumped; None where the lumped history does not vary
+    sprague_geers : of the oscillations about the means; None likewise
+    tolerance : metric judged, limit and reason
+    """
+
+    quantity: str
+    unit: str
+    long_name: str
+    fidelity: Fidelity
+    relative_l2: float
+    remainder_l2: float
+    maximum_over_span: float
+    rms_over_span: float
+    mean_shift: float
+    peak_to_peak_ratio: float | None
+    sprague_geers: SpragueGeers | None
+    tolerance: Tolerance
+
+    @property
+    def judged(self) -> float:
+        """Value of the metric that the tolerance limits."""
+        return float(getattr(self, self.tolerance.metric))
+
+    @property
+    def within(self) -> bool:
+        """Whether the judged metric is within its limit."""
+        return self.judged <= self.tolerance.limit
+
+
+def overall_verdict(agreements: Sequence[Agreement]) -> Verdict:
+    """Verdict from single agreements.
+
+    "not confirmed": a quantity disagrees at fidelity "linear", or the transmission error of the exact model
+    differs by more than ``tolerances.LOST``, or one of the two fidelities is missing; "bounded": one of
+    the exact model's quantities exceeds its tolerance; else "confirmed".
+    """
+    linear = [a for a in agreements if a.fidelity == "linear"]
+    exact = [a for a in agreements if a.fidelity == "exact"]
+    if not linear or not exact or not all(a.within for a in linear):
+        return "not confirmed"
+    if any(a.quantity == "dte" and a.relative_l2 > LOST for a in exact):
+        return "not confirmed"
+    return "confirmed" if all(a.within for a in exact) else "bounded"
+
+
+def contact_shift(pair: GearPair, motion: xr.Dataset) -> float:
+    """Mean shift of the contact by finite motions, over the base pitch, from a lumped motion."""
+    g = lumped.geometry(pair)
+    return float(np.mean(np.abs(motion["theta_p"].to_numpy()))) * g.base_radius_pinion / g.base_pitch
+
+
+def off_switch_samples(pair: GearPair, time: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """Which times [s] (k,) lie clear of every switch of the nominal mesh cycle, starts of cycles included."""
+    cycle = lumped.mesh_cycle(pair)
+    phase = np.mod(time / cycle.period, 1.0)
+    switches = np.concatenate([cycle.edges / cycle.period])
+    nearest = np.abs(phase[:, None] - switches).min(axis=1)
+    return np.asarray(nearest > _SWITCH_MARGIN, dtype=np.bool_)
+
+
+def agreement(
+    quantity: str,
+    fidelity: Fidelity,
+    candidate: xr.Dataset,
+    reference: xr.Dataset,
+    keep: np.ndarray[tuple[int], np.dtype[np.bool_]],
+    limit: Tolerance,
+    predicted: FloatArray | float,
+) -> Agreement:
+    """Compare one quantity of a multibody motion with the lumped one.
+
+    Parameters
+    ----------
+    quantity, fidelity : what is compared
+    candidate, reference : multibody and lumped motion at the same times
+    keep : (k,) which of these times count, see ``off_switch_samples``
+    limit : tolerance of the judged metric
+    predicted : change by finite motions, see ``validation.cross_check.finite_motion``; 0 where there are none
+
+    Raises
+    ------
+    NumericalError : a history is not finite
+    """
+    a, b = (d[quantity].to_numpy()[..., keep] for d in (candidate, reference))
+    change = np.broadcast_to(predicted, reference[quantity].shape)[..., keep]
+    if not (np.isfinite(a).all() and np.isfinite(b).all()):
+        raise NumericalError(
+            f"{quantity} is not finite at fidelity '{fidelity}'; lower the torque or the speed."
+        )
+    _, unit, long_name = VARIABLES[quantity]
+    ratio: float | None = None
+    oscillation: SpragueGeers | None = None
+    if metrics.is_constant(b):
+        companion = reference[_COMPANION.get(quantity, quantity)].to_numpy()
+        scale = max(float(np.abs(companion).max()), np.finfo(float).tiny)
+        rms = float(np.sqrt(np.mean((a - b) ** 2))) / scale
+        l2 = remainder = rms
+        largest = float(np.abs(a - b).max()) / scale
+        shift = float(a.mean() - b.mean()) / scale
+    else:
+        l2, largest = metrics.relative_l2(a, b), metrics.maximum_over_span(a, b)
+        remainder = metrics.relative_l2(a - change, b)
+        rms, shift = metrics.rms_over_span(a, b), metrics.mean_shift(a, b)
+        ratio = metrics.peak_to_peak_ratio(a, b)
+        if not metrics.is_constant(a):
+            oscillation = metrics.sprague_geers(a - a.mean(), b - b.mean())
+    return Agreement(
+        quantity=quantity,
+        unit=unit,
+        long_name=long_name,
+        fidelity=fidelity,
+        relative_l2=l2,
+        remainder_l2=remainder,
+        maximum_over_span=largest,
+        rms_over_span=rms,
+        mean_shift=shift,
+        peak_to_peak_ratio=ratio,
+        sprague_geers=oscillation,
+        tolerance=limit,
+    )

@@ -1,0 +1,263 @@
+"""Cross-check: the lumped model against the independent multibody model, quantity by quantity.
+
+Sources: docs/theory/multibody.md, "The law of torque"; docs/theory/validity.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+import lumped
+import multibody
+from lumped import GearPair
+from lumped.arguments import some_of, whole_number
+from lumped.errors import NumericalError, refuse
+from lumped.model.periodic_cycle import UNSTABLE, periodic_cycle
+from lumped.model.results import VARIABLES
+from validation.cross_check import metrics
+from validation.cross_check.agreement import (
+    FIDELITIES,
+    MEANINGS,
+    QUANTITIES,
+    Agreement,
+    Fidelity,
+    Verdict,
+    agreement,
+    contact_shift,
+    off_switch_samples,
+    overall_verdict,
+)
+from validation.cross_check.exact_motion import BLUNT, periodic_motion
+from validation.cross_check.finite_motion import FiniteMotion, finite_motion
+from validation.cross_check.metrics import FloatArray, MeshOrders
+from validation.cross_check.tolerances import tolerance
+
+__all__ = [
+    "FIDELITIES",
+    "MEANINGS",
+    "QUANTITIES",
+    "RTOL",
+    "Agreement",
+    "CrossCheck",
+    "Fidelity",
+    "OrderComparison",
+    "Verdict",
+    "crosscheck",
+    "off_switch_samples",
+]
+
+Progress = Callable[[float], None]
+
+#: Tolerances of the integrations: far below the limits they are used to check.
+RTOL: Mapping[str, float] = {"lumped": 1e-10, "linear": 1e-10, "exact": 1e-8}
+#: Cycles at the end of a run over which the exact model is compared where it has no periodic motion.
+COMPARED_CYCLES = 4
+_ORDERS = 10
+
+
+@dataclass(frozen=True, eq=False)
+class OrderComparison:
+    """Mesh orders of one quantity in both models; of tooth forces, of the sum over the pairs in contact."""
+
+    quantity: str
+    unit: str
+    fidelity: Fidelity
+    lumped: MeshOrders
+    multibody: MeshOrders
+
+    @property
+    def phase_difference(self) -> FloatArray:
+        """Phase of multibody - lumped per order [rad]."""
+        return metrics.phase_difference(self.multibody.phase, self.lumped.phase)
+
+
+@dataclass(frozen=True, eq=False)
+class CrossCheck:
+    """Outcome of ``crosscheck``.
+
+    Attributes
+    ----------
+    pair : the gear pair
+    agreements : one per quantity and fidelity
+    orders : mesh orders of both models, per quantity and fidelity
+    lumped : dataset of the lumped model
+    multibody : fidelity -> dataset of the multibody model, at the same times
+    periodic : whether "exact" is the periodic motion of that model, repeated over the times, and not a run
+    cycles, compared_cycles : numbers of mesh cycles simulated, and of those at the end compared for "exact"
+    contact_shift : mean shift of the contact by finite motions, over the base pitch
+    finite_motion : what finite motions must change, predicted from the lumped model; None without "exact"
+    unsettled : fidelity -> change of the multibody transmission error over the last two cycles, over its peak
+        to peak: what is left of the transient; of a periodic motion, its relative mismatch after a cycle
+    """
+
+    pair: GearPair
+    agreements: tuple[Agreement, ...]
+    orders: tuple[OrderComparison, ...]
+    lumped: xr.Dataset
+    multibody: Mapping[Fidelity, xr.Dataset]
+    periodic: bool
+    cycles: int
+    compared_cycles: int
+    contact_shift: float
+    finite_motion: FiniteMotion | None
+    unsettled: Mapping[Fidelity, float]
+
+    @property
+    def verdict(self) -> Verdict:
+        """Overall verdict, see ``MEANINGS``."""
+        return overall_verdict(self.agreements)
+
+    def of(self, fidelity: Fidelity) -> tuple[Agreement, ...]:
+        """Agreements at one fidelity."""
+        return tuple(a for a in self.agreements if a.fidelity == fidelity)
+
+    def worst(self, fidelity: Fidelity) -> Agreement:
+        """Agreement that uses most of its tolerance."""
+        return max(self.of(fidelity), key=lambda a: a.judged / a.tolerance.limit)
+
+
+def crosscheck(
+    pair: GearPair,
+    *,
+    cycles: int = 40,
+    samples_per_cycle: int = 256,
+    fidelities: Sequence[Fidelity] = FIDELITIES,
+    quantities: Sequence[str] = QUANTITIES,
+    progress: Progress | None = None,
+) -> CrossCheck:
+    """Compare the lumped model with the multibody model of the same pair in periodic motion.
+
+    At fidelity "linear" the equations are the same: both models start from the lumped periodic solution and
+    the whole history is compared. At "exact" the model's own periodic motion is compared, with the brake
+    torque that balances its own losses: under the lumped one it would drift, and the phase with it. Where
+    the lumped motion is unstable, or the exact model has no periodic motion near it, the end of a run from
+    the lumped motion is compared. Samples on a switch time are left out: they belong to either side.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    cycles : mesh cycles to simulate, 6 to 100000
+    samples_per_cycle : output times per mesh cycle, at least 32
+    fidelities : of the multibody model, out of ``FIDELITIES``
+    quantities : out of ``QUANTITIES``
+    progress : called with the finished fraction
+
+    Returns
+    -------
+    CrossCheck
+
+    Raises
+    ------
+    ParameterError : arguments out of range
+    NumericalError : a model fails; the text says what to try
+    """
+    _check(cycles, samples_per_cycle, fidelities, quantities)
+    runs = 1 + len(fidelities)
+
+    def part(done: int) -> Progress | None:
+        return None if progress is None else lambda fraction: progress((done + fraction) / runs)
+
+    options = {"cycles": cycles, "samples_per_cycle": samples_per_cycle, "initial": "periodic"}
+    reference = lumped.simulate(pair, **options, rtol=RTOL["lumped"], progress=part(0))  # type: ignore[arg-type]
+    shift = contact_shift(pair, reference)
+    last = reference.isel(time=slice(-samples_per_cycle - 1, -1))
+    results: dict[Fidelity, xr.Dataset] = {}
+    predicted: FiniteMotion | None = None
+    one: xr.Dataset | None = None
+    for done, fidelity in enumerate(fidelities, 1):
+        if fidelity == "exact":
+            predicted = finite_motion(pair, last)
+            one = _periodic(pair, samples_per_cycle, predicted.settled)
+            if one is not None and one.attrs["friction_velocity"] == BLUNT:  # a choice of the numerics
+                predicted = finite_motion(pair, last, friction_velocity=BLUNT)
+        if fidelity == "exact" and one is not None:
+            places = np.arange(reference.sizes["time"]) % samples_per_cycle
+            results[fidelity] = one.isel(time=places).assign_coords(time=reference["time"])
+            continue
+        results[fidelity] = multibody.simulate(
+            pair,
+            **options,  # type: ignore[arg-type]
+            fidelity=fidelity,
+            rtol=RTOL[fidelity],
+            progress=part(done),
+        )
+    compared = min(COMPARED_CYCLES, cycles // 2) if one is None else 1
+    agreements: list[Agreement] = []
+    orders: list[OrderComparison] = []
+    for fidelity, result in results.items():
+        first = 0 if fidelity == "linear" else (cycles - compared) * samples_per_cycle
+        keep = off_switch_samples(pair, reference["time"].to_numpy())
+        keep[:first] = False
+        for quantity in quantities:
+            limit = tolerance(quantity, fidelity, shift)
+            change: FloatArray | float = 0.0
+            if predicted is not None and fidelity == "exact":
+                change = predicted.over(quantity, keep.size)
+            agreements.append(agreement(quantity, fidelity, result, reference, keep, limit, change))
+            orders.append(_orders(quantity, fidelity, result, reference, compared, samples_per_cycle))
+    unsettled = {f: _unsettled(r, samples_per_cycle) for f, r in results.items()}
+    if one is not None:
+        unsettled["exact"] = float(one.attrs["closure"])
+    return CrossCheck(
+        pair=pair,
+        agreements=tuple(agreements),
+        orders=tuple(orders),
+        lumped=reference,
+        multibody=results,
+        periodic=one is not None,
+        cycles=cycles,
+        compared_cycles=compared,
+        contact_shift=shift,
+        finite_motion=predicted,
+        unsettled=unsettled,
+    )
+
+
+def _periodic(pair: GearPair, samples: int, passes: bool) -> xr.Dataset | None:
+    """The exact model's periodic motion; None where there is none, or where no pair would stay in it."""
+    if periodic_cycle(pair, 32).spectral_radius > UNSTABLE:
+        return None
+    try:
+        return periodic_motion(pair, "exact", samples=samples, rtol=RTOL["exact"], passes=passes)
+    except NumericalError:
+        return None
+
+
+def _orders(
+    quantity: str,
+    fidelity: Fidelity,
+    candidate: xr.Dataset,
+    reference: xr.Dataset,
+    compared: int,
+    samples: int,
+) -> OrderComparison:
+    def analysed(result: xr.Dataset) -> MeshOrders:
+        values = result[quantity].to_numpy()
+        total = values.sum(axis=0) if values.ndim == 2 else values
+        # The grid ends on the last cycle's end, which is the first sample of a cycle that is not there.
+        return metrics.mesh_orders(total[-compared * samples - 1 : -1], samples, _ORDERS)
+
+    unit = VARIABLES[quantity][1]
+    return OrderComparison(quantity, unit, fidelity, analysed(reference), analysed(candidate))
+
+
+def _unsettled(result: xr.Dataset, samples: int) -> float:
+    dte = result["dte"].to_numpy()[:-1]
+    last, before = dte[-samples:], dte[-2 * samples : -samples]
+    return float(np.abs(last - before).max()) / max(float(np.ptp(last)), np.finfo(float).tiny)
+
+
+def _check(cycles: int, samples: int, fidelities: Sequence[str], quantities: Sequence[str]) -> None:
+    whole_number("cycles", cycles, 6, 100_000)
+    whole_number("samples_per_cycle", samples, 32, 65536)
+    for field, given, known in (
+        ("fidelities", fidelities, FIDELITIES),
+        ("quantities", quantities, QUANTITIES),
+    ):
+        chosen = some_of(field, given, known)
+        if not chosen or len(set(chosen)) != len(chosen):
+            raise refuse(field, ", ".join(chosen), "at least one, each once", "Correct the list.")

@@ -1,0 +1,129 @@
+"""Element laws of a tooth pair as finite motions make them act, still functions of the nominal position."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from lumped.path_function import PathFunction
+from validation.cross_check.metrics import FloatArray
+
+#: Places on the path closer than this are one [m].
+_SAME = 1e-11
+#: Arguments at which tanh is broken into lines: what they leave out is below a thousandth of its size.
+_TANH = np.arctanh(np.linspace(-0.999, 0.999, 81))
+#: Lines that stand for one piece of a friction law.
+_PARTS = 8
+#: A change across a break by more than this share of the largest value is a jump.
+_JUMP = 1e-4
+
+
+def moved(law: PathFunction, place: FloatArray, stands_at: FloatArray) -> PathFunction:
+    """The law where the contact stands away from its nominal position.
+
+    Parameters
+    ----------
+    law : k(xi) or c(xi)
+    place : (k,) nominal positions, over the whole path [m]
+    stands_at : (k,) actual positions there; beyond the path the law keeps its value at the end [m]
+
+    Returns
+    -------
+    PathFunction, linear between the places and the crossings of breaks of the law
+    """
+
+    def value(actual: FloatArray) -> FloatArray:
+        return law(np.clip(actual, *law.interval))
+
+    return _through(value, law, law.breaks[1:-1], place, stands_at)
+
+
+def at_sliding(
+    law: PathFunction, pitch_point: float, place: FloatArray, slides_as: FloatArray, width: float
+) -> PathFunction:
+    """Friction coefficient at the actual sliding velocity, with its sign.
+
+    Parameters
+    ----------
+    law : mu(xi) at nominal rotation, where xi tells the sliding velocity: it vanishes at the pitch point
+    pitch_point : L_XP [m]
+    place : (k,) nominal positions, over the whole path [m]
+    slides_as : (k,) where the nominal motion slides as fast as the teeth do there [m]
+    width : distance from the pitch point over which the sign changes, as tanh [m]; at once if it is less than
+        the places lie apart
+
+    Returns
+    -------
+    PathFunction, linear between the places and the crossings of breaks of the law
+    """
+
+    def value(equivalent: FloatArray) -> FloatArray:
+        magnitude = np.abs(law(np.clip(equivalent, *law.interval)))
+        beyond = equivalent - pitch_point
+        sign = np.tanh(beyond / width) if width > 0.0 else np.sign(beyond)
+        return np.asarray(sign * magnitude, dtype=np.float64)
+
+    width = width if width > np.diff(place).max() else 0.0
+    pieces = law.breaks.size - 1
+    parts = np.interp(np.arange(pieces * _PARTS + 1) / _PARTS, np.arange(pieces + 1), law.breaks)
+    marks = np.union1d(parts, pitch_point + width * _TANH)
+    return _through(value, law, marks, place, slides_as)
+
+
+def shortened(law: PathFunction, first: float, last: float) -> PathFunction:
+    """The law where the pair carries load only from ``first`` to ``last`` [m]; zero on the rest of its path.
+
+    Parameters
+    ----------
+    law : k(xi) or c(xi)
+    first, last : places on the law's path, first < last
+    """
+    low, high = law.interval
+    first, last = max(first, low), min(last, high)
+    inner = np.flatnonzero((law.breaks > first + _SAME) & (law.breaks < last - _SAME))
+    edges = np.concatenate([[first], law.breaks[inner], [last]])
+    columns = np.column_stack([_from(law, first), law.coefficients[:, inner]])
+    zero = np.zeros((columns.shape[0], 1))
+    if first > low:
+        edges, columns = np.append(low, edges), np.hstack([zero, columns])
+    if last < high:
+        edges, columns = np.append(edges, high), np.hstack([columns, zero])
+    switches = [s for s in law.switches if first < s < last]
+    switches += [place for place in (first, last) if low < place < high]
+    return PathFunction(edges, columns, np.array(switches))
+
+
+def _through(
+    value: Callable[[FloatArray], FloatArray],
+    law: PathFunction,
+    marks: FloatArray,
+    place: FloatArray,
+    image: FloatArray,
+) -> PathFunction:
+    """``value`` of each place's image: lines, broken at the places and where the image meets a mark."""
+    low, high = law.interval
+    before, after = image[:-1, None] - marks, image[1:, None] - marks
+    crossing = np.nonzero(before * after < 0.0)
+    share, piece = before[crossing] / (before[crossing] - after[crossing]), crossing[0]
+    nodes = np.concatenate([place, place[piece] + share * np.diff(place)[piece], [low, high]])
+    nodes = np.unique(nodes[(nodes >= low) & (nodes <= high)])
+    nodes = nodes[np.diff(nodes, prepend=-np.inf) > _SAME]
+    nodes[-1] = high
+    # Each line goes through two inner points, so a jump at its end stays outside.
+    width = np.diff(nodes)
+    near, far = (value(np.interp(nodes[:-1] + s * width, place, image)) for s in (0.25, 0.75))
+    slope = (far - near) / (0.5 * width)
+    start = near - 0.25 * width * slope
+    jump = np.abs(start[1:] - (start + slope * width)[:-1]) > _JUMP * np.abs(near).max()
+    return PathFunction(nodes, np.stack([slope, start]), nodes[1:-1][jump])
+
+
+def _from(law: PathFunction, place: float) -> FloatArray:
+    """Coefficients in powers of (xi - place), highest first, of the piece that holds ``place``."""
+    piece = int(np.clip(np.searchsorted(law.breaks, place + _SAME) - 1, 0, law.breaks.size - 2))
+    old = np.polynomial.Polynomial(law.coefficients[::-1, piece])
+    new = old(np.polynomial.Polynomial([place - law.breaks[piece], 1.0])).coef
+    padded = np.zeros(law.coefficients.shape[0])
+    padded[: new.size] = new
+    return padded[::-1]

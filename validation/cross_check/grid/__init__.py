@@ -1,0 +1,1 @@
+"""The cross-check over many presets, laws, speeds and torques."""

@@ -1,0 +1,127 @@
+"""One point of the regression grid: two periodic motions, what finite motions change, and what is left."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+import numpy as np
+
+import lumped
+from lumped import GearPair
+from lumped.errors import SpurcheckError
+from validation.cross_check.agreement import (
+    FIDELITIES,
+    QUANTITIES,
+    agreement,
+    contact_shift,
+    off_switch_samples,
+)
+from validation.cross_check.exact_motion import BLUNT, periodic_motion
+from validation.cross_check.finite_motion import finite_motion
+from validation.cross_check.metrics import FloatArray, maximum_over_span
+from validation.cross_check.tolerances import tolerance
+from validation.validity.flags import LOAD_NOISE
+
+#: What can come of a point, beside the text of an error.
+COMPARED, SEPARATED, STICKING = "compared", "teeth separate", "sliding may stick"
+_RTOL = 1e-9
+
+
+def _missing() -> FloatArray:
+    return np.full((len(FIDELITIES), len(QUANTITIES)), np.nan)
+
+
+@dataclass(frozen=True, eq=False)
+class GridPoint:
+    """Outcome of one point; arrays are (fidelity, quantity), NaN where nothing was compared.
+
+    Attributes
+    ----------
+    status : ``COMPARED``, ``SEPARATED``, ``STICKING`` or the text of an error
+    load_min : smallest normal load of the lumped model over the static load
+    seconds : processor time
+    expected : largest change of the transmission error that finite motions must make, over its peak to peak
+    judged, limit : metric that the tolerance limits, and the tolerance
+    total : relative L2 of the whole difference, before anything predicted is taken off
+    largest : largest difference over the peak to peak of the lumped motion
+    """
+
+    status: str
+    load_min: float = np.nan
+    seconds: float = 0.0
+    expected: float = np.nan
+    judged: FloatArray = field(default_factory=_missing)
+    limit: FloatArray = field(default_factory=_missing)
+    total: FloatArray = field(default_factory=_missing)
+    largest: FloatArray = field(default_factory=_missing)
+
+    def to_data(self) -> dict[str, Any]:
+        """Plain data for JSON; NaN as None."""
+        return {f.name: _plain(getattr(self, f.name)) for f in fields(self)}
+
+    @classmethod
+    def from_data(cls, data: dict[str, Any]) -> GridPoint:
+        """The point that ``to_data`` gave."""
+        values = {name: value for name, value in data.items() if name not in ("status",)}
+        numbers = {name: np.array(value, dtype=float) for name, value in values.items()}
+        scalars = {name: float(v) for name, v in numbers.items() if v.ndim == 0}
+        return cls(data["status"], **(numbers | scalars))  # type: ignore[arg-type]  # mixed types
+
+
+def compare_point(pair: GearPair, samples: int) -> GridPoint:
+    """Compare the models in periodic motion; a failure becomes the status.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    samples : output times per mesh cycle
+
+    Notes
+    -----
+    Which points are judged is decided by the lumped model alone, before the multibody model is looked at: the
+    teeth separate where a lumped load turns negative, and sliding may stick where the lumped motion and the
+    friction at its own sliding velocity do not settle or do not pass zero
+    (``validation.cross_check.finite_motion``).
+    """
+    started = time.process_time()
+    load_min = np.nan
+
+    def spent() -> float:
+        return time.process_time() - started
+
+    try:
+        reference = lumped.steady_state(pair, samples_per_cycle=samples)
+        static = pair.operating.pinion_torque / lumped.geometry(pair).base_radius_pinion
+        load_min = float(reference["normal_load"].min()) / static
+        if load_min < -LOAD_NOISE:
+            return GridPoint(SEPARATED, load_min, spent())
+        shift, predicted = contact_shift(pair, reference), finite_motion(pair, reference)
+        keep = off_switch_samples(pair, reference["time"].to_numpy())
+        dte = reference["dte"].to_numpy()[keep]
+        expected = maximum_over_span(dte + predicted.over("dte", keep.size)[keep], dte)
+        tables = [_missing() for _ in range(4)]
+        for i, fidelity in enumerate(FIDELITIES):
+            run = periodic_motion(pair, fidelity, samples=samples, rtol=_RTOL, passes=predicted.settled)
+            foreseen = predicted
+            if fidelity == "exact" and run.attrs["friction_velocity"] == BLUNT:  # a choice of the numerics
+                foreseen = finite_motion(pair, reference, friction_velocity=BLUNT)
+            for j, quantity in enumerate(QUANTITIES):
+                allowed = tolerance(quantity, fidelity, shift)
+                change = foreseen.over(quantity, keep.size) if fidelity == "exact" else 0.0
+                found = agreement(quantity, fidelity, run, reference, keep, allowed, change)
+                values = found.judged, allowed.limit, found.relative_l2, found.maximum_over_span
+                for table, value in zip(tables, values, strict=True):
+                    table[i, j] = value
+    except SpurcheckError as error:
+        return GridPoint(str(error), load_min, spent())
+    return GridPoint(COMPARED if predicted.settled else STICKING, load_min, spent(), expected, *tables)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return [_plain(row) for row in value]
+    if isinstance(value, float):
+        return None if np.isnan(value) else float(value)
+    return value

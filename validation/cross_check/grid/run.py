@@ -1,0 +1,249 @@
+"""Regression grid: lumped against multibody over gear pairs, friction laws, stiffness, speeds and torques.
+
+Every point compares two periodic motions, each with the brake torque that balances it. Two rules judge it:
+
+- each quantity against its tolerance, ``validation.cross_check.tolerances``, as in the cross-check of a
+  single pair; at fidelity "exact" that is what is left after the predicted effects of finite motions;
+- the law of torque: deflections are proportional to torque, and what they do to the geometry to its square.
+  So the difference of the transmission error over its peak to peak falls fourfold with a quarter of the
+  torque. A mistake in geometry, sign or load would not fall at all, and noise would not fall regularly.
+"""
+
+from __future__ import annotations
+
+import itertools
+import time
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import joblib
+import numpy as np
+import xarray as xr
+
+import lumped
+from lumped import GearPair
+from lumped.errors import LawRangeWarning, refuse
+from validation.cross_check.agreement import FIDELITIES, QUANTITIES
+from validation.cross_check.grid.checkpoint import Checkpoint
+from validation.cross_check.grid.point import COMPARED, SEPARATED, STICKING, GridPoint, compare_point
+from validation.cross_check.metrics import FloatArray
+
+__all__ = ["AXES", "COMPARED", "SEPARATED", "STICKING", "STIFFNESS", "Grid", "crosscheck_grid"]
+
+Progress = Callable[[float], None]
+
+#: Stiffness model of the grid -> mesh.stiffness. "smooth" rises from zero over 2 mm and has no jump.
+STIFFNESS: Mapping[str, Mapping[str, Any]] = MappingProxyType(
+    {
+        "rectangular": {"model": "rectangular"},
+        "parabolic": {"model": "parabolic"},
+        "energy": {"model": "energy"},
+        "smooth": {"model": "parabolic", "ramp_length": 2.0},
+    }
+)
+#: Laws whose coefficient does not depend on torque, so that the law of torque holds for them.
+CONSTANT_COEFFICIENT = ("coulomb", "smoothed_coulomb")
+#: The law of torque is judged where the stiffness has no jump.
+SMOOTH_STIFFNESS = ("smooth",)
+_COEFFICIENT = 0.05
+#: Allowed departure of the fall with torque from the expected one: what the expectation leaves out is of the
+#: next order in torque, a share of the difference itself, which is some per cent at the presets' torques.
+SCALING_TOLERANCE = 0.08
+AXES = ("preset", "law", "stiffness", "speed", "torque")
+
+
+@dataclass(frozen=True)
+class Grid:
+    """What is compared: every combination.
+
+    Attributes
+    ----------
+    presets, laws : names of gear pairs and friction laws
+    stiffness : keys of ``STIFFNESS``
+    speeds, torques : shares of the preset's operating point; torques fall
+    samples : output times per mesh cycle
+    """
+
+    presets: tuple[str, ...] = (
+        "nasa_28_28",
+        "nasa_art_25_31",
+        "kahraman_blankenship_50_50",
+        "fzg_c",
+    )
+    laws: tuple[str, ...] = (
+        "coulomb",
+        "benedict_kelley",
+        "xu_kahraman",
+        "smoothed_coulomb",
+        "composite",
+    )
+    stiffness: tuple[str, ...] = tuple(STIFFNESS)
+    speeds: tuple[float, ...] = (0.3, 1.0, 1.7)
+    torques: tuple[float, ...] = (1.0, 1 / 4)
+    samples: int = 128
+
+    def __post_init__(self) -> None:
+        for name in AXES:
+            values = getattr(self, name if name in ("stiffness",) else f"{name}s")
+            if not values or len(set(values)) != len(values):
+                raise refuse(f"grid.{name}", values, "at least one, each once", "Correct the list.")
+        for name in set(self.stiffness) - set(STIFFNESS):
+            raise refuse("grid.stiffness", name, f"out of {', '.join(STIFFNESS)}", "Choose among these.")
+        if list(self.torques) != sorted(self.torques, reverse=True):
+            raise refuse("grid.torques", self.torques, "falling", "Sort them from high to low.")
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Points along every axis, in the order preset, law, stiffness, speed, torque."""
+        return tuple(len(v) for v in (self.presets, self.laws, self.stiffness, self.speeds, self.torques))
+
+    def pair(self, preset: str, law: str, stiffness: str, speed: float, torque: float) -> GearPair:
+        """Gear pair of one point."""
+        base = lumped.load_gear_pair(preset)
+        changes: dict[str, Any] = {
+            "friction.law": law,
+            "mesh.stiffness": dict(STIFFNESS[stiffness]),
+            "operating.pinion_speed": speed * base.operating.pinion_speed * 30.0 / np.pi,
+            "operating.pinion_torque": torque * base.operating.pinion_torque,
+        }
+        if law in CONSTANT_COEFFICIENT:  # by default it is the average of law II, which depends on torque
+            changes["friction.coefficient"] = _COEFFICIENT
+        return base.with_(changes)
+
+
+def crosscheck_grid(
+    grid: Grid | None = None,
+    *,
+    workers: int = 2,
+    checkpoint: Path | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Compare the models at every point of a grid.
+
+    Parameters
+    ----------
+    grid : points; default the full grid
+    workers : processes
+    checkpoint : folder that keeps every finished block of points, so that an interrupted run goes on where it
+        was; made if missing
+    progress : called with the finished fraction
+
+    Returns
+    -------
+    xarray.Dataset over preset, law, stiffness, speed, torque (shares of the preset's operating point),
+    fidelity and quantity:
+
+        difference, limit : judged metric and its tolerance, see ``validation.cross_check.tolerances``
+        total : relative L2 of the whole difference, before anything predicted is taken off
+        largest : largest difference over the peak to peak of the lumped motion
+        status : "compared", "teeth separate" (the lumped model's loads turn negative, so it is not valid
+            there and nothing is compared), "sliding may stick" (see ``validation.cross_check.finite_motion``;
+            compared but not judged at fidelity "exact"), or why a model failed
+        load_min : smallest normal load of the lumped model over the static load
+        expected : largest change of the DTE that finite motions must make, over its peak to peak
+        ratio : DTE difference over that at the next lower torque, divided by the ratio of the torques: 1 by
+            the law of torque; NaN at the lowest
+        ratio_expected : the same of the expected changes, which also know what follows the first order
+        ratio_judged : whether that law must hold there: constant friction coefficient, smooth stiffness
+        seconds : processor time of the point
+
+    Attribute ``seconds`` is the wall time of this call, ``workers`` how many processes shared it, ``resumed``
+    how many points came from the checkpoint.
+
+    Raises
+    ------
+    ParameterError : the checkpoint belongs to another grid or version
+    """
+    g = grid or Grid()
+    started = time.perf_counter()
+    store = None if checkpoint is None else Checkpoint(checkpoint, asdict(g))
+    blocks = list(itertools.product(g.presets, g.laws, g.stiffness))
+    found = {} if store is None else store.load(blocks)
+    resumed = sum(map(len, found.values()))
+    jobs = (joblib.delayed(_block)(g, *block) for block in blocks if block not in found)
+    for block, points in joblib.Parallel(n_jobs=workers, return_as="generator_unordered")(jobs):
+        found[block] = points
+        if store is not None:
+            store.save(block, points)
+        if progress is not None:
+            progress(len(found) / len(blocks))
+    result = _dataset(g, [point for block in blocks for point in found[block]])
+    seconds = time.perf_counter() - started
+    result.attrs |= {"seconds": seconds, "workers": workers, "resumed": resumed}
+    return result
+
+
+def _block(grid: Grid, preset: str, law: str, stiffness: str) -> tuple[tuple[str, str, str], list[GridPoint]]:
+    """All speeds and torques of one pair, law and stiffness: one job."""
+    with warnings.catch_warnings():
+        # The law's range concerns both models alike; single runs warn.
+        warnings.simplefilter("ignore", LawRangeWarning)
+        points = [
+            compare_point(grid.pair(preset, law, stiffness, speed, torque), grid.samples)
+            for speed, torque in itertools.product(grid.speeds, grid.torques)
+        ]
+    return (preset, law, stiffness), points
+
+
+def _dataset(g: Grid, points: list[GridPoint]) -> xr.Dataset:
+    def each(name: str) -> Any:
+        return np.array([getattr(p, name) for p in points]).reshape(g.shape)
+
+    def every(name: str) -> FloatArray:
+        shape = (*g.shape, len(FIDELITIES), len(QUANTITIES))
+        return np.stack([getattr(p, name) for p in points]).reshape(shape)
+
+    inner = (*AXES, "fidelity", "quantity")
+    largest, expected = every("largest"), each("expected")
+    dte = largest[..., FIDELITIES.index("exact"), QUANTITIES.index("dte")]
+    variables: dict[str, tuple[tuple[str, ...], Any, str, str]] = {
+        "difference": (inner, every("judged"), "1", "judged metric of the difference"),
+        "limit": (inner, every("limit"), "1", "tolerance of the judged metric"),
+        "total": (inner, every("total"), "1", "relative L2 of the whole difference"),
+        "largest": (inner, largest, "1", "largest difference over peak to peak"),
+        "status": (AXES, each("status"), "1", "what came of the point"),
+        "load_min": (AXES, each("load_min"), "1", "smallest normal load over static load, lumped"),
+        "expected": (AXES, expected, "1", "largest expected DTE difference over peak to peak"),
+        "ratio": (AXES, _ratios(g, dte), "1", "fall of the DTE difference, over that of the torque"),
+        "ratio_expected": (AXES, _ratios(g, expected), "1", "expected fall over that of the torque"),
+        "ratio_judged": (AXES, _ratio_judged(g), "1", "whether the law of torque must hold"),
+        "seconds": (AXES, each("seconds"), "s", "processor time of the point"),
+    }
+    return xr.Dataset(
+        {
+            name: xr.DataArray(values, dims=dims, attrs={"units": unit, "long_name": text})
+            for name, (dims, values, unit, text) in variables.items()
+        },
+        coords={
+            "preset": list(g.presets),
+            "law": list(g.laws),
+            "stiffness": list(g.stiffness),
+            "speed": ("speed", list(g.speeds), {"units": "1", "long_name": "share of the preset's speed"}),
+            "torque": (
+                "torque",
+                list(g.torques),
+                {"units": "1", "long_name": "share of the preset's torque"},
+            ),
+            "fidelity": list(FIDELITIES),
+            "quantity": list(QUANTITIES),
+        },
+        attrs={"samples_per_cycle": g.samples},
+    )
+
+
+def _ratios(g: Grid, dte: FloatArray) -> FloatArray:
+    """Fall of a difference of the DTE from each torque to the next, over the fall of the torque."""
+    torques = np.asarray(g.torques)
+    ratios = np.full(dte.shape, np.nan)
+    ratios[..., :-1] = dte[..., :-1] / dte[..., 1:] / (torques[:-1] / torques[1:])
+    return ratios
+
+
+def _ratio_judged(g: Grid) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
+    constant = np.isin(g.laws, CONSTANT_COEFFICIENT)[:, None]
+    smooth = np.isin(g.stiffness, SMOOTH_STIFFNESS)[None, :]
+    return np.broadcast_to((constant & smooth)[None, :, :, None, None], g.shape).copy()

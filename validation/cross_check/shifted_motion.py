@@ -1,0 +1,247 @@
+r"""The lumped motion with element laws shifted as finite motions shift them, and what it shifts in turn.
+
+The derivations are in ``validation.cross_check.finite_motion``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped import GearPair
+from lumped.errors import NumericalError
+from lumped.model.mesh_cycle import MeshCycle
+from lumped.model.periodic_system import LTVSystem, periodic_system
+from lumped.model.steady import periodic_solution
+from validation.cross_check.effective_elements import at_sliding, moved, shortened
+from validation.cross_check.metrics import FloatArray
+
+#: Times of the motion lie at least so far apart, over the mesh cycle.
+_APART = 1e-7
+#: The iteration stops where events and sliding move by less than this share of a base pitch, or of the shift
+#: of the contact, whichever is more ...
+_SETTLED, _OF_SHIFT = 1e-7, 1e-3
+#: ... and so many times as much is settled where it comes no closer within so many more iterations.
+_ACCEPTED, _PATIENCE = 10.0, 20
+_ITERATIONS = 60
+#: Iterations before the last that its next guess is made from.
+_REMEMBERED = 6
+#: Combinations of remembered iterations that differ by less than this share of the largest are left out.
+_ALIKE = 1e-8
+#: Sliding as good as zero, as a distance from the pitch point [m].
+_BESIDE = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Shifts:
+    """What a motion moves, over nominal places on the path [m].
+
+    Attributes
+    ----------
+    entry, exit : how far into the path the load starts, and how far before its end it stops
+    place : (k,) nominal places
+    stands_at : (k,) where the contact stands there
+    slides_as : (k,) where the nominal motion slides as fast as the teeth do there
+    """
+
+    entry: float
+    exit: float
+    place: FloatArray
+    stands_at: FloatArray
+    slides_as: FloatArray
+
+    def judged(self, place: FloatArray) -> FloatArray:
+        """What must settle: the two ends, and the sliding at some places, (2 + k,)."""
+        return np.concatenate([[self.entry, self.exit], np.interp(place, self.place, self.slides_as)])
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Periodic motion under shifts.
+
+    Attributes
+    ----------
+    system : the equations of motion with shifted laws
+    times : (n,) times in the mesh cycle [s]
+    states : (n, 12) lumped states
+    place, at : (k,) nominal places of one tooth pair along its whole path [m], and the time of each
+    load : (k,) its normal load there [N]
+    """
+
+    system: LTVSystem
+    times: FloatArray
+    states: FloatArray
+    place: FloatArray
+    at: NDArray[np.int64]
+    load: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class ShiftedModel:
+    """The lumped model of one pair with shifted element laws.
+
+    Attributes
+    ----------
+    pair, cycle, nominal : the pair, its nominal mesh cycle and equations of motion
+    static : (12,) states at rest
+    times : (n,) even times at which the motion is read off, beside those when friction jumps [s]
+    effects : finite-motion effects that act
+    friction_velocity : sliding velocity over which friction changes its sign [m/s]
+    """
+
+    pair: GearPair
+    cycle: MeshCycle
+    nominal: LTVSystem
+    static: FloatArray
+    times: FloatArray
+    effects: frozenset[str]
+    friction_velocity: float
+
+    def settle(self, start: Shifts | None) -> tuple[Shifts, bool]:
+        """Shifts that are those of their own motion: the last ones, and whether they settled.
+
+        Anderson's iteration: the next guess is the combination of the remembered ones whose mismatches cancel
+        best.
+
+        References
+        ----------
+        D. G. Anderson, "Iterative procedures for nonlinear integral equations", J. ACM 12 (1965) 547-560.
+        """
+        floor = _SETTLED * self.cycle.geometry.base_pitch
+        shifts = self.shifts_after(self.motion(start))
+        best, closest, age = shifts, np.inf, 0
+        tried: list[tuple[Shifts, Shifts]] = []
+        for number in range(_ITERATIONS):
+            try:
+                found = self.shifts_after(self.motion(shifts))
+            except NumericalError:  # swung so far that no such motion exists
+                break
+            tried = [*tried[-_REMEMBERED:], (shifts, found)]
+            given, results = (
+                np.stack([s.judged(found.place) for s in part]) for part in zip(*tried, strict=True)
+            )
+            mismatch = results - given
+            size = np.abs(mismatch[-1]).max() / max(floor, _OF_SHIFT * max(found.entry, found.exit))
+            if size < closest:
+                best, closest, age = found, float(size), number
+            if closest < 1.0 or number - age > _PATIENCE:
+                break
+            weights = np.linalg.lstsq(np.diff(mismatch, axis=0).T, mismatch[-1], rcond=_ALIKE)[0]
+            guess = results[-1] - weights @ np.diff(results, axis=0)
+            first, last = np.maximum(guess[:2], 0.0)
+            shifts = replace(found, entry=float(first), exit=float(last), slides_as=guess[2:])
+        return best, closest < _ACCEPTED
+
+    def motion(self, shifts: Shifts | None) -> Motion:
+        """Periodic motion under these shifts; None is the nominal motion."""
+        system = self.nominal if shifts is None else self._system(shifts)
+        times = self._with_jumps(system)
+        states = periodic_solution(self.pair, times, system=system, estimate_error=False).states
+        g, e = self.cycle.geometry, system.cycle.elements
+        # A pair passes its path in as many cycles as there are pairs; each repeats the same motion.
+        speed = g.base_pitch / self.cycle.period
+        place = g.L_XA + (np.arange(g.pairs)[:, None] * g.base_pitch + times * speed).ravel()
+        place = place[: int(np.searchsorted(place, g.L_XD)) + 1]
+        at = np.arange(place.size) % times.size
+        overlap, rate = states[at, :6] @ system.deflection, states[at, 6:] @ system.deflection
+        load = e.stiffness(place) * (overlap - e.error(place))
+        load += e.damping(place) * (rate - e.error.derivative()(place) * speed)
+        found = Motion(system, times, states, place, at, load)
+        return self._on_turned_line(found) if "moving_line" in self.effects else found
+
+    def shifts_after(self, motion: Motion) -> Shifts:
+        """What a motion moves."""
+        g, place, at = self.cycle.geometry, motion.place, motion.at
+        z = motion.states[:, :6].T
+        r_p, r_g = g.base_radius_pinion, g.base_radius_gear
+        entering, rotating, moving = (
+            float(name in self.effects) for name in ("entry_shift", "rotation_phase", "moving_line")
+        )
+        turned = moving * (z[5] - z[4]) / g.L_XY
+        longer = moving * (z[3] - z[2]) + (r_p + r_g) * turned
+        reach = 0.5 * entering * (motion.system.deflection @ z + longer)
+        by_turns = r_p * (z[0] - self.static[0]) + r_g * (z[1] - self.static[1])
+        further = 0.5 * (rotating * by_turns + (r_p - r_g) * turned)
+        # Sliding is the work of friction: its rate of work per unit force, with the opposite sign.
+        sliding = -np.sum(motion.states[at, 6:] * motion.system.structure.friction(place), axis=1)
+        sliding += 0.5 * (g.omega_pinion - g.omega_gear) * longer[at]
+        stands_at = slides_as = place + further[at]
+        if "sliding_velocity" in self.effects:
+            slides_as = stands_at + sliding / (g.omega_pinion + g.omega_gear)
+        way = motion.times * (g.base_pitch / self.cycle.period)
+        return Shifts(
+            entry=self._met(way, reach - further, 0.0, 1.0),
+            exit=self._met(way, reach + further, g.L_XD - g.L_XA, -1.0),
+            place=place,
+            stands_at=stands_at,
+            slides_as=slides_as,
+        )
+
+    def held(self, motion: Motion) -> bool:
+        """Whether friction holds the teeth where a motion passes zero sliding: Filippov's condition."""
+        g = self.cycle.geometry
+        way, law = self.shifts_after(motion).slides_as - g.L_XP, motion.system.cycle.elements.friction
+        nominal = self.cycle.elements.friction
+        passing = np.flatnonzero(way[1:] * way[:-1] < 0.0)
+        passing = passing[passing > 0]
+        # Sliding acceleration just before, without friction, against what friction takes of it.
+        s, speed = motion.system.structure, g.base_pitch / self.cycle.period
+        before = np.diff(way)[passing - 1] / np.diff(motion.place)[passing - 1]
+        without = before * speed * (g.omega_pinion + g.omega_gear)
+        place = 0.5 * (motion.place[passing] + motion.place[passing - 1])
+        mobility = np.sum(s.friction(place) ** 2 / s.mass, axis=1)
+        load = motion.load[passing]
+        without += law(place) * load * mobility
+        most = max(abs(float(nominal(g.L_XP + side * _BESIDE))) for side in (-1.0, 1.0))
+        return bool(np.any(np.abs(without) < most * load * mobility))
+
+    def _system(self, shifts: Shifts) -> LTVSystem:
+        """Equations of motion with the element laws as they act after these shifts."""
+        g, e = self.cycle.geometry, self.cycle.elements
+        ends = g.L_XA + shifts.entry, g.L_XD - shifts.exit
+        friction = e.friction
+        if friction.coefficients.any():
+            width = self.friction_velocity / (g.omega_pinion + g.omega_gear)
+            friction = at_sliding(friction, g.L_XP, shifts.place, shifts.slides_as, width)
+        elements = replace(
+            e,
+            stiffness=shortened(moved(e.stiffness, shifts.place, shifts.stands_at), *ends),
+            damping=shortened(moved(e.damping, shifts.place, shifts.stands_at), *ends),
+            friction=friction,
+        )
+        return periodic_system(self.pair, "absolute", cycle=MeshCycle(g, elements))
+
+    def _on_turned_line(self, motion: Motion) -> Motion:
+        """Let the normal load act along the turned line: y moves by the receptances of eqs. 8 and 9."""
+        s, n, period = motion.system.structure, self.times.size, self.cycle.period
+        z = motion.states
+        total = np.bincount(motion.at, motion.load, motion.times.size)
+        force = total * (z[:, 5] - z[:, 4]) / self.cycle.geometry.L_XY
+        spectrum = np.fft.rfft(force[np.searchsorted(motion.times, self.times)])
+        omega = 2.0 * np.pi * np.fft.rfftfreq(n, period / n)
+        states = z.copy()
+        for j, sign in ((4, -1.0), (5, 1.0)):
+            y = sign * spectrum / (s.stiffness[j] + 1j * omega * s.damping[j] - omega**2 * s.mass[j])
+            for column, part in ((j, y), (6 + j, 1j * omega * y)):
+                states[:, column] += np.interp(motion.times, self.times, np.fft.irfft(part, n), period=period)
+        return replace(motion, states=states)
+
+    def _with_jumps(self, system: LTVSystem) -> FloatArray:
+        """``times``, and those when friction jumps: sliding has a kink there, which must not be missed."""
+        cycle = system.cycle
+        phase = np.mod(
+            (cycle.elements.friction.switches - cycle.geometry.L_XA) / cycle.geometry.base_pitch, 1.0
+        )
+        jumps = np.unique(phase * cycle.period)
+        near = np.abs(jumps[:, None] - np.append(self.times, cycle.period)).min(axis=1, initial=np.inf)
+        jumps = jumps[near > _APART * cycle.period]
+        return np.union1d(self.times, jumps[np.diff(jumps, prepend=-np.inf) > _APART * cycle.period])
+
+    def _met(self, way: FloatArray, distance: FloatArray, end: float, direction: float) -> float:
+        """The distance when it equals the way from an end of the path; never outside the path [m]."""
+        pitch, found = self.cycle.geometry.base_pitch, 0.0
+        for _ in range(20):  # the distance changes by far less than the way does
+            found = max(float(np.interp(end + direction * found, way, distance, period=pitch)), 0.0)
+        return found

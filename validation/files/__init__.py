@@ -1,0 +1,1 @@
+"""Files and folders of results, written whole or not at all."""

@@ -1,0 +1,155 @@
+"""Result files: NetCDF, CSV or MATLAB files of a dataset, each written whole or not at all."""
+
+from __future__ import annotations
+
+import csv
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from lumped.errors import refuse
+from validation.files.matlab import mat_contents, save_mat
+
+DATA_SUFFIXES = (".nc", ".csv", ".mat")
+FIGURE_SUFFIXES = (".png", ".svg", ".pdf")
+#: Dimensions that become columns of a CSV file; all others become rows.
+COLUMN_DIMENSIONS = ("pair", "multiplier", "law")
+
+
+def check_file(path: Path, suffixes: tuple[str, ...], *, force: bool) -> Path:
+    """Return the path after refusing one that must not be written, before any work is done.
+
+    Raises
+    ------
+    ParameterError : unknown suffix, an existing file without ``force``, or a folder that does not exist or
+        cannot be written
+    """
+    if path.suffix.lower() not in suffixes:
+        allowed = "a name ending in " + ", ".join(suffixes)
+        raise refuse("output", path, allowed, "The suffix chooses the format.")
+    if path.is_dir():
+        raise refuse("output", path, "a file", "This is a folder; add a file name.")
+    if path.exists() and not force:
+        raise refuse("output", path, "a new file", "It exists: choose another name, or give --force.")
+    if not path.parent.is_dir():
+        raise refuse(
+            "output", path, "a file in a folder that exists", f"Make the folder {path.parent} first."
+        )
+    try:
+        with tempfile.TemporaryFile(dir=path.parent):
+            pass
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise refuse(
+            "output", path, "a place that can be written", f"It cannot be written ({reason})."
+        ) from None
+    return path
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """Give a temporary file beside ``path`` to write, and put it in place of ``path`` at the end.
+
+    On any failure nothing is left behind and an existing file stays as it was.
+    """
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=path.suffix, dir=path.parent)
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        yield temporary
+        mask = os.umask(0)
+        os.umask(mask)
+        temporary.chmod(0o666 & ~mask)  # mkstemp makes it private
+        temporary.replace(path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file whole."""
+    with whole_file(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def write_dataset(result: xr.Dataset, path: Path) -> None:
+    """Write a dataset as NetCDF, CSV or MATLAB file, by suffix, whole."""
+    with whole_file(path) as temporary:
+        if path.suffix.lower() == ".csv":
+            _write_csv(result, temporary)
+        elif path.suffix.lower() == ".mat":
+            save_mat(mat_contents(result), temporary)
+        else:
+            _write_netcdf(result, temporary)
+
+
+def _write_netcdf(result: xr.Dataset, path: Path) -> None:
+    ready = _real(result)
+    ready.attrs = {key: _attribute(value) for key, value in result.attrs.items()}
+    for name, variable in result.variables.items():
+        if variable.dtype == bool:  # NetCDF has no booleans
+            ready[name] = variable.astype(np.int8)
+    encoding = {
+        str(name): {"zlib": True, "complevel": 4}
+        for name, variable in ready.data_vars.items()
+        if variable.ndim and variable.dtype.kind == "f"
+    }
+    ready.to_netcdf(path, engine="h5netcdf", encoding=encoding)
+
+
+def _real(result: xr.Dataset) -> xr.Dataset:
+    """Split complex variables, which neither format has, into real and imaginary part."""
+    ready = result.copy()
+    for name, variable in result.data_vars.items():
+        if np.iscomplexobj(variable):
+            ready[f"{name}_real"] = (variable.dims, variable.to_numpy().real, variable.attrs)
+            ready[f"{name}_imag"] = (variable.dims, variable.to_numpy().imag, variable.attrs)
+            ready = ready.drop_vars([str(name)])
+    return ready
+
+
+def _attribute(value: Any) -> Any:
+    if isinstance(value, bool):
+        return int(value)
+    if isinstance(value, (list, tuple)):
+        return "; ".join(map(str, value))
+    return value
+
+
+def _inert(texts: np.ndarray[Any, np.dtype[Any]]) -> np.ndarray[Any, np.dtype[Any]]:
+    """Put an apostrophe before text that a spreadsheet would run as a formula."""
+    safe = [f"'{t}" if str(t).startswith(("=", "+", "-", "@", "\t", "\r")) else t for t in texts]
+    return np.array(safe, dtype=object)
+
+
+def _write_csv(result: xr.Dataset, path: Path) -> None:
+    """One row per point of the axes, one column per variable (and tooth pair, multiplier or law)."""
+    ready = _real(result)
+    axes = [str(d) for d in ready.sizes if d not in COLUMN_DIMENSIONS]
+    grid = np.meshgrid(*(ready[d].to_numpy() for d in axes), indexing="ij")
+    columns: list[tuple[str, Any]] = [
+        (f"{d} [{ready[d].attrs.get('units', '1')}]", v.ravel()) for d, v in zip(axes, grid, strict=True)
+    ]
+    for name, variable in ready.data_vars.items():
+        unit = variable.attrs.get("units", "1")
+        others = [str(d) for d in variable.dims if d in COLUMN_DIMENSIONS]
+        wide = variable.expand_dims({d: ready[d] for d in axes if d not in variable.dims}).transpose(
+            *others, *axes
+        )
+        values = wide.to_numpy().reshape(-1, grid[0].size)
+        labels = [""]
+        for d in others:
+            known = ready[d].to_numpy() if d in ready.coords else np.arange(ready.sizes[d])
+            labels = [f"{label}_{d}{k}" for label in labels for k in known]
+        columns += [(f"{name}{label} [{unit}]", row) for label, row in zip(labels, values, strict=True)]
+    columns = [(heading, _inert(v) if v.dtype.kind in "OU" else v) for heading, v in columns]
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow([heading for heading, _ in columns])
+        for row in zip(*(values.tolist() for _, values in columns), strict=True):
+            writer.writerow(row)

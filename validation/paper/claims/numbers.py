@@ -1,0 +1,162 @@
+"""The numbers behind the claims, each with the definition that the claims table states.
+
+Everything here is a function of a gear pair with all its assumptions, or of runs of the four laws, so that
+the same numbers can be had for any sample of the assumptions and for either model.
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from lumped import GearPair, PathFunction, geometry
+from lumped.friction import contact_path, friction_path_function, mean_coefficient
+from lumped.model.periodic_cycle import periodic_cycle
+from validation.paper.operating_points import FIGURE_2A, FIGURE_7, LAWS, TORQUE_2B, second_pair
+from validation.paper.twins import mesh_orders, total
+
+FloatArray = NDArray[np.float64]
+
+#: Half width of "at the pitch point" [mesh cycles].
+AT_PITCH = 0.01
+#: Distance from the pitch point at which one-sided limits are taken [m]; law IV changes over 1/Phi = 2e-5 m.
+_ONE_SIDED = 1e-9
+#: Power with which the film parameter grows with speed, equation 21.
+_FILM_POWER = 0.69
+_ORDERS = 10
+
+
+def mean_ratio(pair: GearPair) -> float:
+    """Mean |mu| of II over that of III at Fig. 2a's point, the smaller of the two gear pairs."""
+    ratios = []
+    for gears in (pair, second_pair(pair)):
+        at = FIGURE_2A.of(gears)
+        ii, iii = (friction_path_function(at, law=law) for law in ("benedict_kelley", "xu_kahraman"))
+        ratios.append(mean_coefficient(ii) / mean_coefficient(iii))
+    return min(ratios)
+
+
+def at_pitch_point(pair: GearPair) -> tuple[float, float]:
+    """Largest |mu| within ``AT_PITCH`` of P: of III over its mean, of II over its largest elsewhere."""
+    at = FIGURE_2A.of(pair)
+    g = geometry(at)
+    near = g.L_XP + AT_PITCH * g.base_pitch * np.linspace(-1.0, 1.0, 401)
+    path = np.linspace(g.L_XA, np.nextafter(g.L_XD, 0.0), 2001)
+    away = path[np.abs(path - g.L_XP) > AT_PITCH * g.base_pitch]
+    ii, iii = (friction_path_function(at, law=law) for law in ("benedict_kelley", "xu_kahraman"))
+    return (
+        float(np.abs(iii(near)).max()) / mean_coefficient(iii),
+        float(np.abs(ii(near)).max()) / max(float(np.abs(ii(away)).max()), 1e-12),
+    )
+
+
+def regime_change(pair: GearPair) -> tuple[float, float, float]:
+    """Speed [rpm], relative width and drop of mean |mu| of the change from law II to III at Fig. 2b's torque.
+
+    Lambda grows with v_e^0.69 at every place, so each place changes its law at a speed of its own. Speed:
+    where half of the path has changed; width: from 10 % to 90 % of the path, over that speed; drop: mean of
+    II over mean of III.
+    """
+    reference = pair.with_({"operating.pinion_torque": TORQUE_2B, "operating.pinion_speed": 1000.0})
+    path = contact_path(reference)
+    xi = np.linspace(path.L_XA, path.L_XD, 2001)
+    level = pair.friction.thresholds[1]
+    speeds = 1000.0 * (level / path.film_parameter(xi)) ** (1.0 / _FILM_POWER)
+    low, middle, high = (float(np.percentile(speeds, p)) for p in (10, 50, 90))
+    at = reference.with_({"operating.pinion_speed": min(max(middle, 1.0), 1.9e5)})
+    ii, iii = (
+        mean_coefficient(friction_path_function(at, law=law)) for law in ("benedict_kelley", "xu_kahraman")
+    )
+    return middle, (high - low) / middle, ii / iii
+
+
+def pitch_jumps(pair: GearPair) -> dict[str, float]:
+    """Jump of mu at the pitch point over its peak to peak, per law, at Fig. 4's point."""
+    g = geometry(pair)
+    path = np.linspace(g.L_XA, np.nextafter(g.L_XD, 0.0), 4001)
+    sides = g.L_XP + _ONE_SIDED * np.array([-1.0, 1.0])
+    found = {}
+    for law in LAWS:
+        mu: PathFunction = friction_path_function(pair, law=law)
+        before, after = mu(sides)
+        span = float(np.ptp(np.concatenate([mu(path), [before, after]])))
+        found[law] = float(after - before) / span
+    return found
+
+
+def law_cycles(pair: GearPair, samples: int = 128) -> xr.Dataset:
+    """Lumped periodic motion under laws I to IV, lighter than ``law_runs``.
+
+    Returns
+    -------
+    Dataset over law, [pair,] phase (mesh cycles): dte, x_p, y_p, normal_load, friction_force, contact; over
+    law: spectral_radius
+    """
+    runs = [periodic_cycle(pair.with_({"friction.law": law}), samples) for law in LAWS]
+    dims = {1: ("law", "phase"), 2: ("law", "pair", "phase")}
+    found = {}
+    for name in ("dte", "x_p", "y_p", "normal_load", "friction_force", "contact"):
+        values = np.array([run.values[name] for run in runs])
+        found[name] = (dims[values.ndim - 1], values)
+    found["spectral_radius"] = (("law",), np.array([run.spectral_radius for run in runs]))
+    return xr.Dataset(found, coords={"law": list(LAWS), "phase": np.arange(samples) / samples})
+
+
+def load_spread(cycles: xr.Dataset) -> tuple[float, float]:
+    """Spread of the total normal load between the laws over its mean: largest and rms over time."""
+    load = total(cycles["normal_load"])
+    spread = load.max("law") - load.min("law")
+    mean = float(load.mean())
+    return float(spread.max()) / mean, float(np.sqrt((spread**2).mean())) / mean
+
+
+def motion_differences(cycles: xr.Dataset, name: str) -> tuple[float, float]:
+    """Largest rms difference and mean absolute difference between two laws, over the mean peak to peak.
+
+    The former is the worst of the six pairs of laws, the latter the mean over them.
+    """
+    values = cycles[name].transpose("law", "phase").to_numpy()
+    span = float(np.ptp(values, axis=1).mean())
+    differences = np.array([values[i] - values[j] for i, j in combinations(range(len(values)), 2)])
+    worst = float(np.sqrt((differences**2).mean(axis=1)).max())
+    return worst / span, float(np.abs(differences).mean()) / span
+
+
+def spread_by_order(cycles: xr.Dataset, name: str) -> tuple[FloatArray, FloatArray]:
+    """Spread of the amplitudes between the laws by mesh order 1 to 10: absolute [m], and over their mean.
+
+    Orders whose mean amplitude is below 2 % of the largest have relative spread 0: they carry no motion.
+    """
+    amplitude = mesh_orders(cycles[name], _ORDERS).transpose("law", "order").to_numpy()
+    spread, mean = np.ptp(amplitude, axis=0), amplitude.mean(axis=0)
+    relative = np.where(mean > 0.02 * mean.max(), spread / mean, 0.0)
+    return np.asarray(spread, dtype=np.float64), np.asarray(relative, dtype=np.float64)
+
+
+def largest_order(cycles: xr.Dataset, name: str, *, relative: bool = False) -> int:
+    """Mesh order at which the laws differ most, see ``spread_by_order``."""
+    return int(np.argmax(spread_by_order(cycles, name)[int(relative)])) + 1
+
+
+def mean_iii(pair: GearPair) -> tuple[float, ...]:
+    """Mean |mu| of law III at the points of Fig. 7."""
+    return tuple(
+        mean_coefficient(friction_path_function(point.of(pair), law="xu_kahraman")) for point in FIGURE_7
+    )
+
+
+def fig7_peaks(pair: GearPair) -> tuple[float, float, float, float]:
+    """The motion of Fig. 7's faster point under law III in four numbers.
+
+    Largest normal load and friction force of a tooth pair [N], smallest load of a pair in contact over the
+    static load, largest multiplier.
+    """
+    at = FIGURE_7[1].of(pair).with_({"friction.law": "xu_kahraman"})
+    run = periodic_cycle(at, 128)
+    normal, friction = run.values["normal_load"], run.values["friction_force"]
+    static = at.operating.pinion_torque / geometry(at).base_radius_pinion
+    lowest = float(normal[run.values["contact"] > 0].min()) / static
+    return float(normal.max()), float(np.abs(friction).max()), lowest, run.spectral_radius

@@ -1,0 +1,226 @@
+"""How much the claims depend on what the paper does not give: a Latin hypercube over the assumptions."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import qmc
+
+from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError, bodies, geometry
+from lumped.arguments import whole_number
+from validation.paper.claims import numbers
+from validation.paper.operating_points import FIGURE_4
+
+FloatArray = NDArray[np.float64]
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class Assumption:
+    """One assumed parameter and its range.
+
+    Attributes
+    ----------
+    name, unit : for the table
+    low, high : ends of the range
+    logarithmic : whether equal ratios are equally likely, not equal differences
+    meaning : of the range in words, where the number only chooses
+    """
+
+    name: str
+    unit: str
+    low: float
+    high: float
+    logarithmic: bool = True
+    meaning: str = ""
+
+    def value(self, quantile: float) -> float:
+        """Value at a quantile, 0 to 1."""
+        if self.logarithmic:
+            return float(self.low * (self.high / self.low) ** quantile)
+        return self.low + (self.high - self.low) * quantile
+
+    def __str__(self) -> str:
+        if self.meaning:
+            return self.meaning
+        unit = f" {self.unit}" if self.unit else ""
+        return f"{self.low:g} to {self.high:g}{unit}" + (", logarithmic" if self.logarithmic else "")
+
+
+#: Ranges wide enough for a gear rig of this size and any common oil; the preset's values lie inside.
+ASSUMPTIONS = (
+    Assumption("inertia, factor on both gears", "", 0.5, 2.0),
+    Assumption("mass, factor on both gears", "", 0.5, 3.0),
+    Assumption("bearing stiffness, LOA", "N/m", 3e7, 3e8),
+    Assumption("bearing stiffness, OLOA over LOA", "", 0.5, 2.0),
+    Assumption("bearing damping ratio", "", 0.01, 0.1),
+    Assumption("mesh damping ratio", "", 0.02, 0.1),
+    Assumption("average roughness of each flank", "µm", 0.05, 0.6),
+    Assumption("viscosity at the contact inlet", "mPa s", 4.0, 50.0),
+    Assumption("upper bound of law II", "", 0.1, 0.3, logarithmic=False),
+    Assumption("sharpness of law IV", "1/mm", 20.0, 200.0),
+    Assumption(
+        "tooth-pair stiffness",
+        "",
+        0.0,
+        1.0,
+        False,
+        "rectangular, or parabolic with ramps of 0.5 mm: half each",
+    ),
+)
+
+
+def vary(pair: GearPair, values: FloatArray) -> GearPair:
+    """The pair with the assumptions replaced, values (len(ASSUMPTIONS),) in their order and units."""
+    inertia, mass, k_loa, ratio, zeta_b, zeta_m, roughness, viscosity, bound, sharpness, form = map(
+        float, values
+    )
+    own = bodies(pair)
+    changes: dict[str, object] = {
+        "pinion.inertia": inertia * own.inertia_pinion,
+        "gear.inertia": inertia * own.inertia_gear,
+        "pinion.mass": mass * own.mass_pinion,
+        "gear.mass": mass * own.mass_gear,
+        "mesh.damping_ratio": zeta_m,
+        "pinion.roughness": roughness,
+        "gear.roughness": roughness,
+        "friction.composite_roughness": None,
+        "friction.maximum": bound,
+        "friction.sharpness": sharpness,
+        "lubricant": {
+            "viscosity": viscosity,
+            "pressure_viscosity_k": pair.lubricant.pressure_viscosity_k,
+            "pressure_viscosity_s": pair.lubricant.pressure_viscosity_s,
+        },
+    }
+    for side in ("pinion", "gear"):
+        changes |= {
+            f"bearings.{side}.loa_stiffness": k_loa,
+            f"bearings.{side}.oloa_stiffness": ratio * k_loa,
+            f"bearings.{side}.loa_damping_ratio": zeta_b,
+            f"bearings.{side}.oloa_damping_ratio": zeta_b,
+        }
+    if form > 0.5:
+        changes["mesh.stiffness"] = {"model": "parabolic", "ramp_length": 0.5}
+    else:
+        changes["mesh.stiffness"] = {"model": "rectangular"}
+    return pair.with_(changes)
+
+
+@dataclass(frozen=True, eq=False)
+class Sensitivity:
+    """Claim numbers over samples of the assumptions.
+
+    Attributes
+    ----------
+    numbers : name as in ``measure`` -> (samples,) values
+    samples : sampled assumptions that gave numbers (samples, len(ASSUMPTIONS))
+    failed : samples without periodic motion or refused by the schema
+    outside : samples in which a law left its validity range
+    seed : of the hypercube
+    """
+
+    numbers: dict[str, FloatArray]
+    samples: FloatArray
+    failed: int
+    outside: int
+    seed: int
+
+    @property
+    def size(self) -> int:
+        """Number of samples that gave numbers."""
+        return int(self.samples.shape[0])
+
+
+def measure(pair: GearPair) -> dict[str, float]:
+    """All claim numbers of a pair, see ``claim_numbers``.
+
+    Of the motions behind figures 4 and 7: radius_4 and radius_7, largest multiplier; min_load_4 and
+    min_load_7, smallest load of a pair in contact over the static load.
+    """
+    at = FIGURE_4.of(pair)
+    cycles = numbers.law_cycles(at)
+    iii_at_pitch, ii_at_pitch = numbers.at_pitch_point(pair)
+    speed, width, drop = numbers.regime_change(pair)
+    jumps = numbers.pitch_jumps(at)
+    spread, spread_rms = numbers.load_spread(cycles)
+    slow, fast = numbers.mean_iii(pair)
+    normal, friction, lowest, radius_7 = numbers.fig7_peaks(pair)
+    static = at.operating.pinion_torque / geometry(at).base_radius_pinion
+    found = {
+        "mean_ratio": numbers.mean_ratio(pair),
+        "iii_at_pitch": iii_at_pitch,
+        "ii_at_pitch": ii_at_pitch,
+        "switch_speed": speed,
+        "switch_width": width,
+        "switch_drop": drop,
+        "load_spread": spread,
+        "load_spread_rms": spread_rms,
+        "mean_iii_slow": slow,
+        "mean_iii_fast": fast,
+        "peak_normal": normal,
+        "peak_friction": friction,
+        "radius_4": float(cycles["spectral_radius"].max()),
+        "radius_7": radius_7,
+        "min_load_4": float(cycles["normal_load"].where(cycles["contact"] > 0).min()) / static,
+        "min_load_7": lowest,
+    }
+    found |= {f"jump_{law}": value for law, value in jumps.items()}
+    for name in ("x_p", "y_p", "dte"):
+        found[f"rms_{name}"], found[f"mean_absolute_{name}"] = numbers.motion_differences(cycles, name)
+        found[f"order_{name}"] = float(numbers.largest_order(cycles, name))
+        found[f"relative_order_{name}"] = float(numbers.largest_order(cycles, name, relative=True))
+    return found
+
+
+def sample_assumptions(
+    pair: GearPair, samples: int = 100, *, seed: int = 2008, progress: Progress | None = None
+) -> Sensitivity:
+    """Work out the claim numbers over a Latin hypercube of the assumptions.
+
+    Parameters
+    ----------
+    pair : the gear pair; its teeth, geometry and materials are kept
+    samples : of the hypercube, 8 to 100000
+    seed : of the hypercube
+    progress : called with the finished fraction
+
+    Raises
+    ------
+    ParameterError : samples out of range
+    NumericalError : fewer than half of the samples have a periodic motion
+    """
+    samples = whole_number("samples", samples, 8, 100_000, "Use 100 for shares to 5 %.")
+    seed = whole_number("seed", seed, 0, 2**63 - 1)
+    quantiles = qmc.LatinHypercube(len(ASSUMPTIONS), rng=np.random.default_rng(seed)).random(samples)
+    rows: list[dict[str, float]] = []
+    kept: list[FloatArray] = []
+    failed = outside = 0
+    for done, row in enumerate(quantiles, 1):
+        values = np.array([a.value(float(q)) for a, q in zip(ASSUMPTIONS, row, strict=True)])
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", LawRangeWarning)
+            try:
+                rows.append(measure(vary(pair, values)))
+                kept.append(values)
+            except (NumericalError, ParameterError):
+                failed += 1
+        outside += any(issubclass(w.category, LawRangeWarning) for w in caught)
+        if progress is not None:
+            progress(done / samples)
+    if len(rows) < samples / 2:
+        raise NumericalError(
+            f"{failed} of {samples} samples of the assumptions have no periodic motion: check the pair's "
+            "speed and stiffness."
+        )
+    return Sensitivity(
+        numbers={name: np.array([r[name] for r in rows]) for name in rows[0]},
+        samples=np.array(kept),
+        failed=failed,
+        outside=outside,
+        seed=seed,
+    )

@@ -1,0 +1,125 @@
+"""Errata of symbols and kinematics: equations 8 and 5b."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped import GearPair, Geometry, geometry, load_gear_pair
+from validation.paper.errata.dimensions import equation_8
+from validation.paper.records import Erratum, Evidence
+
+FloatArray = NDArray[np.float64]
+
+
+def inertia_matrix(*, printed: bool) -> FloatArray:
+    """Which acceleration stands in which of equations 1, 2, 6 to 9: (6, 6), ones.
+
+    Columns theta_p, theta_g, x_p, x_g, y_p, y_g. The printed equation 8 has x_p'' where y_p'' belongs.
+    """
+    matrix = np.eye(6)
+    if printed:
+        matrix[4] = 0.0
+        matrix[4, 2] = 1.0
+    return matrix
+
+
+def erratum_8() -> Erratum:
+    """Equation 8: x_p'' and K_pBx with y_p."""
+    ranks = [int(np.linalg.matrix_rank(inertia_matrix(printed=p))) for p in (True, False)]
+    return Erratum(
+        "8",
+        "m_p x_p'' + ... + K_pBx y_p",
+        "m_p y_p'' + ... + K_pBy y_p",
+        "misprinted symbol",
+        f"As printed y_p has no inertia: the accelerations of the six equations have rank {ranks[0]} instead "
+        f"of {ranks[1]}, x_p'' is determined twice (6 and 8) and y_p'' never, so the set cannot be "
+        "integrated. The dimensions do not show it, because x and y are both lengths; the symmetry with "
+        "equation 9 does.",
+        (
+            Evidence("rank of the inertia matrix of equations 1, 2, 6 to 9", "1", ranks[0], ranks[1], "6"),
+            Evidence("dimension check", "", equation_8(), equation_8(), "passes"),
+            Evidence(
+                "power balance, third law, motion, mean speed and multipliers",
+                "",
+                "none: y_p'' is not determined",
+                "those of the model",
+                "exist",
+            ),
+        ),
+    )
+
+
+def gear_arms(g: Geometry, phase: FloatArray, *, printed: bool) -> FloatArray:
+    """X_gi of equation 5b at phases tau (0 to 1) of the mesh cycle, (pairs, k) [m].
+
+    As printed L_YC + i lambda - mod(Omega_g r_bg t, lambda), with L_YC = L_XY - L_XC; as repaired L_XY -
+    X_pi.
+    """
+    i = np.arange(g.pairs)[:, None]
+    if printed:
+        return np.asarray(g.L_XY - g.L_XC + i * g.base_pitch - phase * g.base_pitch, dtype=np.float64)
+    return np.asarray(g.L_XY - pinion_arms(g, phase), dtype=np.float64)
+
+
+def pinion_arms(g: Geometry, phase: FloatArray) -> FloatArray:
+    """X_pi = L_XA + (n - i) lambda + phase lambda of equation 5a, (pairs, k) [m]."""
+    i = np.arange(g.pairs)[:, None]
+    return np.asarray(g.L_XA + (g.pairs - 1 - i + phase) * g.base_pitch, dtype=np.float64)
+
+
+def erratum_5b(pair: GearPair) -> Erratum:
+    """Equation 5b: right for contact ratios below 2 only."""
+    low, high = geometry(pair), geometry(high_contact_ratio())
+    phase = np.linspace(0.0, 1.0, 64, endpoint=False)
+
+    def residual(g: Geometry, printed: bool) -> float:
+        total = pinion_arms(g, phase) + gear_arms(g, phase, printed=printed)
+        return 1e3 * float(np.abs(total - g.L_XY).max())
+
+    return Erratum(
+        "5b",
+        "L_YC + i lambda - mod(Omega_g r_bg t, lambda)",
+        "L_XY - X_pi, for any number of pairs",
+        "incomplete",
+        f"Both arms of a contact add up to L_XY. For the pair's contact ratio {low.contact_ratio:.3f} the "
+        f"print gives that (to {residual(low, True):.1g} mm); for the 28/28 pair with taller teeth and "
+        f"contact ratio {high.contact_ratio:.3f} it is off by {residual(high, True):.4f} mm, one base pitch, "
+        "which puts the sign change of friction in the wrong place. Omega_g r_bg and Omega_p r_bp are the "
+        "same velocity.",
+        (
+            Evidence(
+                f"largest |X_p + X_g - L_XY| at contact ratio {low.contact_ratio:.3f}",
+                "mm",
+                residual(low, True),
+                residual(low, False),
+                "0",
+            ),
+            Evidence(
+                f"largest |X_p + X_g - L_XY| at contact ratio {high.contact_ratio:.3f}",
+                "mm",
+                residual(high, True),
+                residual(high, False),
+                "0",
+            ),
+            Evidence(
+                f"power balance, motion and multipliers at contact ratio {low.contact_ratio:.3f}",
+                "",
+                "as repaired: the same arms" if low.pairs == 2 else "wrong lever of friction",
+                "those of the model",
+            ),
+        ),
+    )
+
+
+def high_contact_ratio() -> GearPair:
+    """The 28/28 pair with addenda of 1.35 modules: two to three tooth pairs in contact."""
+    return load_gear_pair("nasa_28_28").with_(
+        {
+            "basic_rack.addendum_coefficient": 1.35,
+            "basic_rack.dedendum_coefficient": 1.55,
+            "basic_rack.fillet_radius_coefficient": 0.1,
+            "pinion.tip_relief": None,
+            "gear.tip_relief": None,
+        }
+    )

@@ -1,0 +1,1 @@
+"""Where the linear model stops being valid: contact lost, sliding reversed."""

@@ -1,0 +1,218 @@
+"""Is the linear time-varying model valid for this motion? Its assumptions as flags, each with a number.
+
+Sources: docs/theory/validity.md.
+"""
+
+from __future__ import annotations
+
+import itertools
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from lumped import GearPair, Geometry, geometry
+from lumped.friction import contact_path, law_range_violations
+from lumped.stiffness import stiffness_range_violations
+from validation.validity.flag import Flag, State, flag
+
+if TYPE_CHECKING:
+    from floquet.gear.multipliers import GearPairMultipliers
+
+#: Loads below this share of the static load are zero for the question whether teeth separate.
+LOAD_NOISE = 1e-4
+#: Distance from the pitch point within which sliding may reverse, over the base pitch: warning, violation.
+REVERSAL_LIMITS = (0.02, 0.05)
+#: Relative drift of the mean speed over a run: warning, violation. Drift per run, not per cycle.
+DRIFT_LIMITS = (1e-3, 1e-2)
+#: Estimated relative error of the periodic motion: warning, violation.
+ERROR_LIMITS = (1e-6, 1e-4)
+
+
+def validity_flags(
+    pair: GearPair, motion: xr.Dataset, multipliers: GearPairMultipliers | None = None
+) -> tuple[Flag, ...]:
+    """Check the assumptions of the LTV model on a motion.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    motion : dataset of ``lumped.steady_state``, or of a ``simulate``, over whole mesh cycles
+    multipliers : Floquet multipliers of the pair, where they are known
+    """
+    g = geometry(pair)
+    flags = [
+        contact_loss(pair, g, motion),
+        sliding_reversal(g, motion),
+        contact_ratio(g),
+        law_ranges(pair),
+        stiffness_ranges(pair, g),
+        film_regime(pair),
+        torque_balance(pair, motion),
+    ]
+    if float(motion["time"][-1] - motion["time"][0]) > 1.5 * g.mesh_period:
+        flags.append(speed_drift(g, motion))
+    if "error_estimate" in motion.attrs:
+        flags.append(solution_error(motion))
+    if multipliers is not None:
+        flags.append(stability(multipliers))
+    return tuple(flags)
+
+
+def _state(value: float, limits: tuple[float, float]) -> State:
+    return "ok" if value <= limits[0] else "warning" if value <= limits[1] else "violated"
+
+
+def _zone(g: Geometry, position: float) -> str:
+    """Position on the path of contact in words: distance from A and the zone it lies in."""
+    marks = (("A", g.L_XA), ("B", g.L_XB), ("P", g.L_XP), ("C", g.L_XC), ("D", g.L_XD))
+    ordered = sorted(marks, key=lambda mark: mark[1])
+    zone = "beyond the ends"
+    for (low_name, low), (high_name, high) in itertools.pairwise(ordered):
+        if low <= position <= high:
+            zone = f"between {low_name} and {high_name}"
+            break
+    return f"{1e3 * (position - g.L_XA):.3f} mm after A, {zone}"
+
+
+def contact_loss(pair: GearPair, g: Geometry, motion: xr.Dataset) -> Flag:
+    """N_i >= 0 while in contact: the model glues teeth together that would separate."""
+    contact = motion["contact"].to_numpy() > 0
+    load = np.where(contact, motion["normal_load"].to_numpy(), np.inf)
+    lowest = float(load.min())
+    static = pair.operating.pinion_torque / g.base_radius_pinion
+    separated = load < -LOAD_NOISE * static
+    where = np.unravel_index(int(np.argmin(load)), load.shape)
+    place = _zone(g, float(motion["position"].to_numpy()[where]))
+    share = separated.sum() / max(int(contact.sum()), 1)
+    state: State = "violated" if separated.any() else "ok"
+    detail = f"lowest load {lowest:.4g} N ({lowest / static:.3g} of the static load) {place}"
+    if separated.any():
+        detail += f"; below zero over {100 * share:.3g} % of the time in contact"
+    return flag("contact_loss", state, lowest, detail)
+
+
+def sliding_reversal(g: Geometry, motion: xr.Dataset) -> Flag:
+    """Sliding follows the sign s_i of the nominal motion except next to the pitch point."""
+    position = motion["position"].to_numpy()
+    loaded = (motion["contact"].to_numpy() > 0) & (motion["normal_load"].to_numpy() > 0)
+    sliding = motion["sliding_velocity"].to_numpy()
+    reversed_ = loaded & (sliding * np.sign(position - g.L_XP) < 0.0)
+    distance = np.where(reversed_, np.abs(position - g.L_XP), 0.0)
+    farthest = float(distance.max())
+    state = _state(farthest / g.base_pitch, REVERSAL_LIMITS)
+    if reversed_.any():
+        share = reversed_.sum() / max(int(loaded.sum()), 1)
+        detail = (
+            f"sliding is reversed up to {1e3 * farthest:.4g} mm from the pitch point "
+            f"({100 * farthest / g.base_pitch:.3g} % of a base pitch), over {100 * share:.3g} % of the time "
+            f"in contact"
+        )
+    else:
+        detail = "the actual sliding velocity, vibration included, keeps its nominal sign at every sample"
+    return flag("sliding_reversal", state, farthest, detail)
+
+
+def contact_ratio(g: Geometry) -> Flag:
+    """Contact ratio in the range of the formulas, with some margin above 1."""
+    sigma = g.contact_ratio
+    state: State = "ok" if 1.1 <= sigma <= 3.0 else "warning"
+    return flag("contact_ratio", state, sigma, f"{sigma:.4f}: up to {g.pairs} tooth pairs share the load")
+
+
+def law_ranges(pair: GearPair) -> Flag:
+    """The friction law is used inside the range in which it was fitted."""
+    violations = law_range_violations(pair)
+    return flag(
+        "friction_law_range",
+        "warning" if violations else "ok",
+        float(len(violations)),
+        "; ".join(str(v) for v in violations) or f"{pair.friction.law}: no stated limit is exceeded",
+    )
+
+
+def stiffness_ranges(pair: GearPair, g: Geometry) -> Flag:
+    """The stiffness model is used inside the ranges of its fits."""
+    violations = stiffness_range_violations(pair, g)
+    return flag(
+        "stiffness_range",
+        "warning" if violations else "ok",
+        float(len(violations)),
+        "; ".join(str(v) for v in violations) or f"{pair.mesh.stiffness.model}: no stated limit is left",
+    )
+
+
+def film_regime(pair: GearPair) -> Flag:
+    """The film parameter suits the friction law."""
+    path = contact_path(pair)
+    parameter = path.film_parameter(np.linspace(path.L_XA, path.L_XD, 201))
+    low, high = float(parameter.min()), float(parameter.max())
+    boundary = pair.friction.thresholds[0]
+    fluid_law = pair.friction.law in ("benedict_kelley", "xu_kahraman")
+    state: State = "warning" if fluid_law and low < boundary else "ok"
+    return flag(
+        "film_parameter",
+        state,
+        low,
+        f"film parameter {low:.3g} to {high:.3g} along the path of contact, boundary lubrication "
+        f"below {boundary:g}",
+    )
+
+
+def torque_balance(pair: GearPair, motion: xr.Dataset) -> Flag:
+    """The torques hold the mean speed, so that a periodic motion exists."""
+    needed, given = float(motion.attrs["pinion_torque"]), pair.operating.pinion_torque
+    excess = abs(needed - given) / given
+    state = _state(excess, (1e-9, 0.05))
+    brake = float(motion.attrs["brake_torque"])
+    if state == "ok":
+        detail = f"a brake torque of {brake:.6g} N m holds the mean speed"
+    else:
+        detail = (
+            f"with the given brake torque of {brake:.6g} N m the drive must give {needed:.6g} N m, "
+            f"not {given:.6g} N m"
+        )
+    return flag("torque_balance", state, excess, detail)
+
+
+def speed_drift(g: Geometry, motion: xr.Dataset) -> Flag:
+    """The mean speed does not drift over the run."""
+    time, rate = motion["time"].to_numpy(), motion["theta_p_dot"].to_numpy()
+    last = time >= time[-1] - g.mesh_period
+    first = time <= time[0] + g.mesh_period
+    drift = abs(float(rate[last].mean() - rate[first].mean())) / g.omega_pinion
+    state = _state(drift, DRIFT_LIMITS)
+    return flag(
+        "speed_drift",
+        state,
+        drift,
+        f"the mean pinion speed of the last mesh cycle differs from that of the first by {drift:.2e} "
+        "of the nominal speed",
+    )
+
+
+def solution_error(motion: xr.Dataset) -> Flag:
+    """The periodic motion is computed accurately."""
+    error = float(motion.attrs["error_estimate"])
+    state = _state(error, ERROR_LIMITS)
+    return flag(
+        "solution_error",
+        state,
+        error,
+        f"estimated relative error of the transmission error {error:.1e}; mismatch after one cycle "
+        f"{float(motion.attrs['closure']):.1e}",
+    )
+
+
+def stability(multipliers: GearPairMultipliers) -> Flag:
+    """The periodic motion is stable: all Floquet multipliers inside the unit circle."""
+    radius, error = multipliers.spectral_radius, multipliers.error
+    states: dict[str, State] = {"stable": "ok", "undecided": "warning", "unstable": "violated"}
+    state = states[multipliers.verdict]
+    return flag(
+        "stability",
+        state,
+        radius,
+        f"{multipliers.verdict}: largest multiplier {radius:.6f}, error bound {error:.1e}; the rigid "
+        "rotation is taken out, not tolerated",
+    )

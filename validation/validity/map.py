@@ -1,0 +1,127 @@
+"""Where over speed and torque the lumped model is valid: contact, sliding, stability, film regime."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+import lumped
+from lumped import GearPair, LawRangeWarning, geometry
+from lumped.arguments import real_numbers
+from lumped.friction import contact_path
+from lumped.lubrication.film import regime
+from lumped.model.periodic_cycle import UNSTABLE
+from lumped.model.results import provenance
+from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
+
+FloatArray = NDArray[np.float64]
+Progress = Callable[[float], None]
+
+#: Values of ``state``: the worst of contact, sliding and stability.
+STATES = ("valid", "warning", "violated", "no periodic motion")
+#: Names of ``regime``.
+REGIMES = ("boundary", "mixed", "elastohydrodynamic", "full film")
+
+
+def validity_map(
+    pair: GearPair,
+    speeds_rpm: ArrayLike,
+    torques: ArrayLike,
+    *,
+    samples: int = 96,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Check the assumptions of the lumped model on its periodic motion over speed and torque.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    speeds_rpm : pinion speeds [rpm], increasing
+    torques : pinion torques [N m], increasing
+    samples : per mesh cycle
+    progress : called with the finished fraction
+
+    Returns
+    -------
+    Dataset over ``torque`` and ``speed``: lowest_load, smallest normal load of a pair in contact over the
+    static load; reversal, largest distance from the pitch point at which sliding is reversed, over the base
+    pitch; spectral_radius, largest Floquet multiplier; film_parameter, its smallest value over the path of
+    contact; regime, index into ``REGIMES``; state, index into ``STATES``. Points without a periodic motion
+    are NaN with state 3
+
+    Raises
+    ------
+    ParameterError : speeds or torques are not positive and increasing
+    """
+    speed = real_numbers("speeds_rpm", speeds_rpm, 0.0, above=True, increasing=True, unit="rpm")
+    torque = real_numbers("torques", torques, 0.0, above=True, increasing=True, unit="N m")
+    shape = (torque.size, speed.size)
+    names = ("lowest_load", "reversal", "spectral_radius", "film_parameter")
+    found: dict[str, FloatArray] = {name: np.full(shape, np.nan) for name in names}
+    g = geometry(pair)
+    with warnings.catch_warnings():
+        # The map itself shows the regime; one warning per point would say less.
+        warnings.simplefilter("ignore", LawRangeWarning)
+        for row, value in enumerate(torque):
+            at = pair.with_({"operating.pinion_torque": float(value), "operating.brake_torque": "balanced"})
+            sweep = lumped.speed_sweep(at, speed, samples_per_cycle=samples)
+            static = float(value) / g.base_radius_pinion
+            found["lowest_load"][row] = sweep["normal_load_min"].to_numpy() / static
+            found["reversal"][row] = sweep["sliding_reversal"].to_numpy() / g.base_pitch
+            found["spectral_radius"][row] = sweep["spectral_radius"].to_numpy()
+            found["film_parameter"][row] = [_thinnest_film(at, float(rpm)) for rpm in speed]
+            if progress is not None:
+                progress((row + 1) / torque.size)
+    return _dataset(pair, speed, torque, found)
+
+
+def _thinnest_film(pair: GearPair, rpm: float) -> float:
+    """Smallest film parameter over the path of contact."""
+    path = contact_path(pair.with_({"operating.pinion_speed": rpm}))
+    return float(path.film_parameter(np.linspace(path.L_XA, path.L_XD, 65)).min())
+
+
+def validity_state(
+    lowest_load: FloatArray, reversal: FloatArray, spectral_radius: FloatArray | None = None
+) -> NDArray[np.int64]:
+    """Index into ``STATES``: the worst of contact, sliding and stability.
+
+    Parameters
+    ----------
+    lowest_load : smallest load over the static load; NaN for a point without a periodic motion
+    reversal : largest distance of reversed sliding from the pitch point over the base pitch
+    spectral_radius : largest Floquet multiplier, where stability counts
+    """
+    state = np.zeros(lowest_load.shape, dtype=np.int64)
+    state[reversal > REVERSAL_LIMITS[0]] = 1
+    state[(reversal > REVERSAL_LIMITS[1]) | (lowest_load < -LOAD_NOISE)] = 2
+    if spectral_radius is not None:
+        state[spectral_radius > UNSTABLE] = 2
+    state[np.isnan(lowest_load)] = 3
+    return state
+
+
+def _dataset(
+    pair: GearPair, speed: FloatArray, torque: FloatArray, found: dict[str, FloatArray]
+) -> xr.Dataset:
+    state = validity_state(found["lowest_load"], found["reversal"], found["spectral_radius"])
+    dims = ("torque", "speed")
+    names = {
+        "lowest_load": "smallest normal load of a pair in contact over the static load",
+        "reversal": "largest distance of reversed sliding from the pitch point over the base pitch",
+        "spectral_radius": "largest Floquet multiplier of the periodic motion",
+        "film_parameter": "smallest film parameter along the path of contact",
+    }
+    data = {name: (dims, values, {"units": "1", "long_name": names[name]}) for name, values in found.items()}
+    film = regime(found["film_parameter"], pair.friction.thresholds)
+    result = xr.Dataset(data, attrs=provenance(pair) | {"model": "lumped"})
+    result["regime"] = (dims, film, {"units": "1", "long_name": "0 to 3: " + ", ".join(REGIMES)})
+    result["state"] = (dims, state, {"units": "1", "long_name": "0 to 3: " + ", ".join(STATES)})
+    return result.assign_coords(
+        speed=("speed", speed, {"units": "rpm", "long_name": "pinion speed"}),
+        torque=("torque", torque, {"units": "N m", "long_name": "pinion torque"}),
+    )

@@ -1,0 +1,147 @@
+"""One degree of freedom with Coulomb friction (Vaishya and Singh): against the engine and the full gear pair.
+
+Unity ratio and equal inertias: friction multiplies the stiffness of each tooth pair by 1 + s mu tan(alpha).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from floquet import gear_pair_multipliers, monodromy
+from floquet.engine.system import FloatArray
+from floquet.gear.vaishya_singh import CoulombGearPair
+from lumped import GearPair, geometry, load_gear_pair
+from lumped.model.bodies import bodies
+from lumped.model.periodic_system import periodic_system
+from validation.verification.floquet_check import Check, error, order
+
+MU = 0.2
+_RATIOS = np.linspace(0.2, 3.0, 57)
+CASES = ("none", "reversing", "constant")
+
+
+def check_coulomb_gear_pair() -> Iterator[Check]:
+    """Closed form against engine and gear; what friction of either kind can and cannot change."""
+    yield error("gear pair with Coulomb friction", _transition(), 1e-10, "worst entry of M - closed form")
+    yield error(
+        "1 ± μ tan α in the equations of motion",
+        _factor(),
+        1e-12,
+        "28/28, J_p = J_g: worst relative deviation of a pair's gain over the cycle",
+    )
+    soft, stiff = (_on_bearings(factor) for factor in (1e4, 4e4))
+    yield error("rigid bearings", stiff, 2e-3, "worst |multiplier - closed form|, bearings 40000 times k")
+    yield order("rigid bearings: in the mesh stiffness over that of the bearings",
+                np.log2(soft / stiff) / 2.0, 1.0, 0.1)  # fmt: skip
+    yield error(
+        "friction of one sign",
+        _rescaled(),
+        1e-9,
+        "worst change of |multiplier| from the frictionless pair at speed/√f, damping ζ√f, f = 1 + μ tan α",
+    )
+    pair = CoulombGearPair(friction=MU)
+    decay = np.linalg.det(pair.monodromy_matrix(_RATIOS)) / np.linalg.det(
+        replace(pair, friction=0.0).monodromy_matrix(_RATIOS)
+    )
+    yield error(
+        "friction that reverses: decay",
+        np.abs(decay - 1.0).max(),
+        1e-12,
+        "worst relative change of det M by friction",
+    )
+    full, half = (np.abs(_trace(mu) - _trace(0.0)).max() for mu in (MU, MU / 2))
+    yield order("friction that reverses: growth in μ", np.log2(full / half), 2.0, 0.05)
+
+
+def _transition() -> float:
+    worst = 0.0
+    for sign in ("reversing", "constant"):
+        for damping in (0.0, 0.05, 0.9):
+            pair = CoulombGearPair(damping_ratio=damping, friction=MU, sign=sign)
+            for ratio in (0.13, 0.7, 1.9):
+                M = monodromy(pair.system(ratio), 1e-11).matrix
+                worst = max(worst, float(np.abs(M - pair.monodromy_matrix(ratio)).max()))
+    return worst
+
+
+def _gear() -> GearPair:
+    return load_gear_pair("nasa_28_28").with_(
+        {"friction.law": "coulomb", "friction.coefficient": MU, "mesh.damping_ratio": 0.0}
+    )
+
+
+def _factor() -> float:
+    """Deviation of the q row of the gear's equations from sum k_i (1 + s_i mu tan alpha)/m_e."""
+    gear = _gear()
+    system, g = periodic_system(gear, "feedback"), geometry(gear)
+    times = np.concatenate([np.linspace(a, b, 9)[1:-1] for a, b in pairwise(system.cycle.edges)])
+    pairs = system.cycle.sample(times)
+    sign = np.where(pairs.position < g.L_XP, -1.0, 1.0)
+    factor = 1.0 + sign * MU * np.tan(g.operating_pressure_angle)
+    expected = (factor * pairs.stiffness).sum(axis=0) / bodies(gear).effective_mass
+    return float(np.abs(-system.gain(times).stiffness[:, 0] / expected - 1.0).max())
+
+
+def _on_bearings(factor: float) -> float:
+    """Distance of the closed form from the multipliers of the gear on bearings this much stiffer than k."""
+    gear = _gear()
+    system, g = periodic_system(gear, "feedback"), geometry(gear)
+    k = float(system.cycle.sample(np.array([0.9 * system.period])).stiffness.max())
+    omega = np.sqrt(k * g.contact_ratio / bodies(gear).effective_mass)
+    exact = CoulombGearPair(g.contact_ratio, 0.0, MU, g.operating_pressure_angle)
+    expected = exact.multipliers(2.0 * np.pi / system.period / omega)
+    changes = {f"bearings.{w}.loa_stiffness": factor * k for w in ("pinion", "gear")}
+    # Damped, so that the motions of the bearings are not mistaken for those of the mesh.
+    changes |= {f"bearings.{w}.loa_damping_ratio": 0.02 for w in ("pinion", "gear")}
+    values = gear_pair_multipliers(gear.with_(changes), 1e-9).feedback
+    return float(max(np.abs(values - e).min() for e in expected))
+
+
+def _rescaled() -> float:
+    f = 1.0 + MU * np.tan(np.deg2rad(20.0))
+    constant = CoulombGearPair(damping_ratio=0.02, friction=MU, sign="constant")
+    scaled = CoulombGearPair(damping_ratio=0.02 * np.sqrt(f))
+    difference = np.abs(constant.multipliers(_RATIOS)) - np.abs(scaled.multipliers(_RATIOS / np.sqrt(f)))
+    return float(np.abs(difference).max())
+
+
+def _trace(mu: float) -> FloatArray:
+    pair = CoulombGearPair(damping_ratio=0.0, friction=mu)
+    return np.asarray(np.trace(pair.monodromy_matrix(_RATIOS), axis1=1, axis2=2))
+
+
+def zone_tips(orders: int = 4) -> list[tuple[str, str, float, float]]:
+    """Where the zones 2 omega/k close: (zone, friction, damping ratio, mesh over natural frequency)."""
+    rows = []
+    f = np.sqrt(1.0 + MU * np.tan(np.deg2rad(20.0)))
+    for k in range(1, orders + 1):
+        for case in CASES:
+            pair = CoulombGearPair(
+                friction=0.0 if case == "none" else MU,
+                sign="constant" if case == "constant" else "reversing",
+            )
+            tip = _tip(pair, 2.0 / k * (f if case == "constant" else 1.0))
+            rows.append((f"2ω/{k}" if k > 1 else "2ω", case, *tip))
+    return rows
+
+
+def _tip(pair: CoulombGearPair, centre: float) -> tuple[float, float]:
+    """Damping ratio and speed ratio at which the zone around ``centre`` closes."""
+
+    def top(damping: float) -> tuple[float, float]:
+        one = replace(pair, damping_ratio=damping)
+        found = minimize_scalar(
+            lambda ratio: -float(np.abs(one.multipliers(ratio)[0])),
+            bounds=(0.96 * centre, 1.02 * centre),
+            method="bounded",
+            options={"xatol": 1e-9},
+        )
+        return float(found.x), -float(found.fun)
+
+    damping = float(brentq(lambda z: top(z)[1] - 1.0, 1e-4, 0.3, xtol=1e-10))
+    return damping, top(damping)[0]
