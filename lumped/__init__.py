@@ -1,7 +1,7 @@
 """Spur gear pairs with sliding friction: schema, kinematics, stiffness, friction laws and the LTV model."""
 
 from lumped.errors import FieldProblem, LawRangeWarning, NumericalError, ParameterError, SpurcheckError
-from lumped.gear_geometry.geometry import Geometry, geometry
+from lumped.gear_geometry.geometry import Geometry
 from lumped.model.bodies import Bodies, bodies
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.model.mesh_elements import MeshElements, mesh_elements
@@ -11,7 +11,7 @@ from lumped.model.sweep import speed_sweep
 from lumped.path_function import PathFunction
 from lumped.quasi_static import optimal_relief, static_transmission_error
 from lumped.schema.files import json_schema, load_gear_pair, preset_names
-from lumped.schema.pair import GearPair
+from lumped.schema.pair import GearPair, geometry
 from lumped.stiffness.components import mesh_stiffness, stiffness_components
 
 __all__ = [

@@ -12,7 +12,6 @@ from floquet.engine.system import FloatArray
 from lumped.arguments import one_of
 from lumped.errors import refuse
 from lumped.friction.along_path import mean_coefficient
-from lumped.gear_geometry.geometry import geometry
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.schema.pair import GearPair
 
@@ -105,7 +104,7 @@ def _contact_ratio(variation: GearVariation, value: float) -> GearVariation:
     r_ag^2 = r_bg^2 + (L_XY - L_XA)^2.
     """
     pair = variation.pair
-    g = geometry(pair)
+    g = pair.geometry
     factor = value / g.contact_ratio
     recess = g.L_XP + factor * (g.L_XD - g.L_XP)
     approach = g.L_XY - g.L_XP + factor * (g.L_XP - g.L_XA)
@@ -178,6 +177,6 @@ def operating_value(pair: GearPair, name: str) -> float:
         "friction_coefficient": lambda: mean_coefficient(mesh_cycle(pair).elements.friction),
         "torque": lambda: pair.operating.pinion_torque,
         "stiffness_variation": lambda: 1.0,
-        "contact_ratio": lambda: geometry(pair).contact_ratio,
+        "contact_ratio": lambda: pair.geometry.contact_ratio,
         "bearing_stiffness": lambda: loa,
     }[name]()

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from floquet.gear.vaishya_singh import CoulombGearPair
-from lumped import GearPair, geometry
+from lumped import GearPair
 from lumped.errors import refuse
 
 SPEED_RATIOS = np.linspace(0.3, 2.6, 921)
@@ -94,7 +94,7 @@ def coulomb_gear_pair(pair: GearPair, friction: float) -> CoulombGearPair:
             f"{pair.pinion.teeth}, as the pinion",
             "The closed form holds for unity ratio, for example --set gear.teeth=... or preset nasa_28_28.",
         )
-    g = geometry(pair)
+    g = pair.geometry
     return CoulombGearPair(
         contact_ratio=g.contact_ratio, friction=friction, pressure_angle=g.operating_pressure_angle
     )

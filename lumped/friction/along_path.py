@@ -18,7 +18,6 @@ from lumped.friction.fitted import fit_signed, mean_coefficient
 from lumped.friction.lubricant import dynamic_viscosity
 from lumped.friction.registry import law_named
 from lumped.gear_geometry.geometry import Geometry
-from lumped.gear_geometry.geometry import geometry as gear_geometry
 from lumped.lubrication import film
 from lumped.lubrication.roughness import composite_roughness, mean_roughness
 from lumped.path_function import PathFunction
@@ -52,7 +51,7 @@ def contact_path(pair: GearPair, geometry: Geometry | None = None) -> ContactPat
     pair : the gear pair
     geometry : its geometry, if it is at hand
     """
-    g = gear_geometry(pair) if geometry is None else geometry
+    g = pair.geometry if geometry is None else geometry
     pinion, gear, lubricant, friction = pair.pinion, pair.gear, pair.lubricant, pair.friction
     composite = friction.composite_roughness
     if composite is None:

@@ -1,4 +1,4 @@
-"""Geometry of a spur gear pair: circles, line of action, contact ratio; and whether the pair can exist.
+"""Geometry of a spur gear pair from plain numbers: circles, line of action, contact ratio.
 
 Sources: ISO 21771 for the circles, the operating pressure angle, the contact ratio and the backlash; the
 points A to D of the line of action as in docs/theory/equations.md, "Frame".
@@ -8,16 +8,26 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from lumped.errors import FieldProblem, ParameterError
 from lumped.gear_geometry.involute import RackTooth, inverse_involute, involute, tooth_half_angle
 
-if TYPE_CHECKING:
-    from lumped.schema.pair import Gear, GearPair
 
-#: Teeth of rounded published data may overlap by this much of a module before the pair is refused.
-_WEDGE_TOLERANCE = 1e-4
+@dataclass(frozen=True)
+class Wheel:
+    """One gear as it is cut, SI.
+
+    Attributes
+    ----------
+    tooth : what the rack leaves of the blank
+    tip_radius, face_width : [m]
+    bore : diameter [m], 0 for a solid gear
+    """
+
+    tooth: RackTooth
+    tip_radius: float
+    face_width: float
+    bore: float
 
 
 @dataclass(frozen=True)
@@ -92,81 +102,85 @@ class Geometry:
         return self.omega_pinion * self.operating_radius_pinion
 
 
-def geometry(pair: GearPair) -> Geometry:
-    """Return the geometry of a gear pair.
+def build_geometry(
+    pinion: Wheel, gear: Wheel, centre_distance: float | None, backlash: float, pinion_speed: float
+) -> Geometry:
+    """Return the geometry of two gears cut by one rack.
+
+    Whether they can mesh is for ``lumped.gear_geometry.existence``; only what has no geometry is refused
+    here.
 
     Parameters
     ----------
-    pair : a validated gear pair
+    pinion, gear : as cut, by racks of the same module and pressure angle
+    centre_distance : [m]; None: that of no backlash for these profile shifts
+    backlash : by which the teeth are thinner than the rack leaves them, along the line of action [m]
+    pinion_speed : [rad/s]
 
     Raises
     ------
-    ParameterError : the gears cannot mesh; never for a pair that was validated
+    ParameterError : lengths that no pair of gears has; the field is named as in the schema
     """
     try:
-        result, problems = _build(pair)
+        return _build(pinion, gear, centre_distance, backlash, pinion_speed)
     except (OverflowError, ZeroDivisionError):
         text = "module, tip diameters and centre_distance so far apart that their squares are no numbers"
         problem = FieldProblem("basic_rack.module", text, "lengths of one gear pair", "Check their units.")
-        raise ParameterError([problem], pair.name) from None
-    if problems:
-        raise ParameterError(problems, pair.name)
-    return result
+        raise ParameterError([problem]) from None
 
 
-def _tip_radius(gear: Gear, pair: GearPair) -> float:
-    rack = pair.basic_rack
-    if gear.tip_diameter is not None:
-        return 0.5 * gear.tip_diameter
-    default = rack.module * (rack.addendum_coefficient + gear.profile_shift)
-    return 0.5 * rack.module * gear.teeth + (default if gear.addendum is None else gear.addendum)
+def theoretical_backlash(pinion: Wheel, gear: Wheel, pressure_angle: float) -> float:
+    """Backlash along the line of action that the rack leaves [m]; negative where the teeth would wedge.
+
+    Parameters
+    ----------
+    pinion, gear : as cut
+    pressure_angle : operating pressure angle [rad]
+    """
+    thickness = 0.0
+    for wheel in (pinion, gear):
+        tooth = wheel.tooth
+        half = tooth_half_angle(tooth.teeth, tooth.profile_shift, tooth.pressure_angle, pressure_angle)
+        thickness += 2.0 * half * tooth.base_radius / math.cos(pressure_angle)
+    pitch = 2.0 * math.pi * pinion.tooth.base_radius / math.cos(pressure_angle) / pinion.tooth.teeth
+    return (pitch - thickness) * math.cos(pressure_angle)
 
 
-def _build(pair: GearPair) -> tuple[Geometry, list[FieldProblem]]:
-    rack, pinion, gear = pair.basic_rack, pair.pinion, pair.gear
+def _build(
+    pinion: Wheel, gear: Wheel, centre_distance: float | None, backlash: float, omega_p: float
+) -> Geometry:
+    rack = pinion.tooth
     alpha, m = rack.pressure_angle, rack.module
-    r_p, r_g = 0.5 * m * pinion.teeth, 0.5 * m * gear.teeth
-    r_bp, r_bg = r_p * math.cos(alpha), r_g * math.cos(alpha)
-    centre, alpha_w = _centre_distance(pair)
-    r_ap, r_ag = _tip_radius(pinion, pair), _tip_radius(gear, pair)
+    r_bp, r_bg = pinion.tooth.base_radius, gear.tooth.base_radius
+    r_ap, r_ag = pinion.tip_radius, gear.tip_radius
+    centre, alpha_w = _centre_distance(pinion.tooth, gear.tooth, centre_distance)
     for name, tip, base in (("pinion", r_ap, r_bp), ("gear", r_ag, r_bg)):
         if tip <= base:
             raise _refused(
-                pair, f"{name}.tip_diameter", 2 * tip, f"> {2e3 * base:.4f} mm", "Raise the tip diameter."
+                f"{name}.tip_diameter", 2 * tip, f"> {2e3 * base:.4f} mm", "Raise the tip diameter."
             )
     base_pitch = math.pi * m * math.cos(alpha)
     l_xy = centre * math.sin(alpha_w)
     l_xa = l_xy - math.sqrt(r_ag**2 - r_bg**2)
     l_xd = math.sqrt(r_ap**2 - r_bp**2)
-    r_wp, r_wg = r_bp / math.cos(alpha_w), r_bg / math.cos(alpha_w)
-    half = [tooth_half_angle(g.teeth, g.profile_shift, alpha, alpha_w) for g in (pinion, gear)]
-    pitch = 2.0 * math.pi * r_wp / pinion.teeth
-    theoretical = (pitch - 2.0 * (r_wp * half[0] + r_wg * half[1])) * math.cos(alpha_w)
-    forms = [
-        RackTooth(
-            g.teeth, m, alpha, g.profile_shift, rack.dedendum_coefficient, rack.fillet_radius_coefficient
-        ).form_length
-        for g in (pinion, gear)
-    ]
-    omega_p = pair.operating.pinion_speed
-    result = Geometry(
+    return Geometry(
         base_pitch=base_pitch,
         contact_ratio=(l_xd - l_xa) / base_pitch,
         base_radius_pinion=r_bp,
         base_radius_gear=r_bg,
-        reference_radius_pinion=r_p,
-        reference_radius_gear=r_g,
-        operating_radius_pinion=r_wp,
-        operating_radius_gear=r_wg,
+        reference_radius_pinion=pinion.tooth.reference_radius,
+        reference_radius_gear=gear.tooth.reference_radius,
+        operating_radius_pinion=r_bp / math.cos(alpha_w),
+        operating_radius_gear=r_bg / math.cos(alpha_w),
         tip_radius_pinion=r_ap,
         tip_radius_gear=r_ag,
-        root_radius_pinion=r_p - m * (rack.dedendum_coefficient - pinion.profile_shift),
-        root_radius_gear=r_g - m * (rack.dedendum_coefficient - gear.profile_shift),
-        form_radius_pinion=math.hypot(r_bp, forms[0]),
-        form_radius_gear=math.hypot(r_bg, forms[1]),
+        root_radius_pinion=_root_radius(pinion.tooth),
+        root_radius_gear=_root_radius(gear.tooth),
+        form_radius_pinion=math.hypot(r_bp, pinion.tooth.form_length),
+        form_radius_gear=math.hypot(r_bg, gear.tooth.form_length),
         centre_distance=centre,
         operating_pressure_angle=alpha_w,
-        normal_backlash=max(theoretical + pair.mesh.backlash, 0.0),
+        normal_backlash=max(theoretical_backlash(pinion, gear, alpha_w) + backlash, 0.0),
         face_width=min(pinion.face_width, gear.face_width),
         L_XA=l_xa,
         L_XB=l_xd - base_pitch,
@@ -178,126 +192,34 @@ def _build(pair: GearPair) -> tuple[Geometry, list[FieldProblem]]:
         omega_gear=omega_p * r_bp / r_bg,
         mesh_period=base_pitch / (omega_p * r_bp),
     )
-    return result, _problems(pair, result, forms, theoretical)
 
 
-def _centre_distance(pair: GearPair) -> tuple[float, float]:
+def _root_radius(tooth: RackTooth) -> float:
+    return tooth.reference_radius - tooth.module * (tooth.dedendum - tooth.profile_shift)
+
+
+def _centre_distance(pinion: RackTooth, gear: RackTooth, given: float | None) -> tuple[float, float]:
     """Centre distance [m] and operating pressure angle [rad]."""
-    rack, teeth = pair.basic_rack, pair.pinion.teeth + pair.gear.teeth
-    alpha = rack.pressure_angle
-    base = 0.5 * rack.module * teeth * math.cos(alpha)
-    if pair.centre_distance is None:
-        shift = pair.pinion.profile_shift + pair.gear.profile_shift
-        value = involute(alpha) + 2.0 * shift / teeth * math.tan(alpha)
-        if value < 0.0:
-            raise ParameterError(
-                [
-                    FieldProblem(
-                        "pinion.profile_shift",
-                        f"sum {shift:g}",
-                        f"sum > {-0.5 * teeth * involute(alpha) / math.tan(alpha):.4g}",
-                        "Raise the profile shifts or give centre_distance.",
-                    )
-                ]
-            )
-        alpha_w = inverse_involute(value)
-        return base / math.cos(alpha_w), alpha_w
-    if pair.centre_distance <= base:
-        raise _refused(
-            pair,
-            "centre_distance",
-            pair.centre_distance,
-            f"> {base * 1e3:.4f} mm, the sum of the base radii",
-            "Raise the centre distance.",
+    teeth, alpha = pinion.teeth + gear.teeth, pinion.pressure_angle
+    base = pinion.base_radius + gear.base_radius
+    if given is not None:
+        if given <= base:
+            allowed = f"> {base * 1e3:.4f} mm, the sum of the base radii"
+            raise _refused("centre_distance", given, allowed, "Raise the centre distance.")
+        return given, math.acos(base / given)
+    shift = pinion.profile_shift + gear.profile_shift
+    value = involute(alpha) + 2.0 * shift / teeth * math.tan(alpha)
+    if value < 0.0:
+        problem = FieldProblem(
+            "pinion.profile_shift",
+            f"sum {shift:g}",
+            f"sum > {-0.5 * teeth * involute(alpha) / math.tan(alpha):.4g}",
+            "Raise the profile shifts or give centre_distance.",
         )
-    return pair.centre_distance, math.acos(base / pair.centre_distance)
+        raise ParameterError([problem])
+    alpha_w = inverse_involute(value)
+    return base / math.cos(alpha_w), alpha_w
 
 
-def _refused(pair: GearPair, field: str, value: float, allowed: str, action: str) -> ParameterError:
-    return ParameterError([FieldProblem(field, f"{value * 1e3:.6g} mm", allowed, action)], pair.name)
-
-
-def _problems(pair: GearPair, g: Geometry, forms: list[float], theoretical: float) -> list[FieldProblem]:
-    """Reasons why the pair cannot exist, each with the field to change."""
-    problems: list[FieldProblem] = []
-    m = pair.basic_rack.module
-
-    def add(field: str, value: str, allowed: str, action: str) -> None:
-        problems.append(FieldProblem(field, value, allowed, action))
-
-    if not math.isfinite(g.mesh_period):
-        add(
-            "operating.pinion_speed",
-            f"{g.omega_pinion:g} rad/s",
-            "a mesh period in seconds that is a number",
-            "Raise the speed.",
-        )
-    if not 1.0 <= g.contact_ratio <= 3.0:
-        add(
-            "contact_ratio",
-            f"{g.contact_ratio:.4f}",
-            "1 to 3",
-            "Change the tip diameters, centre distance, tooth numbers or pressure angle.",
-        )
-    ends = (
-        ("gear.tip_diameter", 2 * g.tip_radius_gear, math.hypot(g.base_radius_gear, g.L_XY), g.L_XA),
-        (
-            "pinion.tip_diameter",
-            2 * g.tip_radius_pinion,
-            math.hypot(g.base_radius_pinion, g.L_XY),
-            g.L_XY - g.L_XD,
-        ),
-    )
-    for field, value, limit, room in ends:
-        if room < 0.0:
-            add(
-                field,
-                f"{value * 1e3:.4f} mm",
-                f"<= {2e3 * limit:.4f} mm",
-                "The tip would pass the mate's tangent point (involute interference): "
-                "lower it or shift the profiles.",
-            )
-    starts = (("pinion", g.L_XA, forms[0]), ("gear", g.L_XY - g.L_XD, forms[1]))
-    for (name, start, form), base in zip(starts, (g.base_radius_pinion, g.base_radius_gear), strict=True):
-        if 0.0 <= start < form - 1e-9 * m:
-            add(
-                f"{name}.profile_shift",
-                f"{getattr(pair, name).profile_shift:g} with contact down to diameter "
-                f"{2e3 * math.hypot(base, start):.4f} mm",
-                f"contact above the form circle, diameter {2e3 * math.hypot(base, form):.4f} mm",
-                "The rack has cut the involute away there (undercut or fillet): raise the profile shift, "
-                "lower the mate's tip diameter or take more teeth.",
-            )
-    for name, tip, root in (
-        ("pinion", g.tip_radius_pinion, g.root_radius_gear),
-        ("gear", g.tip_radius_gear, g.root_radius_pinion),
-    ):
-        this = getattr(pair, name)
-        if g.centre_distance - tip - root < 0.0:
-            add(
-                f"{name}.tip_diameter",
-                f"{2e3 * tip:.4f} mm",
-                f"<= {2e3 * (g.centre_distance - root):.4f} mm",
-                "The tip would hit the mate's root: lower it or raise the centre distance.",
-            )
-        base = g.base_radius_pinion if name == "pinion" else g.base_radius_gear
-        top = tooth_half_angle(
-            this.teeth, this.profile_shift, pair.basic_rack.pressure_angle, math.acos(min(1.0, base / tip))
-        )
-        if top <= 0.0:
-            add(
-                f"{name}.tip_diameter",
-                f"{2e3 * tip:.4f} mm",
-                "tip thickness > 0",
-                "The tooth is pointed below its tip circle: lower the tip diameter or the profile shift.",
-            )
-        if this.bore >= 2.0 * (g.root_radius_pinion if name == "pinion" else g.root_radius_gear):
-            add(f"{name}.bore", f"{this.bore * 1e3:g} mm", "< root diameter", "Lower the bore.")
-    if theoretical + pair.mesh.backlash < -_WEDGE_TOLERANCE * m:
-        add(
-            "centre_distance",
-            f"{g.centre_distance * 1e3:.6g} mm (backlash {(theoretical + pair.mesh.backlash) * 1e3:.4f} mm)",
-            "normal backlash >= 0",
-            "The teeth would wedge: raise the centre distance or mesh.backlash, or lower the profile shifts.",
-        )
-    return problems
+def _refused(field: str, value: float, allowed: str, action: str) -> ParameterError:
+    return ParameterError([FieldProblem(field, f"{value * 1e3:.6g} mm", allowed, action)])

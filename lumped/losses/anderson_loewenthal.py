@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.friction import contact_path
-from lumped.gear_geometry.geometry import geometry
 from lumped.losses.cycle import CyclePositions, quadrature
 from lumped.losses.loss_factor import sliding_velocity
 from lumped.losses.sharing import springs
@@ -63,7 +62,7 @@ def anderson_loewenthal_sliding_loss(pair: GearPair) -> float:
     the coefficient belongs to the load that the pair carries. Rolling and windage losses of the same report
     are not part of it.
     """
-    g, path = geometry(pair), contact_path(pair)
+    g, path = pair.geometry, contact_path(pair)
     at = quadrature(g, [_graded(g.L_XA, g.L_XP, g.L_XD)])
     share = springs(pair, g, "uniform").share(at)
     return _mean_loss(at, share, np.abs(sliding_velocity(g, at.position)), pair, path.unit_load)
@@ -80,7 +79,7 @@ def _mean_loss(
     )
     power = np.zeros_like(share)
     power[touching] = f * loads * slide[touching]
-    return at.mean(power.sum(axis=0)) * geometry(pair).face_width
+    return at.mean(power.sum(axis=0)) * pair.geometry.face_width
 
 
 def _graded(low: float, pitch: float, high: float) -> PathFunction:

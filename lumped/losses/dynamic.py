@@ -13,7 +13,6 @@ import numpy as np
 from lumped.arguments import some_of
 from lumped.errors import ParameterError, refuse
 from lumped.friction import LAWS
-from lumped.gear_geometry.geometry import geometry
 from lumped.losses.quasi_static import quasi_static_losses
 from lumped.losses.sharing import Sharing
 
@@ -55,7 +54,7 @@ def dynamic_losses(pair: GearPair, solution: xr.Dataset) -> xr.Dataset:
             "Pass the result of simulate or steady_state.",
         )
     torque = float(solution.attrs.get("pinion_torque", pair.operating.pinion_torque))
-    power_in = torque * geometry(pair).omega_pinion
+    power_in = torque * pair.geometry.omega_pinion
     loss = -solution["friction_power_nominal"].sum("pair")
     mean = float(loss.mean())
     result = xr.Dataset(

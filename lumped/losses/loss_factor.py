@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.gear_geometry.geometry import Geometry, geometry
+from lumped.gear_geometry.geometry import Geometry
 from lumped.losses.cycle import CyclePositions, quadrature
 from lumped.losses.sharing import Sharing, springs
 from lumped.path_function import FloatArray
@@ -61,7 +61,7 @@ def addendum_contact_ratios(g: Geometry) -> tuple[float, float]:
 
 def ohlendorf_of(pair: GearPair) -> float:
     """Ohlendorf's loss factor of a gear pair [-], see ``ohlendorf``."""
-    return ohlendorf(pair.pinion.teeth, pair.gear.teeth, *addendum_contact_ratios(geometry(pair)))
+    return ohlendorf(pair.pinion.teeth, pair.gear.teeth, *addendum_contact_ratios(pair.geometry))
 
 
 def loss_factor(pair: GearPair, sharing: Sharing = "uniform") -> float:
@@ -78,7 +78,7 @@ def loss_factor(pair: GearPair, sharing: Sharing = "uniform") -> float:
     -------
     H_v [-]; the mean sliding loss of a constant mu is mu H_v times the power, to first order in mu
     """
-    g = geometry(pair)
+    g = pair.geometry
     teeth = springs(pair, g, sharing)
     at = quadrature(g, teeth.functions)
     return mean_loss_factor(g, at, teeth.share(at))

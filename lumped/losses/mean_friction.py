@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike
 
 from lumped.arguments import real_number
 from lumped.friction import contact_path
-from lumped.gear_geometry.geometry import geometry
 from lumped.losses.loss_factor import loss_factor
 from lumped.ranges import NOT_STATED, FloatArray, ValidityRange, checked
 
@@ -74,7 +73,7 @@ def iso_14179_of(pair: GearPair, oil_factor: float = 1.0) -> float:
     pair : the gear pair
     oil_factor : X_L of the standard [-]
     """
-    g, path = geometry(pair), contact_path(pair)
+    g, path = pair.geometry, contact_path(pair)
     return float(
         iso_14179_mean_coefficient(
             path.unit_load * 1e-3,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lumped.friction import friction_path_function
-from lumped.gear_geometry.geometry import Geometry, geometry
+from lumped.gear_geometry.geometry import Geometry
 from lumped.losses.cycle import CyclePositions, quadrature, samples
 from lumped.losses.loss_factor import mean_loss_factor, sliding_velocity
 from lumped.losses.sharing import Sharing, Springs, springs
@@ -68,7 +68,7 @@ def quasi_static_losses(
     ``input_power`` [W], ``loss_factor`` H_v and ``mean_coefficient`` = loss/(H_v input power) come from an
     exact quadrature between the switches, not from the samples.
     """
-    g = geometry(pair)
+    g = pair.geometry
     time = sample_times(g.mesh_period, samples_per_cycle)
     mu = friction_path_function(pair, g, law)
     teeth = springs(pair, g, sharing)

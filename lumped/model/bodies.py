@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from lumped.gear_geometry.geometry import geometry
 from lumped.schema.pair import Gear, GearPair
 
 
@@ -40,7 +39,7 @@ def solid_disc(radius: float, width: float, density: float, bore: float = 0.0) -
 
 def bodies(pair: GearPair) -> Bodies:
     """Return masses and inertias: those given, else the disc of reference diameter and face width."""
-    g = geometry(pair)
+    g = pair.geometry
     m_p, j_p = _resolved(pair.pinion, g.reference_radius_pinion)
     m_g, j_g = _resolved(pair.gear, g.reference_radius_gear)
     effective = 1.0 / (g.base_radius_pinion**2 / j_p + g.base_radius_gear**2 / j_g)

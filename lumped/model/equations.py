@@ -13,7 +13,6 @@ import numpy as np
 
 from lumped.arguments import some_of
 from lumped.errors import refuse
-from lumped.gear_geometry.geometry import geometry
 from lumped.model.bodies import bodies
 from lumped.path_function import FloatArray
 from lumped.schema.pair import GearPair
@@ -94,7 +93,7 @@ def structure(pair: GearPair, as_printed: Collection[int] = ()) -> Structure:
     pair : a validated gear pair
     as_printed : equations out of 1, 2, 7, 9 whose printed sign is used
     """
-    g, b, s = geometry(pair), bodies(pair), signs(as_printed)
+    g, b, s = pair.geometry, bodies(pair), signs(as_printed)
     r_bp, r_bg = g.base_radius_pinion, g.base_radius_gear
     mass = np.array(
         [b.inertia_pinion, b.inertia_gear, b.mass_pinion, b.mass_gear, b.mass_pinion, b.mass_gear]
@@ -143,7 +142,7 @@ def static_deflection(
     """
     if not math.isfinite(total_stiffness) or total_stiffness <= 0.0:
         raise refuse("mesh.stiffness", total_stiffness, "> 0 N/m", "Give a stiffness that carries the load.")
-    g, b = geometry(pair), bodies(pair)
+    g, b = pair.geometry, bodies(pair)
     torque = pair.operating.pinion_torque if pinion_torque is None else pinion_torque
     load = torque / g.base_radius_pinion
     x_p = -load / pair.bearings.pinion.loa_stiffness

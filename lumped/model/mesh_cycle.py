@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.gear_geometry.geometry import Geometry, geometry
+from lumped.gear_geometry.geometry import Geometry
 from lumped.model.mesh_elements import MeshElements, mesh_elements
 from lumped.path_function import FloatArray
 from lumped.schema.pair import GearPair
@@ -149,4 +149,4 @@ class MeshCycle:
 
 def mesh_cycle(pair: GearPair) -> MeshCycle:
     """Return the mesh cycle of a gear pair."""
-    return MeshCycle(geometry(pair), mesh_elements(pair))
+    return MeshCycle(pair.geometry, mesh_elements(pair))

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumped.friction import friction_path_function
-from lumped.gear_geometry.geometry import geometry
 from lumped.model.bodies import bodies
 from lumped.path_function import FloatArray, PathFunction
 from lumped.quasi_static.loaded_mesh import loaded_mesh
@@ -55,7 +54,7 @@ def mesh_elements(pair: GearPair) -> MeshElements:
     ParameterError : a law refuses its parameters
     NumericalError : a law is not finite on the path of contact
     """
-    g = geometry(pair)
+    g = pair.geometry
     stiffness = pair_stiffness(pair, g)
     error = PathFunction.constant(0.0, g.L_XA, g.L_XD)
     if pair.mesh.relief == "static":

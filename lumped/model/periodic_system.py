@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import one_of
-from lumped.gear_geometry.geometry import geometry
 from lumped.model.equations import COORDINATES, Structure, structure
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.path_function import FloatArray
@@ -150,7 +149,7 @@ def periodic_system(
     """
     one_of("form", form, get_args(Form))
     s = structure(pair, as_printed)
-    g = geometry(pair)
+    g = pair.geometry
     if form == "absolute":
         names: tuple[str, ...] = COORDINATES
         reduction = np.eye(6)

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lumped.gear_geometry.geometry import geometry
 from lumped.model.equations import COORDINATES
 from lumped.model.periodic_system import LTVSystem
 from lumped.path_function import FloatArray
@@ -123,7 +122,7 @@ def response(
     pair: GearPair, system: LTVSystem, time: FloatArray, states: FloatArray
 ) -> dict[str, FloatArray]:
     """Return the arrays of ``dataset`` by name, without labels; arguments as there."""
-    g, s = geometry(pair), system.structure
+    g, s = pair.geometry, system.structure
     z, rates = states[:, :6], states[:, 6:]
     dte, dte_dot = z @ s.deflection, rates @ s.deflection
     pairs = system.cycle.sample(time)

@@ -15,7 +15,6 @@ from scipy.integrate import DOP853
 
 from lumped.arguments import real_number, whole_number
 from lumped.errors import NumericalError, refuse
-from lumped.gear_geometry.geometry import geometry
 from lumped.model import kernels
 from lumped.model.equations import COORDINATES, static_deflection
 from lumped.model.mesh_cycle import MeshCycle
@@ -146,7 +145,7 @@ def _rate_function(
     pair: GearPair, system: LTVSystem, balance: PeriodicSolution
 ) -> Callable[[int], Callable[[float, FloatArray], FloatArray]]:
     """For a segment, the function (time, state) -> rates on the compiled equations of motion."""
-    g, s, cycle = geometry(pair), system.structure, system.cycle
+    g, s, cycle = pair.geometry, system.structure, system.cycle
     e = cycle.elements
     speed = g.omega_pinion * g.base_radius_pinion
     functions: list[PathFunction] = [e.stiffness, e.damping, e.friction, e.error, e.error.derivative()]
@@ -238,7 +237,7 @@ def steady_state(
 
 def balance_attributes(pair: GearPair, solution: PeriodicSolution) -> dict[str, Any]:
     """Return the torques that hold the mean speed [N m] and the mesh efficiency, by name."""
-    g = geometry(pair)
+    g = pair.geometry
     efficiency = solution.brake_torque * g.omega_gear / (solution.pinion_torque * g.omega_pinion)
     return {
         "brake_torque": solution.brake_torque,

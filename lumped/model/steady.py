@@ -9,7 +9,6 @@ import numpy as np
 
 from lumped.arguments import whole_number
 from lumped.errors import NumericalError
-from lumped.gear_geometry.geometry import geometry
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.propagation import STAGES, step_maps
 from lumped.path_function import FloatArray
@@ -142,7 +141,7 @@ def _bordered(
     matrix[12, :2] = inertia
     right = np.append(forced @ known, 0.0)
     # Angles, lengths and their rates differ by many decades; equilibrate before judging the rank.
-    g = geometry(pair)
+    g = pair.geometry
     unit = np.array([1 / g.base_radius_pinion, 1 / g.base_radius_gear, 1.0, 1.0, 1.0, 1.0])
     rate = 1.0 / system.period
     columns = np.concatenate([unit, unit * rate, [0.0]])

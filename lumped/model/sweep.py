@@ -14,7 +14,6 @@ import numpy as np
 from lumped.arguments import real_numbers
 from lumped.errors import NumericalError
 from lumped.friction import friction_path_function
-from lumped.gear_geometry.geometry import geometry
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.mesh_elements import MeshElements, mesh_elements
 from lumped.model.periodic_system import LTVSystem, periodic_system
@@ -87,7 +86,7 @@ def speed_sweep(
             table[f"{name}_rms"][j] = np.std(run[name])
         loads = run["normal_load"][run["contact"] > 0]
         table["normal_load_max"][j], table["normal_load_min"][j] = loads.max(), loads.min()
-        table["sliding_reversal"][j] = _reversal(run, geometry(at).L_XP)
+        table["sliding_reversal"][j] = _reversal(run, at.geometry.L_XP)
         table["mesh_efficiency"][j] = balance_attributes(at, solution)["mesh_efficiency"]
         table["spectral_radius"][j] = solution.spectral_radius
     return _sweep_dataset(pair, speeds, table, periodic)
@@ -97,7 +96,7 @@ def _systems(pairs: Iterable[GearPair]) -> Iterator[LTVSystem]:
     """Systems of pairs that differ in speed alone: of the element laws only friction changes with it."""
     elements: MeshElements | None = None
     for at in pairs:
-        g = geometry(at)
+        g = at.geometry
         if elements is None:
             elements = mesh_elements(at)
         else:

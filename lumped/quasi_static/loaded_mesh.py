@@ -18,7 +18,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from lumped.errors import NumericalError
-from lumped.gear_geometry.geometry import Geometry, geometry
+from lumped.gear_geometry.geometry import Geometry
 from lumped.path_function import FloatArray, PathFunction
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.tooth_error import error_function
@@ -64,7 +64,7 @@ def loaded_mesh(
     if torque is not None:
         pair = pair.with_(operating__pinion_torque=torque)
     torque = pair.operating.pinion_torque
-    g = geometry(pair)
+    g = pair.geometry
     k = pair_stiffness(pair, g) if stiffness is None else stiffness
     error = error_function(pair, g)
     if not error.coefficients.any():

@@ -20,7 +20,7 @@ from scipy.optimize import minimize
 
 from lumped.arguments import one_of, real_number, real_numbers
 from lumped.errors import refuse
-from lumped.gear_geometry.geometry import Geometry, geometry
+from lumped.gear_geometry.geometry import Geometry
 from lumped.path_function import FloatArray
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.transmission_error import MeshPositions, mesh_positions
@@ -193,7 +193,7 @@ def _prepared(
     given = pair.operating.pinion_torque if torque is None else torque
     moment = real_number("torque", given, 0.0, above=True, unit="N m", action="Give the design torque.")
     bare = pair.with_(pinion__tip_relief=None, gear__tip_relief=None, operating__pinion_torque=moment)
-    g = geometry(bare)
+    g = bare.geometry
     return g, mesh_positions(bare, phases=phases), moment / g.base_radius_pinion
 
 

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import real_numbers, whole_number
 from lumped.errors import NumericalError
-from lumped.gear_geometry.geometry import Geometry, geometry
+from lumped.gear_geometry.geometry import Geometry
 from lumped.path_function import FloatArray
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.tooth_error import corner_gap, relief_error
@@ -76,7 +76,7 @@ def mesh_positions(
     """
     phases = whole_number("phases", phases, 2, 65536, "Give the number of positions per mesh cycle.")
     errors = real_numbers("pitch_errors", pitch_errors, unit="m")
-    g = geometry(pair)
+    g = pair.geometry
     reach = REACH if extended else 0.0
     ahead = np.arange(math.floor(-reach), math.ceil(g.contact_ratio + reach) + 1)
     phase = np.arange(phases * errors.size) / phases
@@ -127,7 +127,7 @@ def static_transmission_error(
 
     given = pair.operating.pinion_torque if torques is None else torques
     torque = real_numbers("torques", given, 0.0, unit="N m", action="Give driving torques.")
-    g = geometry(pair)
+    g = pair.geometry
     mesh = mesh_positions(pair, phases=phases, pitch_errors=pitch_errors, extended=extended)
     force = torque / g.base_radius_pinion
     stiffness = _at_torques(mesh.stiffness, torque, pair, g)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -18,7 +18,9 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
 from lumped.errors import FieldProblem, ParameterError
-from lumped.gear_geometry.geometry import geometry
+from lumped.gear_geometry.existence import existence_problems
+from lumped.gear_geometry.geometry import Geometry, Wheel, build_geometry
+from lumped.gear_geometry.involute import RackTooth
 from lumped.schema.contact import Friction, FrictionLaw, Lubricant, ViscosityLaw
 from lumped.schema.gear import BasicRack, Gear, ProfileRelief
 from lumped.schema.mesh import Mesh
@@ -130,11 +132,45 @@ class GearPair(Section):
 
     @model_validator(mode="after")
     def _must_exist(self) -> GearPair:
-        geometry(self)
+        problems = existence_problems(*self._wheels(), self.geometry, self.mesh.backlash)
+        if problems:
+            raise ParameterError(problems, self.name)
         wrong = [problem for path, _ in self.sources for problem in _source_problems(path)]
         if wrong:
             raise ParameterError(wrong)
         return self
+
+    @cached_property
+    def geometry(self) -> Geometry:
+        """Circles, line of action, contact ratio and mesh period, SI; built once."""
+        speed = self.operating.pinion_speed
+        try:
+            return build_geometry(*self._wheels(), self.centre_distance, self.mesh.backlash, speed)
+        except ParameterError as error:
+            raise ParameterError(list(error.problems), self.name) from None
+
+    def _wheels(self) -> tuple[Wheel, Wheel]:
+        """Pinion and gear as the basic rack cuts them."""
+        return self._wheel(self.pinion), self._wheel(self.gear)
+
+    def _wheel(self, gear: Gear) -> Wheel:
+        rack = self.basic_rack
+        tooth = RackTooth(
+            gear.teeth,
+            rack.module,
+            rack.pressure_angle,
+            gear.profile_shift,
+            rack.dedendum_coefficient,
+            rack.fillet_radius_coefficient,
+        )
+        return Wheel(tooth, self._tip_radius(gear), gear.face_width, gear.bore)
+
+    def _tip_radius(self, gear: Gear) -> float:
+        if gear.tip_diameter is not None:
+            return 0.5 * gear.tip_diameter
+        rack = self.basic_rack
+        addendum = rack.module * (rack.addendum_coefficient + gear.profile_shift)
+        return 0.5 * rack.module * gear.teeth + (addendum if gear.addendum is None else gear.addendum)
 
     def to_mapping(self) -> dict[str, Any]:
         """Return the pair as nested plain data for TOML or JSON; reading it back gives an equal pair."""
@@ -162,6 +198,16 @@ class GearPair(Section):
         ParameterError : an unknown path or a value that a file could not have either
         """
         return _varied(self, {**(changes or {}), **{key.replace("__", "."): v for key, v in fields.items()}})
+
+
+def geometry(pair: GearPair) -> Geometry:
+    """Return the geometry of a gear pair, as ``pair.geometry``.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    """
+    return pair.geometry
 
 
 def validated(data: Mapping[str, Any], source: str, folder: Path = Path()) -> GearPair:

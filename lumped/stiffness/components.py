@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lumped.arguments import whole_number
-from lumped.gear_geometry.geometry import geometry
 from lumped.stiffness import iso6336, pair_stiffness
 from lumped.stiffness.pair_compliance import Contact, pair_compliance
 
@@ -35,7 +34,7 @@ def stiffness_components(pair: GearPair, points: int = 201, hertz: Contact = "we
     """
     import xarray as xr
 
-    g = geometry(pair)
+    g = pair.geometry
     found = pair_compliance(
         pair, g, np.linspace(g.L_XA, g.L_XD, whole_number("points", points, 2, 100_000)), hertz=hertz
     )
@@ -88,7 +87,7 @@ def mesh_stiffness(pair: GearPair, samples: int = 512) -> xr.Dataset:
     """
     import xarray as xr
 
-    g = geometry(pair)
+    g = pair.geometry
     curve = pair_stiffness(pair, g)
     samples = whole_number("samples", samples, 1, 1_000_000)
     phase = (np.arange(samples) + 0.5) / samples

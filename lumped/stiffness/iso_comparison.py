@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.gear_geometry.geometry import geometry
 from lumped.path_function import FloatArray
 from lumped.stiffness import iso6336
 from lumped.stiffness.energy import energy_curve, violations
@@ -53,7 +52,7 @@ def iso_comparison(pair: GearPair) -> xr.Dataset:
     """
     import xarray as xr
 
-    g = geometry(pair)
+    g = pair.geometry
     single = iso6336.pair_single_stiffness(pair)
     to_si = iso6336.SI * g.face_width
     top, mean = single * to_si, iso6336.mean_mesh_stiffness(single, g.contact_ratio) * to_si

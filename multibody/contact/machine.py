@@ -14,7 +14,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.gear_geometry.geometry import geometry
 from lumped.model.bodies import bodies
 from lumped.model.mesh_elements import mesh_elements
 from lumped.path_function import PathFunction
@@ -104,7 +103,7 @@ def machine(pair: GearPair, torque_pinion: float, torque_gear: float) -> Machine
     pair : validated gear pair
     torque_pinion, torque_gear : driving torque of the pinion, braking torque of the gear [N m]
     """
-    drawing, body, elements = geometry(pair), bodies(pair), mesh_elements(pair)
+    drawing, body, elements = pair.geometry, bodies(pair), mesh_elements(pair)
     alpha, module = pair.basic_rack.pressure_angle, pair.basic_rack.module
     r_p = 0.5 * module * pair.pinion.teeth * math.cos(alpha)
     r_g = 0.5 * module * pair.gear.teeth * math.cos(alpha)

@@ -7,7 +7,6 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.gear_geometry.geometry import geometry
 from lumped.schema.pair import GearPair
 from multibody.contact import kernels as kn
 from multibody.contact.kinematics import COAST, DRIVE
@@ -44,7 +43,7 @@ def gear_outline(pair: GearPair, which: str, points: int = 16) -> FloatArray:
     which : "pinion" or "gear"
     points : points per flank
     """
-    g = geometry(pair)
+    g = pair.geometry
     p = machine(pair, 1.0, 1.0).parameters
     pinion = which == "pinion"
     places = (kn.RADIUS_P, kn.CHI_P, kn.CHI_P_BACK) if pinion else (kn.RADIUS_G, kn.CHI_G, kn.CHI_G_BACK)

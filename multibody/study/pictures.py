@@ -19,7 +19,6 @@ from matplotlib.patches import Circle, FancyArrowPatch, Rectangle
 from numpy.typing import NDArray
 
 from lumped.errors import refuse
-from lumped.gear_geometry.geometry import geometry
 from lumped.schema.pair import GearPair
 from multibody.study.outline import gear_outline
 
@@ -90,7 +89,7 @@ def gear_animation(
     if target.suffix.lower() != ".gif":
         raise refuse("path", target, "a name ending in .gif", "Rename the file.")
     time = run["time"].to_numpy()
-    start = max(float(time[-1]) - cycles * geometry(pair).mesh_period, float(time[0]))
+    start = max(float(time[-1]) - cycles * pair.geometry.mesh_period, float(time[0]))
     wanted = start + (float(time[-1]) - start) * np.arange(frames) / frames
     outlines, largest = _outlines(pair), _largest(run)
     figure = Figure(figsize=(11.0, 5.2), layout="constrained")
@@ -128,7 +127,7 @@ def _draw(
     outlines: tuple[FloatArray, FloatArray],
     largest: tuple[float, float],
 ) -> None:
-    g, now = geometry(pair), run.isel(time=index)
+    g, now = pair.geometry, run.isel(time=index)
     t = float(now["time"])
     # Pinion clockwise, gear counter-clockwise; angles are nominal rotation plus deviation.
     angles = (-(g.omega_pinion * t + float(now["theta_p"])), g.omega_gear * t + float(now["theta_g"]))
@@ -162,7 +161,7 @@ def _draw(
 
 def _window(pair: GearPair) -> tuple[float, float, float, float]:
     """Left, bottom, width, height of the close-up [mm]."""
-    g = geometry(pair)
+    g = pair.geometry
     reach = 1e3 * max(g.L_XD - g.L_XA, g.base_pitch)
     middle = 1e3 * 0.5 * (g.L_XA + g.L_XD)
     return middle - 0.9 * reach, -0.65 * reach, 2.0 * reach, 1.3 * reach
@@ -175,7 +174,7 @@ def _whole_gears(
     window: tuple[float, float, float, float],
 ) -> None:
     """Names, centres, base circles and senses of rotation, and the frame of the close-up."""
-    g = geometry(pair)
+    g = pair.geometry
     radii = (g.base_radius_pinion, g.base_radius_gear)
     names = (f"pinion, {pair.pinion.teeth} teeth\ndrives", f"gear, {pair.gear.teeth} teeth\nis driven")
     for centre, radius, name, turn, edge in zip(centres, radii, names, (-1, 1), _EDGES, strict=True):
@@ -204,7 +203,7 @@ def _whole_gears(
 
 def _path_of_contact(axes: Axes, pair: GearPair) -> None:
     """Ticks above the close-up where contact starts, changes and ends."""
-    g = geometry(pair)
+    g = pair.geometry
     places = {name: 1e3 * getattr(g, f"L_X{name}") for name in "ABPCD"}
     for x in places.values():
         axes.plot([x], [0.0], marker="|", color="0.25", markersize=8)

@@ -54,7 +54,7 @@ def test_the_cache_notices_edits_of_called_files(tmp_path: Path) -> None:
     assert run() == (3.0, 0)
 
 
-@pytest.mark.parametrize("package", ["floquet.rank_one.kernels", "multibody"])
+@pytest.mark.parametrize("package", ["floquet.rank_one.kernels", "multibody.contact"])
 def test_every_compiled_function_that_calls_across_files_has_the_stamp(package: str) -> None:
     folder = importlib.import_module(package).__path__
     modules = [importlib.import_module(f"{package}.{module.name}") for module in pkgutil.iter_modules(folder)]

@@ -1,70 +1,120 @@
-"""Is the engine free of gears, and are the public names there, described and cheap to import?"""
+"""Do imports run one way: between packages and between folders? Is the Floquet engine free of gears?"""
 
 from __future__ import annotations
 
 import ast
+import graphlib
 import inspect
+import itertools
 import subprocess
 import sys
+from collections import defaultdict
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 import floquet
 
-ROOT = Path(floquet.__file__).parent
-ENGINE = sorted(
-    path
-    for path in ROOT.rglob("*.py")
-    if "gear" not in path.relative_to(ROOT).parts and path.name != "__init__.py"
-)
+ROOT = Path(floquet.__file__).parents[1]
+#: Package -> what it may import.
+MAY_IMPORT = {
+    "lumped": set(),
+    "multibody": {"lumped"},
+    "floquet": {"lumped"},
+    "validation": {"lumped", "multibody", "floquet"},
+}
+FILES = sorted(path for package in MAY_IMPORT for path in (ROOT / package).rglob("*.py"))
+MODULES = {".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__") for path in FILES}
+
+
+def named(path: Path) -> str:
+    return path.relative_to(ROOT).as_posix()
 
 
 def imported(path: Path) -> set[str]:
-    """Every module that a file imports, wherever in it."""
-    names: set[str] = set()
+    """Every module of this project that a file imports, wherever in it, for types alone too."""
+    found: set[str] = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            names |= {alias.name for alias in node.names}
+            found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
-            names.add(str(node.module))
-    return names
+            names = {f"{node.module}.{alias.name}" for alias in node.names}
+            found |= names & MODULES or {str(node.module)}
+    return found & MODULES
 
 
-@pytest.mark.parametrize("path", ENGINE, ids=lambda path: path.relative_to(ROOT).as_posix())
+def arrows() -> Iterator[tuple[tuple[str, ...], str, str, str]]:
+    """Folder, importing entry and imported entry of it (file or folder), and the words for a message."""
+    for path in FILES:
+        if path.name == "__init__.py":  # the face of its folder, which re-exports
+            continue
+        here = path.relative_to(ROOT).with_suffix("").parts
+        for module in imported(path):
+            there = tuple(module.split("."))
+            same = 0
+            while same < min(len(here), len(there)) and here[same] == there[same]:
+                same += 1
+            if 0 < same < len(here):
+                to = there[same] if same < len(there) else "__init__"
+                yield here[:same], here[same], to, f"{named(path)} imports {module}"
+
+
+@pytest.mark.parametrize("path", FILES, ids=named)
+def test_packages_are_imported_in_one_direction(path: Path) -> None:
+    package = path.relative_to(ROOT).parts[0]
+    others = {module.split(".")[0] for module in imported(path)} - {package}
+    assert others <= MAY_IMPORT[package]
+
+
+def test_inside_every_folder_arrows_form_no_circle() -> None:
+    folders: dict[tuple[str, ...], dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
+    words: dict[tuple[tuple[str, ...], str, str], str] = {}
+    for folder, start, end, text in arrows():
+        assert end != "__init__", f"{text}, which is above it: import the file that defines the name"
+        folders[folder][start].add(end)
+        words[folder, start, end] = text
+    assert ("lumped",) in folders
+    for folder, graph in folders.items():
+        try:
+            graphlib.TopologicalSorter(graph).prepare()
+        except graphlib.CycleError as error:
+            circle = error.args[1]
+            steps = [words[folder, b, a] for a, b in itertools.pairwise(circle)]
+            pytest.fail(f"{'/'.join(folder)}: " + "; ".join(steps))
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "floquet" / "engine").rglob("*.py")), ids=named)
 def test_engine_knows_no_gears(path: Path) -> None:
     found = imported(path)
-    allowed = {"lumped.arguments", "lumped.errors", "lumped.compiler"}
+    allowed = {"lumped.arguments", "lumped.errors", "lumped.compiler", "lumped.typing"}
     assert {name for name in found if name.split(".")[0] == "lumped"} <= allowed
-    assert not {name for name in found if name.startswith("floquet.gear.")}
-    assert not {name for name in found if name.split(".")[0] in ("multibody", "validation", "matplotlib")}
 
 
-def test_the_test_above_sees_imports() -> None:
-    assert len(ENGINE) > 25
-    assert "lumped.model.periodic_system" in imported(ROOT / "gear" / "block.py")
+def test_the_tests_above_see_imports() -> None:
+    assert "lumped.model.periodic_system" in imported(ROOT / "floquet" / "gear" / "block.py")
+    assert len(FILES) > 300
 
 
 def test_public_names_exist_and_are_described() -> None:
     for name in floquet.__all__:
         value = getattr(floquet, name)
         assert name in dir(floquet)
-        if inspect.ismodule(value):
-            pytest.fail(f"floquet.{name} is a module")
+        assert not inspect.ismodule(value), name
         if callable(value):
             assert inspect.getdoc(value), name
     with pytest.raises(AttributeError, match="no_such_name"):
         floquet.no_such_name  # noqa: B018
-    eager = {"PROPAGATORS", "Monodromy", "PeriodicSystem", "Propagator", "Spectrum", "chart", "load_chart"}
-    eager |= {"monodromy", "save_chart", "scan", "gear_block"}
-    assert set(floquet._MODULES) | eager == set(floquet.__all__)
 
 
-def test_functions_survive_the_import_of_their_modules() -> None:
+def test_functions_survive_the_import_of_all_modules() -> None:
     # Importing a submodule sets it as an attribute of the package: a function of that name must stay.
-    code = (
-        "import floquet.engine.monodromy, floquet.engine.chart, floquet.gear.block, floquet\n"
-        "assert all(callable(getattr(floquet, name)) for name in floquet.__all__ if name[0].islower())"
+    imports = "\n".join(f"import {name}" for name in sorted(MODULES) if not name.endswith("__main__"))
+    code = imports + (
+        "\nimport inspect"
+        "\nfor package in (lumped, multibody, floquet, validation):"
+        "\n    for name in package.__all__:"
+        "\n        assert not inspect.ismodule(getattr(package, name)), name"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
 

@@ -24,7 +24,7 @@ def presets(
 
     spurcheck presets nasa_28_28
     """
-    from lumped import geometry, load_gear_pair, preset_names
+    from lumped import load_gear_pair, preset_names
     from lumped.schema.files import preset_text
 
     if name is not None:
@@ -35,7 +35,7 @@ def presets(
     for known in preset_names():
         pair = load_gear_pair(known)
         teeth = f"{pair.pinion.teeth}/{pair.gear.teeth}"
-        shown.add_row(known, teeth, f"{geometry(pair).contact_ratio:.3f}", pair.description)
+        shown.add_row(known, teeth, f"{pair.geometry.contact_ratio:.3f}", pair.description)
     stdout().print(shown)
 
 

@@ -87,7 +87,7 @@ def simulate(
     from validation.reporting.formatting import number, quantity
     from validation.validity.flags import contact_loss
 
-    g = lumped.geometry(gear_pair)
+    g = gear_pair.geometry
     last = result.isel(time=slice(-samples, None))
     load = last["normal_load"].to_numpy()[last["contact"].to_numpy() > 0]
     shown = table(f"{gear_pair.name}, last mesh cycle", "quantity", ">value")

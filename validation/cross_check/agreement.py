@@ -98,7 +98,7 @@ def overall_verdict(agreements: Sequence[Agreement]) -> Verdict:
 
 def contact_shift(pair: GearPair, motion: xr.Dataset) -> float:
     """Mean shift of the contact by finite motions, over the base pitch, from a lumped motion."""
-    g = lumped.geometry(pair)
+    g = pair.geometry
     return float(np.mean(np.abs(motion["theta_p"].to_numpy()))) * g.base_radius_pinion / g.base_pitch
 
 

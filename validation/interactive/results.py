@@ -162,7 +162,7 @@ def _law_sweeps(
 
 def _sweep(pair: GearPair, speeds: FloatArray) -> xr.Dataset:
     """Response with the pair's own law."""
-    g = lumped.geometry(pair)
+    g = pair.geometry
     found = lumped.speed_sweep(pair, speeds, samples_per_cycle=96)
     static = pair.operating.pinion_torque / g.base_radius_pinion
     lowest, reversal = found["normal_load_min"].to_numpy(), found["sliding_reversal"].to_numpy()

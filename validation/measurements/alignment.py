@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped import geometry
 from lumped.arguments import real_number, some_of
 from lumped.errors import NumericalError, refuse
 from lumped.schema.pair import GearPair
@@ -66,7 +65,7 @@ def mesh_cycles(measurement: Measurement, pair: GearPair) -> FloatArray:
     pair : the gear pair
     """
     at = pair.with_({"operating.pinion_speed": f"{measurement.spec.pinion_speed!r} rad/s"})
-    g = geometry(at)
+    g = at.geometry
     if measurement.spec.abscissa.kind == "roll_angle":
         return np.asarray(
             (g.base_radius_pinion * measurement.abscissa - g.L_XA) / g.base_pitch, dtype=np.float64

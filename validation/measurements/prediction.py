@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from lumped import Geometry, PathFunction, geometry, mesh_elements, steady_state
+from lumped import Geometry, PathFunction, mesh_elements, steady_state
 from lumped.arguments import real_number, whole_number
 from lumped.errors import refuse
 from lumped.schema.pair import GearPair
@@ -116,7 +116,7 @@ def predict(
     if torque is not None:
         torque = real_number("torque", torque, 0.0, above=True, unit="N m")
         at = at.with_({"operating.pinion_torque": torque})
-    g = geometry(at)
+    g = at.geometry
     again = at.pinion.teeth
     if recurrence is not None:  # no fewer than the pairs in contact at once
         advice = "Count the mesh cycles until the same labelled pair is in contact again."

@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import multibody
-from lumped import GearPair, NumericalError, geometry, steady_state
+from lumped import GearPair, NumericalError, steady_state
 from lumped.model.periodic_cycle import UNSTABLE
 from validation.cross_check import metrics
 from validation.paper.figure_record import Number
@@ -174,5 +174,5 @@ def continuous_labels(values: FloatArray, cycles: int) -> FloatArray:
 
 def roll_angle(pair: GearPair, cycles: FloatArray) -> FloatArray:
     """Pinion roll angle [deg] of the pair that was at A at zero, from mesh cycles."""
-    g = geometry(pair)
+    g = pair.geometry
     return np.asarray(np.degrees((g.L_XA + cycles * g.base_pitch) / g.base_radius_pinion), dtype=np.float64)

@@ -198,7 +198,7 @@ def compute(pair: GearPair, effort: Effort, progress: Progress) -> Results:
             )
         except (NumericalError, ParameterError) as error:  # the paper's operating points may not suit a pair
             refusal = str(error)
-    g = lumped.geometry(pair)
+    g = pair.geometry
     flags = validity_flags(pair, motion, multipliers)
     flags += (speed_drift(g, check.multibody["linear"]),)
     return Results(

@@ -11,7 +11,6 @@ import numpy as np
 import xarray as xr
 
 from floquet.gear.axes import GEAR_AXES, GearVariation
-from lumped.gear_geometry.geometry import geometry
 from lumped.model.solution import steady_state
 from lumped.schema.pair import GearPair
 from validation.studies.outputs import OUTPUTS, Analysis
@@ -86,7 +85,7 @@ class Evaluator:
 
 
 def _geometry(variation: GearVariation, settings: Settings) -> Values:
-    g = geometry(variation.pair)
+    g = variation.pair.geometry
     return {name: float(getattr(g, name)) for name in OUTPUTS["geometry"]}
 
 

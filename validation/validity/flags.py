@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from lumped import GearPair, Geometry, geometry
+from lumped import GearPair, Geometry
 from lumped.friction import contact_path, law_range_violations
 from lumped.stiffness import stiffness_range_violations
 from validation.validity.flag import Flag, State, flag
@@ -40,7 +40,7 @@ def validity_flags(
     motion : dataset of ``lumped.steady_state``, or of a ``simulate``, over whole mesh cycles
     multipliers : Floquet multipliers of the pair, where they are known
     """
-    g = geometry(pair)
+    g = pair.geometry
     flags = [
         contact_loss(pair, g, motion),
         sliding_reversal(g, motion),

@@ -10,7 +10,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 import lumped
-from lumped import GearPair, LawRangeWarning, geometry
+from lumped import GearPair, LawRangeWarning
 from lumped.arguments import real_numbers
 from lumped.friction import contact_path
 from lumped.lubrication.film import regime
@@ -62,7 +62,7 @@ def validity_map(
     shape = (torque.size, speed.size)
     names = ("lowest_load", "reversal", "spectral_radius", "film_parameter")
     found: dict[str, FloatArray] = {name: np.full(shape, np.nan) for name in names}
-    g = geometry(pair)
+    g = pair.geometry
     with warnings.catch_warnings():
         # The map itself shows the regime; one warning per point would say less.
         warnings.simplefilter("ignore", LawRangeWarning)

@@ -15,7 +15,7 @@ import multibody
 from floquet import PeriodicSystem, gear_pair_multipliers, gear_pair_system, monodromy
 from floquet.engine.propagation import propagate_fixed
 from floquet.engine.propagators import propagator
-from lumped import GearPair, geometry, steady_state
+from lumped import GearPair, steady_state
 from lumped.friction import benedict_kelley, xu_kahraman
 from lumped.lubrication.film import effective_modulus, film_parameter, film_thickness, hertz_half_width
 from validation.verification.checks import Check, OrderCheck
@@ -170,7 +170,7 @@ def _block_form(pair: GearPair) -> Check:
 def _lumped_identities(pair: GearPair) -> tuple[Check, Check, Check]:
     """What a periodic motion must fulfil whatever the parameters are."""
     free = pair.with_({"friction.law": "none"})
-    g = geometry(pair)
+    g = pair.geometry
     motion = steady_state(free, samples_per_cycle=1024)
     static = float(motion.attrs["pinion_torque"]) / g.base_radius_pinion
     held = -float(motion["x_p"].mean()) * pair.bearings.pinion.loa_stiffness

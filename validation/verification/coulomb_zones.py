@@ -15,7 +15,7 @@ from scipy.optimize import brentq, minimize_scalar
 from floquet import gear_pair_multipliers, monodromy
 from floquet.engine.system import FloatArray
 from floquet.gear.vaishya_singh import CoulombGearPair
-from lumped import GearPair, geometry, load_gear_pair
+from lumped import GearPair, load_gear_pair
 from lumped.model.bodies import bodies
 from lumped.model.periodic_system import periodic_system
 from validation.verification.floquet_check import Check, error, order
@@ -78,7 +78,7 @@ def _gear() -> GearPair:
 def _factor() -> float:
     """Deviation of the q row of the gear's equations from sum k_i (1 + s_i mu tan alpha)/m_e."""
     gear = _gear()
-    system, g = periodic_system(gear, "feedback"), geometry(gear)
+    system, g = periodic_system(gear, "feedback"), gear.geometry
     times = np.concatenate([np.linspace(a, b, 9)[1:-1] for a, b in pairwise(system.cycle.edges)])
     pairs = system.cycle.sample(times)
     sign = np.where(pairs.position < g.L_XP, -1.0, 1.0)
@@ -90,7 +90,7 @@ def _factor() -> float:
 def _on_bearings(factor: float) -> float:
     """Distance of the closed form from the multipliers of the gear on bearings this much stiffer than k."""
     gear = _gear()
-    system, g = periodic_system(gear, "feedback"), geometry(gear)
+    system, g = periodic_system(gear, "feedback"), gear.geometry
     k = float(system.cycle.sample(np.array([0.9 * system.period])).stiffness.max())
     omega = np.sqrt(k * g.contact_ratio / bodies(gear).effective_mass)
     exact = CoulombGearPair(g.contact_ratio, 0.0, MU, g.operating_pressure_angle)

@@ -93,7 +93,7 @@ def compare_point(pair: GearPair, samples: int) -> GridPoint:
 
     try:
         reference = lumped.steady_state(pair, samples_per_cycle=samples)
-        static = pair.operating.pinion_torque / lumped.geometry(pair).base_radius_pinion
+        static = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
         load_min = float(reference["normal_load"].min()) / static
         if load_min < -LOAD_NOISE:
             return GridPoint(SEPARATED, load_min, spent())

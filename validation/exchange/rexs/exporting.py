@@ -8,7 +8,7 @@ from importlib import metadata
 from pathlib import Path
 
 from lumped.errors import refuse, shown
-from lumped.gear_geometry.geometry import Geometry, geometry
+from lumped.gear_geometry.geometry import Geometry
 from lumped.lubrication.viscosity_grade import grade_viscosity
 from lumped.schema.gear import Gear
 from lumped.schema.pair import GearPair
@@ -106,7 +106,7 @@ def rexs_model(pair: GearPair, version: str = LATEST, *, record: bool = True, fi
     record : whether to add the attribute of spurcheck's own
     file : name of the file
     """
-    g = geometry(pair)
+    g = pair.geometry
     build = _Builder(version)
     unit = build.add("gear_unit", pair.name, number_of_gears=1, gear_shift_index=1, **_place(1, 0.0))
     stage = build.add(

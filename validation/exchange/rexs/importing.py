@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 from lumped.errors import FieldProblem, ParameterError
-from lumped.gear_geometry.geometry import geometry
 from lumped.schema.files import load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.schema.units import to_stated
@@ -85,7 +84,7 @@ def _standard(model: RexsModel, picked: Stage) -> tuple[GearPair, Said]:
     if said.problems:
         raise ParameterError(said.problems, model.file)
     pair = _validated(said, picked)
-    read_reliefs(said, stage, {"pinion": pinion, "gear": gear}, geometry(pair))
+    read_reliefs(said, stage, {"pinion": pinion, "gear": gear}, pair.geometry)
     if said.problems:
         raise ParameterError(said.problems, model.file)
     return with_sources(_validated(said, picked), said), said

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from lumped import GearPair, PathFunction, geometry
+from lumped import GearPair, PathFunction
 from lumped.friction import contact_path, friction_path_function, mean_coefficient
 from lumped.model.periodic_cycle import periodic_cycle
 from validation.paper.operating_points import FIGURE_2A, FIGURE_7, LAWS, TORQUE_2B, second_pair
@@ -42,7 +42,7 @@ def mean_ratio(pair: GearPair) -> float:
 def at_pitch_point(pair: GearPair) -> tuple[float, float]:
     """Largest |mu| within ``AT_PITCH`` of P: of III over its mean, of II over its largest elsewhere."""
     at = FIGURE_2A.of(pair)
-    g = geometry(at)
+    g = at.geometry
     near = g.L_XP + AT_PITCH * g.base_pitch * np.linspace(-1.0, 1.0, 401)
     path = np.linspace(g.L_XA, np.nextafter(g.L_XD, 0.0), 2001)
     away = path[np.abs(path - g.L_XP) > AT_PITCH * g.base_pitch]
@@ -75,7 +75,7 @@ def regime_change(pair: GearPair) -> tuple[float, float, float]:
 
 def pitch_jumps(pair: GearPair) -> dict[str, float]:
     """Jump of mu at the pitch point over its peak to peak, per law, at Fig. 4's point."""
-    g = geometry(pair)
+    g = pair.geometry
     path = np.linspace(g.L_XA, np.nextafter(g.L_XD, 0.0), 4001)
     sides = g.L_XP + _ONE_SIDED * np.array([-1.0, 1.0])
     found = {}
@@ -157,6 +157,6 @@ def fig7_peaks(pair: GearPair) -> tuple[float, float, float, float]:
     at = FIGURE_7[1].of(pair).with_({"friction.law": "xu_kahraman"})
     run = periodic_cycle(at, 128)
     normal, friction = run.values["normal_load"], run.values["friction_force"]
-    static = at.operating.pinion_torque / geometry(at).base_radius_pinion
+    static = at.operating.pinion_torque / at.geometry.base_radius_pinion
     lowest = float(normal[run.values["contact"] > 0].min()) / static
     return float(normal.max()), float(np.abs(friction).max()), lowest, run.spectral_radius

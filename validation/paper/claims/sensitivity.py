@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import qmc
 
-from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError, bodies, geometry
+from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError, bodies
 from lumped.arguments import whole_number
 from validation.paper.claims import numbers
 from validation.paper.operating_points import FIGURE_4
@@ -150,7 +150,7 @@ def measure(pair: GearPair) -> dict[str, float]:
     spread, spread_rms = numbers.load_spread(cycles)
     slow, fast = numbers.mean_iii(pair)
     normal, friction, lowest, radius_7 = numbers.fig7_peaks(pair)
-    static = at.operating.pinion_torque / geometry(at).base_radius_pinion
+    static = at.operating.pinion_torque / at.geometry.base_radius_pinion
     found = {
         "mean_ratio": numbers.mean_ratio(pair),
         "iii_at_pitch": iii_at_pitch,

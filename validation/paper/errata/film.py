@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import brentq
 
-from lumped import GearPair, geometry
+from lumped import GearPair
 from lumped.friction import ContactPath, contact_path, friction_path_function
 from lumped.lubrication.film import film_parameter, regime
 from validation.paper.errata import dimensions
@@ -45,7 +45,7 @@ def speed_of_film_parameter(pair: GearPair, level: float, xi: float) -> float:
 def _erratum_20(pair: GearPair) -> Erratum:
     light = pair.with_(operating__pinion_torque=22.6)
     thresholds = pair.friction.thresholds
-    onset = speed_of_film_parameter(light, thresholds[2], geometry(light).L_XP)
+    onset = speed_of_film_parameter(light, thresholds[2], light.geometry.L_XP)
     fast = light.with_(operating__pinion_speed=1.2 * onset)
     share = _undefined_share(contact_path(fast), thresholds)
     return Erratum(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped import GearPair, PathFunction, geometry
+from lumped import GearPair, PathFunction
 from lumped.friction import (
     benedict_kelley,
     contact_path,
@@ -172,7 +172,7 @@ def derivative_residual(pair: GearPair, function: PathFunction, mu: float) -> fl
     function : law IV, signed
     mu : its average coefficient
     """
-    g, phi = geometry(pair), pair.friction.sharpness
+    g, phi = pair.geometry, pair.friction.sharpness
     xi = np.linspace(g.L_XA, g.L_XD, 4001)[1:-1]
     d = xi - g.L_XP
     step = 1e-30

@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped import GearPair, PathFunction, geometry
+from lumped import GearPair, PathFunction
 from lumped.friction import (
     ContactPath,
     contact_path,
@@ -89,7 +89,7 @@ def law_iii_printed(pair: GearPair, *, sliding_speed: bool = True, millimetres: 
 def law_iv_printed(pair: GearPair) -> PathFunction:
     """Law IV with the contact ratio sigma in the second numerator (equation 19 as printed), lengths in mm."""
     path, mu = contact_path(pair), average_coefficient(pair)
-    sigma, phi = geometry(pair).contact_ratio, pair.friction.sharpness * 1e-3
+    sigma, phi = pair.geometry.contact_ratio, pair.friction.sharpness * 1e-3
 
     def law(xi: FloatArray) -> FloatArray:
         d = 1e3 * (xi - path.L_XP)
@@ -120,7 +120,7 @@ def film_thickness_printed(
 
 
 def _fitted(pair: GearPair, law: Law, bounds: list[float] | None = None) -> PathFunction:
-    g = geometry(pair)
+    g = pair.geometry
     inner = [xi for xi in bounds or [] if g.L_XA < xi < g.L_XD]
     # Graded towards the pitch point, where powers of the sliding velocity are hardest to fit.
     graded = [

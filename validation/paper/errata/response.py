@@ -10,7 +10,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from floquet import PeriodicSystem, monodromy
-from lumped import GearPair, MeshCycle, PathFunction, geometry, mesh_cycle, periodic_system, simulate
+from lumped import GearPair, MeshCycle, PathFunction, mesh_cycle, periodic_system, simulate
 from lumped.model.mesh_elements import MeshElements
 from lumped.model.results import dataset
 from lumped.model.steady import periodic_solution, sample_times
@@ -120,7 +120,7 @@ def created_power(pair: GearPair, data: xr.Dataset, as_printed: Collection[int] 
     as_printed : equations whose printed sign is used
     """
     s = periodic_system(pair, "absolute", as_printed=as_printed).structure
-    g = geometry(pair)
+    g = pair.geometry
     names = ("theta_p", "theta_g", "x_p", "x_g", "y_p", "y_g")
     rates = np.stack([data[f"{name}_dot"].to_numpy() for name in names], axis=-1)
     rates[:, 0] += g.omega_pinion
@@ -150,7 +150,7 @@ def speed_drift(pair: GearPair, *, as_printed: Collection[int] = (), cycles: int
     change of the mean pinion speed over these cycles, relative to the nominal speed
     """
     run = simulate(pair, cycles, samples_per_cycle=64, initial="periodic", rtol=1e-8, as_printed=as_printed)
-    g = geometry(pair)
+    g = pair.geometry
     s = periodic_system(pair, "absolute").structure
     weights = s.mass[:2] / np.array([g.base_radius_pinion, g.base_radius_gear])
     rates = np.stack([run["theta_p_dot"].to_numpy(), run["theta_g_dot"].to_numpy()])

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from scipy.optimize import linear_sum_assignment
 
-from lumped import GearPair, geometry
+from lumped import GearPair
 from lumped.model.equations import PRINTED_EQUATIONS
 from validation.paper.errata.response import Response, response, speed_drift
 from validation.paper.records import Erratum, Evidence
@@ -55,7 +55,7 @@ def one_pair_efficiency(pair: GearPair, xi: float, mu: float, *, printed: bool) 
     mu : signed friction coefficient there
     printed : use the printed sign of equation 1
     """
-    g = geometry(pair)
+    g = pair.geometry
     sign = -1.0 if printed else 1.0
     ratio = g.base_radius_pinion / g.base_radius_gear
     return (g.base_radius_gear + mu * (g.L_XY - xi)) / (g.base_radius_pinion + sign * mu * xi) * ratio
@@ -159,7 +159,7 @@ def _relative_motion(r: Response) -> float:
 
 
 def _recess(pair: GearPair) -> Evidence:
-    g = geometry(pair)
+    g = pair.geometry
     # A place late in recess; 21 mm from X for the 28/28 pair, as far along the recess for any other.
     xi = g.L_XP + 0.7551 * (g.L_XD - g.L_XP)
     return Evidence(

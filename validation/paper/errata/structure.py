@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped import GearPair, Geometry, geometry, load_gear_pair
+from lumped import GearPair, Geometry, load_gear_pair
 from validation.paper.errata.dimensions import equation_8
 from validation.paper.records import Erratum, Evidence
 
@@ -70,7 +70,7 @@ def pinion_arms(g: Geometry, phase: FloatArray) -> FloatArray:
 
 def erratum_5b(pair: GearPair) -> Erratum:
     """Equation 5b: right for contact ratios below 2 only."""
-    low, high = geometry(pair), geometry(high_contact_ratio())
+    low, high = pair.geometry, high_contact_ratio().geometry
     phase = np.linspace(0.0, 1.0, 64, endpoint=False)
 
     def residual(g: Geometry, printed: bool) -> float:

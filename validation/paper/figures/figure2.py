@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from lumped import GearPair, geometry
+from lumped import GearPair
 from lumped.friction import friction_path_function, mean_coefficient
 from validation.paper.figure_record import FigureRecord, Number
 from validation.paper.operating_points import (
@@ -43,7 +43,7 @@ def friction_in_time(pair: GearPair) -> xr.Dataset:
     ratios, pitches, names = [], [], []
     for gears in (pair, second_pair(pair)):
         at = FIGURE_2A.of(gears)
-        g = geometry(at)
+        g = at.geometry
         near = np.geomspace(5e-9, 1e-3, 80)
         xi = np.linspace(g.L_XA, np.nextafter(g.L_XD, 0.0), _POINTS)  # a path function is zero from D on
         xi = np.sort(np.concatenate([xi, g.L_XP - near, g.L_XP + near]))

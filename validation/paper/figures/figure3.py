@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from lumped import GearPair, geometry
+from lumped import GearPair
 from lumped.friction import friction_path_function, mean_coefficient
 from validation.paper.figure_record import FigureRecord, Number
 from validation.paper.operating_points import FIGURE_4, LAWS
@@ -18,7 +18,7 @@ def normalised_laws(pair: GearPair) -> xr.Dataset:
 
     The points are denser around the pitch point, with one just before and one just after it.
     """
-    g = geometry(pair)
+    g = pair.geometry
     pitch = (g.L_XP - g.L_XA) / g.base_pitch
     offsets = np.geomspace(1e-6, 0.05, 60)
     cycles = np.unique(

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from lumped import GearPair, geometry
+from lumped import GearPair
 from lumped.model.periodic_cycle import UNSTABLE
 from validation.measurements import Measurement, align, overlay, overlay_metrics, predict
 from validation.measurements.specification import PAIR_LABELS
@@ -30,7 +30,7 @@ def pair_forces(pair: GearPair, point: OperatingPoint, *, with_multibody: bool =
     """
     at = point.of(pair).with_({"friction.law": LAW})
     runs = twins({"III": at}, with_multibody=with_multibody)
-    places = geometry(at).pairs
+    places = at.geometry.pairs
     samples = runs.sizes["phase"]
     cycles = np.arange(_CYCLES * samples) / samples
     found = {}
