@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import refuse, shown
+from lumped.typing import FloatArray
 
-FloatArray = NDArray[np.float64]
 Name = TypeVar("Name", str, int)
 
 

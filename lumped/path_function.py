@@ -15,12 +15,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.interpolate import PPoly
 
 from lumped.errors import NumericalError
-
-FloatArray = NDArray[np.float64]
+from lumped.typing import FloatArray
 
 #: Degree of the fitted pieces. Converting a Chebyshev to a monomial basis costs about (1 + sqrt 2)^degree
 #: rounding errors, 2.5e-13 at degree 8, so the fit stays below its tolerances.

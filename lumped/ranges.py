@@ -7,12 +7,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.arguments import real_array
 from lumped.errors import LawRangeWarning, refuse
-
-FloatArray = NDArray[np.float64]
+from lumped.typing import FloatArray
 
 #: Source text of a range that the sources at hand do not give.
 NOT_STATED = "not stated"

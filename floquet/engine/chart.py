@@ -14,9 +14,10 @@ from floquet.engine.monodromy import monodromy
 from floquet.engine.multipliers import verdicts
 from floquet.engine.propagators import Propagator
 from floquet.engine.spectrum import Spectrum
-from floquet.engine.system import FloatArray, PeriodicSystem
+from floquet.engine.system import PeriodicSystem
 from lumped.arguments import real_numbers, whole_number
 from lumped.errors import NumericalError, refuse, shown
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -16,9 +16,10 @@ from floquet.engine.multipliers import multipliers_with_bounds
 from floquet.engine.propagation import Propagation, error_of_product, propagate
 from floquet.engine.propagators import Propagator, propagator
 from floquet.engine.spectrum import Spectrum
-from floquet.engine.system import FloatArray, PeriodicSystem
+from floquet.engine.system import PeriodicSystem
 from lumped.arguments import real_numbers
 from lumped.errors import NumericalError
+from lumped.typing import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from floquet.engine.system import FloatArray
+from lumped.typing import FloatArray
 
 Radius = Callable[[FloatArray], FloatArray]
 """Spectral radius at increasing parameter values, (k,) -> (k,)."""

@@ -16,9 +16,10 @@ from scipy.linalg import eig
 from floquet.engine.monodromy import checked_effort
 from floquet.engine.propagation import Propagation, error_of_product, propagate
 from floquet.engine.propagators import Propagator, propagator
-from floquet.engine.system import ComplexArray, FloatArray, PeriodicSystem
+from floquet.engine.system import PeriodicSystem
 from lumped.arguments import whole_number
 from lumped.errors import NumericalError, refuse
+from lumped.typing import ComplexArray, FloatArray
 
 _EPS = float(np.finfo(np.float64).eps)
 _LARGEST = 400  # rows of the cyclic matrix; its eigenvalues take about 0.3 s

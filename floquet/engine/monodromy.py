@@ -15,9 +15,10 @@ from floquet.engine.multipliers import multipliers_with_bounds
 from floquet.engine.propagation import Propagation, error_of_product, propagate
 from floquet.engine.propagators import Propagator, propagator
 from floquet.engine.spectrum import Spectrum
-from floquet.engine.system import FloatArray, PeriodicSystem
+from floquet.engine.system import PeriodicSystem
 from lumped.arguments import real_number, whole_number
 from lumped.errors import NumericalError
+from lumped.typing import FloatArray
 
 # Where |M| is below this, the tolerance is no longer relative: such a system is dead after one period.
 _DEAD = 1e-150

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from scipy.linalg import schur
 from scipy.linalg.lapack import ztrsen
 
-from floquet.engine.system import ComplexArray, FloatArray
+from lumped.typing import ComplexArray, FloatArray
 
 _EPS = float(np.finfo(np.float64).eps)
 

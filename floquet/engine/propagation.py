@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from floquet.engine.propagators import Propagator
-from floquet.engine.system import FloatArray, PeriodicSystem
+from floquet.engine.system import PeriodicSystem
 from lumped.errors import NumericalError
+from lumped.typing import FloatArray
 
 _EPS = float(np.finfo(np.float64).eps)
 _CHUNK = 4_000_000  # numbers held at once by a batch of steps: about 32 MB per temporary

@@ -10,7 +10,8 @@ import numpy.typing as npt
 from scipy.linalg import eigh
 
 from floquet.engine.monodromy import monodromy
-from floquet.engine.system import FloatArray, PeriodicSystem
+from floquet.engine.system import PeriodicSystem
+from lumped.typing import FloatArray
 
 
 def second_order(stiffness: npt.ArrayLike, damping: npt.ArrayLike) -> FloatArray:

@@ -10,9 +10,10 @@ import numpy as np
 import scipy.linalg
 
 from floquet.engine.monodromy import monodromy
-from floquet.engine.system import ComplexArray, FloatArray, PeriodicSystem
+from floquet.engine.system import PeriodicSystem
 from lumped.arguments import real_number
 from lumped.errors import NumericalError
+from lumped.typing import ComplexArray, FloatArray
 
 Derivative = Callable[[FloatArray], FloatArray]
 """dA/dp at times strictly inside the smooth segments, (k,) -> (k, n, n)."""

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from floquet.engine.multipliers import radius_with_bound, verdict
-from floquet.engine.system import ComplexArray, FloatArray
+from lumped.typing import ComplexArray, FloatArray
 
 
 @dataclass(frozen=True, eq=False)

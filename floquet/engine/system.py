@@ -14,9 +14,7 @@ from scipy.linalg import matrix_balance
 
 from lumped.arguments import real_number, real_numbers
 from lumped.errors import NumericalError, refuse
-
-FloatArray = npt.NDArray[np.float64]
-ComplexArray = npt.NDArray[np.complex128]
+from lumped.typing import FloatArray
 
 # Points nearer to a switch than this part of the period are moved inwards: far enough that a callable which
 # reduces t modulo the period cannot round it onto the switch, near enough that A changes only by rounding.

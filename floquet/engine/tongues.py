@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import brentq
 
-from floquet.engine.system import FloatArray
 from lumped.errors import NumericalError
+from lumped.typing import FloatArray
 
 RadiusAt = Callable[[FloatArray, float], FloatArray]
 """(places along the line (k,), damping) -> spectral radii (k,)."""

@@ -8,12 +8,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from floquet.engine.system import FloatArray
 from lumped.arguments import one_of
 from lumped.errors import refuse
 from lumped.friction.along_path import mean_coefficient
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 
 _NOMINAL_LAWS = ("coulomb", "smoothed_coulomb")
 

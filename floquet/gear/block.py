@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import PPoly
 
-from floquet.engine.system import FloatArray
 from floquet.gear.axes import GearVariation
 from floquet.gear.multipliers import mean_mesh_stiffness
 from floquet.rank_one.piecewise import fit_pieces
@@ -22,6 +21,7 @@ from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.path_function import PathFunction
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 
 
 def gear_block(

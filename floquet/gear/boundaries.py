@@ -13,7 +13,6 @@ import numpy.typing as npt
 
 from floquet.engine.chart import Progress, checked_axes
 from floquet.engine.intervals import UnstableInterval, seeded_nodes, unstable_intervals
-from floquet.engine.system import FloatArray
 from floquet.engine.tongues import ModeShares, Tongue, label_tongue
 from floquet.gear.axes import GEAR_AXES, GearVariation, gear_axis, vary
 from floquet.gear.block import gear_block
@@ -23,6 +22,7 @@ from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_number, real_numbers, whole_number
 from lumped.errors import refuse, shown
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -11,7 +11,6 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
-from floquet.engine.system import ComplexArray, FloatArray
 from floquet.engine.tongues import mode_shares
 from floquet.gear.axes import vary
 from floquet.gear.block import gear_block
@@ -20,6 +19,7 @@ from floquet.rank_one.batch import fast_monodromies
 from lumped.arguments import real_number, real_numbers, whole_number
 from lumped.errors import NumericalError
 from lumped.schema.pair import GearPair
+from lumped.typing import ComplexArray, FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -16,13 +16,13 @@ import numpy as np
 from floquet.engine.chart import Axes, Progress, chart_dataset, checked_axes, scan
 from floquet.engine.propagators import Propagator
 from floquet.engine.spectrum import Spectrum
-from floquet.engine.system import FloatArray
 from floquet.gear.axes import gear_axis, vary
 from floquet.gear.multipliers import gear_pair_multipliers
 from floquet.gear.plane import Plane, Store, plane_multipliers
 from lumped.arguments import one_of, real_number, whole_number
 from lumped.errors import refuse
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped import GearPair, NumericalError
 from lumped.model.averaged import Mode, modes
-
-FloatArray = NDArray[np.float64]
+from lumped.typing import FloatArray
 
 
 def operating_rpm(pair: GearPair) -> float:

@@ -8,15 +8,14 @@ from typing import Literal
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from floquet.engine.chart import checked_axes
 from floquet.engine.propagators import PROPAGATORS
 from floquet.gear.chart import stability_chart
 from lumped import GearPair
 from lumped.errors import refuse
+from lumped.typing import FloatArray
 
-FloatArray = NDArray[np.float64]
 Progress = Callable[[float], None]
 """Called with the finished fraction."""
 

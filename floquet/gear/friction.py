@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from floquet.engine.system import FloatArray
 from floquet.gear.axes import GearVariation
 from lumped.friction.along_path import contact_path, fit_law, friction_settings, mean_coefficient
 from lumped.friction.base import PITCH_RESOLUTION, ContactPath
 from lumped.friction.registry import law_named
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 
 _POSITIONS = 8
 # Agreement along the path, relative to mu: rounding of the laws, far below the 1e-10 to which mu is fitted.

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
-from numpy.typing import NDArray
 
 from floquet.engine.intervals import UnstableInterval, seeded_nodes, unstable_intervals
 from floquet.engine.tongues import TongueTip, tongue_tip
@@ -24,8 +23,8 @@ from floquet.gear.chart import stability_chart
 from floquet.rank_one.batch import fast_multipliers
 from lumped import GearPair
 from lumped.friction import friction_path_function, mean_coefficient
+from lumped.typing import FloatArray
 
-FloatArray = NDArray[np.float64]
 Radius = Callable[[npt.ArrayLike, npt.ArrayLike], FloatArray]
 """(pinion speeds [rpm], mesh damping ratios), broadcast -> spectral radii of the feedback block."""
 

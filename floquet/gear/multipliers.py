@@ -12,10 +12,11 @@ import numpy as np
 from floquet.engine.monodromy import monodromy
 from floquet.engine.propagators import Propagator
 from floquet.engine.spectrum import Spectrum
-from floquet.engine.system import ComplexArray, FloatArray, PeriodicSystem
+from floquet.engine.system import PeriodicSystem
 from floquet.gear.axes import GearVariation
 from lumped.model.periodic_system import Form, LTVSystem, periodic_system
 from lumped.schema.pair import GearPair
+from lumped.typing import ComplexArray, FloatArray
 
 
 @dataclass(frozen=True, eq=False)

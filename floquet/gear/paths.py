@@ -13,13 +13,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
-from floquet.engine.system import ComplexArray, FloatArray
 from floquet.gear.axes import gear_axis, vary
 from floquet.gear.block import gear_block
 from floquet.gear.friction import depends_on_speed
 from floquet.rank_one.batch import fast_monodromies
 from lumped.arguments import real_number, real_numbers
 from lumped.schema.pair import GearPair
+from lumped.typing import ComplexArray, FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from floquet.engine.multipliers import radii_with_bounds
-from floquet.engine.system import ComplexArray, FloatArray
 from floquet.gear.axes import GearVariation, vary
 from floquet.gear.block import gear_block
 from floquet.gear.friction import FrictionFamily, factors_at, friction_families
@@ -20,6 +19,7 @@ from floquet.rank_one.interpolation import interpolated_multipliers
 from floquet.rank_one.system import RankOneSystem
 from lumped.model.periodic_system import periodic_system
 from lumped.schema.pair import GearPair
+from lumped.typing import ComplexArray, FloatArray
 
 Put = Callable[[npt.NDArray[np.intp], FastMultipliers], None]
 """(indices (k,) of points, their multipliers)."""

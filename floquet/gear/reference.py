@@ -17,7 +17,6 @@ import numpy.typing as npt
 import xarray as xr
 from scipy.optimize import linear_sum_assignment
 
-from floquet.engine.system import FloatArray
 from floquet.gear.block import gear_block
 from floquet.rank_one.batch import fast_multipliers
 from floquet.rank_one.coarsening import coarsened
@@ -27,6 +26,7 @@ from lumped.errors import LawRangeWarning
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.path_function import PathFunction
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 
 LongArray = npt.NDArray[np.longdouble]
 

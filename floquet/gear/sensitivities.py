@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from floquet.engine.sensitivity import multiplier_derivatives, segment_time
-from floquet.engine.system import FloatArray, PeriodicSystem
+from floquet.engine.system import PeriodicSystem
 from floquet.gear.axes import GEAR_AXES, gear_axis, operating_value, vary
 from floquet.gear.multipliers import gear_pair_multipliers, gear_pair_system, oloa_exponents
 from lumped.arguments import some_of
 from lumped.errors import NumericalError
 from lumped.model.periodic_system import periodic_system
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -13,7 +13,6 @@ import numpy.typing as npt
 from scipy import ndimage
 
 from floquet.engine.chart import Progress
-from floquet.engine.system import FloatArray
 from floquet.engine.tongues import Tongue, tongue_tip
 from floquet.gear.axes import vary
 from floquet.gear.boundaries import label_variation, stability_boundaries
@@ -21,6 +20,7 @@ from floquet.gear.chart import stability_chart
 from lumped.arguments import real_numbers, whole_number
 from lumped.errors import refuse, shown
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -23,8 +23,9 @@ import numpy.typing as npt
 
 from floquet.engine.chart import scan
 from floquet.engine.spectrum import Spectrum
-from floquet.engine.system import ComplexArray, FloatArray, PeriodicSystem
+from floquet.engine.system import PeriodicSystem
 from lumped.arguments import one_of, real_number
+from lumped.typing import ComplexArray, FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr

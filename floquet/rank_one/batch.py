@@ -16,7 +16,6 @@ import numpy as np
 import numpy.typing as npt
 
 from floquet.engine.multipliers import multipliers_with_bounds
-from floquet.engine.system import ComplexArray, FloatArray
 from floquet.rank_one.kernels.eigen import spectra
 from floquet.rank_one.kernels.gains import Limits, Problem
 from floquet.rank_one.kernels.taylor import propagate_points
@@ -24,6 +23,7 @@ from floquet.rank_one.packing import own, packed
 from floquet.rank_one.system import Coarsening, RankOneSystem
 from lumped.arguments import real_array, real_number, real_numbers, whole_number
 from lumped.errors import NumericalError, refuse, shown
+from lumped.typing import ComplexArray, FloatArray
 
 _T = TypeVar("_T")
 

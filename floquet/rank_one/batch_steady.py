@@ -11,13 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from floquet.engine.multipliers import radii_with_bounds, verdicts
-from floquet.engine.system import FloatArray
 from floquet.rank_one.batch import Points, in_threads, multipliers_of
 from floquet.rank_one.kernels.steady import Balance as KernelBalance
 from floquet.rank_one.kernels.steady import periodic_points
 from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import whole_number
 from lumped.errors import NumericalError
+from lumped.typing import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

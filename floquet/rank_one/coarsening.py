@@ -28,10 +28,10 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import legendre
 
-from floquet.engine.system import FloatArray
 from floquet.rank_one.system import Coarsening, Gains, RankOneSystem
 from lumped.arguments import real_number, real_numbers
 from lumped.errors import refuse, shown
+from lumped.typing import FloatArray
 
 _DEGREE = 8
 _RHO = np.array([1.3, 1.6, 2.0, 2.5, 3.0, 4.0, 5.5, 8.0, 12.0, 20.0, 40.0])

@@ -15,9 +15,9 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
-from floquet.engine.system import FloatArray
 from floquet.rank_one.batch import FastMonodromy, FastMultipliers, in_threads, multipliers_of
 from lumped.errors import NumericalError
+from lumped.typing import FloatArray
 
 Flow = Callable[[FloatArray, FloatArray], FastMonodromy]
 """(periods (k,), parameters (k,)) -> monodromy matrices in coordinates that do not depend on either."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from floquet.engine.system import FloatArray
 from floquet.rank_one.kernels.gains import Problem
 from floquet.rank_one.kernels.lanes import LANES
 from floquet.rank_one.system import RankOneSystem
+from lumped.typing import FloatArray
 
 _PROPORTIONAL = 1e-12  # wd is rho w where it differs from it by no more than this part
 

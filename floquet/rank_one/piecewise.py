@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
-from floquet.engine.system import FloatArray
 from lumped.errors import NumericalError
+from lumped.typing import FloatArray
 
 Gains = Callable[[FloatArray, npt.NDArray[np.intp]], FloatArray]
 """(phases (k, s), segment (k,) in which each row lies) -> G gains (G, k, s, m)."""

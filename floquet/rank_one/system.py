@@ -12,8 +12,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import eigh
 
-from floquet.engine.system import ComplexArray, FloatArray, PeriodicSystem
+from floquet.engine.system import PeriodicSystem
 from lumped.errors import refuse
+from lumped.typing import ComplexArray, FloatArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,7 +21,8 @@ from lumped.gear_geometry.geometry import Geometry
 from lumped.lubrication import film
 from lumped.lubrication.roughness import composite_roughness, mean_roughness
 from lumped.path_function import PathFunction
-from lumped.ranges import FloatArray, RangeViolation, range_violations, warn_violations
+from lumped.ranges import RangeViolation, range_violations, warn_violations
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     from lumped.schema.pair import GearPair

@@ -9,13 +9,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from lumped.lubrication import film
-from lumped.ranges import FloatArray, ValidityRange
-
-BoolArray = NDArray[np.bool_]
+from lumped.ranges import ValidityRange
+from lumped.typing import BoolArray, FloatArray
 
 #: Distance from the pitch point [m] below which laws are held constant. A position xi near 0.01 m is known to
 #: 2e-18 m, so xi - L_XP is known to 2e-10 of this distance and log10 of the sliding velocity to 1e-10; the

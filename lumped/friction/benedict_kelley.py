@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike
 from lumped.arguments import real_array
 from lumped.errors import refuse, shown
 from lumped.friction.base import PITCH_RESOLUTION, ContactPath, FrictionLaw, FrictionSettings
-from lumped.ranges import NOT_STATED, FloatArray, ValidityRange, checked
+from lumped.ranges import NOT_STATED, ValidityRange, checked
+from lumped.typing import FloatArray
 
 #: The roughness [um] at which the factor 1.13/(1.13 - S) has its pole.
 ROUGHNESS_LIMIT = 1.13

@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike
 
 from lumped.arguments import real_array
 from lumped.friction import benedict_kelley, smoothed_coulomb, xu_kahraman
-from lumped.friction.base import BoolArray, ContactPath, FrictionLaw, FrictionSettings
+from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.lubrication.film import DEFAULT_THRESHOLDS, RANGES, regime
-from lumped.ranges import FloatArray
+from lumped.typing import BoolArray, FloatArray
 
 
 def composite(

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.polynomial import chebyshev, polynomial
 
 from lumped.errors import NumericalError
-from lumped.path_function import FIT_DEGREE, FloatArray, PathFunction
+from lumped.path_function import FIT_DEGREE, PathFunction
+from lumped.typing import FloatArray
 
 _MAX_ROUNDS = 45
 _MAX_PIECES = 2000  # laws take fewer than 100; more means rounding noise or an undeclared kink

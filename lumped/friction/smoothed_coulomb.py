@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 from lumped.arguments import real_array
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.fitted import average_coefficient
-from lumped.ranges import FloatArray, checked
+from lumped.ranges import checked
+from lumped.typing import FloatArray
 
 
 def smoothed_coulomb(coefficient: ArrayLike, distance: ArrayLike, sharpness: ArrayLike) -> FloatArray:

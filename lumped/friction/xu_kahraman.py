@@ -7,7 +7,8 @@ from numpy.typing import ArrayLike
 
 from lumped.arguments import real_array
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
-from lumped.ranges import NOT_STATED, FloatArray, ValidityRange, checked
+from lumped.ranges import NOT_STATED, ValidityRange, checked
+from lumped.typing import FloatArray
 
 #: Regression coefficients b1..b9.
 B = (-8.916465, 1.03303, 1.036077, -0.354068, 2.812084, -0.100601, 0.752755, -0.390958, 0.620305)

@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 
 from lumped.errors import refuse
 from lumped.gear_geometry.involute import RackTooth, tooth_half_angle
-from lumped.path_function import FloatArray
+from lumped.typing import FloatArray
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,8 @@ from lumped.losses.cycle import CyclePositions, quadrature
 from lumped.losses.loss_factor import sliding_velocity
 from lumped.losses.sharing import springs
 from lumped.path_function import PathFunction
-from lumped.ranges import FloatArray, checked
+from lumped.ranges import checked
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     from lumped.schema.pair import GearPair

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.gear_geometry.geometry import Geometry
-from lumped.path_function import FloatArray, PathFunction
+from lumped.path_function import PathFunction
+from lumped.typing import FloatArray
 
 #: Exact to degree 15: a fitted mu of degree 8 times a sliding velocity of degree 1, and a load share.
 _NODES = 8

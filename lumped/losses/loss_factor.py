@@ -13,7 +13,7 @@ import numpy as np
 from lumped.gear_geometry.geometry import Geometry
 from lumped.losses.cycle import CyclePositions, quadrature
 from lumped.losses.sharing import Sharing, springs
-from lumped.path_function import FloatArray
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     from lumped.schema.pair import GearPair

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 from lumped.arguments import real_number
 from lumped.friction import contact_path
 from lumped.losses.loss_factor import loss_factor
-from lumped.ranges import NOT_STATED, FloatArray, ValidityRange, checked
+from lumped.ranges import NOT_STATED, ValidityRange, checked
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     from lumped.schema.pair import GearPair

@@ -17,7 +17,8 @@ from lumped.losses.loss_factor import mean_loss_factor, sliding_velocity
 from lumped.losses.sharing import Sharing, Springs, springs
 from lumped.model.results import labelled, provenance
 from lumped.model.steady import sample_times
-from lumped.path_function import FloatArray, PathFunction
+from lumped.path_function import PathFunction
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr

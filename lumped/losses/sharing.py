@@ -13,9 +13,10 @@ import numpy as np
 from lumped.arguments import one_of
 from lumped.losses.cycle import CyclePositions
 from lumped.model.mesh_elements import mesh_elements
-from lumped.path_function import FloatArray, PathFunction
+from lumped.path_function import PathFunction
 from lumped.quasi_static.loaded_mesh import loaded_mesh
 from lumped.stiffness import pair_stiffness
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     from lumped.gear_geometry.geometry import Geometry

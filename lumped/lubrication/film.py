@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import real_array
 from lumped.errors import refuse, shown
-from lumped.ranges import NOT_STATED, FloatArray, ValidityRange, checked
+from lumped.ranges import NOT_STATED, ValidityRange, checked
+from lumped.typing import FloatArray
 
 #: Film thickness ratios at which the lubrication regime changes.
 DEFAULT_THRESHOLDS = (1.0, 4.0, 10.0)

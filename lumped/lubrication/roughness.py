@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.errors import refuse
-from lumped.ranges import FloatArray, checked
+from lumped.ranges import checked
+from lumped.typing import FloatArray
 
 Profile = Literal["gaussian", "sine"]
 

@@ -10,7 +10,8 @@ from scipy.optimize import brentq
 
 from lumped.errors import refuse
 from lumped.lubrication.viscosity import kinematic_viscosity, walther_constants
-from lumped.ranges import FloatArray, ValidityRange
+from lumped.ranges import ValidityRange
+from lumped.typing import FloatArray
 
 #: ISO 3448 grade -> mid-point kinematic viscosity at 40 degC [mm^2/s]; limits are 10 per cent either side.
 ISO_VG_MIDPOINT = {

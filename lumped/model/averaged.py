@@ -12,8 +12,8 @@ import numpy as np
 from lumped.arguments import one_of, real_numbers
 from lumped.errors import NumericalError
 from lumped.model.periodic_system import Form, LTVSystem, periodic_system
-from lumped.path_function import FloatArray
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     import control

@@ -14,8 +14,8 @@ import numpy as np
 from lumped.arguments import some_of
 from lumped.errors import refuse
 from lumped.model.bodies import bodies
-from lumped.path_function import FloatArray
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 
 #: Order of the coordinates; states are coordinates followed by their rates.
 COORDINATES = ("theta_p", "theta_g", "x_p", "x_g", "y_p", "y_g")

@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.gear_geometry.geometry import Geometry
 from lumped.model.mesh_elements import MeshElements, mesh_elements
-from lumped.path_function import FloatArray
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 
 #: One-sided limits are taken this fraction of a base pitch inside a segment.
 _INSIDE = 1e-12

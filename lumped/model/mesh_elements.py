@@ -11,10 +11,11 @@ import numpy as np
 
 from lumped.friction import friction_path_function
 from lumped.model.bodies import bodies
-from lumped.path_function import FloatArray, PathFunction
+from lumped.path_function import PathFunction
 from lumped.quasi_static.loaded_mesh import loaded_mesh
 from lumped.schema.pair import GearPair
 from lumped.stiffness import pair_stiffness
+from lumped.typing import FloatArray
 
 #: Fit error of c over its largest value.
 _DAMPING_TOLERANCE = 1e-11

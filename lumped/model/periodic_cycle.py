@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from lumped.model.periodic_system import periodic_system
 from lumped.model.results import response
 from lumped.model.steady import periodic_solution, sample_times
-from lumped.path_function import FloatArray
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 
 #: A largest multiplier above this is an instability. Without damping it is 1, and steps and rounding move a
 #: defective multiplier by up to the root of their error, 1e-12.

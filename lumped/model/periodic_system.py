@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.arguments import one_of
 from lumped.model.equations import COORDINATES, Structure, structure
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
-from lumped.path_function import FloatArray
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 
 Form = Literal["absolute", "relative", "feedback"]
 

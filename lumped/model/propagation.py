@@ -7,13 +7,10 @@ from functools import cache
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 
 from lumped.errors import NumericalError
 from lumped.model.periodic_system import LTVSystem
-from lumped.path_function import FloatArray
-
-IntArray = NDArray[np.int64]
+from lumped.typing import FloatArray, IntArray
 
 #: Largest angle per step of the fastest frequency [rad]. With 4 stages (order 8) the local error constant is
 #: (4!)^4 / (9 (8!)^3) = 5.6e-10, so a step of 0.5 rad errs by about 1e-12.

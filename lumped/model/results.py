@@ -13,8 +13,8 @@ import numpy as np
 
 from lumped.model.equations import COORDINATES
 from lumped.model.periodic_system import LTVSystem
-from lumped.path_function import FloatArray
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -21,8 +21,9 @@ from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.results import dataset, provenance
 from lumped.model.steady import PeriodicSolution, periodic_solution, sample_times
-from lumped.path_function import FloatArray, PathFunction
+from lumped.path_function import PathFunction
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr

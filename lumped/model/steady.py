@@ -11,8 +11,8 @@ from lumped.arguments import whole_number
 from lumped.errors import NumericalError
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.propagation import STAGES, step_maps
-from lumped.path_function import FloatArray
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

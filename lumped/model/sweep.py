@@ -20,8 +20,8 @@ from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.results import provenance, response
 from lumped.model.solution import Progress, balance_attributes
 from lumped.model.steady import periodic_solution, sample_times
-from lumped.path_function import FloatArray
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr

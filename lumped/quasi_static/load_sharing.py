@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from lumped.arguments import real_array
 from lumped.errors import NumericalError
-from lumped.path_function import FloatArray
+from lumped.typing import FloatArray
 
 
 @dataclass(frozen=True)

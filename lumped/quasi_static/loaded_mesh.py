@@ -19,11 +19,12 @@ from scipy.optimize import brentq
 
 from lumped.errors import NumericalError
 from lumped.gear_geometry.geometry import Geometry
-from lumped.path_function import FloatArray, PathFunction
+from lumped.path_function import PathFunction
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.tooth_error import error_function
 from lumped.schema.pair import GearPair
 from lumped.stiffness import pair_stiffness
+from lumped.typing import FloatArray
 
 #: Samples over the path of contact between which contact begins or ends at most once.
 _SAMPLES = 2000

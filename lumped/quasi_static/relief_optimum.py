@@ -21,10 +21,10 @@ from scipy.optimize import minimize
 from lumped.arguments import one_of, real_number, real_numbers
 from lumped.errors import refuse
 from lumped.gear_geometry.geometry import Geometry
-from lumped.path_function import FloatArray
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.transmission_error import MeshPositions, mesh_positions
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr

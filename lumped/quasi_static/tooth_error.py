@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lumped.errors import refuse
-from lumped.path_function import FloatArray, PathFunction
+from lumped.path_function import PathFunction
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     from lumped.gear_geometry.geometry import Geometry

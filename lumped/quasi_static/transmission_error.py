@@ -17,12 +17,12 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.arguments import real_numbers, whole_number
 from lumped.errors import NumericalError
 from lumped.gear_geometry.geometry import Geometry
-from lumped.path_function import FloatArray
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.tooth_error import corner_gap, relief_error
 from lumped.schema.pair import GearPair
 from lumped.stiffness import pair_stiffness
 from lumped.stiffness.energy import contact_softening
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from lumped.path_function import FloatArray
+from lumped.typing import FloatArray
 
 
 def linear_hertz_compliance(modulus: tuple[float, float], poisson: tuple[float, float]) -> float:

@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.path_function import FloatArray, PathFunction
+from lumped.path_function import PathFunction
 from lumped.stiffness.foundation import ring_twist
 from lumped.stiffness.neighbours import neighbour_breaks
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     from lumped.gear_geometry.geometry import Geometry

@@ -19,13 +19,14 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
-from lumped.path_function import FloatArray, PathFunction
+from lumped.path_function import PathFunction
 from lumped.ranges import RangeViolation, range_violations
 from lumped.stiffness import iso6336
 from lumped.stiffness.coupling import coupled, twist_compliance
 from lumped.stiffness.foundation import BODY_RATIO, HALF_ANGLE
 from lumped.stiffness.pair_compliance import Contact, pair_compliance, tooth_profile
 from lumped.stiffness.ramp import ramped
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     from lumped.gear_geometry.geometry import Geometry

@@ -17,8 +17,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lumped.path_function import FloatArray
 from lumped.ranges import ValidityRange
+from lumped.typing import FloatArray
 
 #: A to F of X* = A/theta^2 + B h^2 + C h/theta + D/theta + E h + F; rows L*, M*, P*, Q*.
 COEFFICIENTS = np.array(

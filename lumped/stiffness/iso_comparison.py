@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.path_function import FloatArray
 from lumped.stiffness import iso6336
 from lumped.stiffness.energy import energy_curve, violations
 from lumped.stiffness.pair_compliance import Contact
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike
 
 from lumped.arguments import one_of
 from lumped.gear_geometry.tooth_profile import ToothProfile
-from lumped.path_function import FloatArray
 from lumped.stiffness.contact import contact_half_width, linear_hertz_compliance, local_compliance
 from lumped.stiffness.foundation import foundation_compliance
 from lumped.stiffness.tooth_beam import NODES, beam_compliance
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     from lumped.gear_geometry.geometry import Geometry

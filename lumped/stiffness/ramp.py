@@ -6,7 +6,8 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from lumped.errors import refuse
-from lumped.path_function import FloatArray, PathFunction
+from lumped.path_function import PathFunction
+from lumped.typing import FloatArray
 
 #: Ramp in s from 0 to 1. The square of the cubic smoothstep, so that sqrt(k), and with it the damping
 #: 2 zeta sqrt(k m_e), is analytic on the ramp too; it starts like s^4 and ends with zero slope.

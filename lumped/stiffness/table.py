@@ -12,10 +12,11 @@ import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
 from lumped.errors import NumericalError, refuse
-from lumped.path_function import FloatArray, PathFunction
+from lumped.path_function import PathFunction
 from lumped.stiffness.energy import energy_curve
 from lumped.stiffness.neighbours import neighbour_breaks
 from lumped.stiffness.ramp import check_ramp_length, ramped
+from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     from lumped.gear_geometry.geometry import Geometry

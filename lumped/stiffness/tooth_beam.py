@@ -21,7 +21,7 @@ import numpy as np
 
 from lumped.errors import NumericalError
 from lumped.gear_geometry.tooth_profile import ToothProfile
-from lumped.path_function import FloatArray
+from lumped.typing import FloatArray
 
 #: Gauss points on the fillet and on the involute; the error is measured by a rule with half as many more.
 NODES = 24

@@ -11,15 +11,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.path_function import PathFunction
+from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.compiled import compiled
 from multibody.contact.kernels import mesh_position
 from multibody.contact.kinematics import DRIVE, sliding_velocity, wrap
-
-FloatArray = NDArray[np.float64]
 
 #: Kinds of events, the first column of an event table; the second is the place xi [m] of the last two.
 ENTRY, EXIT, SWITCH, SLIDING = 0.0, 1.0, 2.0, 3.0

@@ -13,8 +13,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from lumped.typing import FloatArray, IntArray
 from multibody.contact.compiled import compiled
 from multibody.contact.kinematics import (
     COAST,
@@ -27,9 +27,6 @@ from multibody.contact.kinematics import (
     pairs_in_contact,
     sliding_velocity,
 )
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 # Bits of the effect switches.
 ROTATION_PHASE, MOVING_LINE, SLIDING, ENTRY_SHIFT, CONTACT_LOSS, BACK_SIDE = 1, 2, 4, 8, 16, 32

@@ -10,9 +10,10 @@ import math
 
 import numpy as np
 
+from lumped.typing import FloatArray, IntArray
 from multibody.contact import kernels as kn
 from multibody.contact.compiled import compiled
-from multibody.contact.kernels import FloatArray, IntArray, law
+from multibody.contact.kernels import law
 
 
 @compiled

@@ -40,12 +40,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
+from lumped.typing import FloatArray
 from multibody.contact.compiled import compiled
-
-FloatArray = NDArray[np.float64]
 
 #: Flanks: the one that drives in the pinion's running sense, and the back side.
 DRIVE, COAST = 1.0, -1.0

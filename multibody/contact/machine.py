@@ -12,18 +12,15 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.model.bodies import bodies
 from lumped.model.mesh_elements import mesh_elements
 from lumped.path_function import PathFunction
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray, IntArray
 from multibody.contact import kernels as kn
 from multibody.contact.events import event_table
 from multibody.contact.kinematics import DRIVE, line_of_action, mesh_phase, wrap
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,13 +8,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.arguments import real_number, real_numbers
 from lumped.errors import refuse
+from lumped.typing import FloatArray
 from multibody.contact.compiled import compiled
 
-FloatArray = NDArray[np.float64]
 _RPM = np.pi / 30.0
 
 

@@ -15,13 +15,13 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.arguments import whole_number
 from lumped.errors import NumericalError
 from lumped.model.periodic_system import periodic_system
 from lumped.model.propagation import step_maps
 from lumped.schema.pair import GearPair
+from lumped.typing import ComplexArray, FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.machine import Machine
 from multibody.run.model import build
@@ -32,8 +32,6 @@ from multibody.run.simulation import record
 if TYPE_CHECKING:
     import xarray as xr
 
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 #: Perturbation over the static deflection: large for the linear level, where size does not matter; at the
 #: exact level central differences err by its square times the nonlinearity, and by rtol over it.

@@ -17,14 +17,12 @@ from dataclasses import dataclass
 
 import exudyn as exu
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.errors import NumericalError
+from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.events import time_to_event
 from multibody.run.model import ExudynModel, accelerations
-
-FloatArray = NDArray[np.float64]
 
 #: Smallest step over the mesh cycle. A floor that is not tiny hangs where friction changes sign: the step
 #: cannot shrink enough to be accepted and the solver tries it for ever.

@@ -15,16 +15,15 @@ from dataclasses import dataclass, field
 import exudyn as exu
 import exudyn.itemInterface as items
 import numpy as np
-from numpy.typing import NDArray
 
+from lumped.typing import FloatArray, IntArray
 from multibody.contact import kernels as kn
-from multibody.contact.kernels import IntArray, contact_forces, contact_forces_over
+from multibody.contact.kernels import contact_forces, contact_forces_over
 from multibody.contact.kernels_linear import linear_forces, linear_forces_over
 from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import Machine
 from multibody.run.drive import DriveTables, drive_torques
 
-FloatArray = NDArray[np.float64]
 #: (t, q, v, parameters, flags, table, offsets, wrench, contacts) -> number of contacts or -1
 ForceCore = Callable[..., int]
 #: The same at n states: (times, q, v, parameters, flags, table, offsets, wrenches, contacts) -> numbers

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.model.results import labelled
+from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.run.integration import Segment
 from multibody.run.model import ExudynModel, contact_state
@@ -16,7 +16,6 @@ from multibody.run.model import ExudynModel, contact_state
 if TYPE_CHECKING:
     import xarray as xr
 
-FloatArray = NDArray[np.float64]
 
 # q = (x_p, y_p, phi_p, x_g, y_g, phi_g) out of (theta_p, theta_g, x_p, x_g, y_p, y_g): theta_p = -phi_p.
 _ORDER = np.array([2, 4, 0, 3, 5, 1])

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.arguments import one_of, real_number
 from lumped.errors import refuse, shown
@@ -16,6 +16,7 @@ from lumped.model.results import provenance
 from lumped.model.solution import Initial, initial_state, mean_mesh_stiffness
 from lumped.model.steady import periodic_solution
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.effects import active_effects, effect_flags
 from multibody.contact.machine import Machine, loaded_phase, machine
@@ -25,7 +26,6 @@ from multibody.run.integration import Segment, integrate
 from multibody.run.model import FIDELITIES, ExudynModel, build
 from multibody.run.records import from_lumped_state
 
-FloatArray = NDArray[np.float64]
 Fidelity = Literal["linear", "exact"]
 
 #: Most mesh cycles of a run.

@@ -9,12 +9,13 @@ from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.arguments import whole_number
 from lumped.model.solution import Initial
 from lumped.model.steady import sample_times
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 from multibody.run.drive import Drive
 from multibody.run.integration import Segment
 from multibody.run.records import Recorder
@@ -23,7 +24,6 @@ from multibody.run.setup import MOST_CYCLES, Fidelity, Setup, prepare
 if TYPE_CHECKING:
     import xarray as xr
 
-FloatArray = NDArray[np.float64]
 Progress = Callable[[float], None]
 
 

@@ -12,12 +12,12 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.arguments import whole_number
 from lumped.model.results import provenance
 from lumped.model.sweep import running_speeds
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 from multibody.run.records import to_lumped_state
 from multibody.run.setup import MOST_CYCLES, Fidelity, prepare
 from multibody.run.simulation import record
@@ -25,7 +25,6 @@ from multibody.run.simulation import record
 if TYPE_CHECKING:
     import xarray as xr
 
-FloatArray = NDArray[np.float64]
 
 _VARIABLES = {
     "dte_rms": ("m", "root mean square of the transmission error about its mean"),

@@ -12,18 +12,18 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.arguments import whole_number
 from lumped.model.solution import Initial
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.run.drive import Drive, DriveTables, value_and_integral
 from multibody.run.integration import Segment
 from multibody.run.model import ExudynModel, contact_state
 from multibody.run.setup import MOST_CYCLES, Fidelity, prepare
 
-FloatArray = NDArray[np.float64]
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 

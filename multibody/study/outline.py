@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.kinematics import COAST, DRIVE
 from multibody.contact.machine import machine
-
-FloatArray = NDArray[np.float64]
 
 
 def flank_points(radius: float, chi: float, flank: float, rho: FloatArray) -> FloatArray:

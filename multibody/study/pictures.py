@@ -16,16 +16,15 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyArrowPatch, Rectangle
-from numpy.typing import NDArray
 
 from lumped.errors import refuse
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 from multibody.study.outline import gear_outline
 
 if TYPE_CHECKING:
     import xarray as xr
 
-FloatArray = NDArray[np.float64]
 _FACES, _EDGES = ("#c9d7e8", "#e8dcc3"), ("#37587f", "#7d6433")
 _NORMAL, _FRICTION = "#b3261e", "#1b7a3d"
 _LINE: dict[str, Any] = {"color": "0.25", "linewidth": 0.9, "linestyle": "--"}

@@ -10,7 +10,6 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.arguments import real_numbers
 from lumped.errors import refuse, shown
@@ -22,7 +21,6 @@ from multibody.run.simulation import simulate
 if TYPE_CHECKING:
     import xarray as xr
 
-FloatArray = NDArray[np.float64]
 
 #: Halved from 8 mm/s on; the last is close to the default of ``multibody.contact.reversal``.
 VELOCITIES = (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4, 1.25e-4)

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from floquet import predicted_lines, stability_boundaries
 from floquet.gear.axes import GEAR_AXES, operating_value
@@ -24,6 +23,7 @@ from floquet.gear.tongues import LabelledRegion, label_regions
 from lumped import GearPair
 from lumped.errors import refuse
 from lumped.friction import LAWS
+from lumped.typing import FloatArray
 from validation.commands.terminal import progress_bar, stdout, table
 from validation.files.output import DATA_SUFFIXES, whole_file, write_dataset
 from validation.plots.boundaries import boundaries_figure
@@ -36,7 +36,6 @@ from validation.plots.tongue_chart import mark_operating_range, tongue_chart_fig
 from validation.plots.tongues import tongues_figure
 from validation.plots.zones import zones_figure
 
-FloatArray = NDArray[np.float64]
 View = tuple[xr.Dataset, Callable[[], Figure]]
 """What is written as data, and the figure."""
 

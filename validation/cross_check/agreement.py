@@ -13,8 +13,9 @@ import lumped
 from lumped import GearPair
 from lumped.errors import NumericalError
 from lumped.model.results import VARIABLES
+from lumped.typing import FloatArray
 from validation.cross_check import metrics
-from validation.cross_check.metrics import FloatArray, SpragueGeers
+from validation.cross_check.metrics import SpragueGeers
 from validation.cross_check.tolerances import GROUPS, LOST, Tolerance
 
 Fidelity = Literal["linear", "exact"]

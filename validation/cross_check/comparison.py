@@ -18,6 +18,7 @@ from lumped.arguments import some_of, whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.model.periodic_cycle import UNSTABLE, periodic_cycle
 from lumped.model.results import VARIABLES
+from lumped.typing import FloatArray
 from validation.cross_check import metrics
 from validation.cross_check.agreement import (
     FIDELITIES,
@@ -33,7 +34,7 @@ from validation.cross_check.agreement import (
 )
 from validation.cross_check.exact_motion import BLUNT, periodic_motion
 from validation.cross_check.finite_motion import FiniteMotion, finite_motion
-from validation.cross_check.metrics import FloatArray, MeshOrders
+from validation.cross_check.metrics import MeshOrders
 from validation.cross_check.tolerances import tolerance
 
 __all__ = [

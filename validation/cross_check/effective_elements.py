@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from lumped.path_function import PathFunction
-from validation.cross_check.metrics import FloatArray
+from lumped.typing import FloatArray
 
 #: Places on the path closer than this are one [m].
 _SAME = 1e-11

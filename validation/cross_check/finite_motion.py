@@ -56,7 +56,7 @@ from lumped.model.periodic_system import periodic_system
 from lumped.model.results import dataset
 from lumped.model.solution import initial_state
 from lumped.model.steady import periodic_solution, sample_times
-from validation.cross_check.metrics import FloatArray
+from lumped.typing import FloatArray
 from validation.cross_check.shifted_motion import ShiftedModel
 
 #: Times per mesh cycle at which the motion is read off: while it settles, and in the end at least.

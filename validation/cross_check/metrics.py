@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import NumericalError, refuse
-
-FloatArray = NDArray[np.float64]
+from lumped.typing import FloatArray
 
 #: A history whose variation is below this share of its size is constant up to rounding.
 _CONSTANT = 1e-13

@@ -15,8 +15,8 @@ from lumped.errors import NumericalError
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.steady import periodic_solution
+from lumped.typing import FloatArray
 from validation.cross_check.effective_elements import at_sliding, moved, shortened
-from validation.cross_check.metrics import FloatArray
 
 #: Times of the motion lie at least so far apart, over the mesh cycle.
 _APART = 1e-7

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 import lumped
 from floquet.gear.chart_axes import chart_axes, operating_rpm, speed_range
@@ -17,10 +16,10 @@ from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError
 from lumped.friction import LAWS, law_range_violations
 from lumped.model.averaged import modes
 from lumped.model.results import provenance
+from lumped.typing import FloatArray
 from validation.interactive.slices import SLICES, Slices
 from validation.validity.map import STATES, validity_state
 
-FloatArray = NDArray[np.float64]
 Progress = Callable[[float, str], None]
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from floquet.gear.axes import gear_axis, operating_value
 from floquet.gear.chart import stability_chart
@@ -15,8 +14,8 @@ from floquet.gear.chart_axes import with_point
 from floquet.gear.tongues import LabelledRegion, label_regions
 from lumped import GearPair
 from lumped.errors import ParameterError
+from lumped.typing import FloatArray
 
-FloatArray = NDArray[np.float64]
 Grid = dict[str, FloatArray]
 
 #: Accuracy of the monodromy matrices; the page shows six decimals.

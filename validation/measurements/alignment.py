@@ -9,15 +9,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.arguments import real_number, some_of
 from lumped.errors import NumericalError, refuse
 from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
 from validation.measurements.prediction import Prediction
 from validation.measurements.record import Measurement
-
-FloatArray = NDArray[np.float64]
 
 _COARSE = 32  # trial shifts per mesh cycle
 _COARSE_SAMPLES = 2000

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from lumped.errors import NumericalError
-
-FloatArray = NDArray[np.float64]
+from lumped.typing import FloatArray
 
 
 @dataclass(frozen=True)

@@ -22,19 +22,18 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import t as student
 
 from lumped.arguments import one_of, real_number
 from lumped.errors import NumericalError, refuse
 from lumped.friction import friction_path_function, mean_coefficient
+from lumped.typing import FloatArray
 from validation.measurements.alignment import Alignment
 from validation.measurements.estimator import Samples, estimate_parameters, misfit, sandwich
 from validation.measurements.prediction import Prediction
 from validation.measurements.record import Measurement
 from validation.measurements.specification import PAIR_LABELS
 
-FloatArray = NDArray[np.float64]
 NormalSource = Literal["measured", "predicted"]
 
 _FEWEST = 20

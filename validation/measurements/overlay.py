@@ -11,12 +11,11 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from lumped.errors import NumericalError, refuse
+from lumped.typing import FloatArray
 from validation.measurements.alignment import Alignment
 from validation.measurements.prediction import Prediction
 from validation.measurements.record import Measurement
 from validation.measurements.specification import PAIR_LABELS, QUANTITIES
-
-FloatArray = NDArray[np.float64]
 
 #: Metric -> plain name. All but the correlation are in the channel's unit or relative to the predicted peak
 #: to peak.

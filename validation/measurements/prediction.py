@@ -9,16 +9,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped import Geometry, PathFunction, mesh_elements, steady_state
 from lumped.arguments import real_number, whole_number
 from lumped.errors import refuse
 from lumped.schema.pair import GearPair
+from lumped.typing import BoolArray, FloatArray
 from validation.measurements.specification import PAIR_LABELS, QUANTITIES
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.errors import ParameterError, refuse, shown
 from lumped.schema.text_file import read_text
+from lumped.typing import FloatArray
 from validation.measurements.specification import (
     QUANTITIES,
     MeasurementSpec,
@@ -22,8 +22,6 @@ from validation.measurements.specification import (
     sampling_rate,
     si_factor,
 )
-
-FloatArray = NDArray[np.float64]
 
 _MAX_BYTES = 2_000_000_000
 #: Values whose squares can be summed.

@@ -10,16 +10,14 @@ from typing import Any
 
 import numpy as np
 import tomli_w
-from numpy.typing import NDArray
 from scipy.signal import lfilter
 
 from lumped.arguments import real_number, whole_number
 from lumped.errors import refuse
+from lumped.typing import FloatArray
 from validation.measurements.prediction import Prediction
 from validation.measurements.record import Measurement
 from validation.measurements.specification import PAIR_LABELS, read_specification
-
-FloatArray = NDArray[np.float64]
 
 
 def synthetic_measurement(

@@ -6,15 +6,13 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 import multibody
 from lumped import GearPair, NumericalError, steady_state
 from lumped.model.periodic_cycle import UNSTABLE
+from lumped.typing import FloatArray
 from validation.cross_check import metrics
 from validation.paper.figure_record import Number
-
-FloatArray = NDArray[np.float64]
 
 MODELS = ("lumped", "multibody")
 VARIABLES = ("dte", "x_p", "x_g", "y_p", "y_g", "normal_load", "friction_force", "contact")

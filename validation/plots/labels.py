@@ -7,12 +7,10 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
+from lumped.typing import FloatArray
 from validation.plots.style import BLACK, GREY, WIDTH
 from validation.plots.tongue_names import pretty
-
-FloatArray = NDArray[np.float64]
 
 #: Behind text that lies on a picture.
 WHITE_BOX: dict[str, Any] = {

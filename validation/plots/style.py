@@ -14,8 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from lumped import Geometry
-
-FloatArray = NDArray[np.float64]
+from lumped.typing import FloatArray
 
 #: Okabe and Ito's palette, distinguishable with every common colour vision deficiency.
 BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PURPLE = (

@@ -17,8 +17,9 @@ from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
 from lumped import GearPair, Geometry, NumericalError, ParameterError
 from lumped.friction import friction_profile
 from lumped.model.averaged import Mode, modes
+from lumped.typing import FloatArray
 from validation.cross_check.comparison import CrossCheck, crosscheck
-from validation.cross_check.metrics import FloatArray, MeshOrders, mesh_orders
+from validation.cross_check.metrics import MeshOrders, mesh_orders
 from validation.reporting.mesh_physics import MeshPhysics, mesh_physics
 from validation.reporting.paper_results import PaperResults, paper_results
 from validation.validity.flag import Flag

@@ -14,10 +14,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.stats import qmc
 
+from lumped.typing import FloatArray
 from validation.studies.axes import AxisValue
 from validation.studies.schema import Study
 
-FloatArray = npt.NDArray[np.float64]
 _BLOCK = 65_536
 
 

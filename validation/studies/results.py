@@ -11,9 +11,10 @@ import numpy as np
 import xarray as xr
 
 from lumped.model.results import parameters_hash
+from lumped.typing import FloatArray
 from validation.files.regular import StoreError, read_bytes, replaced, storage_failure
 from validation.studies.axes import target_of
-from validation.studies.cases import CaseList, FloatArray, case_list
+from validation.studies.cases import CaseList, case_list
 from validation.studies.journal import Key, Scan, scan
 from validation.studies.load import load_study
 from validation.studies.outputs import OUTPUTS

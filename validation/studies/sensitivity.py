@@ -8,7 +8,8 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
-from validation.studies.cases import CaseList, FloatArray
+from lumped.typing import FloatArray
+from validation.studies.cases import CaseList
 from validation.studies.record import Status
 
 #: Resamplings of the confidence interval.

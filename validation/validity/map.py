@@ -16,9 +16,9 @@ from lumped.friction import contact_path
 from lumped.lubrication.film import regime
 from lumped.model.periodic_cycle import UNSTABLE
 from lumped.model.results import provenance
+from lumped.typing import FloatArray
 from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
 
-FloatArray = NDArray[np.float64]
 Progress = Callable[[float], None]
 
 #: Values of ``state``: the worst of contact, sliding and stability.

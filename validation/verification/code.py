@@ -7,7 +7,6 @@ Validation in Scientific Computing, 2010, for the method.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import expm
 from scipy.special import mathieu_a, mathieu_b
 
@@ -18,9 +17,8 @@ from floquet.engine.propagators import propagator
 from lumped import GearPair, steady_state
 from lumped.friction import benedict_kelley, xu_kahraman
 from lumped.lubrication.film import effective_modulus, film_parameter, film_thickness, hertz_half_width
+from lumped.typing import FloatArray
 from validation.verification.checks import Check, OrderCheck
-
-FloatArray = NDArray[np.float64]
 
 _CYCLES = 3
 #: Method -> steps over the period at which its error is above rounding and already asymptotic.

@@ -13,11 +13,11 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from floquet import gear_pair_multipliers, monodromy
-from floquet.engine.system import FloatArray
 from floquet.gear.vaishya_singh import CoulombGearPair
 from lumped import GearPair, load_gear_pair
 from lumped.model.bodies import bodies
 from lumped.model.periodic_system import periodic_system
+from lumped.typing import FloatArray
 from validation.verification.floquet_check import Check, error, order
 
 MU = 0.2

@@ -25,7 +25,7 @@ from floquet.engine.reference_systems import (
     meissner_trace,
     tongue_ends,
 )
-from floquet.engine.system import FloatArray
+from lumped.typing import FloatArray
 from validation.verification.coulomb_zones import check_coulomb_gear_pair
 from validation.verification.floquet_check import Check, error, order
 from validation.verification.random_gears import check_random_gears

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 import lumped
 import multibody
@@ -18,9 +17,8 @@ from lumped.arguments import whole_number
 from lumped.model.periodic_cycle import periodic_cycle
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.propagation import STAGES, STEP_ANGLE, step_maps
+from lumped.typing import FloatArray
 from validation.verification.checks import Level, Refinement
-
-FloatArray = NDArray[np.float64]
 
 #: Relative error of a peak to peak that is read off samples: half a unit of the third digit, the last shown.
 SAMPLING_LIMIT = 5e-4

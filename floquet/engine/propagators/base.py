@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 
-from floquet.engine.system import FloatArray
+from lumped.typing import FloatArray
 
 
 class Propagator(ABC):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss, legvander
 
 from floquet.engine.propagators.base import Propagator
-from floquet.engine.system import FloatArray
+from lumped.typing import FloatArray
 
 
 def butcher_gauss(stages: int) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -12,7 +12,7 @@ from scipy.linalg import expm
 
 from floquet.engine.propagators.base import Propagator
 from floquet.engine.propagators.gauss import butcher_gauss
-from floquet.engine.system import FloatArray
+from lumped.typing import FloatArray
 
 
 def _commutator(x: FloatArray, y: FloatArray) -> FloatArray:

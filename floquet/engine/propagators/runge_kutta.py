@@ -10,7 +10,7 @@ import numpy.typing as npt
 from scipy.integrate import DOP853
 
 from floquet.engine.propagators.base import Propagator
-from floquet.engine.system import FloatArray
+from lumped.typing import FloatArray
 
 
 class ExplicitRungeKutta(Propagator):

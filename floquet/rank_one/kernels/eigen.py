@@ -11,8 +11,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from floquet.engine.system import ComplexArray, FloatArray
 from floquet.rank_one.kernels.compiled import compiled
+from lumped.typing import ComplexArray, FloatArray
 
 _EPS = 2.220446049250313e-16
 _MAX_SWEEPS = 60

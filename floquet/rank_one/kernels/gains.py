@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from floquet.engine.system import FloatArray
 from floquet.rank_one.kernels.compiled import compiled
 from floquet.rank_one.kernels.lanes import LANES, load, plus, scaled, store, zero
 from floquet.rank_one.kernels.majorant import MAX_TERMS, norm, powers_of_radii
+from lumped.typing import FloatArray
 
 
 class Problem(NamedTuple):

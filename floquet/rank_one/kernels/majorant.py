@@ -17,9 +17,9 @@ import math
 
 import numpy as np
 
-from floquet.engine.system import FloatArray
 from floquet.rank_one.kernels.compiled import compiled
 from floquet.rank_one.kernels.lanes import LANES, load, plus, scaled, store
+from lumped.typing import FloatArray
 
 MAX_TERMS = 64
 """Largest Taylor degree."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from floquet.engine.system import FloatArray
 from floquet.rank_one.kernels.compiled import compiled
 from floquet.rank_one.kernels.lanes import LANES, load, plus, plus_square, scaled, store, zero
+from lumped.typing import FloatArray
 
 FORCED = 6
 """First of the two lanes that carry forced motion: under the forcing, and under the input."""

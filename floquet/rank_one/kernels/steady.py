@@ -7,13 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from floquet.engine.system import FloatArray
 from floquet.rank_one.kernels.compiled import compiled
 from floquet.rank_one.kernels.gains import Limits, Piece, Problem, load_piece, load_step, part_of, scratch_for
 from floquet.rank_one.kernels.lanes import LANES
 from floquet.rank_one.kernels.majorant import enough_terms, norm
 from floquet.rank_one.kernels.product import FORCED, carry, invert
 from floquet.rank_one.kernels.taylor import ends_of_step, series, start_from_rest, steps_of_period
+from lumped.typing import FloatArray
 
 
 class Balance(NamedTuple):

@@ -26,7 +26,6 @@ import math
 
 import numpy as np
 
-from floquet.engine.system import FloatArray
 from floquet.rank_one.kernels.compiled import compiled
 from floquet.rank_one.kernels.gains import (
     Limits,
@@ -40,6 +39,7 @@ from floquet.rank_one.kernels.gains import (
 from floquet.rank_one.kernels.lanes import LANES, load, plus, scaled, store, zero
 from floquet.rank_one.kernels.majorant import enough_terms, norm
 from floquet.rank_one.kernels.product import FORCED, carry, divide
+from lumped.typing import FloatArray
 
 _EPS = 2.220446049250313e-16
 

@@ -11,6 +11,7 @@ import numpy as np
 import lumped
 from lumped import GearPair
 from lumped.errors import SpurcheckError
+from lumped.typing import FloatArray
 from validation.cross_check.agreement import (
     FIDELITIES,
     QUANTITIES,
@@ -20,7 +21,7 @@ from validation.cross_check.agreement import (
 )
 from validation.cross_check.exact_motion import BLUNT, periodic_motion
 from validation.cross_check.finite_motion import finite_motion
-from validation.cross_check.metrics import FloatArray, maximum_over_span
+from validation.cross_check.metrics import maximum_over_span
 from validation.cross_check.tolerances import tolerance
 from validation.validity.flags import LOAD_NOISE
 

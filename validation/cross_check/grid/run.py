@@ -27,10 +27,10 @@ import xarray as xr
 import lumped
 from lumped import GearPair
 from lumped.errors import LawRangeWarning, refuse
+from lumped.typing import FloatArray
 from validation.cross_check.agreement import FIDELITIES, QUANTITIES
 from validation.cross_check.grid.checkpoint import Checkpoint
 from validation.cross_check.grid.point import COMPARED, SEPARATED, STICKING, GridPoint, compare_point
-from validation.cross_check.metrics import FloatArray
 
 __all__ = ["AXES", "COMPARED", "SEPARATED", "STICKING", "STIFFNESS", "Grid", "crosscheck_grid"]
 

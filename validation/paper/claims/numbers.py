@@ -10,15 +10,13 @@ from itertools import combinations
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from lumped import GearPair, PathFunction
 from lumped.friction import contact_path, friction_path_function, mean_coefficient
 from lumped.model.periodic_cycle import periodic_cycle
+from lumped.typing import FloatArray
 from validation.paper.operating_points import FIGURE_2A, FIGURE_7, LAWS, TORQUE_2B, second_pair
 from validation.paper.twins import mesh_orders, total
-
-FloatArray = NDArray[np.float64]
 
 #: Half width of "at the pitch point" [mesh cycles].
 AT_PITCH = 0.01

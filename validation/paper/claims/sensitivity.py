@@ -7,15 +7,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError, bodies
 from lumped.arguments import whole_number
+from lumped.typing import FloatArray
 from validation.paper.claims import numbers
 from validation.paper.operating_points import FIGURE_4
 
-FloatArray = NDArray[np.float64]
 Progress = Callable[[float], None]
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped import GearPair, PathFunction
 from lumped.friction import (
@@ -23,8 +22,6 @@ from validation.paper.errata.printed_laws import (
 from validation.paper.errata.response import response
 from validation.paper.errata.signs import multiplier_change
 from validation.paper.records import Erratum, Evidence
-
-FloatArray = NDArray[np.float64]
 
 
 def law_errata(pair: GearPair) -> tuple[Erratum, ...]:

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped import GearPair, PathFunction
 from lumped.friction import (
@@ -20,8 +19,8 @@ from lumped.friction import (
     xu_kahraman,
 )
 from lumped.lubrication.film import film_thickness
+from lumped.typing import FloatArray
 
-FloatArray = NDArray[np.float64]
 Law = Callable[[FloatArray], FloatArray]
 
 #: Far below every number that the errata state.

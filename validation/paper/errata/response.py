@@ -14,8 +14,8 @@ from lumped import GearPair, MeshCycle, PathFunction, mesh_cycle, periodic_syste
 from lumped.model.mesh_elements import MeshElements
 from lumped.model.results import dataset
 from lumped.model.steady import periodic_solution, sample_times
+from lumped.typing import FloatArray
 
-FloatArray = NDArray[np.float64]
 _MICRO = 1e6
 
 

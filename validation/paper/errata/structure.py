@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped import GearPair, Geometry, load_gear_pair
+from lumped.typing import FloatArray
 from validation.paper.errata.dimensions import equation_8
 from validation.paper.records import Erratum, Evidence
-
-FloatArray = NDArray[np.float64]
 
 
 def inertia_matrix(*, printed: bool) -> FloatArray:

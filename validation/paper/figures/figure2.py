@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from lumped import GearPair
 from lumped.friction import friction_path_function, mean_coefficient
+from lumped.typing import FloatArray
 from validation.paper.figure_record import FigureRecord, Number
 from validation.paper.operating_points import (
     CALIBRATIONS,
@@ -18,8 +18,6 @@ from validation.paper.operating_points import (
     TORQUE_2B,
     second_pair,
 )
-
-FloatArray = NDArray[np.float64]
 
 _POINTS = 801
 _SPEEDS = np.concatenate(

@@ -7,13 +7,12 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from lumped.typing import FloatArray
 from validation.paper.figure_record import FigureRecord
 from validation.paper.plots.shared import line_handles, twin_lines
 from validation.plots.style import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, new_figure, scaled
-
-FloatArray = NDArray[np.float64]
 
 _LABELS = (BLUE, RED, GREEN, PURPLE)
 _ROWS = (("normal_load", "normal load"), ("friction_force", "friction force"))
