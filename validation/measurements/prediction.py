@@ -6,6 +6,7 @@ Sources: docs/theory/equations.md, "Periodic motion and the brake torque".
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import xarray as xr
@@ -61,32 +62,30 @@ class Prediction:
         """
         if quantity not in QUANTITIES or QUANTITIES[quantity][1] != (label is not None):
             raise refuse("quantity", (quantity, label), "a channel's quantity and pair", "Correct it.")
-        values = self.cycle[quantity].to_numpy()
+        places, values = self._curves[quantity]
         if label is None:
-            return self._periodic(values, np.asarray(cycles, dtype=float))
+            u = np.mod(np.asarray(cycles, dtype=float), 1.0)
+            return np.asarray(np.interp(u, places, values, period=1.0), dtype=np.float64)
         age = self.age(cycles, label)
-        places, life = self._life(values)
-        return np.asarray(
-            np.where(age < self.geometry.contact_ratio, np.interp(age, places, life), 0.0), dtype=np.float64
-        )
+        inside = age < self.geometry.contact_ratio
+        return np.asarray(np.where(inside, np.interp(age, places, values), 0.0), dtype=np.float64)
 
-    def _life(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Values (pairs, k) of one cycle as those of one tooth pair from A to D, and their mesh cycles since
-        A.
+    @cached_property
+    def _curves(self) -> dict[str, tuple[FloatArray, FloatArray]]:
+        """Quantity -> mesh cycles and values: over one cycle, or of one tooth pair from A to D.
 
-        Whole cycles after A the pair is that many slots ahead. Past the last sample before D its value holds.
+        Whole cycles after A a tooth pair is that many slots ahead. Past the last sample before D its value
+        holds.
         """
+        grid = self.cycle["time"].to_numpy() / self.geometry.mesh_period
         slots = np.arange(self.geometry.pairs)
-        places = (slots[:, None] + self._grid()).ravel()
-        life = values[slots[::-1]].ravel()
-        inside = places < self.geometry.contact_ratio
-        return places[inside], life[inside]
-
-    def _grid(self) -> FloatArray:
-        return np.asarray(self.cycle["time"].to_numpy() / self.geometry.mesh_period, dtype=np.float64)
-
-    def _periodic(self, values: FloatArray, cycles: FloatArray) -> FloatArray:
-        return np.asarray(np.interp(np.mod(cycles, 1.0), self._grid(), values, period=1.0))
+        life = (slots[:, None] + grid).ravel()
+        inside = life < self.geometry.contact_ratio
+        found = {}
+        for name, (_, paired) in QUANTITIES.items():
+            values = self.cycle[name].to_numpy()
+            found[name] = (life[inside], values[slots[::-1]].ravel()[inside]) if paired else (grid, values)
+        return found
 
 
 def predict(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import _thread
 import itertools
+import signal
 import threading
 import time
 from dataclasses import replace
@@ -39,6 +40,8 @@ def test_an_interrupt_inside_a_force_evaluation_comes_out_as_itself(monkeypatch)
 
 def test_ctrl_c_stops_a_run():
     multibody.simulate(PAIR, 1)  # compiled before the clock runs
+    # A shell starts a job in the background with the signal ignored, and the whole run would be waited for.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     timer = threading.Timer(0.5, _thread.interrupt_main)
     timer.start()
     try:
@@ -46,6 +49,7 @@ def test_ctrl_c_stops_a_run():
             multibody.simulate(PAIR, 5000)
     finally:
         timer.cancel()
+        signal.signal(signal.SIGINT, before)
 
 
 def test_an_impossible_state_raises_and_says_what_to_check():
