@@ -13,7 +13,7 @@ _LINK = re.compile(r"\[([^\]]*)\]\((?![a-z]+:)[^)\s]+\)")
 
 
 def _read(app: Sphinx, docname: str, source: list[str]) -> None:
-    if docname == "contributing":
+    if docname == "contributing/index":
         app.env.note_dependency(str(_FILE))
         source[0] = _LINK.sub(r"\1", _FILE.read_text(encoding="utf-8"))
 

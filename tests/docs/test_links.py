@@ -22,6 +22,8 @@ def slug(heading: str) -> str:
 
 
 def anchors(page: Path) -> set[str]:
+    if page.parts[-2:] == ("contributing", "index.md"):  # the site shows the file of the repository there
+        page = page.parents[2] / "CONTRIBUTING.md"
     text = page.read_text(encoding="utf-8")
     labels = set(re.findall(r"^\(([\w-]+)\)=$", text, re.M))
     return {slug(heading) for heading in re.findall(r"^#+ (.+)$", text, re.M)} | labels

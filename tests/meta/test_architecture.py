@@ -1,4 +1,4 @@
-"""Do imports run one way: between packages and between folders? Is the Floquet engine free of gears?"""
+"""Do imports run one way, as the architecture page says? Is the Floquet engine free of gears?"""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import ast
 import graphlib
 import inspect
 import itertools
+import re
 import subprocess
 import sys
 from collections import defaultdict
@@ -63,11 +64,13 @@ def arrows() -> Iterator[tuple[tuple[str, ...], str, str, str]]:
                 yield here[:same], here[same], to, f"{named(path)} imports {module}"
 
 
-@pytest.mark.parametrize("path", FILES, ids=named)
-def test_packages_are_imported_in_one_direction(path: Path) -> None:
-    package = path.relative_to(ROOT).parts[0]
-    others = {module.split(".")[0] for module in imported(path)} - {package}
-    assert others <= MAY_IMPORT[package]
+def test_packages_are_imported_in_one_direction() -> None:
+    against = []
+    for path in FILES:
+        package = path.relative_to(ROOT).parts[0]
+        others = {module.split(".")[0] for module in imported(path)} - {package}
+        against += [f"{named(path)} imports {name}" for name in others - MAY_IMPORT[package]]
+    assert against == []
 
 
 def test_inside_every_folder_arrows_form_no_circle() -> None:
@@ -120,3 +123,30 @@ def test_functions_survive_the_import_of_all_modules() -> None:
         "\n        assert not inspect.ismodule(getattr(package, name)), name"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def rows_of_the_page() -> dict[str, list[str]]:
+    """Package -> files and folders in the order of its table on the architecture page, bottom to top."""
+    text = (ROOT / "docs" / "contributing" / "architecture.md").read_text(encoding="utf-8")
+    sections = re.findall(r"^### (\w+)\n(.*?)(?=^##)", text, re.MULTILINE | re.DOTALL)
+    return {package: re.findall(r"^\| `([\w./]+)` \|", table, re.MULTILINE) for package, table in sections}
+
+
+def test_the_page_names_every_folder_and_loose_file() -> None:
+    pages = rows_of_the_page()
+    assert list(pages) == list(MAY_IMPORT)
+    for package, names in pages.items():
+        top = ROOT / package
+        below = [path for path in top.rglob("*") if path.is_dir() and path.name != "__pycache__"]
+        there = {f"{path.relative_to(top).as_posix()}/" for path in below if any(path.iterdir())}
+        there |= {path.name for path in top.glob("*.py") if path.stem != "__init__"}
+        assert sorted(names) == sorted(there), f"docs/contributing/architecture.md, table of {package}"
+
+
+def test_the_page_orders_them_as_the_imports_run() -> None:
+    pages = rows_of_the_page()
+    for (package, *inner), start, end, text in arrows():
+        names = [name.rstrip("/").removesuffix(".py") for name in pages[package]]
+        lower, upper = ("/".join([*inner, name]) for name in (end, start))
+        if lower in names and upper in names:
+            assert names.index(lower) < names.index(upper), f"{text}: its row on the page stands below"

@@ -1,0 +1,60 @@
+"""Is the layout kept: folders by subject, files that are read in one sitting, tests beside what they test?"""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = ("lumped", "multibody", "floquet", "validation")
+#: Files that every folder of a package may need; everything else has a folder.
+LOOSE = {
+    "lumped": {"errors", "typing", "labelling", "compiler", "arguments", "path_function", "ranges"},
+    "validation": {"stop_signals", "cli"},
+}
+#: Folders of tests that belong to no single package.
+QUESTIONS = {"meta", "packaging", "docs", "examples", "hardening"}
+#: Lines of a file. The longest table of refusals needs a little more.
+LONGEST = {"library": 400, "tests": 430}
+
+
+def library() -> list[Path]:
+    return sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
+
+
+def named(path: Path) -> str:
+    return path.relative_to(ROOT).as_posix()
+
+
+def test_files_have_a_folder() -> None:
+    for package in PACKAGES:
+        loose = {path.stem for path in (ROOT / package).glob("*.py")} - {"__init__"}
+        assert loose <= LOOSE.get(package, set()), f"{package}: which folder do these belong to?"
+
+
+def test_a_file_is_read_in_one_sitting() -> None:
+    tests = sorted((ROOT / "tests").rglob("*.py"))
+    sizes = [(path, LONGEST["library"]) for path in library()] + [(path, LONGEST["tests"]) for path in tests]
+    long = [named(path) for path, most in sizes if len(path.read_text("utf-8").splitlines()) > most]
+    assert long == []
+
+
+def test_no_prefix_stands_where_a_folder_should() -> None:
+    """A file does not repeat its folder's name, and three files that share a first word are a folder."""
+    shared: Counter[tuple[Path, str]] = Counter()
+    for path in library():
+        word, joined, _ = path.stem.partition("_")
+        if joined and word:
+            shared[path.parent, word] += 1
+            assert path.parent.name not in (word, f"{word}s"), named(path)
+    crowds = [f"{named(folder)}/{word}_*" for (folder, word), count in shared.items() if count > 2]
+    assert crowds == []
+
+
+def test_tests_stand_in_the_folder_of_what_they_test() -> None:
+    top = {path.name for path in (ROOT / "tests").iterdir() if path.is_dir() and path.name != "__pycache__"}
+    assert top == {*PACKAGES, *QUESTIONS}
+    for package in PACKAGES:
+        tested = {path.parent.name for path in (ROOT / "tests" / package).glob("*/test_*.py")}
+        folders = {path.parent.name for path in (ROOT / package).glob("*/__init__.py")}
+        assert tested == folders, f"tests/{package}"
