@@ -12,7 +12,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import lumped
-from lumped.friction import LAWS, friction_path_function
+from lumped.friction import FRICTIONAL
+from lumped.path_of_contact import friction_path_function
 
 
 def compute() -> xr.Dataset:
@@ -22,7 +23,7 @@ def compute() -> xr.Dataset:
     )
     g = lumped.geometry(pair)
     xi = np.linspace(g.L_XA, g.L_XD, 801)
-    mu = {law: ("xi", friction_path_function(pair, g, law)(xi)) for law in LAWS if law != "none"}
+    mu = {law: ("xi", friction_path_function(pair, law)(xi)) for law in FRICTIONAL}
     return xr.Dataset(mu, coords={"xi": ("xi", xi)}, attrs={"pitch_point": g.L_XP})
 
 

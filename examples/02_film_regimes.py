@@ -11,7 +11,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import lumped
-from lumped.friction import contact_path
+from lumped.path_of_contact import contact_path
 
 
 def compute() -> xr.Dataset:

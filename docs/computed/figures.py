@@ -16,7 +16,7 @@ from floquet.gear.dense_chart import dense_chart
 from floquet.gear.margins import stability_margins
 from floquet.gear.paths import multiplier_paths
 from lumped import GearPair
-from lumped.friction import friction_profile
+from lumped.path_of_contact import friction_profile
 from validation.files.output import write_dataset
 from validation.interactive.page import render
 from validation.interactive.results import compute

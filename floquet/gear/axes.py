@@ -10,12 +10,10 @@ import numpy as np
 
 from lumped.arguments import one_of
 from lumped.errors import refuse
-from lumped.friction.along_path import mean_coefficient
+from lumped.friction import LAWS, mean_coefficient
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
-
-_NOMINAL_LAWS = ("coulomb", "smoothed_coulomb")
 
 
 @dataclass(frozen=True)
@@ -87,12 +85,12 @@ def _field(*paths: str) -> Callable[[GearVariation, float], GearVariation]:
 
 
 def _friction(variation: GearVariation, value: float) -> GearVariation:
-    """Mean coefficient: a parameter of laws I and IV; the other laws are scaled, keeping their shape."""
+    """Mean coefficient: a parameter of some laws; the others are scaled, keeping their shape."""
     law = variation.pair.friction.law
     if law == "none":
         law = "coulomb"
         variation = replace(variation, pair=variation.pair.with_({"friction.law": law}))
-    if law in _NOMINAL_LAWS:
+    if LAWS[law].coefficient:
         return replace(variation, pair=variation.pair.with_({"friction.coefficient": value}))
     return replace(variation, friction_mean=value)
 

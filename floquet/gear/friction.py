@@ -8,9 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from floquet.gear.axes import GearVariation
-from lumped.friction.along_path import contact_path, fit_law, friction_settings, mean_coefficient
 from lumped.friction.base import PITCH_RESOLUTION, ContactPath
+from lumped.friction.fitted import mean_coefficient
 from lumped.friction.registry import law_named
+from lumped.path_of_contact.friction import contact_path, fit_law
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -39,9 +40,7 @@ class FrictionFamily:
 
 def depends_on_speed(pair: GearPair) -> bool:
     """Say whether mu(xi) changes with speed: every law but a constant one whose coefficient is given."""
-    friction = pair.friction
-    nominal = friction.law in ("coulomb", "smoothed_coulomb") and friction.coefficient is not None
-    return not (friction.law == "none" or nominal)
+    return not law_named(pair.friction.law).is_constant(pair.friction)
 
 
 def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[FrictionFamily]:
@@ -91,7 +90,7 @@ class _Law:
     def __init__(self, variation: GearVariation) -> None:
         pair = variation.pair
         self.law = law_named(pair.friction.law)
-        self.path, self.settings = contact_path(pair), friction_settings(pair)
+        self.path, self.settings = contact_path(pair), pair.friction
         self.to_mean = variation.friction_mean is not None
         self.positions = _positions(self.path)
         self.known: dict[float, tuple[FloatArray, list[float]]] = {}

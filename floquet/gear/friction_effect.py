@@ -14,7 +14,7 @@ from floquet.engine.chart import Axes, Progress, checked_axes
 from floquet.gear.chart import stability_chart
 from lumped.arguments import one_of, some_of
 from lumped.errors import refuse
-from lumped.friction import LAWS
+from lumped.friction import FRICTIONAL, LAWS
 from lumped.schema.pair import GearPair
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 def friction_effect(
     pair: GearPair,
     axes: Axes,
-    laws: Sequence[str] = ("coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"),
+    laws: Sequence[str] = FRICTIONAL,
     *,
     reference: str = "none",
     rtol: float = 1e-9,

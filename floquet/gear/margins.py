@@ -22,7 +22,8 @@ from floquet.gear.boundaries import label_at, predicted_lines
 from floquet.gear.chart import stability_chart
 from floquet.rank_one.batch import fast_multipliers
 from lumped import GearPair
-from lumped.friction import friction_path_function, mean_coefficient
+from lumped.friction import mean_coefficient
+from lumped.path_of_contact import friction_path_function
 from lumped.typing import FloatArray
 
 Radius = Callable[[npt.ArrayLike, npt.ArrayLike], FloatArray]

@@ -23,6 +23,7 @@ from floquet.rank_one.coarsening import coarsened
 from lumped import load_gear_pair
 from lumped.arguments import whole_number
 from lumped.errors import LawRangeWarning
+from lumped.friction import LAWS
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.path_function import PathFunction
 from lumped.schema.pair import GearPair
@@ -33,7 +34,6 @@ LongArray = npt.NDArray[np.longdouble]
 RATE = 1e4
 """Rates are in units of this [1/s], so that positions and rates are of like size."""
 PRESETS = ("nasa_28_28", "nasa_art_25_31", "kahraman_blankenship_50_50", "fzg_c")
-LAWS = ("none", "coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite")
 _TERMS = 30  # of steps that turn by 1 rad at most: 1/30! is far below the precision
 _LD = np.longdouble
 _LAPACK = 1e-13
@@ -63,7 +63,7 @@ def random_pair(rng: np.random.Generator) -> GearPair:
         "operating.pinion_speed": float(np.exp(rng.uniform(np.log(500), np.log(20000)))),
         "operating.pinion_torque": float(rng.uniform(20, 200)),
         "mesh.damping_ratio": float(rng.choice([0.0, rng.uniform(0, 0.1)])),
-        "friction.law": str(rng.choice(LAWS)),
+        "friction.law": str(rng.choice(list(LAWS))),
     }
     for gear in ("pinion", "gear"):
         changes[f"bearings.{gear}.loa_stiffness"] = float(10 ** rng.uniform(7.3, 9))

@@ -1,4 +1,4 @@
-"""What every friction law shares: the contact along the path, the law's settings, the registry record.
+"""What every friction law shares: the contact along the path, the settings, the record of a law.
 
 Sources: kinematics of the contact, Abbas Al-Zubaidi 2008, eqs. 5 and 11 to 15 with the repairs of the errata.
 """
@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from scipy.optimize import brentq
@@ -131,9 +132,8 @@ class ContactPath:
         return sorted(xi for xi in found if self.L_XA < xi < self.L_XD)
 
 
-@dataclass(frozen=True)
-class FrictionSettings:
-    """Parameters of the friction laws.
+class FrictionSettings(Protocol):
+    """Parameters of the friction laws, the fields of ``friction`` in a parameter file.
 
     Attributes
     ----------
@@ -148,26 +148,55 @@ class FrictionSettings:
     maximum: float
     thresholds: tuple[float, float, float]
 
+    def __hash__(self) -> int:
+        """Results are kept by the settings."""
+
 
 @dataclass(frozen=True)
 class FrictionLaw:
-    """Registry record of one law.
+    """Everything that is particular to one law. Files, commands, charts and legends read it from here.
 
     Attributes
     ----------
     name : as in parameter files
-    title : for tables and legends
+    label : for tables and legends
     signed : (xi [m], path, settings) -> signed mu [-], vectorised over xi
     switches : (path, settings) -> positions where mu jumps or has a kink [m]
+    numeral : Roman number in the paper's order; empty for a law that the paper does not have
+    authors : label in a sentence, where it differs from ``label``
     ranges : validity ranges of the law's arguments
     parts : for a law made of others, (xi, path, settings) -> pairs of a law and where it is in force
+    coefficient : whether |mu| far from the pitch point is one number, ``friction.coefficient``
+    varies : whether mu depends on speed, load, oil or flanks (a law with a coefficient: where none is given)
+    fluid_film : whether the law was fitted to contacts that an oil film carries in part or in full
+    in_paper : whether the paper's comparisons of laws (figures 3 to 5) have it
     """
 
     name: str
-    title: str
+    label: str
     signed: Callable[[FloatArray, ContactPath, FrictionSettings], FloatArray]
     switches: Callable[[ContactPath, FrictionSettings], list[float]]
-    ranges: tuple[ValidityRange, ...]
+    numeral: str = ""
+    authors: str = ""
+    ranges: tuple[ValidityRange, ...] = ()
     parts: (
         Callable[[FloatArray, ContactPath, FrictionSettings], list[tuple[FrictionLaw, BoolArray]]] | None
     ) = None
+    coefficient: bool = False
+    varies: bool = True
+    fluid_film: bool = False
+    in_paper: bool = False
+
+    @property
+    def title(self) -> str:
+        """Number and label, for tables and legends."""
+        return f"{self.numeral} {self.label}".lstrip()
+
+    @property
+    def long_name(self) -> str:
+        """Number and authors, for a list of choices."""
+        return ", ".join(filter(None, (self.numeral, self.authors or self.label)))
+
+    def is_constant(self, settings: FrictionSettings) -> bool:
+        """Whether mu(xi) is the same at every speed and load."""
+        return not self.varies or (self.coefficient and settings.coefficient is not None)

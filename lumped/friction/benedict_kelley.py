@@ -137,8 +137,12 @@ def _switches(path: ContactPath, settings: FrictionSettings) -> list[float]:
 
 LAW = FrictionLaw(
     name="benedict_kelley",
-    title="II Benedict-Kelley",
+    numeral="II",
+    label="Benedict-Kelley",
+    authors="Benedict and Kelley",
     signed=_signed,
     switches=_switches,
     ranges=RANGES,
+    fluid_film=True,
+    in_paper=True,
 )

@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import real_array
-from lumped.friction import benedict_kelley, smoothed_coulomb, xu_kahraman
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
+from lumped.friction.benedict_kelley import LAW as BENEDICT_KELLEY
+from lumped.friction.smoothed_coulomb import LAW as SMOOTHED_COULOMB
+from lumped.friction.xu_kahraman import LAW as XU_KAHRAMAN
 from lumped.lubrication.film import DEFAULT_THRESHOLDS, RANGES, regime
 from lumped.typing import BoolArray, FloatArray
 
@@ -83,9 +85,9 @@ def _parts(
 ) -> list[tuple[FrictionLaw, BoolArray]]:
     number = regime(path.film_parameter(xi), settings.thresholds)
     return [
-        (smoothed_coulomb.LAW, number == 0),
-        (benedict_kelley.LAW, number == 1),
-        (xu_kahraman.LAW, number >= 2),
+        (SMOOTHED_COULOMB, number == 0),
+        (BENEDICT_KELLEY, number == 1),
+        (XU_KAHRAMAN, number >= 2),
     ]
 
 
@@ -95,9 +97,10 @@ def _excess(path: ContactPath, threshold: float, xi: FloatArray) -> FloatArray:
 
 LAW = FrictionLaw(
     name="composite",
-    title="V composite",
+    numeral="V",
+    label="composite",
     signed=_signed,
     switches=_switches,
-    ranges=(*benedict_kelley.RANGES, *xu_kahraman.RANGES, *RANGES),
+    ranges=(*BENEDICT_KELLEY.ranges, *XU_KAHRAMAN.ranges, *RANGES),
     parts=_parts,
 )

@@ -37,8 +37,10 @@ def _signed(xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> Fl
 
 LAW = FrictionLaw(
     name="coulomb",
-    title="I Coulomb",
+    numeral="I",
+    label="Coulomb",
     signed=_signed,
     switches=lambda path, settings: [path.L_XP],
-    ranges=(),
+    coefficient=True,
+    in_paper=True,
 )

@@ -8,31 +8,32 @@ from types import MappingProxyType
 import numpy as np
 
 from lumped.arguments import one_of
-from lumped.friction import benedict_kelley, composite, coulomb, smoothed_coulomb, xu_kahraman
 from lumped.friction.base import FrictionLaw
+from lumped.friction.benedict_kelley import LAW as BENEDICT_KELLEY
+from lumped.friction.composite import LAW as COMPOSITE
+from lumped.friction.coulomb import LAW as COULOMB
+from lumped.friction.smoothed_coulomb import LAW as SMOOTHED_COULOMB
+from lumped.friction.xu_kahraman import LAW as XU_KAHRAMAN
 
 _NONE = FrictionLaw(
     name="none",
-    title="no friction",
+    label="no friction",
     signed=lambda xi, path, settings: np.zeros_like(xi),
     switches=lambda path, settings: [],
-    ranges=(),
+    varies=False,
 )
 
 #: Every law that ``friction.law`` may name, in the order of the paper.
 LAWS: Mapping[str, FrictionLaw] = MappingProxyType(
     {
         law.name: law
-        for law in (
-            _NONE,
-            coulomb.LAW,
-            benedict_kelley.LAW,
-            xu_kahraman.LAW,
-            smoothed_coulomb.LAW,
-            composite.LAW,
-        )
+        for law in (_NONE, COULOMB, BENEDICT_KELLEY, XU_KAHRAMAN, SMOOTHED_COULOMB, COMPOSITE)
     }
 )
+
+
+#: Names of the laws with friction.
+FRICTIONAL = tuple(name for name in LAWS if name != _NONE.name)
 
 
 def law_named(name: str) -> FrictionLaw:

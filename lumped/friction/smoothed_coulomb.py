@@ -42,8 +42,10 @@ def _signed(xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> Fl
 
 LAW = FrictionLaw(
     name="smoothed_coulomb",
-    title="IV smoothed Coulomb",
+    numeral="IV",
+    label="smoothed Coulomb",
     signed=_signed,
     switches=lambda path, settings: [],
-    ranges=(),
+    coefficient=True,
+    in_paper=True,
 )

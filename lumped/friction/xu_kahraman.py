@@ -89,8 +89,12 @@ def _signed(xi: FloatArray, path: ContactPath, settings: FrictionSettings) -> Fl
 
 LAW = FrictionLaw(
     name="xu_kahraman",
-    title="III Xu-Kahraman",
+    numeral="III",
+    label="Xu-Kahraman",
+    authors="Xu and Kahraman",
     signed=_signed,
     switches=lambda path, settings: [path.L_XP],
     ranges=RANGES,
+    fluid_film=True,
+    in_paper=True,
 )

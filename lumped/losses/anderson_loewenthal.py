@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lumped.friction import contact_path
 from lumped.losses.cycle import CyclePositions, quadrature
 from lumped.losses.loss_factor import sliding_velocity
 from lumped.losses.sharing import springs
 from lumped.path_function import PathFunction
+from lumped.path_of_contact import contact_path
 from lumped.ranges import checked
 from lumped.typing import FloatArray
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import real_number
-from lumped.friction import contact_path
 from lumped.losses.loss_factor import loss_factor
+from lumped.path_of_contact import contact_path
 from lumped.ranges import NOT_STATED, ValidityRange, checked
 from lumped.typing import FloatArray
 

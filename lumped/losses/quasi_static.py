@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.friction import friction_path_function
 from lumped.gear_geometry.geometry import Geometry
 from lumped.losses.cycle import CyclePositions, quadrature, samples
 from lumped.losses.loss_factor import mean_loss_factor, sliding_velocity
@@ -18,6 +17,7 @@ from lumped.losses.sharing import Sharing, Springs, springs
 from lumped.model.results import labelled, provenance
 from lumped.model.steady import sample_times
 from lumped.path_function import PathFunction
+from lumped.path_of_contact import friction_path_function
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ def quasi_static_losses(
     """
     g = pair.geometry
     time = sample_times(g.mesh_period, samples_per_cycle)
-    mu = friction_path_function(pair, g, law)
+    mu = friction_path_function(pair, law)
     teeth = springs(pair, g, sharing)
     torque = pair.operating.pinion_torque
     power_in = torque * g.omega_pinion

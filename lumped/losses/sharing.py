@@ -14,8 +14,8 @@ from lumped.arguments import one_of
 from lumped.losses.cycle import CyclePositions
 from lumped.model.mesh_elements import mesh_elements
 from lumped.path_function import PathFunction
+from lumped.path_of_contact import pair_stiffness
 from lumped.quasi_static.loaded_mesh import loaded_mesh
-from lumped.stiffness import pair_stiffness
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def springs(pair: GearPair, g: Geometry, sharing: Sharing) -> Springs:
     if sharing == "uniform":
         return Springs(PathFunction.constant(1.0, g.L_XA, g.L_XD), None, force)
     if sharing == "stiffness":
-        return Springs(pair_stiffness(pair, g), None, force)
+        return Springs(pair_stiffness(pair), None, force)
     if sharing == "loaded":
         mesh = loaded_mesh(pair)
         return Springs(mesh.stiffness, mesh.error, force)

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lumped.friction import friction_path_function
 from lumped.model.bodies import bodies
 from lumped.path_function import PathFunction
+from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.quasi_static.loaded_mesh import loaded_mesh
 from lumped.schema.pair import GearPair
-from lumped.stiffness import pair_stiffness
 from lumped.typing import FloatArray
 
 #: Fit error of c over its largest value.
@@ -56,7 +55,7 @@ def mesh_elements(pair: GearPair) -> MeshElements:
     NumericalError : a law is not finite on the path of contact
     """
     g = pair.geometry
-    stiffness = pair_stiffness(pair, g)
+    stiffness = pair_stiffness(pair)
     error = PathFunction.constant(0.0, g.L_XA, g.L_XD)
     if pair.mesh.relief == "static":
         loaded = loaded_mesh(pair, stiffness=stiffness)
@@ -64,7 +63,7 @@ def mesh_elements(pair: GearPair) -> MeshElements:
     return MeshElements(
         stiffness=stiffness,
         damping=_damping(stiffness, pair.mesh.damping_ratio, bodies(pair).effective_mass),
-        friction=friction_path_function(pair, g),
+        friction=friction_path_function(pair),
         error=error,
     )
 

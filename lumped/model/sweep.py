@@ -13,13 +13,13 @@ import numpy as np
 
 from lumped.arguments import real_numbers
 from lumped.errors import NumericalError
-from lumped.friction import friction_path_function
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.mesh_elements import MeshElements, mesh_elements
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.results import provenance, response
 from lumped.model.solution import Progress, balance_attributes
 from lumped.model.steady import periodic_solution, sample_times
+from lumped.path_of_contact import friction_path_function
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -100,7 +100,7 @@ def _systems(pairs: Iterable[GearPair]) -> Iterator[LTVSystem]:
         if elements is None:
             elements = mesh_elements(at)
         else:
-            elements = replace(elements, friction=friction_path_function(at, g))
+            elements = replace(elements, friction=friction_path_function(at))
         yield periodic_system(at, "absolute", cycle=MeshCycle(g, elements))
 
 

@@ -20,10 +20,10 @@ from scipy.optimize import brentq
 from lumped.errors import NumericalError
 from lumped.gear_geometry.geometry import Geometry
 from lumped.path_function import PathFunction
+from lumped.path_of_contact import pair_stiffness
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.tooth_error import error_function
 from lumped.schema.pair import GearPair
-from lumped.stiffness import pair_stiffness
 from lumped.typing import FloatArray
 
 #: Samples over the path of contact between which contact begins or ends at most once.
@@ -66,7 +66,7 @@ def loaded_mesh(
         pair = pair.with_(operating__pinion_torque=torque)
     torque = pair.operating.pinion_torque
     g = pair.geometry
-    k = pair_stiffness(pair, g) if stiffness is None else stiffness
+    k = pair_stiffness(pair) if stiffness is None else stiffness
     error = error_function(pair, g)
     if not error.coefficients.any():
         return LoadedMesh(k, error, np.array([[g.L_XA, g.L_XD]]))

@@ -16,12 +16,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import real_numbers, whole_number
 from lumped.errors import NumericalError
-from lumped.gear_geometry.geometry import Geometry
+from lumped.path_of_contact import pair_stiffness
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.tooth_error import corner_gap, relief_error
 from lumped.schema.pair import GearPair
-from lumped.stiffness import pair_stiffness
-from lumped.stiffness.energy import contact_softening
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
@@ -84,7 +82,7 @@ def mesh_positions(
     tooth = cycle - ahead
     xi = g.L_XA + (phase[:, None] - cycle + ahead) * g.base_pitch
     inside = _INSIDE * g.base_pitch
-    k = pair_stiffness(pair, g)(np.clip(xi, g.L_XA + inside, g.L_XD - inside))
+    k = pair_stiffness(pair)(np.clip(xi, g.L_XA + inside, g.L_XD - inside))
     e = corner_gap(g, xi) + relief_error(pair, g, np.clip(xi, g.L_XA, g.L_XD))
     e = e + errors[tooth % errors.size]
     margin = reach * g.base_pitch + inside
@@ -130,7 +128,7 @@ def static_transmission_error(
     g = pair.geometry
     mesh = mesh_positions(pair, phases=phases, pitch_errors=pitch_errors, extended=extended)
     force = torque / g.base_radius_pinion
-    stiffness = _at_torques(mesh.stiffness, torque, pair, g)
+    stiffness = _at_torques(mesh.stiffness, torque, pair)
     result = share_load(stiffness, mesh.error, force[:, None])
     _check_reach(mesh, result.load, g.L_XA, g.L_XD, g.base_pitch)
     te = result.transmission_error
@@ -163,9 +161,9 @@ def static_transmission_error(
     )
 
 
-def _at_torques(stiffness: FloatArray, torque: FloatArray, pair: GearPair, g: Geometry) -> FloatArray:
+def _at_torques(stiffness: FloatArray, torque: FloatArray, pair: GearPair) -> FloatArray:
     """Stiffness of the pairs at every torque; (torques or 1, k, pairs) [N/m]."""
-    softening = contact_softening(pair, g)
+    softening = pair.mesh.stiffness.softening(pair)
     if softening == 0.0:
         return stiffness[None]
     ratio = np.maximum(torque / pair.operating.pinion_torque, _LEAST_TORQUE)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, Self
+from typing import Annotated, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from lumped.errors import FieldProblem, ParameterError, shown
-from lumped.lubrication.viscosity_grade import ISO_VG_MIDPOINT
-from lumped.schema.section import Section
-from lumped.schema.units import Quantity
+from lumped.fields.section import OneOf, Section
+from lumped.fields.units import Quantity
+from lumped.friction.registry import LAWS
+from lumped.lubrication.viscosity import ZERO_CELSIUS, kinematic_viscosity, oil_density, walther_constants
+from lumped.lubrication.viscosity_grade import ISO_VG_MIDPOINT, grade_viscosity
 
 
 class ViscosityLaw(Section):
@@ -52,6 +54,19 @@ class ViscosityLaw(Section):
             )
         return self
 
+    @property
+    def dynamic_viscosity(self) -> float:
+        """Dynamic viscosity at the oil temperature [Pa s]."""
+        celsius = self.temperature - ZERO_CELSIUS
+        if self.iso_vg is not None:
+            nu = float(grade_viscosity(self.iso_vg, celsius, self.viscosity_index))
+        else:
+            low, high = self.kinematic_viscosity_40, self.kinematic_viscosity_100
+            assert low is not None  # the section has the grade or both viscosities
+            assert high is not None
+            nu = float(kinematic_viscosity(celsius, walther_constants(low * 1e6, 40.0, high * 1e6, 100.0)))
+        return nu * 1e-6 * float(oil_density(self.density, celsius))
+
 
 class Lubricant(Section):
     """Lubricant: dynamic viscosity (a number or a law) and pressure-viscosity constants alpha = k eta^s."""
@@ -79,8 +94,13 @@ class Lubricant(Section):
             raise ParameterError([problem])
         return self
 
-
-FrictionLaw = Literal["none", "coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"]
+    @property
+    def dynamic_viscosity(self) -> float:
+        """Dynamic viscosity at the contact inlet [Pa s]: as given, or by its law at the oil temperature."""
+        if self.viscosity_law is not None:
+            return self.viscosity_law.dynamic_viscosity
+        assert self.viscosity is not None  # the section has exactly one of them
+        return self.viscosity
 
 
 def _increasing(value: object) -> object:
@@ -100,8 +120,8 @@ def _increasing(value: object) -> object:
 class Friction(Section):
     """Sliding friction between the teeth: the law and the parameters of all laws (they are compared)."""
 
-    law: FrictionLaw = Field(
-        description="I coulomb, II benedict_kelley, III xu_kahraman, IV smoothed_coulomb, V composite"
+    law: Annotated[str, OneOf(tuple(LAWS))] = Field(
+        description=", ".join(f"{law.numeral} {law.name}" for law in LAWS.values() if law.numeral)
     )
     coefficient: Annotated[float | None, Quantity("1", at_least=0, at_most=1, optional=True)] = Field(
         None, description="mean coefficient of laws I and IV; default the mean of law II over the path"

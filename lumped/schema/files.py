@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from lumped.errors import FieldProblem, ParameterError, shown
+from lumped.fields.refusals import nearest
+from lumped.fields.text_file import parse_toml, read_text
+from lumped.fields.units import to_stated
 from lumped.schema.pair import GearPair, validated
-from lumped.schema.refusals import nearest
-from lumped.schema.text_file import parse_toml, read_text
-from lumped.schema.units import to_stated
 
 #: Largest parameter file read, a bound against a wrong path rather than a limit of the format.
 MAX_FILE_BYTES = 1_000_000

@@ -9,8 +9,8 @@ from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from lumped.errors import FieldProblem, ParameterError, refuse
-from lumped.schema.section import Section
-from lumped.schema.units import Quantity, to_stated
+from lumped.fields.section import Section
+from lumped.fields.units import Quantity, to_stated
 
 _SIZE = "Give the size as drawn; check the unit."
 

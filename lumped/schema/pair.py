@@ -1,7 +1,7 @@
 """The schema of a gear pair: one frozen, validated, hashable model shared by every part of spurcheck.
 
 Values are SI inside. In files and keyword arguments a bare number means the field's stated unit and a string
-may carry any unit of that dimension (``lumped.schema.units``).
+may carry any unit of that dimension (``lumped.fields.units``).
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
 from lumped.errors import FieldProblem, ParameterError
+from lumped.fields.refusals import field_of, translated, unknown_key
+from lumped.fields.section import Section, Text
+from lumped.fields.units import Quantity
 from lumped.gear_geometry.existence import existence_problems
 from lumped.gear_geometry.geometry import Geometry, Wheel, build_geometry
 from lumped.gear_geometry.involute import RackTooth
-from lumped.schema.contact import Friction, FrictionLaw, Lubricant, ViscosityLaw
+from lumped.schema.contact import Friction, Lubricant, ViscosityLaw
 from lumped.schema.gear import BasicRack, Gear, ProfileRelief
 from lumped.schema.mesh import Mesh
-from lumped.schema.refusals import field_of, translated, unknown_key
-from lumped.schema.section import Section, Text
-from lumped.schema.units import Quantity
 
 
 class Bearing(Section):
@@ -301,7 +301,6 @@ __all__ = [
     "Bearing",
     "Bearings",
     "Friction",
-    "FrictionLaw",
     "Gear",
     "GearPair",
     "Lubricant",

@@ -11,30 +11,26 @@ tooth's load does to the fillet of its neighbour otherwise (local coupling) is l
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from lumped.gear_geometry.geometry import Geometry
 from lumped.path_function import PathFunction
+from lumped.stiffness.base import MeshingPair
 from lumped.stiffness.foundation import ring_twist
 from lumped.stiffness.neighbours import neighbour_breaks
 from lumped.typing import FloatArray
 
-if TYPE_CHECKING:
-    from lumped.gear_geometry.geometry import Geometry
-    from lumped.schema.pair import GearPair
-
 _FIT_TOLERANCE = 1e-10
 
 
-def twist_compliance(pair: GearPair, geometry: Geometry) -> float:
+def twist_compliance(pair: MeshingPair) -> float:
     """Compliance of both rings in twist along the line of action [m/N]; a gear without a bore has none.
 
     Parameters
     ----------
-    pair, geometry : the gear pair and its geometry
+    pair : the gear pair
     """
-    g = geometry
+    g = pair.geometry
     sides = (
         (pair.pinion, g.base_radius_pinion, g.root_radius_pinion),
         (pair.gear, g.base_radius_gear, g.root_radius_gear),

@@ -13,25 +13,23 @@ that they share the two bodies (structural coupling) and is an upper estimate in
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
+from pydantic import Field
 
+from lumped.fields.units import Quantity
 from lumped.path_function import PathFunction
 from lumped.ranges import RangeViolation, range_violations
 from lumped.stiffness import iso6336
+from lumped.stiffness.base import MeshingPair, StiffnessModel
 from lumped.stiffness.coupling import coupled, twist_compliance
 from lumped.stiffness.foundation import BODY_RATIO, HALF_ANGLE
 from lumped.stiffness.pair_compliance import Contact, pair_compliance, tooth_profile
 from lumped.stiffness.ramp import ramped
 from lumped.typing import FloatArray
-
-if TYPE_CHECKING:
-    from lumped.gear_geometry.geometry import Geometry
-    from lumped.schema.mesh import EnergyStiffness
-    from lumped.schema.pair import GearPair
 
 #: Fit error of k over its largest value.
 _FIT_TOLERANCE = 1e-10
@@ -39,39 +37,18 @@ _FIT_TOLERANCE = 1e-10
 _SERIES = (64, 128)
 
 
-def energy(model: EnergyStiffness, pair: GearPair, geometry: Geometry) -> PathFunction:
-    """Stiffness of a tooth pair from A to D by the potential-energy method [N/m].
-
-    Parameters
-    ----------
-    model : ``hertz``, ``coupling``, ``scale`` ("none" or "iso6336": mean mesh stiffness of eq. (93)) and
-        ``ramp_length`` [m]
-    pair, geometry : the gear pair and its geometry
-    """
-    k = energy_curve(pair, geometry, model.hertz)
-    if model.coupling == "ring_twist":
-        k = coupled(k, twist_compliance(pair, geometry), geometry)
-    if model.scale == "iso6336":
-        single = iso6336.pair_single_stiffness(pair)
-        target = (
-            iso6336.mean_mesh_stiffness(single, geometry.contact_ratio) * iso6336.SI * geometry.face_width
-        )
-        k = k.scaled(target / (k.mean() * geometry.contact_ratio))
-    return ramped(k, model.ramp_length)
-
-
-def energy_curve(pair: GearPair, geometry: Geometry, hertz: Contact = "weber_banaschek") -> PathFunction:
+def energy_curve(pair: MeshingPair, hertz: Contact = "weber_banaschek") -> PathFunction:
     """Stiffness of a tooth pair alone from A to D by the potential-energy method, as it comes [N/m].
 
     Parameters
     ----------
-    pair, geometry : the gear pair and its geometry
+    pair : the gear pair
     hertz : contact compliance, as in ``pair_compliance``
     """
-    low, high = geometry.L_XA, geometry.L_XD
+    low, high = pair.geometry.L_XA, pair.geometry.L_XD
 
     def stiffness(xi: FloatArray) -> FloatArray:
-        return pair_compliance(pair, geometry, xi, hertz=hertz).stiffness
+        return pair_compliance(pair, xi, hertz=hertz).stiffness
 
     # Stiffness is analytic over the path, so its Chebyshev series from a few dozen evaluations stands for it.
     for terms in _SERIES:
@@ -92,36 +69,12 @@ def _fit_series(series: FloatArray, low: float, high: float, tolerance: float) -
     return PathFunction.fit(value, (low, high), tolerance=tolerance)
 
 
-def contact_softening(pair: GearPair, geometry: Geometry) -> float:
-    """How the compliance of a pair falls with load: D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N].
-
-    Weber and Banaschek's contact depends on the load by -2 (1 - nu^2)/(pi E b) ln(a) per tooth, and its half
-    width a grows as the root of the load, so D = sum (1 - nu^2)/(pi E b) over both teeth, at every position.
-
-    Parameters
-    ----------
-    pair, geometry : the gear pair and its geometry
-
-    Returns
-    -------
-    D, or 0 for stiffness that does not depend on the load: other models, the linearised contact, and curves
-    that are scaled, coupled or ramped (they keep the operating torque)
-    """
-    model = pair.mesh.stiffness
-    if model.model != "energy" or model.hertz != "weber_banaschek":
-        return 0.0
-    if model.scale != "none" or model.coupling != "none" or model.ramp_length > 0.0:
-        return 0.0
-    plane = sum((1.0 - g.poisson_ratio**2) / g.youngs_modulus for g in (pair.pinion, pair.gear))
-    return plane / (math.pi * geometry.face_width)
-
-
-def violations(pair: GearPair, geometry: Geometry) -> tuple[RangeViolation, ...]:
+def foundation_violations(pair: MeshingPair) -> tuple[RangeViolation, ...]:
     """Fitted ranges of the foundation formula that the two gears leave.
 
     Parameters
     ----------
-    pair, geometry : the gear pair and its geometry
+    pair : the gear pair
     """
     found: list[RangeViolation] = []
     for name, gear in (("pinion", pair.pinion), ("gear", pair.gear)):
@@ -131,3 +84,50 @@ def violations(pair: GearPair, geometry: Geometry) -> tuple[RangeViolation, ...]
             values[BODY_RATIO.quantity] = profile.root_radius / (0.5 * gear.bore)
         found += range_violations(f"fillet foundation of the {name}", (BODY_RATIO, HALF_ANGLE), values)
     return tuple(found)
+
+
+class EnergyStiffness(StiffnessModel):
+    """Potential-energy stiffness of the true tooth form on its gear body."""
+
+    model: Literal["energy"] = "energy"
+    hertz: Literal["weber_banaschek", "linear"] = Field(
+        "weber_banaschek",
+        description="contact compliance: by Weber and Banaschek at the operating torque, or linearised",
+    )
+    coupling: Literal["none", "ring_twist"] = Field(
+        "none",
+        description="'ring_twist': pairs in contact together share the twist of bored gear bodies",
+    )
+    scale: Literal["none", "iso6336"] = Field(
+        "none", description="'iso6336' scales the curve to the mean mesh stiffness of ISO 6336-1 method B"
+    )
+    ramp_length: Annotated[float, Quantity("mm", at_least=0)] = Field(
+        0.0, description="length along the path over which a pair takes up its stiffness; 0 is a jump"
+    )
+
+    def curve(self, pair: MeshingPair) -> PathFunction:
+        """Stiffness of a tooth pair from A to D by the potential-energy method [N/m]."""
+        k = energy_curve(pair, self.hertz)
+        if self.coupling == "ring_twist":
+            k = coupled(k, twist_compliance(pair), pair.geometry)
+        if self.scale == "iso6336":
+            k = k.scaled(iso6336.mean_of(pair) / (k.mean() * pair.geometry.contact_ratio))
+        return ramped(k, self.ramp_length)
+
+    def violations(self, pair: MeshingPair) -> tuple[RangeViolation, ...]:
+        """Ranges of the fillet foundation's fit, and of ISO 6336-1 where the curve is scaled to it."""
+        return foundation_violations(pair) + (iso6336.violations(pair) if self.scale == "iso6336" else ())
+
+    def softening(self, pair: MeshingPair) -> float:
+        """D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N].
+
+        Weber and Banaschek's contact depends on the load by -2 (1 - nu^2)/(pi E b) ln(a) per tooth, and its
+        half width a grows as the root of the load, so D = sum (1 - nu^2)/(pi E b) over both teeth, at every
+        position. The linearised contact does not depend on the load; curves that are scaled, coupled or
+        ramped keep the operating torque.
+        """
+        changed = self.scale != "none" or self.coupling != "none" or self.ramp_length > 0.0
+        if self.hertz != "weber_banaschek" or changed:
+            return 0.0
+        plane = sum((1.0 - g.poisson_ratio**2) / g.youngs_modulus for g in (pair.pinion, pair.gear))
+        return plane / (math.pi * pair.geometry.face_width)

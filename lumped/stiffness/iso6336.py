@@ -10,13 +10,9 @@ parameters, eqs (82) to (93).
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from lumped.ranges import RangeViolation, ValidityRange, range_violations
-
-if TYPE_CHECKING:
-    from lumped.gear_geometry.geometry import Geometry
-    from lumped.schema.pair import GearPair
+from lumped.stiffness.base import MeshingPair
 
 #: C1 to C9 of q', eq. (84), in the order of the terms.
 COEFFICIENTS = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)
@@ -125,7 +121,7 @@ def mean_mesh_stiffness(single: float, contact_ratio: float) -> float:
     return single * (0.75 * contact_ratio + 0.25)
 
 
-def pair_single_stiffness(pair: GearPair) -> float:
+def pair_single_stiffness(pair: MeshingPair) -> float:
     """Single stiffness c' of a gear pair of solid discs [N/(mm um)].
 
     Without the low-load reduction, as the linear model has one stiffness per position at every torque.
@@ -145,24 +141,35 @@ def pair_single_stiffness(pair: GearPair) -> float:
     )
 
 
-def violations(pair: GearPair, geometry: Geometry) -> tuple[RangeViolation, ...]:
+def single_of(pair: MeshingPair) -> float:
+    """C' of a gear pair times its face width: the largest stiffness of a tooth pair [N/m]."""
+    return pair_single_stiffness(pair) * SI * pair.geometry.face_width
+
+
+def mean_of(pair: MeshingPair) -> float:
+    """c_gamma of a gear pair times its face width: the mean stiffness of all tooth pairs [N/m]."""
+    mean = mean_mesh_stiffness(pair_single_stiffness(pair), pair.geometry.contact_ratio)
+    return mean * SI * pair.geometry.face_width
+
+
+def violations(pair: MeshingPair) -> tuple[RangeViolation, ...]:
     """Validity ranges of the standard that a pair at its operating point leaves.
 
     Parameters
     ----------
-    pair, geometry : a gear pair and its geometry
+    pair : a gear pair
     """
     small, large = _ordered(pair)
-    force = pair.operating.pinion_torque / geometry.reference_radius_pinion
+    force = pair.operating.pinion_torque / pair.geometry.reference_radius_pinion
     values = {
         "profile shift sum x1 + x2": small[1] + large[1],
         "profile shift difference x1 - x2": small[1] - large[1],
-        "load per face width": force / geometry.face_width * 1e-3,
+        "load per face width": force / pair.geometry.face_width * 1e-3,
     }
     return range_violations("ISO 6336-1 tooth stiffness", RANGES, values)
 
 
-def _ordered(pair: GearPair) -> tuple[tuple[int, float], tuple[int, float]]:
+def _ordered(pair: MeshingPair) -> tuple[tuple[int, float], tuple[int, float]]:
     """(teeth, profile shift) of the standard's gears 1 and 2."""
     gears = ((g.teeth, g.profile_shift) for g in (pair.pinion, pair.gear))
     small, large = sorted(gears, key=lambda gear: (gear[0], -gear[1]))

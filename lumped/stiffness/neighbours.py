@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lumped.gear_geometry.geometry import Geometry
 from lumped.typing import FloatArray
-
-if TYPE_CHECKING:
-    from lumped.gear_geometry.geometry import Geometry
 
 #: Positions closer than this fraction of a base pitch are one.
 _SAME = 1e-9

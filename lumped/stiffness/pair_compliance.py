@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import one_of
 from lumped.gear_geometry.tooth_profile import ToothProfile
+from lumped.stiffness.base import MeshingPair
 from lumped.stiffness.contact import contact_half_width, linear_hertz_compliance, local_compliance
 from lumped.stiffness.foundation import foundation_compliance
 from lumped.stiffness.tooth_beam import NODES, beam_compliance
 from lumped.typing import FloatArray
-
-if TYPE_CHECKING:
-    from lumped.gear_geometry.geometry import Geometry
-    from lumped.schema.pair import GearPair
 
 Contact = Literal["linear", "weber_banaschek"]
 
@@ -67,7 +64,7 @@ class PairCompliance:
         return 1.0 / (self.hertz + self.pinion.total + self.gear.total)
 
 
-def tooth_profile(pair: GearPair, which: str) -> ToothProfile:
+def tooth_profile(pair: MeshingPair, which: str) -> ToothProfile:
     """Profile of a tooth of the ``"pinion"`` or the ``"gear"``."""
     gear, rack = (pair.pinion if which == "pinion" else pair.gear), pair.basic_rack
     return _profile(
@@ -85,18 +82,13 @@ _profile = lru_cache(maxsize=256)(ToothProfile)
 
 
 def pair_compliance(
-    pair: GearPair,
-    geometry: Geometry,
-    xi: ArrayLike,
-    *,
-    hertz: Contact = "weber_banaschek",
-    nodes: int = NODES,
+    pair: MeshingPair, xi: ArrayLike, *, hertz: Contact = "weber_banaschek", nodes: int = NODES
 ) -> PairCompliance:
     """Compliances of a tooth pair in contact at positions xi.
 
     Parameters
     ----------
-    pair, geometry : the gear pair and its geometry
+    pair : the gear pair
     xi : (n,) positions from X in [L_XA, L_XD] [m]
     hertz : "weber_banaschek" at the load of a single pair under the operating torque, or "linear"
     nodes : Gauss points on the fillet and on the involute of each tooth
@@ -107,33 +99,34 @@ def pair_compliance(
     NumericalError : the Gauss integration did not converge
     """
     position = np.atleast_1d(np.asarray(xi, dtype=float))
-    width = geometry.face_width
+    g = pair.geometry
     return PairCompliance(
         position=position,
-        hertz=_contact(pair, geometry, position, hertz),
-        pinion=_tooth(pair, "pinion", position, width, nodes),
-        gear=_tooth(pair, "gear", geometry.L_XY - position, width, nodes),
+        hertz=_contact(pair, position, hertz),
+        pinion=_tooth(pair, "pinion", position, g.face_width, nodes),
+        gear=_tooth(pair, "gear", g.L_XY - position, g.face_width, nodes),
     )
 
 
-def _contact(pair: GearPair, geometry: Geometry, xi: FloatArray, hertz: Contact) -> FloatArray:
-    width = geometry.face_width
+def _contact(pair: MeshingPair, xi: FloatArray, hertz: Contact) -> FloatArray:
+    g = pair.geometry
+    width = g.face_width
     moduli = (pair.pinion.youngs_modulus, pair.gear.youngs_modulus)
     ratios = (pair.pinion.poisson_ratio, pair.gear.poisson_ratio)
     if one_of("hertz", hertz, get_args(Contact)) == "linear":
         return np.full(xi.shape, linear_hertz_compliance(moduli, ratios) / width)
-    load = pair.operating.pinion_torque / geometry.base_radius_pinion / width
-    radius = xi * (geometry.L_XY - xi) / geometry.L_XY
+    load = pair.operating.pinion_torque / g.base_radius_pinion / width
+    radius = xi * (g.L_XY - xi) / g.L_XY
     half_width = contact_half_width(load, radius, moduli, ratios)
     total = np.zeros(xi.shape)
-    lengths = (xi, geometry.L_XY - xi)
+    lengths = (xi, g.L_XY - xi)
     for which, length, modulus, ratio in zip(("pinion", "gear"), lengths, moduli, ratios, strict=True):
         _, h, _, angle = tooth_profile(pair, which).involute_points(length)
         total = total + local_compliance(half_width, h / np.cos(angle), modulus, ratio) / width
     return total
 
 
-def _tooth(pair: GearPair, which: str, length: FloatArray, width: float, nodes: int) -> ToothCompliance:
+def _tooth(pair: MeshingPair, which: str, length: FloatArray, width: float, nodes: int) -> ToothCompliance:
     gear = pair.pinion if which == "pinion" else pair.gear
     profile = tooth_profile(pair, which)
     beam = beam_compliance(profile, length, gear.youngs_modulus, gear.poisson_ratio, nodes)

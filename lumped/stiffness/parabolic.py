@@ -7,19 +7,18 @@ the ends. The default here makes the mean total stiffness that of ISO 6336-1, eq
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.polynomial import Polynomial
+from pydantic import Field
 
+from lumped.fields.units import Quantity
 from lumped.path_function import PathFunction
+from lumped.ranges import RangeViolation
 from lumped.stiffness import iso6336
+from lumped.stiffness.base import MeshingPair, StiffnessModel
 from lumped.stiffness.ramp import RAMP, check_ramp_length
-
-if TYPE_CHECKING:
-    from lumped.gear_geometry.geometry import Geometry
-    from lumped.schema.mesh import ParabolicStiffness
-    from lumped.schema.pair import GearPair
 
 
 def iso_end_ratio(contact_ratio: float) -> float:
@@ -73,21 +72,35 @@ def parabola(
     return PathFunction(np.array([low, *switches, high]), coefficients, switches)
 
 
-def parabolic(model: ParabolicStiffness, pair: GearPair, geometry: Geometry) -> PathFunction:
-    """Stiffness of a tooth pair [N/m]: a parabola from A to D with its peak in the middle.
+class ParabolicStiffness(StiffnessModel):
+    """Stiffness of a tooth pair as a parabola over the path of contact, with optional smooth engagement."""
 
-    Parameters
-    ----------
-    model : ``peak`` [N/m] (None: ISO 6336-1 method B c' times face width), ``end_ratio`` (None:
-        ``iso_end_ratio``), ``ramp_length`` [m]
-    pair, geometry : the gear pair and its geometry
+    model: Literal["parabolic"] = "parabolic"
+    peak: Annotated[float | None, Quantity("N/m", above=0, at_most=1e12, optional=True)] = Field(
+        None,
+        description="largest stiffness of one tooth pair; default ISO 6336-1 method B c' times face width",
+    )
+    end_ratio: Annotated[float | None, Quantity("1", above=0, at_most=1, optional=True)] = Field(
+        None,
+        description="stiffness at the ends of the path of contact over the peak; default gives the mean mesh "
+        "stiffness of ISO 6336-1",
+    )
+    ramp_length: Annotated[float, Quantity("mm", at_least=0)] = Field(
+        0.0, description="length along the path over which a pair takes up its stiffness; 0 is a jump"
+    )
 
-    Raises
-    ------
-    ParameterError : the ramps are longer than half of the path of contact
-    """
-    peak = model.peak
-    if peak is None:
-        peak = iso6336.pair_single_stiffness(pair) * iso6336.SI * geometry.face_width
-    ratio = iso_end_ratio(geometry.contact_ratio) if model.end_ratio is None else model.end_ratio
-    return parabola(geometry.L_XA, geometry.L_XD, peak, ratio, model.ramp_length)
+    def curve(self, pair: MeshingPair) -> PathFunction:
+        """Stiffness of a tooth pair [N/m]: a parabola from A to D with its peak in the middle.
+
+        Raises
+        ------
+        ParameterError : the ramps are longer than half of the path of contact
+        """
+        g = pair.geometry
+        peak = iso6336.single_of(pair) if self.peak is None else self.peak
+        ratio = iso_end_ratio(g.contact_ratio) if self.end_ratio is None else self.end_ratio
+        return parabola(g.L_XA, g.L_XD, peak, ratio, self.ramp_length)
+
+    def violations(self, pair: MeshingPair) -> tuple[RangeViolation, ...]:
+        """Ranges of ISO 6336-1 where it gives the peak or the ends."""
+        return iso6336.violations(pair) if self.peak is None or self.end_ratio is None else ()

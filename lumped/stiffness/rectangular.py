@@ -2,26 +2,30 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Annotated, Literal
 
+from pydantic import Field
+
+from lumped.fields.units import Quantity
 from lumped.path_function import PathFunction
+from lumped.ranges import RangeViolation
 from lumped.stiffness import iso6336
-
-if TYPE_CHECKING:
-    from lumped.gear_geometry.geometry import Geometry
-    from lumped.schema.mesh import RectangularStiffness
-    from lumped.schema.pair import GearPair
+from lumped.stiffness.base import MeshingPair, StiffnessModel
 
 
-def rectangular(model: RectangularStiffness, pair: GearPair, geometry: Geometry) -> PathFunction:
-    """Stiffness of a tooth pair [N/m], constant from A to D.
+class RectangularStiffness(StiffnessModel):
+    """Constant stiffness of every tooth pair in contact: the total is a rectangular wave."""
 
-    Parameters
-    ----------
-    model : ``pair_stiffness`` [N/m]; None takes ISO 6336-1 method B c' times face width
-    pair, geometry : the gear pair and its geometry
-    """
-    value = model.pair_stiffness
-    if value is None:
-        value = iso6336.pair_single_stiffness(pair) * iso6336.SI * geometry.face_width
-    return PathFunction.constant(value, geometry.L_XA, geometry.L_XD)
+    model: Literal["rectangular"] = "rectangular"
+    pair_stiffness: Annotated[float | None, Quantity("N/m", above=0, at_most=1e12, optional=True)] = Field(
+        None, description="stiffness of one tooth pair; default ISO 6336-1 method B c' times face width"
+    )
+
+    def curve(self, pair: MeshingPair) -> PathFunction:
+        """Stiffness of a tooth pair [N/m], constant from A to D."""
+        value = iso6336.single_of(pair) if self.pair_stiffness is None else self.pair_stiffness
+        return PathFunction.constant(value, pair.geometry.L_XA, pair.geometry.L_XD)
+
+    def violations(self, pair: MeshingPair) -> tuple[RangeViolation, ...]:
+        """Ranges of ISO 6336-1 where it gives the stiffness."""
+        return iso6336.violations(pair) if self.pair_stiffness is None else ()

@@ -6,22 +6,22 @@ Sources: monotone piecewise cubics, Fritsch and Carlson, SIAM Journal on Numeric
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
+from pydantic import Field, ValidationInfo, model_validator
 from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
 from lumped.errors import NumericalError, refuse
+from lumped.fields.units import Quantity
+from lumped.gear_geometry.geometry import Geometry
 from lumped.path_function import PathFunction
+from lumped.stiffness.base import MeshingPair, StiffnessModel
 from lumped.stiffness.energy import energy_curve
 from lumped.stiffness.neighbours import neighbour_breaks
 from lumped.stiffness.ramp import check_ramp_length, ramped
+from lumped.stiffness.table_file import check_stiffness_table, read_stiffness_table
 from lumped.typing import FloatArray
-
-if TYPE_CHECKING:
-    from lumped.gear_geometry.geometry import Geometry
-    from lumped.schema.mesh import TableStiffness
-    from lumped.schema.pair import GearPair
 
 #: A pair's table may miss the ends of the path of contact by this fraction of the path; it is then continued
 #: with its end value's polynomial.
@@ -31,27 +31,62 @@ _LARGEST_GAP = 0.25
 _FIT_TOLERANCE = 1e-10
 
 
-def table(model: TableStiffness, pair: GearPair, geometry: Geometry) -> PathFunction:
-    """Stiffness of a tooth pair from A to D by interpolation of a table [N/m].
+class TableStiffness(StiffnessModel):
+    """Tabulated stiffness: of one pair over the path of contact, or of all pairs over a mesh cycle."""
 
-    A total curve is shared out so that the sum over the pairs in contact is the table: each pair gets the
-    part that its potential-energy stiffness has in the sum of theirs.
+    model: Literal["table"] = "table"
+    kind: Literal["pair", "total"] = Field(
+        "pair", description="stiffness of one pair from A to D, or sum of all pairs over one mesh cycle"
+    )
+    axis: Literal["position_mm", "roll_angle_deg", "phase"] = Field(
+        description="what 'points' are: distance from X [mm], pinion roll angle [deg], or cycles after A [1]"
+    )
+    points: tuple[float, ...] = Field(
+        min_length=4, max_length=100_000, description="increasing abscissae, in the unit of 'axis'"
+    )
+    stiffness: tuple[float, ...] = Field(
+        min_length=4, max_length=100_000, description="stiffness at the points [N/m]"
+    )
+    interpolation: Literal["monotone", "cubic"] = Field(
+        "monotone",
+        description="monotone (no overshoot, continuous slope) or cubic spline (continuous curvature)",
+    )
+    ramp_length: Annotated[float, Quantity("mm", at_least=0)] = Field(
+        0.0, description="length along the path over which a pair takes up its stiffness; 0 is a jump"
+    )
 
-    Parameters
-    ----------
-    model : the table
-    pair, geometry : the gear pair and its geometry
+    @model_validator(mode="before")
+    @classmethod
+    def _read_file(cls, data: Any, info: ValidationInfo) -> Any:
+        """Replace ``file = "curve.csv"`` by its contents; a relative path is beside the parameter file."""
+        if not isinstance(data, dict) or "file" not in data:
+            return data
+        folder = (info.context or {}).get("folder", ".")
+        return {key: value for key, value in data.items() if key != "file"} | read_stiffness_table(
+            data["file"], folder
+        )
 
-    Raises
-    ------
-    ParameterError : the table does not cover the path of contact, or one mesh cycle
-    """
-    position = _positions(model, geometry)
-    stiffness = np.array(model.stiffness)
-    if model.kind == "pair":
-        return ramped(_pair_curve(position, stiffness, model, geometry), model.ramp_length)
-    check_ramp_length(model.ramp_length, geometry.L_XA, geometry.L_XD)
-    return _shared(_total_curve(position, stiffness, model, geometry), model.ramp_length, pair, geometry)
+    @model_validator(mode="after")
+    def _checked(self) -> Self:
+        check_stiffness_table(self.points, self.stiffness)
+        return self
+
+    def curve(self, pair: MeshingPair) -> PathFunction:
+        """Stiffness of a tooth pair from A to D by interpolation of the table [N/m].
+
+        A total curve is shared out so that the sum over the pairs in contact is the table: each pair gets the
+        part that its potential-energy stiffness has in the sum of theirs.
+
+        Raises
+        ------
+        ParameterError : the table does not cover the path of contact, or one mesh cycle
+        """
+        g = pair.geometry
+        position, stiffness = _positions(self, g), np.array(self.stiffness)
+        if self.kind == "pair":
+            return ramped(_pair_curve(position, stiffness, self, g), self.ramp_length)
+        check_ramp_length(self.ramp_length, g.L_XA, g.L_XD)
+        return _shared(_total_curve(position, stiffness, self, g), self.ramp_length, pair)
 
 
 def _positions(model: TableStiffness, geometry: Geometry) -> FloatArray:
@@ -114,10 +149,11 @@ def _total_curve(x: FloatArray, y: FloatArray, model: TableStiffness, geometry: 
     return _spline(tiled, np.tile(y, 3), model.interpolation)
 
 
-def _shared(total: PPoly, ramp_length: float, pair: GearPair, geometry: Geometry) -> PathFunction:
+def _shared(total: PPoly, ramp_length: float, pair: MeshingPair) -> PathFunction:
+    geometry = pair.geometry
     low, high, period = geometry.L_XA, geometry.L_XD, geometry.base_pitch
     shifts = np.arange(1 - geometry.pairs, geometry.pairs) * period
-    weight = ramped(energy_curve(pair, geometry), ramp_length)
+    weight = ramped(energy_curve(pair), ramp_length)
 
     def share(xi: FloatArray) -> FloatArray:
         part = weight(xi) / sum(weight(xi + shift) for shift in shifts)

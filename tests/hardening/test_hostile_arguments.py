@@ -15,9 +15,9 @@ from floquet.engine.sensitivity import multiplier_derivatives
 from lumped import friction, losses, quasi_static
 from lumped.arguments import one_of, real_array, real_number, real_numbers, some_of, whole_number
 from lumped.errors import ParameterError, SpurcheckError
+from lumped.fields.text_file import read_bytes, read_text
 from lumped.lubrication import film
 from lumped.model.averaged import averaged_state_space, frequency_response
-from lumped.schema.text_file import read_bytes, read_text
 from validation import crosscheck
 from validation.measurements import predict
 from validation.verification import refinements

@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 
 from lumped import GearPair, geometry, load_gear_pair, preset_names
 from lumped.errors import ParameterError
+from lumped.fields.text_file import parse_toml
 from lumped.schema.files import preset_text
 from lumped.schema.pair import field_at
-from lumped.schema.text_file import parse_toml
 from validation.measurements import load_measurement
 from validation.studies import Study, load_study
 

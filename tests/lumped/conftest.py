@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from lumped import load_gear_pair
-from lumped.schema.units import Quantity
+from lumped.fields.units import Quantity
 
 
 def _quantities(model, prefix=""):
     """Every quantity field of the schema, through unions, as (dotted path, Quantity)."""
-    from lumped.schema.refusals import models_in
+    from lumped.fields.refusals import models_in
 
     for name, info in model.model_fields.items():
         quantity = next((m for m in info.metadata if isinstance(m, Quantity)), None)

@@ -32,8 +32,7 @@ Law = Annotated[
     str | None,
     typer.Option(
         "--law",
-        help="Friction law: none, coulomb (I), benedict_kelley (II), xu_kahraman (III), smoothed_coulomb "
-        "(IV) or composite (V).",
+        help="Friction law by its name in parameter files, such as coulomb; an unknown name lists them all.",
     ),
 ]
 Settings = Annotated[

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from lumped.errors import MOST_PROBLEMS, FieldProblem, ParameterError, quoted, shown
-from lumped.schema.refusals import unknown_key
+from lumped.fields.refusals import unknown_key
 
 #: What pydantic puts into a place for the parts of a union.
 _UNION_PARTS = {"int", "float", "str", "function-before[_pair_in(), GearPair]"}

@@ -15,8 +15,9 @@ from markupsafe import Markup
 
 from floquet.gear.chart_axes import operating_rpm
 from lumped import GearPair, load_gear_pair
+from lumped.friction import LAWS
 from validation.files.output import write_dataset, write_text
-from validation.interactive.payload import LAW_NAMES, payload, script_json
+from validation.interactive.payload import payload, script_json
 from validation.interactive.results import FINE, PageResults, Sampling, compute
 from validation.validity.map import STATES
 
@@ -85,13 +86,13 @@ def render(results: PageResults, data_name: str) -> str:
     return environment.get_template("page.html").render(
         pair=pair,
         rpm=operating_rpm(pair),
-        law=LAW_NAMES.get(pair.friction.law, pair.friction.law),
+        law=LAWS[pair.friction.law].long_name,
         found=results.found,
         slices=results.stability.values(),
         step=float(np.diff(next(iter(results.stability.values())).chart["speed_rpm"]).max()),
         unstable=unstable_speeds,
         response=_response_rows(results),
-        missing={LAW_NAMES.get(law, law): reason for law, reason in results.missing.items()},
+        missing={LAWS[law].long_name: reason for law, reason in results.missing.items()},
         data_name=data_name,
         policy="script-src " + " ".join(map(_hash, scripts)),
         scripts=[Markup(_safe(script)) for script in scripts],

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from floquet.gear.chart_axes import operating_rpm
+from lumped.friction import LAWS
 from validation.interactive.results import PageResults
 from validation.interactive.slices import Slices
 from validation.plots.tongue_names import pretty
@@ -19,15 +19,6 @@ from validation.validity.map import STATES
 
 #: Decimals of a largest multiplier, and significant digits of everything else.
 DECIMALS, DIGITS = 6, 6
-
-LAW_NAMES: Mapping[str, str] = {
-    "none": "no friction",
-    "coulomb": "I, Coulomb",
-    "benedict_kelley": "II, Benedict and Kelley",
-    "xu_kahraman": "III, Xu and Kahraman",
-    "smoothed_coulomb": "IV, smoothed Coulomb",
-    "composite": "V, composite",
-}
 
 
 def payload(results: PageResults) -> dict[str, Any]:
@@ -95,7 +86,7 @@ def _sweep(results: PageResults) -> dict[str, Any]:
         laws.append(
             {
                 "key": law,
-                "name": LAW_NAMES.get(law, law),
+                "name": LAWS[law].long_name,
                 "note": results.notes[index],
                 **{name: _numbers(1e6 * one[variable].to_numpy()) for name, variable in micrometres.items()},
                 "load": _numbers(one["lowest_load"]),

@@ -13,9 +13,10 @@ import lumped
 from floquet.gear.chart_axes import chart_axes, operating_rpm, speed_range
 from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
 from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError
-from lumped.friction import LAWS, law_range_violations
+from lumped.friction import LAWS
 from lumped.model.averaged import modes
 from lumped.model.results import provenance
+from lumped.path_of_contact import law_range_violations
 from lumped.typing import FloatArray
 from validation.interactive.slices import SLICES, Slices
 from validation.validity.map import STATES, validity_state

@@ -26,7 +26,8 @@ from scipy.stats import t as student
 
 from lumped.arguments import one_of, real_number
 from lumped.errors import NumericalError, refuse
-from lumped.friction import friction_path_function, mean_coefficient
+from lumped.friction import mean_coefficient
+from lumped.path_of_contact import friction_path_function
 from lumped.typing import FloatArray
 from validation.measurements.alignment import Alignment
 from validation.measurements.estimator import Samples, estimate_parameters, misfit, sandwich

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from lumped.errors import ParameterError, refuse, shown
-from lumped.schema.text_file import read_text
+from lumped.fields.text_file import read_text
 from lumped.typing import FloatArray
 from validation.measurements.specification import (
     QUANTITIES,

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 from pydantic import Field, ValidationError, model_validator
 
 from lumped.errors import ParameterError, refuse, shown
-from lumped.schema.section import Section, Text
-from lumped.schema.text_file import parse_toml, read_text
-from lumped.schema.units import Quantity
+from lumped.fields.section import Section, Text
+from lumped.fields.text_file import parse_toml, read_text
+from lumped.fields.units import Quantity
 from validation.files.problems import translated
 
 if TYPE_CHECKING:

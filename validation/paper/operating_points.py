@@ -6,15 +6,11 @@ import math
 from dataclasses import dataclass
 
 from lumped import GearPair, load_gear_pair
-from lumped.friction import contact_path
+from lumped.friction import LAWS as ALL_LAWS
+from lumped.path_of_contact import contact_path
 
-#: Friction laws in the paper's order: name in parameter files -> its number and name there.
-LAWS = {
-    "coulomb": "I Coulomb",
-    "benedict_kelley": "II Benedict-Kelley",
-    "xu_kahraman": "III Xu-Kahraman",
-    "smoothed_coulomb": "IV smoothed Coulomb",
-}
+#: Friction laws that the paper compares: name in parameter files -> its number and name there.
+LAWS = {name: law.title for name, law in ALL_LAWS.items() if law.in_paper}
 #: The gear pairs of Fig. 2a.
 PAIRS_2A = ("nasa_art_25_31", "nasa_28_28")
 #: Speed at which law V changes its regime in Fig. 2b [rpm].

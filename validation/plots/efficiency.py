@@ -100,7 +100,7 @@ def film_figure(g: Geometry, profile: xr.Dataset, thresholds: tuple[float, ...])
     Parameters
     ----------
     g : geometry of the pair
-    profile : dataset of ``lumped.friction.friction_profile``
+    profile : dataset of ``lumped.path_of_contact.friction_profile``
     thresholds : film parameters at which the regime changes
     """
     figure, axes = new_figure(1, 2, height=2.8)

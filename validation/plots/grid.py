@@ -9,17 +9,11 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from lumped.friction import LAWS
 from validation.cross_check.grid.run import COMPARED, SEPARATED, STICKING
 from validation.plots.style import BLACK, GREY, new_figure
 
 _MARKS = {SEPARATED: ("s", "teeth separate"), STICKING: ("o", "friction may hold the teeth")}
-_SHORT = {
-    "coulomb": "I",
-    "benedict_kelley": "II",
-    "xu_kahraman": "III",
-    "smoothed_coulomb": "IV",
-    "composite": "V",
-}
 
 
 def grid_figure(result: xr.Dataset, quantity: str = "dte", fidelity: str = "exact") -> Figure:
@@ -106,7 +100,7 @@ def _laws(ax: Axes, result: xr.Dataset) -> None:
     for i, law in enumerate(result["law"].to_numpy()):
         name = str(law)
         ax.annotate(
-            f"law {_SHORT[name]}" if name in _SHORT else name,
+            f"law {LAWS[name].numeral}" if LAWS[name].numeral else name,
             (width * (i + 0.5) - 0.5, 1.0),
             xycoords=("data", "axes fraction"),
             xytext=(0, 3),

@@ -27,7 +27,7 @@ def path_figure(g: Geometry, profile: xr.Dataset) -> Figure:
     Parameters
     ----------
     g : geometry of the pair
-    profile : dataset of ``lumped.friction.friction_profile``
+    profile : dataset of ``lumped.path_of_contact.friction_profile``
     """
     figure, axes = new_figure(1, 2, height=2.7)
     xi = 1e3 * profile["xi"].to_numpy()
@@ -66,7 +66,7 @@ def friction_laws_figure(g: Geometry, profile: xr.Dataset, chosen: str) -> Figur
     Parameters
     ----------
     g : geometry of the pair
-    profile : dataset of ``lumped.friction.friction_profile``
+    profile : dataset of ``lumped.path_of_contact.friction_profile``
     chosen : name of the pair's law
     """
     figure, axes = new_figure(height=3.3)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Never
 
 from lumped.errors import refuse
-from lumped.schema.text_file import read_text
+from lumped.fields.text_file import read_text
 from validation.files.folder import FORMAT, FORMAT_VERSION, REPORT
 from validation.reporting.compare import leaves
 

@@ -25,6 +25,8 @@ from lumped.losses import (
     quasi_static_losses,
     sliding_power_along_path,
 )
+from lumped.path_of_contact.iso_comparison import iso_comparison
+from lumped.path_of_contact.stiffness import mesh_stiffness, stiffness_components
 from lumped.quasi_static import (
     OptimalRelief,
     optimal_relief,
@@ -32,8 +34,6 @@ from lumped.quasi_static import (
     static_transmission_error,
     with_tip_relief,
 )
-from lumped.stiffness.components import mesh_stiffness, stiffness_components
-from lumped.stiffness.iso_comparison import iso_comparison
 
 #: Torques of the static transmission error curves, over the operating torque.
 CURVES = (0.1, 0.5, 1.0, 1.5, 2.0)
@@ -113,7 +113,7 @@ def mesh_physics(
     ----------
     pair : a validated gear pair
     motion : its periodic motion, of ``lumped.steady_state``
-    profile : its friction laws along the path, of ``lumped.friction.friction_profile``
+    profile : its friction laws along the path, of ``lumped.path_of_contact.friction_profile``
     quick : without the relief optimum and the periodic motion of the laws that are not the pair's own
 
     Notes

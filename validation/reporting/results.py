@@ -15,8 +15,8 @@ from floquet.gear.dense_chart import dense_chart
 from floquet.gear.margins import StabilityMargins, stability_margins
 from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
 from lumped import GearPair, Geometry, NumericalError, ParameterError
-from lumped.friction import friction_profile
 from lumped.model.averaged import Mode, modes
+from lumped.path_of_contact import friction_profile
 from lumped.typing import FloatArray
 from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.cross_check.metrics import MeshOrders, mesh_orders

@@ -14,9 +14,9 @@ from pydantic_core import PydanticCustomError
 
 from floquet.gear.axes import GEAR_AXES
 from lumped.errors import FieldProblem, ParameterError, refuse, shown
+from lumped.fields.section import Section
+from lumped.fields.units import Quantity, to_si, to_stated
 from lumped.schema.pair import field_at
-from lumped.schema.section import Section
-from lumped.schema.units import Quantity, to_si, to_stated
 
 AxisValue = int | float | str
 #: Every integer below this is a floating-point number.

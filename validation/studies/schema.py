@@ -9,9 +9,9 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, PlainSerializer, model_validator
 
 from lumped.errors import FieldProblem, ParameterError, shown
+from lumped.fields.section import Section, Text
+from lumped.fields.units import Quantity
 from lumped.schema.pair import GearPair
-from lumped.schema.section import Section, Text
-from lumped.schema.units import Quantity
 from validation.studies.axes import Axis, target_of
 from validation.studies.outputs import OUTPUTS, Analysis
 

@@ -12,8 +12,8 @@ import numpy as np
 import xarray as xr
 
 from lumped import GearPair, Geometry
-from lumped.friction import contact_path, law_range_violations
-from lumped.stiffness import stiffness_range_violations
+from lumped.friction import LAWS
+from lumped.path_of_contact import contact_path, law_range_violations
 from validation.validity.flag import Flag, State, flag
 
 if TYPE_CHECKING:
@@ -133,7 +133,7 @@ def law_ranges(pair: GearPair) -> Flag:
 
 def stiffness_ranges(pair: GearPair, g: Geometry) -> Flag:
     """The stiffness model is used inside the ranges of its fits."""
-    violations = stiffness_range_violations(pair, g)
+    violations = pair.mesh.stiffness.violations(pair)
     return flag(
         "stiffness_range",
         "warning" if violations else "ok",
@@ -148,7 +148,7 @@ def film_regime(pair: GearPair) -> Flag:
     parameter = path.film_parameter(np.linspace(path.L_XA, path.L_XD, 201))
     low, high = float(parameter.min()), float(parameter.max())
     boundary = pair.friction.thresholds[0]
-    fluid_law = pair.friction.law in ("benedict_kelley", "xu_kahraman")
+    fluid_law = LAWS[pair.friction.law].fluid_film
     state: State = "warning" if fluid_law and low < boundary else "ok"
     return flag(
         "film_parameter",

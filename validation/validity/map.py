@@ -12,10 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 import lumped
 from lumped import GearPair, LawRangeWarning
 from lumped.arguments import real_numbers
-from lumped.friction import contact_path
 from lumped.lubrication.film import regime
 from lumped.model.periodic_cycle import UNSTABLE
 from lumped.model.results import provenance
+from lumped.path_of_contact import contact_path
 from lumped.typing import FloatArray
 from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
 

@@ -10,7 +10,7 @@ from floquet.gear.axes import GearVariation, vary
 from floquet.gear.friction import friction_families
 from lumped import load_gear_pair
 from lumped.errors import ParameterError
-from lumped.friction.along_path import friction_path_function
+from lumped.path_of_contact.friction import friction_path_function
 
 PRESETS = ["nasa_28_28", "nasa_art_25_31", "kahraman_blankenship_50_50", "fzg_c"]
 SPEEDS = np.array([500.0, 1300.0, 2000.0, 2030.0, 6000.0, 9000.0, 20000.0])

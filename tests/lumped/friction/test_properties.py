@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from lumped import load_gear_pair, preset_names
 from lumped.errors import LawRangeWarning, ParameterError
-from lumped.friction import LAWS, contact_path, friction_path_function, friction_settings
+from lumped.friction import LAWS
+from lumped.path_of_contact import contact_path, friction_path_function
 
 PAIRS = {name: load_gear_pair(name) for name in preset_names()}
 
@@ -36,7 +37,7 @@ def operating_points(draw):
 @settings(max_examples=25, deadline=None)
 @given(pair=operating_points(), where=st.lists(st.floats(-8.0, -2.2), min_size=5, max_size=30))
 def test_any_operating_point(law, pair, where):
-    path, parameters = contact_path(pair), friction_settings(pair)
+    path, parameters = contact_path(pair), pair.friction
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)  # the law is followed outside its range as well
         try:

@@ -8,7 +8,7 @@ from scipy.integrate import quad
 
 from lumped import geometry, load_gear_pair, preset_names
 from lumped.errors import ParameterError
-from lumped.friction import LAWS, benedict_kelley, contact_path
+from lumped.friction import LAWS, benedict_kelley
 from lumped.losses import (
     anderson_loewenthal_coefficient,
     anderson_loewenthal_sliding_loss,
@@ -22,6 +22,7 @@ from lumped.losses import (
     sliding_power_along_path,
 )
 from lumped.model.solution import steady_state
+from lumped.path_of_contact import contact_path
 
 
 def coulomb(name, mu, **changes):

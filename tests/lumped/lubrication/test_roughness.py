@@ -5,8 +5,8 @@ import pytest
 
 from lumped import load_gear_pair
 from lumped.errors import ParameterError
-from lumped.friction import contact_path
 from lumped.lubrication.roughness import composite_roughness, mean_from_rms, mean_roughness, rms_from_mean
+from lumped.path_of_contact import contact_path
 
 
 def test_sine_profile():

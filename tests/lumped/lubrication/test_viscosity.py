@@ -5,10 +5,9 @@ import pytest
 
 from lumped import load_gear_pair
 from lumped.errors import ParameterError
-from lumped.friction import contact_path
-from lumped.friction.lubricant import dynamic_viscosity
 from lumped.lubrication.viscosity import kinematic_viscosity, oil_density, walther_constants
 from lumped.lubrication.viscosity_grade import viscosity_at_100
+from lumped.path_of_contact import contact_path
 
 
 def test_walther_passes_through_its_points():
@@ -58,7 +57,7 @@ def test_lubricant_law_feeds_the_contact():
         }
     )
     expected = 11.1e-6 * float(oil_density(880.0, 100.0))
-    assert dynamic_viscosity(pair.lubricant) == pytest.approx(expected, rel=1e-12)
+    assert pair.lubricant.dynamic_viscosity == pytest.approx(expected, rel=1e-12)
     assert contact_path(pair).viscosity == pytest.approx(expected, rel=1e-12)
 
 
@@ -73,8 +72,8 @@ def test_a_grade_in_the_parameter_file_is_its_walther_line():
     }
     by_points = by_grade.with_({"lubricant.viscosity_law": points})
     # The same line through the same two points; the second passes through the file's units once more.
-    assert dynamic_viscosity(by_grade.lubricant) == pytest.approx(
-        dynamic_viscosity(by_points.lubricant), rel=1e-12
+    assert by_grade.lubricant.dynamic_viscosity == pytest.approx(
+        by_points.lubricant.dynamic_viscosity, rel=1e-12
     )
 
 

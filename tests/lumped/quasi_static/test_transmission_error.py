@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from lumped import NumericalError, ParameterError, geometry, load_gear_pair
+from lumped.path_of_contact import pair_stiffness
 from lumped.quasi_static import (
     loaded_mesh,
     optimal_relief,
@@ -14,7 +15,6 @@ from lumped.quasi_static import (
     static_transmission_error,
     with_tip_relief,
 )
-from lumped.stiffness import pair_stiffness
 
 K = 1e8  # N/m per pair
 ROUNDING = 1e-12
@@ -188,7 +188,7 @@ def test_loaded_mesh_of_perfect_flanks_is_the_pair_stiffness():
     g = geometry(pair)
     mesh = loaded_mesh(pair, 56.5)
     assert mesh.contact.tolist() == [[g.L_XA, g.L_XD]]
-    assert mesh.stiffness.coefficients == pytest.approx(pair_stiffness(pair, g).coefficients)
+    assert mesh.stiffness.coefficients == pytest.approx(pair_stiffness(pair).coefficients)
     assert not mesh.error.coefficients.any()
 
 

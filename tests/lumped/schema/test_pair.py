@@ -7,10 +7,10 @@ import pytest
 from pydantic import ValidationError
 
 from lumped import GearPair, ParameterError, bodies, geometry, json_schema, load_gear_pair
+from lumped.fields.refusals import models_in
+from lumped.fields.units import UNITS
 from lumped.schema.files import preset_text
 from lumped.schema.pair import stated_unit
-from lumped.schema.refusals import models_in
-from lumped.schema.units import UNITS
 
 
 def test_pair_is_frozen_and_hashable(nasa):

@@ -6,7 +6,7 @@ import math
 import pytest
 
 from lumped import ParameterError, load_gear_pair
-from lumped.schema.units import Quantity
+from lumped.fields.units import Quantity
 
 
 def problem(source, field, **expected):

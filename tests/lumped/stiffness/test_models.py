@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from lumped import ParameterError, geometry, load_gear_pair
-from lumped.stiffness import MODELS, iso6336, pair_stiffness
+from lumped.path_of_contact import pair_stiffness
+from lumped.stiffness import MODELS, iso6336
 from lumped.stiffness.parabolic import iso_end_ratio, parabola
 
 LOW, HIGH, PEAK = 7.5e-3, 22.9e-3, 8e7
@@ -19,7 +20,7 @@ def with_model(**model):
 def test_every_model_spans_the_path_of_contact_and_is_positive_inside(model):
     pair = with_model(model=model)
     g = geometry(pair)
-    k = pair_stiffness(pair, g)
+    k = pair_stiffness(pair)
     assert k.interval == (g.L_XA, g.L_XD)
     inside = np.linspace(g.L_XA, g.L_XD, 400)[1:-1]
     assert np.all(k(inside) > 0.0)
@@ -28,7 +29,7 @@ def test_every_model_spans_the_path_of_contact_and_is_positive_inside(model):
 
 def test_rectangular_takes_its_parameter():
     pair = with_model(model="rectangular", pair_stiffness=1.5e8)
-    k = pair_stiffness(pair, geometry(pair))
+    k = pair_stiffness(pair)
     assert np.all(k(np.linspace(*k.interval, 9)) == 1.5e8)
 
 
@@ -36,15 +37,13 @@ def test_rectangular_defaults_to_iso():
     pair = with_model(model="rectangular")
     # c' of 28/28 by hand (test_iso6336) times 6.35 mm: 12.5816 N/(mm um) * 6.35 mm = 79.89 N/um.
     by_hand = 0.8 * 0.975 / (0.04723 + 0.41342 / 28) * 6.35 * 1e6
-    assert pair_stiffness(pair, geometry(pair)).mean() == pytest.approx(by_hand, rel=1e-12)
+    assert pair_stiffness(pair).mean() == pytest.approx(by_hand, rel=1e-12)
 
 
 def test_face_width_is_the_smaller_one():
     pair = with_model(model="rectangular").with_(pinion__face_width=12.0)
     reference = with_model(model="rectangular")
-    assert (
-        pair_stiffness(pair, geometry(pair)).mean() == pair_stiffness(reference, geometry(reference)).mean()
-    )
+    assert pair_stiffness(pair).mean() == pair_stiffness(reference).mean()
 
 
 def test_parabola_has_its_peak_in_the_middle_and_its_ends():
@@ -71,7 +70,7 @@ def test_default_parabola_has_the_mean_total_stiffness_of_iso(tip):
     )
     g = geometry(pair)
     tau = (np.arange(2000) + 0.5) / 2000 * g.base_pitch
-    k = pair_stiffness(pair, g)
+    k = pair_stiffness(pair)
     total = sum(k(g.L_XA + i * g.base_pitch + tau) for i in range(g.pairs)).mean()
     expected = iso6336.mean_mesh_stiffness(iso6336.pair_single_stiffness(pair), g.contact_ratio)
     # Midpoint rule over a jump at one of 2000 points: error up to half a point's share.
@@ -107,7 +106,7 @@ def test_ramp_rises_from_zero_and_is_smooth(ramp):
 def test_ramp_makes_the_total_stiffness_continuous():
     pair = with_model(model="parabolic", ramp_length=1.0)
     g = geometry(pair)
-    k = pair_stiffness(pair, g)
+    k = pair_stiffness(pair)
     tau = np.linspace(0.0, g.base_pitch, 4001)
     total = sum(k(g.L_XA + i * g.base_pitch + tau) for i in range(g.pairs + 1))
     steps = np.abs(np.diff(total))
@@ -119,7 +118,7 @@ def test_ramp_makes_the_total_stiffness_continuous():
 def test_too_long_a_ramp_is_refused():
     pair = with_model(model="parabolic", ramp_length=9.0)
     with pytest.raises(ParameterError, match="ramp_length") as refusal:
-        pair_stiffness(pair, geometry(pair))
+        pair_stiffness(pair)
     problem = refusal.value.problems[0]
     assert problem.value == "9 mm"
     # Half of the path of contact of the 28/28 pair: (22.8793 - 7.5263)/2 mm.
@@ -130,7 +129,7 @@ def test_too_long_a_ramp_is_refused():
 def test_a_ramp_too_short_to_resolve_is_refused(model):
     def stiffness(ramp):
         pair = with_model(model=model, ramp_length=ramp)
-        return pair_stiffness(pair, geometry(pair))
+        return pair_stiffness(pair)
 
     with pytest.raises(ParameterError, match="Write 0 for a jump"):
         stiffness(1.5e-3)

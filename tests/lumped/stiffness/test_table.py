@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from lumped import GearPair, ParameterError, geometry, load_gear_pair
-from lumped.schema.stiffness_table import read_stiffness_table
-from lumped.stiffness import pair_stiffness
+from lumped.path_of_contact import pair_stiffness
+from lumped.stiffness.table_file import read_stiffness_table
 
 
 def curve(xi, g):
@@ -39,10 +39,8 @@ def test_every_axis_gives_the_same_curve(axis):
     pair = pair_table(41, axis)
     g = geometry(pair)
     xi = np.linspace(g.L_XA, g.L_XD, 41)
-    assert pair_stiffness(pair, g)(xi) == pytest.approx(
-        curve(xi, g), rel=1e-9
-    )  # interpolation meets its points
-    assert pair_stiffness(pair, g).switches.size == 0
+    assert pair_stiffness(pair)(xi) == pytest.approx(curve(xi, g), rel=1e-9)  # interpolation meets its points
+    assert pair_stiffness(pair).switches.size == 0
 
 
 @pytest.mark.parametrize(("interpolation", "order"), [("monotone", 2.0), ("cubic", 4.0)])
@@ -52,7 +50,7 @@ def test_order_of_interpolation(interpolation, order):
     errors = []
     for points in (81, 161):
         pair = pair_table(points, interpolation=interpolation)
-        errors.append(np.abs(pair_stiffness(pair, g)(xi) - curve(xi, g)).max())
+        errors.append(np.abs(pair_stiffness(pair)(xi) - curve(xi, g)).max())
     # Monotone interpolation falls to second order at the curve's own extremes.
     assert np.log2(errors[0] / errors[1]) > order - 0.5
 
@@ -77,7 +75,7 @@ SAMPLINGS = {
 def test_pairs_add_up_to_the_total_at_any_sampling(phase, ramp):
     pair = total_pair(phase, interpolation="cubic", ramp_length=ramp)
     g = geometry(pair)
-    k = pair_stiffness(pair, g)
+    k = pair_stiffness(pair)
     tau = np.linspace(0.0, g.base_pitch, 501)[1:-1]
     total = sum(k(g.L_XA + i * g.base_pitch + tau) for i in range(g.pairs))
     # Cubic splines of 60 points on the third harmonic: (2 pi 3/60)^4/384 of 5e6, plus uneven gaps.
@@ -92,7 +90,7 @@ def test_total_curve_shares_equally_between_equal_positions():
     pair = total_pair(np.arange(60) / 60, interpolation="cubic")
     g = geometry(pair)
     first = 0.5 * (g.L_XA + g.L_XB)
-    k = pair_stiffness(pair, g)
+    k = pair_stiffness(pair)
     assert k(first) == pytest.approx(float(k(first + g.base_pitch)), rel=1e-9)
 
 
@@ -114,7 +112,7 @@ def test_csv_beside_the_parameter_file(tmp_path):
     (tmp_path / "pair.toml").write_text(text[:cut] + section + text[end:], encoding="utf-8")
     pair = load_gear_pair(tmp_path / "pair.toml")
     assert pair.mesh.stiffness.axis == "position_mm"
-    assert pair_stiffness(pair, g)(xi) == pytest.approx(curve(xi, g), rel=1e-9)
+    assert pair_stiffness(pair)(xi) == pytest.approx(curve(xi, g), rel=1e-9)
     # The pair carries the table itself: the round trip needs no file, and the hash covers the numbers.
     again = GearPair.model_validate(pair.to_mapping())
     assert again == pair
@@ -159,13 +157,13 @@ def test_wrong_numbers_are_refused():
 def test_tables_that_do_not_cover_the_path_are_refused():
     short = pair_with(axis="phase", points=[0.0, 0.2, 0.4, 0.6, 0.8], stiffness=[1e8] * 5)
     with pytest.raises(ParameterError, match="A to D"):
-        pair_stiffness(short, geometry(short))
+        pair_stiffness(short)
     sparse = pair_with(kind="total", axis="phase", points=[0.0, 0.1, 0.2, 0.3], stiffness=[1e8] * 4)
     with pytest.raises(ParameterError, match="gap"):
-        pair_stiffness(sparse, geometry(sparse))
+        pair_stiffness(sparse)
     points = np.arange(20) / 10.0
     other = pair_with(
         kind="total", axis="phase", points=points.tolist(), stiffness=(1e8 * (1 + points)).tolist()
     )
     with pytest.raises(ParameterError, match="one base pitch"):
-        pair_stiffness(other, geometry(other))
+        pair_stiffness(other)

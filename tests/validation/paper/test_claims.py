@@ -10,7 +10,7 @@ import xarray as xr
 from floquet.gear.multipliers import gear_pair_multipliers
 from lumped import geometry, load_gear_pair, steady_state
 from lumped.errors import ParameterError
-from lumped.friction import contact_path
+from lumped.path_of_contact import contact_path
 from validation.paper.claims import numbers
 from validation.paper.claims.judge import ACCURACY, claims, judged
 from validation.paper.claims.rules import RULES

@@ -5,7 +5,8 @@ import pytest
 
 from floquet import PeriodicSystem, monodromy
 from lumped import bodies, geometry, load_gear_pair, periodic_system
-from lumped.friction import contact_path, friction_path_function, mean_coefficient
+from lumped.friction import mean_coefficient
+from lumped.path_of_contact import contact_path, friction_path_function
 from validation.paper.errata.catalogue import errata_chapter
 from validation.paper.errata.laws import derivative_residual
 from validation.paper.errata.printed_laws import (

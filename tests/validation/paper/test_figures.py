@@ -6,7 +6,8 @@ import xarray as xr
 
 from lumped import geometry, load_gear_pair, simulate
 from lumped.errors import ParameterError
-from lumped.friction import contact_path, xu_kahraman
+from lumped.friction import xu_kahraman
+from lumped.path_of_contact import contact_path
 from validation.measurements import predict, synthetic_measurement
 from validation.paper import DRAW, figure_records, law_runs, paper_figures
 from validation.paper.figures.figure2 import regime_switch

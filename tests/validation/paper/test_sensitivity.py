@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lumped import LawRangeWarning, NumericalError, bodies, load_gear_pair
-from lumped.friction import contact_path
+from lumped.path_of_contact import contact_path
 from validation.paper.claims import sensitivity
 from validation.paper.claims.sensitivity import ASSUMPTIONS, measure, sample_assumptions, vary
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import lumped
-from lumped.friction import friction_profile
 from lumped.losses import ohlendorf_of
+from lumped.path_of_contact import friction_profile
 from validation.reporting.mesh_physics import mesh_physics
 
 

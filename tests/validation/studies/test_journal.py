@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumped.errors import ParameterError, SpurcheckError
-from lumped.schema.text_file import read_text
+from lumped.fields.text_file import read_text
 from validation.files.regular import StoreError, read_bytes, replaced, write_text
 from validation.studies.cases import case_list
 from validation.studies.journal import NOTHING, Journal, Key, scan

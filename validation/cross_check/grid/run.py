@@ -27,6 +27,7 @@ import xarray as xr
 import lumped
 from lumped import GearPair
 from lumped.errors import LawRangeWarning, refuse
+from lumped.friction import FRICTIONAL, LAWS
 from lumped.typing import FloatArray
 from validation.cross_check.agreement import FIDELITIES, QUANTITIES
 from validation.cross_check.grid.checkpoint import Checkpoint
@@ -46,7 +47,7 @@ STIFFNESS: Mapping[str, Mapping[str, Any]] = MappingProxyType(
     }
 )
 #: Laws whose coefficient does not depend on torque, so that the law of torque holds for them.
-CONSTANT_COEFFICIENT = ("coulomb", "smoothed_coulomb")
+CONSTANT_COEFFICIENT = tuple(name for name, law in LAWS.items() if law.coefficient)
 #: The law of torque is judged where the stiffness has no jump.
 SMOOTH_STIFFNESS = ("smooth",)
 _COEFFICIENT = 0.05
@@ -74,13 +75,7 @@ class Grid:
         "kahraman_blankenship_50_50",
         "fzg_c",
     )
-    laws: tuple[str, ...] = (
-        "coulomb",
-        "benedict_kelley",
-        "xu_kahraman",
-        "smoothed_coulomb",
-        "composite",
-    )
+    laws: tuple[str, ...] = FRICTIONAL
     stiffness: tuple[str, ...] = tuple(STIFFNESS)
     speeds: tuple[float, ...] = (0.3, 1.0, 1.7)
     torques: tuple[float, ...] = (1.0, 1 / 4)

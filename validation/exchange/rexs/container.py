@@ -9,7 +9,7 @@ import zlib
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from lumped.errors import ParameterError, refuse, shown
-from lumped.schema.text_file import read_bytes
+from lumped.fields.text_file import read_bytes
 from validation.exchange.rexs.json_form import parse_json
 from validation.exchange.rexs.model import RexsModel, broken
 from validation.exchange.rexs.xml_form import parse_xml

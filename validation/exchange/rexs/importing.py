@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from lumped.errors import FieldProblem, ParameterError
+from lumped.fields.units import to_stated
 from lumped.schema.files import load_gear_pair
 from lumped.schema.pair import GearPair
-from lumped.schema.units import to_stated
 from validation.exchange.rexs.assumptions import ASSUMED, completed, with_sources
 from validation.exchange.rexs.container import read_rexs
 from validation.exchange.rexs.gears import read_gears

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from lumped.fields.units import to_si
 from lumped.gear_geometry.involute import involute
-from lumped.schema.units import to_si
 from validation.exchange.rexs.gears import flanks_of, gear_data_of
 from validation.exchange.rexs.model import Component
 from validation.exchange.rexs.said import Reading, Said

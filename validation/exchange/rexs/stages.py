@@ -7,7 +7,7 @@ from pathlib import Path
 
 from lumped.arguments import whole_number
 from lumped.errors import ParameterError, refuse
-from lumped.schema.units import to_stated
+from lumped.fields.units import to_stated
 from validation.exchange.rexs.container import read_rexs
 from validation.exchange.rexs.model import Component, RexsModel, broken
 from validation.exchange.rexs.said import Said

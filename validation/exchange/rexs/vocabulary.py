@@ -11,7 +11,7 @@ from decimal import Decimal
 from typing import Literal
 
 from lumped.errors import refuse, shown
-from lumped.schema.units import to_file, to_si, to_stated
+from lumped.fields.units import to_file, to_si, to_stated
 
 Kind = Literal[
     "floating_point", "integer", "boolean", "enum", "string", "reference_component", "floating_point_array"
@@ -22,7 +22,7 @@ VERSIONS = ("1.4", "1.5", "1.6", "1.7", "2.0.0")
 #: Versions that can be written. The XML form of 2.0.0 (with or without a namespace) could not be settled.
 WRITTEN = ("1.4", "1.5", "1.6", "1.7")
 
-#: REXS unit -> (unit of ``lumped.schema.units``, the same as text for it, how many of it make one stated
+#: REXS unit -> (unit of ``lumped.fields.units``, the same as text for it, how many of it make one stated
 #: unit).
 UNITS: dict[str, tuple[str, str, Decimal]] = {
     "none": ("1", "", Decimal(1)),

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from lumped import GearPair
-from lumped.friction import contact_path
+from lumped.path_of_contact import contact_path
 from validation.paper.errata.film import film_errata
 from validation.paper.errata.laws import law_errata
 from validation.paper.errata.signs import sign_errata

@@ -8,8 +8,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from lumped import GearPair
-from lumped.friction import ContactPath, contact_path, friction_path_function
+from lumped.friction import ContactPath
 from lumped.lubrication.film import film_parameter, regime
+from lumped.path_of_contact import contact_path, friction_path_function
 from validation.paper.errata import dimensions
 from validation.paper.errata.laws import law_effects
 from validation.paper.errata.printed_laws import (

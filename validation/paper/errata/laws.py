@@ -5,13 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from lumped import GearPair, PathFunction
-from lumped.friction import (
-    benedict_kelley,
-    contact_path,
-    friction_path_function,
-    mean_coefficient,
-    xu_kahraman,
-)
+from lumped.friction import benedict_kelley, mean_coefficient, xu_kahraman
+from lumped.path_of_contact import contact_path, friction_path_function
 from validation.paper.errata import dimensions
 from validation.paper.errata.printed_laws import (
     average_coefficient,

@@ -10,15 +10,9 @@ from collections.abc import Callable
 import numpy as np
 
 from lumped import GearPair, PathFunction
-from lumped.friction import (
-    ContactPath,
-    contact_path,
-    friction_path_function,
-    friction_settings,
-    mean_coefficient,
-    xu_kahraman,
-)
+from lumped.friction import ContactPath, mean_coefficient, xu_kahraman
 from lumped.lubrication.film import film_thickness
+from lumped.path_of_contact import contact_path, friction_path_function
 from lumped.typing import FloatArray
 
 Law = Callable[[FloatArray], FloatArray]
@@ -45,7 +39,7 @@ def law_ii_level(path: ContactPath, xi: FloatArray) -> FloatArray:
 
 def law_ii_printed(pair: GearPair) -> PathFunction:
     """Law II as printed, with the bounds of the repaired law (0 and ``friction.maximum``)."""
-    path, settings = contact_path(pair), friction_settings(pair)
+    path, settings = contact_path(pair), pair.friction
     bounds = [
         xi
         for level in (0.0, settings.maximum)

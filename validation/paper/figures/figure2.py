@@ -8,7 +8,8 @@ import numpy as np
 import xarray as xr
 
 from lumped import GearPair
-from lumped.friction import friction_path_function, mean_coefficient
+from lumped.friction import mean_coefficient
+from lumped.path_of_contact import friction_path_function
 from lumped.typing import FloatArray
 from validation.paper.figure_record import FigureRecord, Number
 from validation.paper.operating_points import (

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from lumped import GearPair
-from lumped.friction import contact_path
-from lumped.friction.lubricant import dynamic_viscosity
 from lumped.lubrication.viscosity import ZERO_CELSIUS
+from lumped.path_of_contact import contact_path
 from validation.plots.efficiency import efficiency_figure, film_figure, sliding_power_figure
 from validation.reporting.blocks import Block, Chapter, Fact, Facts, Picture, Quantity, Rows, Table, Text
 from validation.reporting.chapters.steady_state import unstable_warning
@@ -126,7 +125,7 @@ def _lubricant(pair: GearPair) -> tuple[Fact, ...]:
     path, law = contact_path(pair), pair.lubricant.viscosity_law
     note = "given" if law is None else f"at {law.temperature - ZERO_CELSIUS:.4g} °C, by its viscosity law"
     return (
-        Fact("viscosity", "dynamic viscosity", Quantity(dynamic_viscosity(pair.lubricant), "Pa s"), note),
+        Fact("viscosity", "dynamic viscosity", Quantity(pair.lubricant.dynamic_viscosity, "Pa s"), note),
         Fact("mean_roughness", "mean roughness Ra", Quantity(path.roughness, "m")),
         Fact("composite_roughness", "composite roughness", Quantity(path.composite_roughness, "m")),
     )

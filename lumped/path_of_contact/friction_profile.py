@@ -12,38 +12,26 @@ import numpy as np
 
 from lumped.arguments import some_of, whole_number
 from lumped.errors import ParameterError
-from lumped.friction.along_path import (
-    contact_path,
-    fit_law,
-    friction_settings,
-    mean_coefficient,
-    violations_of,
-)
-from lumped.friction.registry import LAWS
+from lumped.friction.fitted import mean_coefficient
+from lumped.friction.registry import FRICTIONAL, LAWS
+from lumped.labelling import labelled_dataset
 from lumped.lubrication import film
 from lumped.path_function import PathFunction
+from lumped.path_of_contact.friction import contact_path, fit_law, violations_of
+from lumped.schema.pair import GearPair
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from lumped.gear_geometry.geometry import Geometry
-    from lumped.schema.pair import GearPair
 
-
-def friction_profile(
-    pair: GearPair,
-    laws: Sequence[str] | None = None,
-    points: int = 401,
-    geometry: Geometry | None = None,
-) -> xr.Dataset:
+def friction_profile(pair: GearPair, laws: Sequence[str] | None = None, points: int = 401) -> xr.Dataset:
     """Compare the friction laws over the path of contact, with the contact conditions they see.
 
     Parameters
     ----------
     pair : the gear pair
-    laws : names of the laws; default all five
+    laws : names of the laws; default every law with friction
     points : number of equally spaced positions; the switches of every law are added to them
-    geometry : its geometry, if it is at hand
 
     Returns
     -------
@@ -52,12 +40,10 @@ def friction_profile(
     ``range_warnings``, one text per left validity range; ``left_out``, laws that this pair does not allow
     and why.
     """
-    import xarray as xr
-
-    path, settings = contact_path(pair, geometry), friction_settings(pair)
+    path, settings = contact_path(pair), pair.friction
     functions: dict[str, PathFunction] = {}
     left_out: list[str] = []
-    names = [name for name in LAWS if name != "none"] if laws is None else some_of("laws", laws, LAWS)
+    names = FRICTIONAL if laws is None else some_of("laws", laws, LAWS)
     for name in names:
         try:
             functions[name] = fit_law(path, settings, name)
@@ -71,47 +57,39 @@ def friction_profile(
     xi = np.unique(np.concatenate([grid, *(f.switches for f in functions.values())]))
     parameter = path.film_parameter(xi)
     warnings = [str(violation) for name in functions for violation in violations_of(path, settings, name)]
-    return xr.Dataset(
+    result = labelled_dataset(
         {
             "mu": (
                 ("law", "xi"),
                 np.array([f(xi) for f in functions.values()]).reshape(len(functions), xi.size),
-                _attrs("1", "friction coefficient, negative in approach"),
+                "1",
+                "friction coefficient, negative in approach",
             ),
             "mean_mu": (
                 "law",
                 np.array([mean_coefficient(f) for f in functions.values()]),
-                _attrs("1", "mean of |mu| over the path of contact"),
+                "1",
+                "mean of |mu| over the path of contact",
             ),
-            "film_thickness": ("xi", path.film_thickness(xi), _attrs("m", "central film thickness")),
-            "film_parameter": ("xi", parameter, _attrs("1", "film parameter Lambda")),
-            "regime": (
-                "xi",
-                film.regime(parameter, settings.thresholds),
-                {
-                    **_attrs("1", "lubrication regime"),
-                    "flag_values": [0, 1, 2, 3],
-                    "flag_meanings": ", ".join(film.REGIMES),
-                },
-            ),
-            "hertz_pressure": ("xi", path.hertz_pressure(xi), _attrs("Pa", "largest Hertzian pressure")),
-            "half_width": ("xi", path.half_width(xi), _attrs("m", "Hertzian half width")),
-            "sliding_velocity": ("xi", path.sliding_velocity(xi), _attrs("m/s", "sliding velocity")),
+            "film_thickness": ("xi", path.film_thickness(xi), "m", "central film thickness"),
+            "film_parameter": ("xi", parameter, "1", "film parameter Lambda"),
+            "regime": ("xi", film.regime(parameter, settings.thresholds), "1", "lubrication regime"),
+            "hertz_pressure": ("xi", path.hertz_pressure(xi), "Pa", "largest Hertzian pressure"),
+            "half_width": ("xi", path.half_width(xi), "m", "Hertzian half width"),
+            "sliding_velocity": ("xi", path.sliding_velocity(xi), "m/s", "sliding velocity"),
             "entraining_velocity": (
                 "xi",
                 path.entraining_velocity(xi),
-                _attrs("m/s", "sum of the rolling velocities"),
+                "m/s",
+                "sum of the rolling velocities",
             ),
-            "slide_to_roll": ("xi", path.slide_to_roll(xi), _attrs("1", "slide-to-roll ratio")),
+            "slide_to_roll": ("xi", path.slide_to_roll(xi), "1", "slide-to-roll ratio"),
         },
-        coords={
-            "xi": ("xi", xi, _attrs("m", "distance of the contact point from X")),
-            "law": ("law", list(functions), {"long_name": "friction law"}),
-            "law_title": ("law", [LAWS[name].title for name in functions]),
+        {
+            "xi": (xi, "m", "distance of the contact point from X"),
+            "law": (list(functions), "1", "friction law"),
         },
-        attrs={"range_warnings": warnings, "left_out": left_out},
+        {"range_warnings": warnings, "left_out": left_out},
     )
-
-
-def _attrs(units: str, long_name: str) -> dict[str, str]:
-    return {"units": units, "long_name": long_name}
+    result["regime"].attrs |= {"flag_values": [0, 1, 2, 3], "flag_meanings": ", ".join(film.REGIMES)}
+    return result.assign_coords(law_title=("law", [LAWS[name].title for name in functions]))

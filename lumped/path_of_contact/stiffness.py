@@ -1,4 +1,4 @@
-"""Labelled views of the tooth stiffness: components over the path of contact, total over a mesh cycle."""
+"""Stiffness of the teeth: over the path of contact, by components, and in total over a mesh cycle."""
 
 from __future__ import annotations
 
@@ -7,13 +7,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lumped.arguments import whole_number
-from lumped.stiffness import iso6336, pair_stiffness
+from lumped.labelling import labelled_dataset
+from lumped.path_function import PathFunction
+from lumped.schema.pair import GearPair
+from lumped.stiffness import iso6336
 from lumped.stiffness.pair_compliance import Contact, pair_compliance
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from lumped.schema.pair import GearPair
+
+def pair_stiffness(pair: GearPair) -> PathFunction:
+    """Stiffness k_i(xi) of one tooth pair from A to D, by the pair's stiffness model [N/m].
+
+    Raises
+    ------
+    ParameterError : the model's parameters do not fit this pair
+    """
+    return pair.mesh.stiffness.curve(pair)
 
 
 def stiffness_components(pair: GearPair, points: int = 201, hertz: Contact = "weber_banaschek") -> xr.Dataset:
@@ -32,40 +43,30 @@ def stiffness_components(pair: GearPair, points: int = 201, hertz: Contact = "we
     carry ISO 6336-1's single stiffness times face width, ``iso_single_stiffness`` [N/m], and the quadrature
     error
     """
-    import xarray as xr
-
     g = pair.geometry
-    found = pair_compliance(
-        pair, g, np.linspace(g.L_XA, g.L_XD, whole_number("points", points, 2, 100_000)), hertz=hertz
-    )
+    xi = np.linspace(g.L_XA, g.L_XD, whole_number("points", points, 2, 100_000))
+    found = pair_compliance(pair, xi, hertz=hertz)
     parts = ("bending", "shear", "axial", "foundation")
     names = ["contact"] + [f"{part} {which}" for which in ("pinion", "gear") for part in parts]
     values = [found.hertz, *(getattr(tooth, part) for tooth in (found.pinion, found.gear) for part in parts)]
-    return xr.Dataset(
+    return labelled_dataset(
         {
             "compliance": (
                 ("component", "position"),
                 np.stack(values),
-                {"units": "m/N", "long_name": "compliance along the line of action"},
+                "m/N",
+                "compliance along the line of action",
             ),
-            "stiffness": (
-                ("position",),
-                found.stiffness,
-                {"units": "N/m", "long_name": "stiffness of a tooth pair"},
-            ),
+            "stiffness": ("position", found.stiffness, "N/m", "stiffness of a tooth pair"),
         },
-        coords={
-            "component": ("component", names, {"long_name": "part of the tooth pair"}),
-            "position": (
-                "position",
-                found.position,
-                {"units": "m", "long_name": "position from X along the line of action"},
-            ),
+        {
+            "component": (names, "1", "part of the tooth pair"),
+            "position": (found.position, "m", "position from X along the line of action"),
         },
-        attrs={
+        {
             "pair": pair.name,
             "hertz": hertz,
-            "iso_single_stiffness": iso6336.pair_single_stiffness(pair) * iso6336.SI * g.face_width,
+            "iso_single_stiffness": iso6336.single_of(pair),
             "quadrature_error": max(found.pinion.quadrature_error, found.gear.quadrature_error),
         },
     )
@@ -85,36 +86,25 @@ def mesh_stiffness(pair: GearPair, samples: int = 512) -> xr.Dataset:
     ``mesh_stiffness`` [N/m]; the attribute ``mean`` is the exact mean and ``iso_mean`` ISO 6336-1's c_gamma
     times face width [N/m]
     """
-    import xarray as xr
-
     g = pair.geometry
-    curve = pair_stiffness(pair, g)
+    curve = pair_stiffness(pair)
     samples = whole_number("samples", samples, 1, 1_000_000)
     phase = (np.arange(samples) + 0.5) / samples
     ahead = np.arange(g.pairs)
     each = curve(g.L_XA + (phase[:, None] + ahead) * g.base_pitch)
-    iso = iso6336.mean_mesh_stiffness(iso6336.pair_single_stiffness(pair), g.contact_ratio)
-    return xr.Dataset(
+    return labelled_dataset(
         {
-            "pair_stiffness": (
-                ("phase", "pair"),
-                each,
-                {"units": "N/m", "long_name": "tooth pair stiffness"},
-            ),
-            "mesh_stiffness": (
-                ("phase",),
-                each.sum(axis=1),
-                {"units": "N/m", "long_name": "total mesh stiffness"},
-            ),
+            "pair_stiffness": (("phase", "pair"), each, "N/m", "tooth pair stiffness"),
+            "mesh_stiffness": ("phase", each.sum(axis=1), "N/m", "total mesh stiffness"),
         },
-        coords={
-            "phase": ("phase", phase, {"units": "1", "long_name": "mesh cycles after a pair was at A"}),
-            "pair": ("pair", ahead, {"units": "1", "long_name": "pitches ahead of the pair that was at A"}),
+        {
+            "phase": (phase, "1", "mesh cycles after a pair was at A"),
+            "pair": (ahead, "1", "pitches ahead of the pair that was at A"),
         },
-        attrs={
+        {
             "pair": pair.name,
             "model": pair.mesh.stiffness.model,
             "mean": curve.mean() * g.contact_ratio,
-            "iso_mean": iso * iso6336.SI * g.face_width,
+            "iso_mean": iso6336.mean_of(pair),
         },
     )

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from lumped.errors import refuse, shown
-from lumped.schema.text_file import read_text
-from lumped.schema.units import to_si
+from lumped.fields.text_file import read_text
+from lumped.fields.units import to_si
 
-#: Column name -> (axis of the table, unit that its points get, unit of lumped.schema.units for the
+#: Column name -> (axis of the table, unit that its points get, unit of lumped.fields.units for the
 #: conversion).
 _AXES = {
     "position": ("position_mm", "mm"),

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic_core import PydanticCustomError
 
+from lumped.fields.units import UNITS, Quantity, to_file, to_si, to_stated
 from lumped.schema.pair import stated_unit
-from lumped.schema.units import UNITS, Quantity, to_file, to_si, to_stated
 
 # A correctly rounded conversion is exact to half a unit in the last place of the float it gives.
 ULP = 2.0**-52

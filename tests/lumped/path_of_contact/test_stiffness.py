@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from lumped import geometry, load_gear_pair, mesh_stiffness, preset_names, stiffness_components
-from lumped.stiffness import pair_stiffness, stiffness_range_violations
-from lumped.stiffness.energy import contact_softening
-from lumped.stiffness.iso_comparison import iso_comparison
+from lumped.path_of_contact import pair_stiffness
+from lumped.path_of_contact.iso_comparison import iso_comparison
+from lumped.stiffness.energy import EnergyStiffness
 
 
 def test_components_add_up_to_the_pair_of_the_energy_model():
@@ -14,7 +14,7 @@ def test_components_add_up_to_the_pair_of_the_energy_model():
     data = stiffness_components(pair, 31)
     assert list(data.component.values[:2]) == ["contact", "bending pinion"]
     assert 1 / data.compliance.sum("component").values == pytest.approx(data.stiffness.values, rel=1e-12)
-    k = pair_stiffness(pair, geometry(pair))
+    k = pair_stiffness(pair)
     inner = data.position.values[1:-1]
     assert data.stiffness.values[1:-1] == pytest.approx(k(inner), rel=1e-9)  # fit tolerance 1e-10
     # Equal gears: what the pinion is at A the gear is at D.
@@ -57,15 +57,14 @@ def test_difference_from_iso_splits_into_size_and_shape(name):
 
 @pytest.mark.parametrize("name", preset_names())
 def test_load_stiffens_the_contact_by_the_logarithm(name):
-    # 1/k falls by D ln(1600/100) at every position (D of contact_softening), whatever the position: seen in
-    # the largest stiffness, at one position for both loads but for its flat top.
+    # 1/k falls by D ln(1600/100) at every position, D of EnergyStiffness.softening: seen in the largest
+    # stiffness, at one position for both loads but for its flat top.
     pair = load_gear_pair(name)
-    g = geometry(pair)
     data = iso_comparison(pair)
     low, high = (
         float(data.single_ratio.sel(variant=v)) * data.attrs["iso_single"] for v in ("100 N/mm", "1600 N/mm")
     )
-    softening = contact_softening(pair.with_(mesh__stiffness={"model": "energy"}), g)
+    softening = EnergyStiffness().softening(pair)
     assert 1 / low - 1 / high == pytest.approx(softening * np.log(16.0), rel=1e-3)
 
 
@@ -104,4 +103,4 @@ def test_bore_softens_and_solid_bodies_do_not_matter_without_one():
 def test_only_the_ranges_of_the_model_in_use_are_reported(stiffness, laws):
     # 16/24 teeth are too wide for the foundation's fit, 20 N m too little for the standard's load range.
     pair = load_gear_pair("fzg_c").with_(mesh__stiffness=stiffness, operating__pinion_torque=20)
-    assert [v.law for v in stiffness_range_violations(pair, geometry(pair))] == laws
+    assert [v.law for v in pair.mesh.stiffness.violations(pair)] == laws

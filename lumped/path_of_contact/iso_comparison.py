@@ -17,16 +17,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lumped.gear_geometry.geometry import Geometry
+from lumped.labelling import labelled_dataset
+from lumped.schema.pair import GearPair
 from lumped.stiffness import iso6336
-from lumped.stiffness.energy import energy_curve, violations
+from lumped.stiffness.energy import energy_curve, foundation_violations
 from lumped.stiffness.pair_compliance import Contact
-from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr
-
-    from lumped.gear_geometry.geometry import Geometry
-    from lumped.schema.pair import GearPair
 
 #: Ends of the range in which the standard's c' does not depend on the load [N/mm].
 LOADS = (iso6336.LOW_LOAD, 1600.0)
@@ -50,12 +49,8 @@ def iso_comparison(pair: GearPair) -> xr.Dataset:
     ParameterError : the rack cannot cut these teeth
     NumericalError : the strain energy did not converge
     """
-    import xarray as xr
-
     g = pair.geometry
-    single = iso6336.pair_single_stiffness(pair)
-    to_si = iso6336.SI * g.face_width
-    top, mean = single * to_si, iso6336.mean_mesh_stiffness(single, g.contact_ratio) * to_si
+    top, mean = iso6336.single_of(pair), iso6336.mean_of(pair)
     solid = pair.with_(pinion__bore=0.0, gear__bore=0.0)
     low, high = (pair.with_(operating__pinion_torque=_torque(load, g)) for load in LOADS)
     variants: dict[str, tuple[GearPair, Contact]] = {
@@ -68,25 +63,27 @@ def iso_comparison(pair: GearPair) -> xr.Dataset:
     xi = np.linspace(g.L_XA, g.L_XD, 402)[1:-1]
     found = []
     for one, contact in variants.values():
-        curve = energy_curve(one, g, contact)
+        curve = energy_curve(one, contact)
         found.append((curve.mean() * g.contact_ratio / mean, float(curve(xi).max()) / top))
     means, singles = (np.array(column) for column in zip(*found, strict=True))
 
-    def entry(values: FloatArray, name: str) -> tuple[str, FloatArray, dict[str, str]]:
-        return "variant", values, {"units": "1", "long_name": name}
-
-    return xr.Dataset(
+    return labelled_dataset(
         {
-            "mean_ratio": entry(means, "mean mesh stiffness, energy over ISO 6336-1"),
-            "single_ratio": entry(singles, "largest stiffness of a pair, energy over ISO 6336-1"),
-            "shape_ratio": entry(means / singles, "mean over largest stiffness, energy over ISO 6336-1"),
+            "mean_ratio": ("variant", means, "1", "mean mesh stiffness, energy over ISO 6336-1"),
+            "single_ratio": ("variant", singles, "1", "largest stiffness of a pair, energy over ISO 6336-1"),
+            "shape_ratio": (
+                "variant",
+                means / singles,
+                "1",
+                "mean over largest stiffness, energy over ISO 6336-1",
+            ),
         },
-        coords={"variant": ("variant", list(variants), {"long_name": "assumption"})},
-        attrs={
+        {"variant": (list(variants), "1", "assumption")},
+        {
             "pair": pair.name,
             "iso_single": top,
             "iso_mean": mean,
-            "range_warnings": [str(v) for v in (*violations(pair, g), *iso6336.violations(pair, g))],
+            "range_warnings": [str(v) for v in (*foundation_violations(pair), *iso6336.violations(pair))],
         },
     )
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import unicodedata
+from dataclasses import dataclass
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, ConfigDict
-from pydantic_core import PydanticCustomError
+from pydantic import AfterValidator, BaseModel, ConfigDict, GetCoreSchemaHandler
+from pydantic_core import PydanticCustomError, core_schema
 
-from lumped.schema.units import Quantity, to_file
+from lumped.fields.units import Quantity, to_file
 
 
 class Section(BaseModel):
@@ -29,6 +30,19 @@ class Section(BaseModel):
             elif value is not None:
                 result[name] = value if quantity is None else to_file(value, quantity.unit)
         return result
+
+
+@dataclass(frozen=True)
+class OneOf:
+    """Annotation of a text field: one of these names. The names may come from a registry."""
+
+    names: tuple[str, ...]
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        """Validate and describe it as pydantic does a ``Literal``."""
+        return core_schema.literal_schema(list(self.names))
 
 
 def _readable(text: str) -> str:

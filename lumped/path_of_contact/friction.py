@@ -7,40 +7,25 @@ friction".
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lumped.errors import refuse
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.benedict_kelley import friction_number
-from lumped.friction.fitted import fit_signed, mean_coefficient
-from lumped.friction.lubricant import dynamic_viscosity
+from lumped.friction.fitted import fit_signed
 from lumped.friction.registry import law_named
-from lumped.gear_geometry.geometry import Geometry
 from lumped.lubrication import film
 from lumped.lubrication.roughness import composite_roughness, mean_roughness
 from lumped.path_function import PathFunction
 from lumped.ranges import RangeViolation, range_violations, warn_violations
+from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
-
-if TYPE_CHECKING:
-    from lumped.schema.pair import GearPair
-
-__all__ = [
-    "contact_path",
-    "fit_law",
-    "friction_path_function",
-    "friction_settings",
-    "law_range_violations",
-    "mean_coefficient",
-    "violations_of",
-]
 
 _CHECKED_POSITIONS = 201
 
 
-def contact_path(pair: GearPair, geometry: Geometry | None = None) -> ContactPath:
+def contact_path(pair: GearPair) -> ContactPath:
     """Collect the nominal contact of a pair: kinematics at nominal speed, full static load w_n, film data.
 
     S is the mean of both Ra; R_comp is their root sum of squares unless ``friction.composite_roughness`` is
@@ -50,10 +35,9 @@ def contact_path(pair: GearPair, geometry: Geometry | None = None) -> ContactPat
     Parameters
     ----------
     pair : the gear pair
-    geometry : its geometry, if it is at hand
     """
-    g = pair.geometry if geometry is None else geometry
-    pinion, gear, lubricant, friction = pair.pinion, pair.gear, pair.lubricant, pair.friction
+    g, lubricant, friction = pair.geometry, pair.lubricant, pair.friction
+    pinion, gear = pair.pinion, pair.gear
     composite = friction.composite_roughness
     if composite is None:
         composite = float(composite_roughness(pinion.roughness, gear.roughness))
@@ -70,7 +54,7 @@ def contact_path(pair: GearPair, geometry: Geometry | None = None) -> ContactPat
                 pinion.youngs_modulus, pinion.poisson_ratio, gear.youngs_modulus, gear.poisson_ratio
             )
         ),
-        viscosity=dynamic_viscosity(lubricant),
+        viscosity=lubricant.dynamic_viscosity,
         pressure_viscosity_k=lubricant.pressure_viscosity_k,
         pressure_viscosity_s=lubricant.pressure_viscosity_s,
         roughness=float(mean_roughness(pinion.roughness, gear.roughness)),
@@ -79,21 +63,12 @@ def contact_path(pair: GearPair, geometry: Geometry | None = None) -> ContactPat
     )
 
 
-def friction_settings(pair: GearPair) -> FrictionSettings:
-    """Collect the parameters of the friction laws."""
-    given = pair.friction
-    return FrictionSettings(given.coefficient, given.sharpness, given.maximum, given.thresholds)
-
-
-def friction_path_function(
-    pair: GearPair, geometry: Geometry | None = None, law: str | None = None
-) -> PathFunction:
+def friction_path_function(pair: GearPair, law: str | None = None) -> PathFunction:
     """Signed friction coefficient mu_i(xi) of one tooth pair at nominal speed and load.
 
     Parameters
     ----------
     pair : the gear pair
-    geometry : its geometry, if it is at hand
     law : name of a friction law; default ``pair.friction.law``
 
     Returns
@@ -110,16 +85,13 @@ def friction_path_function(
     -----
     LawRangeWarning : the contact leaves a validity range of the law, see ``law_range_violations``
     """
-    path, settings = contact_path(pair, geometry), friction_settings(pair)
-    name = _name(pair, law)
-    function = fit_law(path, settings, name)
-    warn_violations(violations_of(path, settings, name))
+    path, name = contact_path(pair), _name(pair, law)
+    function = fit_law(path, pair.friction, name)
+    warn_violations(violations_of(path, pair.friction, name))
     return function
 
 
-def law_range_violations(
-    pair: GearPair, law: str | None = None, geometry: Geometry | None = None
-) -> tuple[RangeViolation, ...]:
+def law_range_violations(pair: GearPair, law: str | None = None) -> tuple[RangeViolation, ...]:
     """List where a pair leaves the validity ranges of a friction law.
 
     A law made of others (V) is checked against each of them where that one is in force.
@@ -128,9 +100,8 @@ def law_range_violations(
     ----------
     pair : the gear pair
     law : name of a friction law; default ``pair.friction.law``
-    geometry : its geometry, if it is at hand
     """
-    return violations_of(contact_path(pair, geometry), friction_settings(pair), _name(pair, law))
+    return violations_of(contact_path(pair), pair.friction, _name(pair, law))
 
 
 def _name(pair: GearPair, law: str | None) -> str:

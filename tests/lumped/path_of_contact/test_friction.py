@@ -8,21 +8,16 @@ from scipy.integrate import quad
 
 from lumped import geometry, load_gear_pair
 from lumped.errors import LawRangeWarning, ParameterError
-from lumped.friction import (
-    LAWS,
-    benedict_kelley,
-    composite,
-    contact_path,
-    friction_path_function,
-    friction_profile,
-    friction_settings,
-    law_range_violations,
-    mean_coefficient,
-    xu_kahraman,
-)
+from lumped.friction import LAWS, benedict_kelley, composite, mean_coefficient, xu_kahraman
 from lumped.friction.base import PITCH_RESOLUTION
 from lumped.friction.benedict_kelley import friction_number
 from lumped.lubrication.film import regime
+from lumped.path_of_contact import (
+    contact_path,
+    friction_path_function,
+    friction_profile,
+    law_range_violations,
+)
 from lumped.ranges import warn_violations
 
 FIVE = [name for name in LAWS if name != "none"]
@@ -41,7 +36,7 @@ def unequal(pair):
 
 
 def direct(pair, law, xi):
-    path, settings = contact_path(pair), friction_settings(pair)
+    path, settings = contact_path(pair), pair.friction
     return LAWS[law].signed(xi, path, settings)
 
 
@@ -211,7 +206,7 @@ def test_composite_switches_at_its_film_parameters(unequal):
 @pytest.mark.parametrize("speed", [200, 1200, 3000])
 def test_composite_is_made_of_the_other_laws(unequal, speed):
     pair = unequal.with_(operating__pinion_speed=speed)
-    path, settings = contact_path(pair), friction_settings(pair)
+    path, settings = contact_path(pair), pair.friction
     xi = np.linspace(path.L_XA, path.L_XD, 402)[1:-1]
     four, two, three = (
         direct(pair, name, xi) for name in ("smoothed_coulomb", "benedict_kelley", "xu_kahraman")

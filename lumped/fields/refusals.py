@@ -11,7 +11,8 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from lumped.errors import MOST_PROBLEMS, FieldProblem, ParameterError, quoted, shown
-from lumped.schema.units import Quantity
+from lumped.fields.section import OneOf
+from lumped.fields.units import Quantity
 
 _RENAMED = {"model_type": "a table", "model_attributes_type": "a table", "dict_type": "a table"}
 
@@ -108,7 +109,9 @@ def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
         tags = [str(tag) for model in models_in(field_of(root, path).annotation) for tag in _tags(model)]
         return [_choice(f"{path}.model", given, tags)]
     if kind == "literal_error":
-        names = [str(name) for name in get_args(field_of(root, path).annotation)]
+        info = field_of(root, path)
+        marker = next((m for m in info.metadata if isinstance(m, OneOf)), None)
+        names = list(marker.names) if marker else [str(name) for name in get_args(info.annotation)]
         return [_choice(path, item.get("input"), names)]
     if kind in _RENAMED:
         return [

@@ -1,0 +1,1 @@
+"""Fields of parameter files: sections, quantities with units, text files, refusals in the user's words."""

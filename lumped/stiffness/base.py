@@ -1,0 +1,108 @@
+"""What every stiffness model shares: what it reads of a gear pair, and the section of the parameter file."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import Protocol
+
+from lumped.fields.section import Section
+from lumped.gear_geometry.geometry import Geometry
+from lumped.path_function import PathFunction
+from lumped.ranges import RangeViolation
+
+
+class MeshingGear(Protocol):
+    """One gear, the fields of ``pinion`` and ``gear`` in a parameter file.
+
+    Attributes
+    ----------
+    teeth : number of teeth
+    profile_shift : profile shift coefficient [-]
+    bore : bore diameter, 0 where there is none [m]
+    youngs_modulus, poisson_ratio : E [Pa], nu [-]
+    """
+
+    teeth: int
+    profile_shift: float
+    bore: float
+    youngs_modulus: float
+    poisson_ratio: float
+
+
+class Rack(Protocol):
+    """Basic rack of both gears, the fields of ``basic_rack``; lengths over the module.
+
+    Attributes
+    ----------
+    module : normal module [m]
+    pressure_angle : [rad]
+    dedendum_coefficient, fillet_radius_coefficient : dedendum and root fillet radius [-]
+    """
+
+    module: float
+    pressure_angle: float
+    dedendum_coefficient: float
+    fillet_radius_coefficient: float
+
+
+class Operation(Protocol):
+    """Operating point, the fields of ``operating``.
+
+    Attributes
+    ----------
+    pinion_torque : torque driving the pinion [N m]
+    """
+
+    pinion_torque: float
+
+
+class MeshingPair(Protocol):
+    """What stiffness models read of a gear pair; a ``GearPair`` has it all."""
+
+    @property
+    def pinion(self) -> MeshingGear:
+        """The driving gear."""
+
+    @property
+    def gear(self) -> MeshingGear:
+        """The driven gear."""
+
+    @property
+    def basic_rack(self) -> Rack:
+        """Basic rack of both."""
+
+    @property
+    def operating(self) -> Operation:
+        """Operating point."""
+
+    @property
+    def geometry(self) -> Geometry:
+        """Geometry of the pair."""
+
+
+class StiffnessModel(Section):
+    """Base of the stiffness models: the section ``mesh.stiffness`` with the curve that it stands for."""
+
+    @abstractmethod
+    def curve(self, pair: MeshingPair) -> PathFunction:
+        """Stiffness k_i(xi) of one tooth pair from A to D [N/m].
+
+        Raises
+        ------
+        ParameterError : the model's parameters do not fit this pair
+        """
+
+    def violations(self, pair: MeshingPair) -> tuple[RangeViolation, ...]:
+        """Validity ranges that a gear pair leaves under this model.
+
+        They are returned, not warned about: ordinary gears leave the fit of the fillet foundation, and a
+        warning at every evaluation of a sweep would hide the others. The report lists them.
+        """
+        return ()
+
+    def softening(self, pair: MeshingPair) -> float:
+        """How the compliance of a pair falls with load: D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N].
+
+        0 for stiffness that does not depend on the load.
+        """
+        return 0.0
