@@ -25,10 +25,7 @@ _NONE = FrictionLaw(
 
 #: Every law that ``friction.law`` may name, in the order of the paper.
 LAWS: Mapping[str, FrictionLaw] = MappingProxyType(
-    {
-        law.name: law
-        for law in (_NONE, COULOMB, BENEDICT_KELLEY, XU_KAHRAMAN, SMOOTHED_COULOMB, COMPOSITE)
-    }
+    {law.name: law for law in (_NONE, COULOMB, BENEDICT_KELLEY, XU_KAHRAMAN, SMOOTHED_COULOMB, COMPOSITE)}
 )
 
 

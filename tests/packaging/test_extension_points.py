@@ -18,22 +18,20 @@ ROOT = Path(__file__).parents[2]
 
 #: A new law and a new model: new file -> its text, or file -> (line, the lines that replace it).
 LAW = {
-    "lumped/friction/square_root.py": """
+    "lumped/friction/rising.py": """
 import numpy as np
 from lumped.friction.base import FrictionLaw
 
 LAW = FrictionLaw(
-    name="square_root",
-    label="square root",
-    signed=lambda xi, path, settings: (
-        0.1 * np.sign(xi - path.L_XP) * np.sqrt(np.abs(xi - path.L_XP) / path.L_XY)
-    ),
+    name="rising",
+    label="rising",
+    signed=lambda xi, path, settings: 0.05 * np.sign(xi - path.L_XP) + 0.1 * (xi - path.L_XP) / path.L_XY,
     switches=lambda path, settings: [path.L_XP],
 )
 """,
     "lumped/friction/registry.py": [
-        ("import one_of\n", "import one_of\nfrom lumped.friction.square_root import LAW as SQUARE_ROOT\n"),
-        ("COMPOSITE)", "COMPOSITE, SQUARE_ROOT)"),
+        ("import one_of\n", "import one_of\nfrom lumped.friction.rising import LAW as RISING\n"),
+        ("COMPOSITE)", "COMPOSITE, RISING)"),
     ],
 }
 MODEL = {
@@ -71,16 +69,16 @@ from typer.testing import CliRunner
 from validation.cli import app
 
 pair = lumped.load_gear_pair("nasa_28_28").with_(
-    {"friction.law": "square_root", "mesh.stiffness": {"model": "triangular", "peak": "500 N/um"}}
+    {"friction.law": "rising", "mesh.stiffness": {"model": "triangular", "peak": "500 N/um"}}
 )
 assert lumped.load_gear_pair(__import__("tomllib").loads(pair.to_toml())) == pair
-assert "square_root" in json.dumps(lumped.json_schema()) and "triangular" in json.dumps(lumped.json_schema())
+assert "rising" in json.dumps(lumped.json_schema()) and "triangular" in json.dumps(lumped.json_schema())
 motion = lumped.steady_state(pair, samples_per_cycle=64)
 assert abs(motion.mesh_stiffness.max() / 5e8 - 1.4) < 0.3
 assert 0.98 < motion.attrs["mesh_efficiency"] < 1.0
 assert floquet.gear_pair_multipliers(pair).spectral_radius < 1.0
-wrong = CliRunner().invoke(app, ["response", "nasa_28_28", "--law", "square_rot"])
-assert wrong.exit_code == 2 and "Did you mean 'square_root'?" in wrong.output, wrong.output
+wrong = CliRunner().invoke(app, ["response", "nasa_28_28", "--law", "risin"])
+assert wrong.exit_code == 2 and "Did you mean 'rising'?" in wrong.output, wrong.output
 print("used")
 """
 
