@@ -1,4 +1,7 @@
-"""Stiffness of the teeth: over the path of contact, by components, and in total over a mesh cycle."""
+"""Stiffness of the teeth: over the path of contact, by components, and in total over a mesh cycle.
+
+Sources: each model names its own; docs/theory/mesh_physics.md, "Stiffness of a tooth pair".
+"""
 
 from __future__ import annotations
 

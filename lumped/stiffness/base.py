@@ -1,4 +1,7 @@
-"""What every stiffness model shares: what it reads of a gear pair, and the section of the parameter file."""
+"""What every stiffness model shares: what it reads of a gear pair, and the section of the parameter file.
+
+Sources: docs/theory/mesh_physics.md, "Stiffness of a tooth pair".
+"""
 
 from __future__ import annotations
 

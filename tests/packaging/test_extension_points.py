@@ -77,7 +77,7 @@ motion = lumped.steady_state(pair, samples_per_cycle=64)
 assert abs(motion.mesh_stiffness.max() / 5e8 - 1.4) < 0.3
 assert 0.98 < motion.attrs["mesh_efficiency"] < 1.0
 assert floquet.gear_pair_multipliers(pair).spectral_radius < 1.0
-wrong = CliRunner().invoke(app, ["response", "nasa_28_28", "--law", "risin"])
+wrong = CliRunner().invoke(app, ["simulate", "nasa_28_28", "--law", "risin"])
 assert wrong.exit_code == 2 and "Did you mean 'rising'?" in wrong.output, wrong.output
 print("used")
 """
