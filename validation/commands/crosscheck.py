@@ -92,7 +92,7 @@ def crosscheck(
     target = None if output is None else check_file(output, _SUFFIXES, force=force)
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
     with progress_bar("cross-check") as tell:
-        check = run(gear_pair, cycles=cycles, samples_per_cycle=samples, progress=lambda f: tell(f, ""))
+        check = run(gear_pair, cycles=cycles, samples_per_cycle=samples, progress=tell)
     shown = table(
         f"{gear_pair.name}: multibody against lumped",
         "quantity",

@@ -70,7 +70,7 @@ def figures(
             chosen,
             measurements=measurements,
             with_multibody=multibody,
-            progress=lambda fraction: tell(fraction, ""),
+            progress=tell,
         )
         data = {
             "format": FIGURES.format,

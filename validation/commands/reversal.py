@@ -36,7 +36,7 @@ def reversal(
 
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
     with progress_bar("reversal") as tell:
-        result = reversal_convergence(gear_pair, cycles, progress=lambda f: tell(f, ""))
+        result = reversal_convergence(gear_pair, cycles, progress=tell)
     shown = table(
         f"{gear_pair.name}: change by the next halving of the velocity, over peak to peak",
         ">velocity [mm/s]",

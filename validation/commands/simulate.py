@@ -71,7 +71,7 @@ def simulate(
                 cycles,
                 samples_per_cycle=samples,
                 initial=initial,
-                progress=lambda f: tell(f, ""),
+                progress=tell,
             )
         else:
             import multibody
@@ -82,7 +82,7 @@ def simulate(
                 fidelity=fidelity,
                 samples_per_cycle=samples,
                 initial=initial,
-                progress=lambda f: tell(f, ""),
+                progress=tell,
             )
     from validation.reporting.formatting import number, quantity
     from validation.validity.flags import contact_loss

@@ -120,9 +120,7 @@ def _chart(request: Request) -> View:
     pair = request.pair
     grid = dict(request.axes) or chart_axes(pair, *_CHART)
     with progress_bar("stability chart") as tell:
-        chart = dense_chart(
-            pair, grid, method=request.method, multipliers=request.multipliers, progress=lambda f: tell(f, "")
-        )
+        chart = dense_chart(pair, grid, method=request.method, multipliers=request.multipliers, progress=tell)
     stable = chart["verdict"].to_numpy() == 1
     radius = chart["spectral_radius"]
     worst = radius.isel(radius.argmax(...))

@@ -7,13 +7,16 @@ import unicodedata
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, NoReturn, ParamSpec
+from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec
 
 import typer
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
+
+if TYPE_CHECKING:
+    from lumped.typing import Progress
 
 P = ParamSpec("P")
 
@@ -96,20 +99,25 @@ def note(text: str) -> None:
 
 
 @contextmanager
-def progress_bar(text: str) -> Iterator[Callable[[float, str], None]]:
-    """Progress bar on stderr while the block runs; gives a function (finished fraction, what is being done).
+def progress_bar(text: str) -> Iterator[Progress]:
+    """Progress bar on stderr while the block runs.
 
     Without a terminal nothing is drawn.
     """
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+    from rich import progress as rich
 
-    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn())
+    columns = (
+        rich.TextColumn("{task.description}"),
+        rich.BarColumn(),
+        rich.TaskProgressColumn(),
+        rich.TimeElapsedColumn(),
+    )
     console = stderr()
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+    with rich.Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task(text, total=1.0)
 
-        def tell(fraction: float, doing: str = "") -> None:
-            bar.update(task, completed=fraction, description=doing or text)
+        def tell(fraction: float, stage: str = "", /) -> None:
+            bar.update(task, completed=fraction, description=stage or text)
 
         yield tell
 

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
+import xarray as xr
 from matplotlib.figure import Figure
 
 #: State of a badge -> its class in the page. The words themselves always stand beside the colour.
@@ -133,21 +135,37 @@ Block = Text | Facts | Table | Picture
 
 
 @dataclass(frozen=True)
-class Chapter:
-    """A chapter of the report.
+class Answer:
+    """A question that the reader has, answered at the top of the report.
 
     Attributes
     ----------
-    key : anchor in the page and name in report.json
-    title : heading
-    blocks : content, in order
-    badge : verdict beside the heading, if the chapter has one
+    question : in plain words
+    badge : the verdict
+    text : the answer in a line
     """
 
-    key: str
-    title: str
+    question: str
+    badge: Badge
+    text: str
+
+
+@dataclass(frozen=True)
+class Content:
+    """What a chapter says about one gear pair.
+
+    Attributes
+    ----------
+    blocks : in order
+    badge : verdict beside the heading, if the chapter has one
+    data : file name below data/ without suffix -> dataset behind the figures
+    write_more : writes further files into the folder data/
+    """
+
     blocks: tuple[Block, ...]
     badge: Badge | None = None
+    data: Mapping[str, xr.Dataset] = field(default_factory=dict)
+    write_more: Callable[[Path], None] | None = None
 
 
 def plain(value: Cell) -> Any:
@@ -165,12 +183,12 @@ def plain(value: Cell) -> Any:
 REMARKS = ("text", "figures", "captions", "tables")
 
 
-def chapter_data(chapter: Chapter) -> dict[str, Any]:
+def chapter_data(title: str, content: Content) -> dict[str, Any]:
     """Everything a chapter shows, as JSON data."""
-    data: dict[str, Any] = {"title": chapter.title}
-    if chapter.badge is not None:
-        data["verdict"] = plain(chapter.badge)
-    for block in chapter.blocks:
+    data: dict[str, Any] = {"title": title}
+    if content.badge is not None:
+        data["verdict"] = plain(content.badge)
+    for block in content.blocks:
         if isinstance(block, Facts):
             data[block.key] = {fact.key: _fact_data(fact) for fact in block.items}
         elif isinstance(block, Table):

@@ -1,4 +1,4 @@
-"""Build the report: compute, draw, render, and put the folder in place."""
+"""Build the report: write the chapters, draw, render, and put the folder in place."""
 
 from __future__ import annotations
 
@@ -6,20 +6,20 @@ import base64
 import json
 import resource
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-import xarray as xr
-
 from lumped import GearPair, load_gear_pair
+from lumped.typing import Progress
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
-from validation.plots import save
+from validation.plots.style import save
 from validation.reporting.baseline import load_report
-from validation.reporting.blocks import Chapter, Picture, chapter_data, plain
+from validation.reporting.blocks import Answer, Picture, chapter_data, plain
+from validation.reporting.chapter import Chapter, Written
 from validation.reporting.chapters import CHAPTERS
 from validation.reporting.chapters.changes import changes
 from validation.reporting.compare import TOLERANCE, Comparison
@@ -28,11 +28,9 @@ from validation.reporting.interactive import write_interactive
 from validation.reporting.judged import failures
 from validation.reporting.junit import junit
 from validation.reporting.page import render
-from validation.reporting.results import FULL, QUICK, Results, compute
-from validation.reporting.summary import summary as markdown
-from validation.reporting.verdict import Summary, summarise
-
-Progress = Callable[[float, str], None]
+from validation.reporting.results import FULL, QUICK, Results
+from validation.reporting.summary import summary
+from validation.reporting.words import sentence
 
 
 @dataclass(frozen=True)
@@ -81,9 +79,9 @@ def report(
     out : folder, new or empty
     force : replace an earlier report in that folder
     quick : coarser sampling and no verification, for a first look
-    paper : compare with the paper: its figures, its claims, its errata, for this pair; default unless quick
+    paper : compare with the paper (its figures, claims and errata) for this pair; default: unless quick
     compare : report.json of an earlier report, or its folder; the report then has a chapter of changes
-    tolerance : relative change of a number that passes, for that
+    tolerance : relative change of a number that passes in this comparison
     progress : called with the finished fraction and what is being done
 
     Raises
@@ -92,7 +90,7 @@ def report(
     NumericalError : a model fails; the text says what to try
     """
     started = time.perf_counter()
-    tell = progress or (lambda fraction, text: None)
+    tell: Progress = progress or (lambda fraction, stage="", /: None)
     gear_pair = load_gear_pair(pair)
     target = Path(out)
     earlier = None if compare is None else load_report(compare, quick=quick)
@@ -100,42 +98,77 @@ def report(
         compare_reports(earlier, earlier, tolerance=tolerance)  # refuses a tolerance before any work
     with whole_folder(target, force=force) as folder:
         effort = replace(QUICK if quick else FULL, paper=not quick if paper is None else paper)
-        results = compute(gear_pair, effort, lambda f, text: tell(0.75 * f, text))
+        results = Results(gear_pair, effort)
+        chapters = written(results, lambda f, stage="", /: tell(0.75 * f, stage))
         computed = time.perf_counter()
-        summary = summarise(results)
-        chapters = tuple(made for write in CHAPTERS if (made := write(results)) is not None)
         comparison = None
         if earlier is not None:
-            now = document(results, summary, chapters, quick=quick)
-            comparison = compare_reports(earlier, now, tolerance=tolerance)
-            chapters += (changes(comparison),)
-        images = _draw(chapters, folder / "figures", lambda f: tell(0.75 + 0.22 * f, "figures"))
+            comparison = compare_reports(
+                earlier, document(results, chapters, quick=quick), tolerance=tolerance
+            )
+            chapters += written(results, chapters=(changes(comparison),))
+        images = _draw(chapters, folder / "figures", lambda f, stage="", /: tell(0.75 + 0.22 * f, stage))
         tell(0.97, "page and data")
-        _write_data(results, folder / "data")
-        data = document(results, summary, chapters, quick=quick)
+        _write_data(results, chapters, folder / "data")
+        data = document(results, chapters, quick=quick)
         data["interactive_page"] = write_interactive(results, folder)
-        created = datetime.now(UTC).isoformat(timespec="seconds")
         seconds = {"compute": computed - started, "all": time.perf_counter() - started}
         data["timestamps"] = {
-            "created": created,
+            "created": datetime.now(UTC).isoformat(timespec="seconds"),
             "seconds": {name: round(value, 2) for name, value in seconds.items()},
             "peak_memory_MB": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, 1),
         }
-        text = json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False, sort_keys=False)
-        (folder / "report.json").write_text(text + "\n", encoding="utf-8")
-        page = render(results.pair, summary, chapters, images, data)
-        (folder / "index.html").write_text(page, encoding="utf-8")
-        (folder / "report.junit.xml").write_text(junit(data, comparison), encoding="utf-8")
-        (folder / "summary.md").write_text(markdown(data, comparison), encoding="utf-8")
+        for name, text in {
+            "report.json": json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n",
+            "index.html": render(gear_pair, answers(results, chapters), chapters, images, data),
+            "report.junit.xml": junit(data, comparison),
+            "summary.md": summary(data, comparison),
+        }.items():
+            (folder / name).write_text(text, encoding="utf-8")
     tell(1.0, "done")
-    verdicts = {c.key: c.badge.state for c in chapters if c.badge is not None}
+    verdicts = {
+        chapter.key: content.badge.state for chapter, content in chapters if content.badge is not None
+    }
     bad = tuple(f"{case.group}: {case.name}: {case.text}" for case in failures(data))
-    return Report(target, summary.sentence, verdicts, bad, time.perf_counter() - started, comparison)
+    return Report(target, data["verdict"], verdicts, bad, time.perf_counter() - started, comparison)
 
 
-def document(
-    results: Results, summary: Summary, chapters: tuple[Chapter, ...], *, quick: bool
-) -> dict[str, Any]:
+def written(
+    results: Results, progress: Progress | None = None, chapters: tuple[Chapter, ...] = CHAPTERS
+) -> tuple[Written, ...]:
+    """Write chapters, without those that the report leaves out.
+
+    Parameters
+    ----------
+    results : what chapters share, computed when the first of them asks for it
+    progress : called with the finished fraction and what is being done
+    chapters : which
+    """
+    total = sum(chapter.seconds for chapter in chapters)
+    made: list[Written] = []
+    done = shown = 0.0
+
+    def tell(first: float, own: float, fraction: float, stage: str = "", /) -> None:
+        nonlocal shown
+        shown = max(shown, (first + fraction * own) / total)  # a chapter may compute several results
+        if progress is not None:
+            progress(shown, stage)
+
+    for chapter in chapters:
+        results.progress = partial(tell, done, chapter.seconds)
+        content = chapter.write(results)
+        if content is not None:
+            made.append((chapter, content))
+        done += chapter.seconds
+    return tuple(made)
+
+
+def answers(results: Results, chapters: tuple[Written, ...]) -> dict[str, Answer]:
+    """Answers at the top of the report: key of the chapter that says why -> answer."""
+    return {chapter.key: chapter.answer(results) for chapter, _ in chapters if chapter.answer is not None}
+
+
+def document(results: Results, chapters: tuple[Written, ...], *, quick: bool) -> dict[str, Any]:
     """report.json without its timestamps: the same parameters and software give the same data."""
     return {
         "format": FORMAT,
@@ -143,57 +176,39 @@ def document(
         "gear_pair": results.pair.name,
         "description": results.pair.description,
         "quick": quick,
-        "verdict": summary.sentence,
+        "verdict": sentence(results),
         "answers": [
-            {"question": a.question, "verdict": plain(a.badge), "text": a.text, "chapter": a.chapter}
-            for a in summary.answers
+            {"question": a.question, "verdict": plain(a.badge), "text": a.text, "chapter": key}
+            for key, a in answers(results, chapters).items()
         ],
-        "chapters": {chapter.key: chapter_data(chapter) for chapter in chapters},
+        "chapters": {chapter.key: chapter_data(chapter.title, content) for chapter, content in chapters},
         "parameters": results.pair.to_mapping(),
     }
 
 
-def _draw(chapters: tuple[Chapter, ...], folder: Path, tell: Callable[[float], None]) -> dict[str, str]:
+def _draw(chapters: tuple[Written, ...], folder: Path, tell: Progress) -> dict[str, str]:
     """Write all figures; return their SVG as data URIs by key."""
     folder.mkdir()
-    pictures = [block for chapter in chapters for block in chapter.blocks if isinstance(block, Picture)]
+    pictures = [block for _, content in chapters for block in content.blocks if isinstance(block, Picture)]
     images: dict[str, str] = {}
     for done, picture in enumerate(pictures, 1):
         figure = picture.draw()
-        save(figure, folder / f"{picture.key}.svg")
+        path = folder / f"{picture.key}.svg"
+        save(figure, path)
         figure.set_layout_engine("none")  # placed by the first drawing: the second need not place again
-        save(figure, folder / f"{picture.key}.png")
-        svg = (folder / f"{picture.key}.svg").read_bytes()
-        images[picture.key] = "data:image/svg+xml;base64," + base64.b64encode(svg).decode("ascii")
-        tell(done / len(pictures))
+        save(figure, path.with_suffix(".png"))
+        images[picture.key] = (
+            f"data:image/svg+xml;base64,{base64.b64encode(path.read_bytes()).decode('ascii')}"
+        )
+        tell(done / len(pictures), "figures")
     return images
 
 
-def _write_data(results: Results, folder: Path) -> None:
+def _write_data(results: Results, chapters: tuple[Written, ...], folder: Path) -> None:
     folder.mkdir()
-    check = results.check
-    samples = slice(-(check.compared_cycles * (check.lumped.sizes["time"] - 1) // check.cycles) - 1, None)
-    datasets: dict[str, xr.Dataset] = {
-        "periodic_motion": results.motion,
-        "friction_laws": results.profile,
-        "speed_sweep": results.sweep,
-        "stability_chart": results.chart,
-        "validity_map": results.validity,
-        "cross_check_lumped": check.lumped.isel(time=samples),
-    }
-    physics = {
-        "stiffness_components": results.mesh.components,
-        "static_transmission_error": results.mesh.curves,
-        "harris_map": results.mesh.harris,
-        "relief_map": results.mesh.relief,
-        "losses_by_law": results.mesh.losses,
-    }
-    datasets |= {name: data for name, data in physics.items() if data is not None}
-    for fidelity, result in check.multibody.items():
-        datasets[f"cross_check_{fidelity}"] = result.isel(time=samples)
-    for name, dataset in datasets.items():
-        write_dataset(dataset, folder / f"{name}.nc")
-    if results.paper is not None:
-        for record in results.paper.figures:
-            record.write(folder / "paper")
+    for _, content in chapters:
+        for name, dataset in content.data.items():
+            write_dataset(dataset, folder / f"{name}.nc")
+        if content.write_more is not None:
+            content.write_more(folder)
     (folder / "parameters.toml").write_text(results.pair.to_toml(), encoding="utf-8")

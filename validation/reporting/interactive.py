@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from lumped import NumericalError
+from validation.interactive.page import write_interactive_page
+from validation.interactive.results import FINE, Sampling
 from validation.reporting.results import Results
 
 NAME = "interactive.html"
@@ -22,10 +24,6 @@ def write_interactive(results: Results, folder: Path) -> str | None:
     The page samples no finer than the report. It shows the exact multibody model at the operating point, over
     the cycles that the cross-check compares.
     """
-    # Here, because the page takes its axes from the report's results.
-    from validation.interactive import write_interactive_page
-    from validation.interactive.results import FINE, Sampling
-
     effort, check = results.effort, results.check
     sampling = Sampling(
         speeds=min(FINE.speeds, effort.chart_speeds),

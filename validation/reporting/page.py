@@ -8,15 +8,15 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from lumped import GearPair
-from validation.reporting.blocks import Badge, Block, Chapter, Facts, Picture, Quantity, Table
+from validation.reporting.blocks import Answer, Badge, Block, Facts, Picture, Quantity, Table
+from validation.reporting.chapter import Written
 from validation.reporting.formatting import cell
-from validation.reporting.verdict import Summary
 
 
 def render(
     pair: GearPair,
-    summary: Summary,
-    chapters: tuple[Chapter, ...],
+    answers: Mapping[str, Answer],
+    chapters: tuple[Written, ...],
     images: Mapping[str, str],
     data: Mapping[str, Any],
 ) -> str:
@@ -25,9 +25,10 @@ def render(
     Parameters
     ----------
     pair : the gear pair
-    summary, chapters : content
+    answers : key of the chapter that says why -> answer at the top
+    chapters : content
     images : figure key -> data URI
-    data : what report.json holds, for dates and mode
+    data : what report.json holds, for verdict, dates and mode
     """
     environment = Environment(
         loader=PackageLoader("validation", "templates"),
@@ -42,7 +43,7 @@ def render(
     environment.tests["badge"] = lambda value: isinstance(value, Badge)
     environment.tests["numeric"] = _is_numeric
     template = environment.get_template("report.html")
-    return template.render(pair=pair, summary=summary, chapters=chapters, images=images, data=data)
+    return template.render(pair=pair, answers=answers, chapters=chapters, images=images, data=data)
 
 
 def _kind(block: Block) -> str:

@@ -1,44 +1,27 @@
-"""Everything the report needs, computed once."""
+"""Results that several chapters of the report share, each computed when it is first asked for."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import xarray as xr
 
 import lumped
-import multibody
-from floquet.gear.chart_axes import chart_axes, operating_rpm, speed_range, with_point
-from floquet.gear.dense_chart import dense_chart
+from floquet.gear.chart_axes import operating_rpm, speed_range
 from floquet.gear.margins import StabilityMargins, stability_margins
 from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
 from lumped import GearPair, Geometry, NumericalError, ParameterError
 from lumped.model.averaged import Mode, modes
 from lumped.path_of_contact import friction_profile
-from lumped.typing import FloatArray
+from lumped.typing import Progress
 from validation.cross_check.comparison import CrossCheck, crosscheck
-from validation.cross_check.metrics import MeshOrders, mesh_orders
-from validation.reporting.mesh_physics import MeshPhysics, mesh_physics
 from validation.reporting.paper_results import PaperResults, paper_results
 from validation.validity.flag import Flag
-from validation.validity.flags import speed_drift, validity_flags
-from validation.validity.map import validity_map
-from validation.verification import (
-    Check,
-    OrderCheck,
-    Refinement,
-    code_checks,
-    enough_samples,
-    order_checks,
-    refinements,
-)
-
-Progress = Callable[[float, str], None]
-
-_DISPLACEMENTS = ("dte", "x_p", "x_g", "y_p", "y_g")
-_ORDERS = 10
+from validation.validity.flags import LOAD_NOISE, speed_drift, validity_flags
+from validation.verification import enough_samples
 
 
 @dataclass(frozen=True)
@@ -47,15 +30,14 @@ class Effort:
 
     Attributes
     ----------
-    samples : per mesh cycle of the periodic motion; at least, with ``verify``
+    samples : per mesh cycle of the periodic motion; at least, with ``full``
     cycles : of the cross-check
     sweep_speeds : of the response over speed
     chart_speeds, chart_dampings : nodes of the stability chart
     chart_rtol : accuracy of the monodromy matrices in the chart
     map_speeds, map_torques : points of the validity map
-    mesh_optimum : whether to search the best tip relief and solve the periodic motion of every law
-    attribution : whether to switch the finite-motion effects one at a time, to say why the models differ
-    verify : whether to check the code against closed forms and to refine the solutions
+    full : whether to search the best tip relief, to solve the periodic motion of every law, to switch the
+        finite-motion effects one at a time, to check the code against closed forms and to refine solutions
     paper : whether to reproduce the paper's figures, judge its claims and show its errata with this pair
     claim_samples : samples of what the paper leaves open, for that
     """
@@ -66,64 +48,45 @@ class Effort:
     chart_speeds: int
     chart_dampings: int
     chart_rtol: float
-    map_speeds: int = 7
-    map_torques: int = 3
-    mesh_optimum: bool = False
-    attribution: bool = False
-    verify: bool = False
-    paper: bool = False
-    claim_samples: int = 8
+    map_speeds: int
+    map_torques: int
+    full: bool
+    paper: bool
+    claim_samples: int
 
 
-FULL = Effort(
-    samples=512,
-    cycles=40,
-    sweep_speeds=240,
-    chart_speeds=401,
-    chart_dampings=81,
-    chart_rtol=1e-8,
-    map_speeds=31,
-    map_torques=9,
-    mesh_optimum=True,
-    attribution=True,
-    verify=True,
-    claim_samples=100,
-)
-QUICK = Effort(samples=128, cycles=16, sweep_speeds=24, chart_speeds=16, chart_dampings=4, chart_rtol=1e-6)
+FULL = Effort(512, 40, 240, 401, 81, 1e-8, 31, 9, full=True, paper=True, claim_samples=100)
+QUICK = Effort(128, 16, 24, 16, 4, 1e-6, 7, 3, full=False, paper=False, claim_samples=8)
 
 
-@dataclass(frozen=True)
-class Verification:
-    """Code and solution verification, see ``validation.verification``."""
-
-    code: tuple[Check, ...]
-    orders: tuple[OrderCheck, ...]
-    solution: tuple[Refinement, ...]
-
-
-@dataclass(frozen=True, eq=False)
 class Results:
-    """Results of one gear pair, from which the chapters are written."""
+    """Shared results of one gear pair.
 
-    pair: GearPair
-    geometry: Geometry
-    effort: Effort
-    profile: xr.Dataset
-    mesh: MeshPhysics
-    motion: xr.Dataset
-    orders: Mapping[str, MeshOrders]
-    modes: tuple[Mode, ...]
-    sweep: xr.Dataset
-    check: CrossCheck
-    causes: xr.Dataset | None
-    multipliers: GearPairMultipliers
-    chart: xr.Dataset
-    flags: tuple[Flag, ...]
-    margins: StabilityMargins
-    validity: xr.Dataset
-    verification: Verification | None
-    paper: PaperResults | None
-    paper_refusal: str = ""
+    Parameters
+    ----------
+    pair : the gear pair
+    effort : how finely
+    progress : called with the finished fraction of the present computation and its name
+
+    Raises
+    ------
+    NumericalError : from whichever result a model cannot compute; the text says what to try
+    """
+
+    def __init__(self, pair: GearPair, effort: Effort, progress: Progress | None = None) -> None:
+        self.pair = pair
+        self.effort = effort
+        self.progress: Progress = progress or (lambda fraction, stage="", /: None)
+
+    def stage(self, name: str) -> Callable[[float], None]:
+        """Progress of one computation: tells its name at once, and takes its finished fraction."""
+        self.progress(0.0, name)
+        return lambda fraction: self.progress(fraction, name)
+
+    @property
+    def geometry(self) -> Geometry:
+        """Geometry of the pair."""
+        return self.pair.geometry
 
     @property
     def operating_rpm(self) -> float:
@@ -135,108 +98,82 @@ class Results:
         """Normal load of all pairs at rest, T_p/r_bp [N]."""
         return self.pair.operating.pinion_torque / self.geometry.base_radius_pinion
 
+    @cached_property
+    def samples(self) -> int:
+        """Samples per mesh cycle of the periodic motion."""
+        effort = self.effort
+        return enough_samples(self.pair, effort.samples) if effort.full else effort.samples
 
-def compute(pair: GearPair, effort: Effort, progress: Progress) -> Results:
-    """Compute everything for one pair.
+    @cached_property
+    def motion(self) -> xr.Dataset:
+        """Periodic motion at the operating point."""
+        self.stage("periodic motion")
+        return lumped.steady_state(self.pair, samples_per_cycle=self.samples)
 
-    Parameters
-    ----------
-    pair : the gear pair
-    effort : how finely
-    progress : called with the finished fraction and what is being done
+    @cached_property
+    def profile(self) -> xr.Dataset:
+        """Contact conditions and every friction law along the path of contact."""
+        return friction_profile(self.pair)
 
-    Raises
-    ------
-    NumericalError : a model fails; the text says what to try
-    """
-    progress(0.0, "periodic motion")
-    samples = enough_samples(pair, effort.samples) if effort.verify else effort.samples
-    motion = lumped.steady_state(pair, samples_per_cycle=samples)
-    orders = {n: mesh_orders(motion[n].to_numpy(), samples, _ORDERS) for n in _DISPLACEMENTS}
-    profile = friction_profile(pair)
-    try:
-        found = modes(pair)
-    except NumericalError:  # an overdamped mode has no natural frequency; the report says so
-        found = ()
-    speeds = speed_range(pair, found)
-    progress(0.05, "response over speed")
-    sweep = lumped.speed_sweep(
-        pair,
-        np.linspace(*speeds, effort.sweep_speeds),
-        samples_per_cycle=128,
-        progress=lambda f: progress(0.05 + 0.15 * f, "response over speed"),
-    )
-    check = crosscheck(
-        pair,
-        cycles=effort.cycles,
-        progress=lambda f: progress(0.2 + 0.25 * f, "cross-check against the multibody model"),
-    )
-    causes = _causes(pair) if effort.attribution else None
-    progress(0.45, "stability")
-    multipliers = gear_pair_multipliers(pair)
-    chart = dense_chart(
-        pair,
-        chart_axes(pair, effort.chart_speeds, effort.chart_dampings),
-        rtol=effort.chart_rtol,
-        progress=lambda f: progress(0.45 + 0.15 * f, "stability chart"),
-    )
-    progress(0.6, "stability margins")
-    margins = stability_margins(pair, speeds)
-    valid = validity_map(
-        pair,
-        *map_axes(pair, speeds, effort),
-        progress=lambda f: progress(0.65 + 0.1 * f, "validity over speed and torque"),
-    )
-    verification = None
-    if effort.verify:
-        progress(0.75, "verification")
-        verification = Verification(code_checks(pair), order_checks(), refinements(pair, samples))
-    reproduced, refusal = None, ""
-    if effort.paper:
+    @cached_property
+    def modes(self) -> tuple[Mode, ...]:
+        """Modes of the averaged pair; empty where one is overdamped and has no natural frequency."""
         try:
-            reproduced = paper_results(
-                pair, effort.claim_samples, lambda f: progress(0.8 + 0.18 * f, "comparison with the paper")
-            )
-        except (NumericalError, ParameterError) as error:  # the paper's operating points may not suit a pair
-            refusal = str(error)
-    g = pair.geometry
-    flags = validity_flags(pair, motion, multipliers)
-    flags += (speed_drift(g, check.multibody["linear"]),)
-    return Results(
-        pair=pair,
-        geometry=g,
-        effort=effort,
-        profile=profile,
-        mesh=mesh_physics(pair, motion, profile, quick=not effort.mesh_optimum),
-        motion=motion,
-        orders=orders,
-        modes=found,
-        sweep=sweep,
-        check=check,
-        causes=causes,
-        multipliers=multipliers,
-        chart=chart,
-        flags=flags,
-        margins=margins,
-        validity=valid,
-        verification=verification,
-        paper=reproduced,
-        paper_refusal=refusal,
-    )
+            return modes(self.pair)
+        except NumericalError:
+            return ()
 
+    @cached_property
+    def speeds(self) -> tuple[float, float]:
+        """Range of pinion speeds of everything over speed [rpm]."""
+        return speed_range(self.pair, self.modes)
 
-def _causes(pair: GearPair) -> xr.Dataset | None:
-    """Why the exact model differs; None where it has no periodic motion near the lumped one."""
-    try:
-        return multibody.attribution(pair, periodic=True)
-    except NumericalError:
-        return None
+    @cached_property
+    def sweep(self) -> xr.Dataset:
+        """Periodic motion over speed."""
+        return lumped.speed_sweep(
+            self.pair,
+            np.linspace(*self.speeds, self.effort.sweep_speeds),
+            samples_per_cycle=128,
+            progress=self.stage("response over speed"),
+        )
 
+    @property
+    def separating_share(self) -> float:
+        """Share of the speeds of the sweep at which a tooth pair would have to pull."""
+        low = self.sweep["normal_load_min"].to_numpy()  # NaN where there is no periodic motion
+        return float(np.mean(low < -LOAD_NOISE * self.static_load))
 
-def map_axes(pair: GearPair, speeds: tuple[float, float], effort: Effort) -> tuple[FloatArray, FloatArray]:
-    """Speeds [rpm] and torques [N m] of the validity map; the operating point is a node."""
-    torque = pair.operating.pinion_torque
-    return (
-        with_point(np.linspace(*speeds, effort.map_speeds), operating_rpm(pair)),
-        with_point(torque * np.geomspace(0.2, 4.0, effort.map_torques), torque),
-    )
+    @cached_property
+    def check(self) -> CrossCheck:
+        """Cross-check against the multibody model."""
+        stage = self.stage("cross-check against the multibody model")
+        return crosscheck(self.pair, cycles=self.effort.cycles, progress=stage)
+
+    @cached_property
+    def multipliers(self) -> GearPairMultipliers:
+        """Floquet multipliers at the operating point."""
+        return gear_pair_multipliers(self.pair)
+
+    @cached_property
+    def margins(self) -> StabilityMargins:
+        """Tongues of instability over the range of speeds, and the distances to them."""
+        self.stage("stability margins")
+        return stability_margins(self.pair, self.speeds)
+
+    @cached_property
+    def flags(self) -> tuple[Flag, ...]:
+        """Assumptions of the lumped model, checked at the operating point."""
+        drift = speed_drift(self.geometry, self.check.multibody["linear"])
+        return (*validity_flags(self.pair, self.motion, self.multipliers), drift)
+
+    @cached_property
+    def paper(self) -> PaperResults | str | None:
+        """The paper with this gear pair; why it does not suit the pair; None where it was not asked for."""
+        if not self.effort.paper:
+            return None
+        stage = self.stage("comparison with the paper")
+        try:
+            return paper_results(self.pair, self.effort.claim_samples, stage)
+        except (NumericalError, ParameterError) as error:
+            return str(error)

@@ -1,10 +1,8 @@
 """Does the command do what its help says, and refuse bad input with one message and the right exit code?"""
 
-import dataclasses
 import json
+import math
 import re
-import subprocess
-import sys
 
 import pytest
 from typer.testing import CliRunner
@@ -13,6 +11,8 @@ import lumped
 from lumped import NumericalError
 from validation.cli import app
 from validation.commands import options
+from validation.reporting import Report
+from validation.reporting.compare import Change, Comparison
 
 COMMANDS = ("report", "presets", "init", "simulate", "crosscheck", "stability", "schema")
 
@@ -38,13 +38,6 @@ def test_every_command_explains_itself_with_an_example(command):
     text = run(command, "--help").stdout
     assert "Example" in text
     assert f"spurcheck {command}" in text
-
-
-def test_help_does_not_load_the_numerics():
-    heavy = "('numpy', 'lumped', 'matplotlib')"
-    code = f"import sys, validation.cli; print([m for m in {heavy} if m in sys.modules])"
-    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert found.stdout.strip() == "[]"
 
 
 def test_version():
@@ -194,21 +187,50 @@ def test_unknown_axes_are_refused():
     assert "speed_rpm" in refused("stability", "--axis", "moon_phase=0:1:3")
 
 
-def test_report_from_the_command(tmp_path, monkeypatch):
-    from validation.reporting import build, results
+@pytest.fixture
+def asked(monkeypatch):
+    """Arguments that reach the report, which is not computed; its failures can be set."""
+    told = {"failures": (), "comparison": None}
 
-    effort = dataclasses.replace(
-        results.QUICK, samples=64, cycles=6, sweep_speeds=4, chart_speeds=4, chart_dampings=2, chart_rtol=1e-6
-    )
-    monkeypatch.setattr(build, "QUICK", effort)
-    out = tmp_path / "out"
-    result = run("report", "nasa_28_28", "-o", out, "--quick", "--speed", "3000 rpm", "--law", "coulomb")
+    def write(pair, out, **options):
+        told.update(options, pair=pair, out=out)
+        return Report(out, "It holds.", {}, told["failures"], 1.0, told["comparison"])
+
+    monkeypatch.setattr("validation.reporting.report", write)
+    return told
+
+
+def test_options_reach_the_report(asked, tmp_path):
+    out, old = tmp_path / "out", tmp_path / "old"
+    options = ("--quick", "--speed", "3000 rpm", "--law", "coulomb", "--no-paper", "--tolerance", "0.01")
+    result = run("report", "fzg_c", "-o", out, *options, "--compare", old)
     assert result.exit_code == 0, result.stderr
-    assert "At 3000 rpm" in result.stdout
-    assert (
-        json.loads((out / "report.json").read_text(encoding="utf-8"))["parameters"]["friction"]["law"]
-        == "coulomb"
-    )
+    assert "It holds." in result.stdout
+    assert asked["pair"].friction.law == "coulomb"
+    assert asked["pair"].operating.pinion_speed == pytest.approx(100 * math.pi)
+    expected = {"out": out, "quick": True, "paper": False, "compare": old, "tolerance": 0.01, "force": False}
+    assert asked | expected == asked
+
+
+@pytest.mark.parametrize("bad", [(), ("validity: Torques balance: violated",)])
+@pytest.mark.parametrize("strict", [False, True])
+def test_only_strict_turns_a_failing_verdict_into_an_exit_code(asked, tmp_path, strict, bad):
+    asked["failures"] = bad
+    result = run("report", "-o", tmp_path / "out", *(["--strict"] if strict else []))
+    assert result.exit_code == (1 if strict and bad else 0)
+    assert ("Torques balance" in result.stdout) == bool(strict and bad)
+
+
+@pytest.mark.parametrize("fails", [False, True])
+def test_a_change_past_its_tolerance_exits_1(asked, tmp_path, fails):
+    change = Change("steady_state/dte", "number", "1", "2", 0.5, fails)
+    inputs = Change("input/mesh/damping_ratio", "parameter", "0.05", "0.06", None, False)
+    asked["comparison"] = Comparison("old", 1e-3, 7, (change, inputs))
+    result = run("report", "-o", tmp_path / "out", "--compare", tmp_path / "old")
+    assert result.exit_code == int(fails)
+    assert f"2 changed, {int(fails)} past tolerance" in result.stdout
+    assert f"{'past tolerance' if fails else 'within'}  steady_state/dte: 1 -> 2 (50 %)" in result.stdout
+    assert "the parameters differ: input/mesh/damping_ratio" in result.stdout
 
 
 @pytest.mark.parametrize(

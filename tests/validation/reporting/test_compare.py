@@ -5,11 +5,8 @@ import json
 from xml.etree import ElementTree
 
 import pytest
-from typer.testing import CliRunner
 
 from lumped import ParameterError
-from validation.cli import app
-from validation.reporting import build
 from validation.reporting.baseline import load_report
 from validation.reporting.compare import compare
 from validation.reporting.judged import failures
@@ -348,50 +345,3 @@ def test_a_baseline_cut_short_is_refused(document, tmp_path):
     baseline.write_text(json.dumps(document)[:-40])
     with pytest.raises(ParameterError, match="only a part of it"):
         load_report(baseline)
-
-
-def run(*arguments):
-    result = CliRunner().invoke(app, list(map(str, arguments)), env={"COLUMNS": "200", "NO_COLOR": "1"})
-    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
-    return result
-
-
-def test_the_command_is_a_gate(tmp_path, monkeypatch):
-    import dataclasses
-
-    from validation.reporting import results
-
-    effort = dataclasses.replace(
-        results.QUICK, samples=64, cycles=6, sweep_speeds=4, chart_speeds=4, chart_dampings=2, map_speeds=2
-    )
-    monkeypatch.setattr(build, "QUICK", effort)
-    old = tmp_path / "old"
-    assert run("report", "--quick", "-o", old).exit_code == 0
-    assert {"report.junit.xml", "summary.md"} <= {p.name for p in old.iterdir()}
-    data = load_report(old)
-    key = data["chapters"]["steady_state"]["key_results"]["dte_peak_to_peak"]["value"]
-    key["value"] *= 1.01
-    other = tmp_path / "other.json"
-    other.write_text(json.dumps(data))
-    # Also where the earlier report is the one that is replaced.
-    result = run("report", "--quick", "-o", old, "--force", "--compare", old / "report.json")
-    assert result.exit_code == 0, result.stdout
-    assert "0 changed" in result.stdout
-    changed = run("report", "--quick", "-o", tmp_path / "new", "--compare", other)
-    assert changed.exit_code == 1
-    assert "steady_state/key_results/dte_peak_to_peak" in changed.stdout
-    page = (tmp_path / "new" / "index.html").read_text(encoding="utf-8")
-    assert "past tolerance" in page
-    root = ElementTree.parse(tmp_path / "new" / "report.junit.xml").getroot()
-    assert root.find(".//testsuite[@name='comparison']//failure") is not None
-    assert "dte\\_peak\\_to\\_peak" in (tmp_path / "new" / "summary.md").read_text(encoding="utf-8")
-
-
-def test_the_gate_reads_its_baseline_before_any_work(tmp_path, monkeypatch):
-    def no_work(*_):
-        raise AssertionError("work was done")
-
-    monkeypatch.setattr(build, "compute", no_work)
-    result = run("report", "--quick", "-o", tmp_path / "new", "--compare", tmp_path / "none.json")
-    assert result.exit_code == 2
-    assert list(tmp_path.iterdir()) == []

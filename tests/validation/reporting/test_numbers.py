@@ -6,9 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumped.quasi_static import OptimalRelief
 from validation.reporting.blocks import Badge, Quantity, plain
-from validation.reporting.chapters.mesh_physics import _remaining
 from validation.reporting.chapters.parameters import unit_text
 from validation.reporting.formatting import cell, number, quantity
 
@@ -71,12 +69,3 @@ def test_cells():
 )
 def test_units_of_the_parameter_file_are_printed_as_units(unit, text):
     assert unit_text(unit) == text
-
-
-def test_a_relief_that_leaves_rounding_leaves_nothing():
-    def left(peak):
-        best = OptimalRelief(1.0, 1.0, 0.1, 0.1, peak, 8e-6, 1.0, "linear")
-        return _remaining(best)
-
-    assert left(1.2e-14)[0] == Quantity(0.0, "m")
-    assert left(1e-7) == (Quantity(1e-7, "m"), "")

@@ -1,36 +1,22 @@
 """Is the report complete, true to its JSON, the same every time, safe to open, and written whole?"""
 
-import dataclasses
-import importlib
 import json
 import re
 from html.parser import HTMLParser
+from xml.etree import ElementTree
 
 import pytest
 
 import lumped
 from lumped import ParameterError
 from validation import reporting
-from validation.reporting import build, results
-from validation.reporting.blocks import Chapter, Fact, Facts, Quantity, Table
+from validation.reporting import build
+from validation.reporting.blocks import Answer, Badge, Content, Fact, Facts, Quantity, Table
+from validation.reporting.chapter import Chapter
+from validation.reporting.chapters import provenance
 from validation.reporting.page import render
-from validation.reporting.verdict import Summary
-
-#: The module: the package has the chapter's function under the same name.
-provenance = importlib.import_module("validation.reporting.chapters.provenance")
 
 HOSTILE = '<script>alert("x")</script> & "Getriebe" \'1\''
-
-
-@pytest.fixture(scope="module", autouse=True)
-def tiny():
-    """The quick report on even fewer points: these tests look at the folder, not at the physics."""
-    effort = dataclasses.replace(
-        results.QUICK, samples=64, cycles=6, sweep_speeds=4, chart_speeds=4, chart_dampings=2, chart_rtol=1e-6
-    )
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(build, "QUICK", effort)
-        yield
 
 
 @pytest.fixture(scope="module")
@@ -117,13 +103,61 @@ def test_report_json_is_strict_and_says_what_the_page_says(written, page):
     assert shown == pytest.approx(1e6 * steady["dte_peak_to_peak"]["value"]["value"], rel=1e-3)
 
 
-def test_same_parameters_same_bytes_apart_from_the_timestamps(written, hostile, tmp_path):
-    again = reporting.report(hostile, tmp_path / "again", quick=True)
-    first, second = _data(written.folder), _data(again.folder)
+@pytest.fixture(scope="module")
+def again(written, hostile, tmp_path_factory):
+    """The same report, compared with the first one after one number of that was changed by a percent."""
+    earlier = _data(written.folder)
+    earlier["chapters"]["steady_state"]["key_results"]["dte_peak_to_peak"]["value"]["value"] *= 1.01
+    folder = tmp_path_factory.mktemp("again")
+    (folder / "earlier.json").write_text(json.dumps(earlier))
+    told = []
+    with pytest.MonkeyPatch.context() as patch:
+        # PNG files hold nothing that SVG files do not: half of the drawing is enough.
+        patch.setattr(build, "save", lambda f, path, save=build.save: path.suffix == ".svg" and save(f, path))
+        made = reporting.report(
+            hostile,
+            folder / "report",
+            quick=True,
+            compare=folder / "earlier.json",
+            progress=lambda fraction, stage="", /: told.append((fraction, stage)),
+        )
+    return made, told
+
+
+def test_same_parameters_same_bytes_apart_from_the_timestamps(written, again):
+    first, second = _data(written.folder), _data(again[0].folder)
     assert first.pop("timestamps").keys() == second.pop("timestamps").keys()
+    del second["chapters"]["changes"]
     assert json.dumps(first) == json.dumps(second)
-    for path in sorted((written.folder / "figures").iterdir()):
-        assert path.read_bytes() == (again.folder / "figures" / path.name).read_bytes(), path.name
+    pictures = sorted((written.folder / "figures").glob("*.svg"))
+    assert len(pictures) >= 12
+    for path in pictures:
+        assert path.read_bytes() == (again[0].folder / "figures" / path.name).read_bytes(), path.name
+
+
+def test_a_change_past_its_tolerance_is_said_in_every_file(again):
+    (change,) = again[0].comparison.regressions
+    assert change.path == "steady_state/key_results/dte_peak_to_peak"
+    folder = again[0].folder
+    assert "past tolerance" in (folder / "index.html").read_text(encoding="utf-8")
+    root = ElementTree.parse(folder / "report.junit.xml").getroot()
+    assert root.find(".//testsuite[@name='comparison']//failure") is not None
+    assert "dte\\_peak\\_to\\_peak" in (folder / "summary.md").read_text(encoding="utf-8")
+
+
+def test_progress_goes_forward_and_names_what_is_done(again):
+    fractions, stages = zip(*again[1], strict=True)
+    assert list(fractions) == sorted(fractions)
+    assert fractions[-1] == 1.0
+    assert {"periodic motion", "stability chart", "figures"} <= set(stages)
+
+
+def test_a_stable_report_warns_of_nothing(written):
+    text = (written.folder / "index.html").read_text(encoding="utf-8")
+    assert "Warning" not in re.sub(r"data:image[^\"]*", "", text)
+    data = _data(written.folder)
+    assert data["answers"][0]["verdict"]["state"] == "prediction"
+    assert data["chapters"]["steady_state"]["over_speed"]["share_unstable"]["value"] == 0.0
 
 
 def test_a_failure_midway_leaves_nothing_behind(pair, tmp_path, monkeypatch):
@@ -132,6 +166,7 @@ def test_a_failure_midway_leaves_nothing_behind(pair, tmp_path, monkeypatch):
         (folder / "half.png").write_bytes(b"half")
         raise RuntimeError("midway")
 
+    monkeypatch.setattr(build, "written", lambda *_, **__: ())
     monkeypatch.setattr(build, "_draw", fail)
     with pytest.raises(RuntimeError, match="midway"):
         reporting.report(pair, tmp_path / "deep" / "report", quick=True)
@@ -143,62 +178,27 @@ def test_a_failed_replacement_keeps_the_earlier_report(pair, tmp_path, monkeypat
     out.mkdir()
     (out / "report.json").write_text(json.dumps({"format": "spurcheck-report"}))
 
-    def interrupt(*_):
+    def interrupt(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(build, "compute", interrupt)
+    monkeypatch.setattr(build, "written", interrupt)
     with pytest.raises(KeyboardInterrupt):
         reporting.report(pair, out, quick=True, force=True)
     assert [p.name for p in tmp_path.iterdir()] == ["report"]
     assert [p.name for p in out.iterdir()] == ["report.json"]
 
 
-def test_values_without_a_source_count_as_assumed(pair):
-    from validation.reporting.chapters.parameters import is_assumed, source_of
-
-    assert is_assumed(source_of(pair, "bearings.pinion.loa_stiffness"))  # from the section's own entry
-    assert is_assumed(source_of(pair, "basic_rack.addendum_coefficient"))  # no entry at all
-    assert not is_assumed(source_of(pair, "pinion.teeth"))
-
-
-def test_the_report_asks_before_work_whether_it_may_write(pair, tmp_path, monkeypatch):
-    def no_work(*_):
+def test_the_report_refuses_its_folder_and_its_baseline_before_work(pair, tmp_path, monkeypatch):
+    def no_work(*_, **__):
         raise AssertionError("work was done")
 
-    monkeypatch.setattr(build, "compute", no_work)
+    monkeypatch.setattr(build, "written", no_work)
     (tmp_path / "notes.txt").write_text("mine")
     with pytest.raises(ParameterError, match="--force"):
         reporting.report(pair, tmp_path, quick=True)
-
-
-def test_the_headline_states_the_largest_difference_also_when_it_is_within_its_tolerance(check):
-    from validation.reporting.verdict import finite_motions
-
-    def widened(left, pinion=0.3):
-        apart = {"y_g": 0.4, "y_p": pinion}
-        return dataclasses.replace(
-            check,
-            agreements=tuple(
-                dataclasses.replace(
-                    a,
-                    relative_l2=apart.get(a.quantity, 0.3) if a.fidelity == "exact" else 0.3,
-                    remainder_l2=left if (a.quantity, a.fidelity) == ("x_p", "exact") else 0.05,
-                    tolerance=dataclasses.replace(a.tolerance, limit=1.0),
-                )
-                for a in check.agreements
-            ),
-        )
-
-    assert widened(0.07).verdict == "confirmed"
-    text = finite_motions(widened(0.07)).replace("\u00a0", " ")
-    assert "changes the transmission error by 30 % and gear y, most of all, by 40 %" in text
-    assert text.endswith("the lumped motion alone accounts for all but 7 % (tolerance 100 %).")
-    # Equal but for rounding, as the bodies of a 1:1 pair are: the first is named, whichever is larger.
-    for pinion in (0.4 - 1e-12, 0.4 + 1e-12):
-        assert "and pinion y, most of all" in finite_motions(widened(0.07, pinion)).replace("\u00a0", " ")
-    # More than half is left: that is no account.
-    text = finite_motions(widened(0.2)).replace("\u00a0", " ")
-    assert text.endswith("does not account for this (20 % left, tolerance 100 %).")
+    with pytest.raises(ParameterError, match="--compare"):
+        reporting.report(pair, tmp_path / "new", quick=True, compare=tmp_path / "none.json")
+    assert [p.name for p in tmp_path.iterdir()] == ["notes.txt"]
 
 
 def test_numbers_stand_to_the_right_under_their_heading_gaps_included(pair):
@@ -208,10 +208,12 @@ def test_numbers_stand_to_the_right_under_their_heading_gaps_included(pair):
         {"a": "A", "b": "B"},
         (("x", None), ("y", Quantity(1.0, "m")), ("z", 2.0)),
     )
-    chapter = Chapter("c", "C", (table, Facts("f", (Fact("h", "hash", "0" * 64), Fact("w", "word", "ok")))))
+    facts = Facts("f", (Fact("h", "hash", "0" * 64), Fact("w", "word", "ok")))
+    made = (Chapter("c", "C", lambda _: None), Content((table, facts)))
     timestamps = {"created": "2020-01-01", "seconds": {"all": 1.0}}
-    data = {"quick": False, "interactive_page": None, "timestamps": timestamps}
-    text = render(pair, Summary("It holds.", ()), (chapter,), {}, data)
+    data = {"quick": False, "verdict": "It holds.", "interactive_page": None, "timestamps": timestamps}
+    answers = {"c": Answer("Is it good?", Badge("ok"), "Yes.")}
+    text = render(pair, answers, (made,), {}, data)
     assert re.findall(r"<th scope=\"col\"([^>]*)>", text) == ["", ' class="number"']
     assert text.count('<td class="number">') == 3
     assert text.count('<div class="long">') == 1

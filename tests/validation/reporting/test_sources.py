@@ -2,7 +2,7 @@
 
 import lumped
 from lumped.schema.files import leaf_paths, preset_text
-from validation.reporting.chapters.parameters import is_assumed, source_of
+from validation.reporting.sources import is_assumed, source_of
 
 
 def test_a_preset_source_of_a_value_edited_since_counts_as_assumed(tmp_path):
@@ -16,3 +16,9 @@ def test_a_preset_source_of_a_value_edited_since_counts_as_assumed(tmp_path):
     known = {field for field in leaf_paths(preset) if is_assumed(source_of(preset, field))}
     assert stale - known == {"pinion.face_width", "gear.face_width"}
     assert "fzg_c" in source_of(own, "pinion.face_width")
+
+
+def test_values_without_a_source_count_as_assumed(pair):
+    assert is_assumed(source_of(pair, "bearings.pinion.loa_stiffness"))  # from the section's own entry
+    assert is_assumed(source_of(pair, "basic_rack.addendum_coefficient"))  # no entry at all
+    assert not is_assumed(source_of(pair, "pinion.teeth"))

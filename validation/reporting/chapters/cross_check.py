@@ -11,10 +11,11 @@ from lumped.model.results import VARIABLES
 from validation import plots
 from validation.cross_check.comparison import MEANINGS, RTOL, Agreement, CrossCheck, off_switch_samples
 from validation.reporting.blocks import (
+    Answer,
     Badge,
     Block,
     Cell,
-    Chapter,
+    Content,
     Fact,
     Facts,
     Picture,
@@ -23,20 +24,11 @@ from validation.reporting.blocks import (
     Table,
     Text,
 )
-from validation.reporting.chapters.causes import causes, meshing_teeth
-from validation.reporting.chapters.steady_state import unstable_warning
+from validation.reporting.causes import attribution, causes, meshing_teeth
+from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
+from validation.reporting.words import NAMES, finite_motions, same_equations, unstable_warning
 
-#: Short names for table rows.
-NAMES = {
-    "dte": "transmission error",
-    "x_p": "pinion x",
-    "x_g": "gear x",
-    "y_p": "pinion y",
-    "y_g": "gear y",
-    "normal_load": "normal load",
-    "friction_force": "friction force",
-}
 _SHOWN = ("dte", "x_p", "y_p", "normal_load", "friction_force")
 _CAPTIONS = {
     "dte": "Dynamic transmission error of all models, and the difference of the exact model.",
@@ -48,7 +40,7 @@ _CAPTIONS = {
 }
 
 
-def cross_check(results: Results) -> Chapter:
+def write(results: Results) -> Content:
     """Write the chapter."""
     check, g = results.check, results.geometry
     keep = off_switch_samples(results.pair, check.lumped["time"].to_numpy())
@@ -62,7 +54,7 @@ def cross_check(results: Results) -> Chapter:
         meshing_teeth(results),
         _judged(check),
         _reasons(check),
-        *causes(results),
+        *(causes(attribution(results.pair)) if results.effort.full else ()),
     ]
     for name in _SHOWN:
         unit = VARIABLES[name][1]
@@ -104,9 +96,10 @@ def cross_check(results: Results) -> Chapter:
             ),
         ),
     ]
-    return Chapter(
-        "cross_check", "Cross-check against the multibody model", tuple(blocks), Badge(check.verdict)
-    )
+    compared = slice(-(check.compared_cycles * (check.lumped.sizes["time"] - 1) // check.cycles) - 1, None)
+    runs = [("lumped", check.lumped), *check.multibody.items()]
+    data = {f"cross_check_{name}": run.isel(time=compared) for name, run in runs}
+    return Content(tuple(blocks), Badge(check.verdict), data)
 
 
 def _brake_torque(run: xr.Dataset) -> Quantity:
@@ -248,3 +241,13 @@ def _orders(check: CrossCheck) -> Table:
         tuple(rows),
         note="Orders below a thousandth of the largest are left out.",
     )
+
+
+def answer(results: Results) -> Answer:
+    """Whether the multibody model confirms the lumped model."""
+    check = results.check
+    text = f"{same_equations(check)} {finite_motions(check)}"
+    return Answer("Does the independent model agree?", Badge(check.verdict), text)
+
+
+CHAPTER = Chapter("cross_check", "Cross-check against the multibody model", write, answer, seconds=10)

@@ -5,14 +5,16 @@ from __future__ import annotations
 from functools import partial
 
 from validation.paper import draw_errata
-from validation.reporting.blocks import Badge, Block, Chapter, Fact, Facts, Picture, Rows, Table, Text
-from validation.reporting.chapters.steady_state import unstable_warning
+from validation.reporting.blocks import Badge, Block, Content, Fact, Facts, Picture, Rows, Table, Text
+from validation.reporting.chapter import Chapter
+from validation.reporting.paper_results import PaperResults
 from validation.reporting.results import Results
+from validation.reporting.words import unstable_warning
 
 
-def errata(results: Results) -> Chapter | None:
+def write(results: Results) -> Content | None:
     """Write the chapter; None where the comparison with the paper was not asked for."""
-    if results.paper is None:
+    if not isinstance(results.paper, PaperResults):
         return None
     chapter = results.paper.errata
     rows: Rows = [
@@ -59,4 +61,7 @@ def errata(results: Results) -> Chapter | None:
             tuple(evidence),
         ),
     ]
-    return Chapter("errata", "Errata of the paper", tuple(blocks))
+    return Content(tuple(blocks))
+
+
+CHAPTER = Chapter("errata", "Errata of the paper", write)

@@ -5,14 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from lumped.schema.files import leaf_paths
-from validation.reporting.blocks import Badge, Chapter, Rows, Table, Text
-from validation.reporting.chapters.parameters import is_assumed, source_of
+from validation.reporting.blocks import Badge, Content, Rows, Table, Text
+from validation.reporting.chapter import Chapter
 from validation.reporting.formatting import number
 from validation.reporting.results import Results
+from validation.reporting.sources import is_assumed, source_of
 from validation.validity.flag import Flag
 
 
-def limitations(results: Results) -> Chapter:
+def write(results: Results) -> Content:
     """Write the chapter."""
     table = Table(
         "assumptions",
@@ -44,7 +45,7 @@ def limitations(results: Results) -> Chapter:
         "are assumed: no conclusion is firmer than these. Apart from the paper's claims this report does not "
         "vary them; a study says how far they move a result (spurcheck sweep)."
     )
-    return Chapter("limitations", "Assumptions and limitations", (text, table, outside))
+    return Content((text, table, outside))
 
 
 def _assumed(results: Results) -> tuple[int, int]:
@@ -101,3 +102,6 @@ def _rows(results: Results) -> Rows:
         )
     )
     return rows
+
+
+CHAPTER = Chapter("limitations", "Assumptions and limitations", write)

@@ -2,27 +2,47 @@
 
 from __future__ import annotations
 
-import numpy as np
+import warnings
+from functools import partial
 
-from lumped import GearPair
+import numpy as np
+import xarray as xr
+
+from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError
+from lumped.losses import (
+    anderson_loewenthal_sliding_loss,
+    dynamic_losses,
+    iso_14179_mesh_loss,
+    iso_14179_of,
+    loss_factor,
+    losses_of_laws,
+    ohlendorf_of,
+    quasi_static_losses,
+    sliding_power_along_path,
+)
 from lumped.lubrication.viscosity import ZERO_CELSIUS
 from lumped.path_of_contact import contact_path
 from validation.plots.efficiency import efficiency_figure, film_figure, sliding_power_figure
-from validation.reporting.blocks import Block, Chapter, Fact, Facts, Picture, Quantity, Rows, Table, Text
-from validation.reporting.chapters.steady_state import unstable_warning
+from validation.reporting.blocks import Block, Content, Fact, Facts, Picture, Quantity, Rows, Table, Text
+from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
+from validation.reporting.words import unstable_warning
 
 
-def losses(results: Results) -> Chapter:
+def write(results: Results) -> Content:
     """Write the chapter."""
-    return Chapter(
-        "losses", "Losses and film", (*unstable_warning(results), *_losses(results), *_film(results))
-    )
+    results.stage("losses")
+    with warnings.catch_warnings():
+        # The chapter compares laws outside their ranges too, and says which.
+        warnings.simplefilter("ignore", LawRangeWarning)
+        by_law = losses_by_law(results.pair, results.motion, results.profile, quick=not results.effort.full)
+        blocks = (*unstable_warning(results), *_losses(results, by_law), *_film(results))
+    return Content(blocks, data={"losses_by_law": by_law})
 
 
-def _losses(results: Results) -> list[Block]:
-    pair, g, found = results.pair, results.geometry, results.mesh
-    by_law, numbers = found.losses, found.numbers
+def _losses(results: Results, by_law: xr.Dataset) -> list[Block]:
+    pair, g, motion = results.pair, results.geometry, results.motion
+    still = quasi_static_losses(pair)
     blocks: list[Block] = []
     if by_law.sizes["law"]:
         chosen = pair.friction.law
@@ -72,29 +92,36 @@ def _losses(results: Results) -> list[Block]:
             "sliding_power",
             "Left: sliding power of one tooth pair along the path of contact. Right: instantaneous mesh "
             "efficiency over the mesh cycle. Law of this report, without and with vibration.",
-            lambda: sliding_power_figure(
-                g, found.quasi_static, found.periodic, (found.instants, found.instants_periodic)
+            partial(
+                sliding_power_figure,
+                g,
+                sliding_power_along_path(still),
+                sliding_power_along_path(motion),
+                (still, dynamic_losses(pair, motion)),
             ),
         ),
-        Facts(
-            "losses",
-            (
-                Fact("input_power", "input power", Quantity(numbers.input_power, "W")),
-                Fact("ohlendorf", "loss factor, Ohlendorf's closed form", numbers.ohlendorf),
-                Fact("uniform", "loss factor, integrated, equal load sharing", numbers.uniform),
-                Fact("stiffness", "loss factor, load shared by stiffness", numbers.stiffness),
-                Fact("loaded", "loss factor, with the flanks' relief under load", numbers.loaded),
-                Fact("iso_coefficient", "mean µ of ISO/TR 14179-2", numbers.iso_coefficient),
-                Fact("iso_loss", "mesh loss of ISO/TR 14179-2", Quantity(numbers.iso_loss, "W")),
-                Fact(
-                    "anderson_loewenthal",
-                    "sliding loss of Anderson and Loewenthal",
-                    Quantity(numbers.anderson_loewenthal, "W"),
-                ),
-            ),
-        ),
+        Facts("losses", _numbers(pair)),
     ]
     return blocks
+
+
+def _numbers(pair: GearPair) -> tuple[Fact, ...]:
+    try:
+        loaded = loss_factor(pair, "loaded")
+    except (ParameterError, NumericalError):  # the chapter on mesh physics says why
+        loaded = None
+    power = pair.operating.pinion_torque * pair.operating.pinion_speed
+    anderson = anderson_loewenthal_sliding_loss(pair)
+    return (
+        Fact("input_power", "input power", Quantity(power, "W")),
+        Fact("ohlendorf", "loss factor, Ohlendorf's closed form", ohlendorf_of(pair)),
+        Fact("uniform", "loss factor, integrated, equal load sharing", loss_factor(pair, "uniform")),
+        Fact("stiffness", "loss factor, load shared by stiffness", loss_factor(pair, "stiffness")),
+        Fact("loaded", "loss factor, with the flanks' relief under load", loaded),
+        Fact("iso_coefficient", "mean µ of ISO/TR 14179-2", iso_14179_of(pair)),
+        Fact("iso_loss", "mesh loss of ISO/TR 14179-2", Quantity(iso_14179_mesh_loss(pair), "W")),
+        Fact("anderson_loewenthal", "sliding loss of Anderson and Loewenthal", Quantity(anderson, "W")),
+    )
 
 
 def _film(results: Results) -> list[Block]:
@@ -129,3 +156,34 @@ def _lubricant(pair: GearPair) -> tuple[Fact, ...]:
         Fact("mean_roughness", "mean roughness Ra", Quantity(path.roughness, "m")),
         Fact("composite_roughness", "composite roughness", Quantity(path.composite_roughness, "m")),
     )
+
+
+def losses_by_law(pair: GearPair, motion: xr.Dataset, profile: xr.Dataset, *, quick: bool) -> xr.Dataset:
+    """Efficiency of the mesh by friction law: closed form, quasi-static, and of the periodic motion.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    motion : its periodic motion, of ``lumped.steady_state``
+    profile : its friction laws along the path, of ``lumped.path_of_contact.friction_profile``
+    quick : the periodic motion of the pair's own law alone
+    """
+    table = losses_of_laws(pair, dynamic=not quick)
+    own = pair.friction.law
+    if quick:
+        dynamic = [
+            float(motion.attrs["mesh_efficiency"]) if law == own else np.nan for law in table["law"].values
+        ]
+        attrs = {"units": "1", "long_name": "mesh efficiency of the periodic motion"}
+        table["mesh_efficiency_dynamic"] = ("law", np.array(dynamic), attrs)
+    mean = profile["mean_mu"].sel(law=table["law"])
+    table["path_coefficient"] = ("law", mean.to_numpy(), mean.attrs)
+    table["mesh_efficiency_closed_form"] = (
+        "law",
+        1.0 - mean.to_numpy() * ohlendorf_of(pair),
+        {"units": "1", "long_name": "1 - mean |mu| times Ohlendorf's loss factor"},
+    )
+    return table
+
+
+CHAPTER = Chapter("losses", "Losses and film", write, seconds=2)

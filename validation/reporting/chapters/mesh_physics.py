@@ -9,14 +9,16 @@ from lumped.quasi_static import OptimalRelief
 from validation.plots.harris_map import harris_figure, relief_figure
 from validation.plots.load_sharing import load_sharing_figure
 from validation.plots.stiffness_components import energy_mesh_figure, stiffness_components_figure
-from validation.reporting.blocks import Block, Chapter, Fact, Facts, Picture, Quantity, Rows, Table, Text
-from validation.reporting.mesh_physics import CURVES, MeshPhysics
+from validation.reporting.blocks import Block, Content, Fact, Facts, Picture, Quantity, Rows, Table, Text
+from validation.reporting.chapter import Chapter
+from validation.reporting.mesh_physics import CURVES, MeshPhysics, mesh_physics
 from validation.reporting.results import Results
 
 
-def mesh_physics(results: Results) -> Chapter:
+def write(results: Results) -> Content:
     """Write the chapter."""
-    found = results.mesh
+    results.stage("mesh physics")
+    found = mesh_physics(results.pair, quick=not results.effort.full)
     blocks: list[Block] = [
         Text(_introduction(results.pair)),
         *_stiffness(results, found),
@@ -24,7 +26,13 @@ def mesh_physics(results: Results) -> Chapter:
     ]
     if found.refused:
         blocks.append(Text("Not computed for this pair:", found.refused))
-    return Chapter("mesh_physics", "Mesh physics", tuple(blocks))
+    data = {
+        "stiffness_components": found.components,
+        "static_transmission_error": found.curves,
+        "harris_map": found.harris,
+        "relief_map": found.relief,
+    }
+    return Content(tuple(blocks), data={name: one for name, one in data.items() if one is not None})
 
 
 def _introduction(pair: GearPair) -> str:
@@ -228,3 +236,6 @@ def _remaining(best: OptimalRelief) -> tuple[Quantity, str]:
     if best.peak_to_peak < 1e-6 * best.unmodified:
         return Quantity(0.0, "m"), "below a millionth of that without relief"
     return Quantity(best.peak_to_peak, "m"), ""
+
+
+CHAPTER = Chapter("mesh_physics", "Mesh physics", write, seconds=2)

@@ -4,21 +4,22 @@ from __future__ import annotations
 
 import math
 from functools import partial
+from pathlib import Path
 
 from validation.paper import DRAW, PAPER, ClaimsTable
-from validation.reporting.blocks import Badge, Block, Chapter, Picture, Quantity, Rows, Table, Text
+from validation.reporting.blocks import Badge, Block, Content, Picture, Quantity, Rows, Table, Text
+from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 
 
-def paper(results: Results) -> Chapter | None:
+def write(results: Results) -> Content | None:
     """Write the chapter; None where the comparison was not asked for."""
-    title = "Comparison with the paper"
-    if results.paper_refusal:
-        text = f"Not at the paper's operating points with this gear pair: {results.paper_refusal}"
-        return Chapter("paper", title, (Text(text),))
-    if results.paper is None:
+    found = results.paper
+    if found is None:
         return None
-    table = results.paper.claims
+    if isinstance(found, str):
+        return Content((Text(f"Not at the paper's operating points with this gear pair: {found}"),))
+    table = found.claims
     counted = {
         verdict: sum(c.verdict == verdict for c in table.claims)
         for verdict in ("reproduced", "not reproduced", "cannot be judged")
@@ -41,7 +42,7 @@ def paper(results: Results) -> Chapter | None:
         ),
         _details(table),
     ]
-    for record in results.paper.figures:
+    for record in found.figures:
         blocks.append(
             Picture(
                 f"paper_figure{record.number}",
@@ -58,7 +59,12 @@ def paper(results: Results) -> Chapter | None:
                 tuple(numbers),
             )
         )
-    return Chapter("paper", title, tuple(blocks))
+
+    def write_more(folder: Path) -> None:
+        for record in found.figures:
+            record.write(folder / "paper")
+
+    return Content(tuple(blocks), write_more=write_more)
 
 
 def _claims(table: ClaimsTable) -> Table:
@@ -124,3 +130,6 @@ def _details(table: ClaimsTable) -> Table:
         {"claim": "claim", "quantity": "quantity", "value": "value"},
         tuple(rows),
     )
+
+
+CHAPTER = Chapter("paper", "Comparison with the paper", write, seconds=20)

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import math
 import re
-from functools import cache
 
-from lumped import GearPair, bodies, load_gear_pair, mesh_elements
-from lumped.schema.files import leaf_paths, preset_names
+from lumped import bodies, mesh_elements
+from lumped.schema.files import leaf_paths
 from lumped.schema.pair import stated_unit
-from validation.reporting.blocks import Badge, Chapter, Fact, Facts, Quantity, Rows, Table, Text
+from validation.reporting.blocks import Badge, Content, Fact, Facts, Quantity, Rows, Table, Text
+from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
-
-#: Source of a value that the parameter file leaves to the schema.
-DEFAULT = "default of the schema"
+from validation.reporting.sources import is_assumed, source_of
 
 
-def parameters(results: Results) -> Chapter:
+def write(results: Results) -> Content:
     """Write the chapter."""
     pair, g = results.pair, results.geometry
     rows: Rows = []
@@ -85,7 +83,7 @@ def parameters(results: Results) -> Chapter:
             ),
         ),
     )
-    return Chapter("parameters", "Parameters", (table, Text("What follows from the parameters:"), derived))
+    return Content((table, Text("What follows from the parameters:"), derived))
 
 
 _EXPONENTS = str.maketrans("123456789", "¹²³⁴⁵⁶⁷⁸⁹")
@@ -97,32 +95,4 @@ def unit_text(unit: str) -> str:
     return {"um": "µm", "deg": "°", "degC": "°C"}.get(text, text)
 
 
-def source_of(pair: GearPair, path: str) -> str:
-    """Where the value of a field comes from: the source of the longest prefix of its path that has one.
-
-    A file that began as a preset may still give the preset's source for a value changed since: that value is
-    assumed, for all the file says.
-    """
-    source = _stated(pair, path)
-    presets = [preset for preset in _presets() if _stated(preset, path) == source]
-    value = leaf_paths(pair).get(path)
-    if is_assumed(source) or not presets or any(leaf_paths(p).get(path) == value for p in presets):
-        return source
-    return f"assumed; the source in the file is that of {presets[0].name} for another value"
-
-
-def _stated(pair: GearPair, path: str) -> str:
-    sources = dict(pair.sources)
-    parts = path.split(".")
-    prefixes = (".".join(parts[:length]) for length in range(len(parts), 0, -1))
-    return next((sources[prefix] for prefix in prefixes if prefix in sources), DEFAULT)
-
-
-@cache
-def _presets() -> tuple[GearPair, ...]:
-    return tuple(map(load_gear_pair, preset_names()))
-
-
-def is_assumed(source: str) -> bool:
-    """Whether a source says that nobody measured or published the value for this pair."""
-    return "assumed" in source.lower() or source == DEFAULT
+CHAPTER = Chapter("parameters", "Parameters", write)

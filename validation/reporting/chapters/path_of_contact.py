@@ -5,11 +5,12 @@ from __future__ import annotations
 from lumped import mesh_cycle
 from lumped.friction import LAWS
 from validation import plots
-from validation.reporting.blocks import Block, Chapter, Picture, Quantity, Rows, Table, Text
+from validation.reporting.blocks import Block, Content, Picture, Quantity, Rows, Table, Text
+from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 
 
-def path_of_contact(results: Results) -> Chapter:
+def write(results: Results) -> Content:
     """Write the chapter."""
     pair, g, profile = results.pair, results.geometry, results.profile
     chosen = pair.friction.law
@@ -87,4 +88,7 @@ def path_of_contact(results: Results) -> Chapter:
         blocks.append(Text("Laws that this pair does not allow:", tuple(left_out)))
     if chosen == "none":
         blocks.append(Text(f"The pair runs without friction ({LAWS['none'].title})."))
-    return Chapter("path_of_contact", "Path of contact", tuple(blocks))
+    return Content(tuple(blocks), data={"friction_laws": profile})
+
+
+CHAPTER = Chapter("path_of_contact", "Path of contact", write, seconds=0.2)

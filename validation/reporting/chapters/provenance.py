@@ -9,7 +9,8 @@ from importlib import metadata, resources
 from pathlib import Path
 
 from lumped.model.results import parameters_hash
-from validation.reporting.blocks import Chapter, Fact, Facts, Table, Text
+from validation.reporting.blocks import Content, Fact, Facts, Table, Text
+from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 
 _OWN = ("lumped", "multibody", "floquet", "validation")
@@ -17,7 +18,7 @@ _SUFFIXES = frozenset({".py", ".toml", ".html", ".css", ".js"})
 _PACKAGES = ("spurcheck", "numpy", "scipy", "numba", "exudyn", "control", "xarray", "matplotlib")
 
 
-def provenance(results: Results) -> Chapter:
+def write(results: Results) -> Content:
     """Write the chapter."""
     effort = results.effort
     facts = Facts(
@@ -25,7 +26,7 @@ def provenance(results: Results) -> Chapter:
         (
             Fact("parameters_sha256", "SHA-256 of the parameters", parameters_hash(results.pair)),
             Fact("source_sha256", "SHA-256 of the program's source", source_hash()),
-            Fact("samples", "samples per mesh cycle", int(results.motion.sizes["time"])),
+            Fact("samples", "samples per mesh cycle", results.samples),
             Fact("cycles", "mesh cycles of the cross-check", effort.cycles),
             Fact("sweep_speeds", "speeds of the response", effort.sweep_speeds),
             Fact("chart_nodes", "nodes of the stability chart", effort.chart_speeds * effort.chart_dampings),
@@ -48,7 +49,7 @@ def provenance(results: Results) -> Chapter:
         "behind them (data/, NetCDF) and the parameter file that reproduces the report "
         "(data/parameters.toml)."
     )
-    return Chapter("provenance", "Versions and hashes", (text, facts, versions))
+    return Content((text, facts, versions))
 
 
 @cache
@@ -61,3 +62,6 @@ def source_hash() -> str:
             digest.update(f"{package}/{path.relative_to(root).as_posix()}\0".encode())
             digest.update(path.read_bytes() + b"\0")
     return digest.hexdigest()
+
+
+CHAPTER = Chapter("provenance", "Versions and hashes", write)

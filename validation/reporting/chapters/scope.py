@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from validation.reporting.blocks import Chapter, Text
+from validation.reporting.blocks import Content, Text
+from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 
 
-def scope(results: Results) -> Chapter:
+def write(results: Results) -> Content:
     """Write the chapter."""
     text = Text(
         "This report predicts the motion of one spur gear pair with a lumped model, checks the prediction "
@@ -41,4 +42,7 @@ def scope(results: Results) -> Chapter:
             "gearbox is for measurements to say; values marked “assumed” carry that question.",
         ),
     )
-    return Chapter("scope", "Scope", (text, models, limits))
+    return Content((text, models, limits))
+
+
+CHAPTER = Chapter("scope", "Scope", write)

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
-from validation.reporting.blocks import Badge, Chapter, Rows, Table, Text
+from validation.reporting.blocks import Badge, Content, Rows, Table, Text
+from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
+from validation.verification import Refinement, refinements
 
 
-def solution_verification(results: Results) -> Chapter | None:
-    """Write the chapter; None in a quick report."""
-    if results.verification is None:
+def write(results: Results) -> Content | None:
+    """Refine the solutions and write the chapter; None in a quick report."""
+    if not results.effort.full:
         return None
-    studies = results.verification.solution
+    results.stage("solution verification")
+    return content(refinements(results.pair, results.samples))
+
+
+def content(studies: tuple[Refinement, ...]) -> Content:
+    """Content of the chapter from its refinements."""
     passed = sum(s.passes for s in studies)
     text = Text(
         f"How large is the numerical error of this report's numbers? Every kind of solution was computed "
@@ -41,4 +48,7 @@ def solution_verification(results: Results) -> Chapter | None:
     )
     what = Text("Errors and limits:", tuple(f"{s.subject}: {s.measure}; {s.reason}." for s in studies))
     badge = Badge("confirmed" if passed == len(studies) else "not confirmed")
-    return Chapter("solution_verification", "Solution verification", (text, table, what), badge)
+    return Content((text, table, what), badge)
+
+
+CHAPTER = Chapter("solution_verification", "Solution verification", write, seconds=2)

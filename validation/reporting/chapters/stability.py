@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from floquet.gear.chart_axes import chart_axes
+from floquet.gear.dense_chart import dense_chart
 from validation import plots
 from validation.plots.tongue_chart import tongue_chart_figure
 from validation.reporting.blocks import (
+    Answer,
     Badge,
     Block,
-    Chapter,
+    Content,
     Fact,
     Facts,
     Picture,
@@ -18,13 +21,21 @@ from validation.reporting.blocks import (
     Table,
     Text,
 )
+from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
+from validation.reporting.words import stable_speeds
 
 
-def stability(results: Results) -> Chapter:
+def write(results: Results) -> Content:
     """Write the chapter."""
-    chart, found, pair = results.chart, results.multipliers, results.pair
-    m = results.margins
+    pair, found, m = results.pair, results.multipliers, results.margins
+    effort = results.effort
+    chart = dense_chart(
+        pair,
+        chart_axes(pair, effort.chart_speeds, effort.chart_dampings),
+        rtol=effort.chart_rtol,
+        progress=results.stage("stability chart"),
+    )
     here = chart.sel(damping_ratio=pair.mesh.damping_ratio, method="nearest")
     speeds, dampings = chart["speed_rpm"].to_numpy(), chart["damping_ratio"].to_numpy()
     radii = here["spectral_radius"].to_numpy()
@@ -112,4 +123,17 @@ def stability(results: Results) -> Chapter:
             tuple(rows),
         ),
     ]
-    return Chapter("stability", "Stability", tuple(blocks), Badge(found.verdict))
+    return Content(tuple(blocks), Badge(found.verdict), {"stability_chart": chart})
+
+
+def answer(results: Results) -> Answer:
+    """Whether the periodic motion is stable at the operating point, and at which other speeds."""
+    found = results.multipliers
+    text = (
+        f"Largest multiplier {found.spectral_radius:.4f} at the operating point; stable "
+        f"{stable_speeds(results)} at the given damping."
+    )
+    return Answer("Is the motion stable?", Badge(found.verdict), text)
+
+
+CHAPTER = Chapter("stability", "Stability", write, answer, seconds=3)

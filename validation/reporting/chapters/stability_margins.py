@@ -6,11 +6,12 @@ from functools import partial
 
 from floquet.gear.margins import ORDERS
 from validation.plots.tongues import tongues_figure
-from validation.reporting.blocks import Block, Chapter, Fact, Facts, Picture, Quantity, Rows, Table, Text
+from validation.reporting.blocks import Block, Content, Fact, Facts, Picture, Quantity, Rows, Table, Text
+from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 
 
-def stability_margins(results: Results) -> Chapter:
+def write(results: Results) -> Content:
     """Write the chapter."""
     m = results.margins
     low, high = m.speed_range
@@ -116,4 +117,7 @@ def stability_margins(results: Results) -> Chapter:
         ]
     else:
         blocks.append(Text(f"Even without mesh damping no speed from {reach} is unstable."))
-    return Chapter("stability_margins", "Stability margins", tuple(blocks))
+    return Content(tuple(blocks))
+
+
+CHAPTER = Chapter("stability_margins", "Stability margins", write)

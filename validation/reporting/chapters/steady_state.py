@@ -6,15 +6,17 @@ import math
 
 import numpy as np
 
-from lumped import bodies
+from lumped import GearPair, bodies
+from lumped.model.averaged import Mode
 from lumped.model.periodic_cycle import UNSTABLE
 from lumped.model.results import VARIABLES
 from validation import plots
+from validation.cross_check.metrics import mesh_orders
 from validation.reporting.blocks import (
+    Answer,
     Badge,
     Block,
-    Cell,
-    Chapter,
+    Content,
     Fact,
     Facts,
     Picture,
@@ -23,11 +25,15 @@ from validation.reporting.blocks import (
     Table,
     Text,
 )
+from validation.reporting.chapter import Chapter
+from validation.reporting.formatting import number
 from validation.reporting.results import Results
-from validation.validity.flags import LOAD_NOISE
+from validation.reporting.words import efficiency, objections, span, unstable_warning
+
+_ORDERS = 10
 
 
-def steady_state(results: Results) -> Chapter:
+def write(results: Results) -> Content:
     """Write the chapter."""
     pair, g, motion = results.pair, results.geometry, results.motion
     load = motion["normal_load"].to_numpy()
@@ -71,11 +77,11 @@ def steady_state(results: Results) -> Chapter:
         ),
     )
     names = ("dte", "x_p", "x_g", "y_p", "y_g")
-    rows: Rows = []
-    for order in range(1, 7):
-        row: list[Cell] = [order]
-        row += [Quantity(float(results.orders[name].amplitude[order]), "m") for name in names]
-        rows.append(tuple(row))
+    found = {name: mesh_orders(motion[name].to_numpy(), results.samples, _ORDERS) for name in names}
+    rows: Rows = [
+        (order, *(Quantity(float(found[name].amplitude[order]), "m") for name in names))
+        for order in range(1, 7)
+    ]
     orders = Table(
         "mesh_orders",
         "Amplitudes by mesh order.",
@@ -89,7 +95,7 @@ def steady_state(results: Results) -> Chapter:
             "transmission_error",
             "Dynamic transmission error over one mesh cycle (dotted: its mean) and its amplitudes by mesh "
             "order.",
-            lambda: plots.transmission_error_figure(pair, g, motion, results.orders["dte"]),
+            lambda: plots.transmission_error_figure(pair, g, motion, found["dte"]),
         ),
         Picture(
             "tooth_forces",
@@ -105,17 +111,18 @@ def steady_state(results: Results) -> Chapter:
         Picture(
             "motions_by_order",
             "The same motions by mesh order.",
-            lambda: plots.orders_figure({name: results.orders[name] for name in names[1:]}),
+            lambda: plots.orders_figure(found),
         ),
         orders,
         *_over_speed(results),
     ]
-    return Chapter("steady_state", "Periodic motion", tuple(blocks))
+    data = {"periodic_motion": motion, "speed_sweep": results.sweep}
+    return Content(tuple(blocks), data=data)
 
 
 def _over_speed(results: Results) -> list[Block]:
     sweep = results.sweep
-    off = off_line_modes(results)
+    off = off_line_modes(results.pair, results.modes)
     places = [mode.resonant_speed for k, mode in enumerate(results.modes) if k not in off]
     speed = sweep["speed"].to_numpy()
     unstable = sweep["spectral_radius"].to_numpy() > UNSTABLE  # False where there is no periodic motion
@@ -136,9 +143,7 @@ def _over_speed(results: Results) -> list[Block]:
                 Fact("speed_low", "lowest speed", Quantity(float(speed[0]), "rpm")),
                 Fact("speed_high", "highest speed", Quantity(float(speed[-1]), "rpm")),
                 Fact("speeds", "speeds computed", int(speed.size)),
-                Fact(
-                    "share_separating", "share of the speeds with negative loads", separating_share(results)
-                ),
+                Fact("share_separating", "share of the speeds with negative loads", results.separating_share),
                 Fact("share_unstable", "share of the speeds with an unstable motion", float(unstable.mean())),
                 Fact(
                     "speed_of_largest",
@@ -187,40 +192,38 @@ def _over_speed(results: Results) -> list[Block]:
     return blocks
 
 
-def separating_share(results: Results) -> float:
-    """Share of the computed speeds at which a tooth pair would have to pull."""
-    low = results.sweep["normal_load_min"].to_numpy()  # NaN where there is no periodic motion
-    return float(np.mean(low < -LOAD_NOISE * results.static_load))
-
-
-def unstable_warning(results: Results) -> tuple[Text, ...]:
-    """What a chapter on the periodic motion says first where that motion is not stable."""
-    found = results.multipliers
-    if found.verdict == "stable":
-        return ()
-    return (
-        Text(
-            f"Warning: the periodic motion at the operating point is {found.verdict} (largest multiplier "
-            f"{found.spectral_radius:.4g}). What follows is a solution of the equations that a gear pair "
-            "leaves at the smallest disturbance: not a prediction of what it does."
-        ),
-    )
-
-
-def off_line_modes(results: Results) -> frozenset[int]:
-    """Places in ``results.modes`` of the two modes off the line of action.
+def off_line_modes(pair: GearPair, modes: tuple[Mode, ...]) -> frozenset[int]:
+    """Places in ``modes`` of the two modes off the line of action.
 
     Friction drives y_p and y_g but they do not act back, so two modes are those of the bearings alone: the
     nearest to sqrt(K/m). Shapes cannot tell, since equal gears have a third mode of that very frequency.
     """
-    b, bearings = bodies(results.pair), results.pair.bearings
+    b, bearings = bodies(pair), pair.bearings
     found: set[int] = set()
     for stiffness, mass in (
         (bearings.pinion.oloa_stiffness, b.mass_pinion),
         (bearings.gear.oloa_stiffness, b.mass_gear),
     ):
         frequency = math.sqrt(stiffness / mass) / (2.0 * math.pi)
-        free = [k for k in range(len(results.modes)) if k not in found]
+        free = [k for k in range(len(modes)) if k not in found]
         if free:
-            found.add(min(free, key=lambda k: abs(results.modes[k].natural_frequency - frequency)))
+            found.add(min(free, key=lambda k: abs(modes[k].natural_frequency - frequency)))
     return frozenset(found)
+
+
+def answer(results: Results) -> Answer:
+    """What the model predicts, after the reasons not to rely on it."""
+    load = results.motion["normal_load"].to_numpy()[results.motion["contact"].to_numpy() > 0]
+    text = (
+        f"Transmission error {span(results)} peak to peak, tooth loads up to "
+        f"{number(float(load.max()) / results.static_load, 3)} times the static load, mesh efficiency "
+        f"{efficiency(results)}."
+    )
+    badge = Badge("prediction")
+    if wrong := objections(results):
+        badge = Badge("violated", "not reliable")
+        text = f"Not to be relied on: {'; '.join(wrong)}. {text}"
+    return Answer("What does the model predict?", badge, text)
+
+
+CHAPTER = Chapter("steady_state", "Periodic motion", write, answer, seconds=3)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from validation.reporting.blocks import Badge, Chapter, Quantity, Table, Text
+from validation.reporting.blocks import Answer, Badge, Content, Quantity, Table, Text
+from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
+from validation.reporting.words import validity as words
 from validation.validity.flag import worst_state
 
 _WORDS = {
@@ -13,7 +15,7 @@ _WORDS = {
 }
 
 
-def validity(results: Results) -> Chapter:
+def write(results: Results) -> Content:
     """Write the chapter."""
     flags = results.flags
     state = worst_state(flags)
@@ -41,6 +43,14 @@ def validity(results: Results) -> Chapter:
             for flag in flags
         ),
     )
-    return Chapter(
-        "validity", "Validity", (Text(f"At the operating point {_WORDS[state]}."), table), Badge(state)
-    )
+    return Content((Text(f"At the operating point {_WORDS[state]}."), table), Badge(state))
+
+
+def answer(results: Results) -> Answer:
+    """Whether the assumptions of the lumped model hold."""
+    flags = results.flags
+    passed = f"{sum(f.state == 'ok' for f in flags)} of {len(flags)} checks pass."
+    return Answer("Is the model valid here?", Badge(worst_state(flags)), f"{passed} {words(results)}")
+
+
+CHAPTER = Chapter("validity", "Validity", write, answer)

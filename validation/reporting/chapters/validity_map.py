@@ -6,17 +6,24 @@ from functools import partial
 
 import numpy as np
 
+from floquet.gear.chart_axes import operating_rpm, with_point
+from lumped import GearPair
 from lumped.model.periodic_cycle import UNSTABLE
+from lumped.typing import BoolArray, FloatArray
 from validation.plots.validity_map import validity_map_figure
-from validation.reporting.blocks import Chapter, Fact, Facts, Picture, Quantity, Rows, Table, Text
-from validation.reporting.results import Results
+from validation.reporting.blocks import Content, Fact, Facts, Picture, Quantity, Rows, Table, Text
+from validation.reporting.chapter import Chapter
+from validation.reporting.results import Effort, Results
 from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
 from validation.validity.map import REGIMES, STATES
+from validation.validity.map import validity_map as compute_map
 
 
-def validity_map(results: Results) -> Chapter:
+def write(results: Results) -> Content:
     """Write the chapter."""
-    data, pair = results.validity, results.pair
+    pair = results.pair
+    axes = map_axes(pair, results.speeds, results.effort)
+    data = compute_map(pair, *axes, progress=results.stage("validity over speed and torque"))
     state, regime = data["state"].to_numpy(), data["regime"].to_numpy()
     lowest, reversal = data["lowest_load"].to_numpy(), data["reversal"].to_numpy()
     with np.errstate(invalid="ignore"):
@@ -78,12 +85,21 @@ def validity_map(results: Results) -> Chapter:
             "unseen.",
         ),
     )
-    return Chapter("validity_map", "Validity over speed and torque", blocks)
+    return Content(blocks, data={"validity_map": data})
+
+
+def map_axes(pair: GearPair, speeds: tuple[float, float], effort: Effort) -> tuple[FloatArray, FloatArray]:
+    """Speeds [rpm] and torques [N m] of the map; the operating point is a node."""
+    torque = pair.operating.pinion_torque
+    return (
+        with_point(np.linspace(*speeds, effort.map_speeds), operating_rpm(pair)),
+        with_point(torque * np.geomspace(0.2, 4.0, effort.map_torques), torque),
+    )
 
 
 def _spans(
-    speed: np.ndarray[tuple[int, ...], np.dtype[np.float64]],
-    good: np.ndarray[tuple[int, ...], np.dtype[np.bool_]],
+    speed: FloatArray,
+    good: BoolArray,
 ) -> str:
     """Runs of good speeds in words."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(int), [0]])))
@@ -92,3 +108,6 @@ def _spans(
         low, high = speed[first], speed[end - 1]
         parts.append(f"{low:.5g} rpm" if low == high else f"{low:.5g} to {high:.5g} rpm")
     return ", ".join(parts)
+
+
+CHAPTER = Chapter("validity_map", "Validity over speed and torque", write, seconds=4)

@@ -1,11 +1,14 @@
-"""Part of the cross-check: the teeth that the multibody model sees, and why the models differ."""
+"""Part of the cross-check chapter: the teeth that the multibody model sees, and why the models differ."""
 
 from __future__ import annotations
 
 from functools import partial
 
 import numpy as np
+import xarray as xr
 
+import multibody
+from lumped import GearPair, NumericalError
 from multibody.study.pictures import gear_picture
 from validation.reporting.blocks import Block, Picture, Rows, Table, Text
 from validation.reporting.results import Results
@@ -35,9 +38,16 @@ def meshing_teeth(results: Results) -> Picture:
     )
 
 
-def causes(results: Results) -> list[Block]:
-    """Table of what each finite-motion effect does; nothing where it was not computed."""
-    found = results.causes
+def attribution(pair: GearPair) -> xr.Dataset | None:
+    """Effects of finite motions one by one; None where the exact model has no periodic motion nearby."""
+    try:
+        return multibody.attribution(pair, periodic=True)
+    except NumericalError:
+        return None
+
+
+def causes(found: xr.Dataset | None) -> list[Block]:
+    """Table of what each finite-motion effect does; nothing without an ``attribution``."""
     if found is None:
         return []
     rows: Rows = []

@@ -1,0 +1,227 @@
+"""Are the chapters complete, do they say what was computed, and can their verdicts fail?"""
+
+import ast
+import copy
+import dataclasses
+import inspect
+import json
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from lumped import NumericalError
+from multibody.study.causes import CAUSES
+from validation.reporting import causes
+from validation.reporting.blocks import Fact, Table, plain
+from validation.reporting.build import document as document_of
+from validation.reporting.build import written
+from validation.reporting.chapters import CHAPTERS, code_verification, paper, solution_verification
+from validation.reporting.compare import compare
+from validation.reporting.results import FULL, QUICK
+from validation.reporting.words import finite_motions, sentence
+from validation.verification import code_checks, order_checks, refinements
+
+ASKED = [
+    "scope",
+    "parameters",
+    "path_of_contact",
+    "mesh_physics",
+    "steady_state",
+    "losses",
+    "code_verification",
+    "solution_verification",
+    "cross_check",
+    "stability",
+    "stability_margins",
+    "validity",
+    "validity_map",
+    "paper",
+    "errata",
+    "limitations",
+    "provenance",
+]
+
+
+def test_the_report_has_every_chapter_a_verifier_asks_for(chapters):
+    assert list(chapters) == ASKED
+
+
+def test_a_chapter_imports_no_other_chapter():
+    for chapter in CHAPTERS:
+        tree = ast.parse(inspect.getsource(inspect.getmodule(chapter.write)))
+        modules = [node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
+        assert not [name for name in modules if name.startswith("validation.reporting.chapters")], chapter.key
+
+
+def test_a_quick_report_says_nothing_of_paper_and_verification(pair, quick):
+    keys = {chapter.key for chapter, _ in written(quick)}
+    assert set(ASKED) - keys == {"paper", "errata", "code_verification", "solution_verification"}
+    assert sentence(quick)
+    assert FULL.full
+    assert not QUICK.full
+
+
+def test_a_pair_that_the_paper_does_not_suit_gets_the_reason_instead(computed):
+    refused = copy.copy(computed)
+    refused.paper = "No periodic motion at 4875 rpm."
+    (text,) = paper.CHAPTER.write(refused).blocks
+    assert text.text.endswith("with this gear pair: No periodic motion at 4875 rpm.")
+    keys = [chapter.key for chapter, _ in written(refused, chapters=CHAPTERS[-4:])]
+    assert keys == ["paper", "limitations", "provenance"]
+
+
+def table_of(content, key):
+    return next(block for block in content.blocks if getattr(block, "key", None) == key)
+
+
+def test_claims_are_shown_with_their_number_of_samples(chapters, computed):
+    table = table_of(chapters["paper"], "claims")
+    assert len(table.rows) == len(computed.paper.claims.claims)
+    samples = f"{computed.effort.claim_samples} samples"
+    assert any(samples in getattr(b, "text", "") for b in chapters["paper"].blocks)
+    assert len(table_of(chapters["errata"], "errata").rows) == len(computed.paper.errata.errata)
+
+
+@pytest.fixture(scope="module")
+def document(computed, chapters):
+    by_key = {chapter.key: chapter for chapter in CHAPTERS}
+    return document_of(computed, tuple((by_key[key], made) for key, made in chapters.items()), quick=False)
+
+
+def _numbers(value, path=()):
+    """Paths of the numbers in report.json's data."""
+    if isinstance(value, dict):
+        for key, item in value.items():
+            yield from _numbers(item, (*path, key))
+    elif isinstance(value, list):
+        for place, item in enumerate(value):
+            yield from _numbers(item, (*path, place))
+    elif isinstance(value, float):
+        yield path, value
+
+
+@pytest.mark.parametrize(
+    ("table", "least"),
+    # Claims have a value, two percentiles and a share each; figure 4 three numbers a law and two twins.
+    [("paper/claims", 40), ("paper/claim_details", 15), ("errata/evidence", 100)]
+    + [(f"paper/figure{n}", least) for n, least in ((2, 12), (3, 8), (4, 14), (5, 16), (6, 8), (7, 8))],
+)
+def test_the_gate_sees_every_number_of_the_paper_chapters(document, table, least):
+    chapter, key = table.split("/")
+    alone = {chapter: {"title": "", key: document["chapters"][chapter][key]}}
+    old = {"gear_pair": "", "answers": [], "chapters": alone, "parameters": {}}
+    new, seen = copy.deepcopy(old), 0
+    for path, value in _numbers(old["chapters"][chapter][key]):
+        if abs(value) < 1e-4:  # what may count as zero beside others
+            continue
+        node = new["chapters"][chapter][key]
+        for part in path[:-1]:
+            node = node[part]
+        node[path[-1]] = 1.01 * value
+        found = compare(old, new)
+        node[path[-1]] = value
+        assert len(found.regressions) == 1, (path, value)
+        seen += 1
+    assert seen >= least
+
+
+def test_every_number_of_the_page_is_in_the_data(document, chapters):
+    # Facts carry numbers in their notes, figures in their captions, tables in their notes.
+    told = json.dumps(document, ensure_ascii=False)
+    for content in chapters.values():
+        for block in content.blocks:
+            words = [getattr(block, "caption", ""), getattr(block, "note", "")]
+            words += [fact.note for fact in getattr(block, "items", ()) if isinstance(fact, Fact)]
+            for text in words:
+                assert json.dumps(text, ensure_ascii=False)[1:-1] in told
+
+
+def test_one_failing_check_turns_the_chapter(pair):
+    checks, orders, studies = code_checks(pair), order_checks(), refinements(pair, 64)
+    wrong_order = dataclasses.replace(orders[0], observed=orders[0].theory - 1.0)
+    wrong_check = dataclasses.replace(checks[0], value=2 * checks[0].limit)
+    levels = tuple(dataclasses.replace(level, error=2 * studies[0].limit) for level in studies[0].levels)
+    wrong_study = dataclasses.replace(studies[0], levels=levels)
+    assert code_verification.content(checks, orders).badge.state == "confirmed"
+    for made in (
+        code_verification.content((wrong_check, *checks[1:]), orders),
+        code_verification.content(checks, (wrong_order, *orders[1:])),
+        solution_verification.content((wrong_study, *studies[1:])),
+    ):
+        assert made.badge.state == "not confirmed"
+
+
+def test_the_headline_states_the_largest_difference_also_when_it_is_within_its_tolerance(check):
+    def widened(left, pinion=0.3):
+        apart = {"y_g": 0.4, "y_p": pinion}
+        return dataclasses.replace(
+            check,
+            agreements=tuple(
+                dataclasses.replace(
+                    a,
+                    relative_l2=apart.get(a.quantity, 0.3) if a.fidelity == "exact" else 0.3,
+                    remainder_l2=left if (a.quantity, a.fidelity) == ("x_p", "exact") else 0.05,
+                    tolerance=dataclasses.replace(a.tolerance, limit=1.0),
+                )
+                for a in check.agreements
+            ),
+        )
+
+    assert widened(0.07).verdict == "confirmed"
+    text = finite_motions(widened(0.07)).replace("\u00a0", " ")
+    assert "changes the transmission error by 30 % and gear y, most of all, by 40 %" in text
+    assert text.endswith("the lumped motion alone accounts for all but 7 % (tolerance 100 %).")
+    # Equal but for rounding, as the bodies of a 1:1 pair are: the first is named, whichever is larger.
+    for pinion in (0.4 - 1e-12, 0.4 + 1e-12):
+        assert "and pinion y, most of all" in finite_motions(widened(0.07, pinion)).replace("\u00a0", " ")
+    # More than half is left: that is no account.
+    text = finite_motions(widened(0.2)).replace("\u00a0", " ")
+    assert text.endswith("does not account for this (20 % left, tolerance 100 %).")
+
+
+@pytest.fixture
+def attributed():
+    shape = (len(CAUSES) + 1, 4)
+    values = np.arange(1.0, 1.0 + np.prod(shape)).reshape(shape)
+    values[0, 2] = np.nan  # y without friction
+    return xr.Dataset(
+        {"alone": (("cause", "quantity"), values), "without": (("cause", "quantity"), 100.0 * values)},
+        coords={"cause": [*CAUSES, "all"], "quantity": ["dte", "x_p", "y_p", "theta_p"]},
+        attrs={"largest": "entry_shift"},
+    )
+
+
+def test_the_table_has_every_cause_and_its_numbers(attributed):
+    text, table = causes.causes(attributed)
+    assert isinstance(table, Table)
+    assert len(table.rows) == len(CAUSES) + 1
+    keys = list(table.columns)
+    row = dict(zip(keys, table.rows[2], strict=True))
+    assert row["dte_alone"] == float(attributed["alone"].sel(cause="entry_shift", quantity="dte"))
+    assert row["y_p_without"] == float(attributed["without"].sel(cause="entry_shift", quantity="y_p"))
+    assert table.marked == {2}
+    assert row["cause"] in text.text
+    everything = dict(zip(keys, map(plain, table.rows[-1]), strict=True))
+    assert everything["dte_without"] is None  # all but all is the lumped motion: nothing to state
+    assert dict(zip(keys, table.rows[0], strict=True))["y_p_alone"] is None
+
+
+def test_the_picture_shows_a_loaded_instant_of_the_exact_model(pair, check):
+    picture = causes.meshing_teeth(SimpleNamespace(pair=pair, check=check))
+    figure = picture.draw()
+    assert figure.get_suptitle().startswith(pair.name)
+    phase = float(figure.get_suptitle().split(" ")[-3])  # "after 3.25 mesh cycles"
+    # A quarter of the way into the last cycle: two pairs of the 28/28 pair touch up to 0.638.
+    assert phase == pytest.approx(check.cycles - 1 + 0.25)
+    arrows = [text for text in figure.axes[1].texts if text.arrow_patch is not None]
+    assert len(arrows) == 4
+
+
+def test_a_pair_without_multibody_motion_has_no_causes(pair, monkeypatch):
+    def fail(*_, **__):
+        raise NumericalError("No periodic multibody motion.")
+
+    monkeypatch.setattr(causes.multibody, "attribution", fail)
+    assert causes.causes(causes.attribution(pair)) == []

@@ -1,0 +1,42 @@
+"""Where the values of a gear pair come from: a source, or an assumption."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from lumped import GearPair, load_gear_pair
+from lumped.schema.files import leaf_paths, preset_names
+
+#: Source of a value that the parameter file leaves to the schema.
+DEFAULT = "default of the schema"
+
+
+def source_of(pair: GearPair, path: str) -> str:
+    """Where the value of a field comes from: the source of the longest prefix of its path that has one.
+
+    A file that began as a preset may still give the preset's source for a value changed since: that value is
+    assumed, for all the file says.
+    """
+    source = _stated(pair, path)
+    presets = [preset for preset in _presets() if _stated(preset, path) == source]
+    value = leaf_paths(pair).get(path)
+    if is_assumed(source) or not presets or any(leaf_paths(p).get(path) == value for p in presets):
+        return source
+    return f"assumed; the source in the file is that of {presets[0].name} for another value"
+
+
+def is_assumed(source: str) -> bool:
+    """Whether a source says that nobody measured or published the value for this pair."""
+    return "assumed" in source.lower() or source == DEFAULT
+
+
+def _stated(pair: GearPair, path: str) -> str:
+    sources = dict(pair.sources)
+    parts = path.split(".")
+    prefixes = (".".join(parts[:length]) for length in range(len(parts), 0, -1))
+    return next((sources[prefix] for prefix in prefixes if prefix in sources), DEFAULT)
+
+
+@cache
+def _presets() -> tuple[GearPair, ...]:
+    return tuple(map(load_gear_pair, preset_names()))

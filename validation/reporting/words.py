@@ -1,0 +1,156 @@
+"""What several chapters and the first lines of the report say about the shared results."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from validation.cross_check.comparison import CrossCheck
+from validation.reporting.blocks import Text
+from validation.reporting.formatting import number, quantity
+from validation.reporting.results import Results
+
+#: Short names of the quantities that the models are compared by.
+NAMES = {
+    "dte": "transmission error",
+    "x_p": "pinion x",
+    "x_g": "gear x",
+    "y_p": "pinion y",
+    "y_g": "gear y",
+    "normal_load": "normal load",
+    "friction_force": "friction force",
+}
+
+
+def sentence(results: Results) -> str:
+    """The report in one paragraph: what is wrong comes first."""
+    wrong = objections(results)
+    return (
+        (f"Do not rely on this prediction: {'; '.join(wrong)}. " if wrong else "")
+        + f"At {results.operating_rpm:.5g} rpm and {results.pair.operating.pinion_torque:.4g} N m the lumped "
+        f"model {'computes' if wrong else 'predicts'} a transmission error of {span(results)} peak to peak "
+        f"and a mesh efficiency of {efficiency(results)}. {_agreement(results.check)} The motion is "
+        f"{_stability(results)} {validity(results)}"
+    )
+
+
+def span(results: Results) -> str:
+    """Peak to peak of the transmission error."""
+    return quantity(float(np.ptp(results.motion["dte"].to_numpy())), "m", 3)
+
+
+def efficiency(results: Results) -> str:
+    """Mesh efficiency in percent."""
+    return f"{100 * float(results.motion.attrs['mesh_efficiency']):.2f} %"
+
+
+def objections(results: Results) -> list[str]:
+    """Reasons why a gear pair would not show the predicted motion."""
+    verdict = results.multipliers.verdict
+    found = [] if verdict == "stable" else [f"the periodic motion is {verdict}, so a pair would leave it"]
+    found += [
+        f"the assumption “{flag.name.lower()}” is violated"
+        for flag in results.flags
+        if flag.state == "violated" and flag.key != "stability"
+    ]
+    if results.check.verdict == "not confirmed":
+        found.append("the independent multibody model does not confirm it")
+    return found
+
+
+def unstable_warning(results: Results) -> tuple[Text, ...]:
+    """What a chapter on the periodic motion says first where that motion is not stable."""
+    found = results.multipliers
+    if found.verdict == "stable":
+        return ()
+    return (
+        Text(
+            f"Warning: the periodic motion at the operating point is {found.verdict} (largest multiplier "
+            f"{found.spectral_radius:.4g}). What follows is a solution of the equations that a gear pair "
+            "leaves at the smallest disturbance: not a prediction of what it does."
+        ),
+    )
+
+
+def _stability(results: Results) -> str:
+    verdict = results.multipliers.verdict
+    here = "stable here and" if verdict == "stable" else f"{verdict} here and stable"
+    return f"{here} {stable_speeds(results)}."
+
+
+def stable_speeds(results: Results) -> str:
+    """At which speeds of the range the motion is stable."""
+    low, high = results.margins.speed_range
+    reach = f"at all speeds from {low:.0f} to {high:.0f} rpm"
+    unstable = results.margins.unstable_here
+    if not unstable.size:
+        return reach
+    ranges = ", ".join(f"{a:.5g} to {b:.5g} rpm" for a, b in unstable[:3])
+    more = f" and {len(unstable) - 3} more ranges" if len(unstable) > 3 else ""
+    return f"{reach} but {ranges}{more}"
+
+
+def validity(results: Results) -> str:
+    """Which assumptions hold here, and over how much of the speed range teeth stay in contact."""
+    raised = [flag for flag in results.flags if flag.state != "ok"]
+    words = {"warning": "near a limit", "violated": "violated"}
+    text = "The model's assumptions hold here"
+    if raised:
+        listed = (f"{flag.name.lower()} ({words[flag.state]})" for flag in raised)
+        text = f"Of the model's assumptions, these are in question here: {', '.join(listed)}"
+    share, (low, high) = results.separating_share, results.margins.speed_range
+    if not share:
+        return f"{text}."
+    return (
+        f"{text}; at {100 * share:.2g} % of the speeds from {low:.0f} to {high:.0f} rpm teeth would "
+        "separate, and neither motion nor stability there is as computed."
+    )
+
+
+def _agreement(check: CrossCheck) -> str:
+    if not all(a.within for a in check.of("linear")):
+        return f"The independent multibody model does not confirm it. {same_equations(check)}"
+    confirms = {
+        "confirmed": "confirms it",
+        "bounded": "confirms the equations, but finite motions do more than the lumped motion accounts for",
+        "not confirmed": "confirms the equations, but shows another motion",
+    }[check.verdict]
+    return f"The independent multibody model {confirms}. {finite_motions(check)}"
+
+
+def same_equations(check: CrossCheck) -> str:
+    """How well the multibody model agrees when it holds the equations of the lumped model."""
+    worst = check.worst("linear")
+    verb = "agrees" if worst.within else "does not agree"
+    return (
+        f"With the same equations the multibody model {verb}: {NAMES[worst.quantity]} to "
+        f"{number(worst.judged, 2)} of its peak to peak, tolerance {number(worst.tolerance.limit, 2)}."
+    )
+
+
+def finite_motions(check: CrossCheck) -> str:
+    """How much the exact model differs, in the transmission error and in whatever differs most.
+
+    The text also says how much of the difference follows from the lumped motion. A difference is stated
+    whatever the verdict is: also one that is understood, and so within its tolerance.
+    """
+    exact = check.of("exact")
+    # To the digits printed: the bodies of a 1:1 pair differ by rounding, and the first is named every time.
+    largest = max(exact, key=lambda a: float(f"{a.relative_l2:.2g}"))
+    dte = next((a for a in exact if a.quantity == "dte"), largest)
+    most = ""
+    if largest.quantity != dte.quantity:
+        most = f" and {NAMES[largest.quantity]}, most of all, by {_percent(largest.relative_l2)}"
+    worst = check.worst("exact")
+    left, limit = _percent(worst.remainder_l2), _percent(worst.tolerance.limit)
+    accounts = f"accounts for all but {left} (tolerance {limit})"
+    if worst.remainder_l2 > 0.5 * worst.relative_l2:
+        accounts = f"does not account for this ({left} left, tolerance {limit})"
+    return (
+        f"Its contact follows the actual motion, which changes the {NAMES[dte.quantity]} by "
+        f"{_percent(dte.relative_l2)}{most} (rms of the change over rms of the motion); the lumped motion "
+        f"alone {accounts}."
+    )
+
+
+def _percent(ratio: float) -> str:
+    return quantity(100 * ratio, "%", 2)
