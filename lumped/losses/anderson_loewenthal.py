@@ -65,7 +65,7 @@ def anderson_loewenthal_sliding_loss(pair: GearPair) -> float:
     """
     g, path = pair.geometry, contact_path(pair)
     at = quadrature(g, [_graded(g.L_XA, g.L_XP, g.L_XD)])
-    share = springs(pair, g, "uniform").share(at)
+    share = springs(pair, "uniform").share(at)
     return _mean_loss(at, share, np.abs(sliding_velocity(g, at.position)), pair, path.unit_load)
 
 

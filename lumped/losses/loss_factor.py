@@ -79,7 +79,7 @@ def loss_factor(pair: GearPair, sharing: Sharing = "uniform") -> float:
     H_v [-]; the mean sliding loss of a constant mu is mu H_v times the power, to first order in mu
     """
     g = pair.geometry
-    teeth = springs(pair, g, sharing)
+    teeth = springs(pair, sharing)
     at = quadrature(g, teeth.functions)
     return mean_loss_factor(g, at, teeth.share(at))
 

@@ -72,7 +72,7 @@ def quasi_static_losses(
     g = pair.geometry
     time = sample_times(g.mesh_period, samples_per_cycle)
     mu = friction_path_function(pair, law)
-    teeth = springs(pair, g, sharing)
+    teeth = springs(pair, sharing)
     torque = pair.operating.pinion_torque
     power_in = torque * g.omega_pinion
     nodes = quadrature(g, [mu, *teeth.functions])

@@ -19,7 +19,6 @@ from lumped.quasi_static.loaded_mesh import loaded_mesh
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
-    from lumped.gear_geometry.geometry import Geometry
     from lumped.schema.pair import GearPair
 
 _KINDS = ("elements", "loaded", "stiffness", "uniform")
@@ -62,7 +61,7 @@ class Springs:
         return np.asarray(k * (delta - e) / self.force, dtype=np.float64)
 
 
-def springs(pair: GearPair, g: Geometry, sharing: Sharing) -> Springs:
+def springs(pair: GearPair, sharing: Sharing) -> Springs:
     """Return the springs that share the load of a gear pair.
 
     Raises
@@ -70,6 +69,7 @@ def springs(pair: GearPair, g: Geometry, sharing: Sharing) -> Springs:
     ParameterError : not one of the kinds
     NumericalError : "loaded", and at some position no pair touches
     """
+    g = pair.geometry
     force = pair.operating.pinion_torque / g.base_radius_pinion
     if isinstance(sharing, PathFunction):
         return Springs(sharing, None, force)

@@ -11,6 +11,7 @@ import numpy as np
 
 from lumped.arguments import one_of, real_numbers
 from lumped.errors import NumericalError
+from lumped.labelling import labelled_dataset
 from lumped.model.periodic_system import Form, LTVSystem, periodic_system
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -136,14 +137,15 @@ def frequency_response(pair: GearPair, frequencies: Sequence[float] | FloatArray
     xarray.Dataset over ``frequency`` [Hz]: complex receptances ``dte``, ``x_p``, ``x_g`` [m/(N m)]
     """
     import control
-    import xarray as xr
 
     f = real_numbers("frequencies", frequencies, 0.0, above=True, unit="Hz")
     plant = averaged_state_space(pair, "feedback")
     response = control.frequency_response(plant, 2.0 * np.pi * f, squeeze=False).complex
-    result = xr.Dataset(attrs={"gear_pair": pair.name})
-    result["frequency"] = xr.DataArray(f, dims="frequency", attrs={"units": "Hz", "long_name": "frequency"})
-    for j, name in enumerate(OUTPUTS):
-        attrs = {"units": "m/(N m)", "long_name": f"receptance of {name} to the pinion torque"}
-        result[name] = xr.DataArray(response[j, 0], dims="frequency", attrs=attrs)
-    return result
+    return labelled_dataset(
+        {
+            name: ("frequency", response[j, 0], "m/(N m)", f"receptance of {name} to the pinion torque")
+            for j, name in enumerate(OUTPUTS)
+        },
+        {"frequency": (f, "Hz", "frequency")},
+        {"gear_pair": pair.name},
+    )

@@ -5,14 +5,12 @@ The printed signs of eqs. 1, 2, 7 and 9 can be put back one at a time, to show w
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
 
 from lumped.arguments import some_of
-from lumped.errors import refuse
 from lumped.model.bodies import bodies
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -124,33 +122,3 @@ def structure(pair: GearPair, as_printed: Collection[int] = ()) -> Structure:
         normal=np.array([-r_bp, s.gear_mesh * r_bg, -1.0, s.gear_loa, 0.0, 0.0]),
         friction_arm=arm,
     )
-
-
-def static_deflection(
-    pair: GearPair, total_stiffness: float, pinion_torque: float | None = None
-) -> FloatArray:
-    """At rest under the mean mesh load T_p / r_bp: the 12 states, rates zero.
-
-    The rotations split the wind-up so that J_p theta_p / r_bp + J_g theta_g / r_bg = 0, as two free rotors
-    would.
-
-    Parameters
-    ----------
-    pair : a validated gear pair
-    total_stiffness : mean of the mesh stiffness of all pairs [N/m]
-    pinion_torque : T_p [N m]; default the operating point's
-    """
-    if not math.isfinite(total_stiffness) or total_stiffness <= 0.0:
-        raise refuse("mesh.stiffness", total_stiffness, "> 0 N/m", "Give a stiffness that carries the load.")
-    g, b = pair.geometry, bodies(pair)
-    torque = pair.operating.pinion_torque if pinion_torque is None else pinion_torque
-    load = torque / g.base_radius_pinion
-    x_p = -load / pair.bearings.pinion.loa_stiffness
-    x_g = load / pair.bearings.gear.loa_stiffness
-    wind_up = load / total_stiffness - x_p + x_g
-    share_p = b.effective_mass * g.base_radius_pinion**2 / b.inertia_pinion
-    theta_p = share_p * wind_up / g.base_radius_pinion
-    theta_g = -(1.0 - share_p) * wind_up / g.base_radius_gear
-    state = np.zeros(12)
-    state[:4] = theta_p, theta_g, x_p, x_g
-    return state

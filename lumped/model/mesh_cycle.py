@@ -60,6 +60,11 @@ class MeshCycle:
         """T_m = lambda / (Omega_p r_bp) [s]."""
         return self.geometry.mesh_period
 
+    @property
+    def mean_stiffness(self) -> float:
+        """Mean over the mesh cycle of the stiffness of all pairs [N/m]."""
+        return self.elements.stiffness.mean() * self.geometry.contact_ratio
+
     @cached_property
     def offsets(self) -> FloatArray:
         """xi_i at t = 0, L_XA + (n - i) lambda for i = 0..n; (pairs,) [m]."""

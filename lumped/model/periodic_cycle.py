@@ -44,5 +44,5 @@ def periodic_cycle(pair: GearPair, samples: int) -> PeriodicCycle:
     """
     system = periodic_system(pair, "absolute")
     times = sample_times(system.period, samples)
-    solution = periodic_solution(pair, times, system=system, estimate_error=False)
-    return PeriodicCycle(response(pair, system, times, solution.states), solution.spectral_radius)
+    solution = periodic_solution(system, times, estimate_error=False)
+    return PeriodicCycle(response(system, times, solution.states), solution.spectral_radius)

@@ -43,6 +43,7 @@ class LTVSystem:
 
     Attributes
     ----------
+    pair : the gear pair
     form : "absolute" (theta_p, theta_g, x_p, x_g, y_p, y_g: 12 states, with the rigid rotation),
         "relative" (q = r_bp theta_p - r_bg theta_g instead of the rotations: 10 states) or
         "feedback" (q, x_p, x_g: the 6 states that decide stability)
@@ -53,9 +54,9 @@ class LTVSystem:
     deflection : (m,) u with dynamic transmission error u . z
     reduction : (m, 6) rows that make z of the six coordinates
     structure : constant data of the equations of motion
-    pinion_torque : T_p [N m]
     """
 
+    pair: GearPair
     form: Form
     coordinates: tuple[str, ...]
     cycle: MeshCycle
@@ -65,7 +66,11 @@ class LTVSystem:
     deflection: FloatArray
     reduction: FloatArray
     structure: Structure
-    pinion_torque: float
+
+    @property
+    def pinion_torque(self) -> float:
+        """T_p [N m]."""
+        return self.pair.operating.pinion_torque
 
     @property
     def size(self) -> int:
@@ -171,6 +176,7 @@ def periodic_system(
     torque[1, m:] = -reduction[:, 1] / s.mass[1]
     deflection = np.array([1.0, 1.0, -1.0, 0.0, 0.0])[:m] if form != "absolute" else s.deflection
     return LTVSystem(
+        pair=pair,
         form=form,
         coordinates=names,
         cycle=cycle or mesh_cycle(pair),
@@ -180,5 +186,4 @@ def periodic_system(
         deflection=deflection,
         reduction=reduction,
         structure=s,
-        pinion_torque=pair.operating.pinion_torque,
     )

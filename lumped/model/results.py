@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lumped.labelling import labelled_dataset
 from lumped.model.equations import COORDINATES
 from lumped.model.periodic_system import LTVSystem
 from lumped.schema.pair import GearPair
@@ -88,41 +89,34 @@ def labelled(time: FloatArray, values: Mapping[str, FloatArray], attributes: Map
     values : variable name -> array of the dimensions in ``VARIABLES``; pair 0 is the one ahead
     attributes : of the dataset
     """
-    import xarray as xr
-
     variables = {
-        name: (dims, values[name], {"units": unit, "long_name": long_name})
-        for name, (dims, unit, long_name) in VARIABLES.items()
+        name: (dims, values[name], unit, text)
+        for name, (dims, unit, text) in VARIABLES.items()
         if name in values
     }
     pairs = next((v.shape[0] for n, v in values.items() if VARIABLES[n][0][0] == "pair"), 0)
-    coordinates = {
-        "time": ("time", time, {"units": "s", "long_name": "time"}),
-        "pair": ("pair", np.arange(pairs), {"units": "1", "long_name": "tooth pair, 0 is ahead"}),
-    }
-    return xr.Dataset(variables, coords=coordinates, attrs=dict(attributes))
+    coordinates = {"time": (time, "s", "time"), "pair": (np.arange(pairs), "1", "tooth pair, 0 is ahead")}
+    return labelled_dataset(variables, coordinates, attributes)
 
 
 def dataset(
-    pair: GearPair, system: LTVSystem, time: FloatArray, states: FloatArray, attributes: Mapping[str, Any]
+    system: LTVSystem, time: FloatArray, states: FloatArray, attributes: Mapping[str, Any]
 ) -> xr.Dataset:
     """Return states of the 12-state lumped model with all loads and velocities that follow from them.
 
     Parameters
     ----------
-    pair, system : the gear pair and its "absolute" system
+    system : the "absolute" system of a gear pair
     time : (k,) [s]
     states : (k, 12)
     attributes : of the dataset
     """
-    return labelled(time, response(pair, system, time, states), attributes)
+    return labelled(time, response(system, time, states), attributes)
 
 
-def response(
-    pair: GearPair, system: LTVSystem, time: FloatArray, states: FloatArray
-) -> dict[str, FloatArray]:
+def response(system: LTVSystem, time: FloatArray, states: FloatArray) -> dict[str, FloatArray]:
     """Return the arrays of ``dataset`` by name, without labels; arguments as there."""
-    g, s = pair.geometry, system.structure
+    g, s = system.pair.geometry, system.structure
     z, rates = states[:, :6], states[:, 6:]
     dte, dte_dot = z @ s.deflection, rates @ s.deflection
     pairs = system.cycle.sample(time)

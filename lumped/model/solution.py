@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Collection
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,19 +16,18 @@ from scipy.integrate import DOP853
 from lumped.arguments import real_number, whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.model import kernels
-from lumped.model.equations import COORDINATES, static_deflection
-from lumped.model.mesh_cycle import MeshCycle
+from lumped.model.equations import COORDINATES
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.results import dataset, provenance
 from lumped.model.steady import PeriodicSolution, periodic_solution, sample_times
 from lumped.path_function import PathFunction
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, Progress
 
 if TYPE_CHECKING:
     import xarray as xr
 
-Progress = Callable[[float], None]
+
 Initial = Literal["static", "periodic"]
 _MAX_STEPS_PER_SEGMENT = 200_000
 
@@ -76,13 +75,13 @@ def simulate(
     # The torques that hold the mean speed are those of the repaired equations: a printed sign then shows up
     # as a drift instead of being balanced away.
     repaired = system if not as_printed else periodic_system(pair, "absolute", cycle=system.cycle)
-    balance = periodic_solution(pair, grid[:1], system=repaired, estimate_error=False)
-    state = initial_state(pair, system, initial, balance)
+    balance = periodic_solution(repaired, grid[:1], estimate_error=False)
+    state = initial_state(system, initial, balance)
     time = np.concatenate([grid + j * system.period for j in range(cycles)] + [[cycles * system.period]])
     states = np.empty((time.size, 12))
     states[0] = state
-    rate = _rate_function(pair, system, balance)
-    scale = np.abs(static_deflection(pair, mean_mesh_stiffness(system.cycle)))[:6]
+    rate = rate_function(system, balance)
+    scale = np.abs(static_deflection(system))[:6]
     length = max(float(scale.max()), 1e-12)
     atol = rtol * length * np.concatenate([np.ones(6), np.full(6, 1.0 / system.period)])
     outputs = np.append(grid[1:], system.period)  # t = T_m is the next cycle's first output
@@ -104,13 +103,11 @@ def simulate(
         rtol=rtol,
         as_printed=tuple(as_printed),
     )
-    attributes |= balance_attributes(pair, balance) | {"model": "lumped"}
-    return dataset(pair, system, time, states, attributes)
+    attributes |= balance.balance | {"model": "lumped"}
+    return dataset(system, time, states, attributes)
 
 
-def initial_state(
-    pair: GearPair, system: LTVSystem, initial: Initial | ArrayLike, balance: PeriodicSolution
-) -> FloatArray:
+def initial_state(system: LTVSystem, initial: Initial | ArrayLike, balance: PeriodicSolution) -> FloatArray:
     """Return the 12 states at t = 0 for ``initial`` as ``simulate`` takes it.
 
     Raises
@@ -119,7 +116,7 @@ def initial_state(
     """
     if isinstance(initial, str):
         if initial == "static":
-            return static_deflection(pair, mean_mesh_stiffness(system.cycle), balance.pinion_torque)
+            return static_deflection(system, balance.pinion_torque)
         if initial == "periodic":
             return np.array(balance.states[0])
         raise refuse("initial", initial, "'static', 'periodic' or 12 states", "Choose one of them.")
@@ -137,16 +134,34 @@ def initial_state(
     return state
 
 
-def mean_mesh_stiffness(cycle: MeshCycle) -> float:
-    """Mean over the mesh cycle of the stiffness of all pairs [N/m]."""
-    return cycle.elements.stiffness.mean() * cycle.geometry.contact_ratio
+def static_deflection(system: LTVSystem, pinion_torque: float | None = None) -> FloatArray:
+    """At rest under the mean mesh load T_p / r_bp and the mean mesh stiffness: the 12 states, rates zero.
+
+    The rotations split the wind-up so that J_p theta_p / r_bp + J_g theta_g / r_bg = 0, as two free rotors
+    would.
+
+    Parameters
+    ----------
+    system : the "absolute" system of a gear pair
+    pinion_torque : T_p [N m]; default the operating point's
+    """
+    g, s = system.pair.geometry, system.structure
+    r_bp, r_bg = g.base_radius_pinion, g.base_radius_gear
+    load = (system.pinion_torque if pinion_torque is None else pinion_torque) / r_bp
+    x_p, x_g = -load / s.stiffness[2], load / s.stiffness[3]
+    wind_up = load / system.cycle.mean_stiffness - x_p + x_g
+    by_pinion, by_gear = r_bp**2 / s.mass[0], r_bg**2 / s.mass[1]
+    share_p = by_pinion / (by_pinion + by_gear)
+    state = np.zeros(12)
+    state[:4] = share_p * wind_up / r_bp, -(1.0 - share_p) * wind_up / r_bg, x_p, x_g
+    return state
 
 
-def _rate_function(
-    pair: GearPair, system: LTVSystem, balance: PeriodicSolution
+def rate_function(
+    system: LTVSystem, balance: PeriodicSolution
 ) -> Callable[[int], Callable[[float, FloatArray], FloatArray]]:
     """For a segment, the function (time, state) -> rates on the compiled equations of motion."""
-    g, s, cycle = pair.geometry, system.structure, system.cycle
+    g, s, cycle = system.pair.geometry, system.structure, system.cycle
     e = cycle.elements
     speed = g.omega_pinion * g.base_radius_pinion
     functions: list[PathFunction] = [e.stiffness, e.damping, e.friction, e.error, e.error.derivative()]
@@ -224,24 +239,12 @@ def steady_state(
     """
     system = periodic_system(pair, "absolute", as_printed=as_printed)
     times = sample_times(system.period, samples_per_cycle)
-    solution = periodic_solution(pair, times, system=system)
+    solution = periodic_solution(system, times)
     attributes = provenance(pair, samples_per_cycle=samples_per_cycle, as_printed=tuple(as_printed))
-    attributes |= balance_attributes(pair, solution)
-    attributes |= {
+    attributes |= solution.balance | {
         "model": "lumped",
         "closure": solution.closure,
         "error_estimate": solution.error,
         "spectral_radius": solution.spectral_radius,
     }
-    return dataset(pair, system, times, solution.states, attributes)
-
-
-def balance_attributes(pair: GearPair, solution: PeriodicSolution) -> dict[str, Any]:
-    """Return the torques that hold the mean speed [N m] and the mesh efficiency, by name."""
-    g = pair.geometry
-    efficiency = solution.brake_torque * g.omega_gear / (solution.pinion_torque * g.omega_pinion)
-    return {
-        "brake_torque": solution.brake_torque,
-        "pinion_torque": solution.pinion_torque,
-        "mesh_efficiency": efficiency,
-    }
+    return dataset(system, times, solution.states, attributes)

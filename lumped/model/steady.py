@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
 
 from lumped.arguments import whole_number
 from lumped.errors import NumericalError
-from lumped.model.periodic_system import LTVSystem, periodic_system
+from lumped.model.periodic_system import LTVSystem
 from lumped.model.propagation import STAGES, step_maps
-from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
 
@@ -40,14 +38,19 @@ class PeriodicSolution:
     error: float | None
     spectral_radius: float
 
+    @property
+    def balance(self) -> dict[str, float]:
+        """The torques that hold the mean speed [N m] and the mesh efficiency, by name."""
+        g = self.system.pair.geometry
+        return {
+            "brake_torque": self.brake_torque,
+            "pinion_torque": self.pinion_torque,
+            "mesh_efficiency": self.brake_torque * g.omega_gear / (self.pinion_torque * g.omega_pinion),
+        }
+
 
 def periodic_solution(
-    pair: GearPair,
-    times: FloatArray,
-    *,
-    as_printed: Collection[int] = (),
-    system: LTVSystem | None = None,
-    estimate_error: bool = True,
+    system: LTVSystem, times: FloatArray, *, estimate_error: bool = True
 ) -> PeriodicSolution:
     """Periodic motion at given times of the mesh cycle.
 
@@ -58,21 +61,18 @@ def periodic_solution(
 
     Parameters
     ----------
-    pair : a validated gear pair
+    system : the "absolute" system of a gear pair, 12 states
     times : increasing, within [0, T_m) [s]
-    as_printed : equations out of 1, 2, 7, 9 whose printed sign is used
-    system : the pair's 12-state system where it is known already
     estimate_error : whether to compute ``error``, by a second integration of lower order
 
     Raises
     ------
     NumericalError : the speed sits on a stability boundary, where no periodic motion exists
     """
-    system = system or periodic_system(pair, "absolute", as_printed=as_printed)
     torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
     maps = step_maps(system, torques, outputs=times)
     transition, forced = maps.over_all()
-    initial, weights = _bordered(pair, system, transition, forced)
+    initial, weights = balanced_start(system, transition, forced)
     states = maps.states(initial, weights)
     closure = _closure(system, states)
     at = np.searchsorted(maps.times, times - 1e-9 * system.period)
@@ -80,7 +80,7 @@ def periodic_solution(
     error = None
     if estimate_error:
         low = step_maps(system, torques, outputs=times, stages=STAGES - 1)
-        other = low.states(*_bordered(pair, system, *low.over_all()))[at]
+        other = low.states(*balanced_start(system, *low.over_all()))[at]
         dte, dte_low = result[:, :6] @ system.deflection, other[:, :6] @ system.deflection
         error = float(np.abs(dte - dte_low).max() / np.abs(dte).max())
     return PeriodicSolution(
@@ -127,11 +127,10 @@ def relative_spectral_radius(system: LTVSystem, phi: FloatArray) -> float:
     return float(np.abs(np.linalg.eigvals(relative)).max())
 
 
-def _bordered(
-    pair: GearPair, system: LTVSystem, phi: FloatArray, forced: FloatArray
-) -> tuple[FloatArray, FloatArray]:
+def balanced_start(system: LTVSystem, phi: FloatArray, forced: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Initial state (12,) and weights (3,) of own forcing, extra T_p and T_g, from the map over the cycle."""
-    brake = pair.operating.brake_torque
+    operating, g = system.pair.operating, system.pair.geometry
+    brake = operating.brake_torque
     unknown = 2 if brake == "balanced" else 1
     known = np.array([1.0, 0.0, 0.0 if brake == "balanced" else brake])
     matrix = np.zeros((13, 13))
@@ -141,7 +140,6 @@ def _bordered(
     matrix[12, :2] = inertia
     right = np.append(forced @ known, 0.0)
     # Angles, lengths and their rates differ by many decades; equilibrate before judging the rank.
-    g = pair.geometry
     unit = np.array([1 / g.base_radius_pinion, 1 / g.base_radius_gear, 1.0, 1.0, 1.0, 1.0])
     rate = 1.0 / system.period
     columns = np.concatenate([unit, unit * rate, [0.0]])
@@ -151,7 +149,7 @@ def _bordered(
     condition = float(np.linalg.cond(scaled))
     if not condition < 1e13:
         raise NumericalError(
-            f"No periodic motion at {pair.operating.pinion_speed * 30 / np.pi:.6g} rpm "
+            f"No periodic motion at {operating.pinion_speed * 30 / np.pi:.6g} rpm "
             f"(condition {condition:.1e}): a multiplier is at +1. Change the speed slightly or add damping."
         )
     solution = np.linalg.solve(scaled, right / rows) * columns

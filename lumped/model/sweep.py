@@ -7,21 +7,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lumped.arguments import real_numbers
 from lumped.errors import NumericalError
+from lumped.labelling import labelled_dataset
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.mesh_elements import MeshElements, mesh_elements
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.results import provenance, response
-from lumped.model.solution import Progress, balance_attributes
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.path_of_contact import friction_path_function
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, Progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -70,26 +70,38 @@ def speed_sweep(
         )
     }
     periodic = np.zeros(speeds.size, dtype=bool)
-    for j, (at, system) in enumerate(zip(pairs, _systems(pairs), strict=True)):
+    for j, system in enumerate(_systems(pairs)):
         times = sample_times(system.period, samples_per_cycle)
         try:
-            solution = periodic_solution(at, times, system=system, estimate_error=False)
+            solution = periodic_solution(system, times, estimate_error=False)
         except NumericalError:
             continue
         finally:
             if progress is not None:
                 progress((j + 1) / speeds.size)
         periodic[j] = True
-        run = response(at, system, times, solution.states)
+        run = response(system, times, solution.states)
         for name in names:
             table[f"{name}_peak_to_peak"][j] = np.ptp(run[name])
             table[f"{name}_rms"][j] = np.std(run[name])
         loads = run["normal_load"][run["contact"] > 0]
         table["normal_load_max"][j], table["normal_load_min"][j] = loads.max(), loads.min()
-        table["sliding_reversal"][j] = _reversal(run, at.geometry.L_XP)
-        table["mesh_efficiency"][j] = balance_attributes(at, solution)["mesh_efficiency"]
+        table["sliding_reversal"][j] = _reversal(run, pair.geometry.L_XP)
+        table["mesh_efficiency"][j] = solution.balance["mesh_efficiency"]
         table["spectral_radius"][j] = solution.spectral_radius
-    return _sweep_dataset(pair, speeds, table, periodic)
+    variables = {name: ("speed", values, *_label(name)) for name, values in table.items()}
+    return labelled_dataset(
+        variables | {"periodic": ("speed", periodic, "1", "whether a periodic motion exists")},
+        {"speed": (speeds, "rpm", "pinion speed")},
+        provenance(pair) | {"model": "lumped"},
+    )
+
+
+def _label(name: str) -> tuple[str, str]:
+    """Unit and plain name of a variable of the sweep."""
+    ratio = name in ("mesh_efficiency", "spectral_radius")
+    unit = "1" if ratio else "N" if name.startswith("normal") else "m"
+    return unit, name.replace("_", " ").replace("dte", "transmission error")
 
 
 def _systems(pairs: Iterable[GearPair]) -> Iterator[LTVSystem]:
@@ -110,32 +122,6 @@ def _reversal(run: Mapping[str, FloatArray], pitch_point: float) -> float:
     loaded = (run["contact"] > 0) & (run["normal_load"] > 0)
     backwards = loaded & (run["sliding_velocity"] * np.sign(distance) < 0.0)
     return float(np.where(backwards, np.abs(distance), 0.0).max())
-
-
-def _sweep_dataset(
-    pair: GearPair, speeds: FloatArray, table: dict[str, FloatArray], periodic: Any
-) -> xr.Dataset:
-    import xarray as xr
-
-    result = xr.Dataset(attrs=provenance(pair) | {"model": "lumped"})
-    result["speed"] = xr.DataArray(speeds, dims="speed", attrs={"units": "rpm", "long_name": "pinion speed"})
-    for name, values in table.items():
-        unit = (
-            "1"
-            if name in ("mesh_efficiency", "spectral_radius")
-            else "N"
-            if name.startswith("normal")
-            else "m"
-        )
-        attrs = {
-            "units": unit,
-            "long_name": name.replace("_", " ").replace("dte", "transmission error"),
-        }
-        result[name] = xr.DataArray(values, dims="speed", attrs=attrs)
-    result["periodic"] = xr.DataArray(
-        periodic, dims="speed", attrs={"units": "1", "long_name": "whether a periodic motion exists"}
-    )
-    return result
 
 
 def running_speeds(speeds_rpm: Iterable[float]) -> FloatArray:

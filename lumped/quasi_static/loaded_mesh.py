@@ -67,7 +67,7 @@ def loaded_mesh(
     torque = pair.operating.pinion_torque
     g = pair.geometry
     k = pair_stiffness(pair) if stiffness is None else stiffness
-    error = error_function(pair, g)
+    error = error_function(pair)
     if not error.coefficients.any():
         return LoadedMesh(k, error, np.array([[g.L_XA, g.L_XD]]))
     force = torque / g.base_radius_pinion

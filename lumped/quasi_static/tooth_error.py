@@ -43,12 +43,12 @@ def flank_relief(relief: ProfileRelief, end: float, roll: FloatArray) -> FloatAr
     return np.asarray(relief.amount * (s if relief.shape == "linear" else s**2), dtype=np.float64)
 
 
-def relief_error(pair: GearPair, geometry: Geometry, xi: FloatArray) -> FloatArray:
+def relief_error(pair: GearPair, xi: FloatArray) -> FloatArray:
     """Sum of the reliefs of both flanks at the contact position xi [m].
 
     Parameters
     ----------
-    pair, geometry : the gear pair and its geometry
+    pair : the gear pair
     xi : positions from X [m], any shape
 
     Raises
@@ -56,30 +56,30 @@ def relief_error(pair: GearPair, geometry: Geometry, xi: FloatArray) -> FloatArr
     ParameterError : a relief starts outside the active flank
     """
     total = np.zeros(np.shape(xi))
-    for relief in _reliefs(pair, geometry):
+    for relief in _reliefs(pair):
         total = total + relief(np.asarray(xi, dtype=float))
     return total
 
 
-def error_function(pair: GearPair, geometry: Geometry) -> PathFunction:
+def error_function(pair: GearPair) -> PathFunction:
     """Unloaded error e(xi) of a tooth pair from A to D [m], exactly, with switches where a relief starts.
 
     Parameters
     ----------
-    pair, geometry : the gear pair and its geometry
+    pair : the gear pair
 
     Raises
     ------
     ParameterError : a relief starts outside the active flank
     """
-    low, high = geometry.L_XA, geometry.L_XD
-    starts = np.array([relief.start for relief in _reliefs(pair, geometry)])
+    low, high = pair.geometry.L_XA, pair.geometry.L_XD
+    starts = np.array([relief.start for relief in _reliefs(pair)])
     switches = np.unique(starts[(starts > low) & (starts < high)])
     breaks = np.array([low, *switches, high])
     # Each piece is a parabola: three values fix it.
     left, width = breaks[:-1], np.diff(breaks)
     inside = left + width * np.array([[1e-9], [0.5], [1.0 - 1e-9]])
-    a, b, c = relief_error(pair, geometry, inside)
+    a, b, c = relief_error(pair, inside)
     s = (inside - left) / width
     second = ((c - b) / (s[2] - s[1]) - (b - a) / (s[1] - s[0])) / (s[2] - s[0])
     first = (b - a) / (s[1] - s[0]) - second * (s[0] + s[1])
@@ -142,8 +142,8 @@ class _Relief:
         return self.origin + self.sense * self.relief.start_roll_angle * self.radius
 
 
-def _reliefs(pair: GearPair, geometry: Geometry) -> list[_Relief]:
-    g = geometry
+def _reliefs(pair: GearPair) -> list[_Relief]:
+    g = pair.geometry
     sides = (
         ("pinion", pair.pinion, g.base_radius_pinion, g.L_XD, g.L_XA, 0.0, 1.0),
         ("gear", pair.gear, g.base_radius_gear, g.L_XY - g.L_XA, g.L_XY - g.L_XD, g.L_XY, -1.0),

@@ -83,7 +83,7 @@ def mesh_positions(
     xi = g.L_XA + (phase[:, None] - cycle + ahead) * g.base_pitch
     inside = _INSIDE * g.base_pitch
     k = pair_stiffness(pair)(np.clip(xi, g.L_XA + inside, g.L_XD - inside))
-    e = corner_gap(g, xi) + relief_error(pair, g, np.clip(xi, g.L_XA, g.L_XD))
+    e = corner_gap(g, xi) + relief_error(pair, np.clip(xi, g.L_XA, g.L_XD))
     e = e + errors[tooth % errors.size]
     margin = reach * g.base_pitch + inside
     apart = (xi < g.L_XA - margin) | (xi > g.L_XD + margin)

@@ -13,7 +13,7 @@ from lumped.arguments import one_of, real_number
 from lumped.errors import refuse, shown
 from lumped.model.periodic_system import periodic_system
 from lumped.model.results import provenance
-from lumped.model.solution import Initial, initial_state, mean_mesh_stiffness
+from lumped.model.solution import Initial, initial_state
 from lumped.model.steady import periodic_solution
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -128,13 +128,13 @@ def prepare(
     numbers = machine(pair, pair.operating.pinion_torque, pair.operating.pinion_torque)
     call_limit = _call_limit(pair, numbers)
     system = periodic_system(pair, "absolute")
-    balance = periodic_solution(pair, np.zeros(1), system=system, estimate_error=False)
+    balance = periodic_solution(system, np.zeros(1), estimate_error=False)
     numbers = replace(numbers, torque_pinion=balance.pinion_torque, torque_gear=balance.brake_torque)
     velocity, reason = _friction_velocity(numbers, flags, friction_velocity)
     numbers = numbers.with_parameter(kn.V_REG, velocity)
-    static, _ = from_lumped_state(initial_state(pair, system, "static", balance))
+    static, _ = from_lumped_state(initial_state(system, "static", balance))
     numbers = loaded_phase(numbers, flags, static)
-    state = initial_state(pair, system, initial, balance)
+    state = initial_state(system, initial, balance)
     tables = None
     if drive is not None:
         omega = numbers.parameters[kn.OMEGA_P]
@@ -143,7 +143,7 @@ def prepare(
             state[6] += tables.motor[0, 1]
             state[7] += tables.motor[0, 1] * numbers.parameters[kn.OMEGA_G] / omega
     q, v = from_lumped_state(state)
-    deflection = numbers.torque_pinion / numbers.parameters[kn.RADIUS_P] / mean_mesh_stiffness(system.cycle)
+    deflection = numbers.torque_pinion / numbers.parameters[kn.RADIUS_P] / system.cycle.mean_stiffness
     if fidelity == "exact" and deflection > _MOST_DEFLECTION * numbers.parameters[kn.PITCH]:
         raise refuse(
             "operating.pinion_torque",
@@ -155,17 +155,12 @@ def prepare(
     attributes = provenance(
         pair, fidelity=fidelity, effects=names, rtol=rtol, friction_velocity=velocity, drive=drive
     )
-    attributes |= {
+    attributes |= balance.balance | {
         "model": "multibody",
         "fidelity": fidelity,
         "effects": ", ".join(names),
         "friction_velocity": velocity,
         "friction_velocity_reason": reason,
-        "brake_torque": balance.brake_torque,
-        "pinion_torque": balance.pinion_torque,
-        "mesh_efficiency": balance.brake_torque
-        * numbers.parameters[kn.OMEGA_G]
-        / (balance.pinion_torque * numbers.parameters[kn.OMEGA_P]),
     }
     return Setup(
         model=build(numbers, fidelity, flags, call_limit, tables),

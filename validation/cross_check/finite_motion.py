@@ -118,11 +118,11 @@ def finite_motion(
     some_of("effects", effects, PREDICTED, "Name effects that are predicted.")
     nominal = mesh_cycle(pair)
     system = periodic_system(pair, "absolute", cycle=nominal)
-    balance = periodic_solution(pair, np.zeros(1), system=system, estimate_error=False)
+    balance = periodic_solution(system, np.zeros(1), estimate_error=False)
     every = -(-_FINE // cycle.sizes["time"])
     coarse = sample_times(nominal.period, _COARSE)
     fine = sample_times(nominal.period, every * cycle.sizes["time"])
-    static = initial_state(pair, system, "static", balance)
+    static = initial_state(system, "static", balance)
     model = ShiftedModel(pair, nominal, system, static, coarse, frozenset(effects), friction_velocity)
     shifts, settled = model.settle(None)
     if settled:
@@ -137,6 +137,6 @@ def finite_motion(
             return FiniteMotion({name: np.zeros(cycle[name].shape) for name in _CHANGED}, 0.0, 0.0, False)
     found = model.motion(shifts)
     states = found.states[np.searchsorted(found.times, fine)]
-    motion = dataset(pair, found.system, fine, states, {})
+    motion = dataset(found.system, fine, states, {})
     changes = {name: motion[name].to_numpy()[..., ::every] - cycle[name].to_numpy() for name in _CHANGED}
     return FiniteMotion(changes, shifts.entry, shifts.exit, settled)

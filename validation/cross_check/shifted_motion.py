@@ -138,7 +138,7 @@ class ShiftedModel:
         """Periodic motion under these shifts; None is the nominal motion."""
         system = self.nominal if shifts is None else self._system(shifts)
         times = self._with_jumps(system)
-        states = periodic_solution(self.pair, times, system=system, estimate_error=False).states
+        states = periodic_solution(system, times, estimate_error=False).states
         g, e = self.cycle.geometry, system.cycle.elements
         # A pair passes its path in as many cycles as there are pairs; each repeats the same motion.
         speed = g.base_pitch / self.cycle.period

@@ -16,7 +16,7 @@ from lumped import (
     steady_state,
 )
 from lumped.model.propagation import step_maps
-from lumped.model.steady import _bordered, periodic_solution, sample_times
+from lumped.model.steady import balanced_start, periodic_solution, sample_times
 
 MOTION = ("dte", "x_p", "x_g", "y_p", "y_g")
 
@@ -173,9 +173,9 @@ def test_the_estimate_bounds_the_error(nasa, law, speed, samples):
     times = sample_times(system.period, samples)
     torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
     fine = step_maps(system, torques, outputs=times, step_angle=0.02)
-    states = fine.states(*_bordered(pair, system, *fine.over_all()))
+    states = fine.states(*balanced_start(system, *fine.over_all()))
     exact = states[np.searchsorted(fine.times, times - 1e-9 * system.period)][:, :6] @ system.deflection
-    solution = periodic_solution(pair, times, system=system)
+    solution = periodic_solution(system, times)
     dte = solution.states[:, :6] @ system.deflection
     error = np.abs(dte - exact).max() / np.abs(exact).max()
     assert error < 1e-9

@@ -81,8 +81,8 @@ def response(
         cycle = MeshCycle(cycle.geometry, MeshElements(e.stiffness, e.damping, friction, e.error))
     absolute = periodic_system(pair, "absolute", as_printed=as_printed, cycle=cycle)
     times = sample_times(cycle.period, samples_per_cycle)
-    solution = periodic_solution(pair, times, system=absolute, estimate_error=False)
-    data = dataset(pair, absolute, times, solution.states, {})
+    solution = periodic_solution(absolute, times, estimate_error=False)
+    data = dataset(absolute, times, solution.states, {})
     relative = periodic_system(pair, "relative", as_printed=as_printed, cycle=cycle)
     floquet = monodromy(
         PeriodicSystem(
