@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -78,10 +77,10 @@ class Results:
         self.effort = effort
         self.progress: Progress = progress or (lambda fraction, stage="", /: None)
 
-    def stage(self, name: str) -> Callable[[float], None]:
+    def stage(self, name: str) -> Progress:
         """Progress of one computation: tells its name at once, and takes its finished fraction."""
         self.progress(0.0, name)
-        return lambda fraction: self.progress(fraction, name)
+        return lambda fraction, _="", /: self.progress(fraction, name)
 
     @property
     def geometry(self) -> Geometry:
