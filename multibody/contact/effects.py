@@ -1,12 +1,14 @@
 """The finite-motion effects of the exact model, each of which can be switched off to see what it does.
 
 With all of them off the exact model solves the lumped equations, so every difference between the two models
-is the sum of what these switches add.
+is the sum of what these switches add. A new effect is its physics and its bit in ``kernels`` and its entry
+here.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,16 +16,57 @@ from lumped.arguments import some_of
 from lumped.errors import refuse
 from multibody.contact import kernels as kn
 
-#: Name -> (bits of the kernel, what it means).
-EFFECTS: dict[str, tuple[int, str]] = {
-    "rotation_phase": (kn.ROTATION_PHASE, "the contact moves with the actual rotations, vibration included"),
-    "moving_line": (kn.MOVING_LINE, "the line of action turns and moves with the actual gear centres"),
-    "sliding_velocity": (kn.SLIDING, "friction follows the actual sliding velocity in size and sign"),
-    "entry_shift": (kn.ENTRY_SHIFT, "teeth enter and leave where the deflected flanks cross the tip circles"),
-    "contact_loss": (
+
+@dataclass(frozen=True)
+class Effect:
+    """One finite-motion effect.
+
+    Attributes
+    ----------
+    bits : its switches in ``kernels``
+    meaning : what it changes
+    cause : the cause of differences that it belongs to, a key of ``CAUSES``
+    """
+
+    bits: int
+    meaning: str
+    cause: str
+
+
+EFFECTS: dict[str, Effect] = {
+    "rotation_phase": Effect(
+        kn.ROTATION_PHASE,
+        "the contact moves with the actual rotations, vibration included",
+        "contact_position",
+    ),
+    "moving_line": Effect(
+        kn.MOVING_LINE,
+        "the line of action turns and moves with the actual gear centres",
+        "contact_position",
+    ),
+    "sliding_velocity": Effect(
+        kn.SLIDING,
+        "friction follows the actual sliding velocity in size and sign",
+        "sliding_velocity",
+    ),
+    "entry_shift": Effect(
+        kn.ENTRY_SHIFT,
+        "teeth enter and leave where the deflected flanks cross the tip circles",
+        "entry_shift",
+    ),
+    "contact_loss": Effect(
         kn.CONTACT_LOSS | kn.BACK_SIDE,
         "teeth push but never pull; after the backlash the back sides touch",
+        "contact_loss",
     ),
+}
+#: Why the models may differ, in words. Rotations and centres together place the contact; one without the
+#: other is no motion of the machine, so the two effects count as one cause.
+CAUSES: dict[str, str] = {
+    "contact_position": "contact moves with the actual rotations and centres",
+    "sliding_velocity": "friction follows the actual sliding velocity",
+    "entry_shift": "teeth enter and leave where the deflected flanks cross the tip circles",
+    "contact_loss": "teeth push but never pull",
 }
 
 
@@ -48,12 +91,9 @@ def effect_flags(effects: Collection[str] | Mapping[str, bool] | None) -> int:
         names = {name for name in EFFECTS if effects.get(name, True)}
     else:
         names = set(some_of("effects", effects, EFFECTS, "Name the effects to keep."))
-    flags = 0
-    for name in names:
-        flags |= EFFECTS[name][0]
-    return flags
+    return sum(EFFECTS[name].bits for name in names)
 
 
 def active_effects(flags: int) -> tuple[str, ...]:
     """Names of the effects whose bits are set, in the order of ``EFFECTS``."""
-    return tuple(name for name, (bits, _) in EFFECTS.items() if flags & bits == bits)
+    return tuple(name for name, effect in EFFECTS.items() if flags & effect.bits == effect.bits)

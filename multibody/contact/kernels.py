@@ -1,8 +1,7 @@
 """Forces of the tooth contacts for one state of the two bodies: the compiled heart of the exact model.
 
 The geometry comes from ``multibody.contact.kinematics``; this file adds the element laws k(xi), c(xi),
-mu(xi), e(xi) and the switches that take single finite-motion effects out again, so that a difference to the
-linear model can be attributed.
+mu(xi), e(xi) and the switches of the finite-motion effects (``multibody.contact.effects``).
 
 State: q = (x_p, y_p, phi_p, x_g, y_g, phi_g), deviations from the nominal position and rotation, world axes
 x, y, angles counter-clockwise. In the drive sense the pinion turns clockwise and the gear counter-clockwise.
@@ -28,8 +27,8 @@ from multibody.contact.kinematics import (
     sliding_velocity,
 )
 
-# Bits of the effect switches.
-ROTATION_PHASE, MOVING_LINE, SLIDING, ENTRY_SHIFT, CONTACT_LOSS, BACK_SIDE = 1, 2, 4, 8, 16, 32
+# Bits of the effect switches, and of the linear mesh, which has none of the effects.
+ROTATION_PHASE, MOVING_LINE, SLIDING, ENTRY_SHIFT, CONTACT_LOSS, BACK_SIDE, LINEAR = 1, 2, 4, 8, 16, 32, 64
 
 # Places in the parameter vector. Lengths in m, angles in rad, speeds in rad/s.
 (
@@ -219,30 +218,3 @@ def contact_forces(
     for i in range(6):
         total += wrench[i]
     return count if math.isfinite(total) else -1
-
-
-@compiled
-def contact_forces_over(
-    times: FloatArray,
-    q: FloatArray,
-    v: FloatArray,
-    p: FloatArray,
-    flags: int,
-    table: FloatArray,
-    offsets: IntArray,
-    wrenches: FloatArray,
-    contacts: FloatArray,
-) -> IntArray:
-    """``contact_forces`` at n states; returns the numbers of contacts (n,).
-
-    Parameters
-    ----------
-    times : (n,) [s]
-    q, v, wrenches : (n, 6)
-    contacts : (n, 2 MAX_PAIRS, N_RECORD)
-    p, flags, table, offsets : as ``contact_forces``
-    """
-    counts = np.empty(times.size, np.int64)
-    for i in range(times.size):
-        counts[i] = contact_forces(times[i], q[i], v[i], p, flags, table, offsets, wrenches[i], contacts[i])
-    return counts

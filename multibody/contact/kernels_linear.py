@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from lumped.typing import FloatArray, IntArray
 from multibody.contact import kernels as kn
 from multibody.contact.compiled import compiled
@@ -22,7 +20,6 @@ def linear_forces(
     q: FloatArray,
     v: FloatArray,
     p: FloatArray,
-    flags: int,
     table: FloatArray,
     offsets: IntArray,
     wrench: FloatArray,
@@ -30,9 +27,8 @@ def linear_forces(
 ) -> int:
     """Generalised forces on (x_p, y_p, phi_p, x_g, y_g, phi_g); arguments as ``kernels.contact_forces``.
 
-    ``flags`` is not read, and the recorded sliding velocity does not act on the friction. With phi_p =
-    -theta_p and phi_g = theta_g the overlap is the dynamic transmission error delta = r_bp theta_p - r_bg
-    theta_g + x_p - x_g.
+    The recorded sliding velocity does not act on the friction. With phi_p = -theta_p and phi_g = theta_g the
+    overlap is the dynamic transmission error delta = r_bp theta_p - r_bg theta_g + x_p - x_g.
     """
     wrench[:] = 0.0
     rp, rg, pitch = p[kn.RADIUS_P], p[kn.RADIUS_G], p[kn.PITCH]
@@ -71,22 +67,3 @@ def linear_forces(
     for i in range(6):
         total += wrench[i]
     return count if math.isfinite(total) else -1
-
-
-@compiled
-def linear_forces_over(
-    times: FloatArray,
-    q: FloatArray,
-    v: FloatArray,
-    p: FloatArray,
-    flags: int,
-    table: FloatArray,
-    offsets: IntArray,
-    wrenches: FloatArray,
-    contacts: FloatArray,
-) -> IntArray:
-    """``linear_forces`` at n states; arguments as ``kernels.contact_forces_over``."""
-    counts = np.empty(times.size, np.int64)
-    for i in range(times.size):
-        counts[i] = linear_forces(times[i], q[i], v[i], p, flags, table, offsets, wrenches[i], contacts[i])
-    return counts

@@ -182,22 +182,6 @@ def add_wrench(
 
 
 @compiled
-def overlap(
-    pose: FloatArray,
-    radius_p: float,
-    radius_g: float,
-    pitch: float,
-    chi_p: float,
-    chi_g: float,
-    flank: float,
-) -> float:
-    """Overlap delta [m] of two gears in the pose (xp, yp, phi_p, xg, yg, phi_g) [m, m, rad]."""
-    _, _, length, psi = line_of_action(pose[0], pose[1], pose[3], pose[4], radius_p + radius_g, flank)
-    _, delta = mesh_phase(psi, length, pose[2], pose[5], radius_p, radius_g, pitch, chi_p, chi_g, flank)
-    return delta
-
-
-@compiled
 def pairs_in_contact(
     rho: float, delta: float, length: float, pitch: float, tip_p: float, tip_g: float, arms: FloatArray
 ) -> int:

@@ -85,20 +85,13 @@ class Machine:
         squares = np.linalg.eigvalsh(stiffness / np.sqrt(np.outer(inertia, inertia)))
         return float(np.sqrt(squares[-1]) * self.period / (2.0 * np.pi))
 
-    def with_parameter(self, place: int, value: float) -> Machine:
-        """Copy with one entry of ``parameters`` changed."""
-        parameters = self.parameters.copy()
-        parameters[place] = value
-        return replace(self, parameters=parameters)
 
-
-def machine(pair: GearPair, torque_pinion: float, torque_gear: float) -> Machine:
-    """Describe a gear pair for the multibody model.
+def machine(pair: GearPair) -> Machine:
+    """Describe a gear pair for the multibody model, both torques being that of the pinion.
 
     Parameters
     ----------
     pair : validated gear pair
-    torque_pinion, torque_gear : driving torque of the pinion, braking torque of the gear [N m]
     """
     drawing, body, elements = pair.geometry, bodies(pair), mesh_elements(pair)
     alpha, module = pair.basic_rack.pressure_angle, pair.basic_rack.module
@@ -129,19 +122,9 @@ def machine(pair: GearPair, torque_pinion: float, torque_gear: float) -> Machine
     p[kn.OMEGA_P], p[kn.OMEGA_G] = omega_p, omega_p * r_p / r_g
     p[kn.T_LOW], p[kn.T_HIGH] = -math.inf, math.inf
     mass = np.array([body.mass_pinion, body.mass_gear])
-    b = pair.bearings
-    stiffness = np.array(
-        [
-            [b.pinion.loa_stiffness, b.pinion.oloa_stiffness],
-            [b.gear.loa_stiffness, b.gear.oloa_stiffness],
-        ]
-    )
-    ratio = np.array(
-        [
-            [b.pinion.loa_damping_ratio, b.pinion.oloa_damping_ratio],
-            [b.gear.loa_damping_ratio, b.gear.oloa_damping_ratio],
-        ]
-    )
+    bearings = (pair.bearings.pinion, pair.bearings.gear)
+    stiffness = np.array([[b.loa_stiffness, b.oloa_stiffness] for b in bearings])
+    ratio = np.array([[b.loa_damping_ratio, b.oloa_damping_ratio] for b in bearings])
     laws = (elements.stiffness, elements.damping, elements.friction, elements.error)
     table, offsets = pack_laws(laws)
     return Machine(
@@ -152,8 +135,8 @@ def machine(pair: GearPair, torque_pinion: float, torque_gear: float) -> Machine
         inertia=np.array([body.inertia_pinion, body.inertia_gear]),
         bearing_stiffness=stiffness,
         bearing_damping=2.0 * ratio * np.sqrt(stiffness * mass[:, None]),
-        torque_pinion=torque_pinion,
-        torque_gear=torque_gear,
+        torque_pinion=pair.operating.pinion_torque,
+        torque_gear=pair.operating.pinion_torque,
         pairs=math.floor((tip_p - l_xa) / pitch) + 1,
         period=pitch / (omega_p * r_p),
         switches=switch_phases(laws, l_xa, tip_p, pitch),

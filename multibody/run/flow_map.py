@@ -18,7 +18,6 @@ import numpy as np
 
 from lumped.arguments import whole_number
 from lumped.errors import NumericalError
-from lumped.model.periodic_system import periodic_system
 from lumped.model.propagation import step_maps
 from lumped.schema.pair import GearPair
 from lumped.typing import ComplexArray, FloatArray
@@ -103,15 +102,8 @@ def monodromy(
     NumericalError : no periodic motion is found near the lumped one
     """
     iterations = whole_number("iterations", iterations, 0, 1000)
-    setup = prepare(
-        pair,
-        fidelity=fidelity,
-        initial="periodic",
-        effects=effects,
-        rtol=rtol,
-        friction_velocity=friction_velocity,
-    )
-    orbit = find_orbit(pair, setup, iterations)
+    setup = prepare(pair, fidelity, "periodic", effects, rtol, friction_velocity)
+    orbit = find_orbit(setup, iterations)
     full = _differences(orbit.flow, orbit.state, _scale(setup) * _STEP[fidelity])
     read, lift = _relative(orbit.machine)
     torque = orbit.machine.torque_gear
@@ -136,12 +128,12 @@ class Orbit:
     closure: float
 
 
-def find_orbit(pair: GearPair, setup: Setup, iterations: int = 40) -> Orbit:
+def find_orbit(setup: Setup, iterations: int = 40) -> Orbit:
     """Periodic motion near the initial state of ``setup``, with the brake torque as unknown.
 
-    Broyden's method: it starts from the monodromy matrix of the lumped model, which differs from the own one
-    by a few per cent, and much where friction holds the teeth for a time; each step, at one mesh cycle,
-    corrects it along the way it went. What it converges to does not depend on the matrix.
+    Broyden's method starts from the monodromy matrix of the lumped model. That differs from the multibody
+    model's by a few per cent, and by much where friction holds the teeth for a time. Each step runs one mesh
+    cycle and corrects the matrix along the way it went; the motion found does not depend on the matrix.
 
     References
     ----------
@@ -154,7 +146,7 @@ def find_orbit(pair: GearPair, setup: Setup, iterations: int = 40) -> Orbit:
     """
     scale = _scale(setup)
     state, machine = to_lumped_state(setup.q, setup.v), setup.machine
-    system = periodic_system(pair, "absolute")
+    system = setup.system
     maps = step_maps(system, np.stack([system.torque_pinion, system.torque_gear], axis=1))
     transition, forced = maps.over_all()
     matrix = _bordered(transition, forced[:, 2], machine, scale)
@@ -209,15 +201,8 @@ def steady_state(
     ------
     NumericalError : no periodic motion is found near the lumped one
     """
-    setup = prepare(
-        pair,
-        fidelity=fidelity,
-        initial="periodic",
-        effects=effects,
-        rtol=rtol,
-        friction_velocity=friction_velocity,
-    )
-    orbit = find_orbit(pair, setup)
+    setup = prepare(pair, fidelity, "periodic", effects, rtol, friction_velocity)
+    orbit = find_orbit(setup)
     q, v = from_lumped_state(orbit.state)
     run, _, _ = record(replace(orbit.flow.setup, q=q, v=v), 1, samples_per_cycle)
     m, p = orbit.machine, orbit.machine.parameters
@@ -233,7 +218,7 @@ class Flow:
     """State (12,) -> state after one mesh cycle."""
 
     def __init__(self, setup: Setup, machine: Machine) -> None:
-        model = build(machine, setup.model.fidelity, setup.model.flags, setup.model.budget.limit)
+        model = build(machine, setup.model.flags, setup.model.budget.limit)
         self.setup = replace(setup, model=model)
         self.edges = setup.edges(1)
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import exudyn as exu
 import exudyn.itemInterface as items
@@ -18,21 +18,10 @@ import numpy as np
 
 from lumped.typing import FloatArray, IntArray
 from multibody.contact import kernels as kn
-from multibody.contact.kernels import contact_forces, contact_forces_over
-from multibody.contact.kernels_linear import linear_forces, linear_forces_over
+from multibody.contact.forces import tooth_forces, tooth_forces_over
 from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import Machine
 from multibody.run.drive import DriveTables, drive_torques
-
-#: (t, q, v, parameters, flags, table, offsets, wrench, contacts) -> number of contacts or -1
-ForceCore = Callable[..., int]
-#: The same at n states: (times, q, v, parameters, flags, table, offsets, wrenches, contacts) -> numbers
-ForceCoreOver = Callable[..., IntArray]
-
-FIDELITIES: dict[str, tuple[ForceCore, ForceCoreOver]] = {
-    "linear": (linear_forces, linear_forces_over),
-    "exact": (contact_forces, contact_forces_over),
-}
 
 
 @dataclass
@@ -41,22 +30,19 @@ class CallBudget:
 
     Attributes
     ----------
-    limit : most calls allowed until the next ``reset``
-    calls : calls since the start
+    limit : most calls allowed in one interval
+    calls, before : calls since the start, and those before the present interval
     reason : empty, or the first problem met ("not finite", "too many calls")
     """
 
     limit: int
     calls: int = 0
-    allowed: int = field(init=False)
+    before: int = 0
     reason: str = ""
-
-    def __post_init__(self) -> None:
-        self.allowed = self.limit
 
     def reset(self) -> None:
         """Allow ``limit`` more calls."""
-        self.allowed = self.calls + self.limit
+        self.before = self.calls
 
 
 class _Stop(Exception):
@@ -70,7 +56,7 @@ class ExudynModel:
     Attributes
     ----------
     machine : the numbers it was built from
-    fidelity, flags : which force core, and its effect switches
+    flags : effect switches of the force core, or ``kernels.LINEAR``
     system : exudyn MainSystem
     container : exudyn SystemContainer (must stay alive; also holds the renderer)
     sensors : numbers of the sensors that store coordinates and velocities of both gears at every step
@@ -81,7 +67,6 @@ class ExudynModel:
     """
 
     machine: Machine
-    fidelity: str
     flags: int
     container: exu.SystemContainer
     system: exu.MainSystem
@@ -92,16 +77,13 @@ class ExudynModel:
     budget: CallBudget
 
 
-def build(
-    machine: Machine, fidelity: str, flags: int, call_limit: int, drive: DriveTables | None = None
-) -> ExudynModel:
+def build(machine: Machine, flags: int, call_limit: int, drive: DriveTables | None = None) -> ExudynModel:
     """Assemble the exudyn system.
 
     Parameters
     ----------
     machine : numbers of the gear pair
-    fidelity : "linear" or "exact"
-    flags : effect switches of the exact core (bits of ``kernels``)
+    flags : effect switches (bits of ``kernels``), or ``kernels.LINEAR``
     call_limit : most force evaluations of one integration interval
     drive : torques beyond the constant ones; they act on the same two nodes as the contacts
     """
@@ -119,9 +101,7 @@ def build(
         items.ObjectGenericODE2(
             nodeNumbers=list(nodes),
             massMatrix=np.zeros((6, 6)),
-            forceUserFunction=_force_function(
-                machine, FIDELITIES[fidelity][0], flags, parameters, budget, drive
-            ),
+            forceUserFunction=_force_function(machine, flags, parameters, budget, drive),
         )
     )
     position, velocity = (
@@ -133,7 +113,6 @@ def build(
     system.Assemble()
     return ExudynModel(
         machine=machine,
-        fidelity=fidelity,
         flags=flags,
         container=container,
         system=system,
@@ -176,12 +155,7 @@ def _add_gear(
 
 
 def _force_function(
-    machine: Machine,
-    core: ForceCore,
-    flags: int,
-    p: FloatArray,
-    budget: CallBudget,
-    drive: DriveTables | None,
+    machine: Machine, flags: int, p: FloatArray, budget: CallBudget, drive: DriveTables | None
 ) -> Callable[..., FloatArray]:
     """Return the user function of the contact object; it writes into its own buffers.
 
@@ -199,10 +173,10 @@ def _force_function(
     ) -> FloatArray:
         budget.calls += 1
         pack(buffer, 0, *coordinates, *rates)
-        if core(t, q, v, p, flags, table, offsets, wrench, contacts) < 0:
+        if tooth_forces(t, q, v, p, flags, table, offsets, wrench, contacts) < 0:
             budget.reason = "not finite"
             raise _Stop
-        if budget.calls > budget.allowed:
+        if budget.calls - budget.before > budget.limit:
             budget.reason = "too many calls"
             raise _Stop
         if drive is not None:
@@ -236,8 +210,8 @@ def contact_state(
     """
     m = model.machine
     wrenches, contacts = np.empty((times.size, 6)), np.zeros((times.size, 2 * MAX_PAIRS, kn.N_RECORD))
-    core_over = FIDELITIES[model.fidelity][1]
-    counts = core_over(times, q, v, model.parameters, model.flags, m.table, m.offsets, wrenches, contacts)
+    p, flags = model.parameters, model.flags
+    counts = tooth_forces_over(times, q, v, p, flags, m.table, m.offsets, wrenches, contacts)
     return wrenches, contacts, counts
 
 

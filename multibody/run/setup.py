@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import one_of, real_number
 from lumped.errors import refuse, shown
-from lumped.model.periodic_system import periodic_system
+from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.results import provenance
 from lumped.model.solution import Initial, initial_state
 from lumped.model.steady import periodic_solution
@@ -23,7 +23,7 @@ from multibody.contact.machine import Machine, loaded_phase, machine
 from multibody.contact.reversal import friction_velocity as choose_friction_velocity
 from multibody.run.drive import Drive, drive_tables
 from multibody.run.integration import Segment, integrate
-from multibody.run.model import FIDELITIES, ExudynModel, build
+from multibody.run.model import ExudynModel, build
 from multibody.run.records import from_lumped_state
 
 Fidelity = Literal["linear", "exact"]
@@ -52,6 +52,7 @@ class Setup:
     Attributes
     ----------
     model : assembled exudyn model
+    system : the lumped equations of motion
     q, v : (6,) initial state in the model's coordinates
     rtol : relative tolerance of the integration
     deflection : static deflection of the mesh under the driving torque [m]
@@ -59,6 +60,7 @@ class Setup:
     """
 
     model: ExudynModel
+    system: LTVSystem
     q: FloatArray
     v: FloatArray
     rtol: float
@@ -78,8 +80,7 @@ class Setup:
     @property
     def position_is_nominal(self) -> bool:
         """Whether contact positions depend on time alone, so that the switches are known beforehand."""
-        moved = kn.ROTATION_PHASE | kn.MOVING_LINE | kn.SLIDING | kn.ENTRY_SHIFT | kn.CONTACT_LOSS
-        return self.model.fidelity == "linear" or not self.model.flags & moved
+        return self.model.flags in (0, kn.LINEAR)
 
     def edges(self, cycles: int) -> FloatArray:
         """Ends of the integration intervals [s]: at the switches where those are known, else whole cycles."""
@@ -103,7 +104,6 @@ class Setup:
 
 def prepare(
     pair: GearPair,
-    *,
     fidelity: Fidelity = "exact",
     initial: Initial | ArrayLike = "static",
     effects: Collection[str] | Mapping[str, bool] | None = None,
@@ -112,7 +112,7 @@ def prepare(
     drive: Drive | None = None,
 ) -> Setup:
     """Build the model and its initial state; arguments as ``simulate``."""
-    one_of("fidelity", fidelity, FIDELITIES)
+    one_of("fidelity", fidelity, get_args(Fidelity))
     rtol = real_number("rtol", rtol, 1e-12, 1e-3)
     if friction_velocity is not None:
         friction_velocity = real_number(
@@ -124,16 +124,16 @@ def prepare(
     if fidelity == "linear":
         if flags and effects is not None and len(effects):
             raise refuse("effects", shown(effects), "none at fidelity 'linear'", "Use fidelity='exact'.")
-        flags = 0
-    numbers = machine(pair, pair.operating.pinion_torque, pair.operating.pinion_torque)
-    call_limit = _call_limit(pair, numbers)
+        flags = kn.LINEAR
+    numbers = machine(pair)
+    call_limit = _call_limit(numbers)
     system = periodic_system(pair, "absolute")
     balance = periodic_solution(system, np.zeros(1), estimate_error=False)
     numbers = replace(numbers, torque_pinion=balance.pinion_torque, torque_gear=balance.brake_torque)
     velocity, reason = _friction_velocity(numbers, flags, friction_velocity)
-    numbers = numbers.with_parameter(kn.V_REG, velocity)
     static, _ = from_lumped_state(initial_state(system, "static", balance))
     numbers = loaded_phase(numbers, flags, static)
+    numbers.parameters[kn.V_REG] = velocity
     state = initial_state(system, initial, balance)
     tables = None
     if drive is not None:
@@ -163,7 +163,8 @@ def prepare(
         "friction_velocity_reason": reason,
     }
     return Setup(
-        model=build(numbers, fidelity, flags, call_limit, tables),
+        model=build(numbers, flags, call_limit, tables),
+        system=system,
         q=q,
         v=v,
         rtol=rtol,
@@ -172,11 +173,11 @@ def prepare(
     )
 
 
-def _call_limit(pair: GearPair, numbers: Machine) -> int:
+def _call_limit(numbers: Machine) -> int:
     """Most force evaluations of one interval; refuses a speed at which a mesh cycle would take minutes."""
     vibrations = numbers.vibrations_per_cycle
     if vibrations > _MOST_VIBRATIONS:
-        rpm = pair.operating.pinion_speed * 30.0 / np.pi
+        rpm = float(numbers.parameters[kn.OMEGA_P]) * 30.0 / np.pi
         raise refuse(
             "operating.pinion_speed",
             f"{rpm:.4g} rpm",

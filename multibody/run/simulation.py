@@ -5,7 +5,7 @@ Sources: docs/theory/multibody.md.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +15,7 @@ from lumped.arguments import whole_number
 from lumped.model.solution import Initial
 from lumped.model.steady import sample_times
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, Progress
 from multibody.run.drive import Drive
 from multibody.run.integration import Segment
 from multibody.run.records import Recorder
@@ -23,8 +23,6 @@ from multibody.run.setup import MOST_CYCLES, Fidelity, Setup, prepare
 
 if TYPE_CHECKING:
     import xarray as xr
-
-Progress = Callable[[float], None]
 
 
 def simulate(
@@ -79,15 +77,7 @@ def simulate(
     do, with the sign of the actual sliding velocity, so friction never feeds energy in.
     """
     cycles = whole_number("cycles", cycles, 1, MOST_CYCLES)
-    setup = prepare(
-        pair,
-        fidelity=fidelity,
-        initial=initial,
-        effects=effects,
-        rtol=rtol,
-        friction_velocity=friction_velocity,
-        drive=drive,
-    )
+    setup = prepare(pair, fidelity, initial, effects, rtol, friction_velocity, drive)
     run, _, _ = record(setup, cycles, samples_per_cycle, progress=progress)
     return run
 

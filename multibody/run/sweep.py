@@ -8,16 +8,17 @@ Sources: Kahraman and Blankenship 1997 for the experiment; docs/theory/multibody
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lumped.arguments import whole_number
+from lumped.labelling import labelled_dataset
 from lumped.model.results import provenance
 from lumped.model.sweep import running_speeds
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, Progress
 from multibody.run.records import to_lumped_state
 from multibody.run.setup import MOST_CYCLES, Fidelity, prepare
 from multibody.run.simulation import record
@@ -45,7 +46,7 @@ def speed_sweep(
     fidelity: Fidelity = "exact",
     effects: Collection[str] | Mapping[str, bool] | None = None,
     rtol: float = 1e-7,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress | None = None,
 ) -> xr.Dataset:
     """Response over speed with the state carried from one speed to the next, in the order given.
 
@@ -67,8 +68,6 @@ def speed_sweep(
     ------
     ParameterError, NumericalError : as ``multibody.simulate``
     """
-    import xarray as xr
-
     speeds = running_speeds(speeds_rpm)
     settle = whole_number("settle", settle, 0, MOST_CYCLES)
     cycles = whole_number("cycles", cycles, 1, MOST_CYCLES)
@@ -77,7 +76,7 @@ def speed_sweep(
     for j, rpm in enumerate(speeds):
         at = pair.with_({"operating.pinion_speed": float(rpm)})
         initial = "periodic" if state is None else state
-        setup = prepare(at, fidelity=fidelity, initial=initial, effects=effects, rtol=rtol)
+        setup = prepare(at, fidelity, initial, effects, rtol)
         run, q, v = record(setup, settle + cycles, samples_per_cycle, first_cycle=settle)
         # Whole cycles end at the phase they started with, so the deviations carry over as they are.
         state = to_lumped_state(q, v)
@@ -87,9 +86,8 @@ def speed_sweep(
         table["back_side"][j] = np.mean(run["normal_load_back"].to_numpy().sum(0) > 0.0)
         if progress is not None:
             progress((j + 1) / speeds.size)
-    result = xr.Dataset(attrs=provenance(pair, fidelity=fidelity, settle=settle, cycles=cycles, rtol=rtol))
-    result["speed"] = xr.DataArray(speeds, dims="speed", attrs={"units": "rpm", "long_name": "pinion speed"})
-    for name, values in table.items():
-        unit, text = _VARIABLES[name]
-        result[name] = xr.DataArray(values, dims="speed", attrs={"units": unit, "long_name": text})
-    return result
+    return labelled_dataset(
+        {name: ("speed", values, *_VARIABLES[name]) for name, values in table.items()},
+        {"speed": (speeds, "rpm", "pinion speed")},
+        provenance(pair, fidelity=fidelity, settle=settle, cycles=cycles, rtol=rtol),
+    )

@@ -77,15 +77,7 @@ def power_balance(
     output.
     """
     cycles = whole_number("cycles", cycles, 1, MOST_CYCLES)
-    setup = prepare(
-        pair,
-        fidelity=fidelity,
-        initial=initial,
-        effects=effects,
-        rtol=rtol,
-        friction_velocity=friction_velocity,
-        drive=drive,
-    )
+    setup = prepare(pair, fidelity, initial, effects, rtol, friction_velocity, drive)
     work = np.zeros(7)
 
     def visit(_number: int, segment: Segment) -> None:

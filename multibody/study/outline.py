@@ -42,7 +42,7 @@ def gear_outline(pair: GearPair, which: str, points: int = 16) -> FloatArray:
     points : points per flank
     """
     g = pair.geometry
-    p = machine(pair, 1.0, 1.0).parameters
+    p = machine(pair).parameters
     pinion = which == "pinion"
     places = (kn.RADIUS_P, kn.CHI_P, kn.CHI_P_BACK) if pinion else (kn.RADIUS_G, kn.CHI_G, kn.CHI_G_BACK)
     radius, drive, coast = (float(p[i]) for i in places)

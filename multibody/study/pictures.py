@@ -6,11 +6,9 @@ pushes, y off it.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.animation import PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -55,79 +53,20 @@ def gear_picture(pair: GearPair, run: xr.Dataset, index: int = 0) -> Figure:
         raise refuse("index", index, f"0 to {count - 1}", "Name an output time of the run.")
     figure = Figure(figsize=(11.0, 5.2), layout="constrained")
     FigureCanvasAgg(figure)
-    _draw(figure, pair, run, index, _outlines(pair), _largest(run))
-    return figure
-
-
-def gear_animation(
-    pair: GearPair,
-    run: xr.Dataset,
-    path: str | Path,
-    *,
-    frames: int = 40,
-    cycles: float = 2.0,
-    per_second: int = 12,
-    dpi: int = 80,
-) -> Path:
-    """Write a GIF of the last mesh cycles of a run; the file appears whole or not at all.
-
-    Parameters
-    ----------
-    pair, run : as ``gear_picture``
-    path : of the GIF
-    frames : pictures
-    cycles : mesh cycles shown, ending with the run
-    per_second : pictures per second
-    dpi : dots per inch
-
-    Raises
-    ------
-    ParameterError : the path does not end in .gif
-    """
-    target = Path(path)
-    if target.suffix.lower() != ".gif":
-        raise refuse("path", target, "a name ending in .gif", "Rename the file.")
-    time = run["time"].to_numpy()
-    start = max(float(time[-1]) - cycles * pair.geometry.mesh_period, float(time[0]))
-    wanted = start + (float(time[-1]) - start) * np.arange(frames) / frames
-    outlines, largest = _outlines(pair), _largest(run)
-    figure = Figure(figsize=(11.0, 5.2), layout="constrained")
-    FigureCanvasAgg(figure)
-    writer = PillowWriter(fps=per_second)
-    partial = target.with_name(f".{target.name}.partial.gif")
-    try:
-        writer.setup(figure, str(partial), dpi)
-        for index in np.searchsorted(time, wanted):
-            figure.clear()
-            _draw(figure, pair, run, int(index), outlines, largest)
-            writer.grab_frame()
-        writer.finish()  # writes the file; not reached when interrupted
-        partial.replace(target)
-    finally:
-        partial.unlink(missing_ok=True)
-    return target
-
-
-def _outlines(pair: GearPair) -> tuple[FloatArray, FloatArray]:
-    return gear_outline(pair, "pinion"), gear_outline(pair, "gear")
-
-
-def _largest(run: xr.Dataset) -> tuple[float, float]:
-    """Largest normal load and largest friction force of the run [N]."""
+    # The largest normal load and friction force of the run [N] fix the scale of the arrows.
     load, friction = (float(np.abs(run[name]).max()) for name in ("normal_load", "friction_force"))
-    return max(load, 1e-300), friction
+    _draw(figure, pair, run.isel(time=index), (max(load, 1e-300), friction))
+    return figure
 
 
 def _draw(
     figure: Figure,
     pair: GearPair,
-    run: xr.Dataset,
-    index: int,
-    outlines: tuple[FloatArray, FloatArray],
+    now: xr.Dataset,
     largest: tuple[float, float],
 ) -> None:
-    g, now = pair.geometry, run.isel(time=index)
-    t = float(now["time"])
+    g, t = pair.geometry, float(now["time"])
+    outlines = gear_outline(pair, "pinion"), gear_outline(pair, "gear")
     # Pinion clockwise, gear counter-clockwise; angles are nominal rotation plus deviation.
     angles = (-(g.omega_pinion * t + float(now["theta_p"])), g.omega_gear * t + float(now["theta_g"]))
     centres = (

@@ -6,16 +6,18 @@ Sources: docs/theory/multibody.md, "Friction that holds the teeth".
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lumped.arguments import real_numbers
 from lumped.errors import refuse, shown
+from lumped.labelling import labelled_dataset
 from lumped.model.results import provenance
 from lumped.model.solution import Initial
 from lumped.schema.pair import GearPair
+from lumped.typing import Progress
 from multibody.run.simulation import simulate
 
 if TYPE_CHECKING:
@@ -34,7 +36,7 @@ def reversal_convergence(
     velocities: Sequence[float] = VELOCITIES,
     initial: Initial = "static",
     rtol: float = 1e-8,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress | None = None,
 ) -> xr.Dataset:
     """Convergence of a run as friction changes its sign over a smaller and smaller velocity.
 
@@ -56,8 +58,6 @@ def reversal_convergence(
     ParameterError : velocities that do not fall, or arguments out of range
     NumericalError : a run fails; the text says what to try
     """
-    import xarray as xr
-
     values = real_numbers("velocities", velocities, 0.0, above=True, unit="m/s")
     if values.size < 2 or (np.diff(values) >= 0.0).any():
         raise refuse("velocities", shown(velocities), "two or more, falling, > 0 m/s", "Sort them.")
@@ -78,20 +78,15 @@ def reversal_convergence(
     order[1:] = np.log(change[:-1] / change[1:]) / np.log(values[:-2] / values[1:-1])[:, None]
     evaluations = np.array([run.attrs["force_evaluations"] / cycles for run in runs[:-1]])
     dims = ("velocity", "quantity")
-    return xr.Dataset(
+    return labelled_dataset(
         {
-            "change": (dims, change, {"units": "1", "long_name": "largest change over peak to peak"}),
-            "order": (dims, order, {"units": "1", "long_name": "observed order in the velocity"}),
-            "force_evaluations": ("velocity", evaluations, {"units": "1", "long_name": "calls per cycle"}),
+            "change": (dims, change, "1", "largest change over peak to peak"),
+            "order": (dims, order, "1", "observed order in the velocity"),
+            "force_evaluations": ("velocity", evaluations, "1", "calls per cycle"),
         },
-        coords={
-            "velocity": (
-                "velocity",
-                values[:-1],
-                {"units": "m/s", "long_name": "velocity over which friction changes its sign"},
-            ),
-            "quantity": list(_QUANTITIES),
+        {
+            "velocity": (values[:-1], "m/s", "velocity over which friction changes its sign"),
+            "quantity": (list(_QUANTITIES), "1", "quantity that changes"),
         },
-        attrs=provenance(pair, cycles=cycles, initial=initial, rtol=rtol)
-        | {"last_velocity": float(values[-1])},
+        provenance(pair, cycles=cycles, initial=initial, rtol=rtol) | {"last_velocity": float(values[-1])},
     )

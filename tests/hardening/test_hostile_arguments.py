@@ -71,7 +71,7 @@ CALLS = {
         {"pair": PAIR, "speeds_rpm": [4000.0]},
         "speeds_rpm settle cycles samples_per_cycle fidelity effects rtol",
     ),
-    multibody.attribution: ({"pair": PAIR}, "cycles initial samples_per_cycle rtol"),
+    multibody.attribution: ({"pair": PAIR}, "samples_per_cycle rtol"),
     multibody.reversal_convergence: ({"pair": PAIR}, "cycles velocities initial rtol"),
     floquet.PeriodicSystem: ({"A": SYSTEM.A, "period": 1.0}, "A period breakpoints b"),
     floquet.monodromy: ({"system": SYSTEM}, "rtol method max_substeps"),

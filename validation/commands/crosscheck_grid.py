@@ -40,11 +40,11 @@ def crosscheck_grid(
         raise refuse("--grid", " ".join(given), "no options of a single pair", "The grid covers all presets.")
     target = None if output is None else check_file(output, DATA_SUFFIXES + FIGURE_SUFFIXES, force=force)
     with progress_bar("grid") as tell:
-        result = run(checkpoint=checkpoint, progress=lambda f: tell(0.95 * f, ""))
+        result = run(checkpoint=checkpoint, progress=lambda f, _="": tell(0.95 * f))
         found = summarise_grid(result)
         causes = None
         if found.worst:
-            causes = explain(Grid(), found.worst, lambda f: tell(0.95 + 0.05 * f, "worst point"))
+            causes = explain(Grid(), found.worst, lambda f, _="": tell(0.95 + 0.05 * f, "worst point"))
     if target is not None:
         _write(result, target)
     console = stdout()

@@ -5,7 +5,7 @@ Sources: docs/theory/multibody.md, "The law of torque"; docs/theory/validity.md.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +18,7 @@ from lumped.arguments import some_of, whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.model.periodic_cycle import UNSTABLE, periodic_cycle
 from lumped.model.results import VARIABLES
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, Progress
 from validation.cross_check import metrics
 from validation.cross_check.agreement import (
     FIDELITIES,
@@ -50,8 +50,6 @@ __all__ = [
     "crosscheck",
     "off_switch_samples",
 ]
-
-Progress = Callable[[float], None]
 
 #: Tolerances of the integrations: far below the limits they are used to check.
 RTOL: Mapping[str, float] = {"lumped": 1e-10, "linear": 1e-10, "exact": 1e-8}
@@ -160,7 +158,7 @@ def crosscheck(
     runs = 1 + len(fidelities)
 
     def part(done: int) -> Progress | None:
-        return None if progress is None else lambda fraction: progress((done + fraction) / runs)
+        return None if progress is None else lambda fraction, stage="": progress((done + fraction) / runs)
 
     options = {"cycles": cycles, "samples_per_cycle": samples_per_cycle, "initial": "periodic"}
     reference = lumped.simulate(pair, **options, rtol=RTOL["lumped"], progress=part(0))  # type: ignore[arg-type]

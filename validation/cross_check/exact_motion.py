@@ -34,8 +34,7 @@ def periodic_motion(
     ------
     NumericalError : no periodic motion is found near the lumped one
     """
-    torque = pair.operating.pinion_torque
-    sharp = _SHARPER * friction_velocity(machine(pair, torque, torque))[0] if passes else None
+    sharp = _SHARPER * friction_velocity(machine(pair))[0] if passes else None
 
     def motion(velocity: float | None) -> xr.Dataset:
         return multibody.steady_state(

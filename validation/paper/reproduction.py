@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from lumped import GearPair, load_gear_pair
 from lumped.arguments import some_of
 from lumped.errors import refuse
+from lumped.typing import Progress
 from validation.measurements import Measurement
 from validation.paper.figure_record import FigureRecord
 from validation.paper.figures.figure2 import figure2
@@ -39,8 +40,6 @@ DRAW: dict[str, Callable[[FigureRecord], Figure]] = {
     "7": draw_figure7,
 }
 _NEED_RUNS = {"4", "5", "6"}
-
-Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True, eq=False)

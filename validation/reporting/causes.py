@@ -9,17 +9,12 @@ import xarray as xr
 
 import multibody
 from lumped import GearPair, NumericalError
+from multibody.contact.effects import CAUSES
 from multibody.study.pictures import gear_picture
 from validation.reporting.blocks import Block, Picture, Rows, Table, Text
 from validation.reporting.results import Results
 
-_CAUSES = {
-    "contact_position": "contact moves with the actual rotations and centres",
-    "sliding_velocity": "friction follows the actual sliding velocity",
-    "entry_shift": "teeth enter and leave where the deflected flanks cross the tip circles",
-    "contact_loss": "teeth push but never pull",
-    "all": "all of them",
-}
+_CAUSES = CAUSES | {"all": "all of them"}
 _QUANTITIES = {"dte": "transmission error", "x_p": "pinion x", "y_p": "pinion y"}
 
 
@@ -41,7 +36,7 @@ def meshing_teeth(results: Results) -> Picture:
 def attribution(pair: GearPair) -> xr.Dataset | None:
     """Effects of finite motions one by one; None where the exact model has no periodic motion nearby."""
     try:
-        return multibody.attribution(pair, periodic=True)
+        return multibody.attribution(pair)
     except NumericalError:
         return None
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from lumped import GearPair, LawRangeWarning
+from lumped.typing import Progress
 from validation.paper import (
     ClaimsTable,
     ErrataChapter,
@@ -27,7 +27,7 @@ class PaperResults:
     errata: ErrataChapter
 
 
-def paper_results(pair: GearPair, samples: int, progress: Callable[[float], None]) -> PaperResults:
+def paper_results(pair: GearPair, samples: int, progress: Progress) -> PaperResults:
     """Compute everything that the paper chapters show.
 
     Parameters
@@ -44,8 +44,8 @@ def paper_results(pair: GearPair, samples: int, progress: Callable[[float], None
         # Laws are taken to the paper's operating points whether they suit them or not: that is what it did.
         warnings.simplefilter("ignore", LawRangeWarning)
         runs = law_runs(pair)
-        figures = figure_records(pair, runs=runs, progress=lambda f: progress(0.4 * f))
+        figures = figure_records(pair, runs=runs, progress=lambda f, _="": progress(0.4 * f))
         shown = errata_chapter(pair)
         progress(0.5)
-        table = claims(pair, samples=samples, runs=runs, progress=lambda f: progress(0.5 + 0.5 * f))
+        table = claims(pair, samples=samples, runs=runs, progress=lambda f, _="": progress(0.5 + 0.5 * f))
     return PaperResults(figures, table, shown)

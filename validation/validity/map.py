@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
 
 import numpy as np
 import xarray as xr
@@ -16,10 +15,8 @@ from lumped.lubrication.film import regime
 from lumped.model.periodic_cycle import UNSTABLE
 from lumped.model.results import provenance
 from lumped.path_of_contact import contact_path
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, Progress
 from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
-
-Progress = Callable[[float], None]
 
 #: Values of ``state``: the worst of contact, sliding and stability.
 STATES = ("valid", "warning", "violated", "no periodic motion")

@@ -12,6 +12,8 @@ from lumped import PathFunction
 from multibody.contact import kernels as kn
 from multibody.contact import kinematics as kin
 from multibody.contact.effects import effect_flags
+from multibody.contact.forces import tooth_forces
+from multibody.contact.kernels_linear import linear_forces
 from multibody.contact.machine import machine, pack_laws
 from multibody.run.records import from_lumped_state, to_lumped_state
 
@@ -23,7 +25,7 @@ ALL = effect_flags(None)
 
 
 def make(pair, error=None):
-    numbers = machine(pair, 56.5, 56.0)
+    numbers = machine(pair)
     if error is not None:
         e = lumped.mesh_elements(pair)
         table, offsets = pack_laws((e.stiffness, e.damping, e.friction, error))
@@ -159,9 +161,23 @@ def test_unequal_pair_has_lumped_geometry():
     p = numbers.parameters
     for place, value in ((kn.L_XA, g.L_XA), (kn.L_XP, g.L_XP), (kn.L_XD, g.L_XD), (kn.L_XY, g.L_XY)):
         assert p[place] == pytest.approx(value, rel=1e-13)
-    pose = np.array([p[kn.CENTRE_PX], p[kn.CENTRE_PY], 0, p[kn.CENTRE_GX], p[kn.CENTRE_GY], 0])
-    both = sum(
-        kin.overlap(pose, p[kn.RADIUS_P], p[kn.RADIUS_G], p[kn.PITCH], p[a], p[b], flank)
-        for a, b, flank in ((kn.CHI_P, kn.CHI_G, 1.0), (kn.CHI_P_BACK, kn.CHI_G_BACK, -1.0))
-    )
+    both = sum(kn.mesh_position(0.0, np.zeros(6), p, 0, flank)[3] for flank in (kin.DRIVE, kin.COAST))
     assert -kin.wrap(both, p[kn.PITCH]) == pytest.approx(g.normal_backlash, abs=1e-16 * 50)
+
+
+def test_the_flag_of_the_linear_mesh_chooses_its_own_core(rng):
+    """It is derived on another way than the exact one, so the two agree to rounding and not to the bit."""
+    numbers = make(PAIR)
+    p, table, offsets = numbers.parameters, numbers.table, numbers.offsets
+    different = 0
+    for t in np.linspace(0.1, 0.9, 9) * numbers.period:
+        q, v = pressed_state(numbers, rng)
+        found, linear = np.zeros((2, 6)), np.zeros(6)
+        records = np.zeros((2 * kin.MAX_PAIRS, kn.N_RECORD))
+        for wrench, flags in zip(found, (kn.LINEAR, 0), strict=True):
+            tooth_forces(t, q, v, p, flags, table, offsets, wrench, records)
+        linear_forces(t, q, v, p, table, offsets, linear, records)
+        np.testing.assert_array_equal(found[0], linear)
+        np.testing.assert_allclose(found[1], linear, rtol=1e-9, atol=1e-9 * np.abs(linear).max())
+        different += not np.array_equal(found[1], linear)
+    assert different > 0

@@ -34,7 +34,7 @@ def contacts(numbers, flags, t, q, v):
 )
 def test_the_force_jumps_where_it_was_foreseen_and_not_before(pair, effects, rng):
     """Along the Taylor continuation of random vibrations, evaluated by the force core itself."""
-    numbers = machine(pair, 56.5, 56.0)
+    numbers = machine(pair)
     flags = effect_flags(effects) & ~kn.BACK_SIDE
     period, p = numbers.period, numbers.parameters
     seen = set()

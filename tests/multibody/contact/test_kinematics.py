@@ -24,24 +24,21 @@ def random_pose(teeth, rng, flank):
     return pose
 
 
+def phase(teeth, pose, flank):
+    """Line of action, place of the first pinion flank on it, overlap."""
+    base_sum = teeth.radius_p + teeth.radius_g
+    line = kin.line_of_action(pose[0], pose[1], pose[3], pose[4], base_sum, flank)
+    radii = teeth.radius_p, teeth.radius_g, teeth.pitch
+    return line, *kin.mesh_phase(line[3], line[2], pose[2], pose[5], *radii, *teeth.chi[flank], flank)
+
+
 def overlap(teeth, pose, flank):
-    return kin.overlap(pose, teeth.radius_p, teeth.radius_g, teeth.pitch, *teeth.chi[flank], flank)
+    return phase(teeth, pose, flank)[2]
 
 
 def contact(teeth, pose, flank):
     """(line, arms of every pair, overlap) in one pose."""
-    line = kin.line_of_action(pose[0], pose[1], pose[3], pose[4], teeth.radius_p + teeth.radius_g, flank)
-    rho, delta = kin.mesh_phase(
-        line[3],
-        line[2],
-        pose[2],
-        pose[5],
-        teeth.radius_p,
-        teeth.radius_g,
-        teeth.pitch,
-        *teeth.chi[flank],
-        flank,
-    )
+    line, rho, delta = phase(teeth, pose, flank)
     arms = np.zeros((kin.MAX_PAIRS, 2))
     count = kin.pairs_in_contact(rho, delta, line[2], teeth.pitch, teeth.tip_p, teeth.tip_g, arms)
     return line, arms[:count] - 0.5 * delta, delta

@@ -83,7 +83,7 @@ def test_a_force_that_turns_nan_on_the_way_stops_the_run(fidelity):
     table = np.vstack([pieces, machine.table[high:]])
     offsets = machine.offsets + 2 * (np.arange(machine.offsets.size) > kn.STIFFNESS)
     broken = replace(machine, table=table, offsets=offsets)
-    model = build(broken, fidelity, setup.model.flags, 100_000)
+    model = build(broken, setup.model.flags, 100_000)
     edges = np.array([0.0, 0.1, 0.9]) * broken.period
     visited = []
     with pytest.raises(lumped.NumericalError, match="not finite"):
@@ -111,7 +111,7 @@ def test_a_speed_that_would_take_for_ever_is_refused_before_work_starts(monkeypa
 def test_fastest_vibration_is_bounded_from_above_and_closely(name):
     """Against the modes of the time-averaged lumped equations, whose mesh is softer by less than half."""
     pair = lumped.load_gear_pair(name)
-    numbers = machine(pair, 1.0, 1.0)
+    numbers = machine(pair)
     fastest = max(mode.natural_frequency for mode in modes(pair)) * numbers.period
     assert 1.0 < numbers.vibrations_per_cycle / fastest < np.sqrt(2.0)
 

@@ -9,7 +9,7 @@ import pytest
 import lumped
 import multibody
 from multibody.study.outline import gear_outline
-from multibody.study.pictures import gear_animation, gear_picture
+from multibody.study.pictures import gear_picture
 
 PAIR = lumped.load_gear_pair("fzg_c")
 
@@ -88,19 +88,3 @@ def test_arrows_point_where_the_gear_is_pushed_and_to_scale():
         expected += [(scale * n, 0.0), (0.0, -factor * scale * f)]
     assert scale > 0
     np.testing.assert_allclose(tips, expected, rtol=1e-12, atol=1e-12)
-
-
-def test_animation_appears_whole_or_not_at_all(tmp_path, monkeypatch):
-    run = multibody.simulate(PAIR, 1, samples_per_cycle=16)
-    path = gear_animation(PAIR, run, tmp_path / "gears.gif", frames=3, cycles=1, dpi=40)
-    assert path.read_bytes()[:4] == b"GIF8"
-    with pytest.raises(lumped.ParameterError, match="gif"):
-        gear_animation(PAIR, run, tmp_path / "gears.txt")
-
-    def interrupted(*_arguments):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("multibody.study.pictures._draw", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        gear_animation(PAIR, run, tmp_path / "other.gif", frames=3)
-    assert [p.name for p in tmp_path.iterdir()] == ["gears.gif"]

@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 
 from lumped import NumericalError
-from multibody.study.causes import CAUSES
+from multibody.contact.effects import CAUSES
 from validation.reporting import causes
 from validation.reporting.blocks import Fact, Table, plain
 from validation.reporting.build import document as document_of

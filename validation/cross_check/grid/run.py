@@ -14,7 +14,7 @@ from __future__ import annotations
 import itertools
 import time
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import MappingProxyType
@@ -28,14 +28,13 @@ import lumped
 from lumped import GearPair
 from lumped.errors import LawRangeWarning, refuse
 from lumped.friction import FRICTIONAL, LAWS
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, Progress
 from validation.cross_check.agreement import FIDELITIES, QUANTITIES
 from validation.cross_check.grid.checkpoint import Checkpoint
 from validation.cross_check.grid.point import COMPARED, SEPARATED, STICKING, GridPoint, compare_point
 
 __all__ = ["AXES", "COMPARED", "SEPARATED", "STICKING", "STIFFNESS", "Grid", "crosscheck_grid"]
 
-Progress = Callable[[float], None]
 
 #: Stiffness model of the grid -> mesh.stiffness. "smooth" rises from zero over 2 mm and has no jump.
 STIFFNESS: Mapping[str, Mapping[str, Any]] = MappingProxyType(

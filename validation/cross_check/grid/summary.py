@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
 
 import multibody
+from lumped.typing import Progress
 from validation.cross_check.agreement import Verdict
 from validation.cross_check.grid.run import AXES, COMPARED, SCALING_TOLERANCE, SEPARATED, STICKING, Grid
 from validation.cross_check.tolerances import LOST
@@ -155,9 +156,7 @@ def failures(result: xr.Dataset) -> list[tuple[dict[str, str | float], str]]:
     return found
 
 
-def explain(
-    grid: Grid, point: Mapping[str, str | float], progress: Callable[[float], None] | None = None
-) -> xr.Dataset:
+def explain(grid: Grid, point: Mapping[str, str | float], progress: Progress | None = None) -> xr.Dataset:
     """Which finite-motion effect makes the difference at one point, see ``multibody.attribution``."""
     pair = grid.pair(
         str(point["preset"]),
@@ -166,7 +165,7 @@ def explain(
         float(point["speed"]),
         float(point["torque"]),
     )
-    return multibody.attribution(pair, periodic=True, progress=progress)
+    return multibody.attribution(pair, progress=progress)
 
 
 def _place(values: xr.DataArray) -> dict[str, xr.DataArray]:

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 import xarray as xr
 
 from lumped import GearPair
+from lumped.typing import Progress
 from validation.paper.claims import numbers as claim_numbers
 from validation.paper.claims.rules import RULES, ClaimRule, Numbers
 from validation.paper.claims.sensitivity import ASSUMPTIONS, Sensitivity, measure, sample_assumptions
 from validation.paper.figure_record import Number
 from validation.paper.operating_points import conditions
 from validation.paper.records import Claim, ClaimsTable, ClaimVerdict
-
-Progress = Callable[[float], None]
 
 ACCURACY = "3 % error"
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,11 +10,9 @@ from scipy.stats import qmc
 
 from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError, bodies
 from lumped.arguments import whole_number
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, Progress
 from validation.paper.claims import numbers
 from validation.paper.operating_points import FIGURE_4
-
-Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True)
