@@ -51,7 +51,7 @@ def named(page: Path) -> str:
     return str(page.relative_to(ROOT))
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def root() -> Path:
     return ROOT
 
@@ -62,7 +62,7 @@ def page(request: pytest.FixtureRequest) -> Path:
     return request.param
 
 
-@pytest.fixture(name="blocks")
+@pytest.fixture(name="blocks", scope="session")
 def read_blocks() -> Callable[[Path], list[Block]]:
     """The function that reads the blocks of a page."""
     return blocks

@@ -41,7 +41,7 @@ def bounded_memory() -> Iterator[None]:
 settings.register_profile(
     "hardening",
     deadline=None,  # the first call compiles; hangs are caught by `within`
-    max_examples=40 * int(os.environ.get("SPURCHECK_FUZZ", "1")),
+    max_examples=25 * int(os.environ.get("SPURCHECK_FUZZ", "1")),
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large],
     print_blob=True,
 )
