@@ -20,10 +20,10 @@ from lumped.path_of_contact import friction_profile
 from validation.files.output import write_dataset
 from validation.interactive.page import render
 from validation.interactive.results import compute
-from validation.plots.multiplier_paths import multiplier_paths_figure
+from validation.plots.multipliers import multiplier_paths_figure
 from validation.plots.path_of_contact import friction_laws_figure, path_figure
 from validation.plots.style import BLUE, DASHES, GREY, LINES, RED, legend, new_figure
-from validation.plots.tongue_chart import tongue_chart_figure
+from validation.plots.tongues import tongue_chart_figure
 
 
 def _pair() -> GearPair:

@@ -142,7 +142,8 @@ def _write(check: CrossCheck, target: Path) -> None:
         data = {"verdict": check.verdict, "agreements": [_data(a) for a in check.agreements]}
         write_text(target, json.dumps(data, indent=1, allow_nan=False) + "\n")
         return
-    from validation.plots import cross_check_figure, save
+    from validation.plots.cross_check import cross_check_figure
+    from validation.plots.style import save
 
     keep = off_switch_samples(check.pair, check.lumped["time"].to_numpy())
     models = {str(fidelity): result for fidelity, result in check.multibody.items()}

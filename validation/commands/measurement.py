@@ -166,8 +166,8 @@ def _write(found: Evaluation, folder: Path) -> None:
 
     from validation.files.folder import MEASUREMENT
     from validation.files.output import write_dataset
-    from validation.plots import save
     from validation.plots.overlay import overlay_figure
+    from validation.plots.style import save
 
     write_dataset(found.points, folder / "overlay.nc")
     found.points.to_dataframe().reset_index().to_csv(

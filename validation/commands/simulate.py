@@ -119,7 +119,8 @@ def simulate(
     if target is None:
         return
     if target.suffix.lower() in FIGURE_SUFFIXES:
-        from validation.plots import history_figure, save
+        from validation.plots.motion import history_figure
+        from validation.plots.style import save
 
         with whole_file(target) as temporary:
             save(history_figure(g, result), temporary)

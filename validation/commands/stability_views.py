@@ -26,15 +26,18 @@ from lumped.friction import LAWS
 from lumped.typing import FloatArray
 from validation.commands.terminal import progress_bar, stdout, table
 from validation.files.output import DATA_SUFFIXES, whole_file, write_dataset
-from validation.plots.boundaries import boundaries_figure
 from validation.plots.campbell import campbell_figure
 from validation.plots.friction_effect import friction_effect_figure
-from validation.plots.multiplier_paths import multiplier_paths_figure
+from validation.plots.multipliers import multiplier_paths_figure
 from validation.plots.stability import stability_figure, stability_line_figure
 from validation.plots.style import save
-from validation.plots.tongue_chart import mark_operating_range, tongue_chart_figure
-from validation.plots.tongues import tongues_figure
-from validation.plots.zones import zones_figure
+from validation.plots.tongues import (
+    boundaries_figure,
+    mark_operating_range,
+    tongue_chart_figure,
+    tongues_figure,
+    zones_figure,
+)
 
 View = tuple[xr.Dataset, Callable[[], Figure]]
 """What is written as data, and the figure."""

@@ -13,7 +13,7 @@ from floquet.gear.chart_axes import operating_rpm
 from lumped.friction import LAWS
 from validation.interactive.results import PageResults
 from validation.interactive.slices import Slices
-from validation.plots.tongue_names import pretty
+from validation.plots.labels import pretty
 from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
 from validation.validity.map import STATES
 

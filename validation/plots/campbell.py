@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from validation.plots.labels import WHITE_BOX, label_above
 from validation.plots.style import BLACK, DASHES, GREY, LINES, RED, legend_above, new_figure
-from validation.plots.tongue_chart import mark_operating_range
+from validation.plots.tongues import mark_operating_range
 
 
 def campbell_figure(

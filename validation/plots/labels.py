@@ -10,7 +10,6 @@ from matplotlib.axes import Axes
 
 from lumped.typing import FloatArray
 from validation.plots.style import BLACK, GREY, WIDTH
-from validation.plots.tongue_names import pretty
 
 #: Behind text that lies on a picture.
 WHITE_BOX: dict[str, Any] = {
@@ -75,3 +74,16 @@ def label_above(ax: Axes, names: Sequence[str], places: Sequence[float], weights
             fontsize=_FONT, color=BLACK,
         )  # fmt: skip
     return len(names) - len(kept)
+
+
+"""Names of tongues as written in print."""
+
+
+def pretty(label: str) -> str:
+    """Label as written in text, with omega and indices: 2w3/5 -> 2ω₃/5."""
+    digits = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+    out, after = "", False
+    for character in label:
+        out += character.translate(digits) if after and character.isdigit() else character.replace("w", "ω")
+        after = character == "w" or (after and character.isdigit())
+    return out.removesuffix("/1").replace("-", "−")

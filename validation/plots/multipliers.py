@@ -1,11 +1,15 @@
-"""Floquet multipliers on the unit circle."""
+"""Floquet multipliers in the complex plane, at one point and along a parameter."""
 
 from __future__ import annotations
 
 import numpy as np
+import xarray as xr
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from floquet.gear.multipliers import GearPairMultipliers
+from validation.plots.labels import WHITE_BOX
 from validation.plots.style import BLACK, BLUE, GREY, RED, legend, new_figure
 
 
@@ -36,4 +40,58 @@ def multipliers_figure(multipliers: GearPairMultipliers) -> Figure:
     ax.set_xlabel("real part [-]")
     ax.set_ylabel("imaginary part [-]")
     legend(ax, loc="center left", bbox_to_anchor=(1.02, 0.5), handlelength=1.2)
+    return figure
+
+
+def multiplier_paths_figure(paths: xr.Dataset, operating: float | None = None) -> Figure:
+    """Multipliers as one parameter varies; colour is the parameter, red where they are outside.
+
+    Parameters
+    ----------
+    paths : dataset of ``floquet.gear.paths.multiplier_paths``
+    operating : value of the parameter at the operating point, marked
+    """
+    figure, axes = new_figure(1, 2, height=4.0, gridspec_kw={"width_ratios": [1.0, 1.25]})
+    left, right = axes[0]
+    name = str(paths["multipliers"].dims[0])
+    parameter, values = paths[name].to_numpy(), paths["multipliers"].to_numpy()
+    norm = Normalize(parameter.min(), parameter.max())
+    angle = np.linspace(0.0, 2.0 * np.pi, 361)
+    left.plot(np.cos(angle), np.sin(angle), color=BLACK, linewidth=1.0)
+    for track in values.T:
+        left.plot(track.real, track.imag, color=GREY, linewidth=0.5, zorder=1)
+        drawn = left.scatter(track.real, track.imag, c=parameter, norm=norm, cmap="viridis", s=5, zorder=2)
+        left.plot(
+            track[0].real, track[0].imag, "o", color=GREY, markersize=5, markerfacecolor="white", zorder=3
+        )
+        outside = np.abs(track) > 1.0
+        left.plot(track[outside].real, track[outside].imag, "o", color=RED, markersize=2.5)
+        right.plot(parameter, np.abs(track), color=GREY, linewidth=1.0)
+        right.plot(parameter[outside], np.abs(track[outside]), ".", color=RED, markersize=3)
+    reach = 1.08 * max(1.0, float(np.abs(values).max()))
+    left.set_xlim(-reach, reach)
+    left.set_ylim(-reach, reach)
+    left.set_aspect("equal", anchor="N")
+    left.set_xlabel("real part [-]")
+    left.set_ylabel("imaginary part [-]")
+    attrs = paths[name].attrs
+    unit = attrs.get("units", "1")
+    text = f"{attrs.get('long_name', name)} [{'-' if unit == '1' else unit}]"
+    bar = figure.colorbar(
+        ScalarMappable(norm, drawn.get_cmap()), ax=[left, right], location="bottom", shrink=0.6, aspect=45
+    )
+    bar.set_label(f"colour of the paths: {text}; circles: where they start", fontsize=8.0)
+    bar.ax.tick_params(labelsize=8.0)
+    right.axhline(1.0, color=BLACK, linewidth=1.0)
+    right.set_xlim(parameter[0], parameter[-1])
+    right.set_ylim(0.0, reach)
+    right.set_xlabel(text)
+    right.set_ylabel("modulus [-], red: unstable")
+    if operating is not None and parameter.min() <= operating <= parameter.max():
+        right.axvline(operating, color=BLACK, linewidth=1.0, linestyle="--")
+        right.annotate(
+            "operating point", (operating, 0.02), xycoords=("data", "axes fraction"), xytext=(3, 0),
+            textcoords="offset points", fontsize=8.0, rotation=90, va="bottom",
+            bbox=WHITE_BOX,
+        )  # fmt: skip
     return figure

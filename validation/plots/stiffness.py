@@ -1,12 +1,29 @@
-"""Mesh stiffness over the mesh cycle."""
+"""Stiffness of the mesh and of its parts."""
 
 from __future__ import annotations
 
 import numpy as np
+import xarray as xr
 from matplotlib.figure import Figure
 
-from lumped import MeshCycle
-from validation.plots.style import BLACK, DASHES, LINES, legend, mark_switches, new_figure, scaled
+from lumped import Geometry, MeshCycle
+from validation.plots.style import (
+    BLACK,
+    BLUE,
+    DASHES,
+    GREEN,
+    GREY,
+    LINES,
+    ORANGE,
+    PURPLE,
+    RED,
+    SKY,
+    legend,
+    mark_switches,
+    new_figure,
+    path_marks,
+    scaled,
+)
 
 
 def stiffness_figure(cycle: MeshCycle, points: int = 801) -> Figure:
@@ -39,4 +56,109 @@ def stiffness_figure(cycle: MeshCycle, points: int = 801) -> Figure:
     ax.set_ylabel(f"stiffness [{unit}]")
     # Above the letters of the switches, which stand on the axes.
     legend(ax, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=len(k) + 1, borderaxespad=1.7)
+    return figure
+
+
+_PARTS = (("contact", GREY), ("bending", BLUE), ("shear", SKY), ("axial", ORANGE), ("foundation", GREEN))
+_HATCHES = ("", "//", "", "xx", "..")
+
+
+def stiffness_components_figure(g: Geometry, components: xr.Dataset) -> Figure:
+    """Compliance of the parts of a tooth pair, stacked, and the pair's stiffness with ISO's c'.
+
+    Parameters
+    ----------
+    g : geometry of the pair
+    components : dataset of ``lumped.stiffness_components``
+    """
+    figure, axes = new_figure(1, 2, height=3.1)
+    left, right = axes[0]
+    xi = 1e3 * components["position"].to_numpy()
+    names = components["component"].to_numpy().astype(str)
+    compliance = components["compliance"].to_numpy()
+    factor, unit = scaled(compliance.sum(axis=0), unit="m/N")
+    floor = np.zeros(xi.size)
+    for (part, colour), hatch in zip(_PARTS, _HATCHES, strict=True):
+        rows = np.char.startswith(names, part)
+        top = floor + compliance[rows].sum(axis=0) / factor
+        left.fill_between(
+            xi,
+            floor,
+            top,
+            facecolor=colour,
+            edgecolor="white",
+            linewidth=0.4,
+            hatch=hatch,
+            alpha=0.75,
+            label=part if part == "contact" else f"{part}, both teeth",
+        )
+        floor = top
+    left.set_ylabel(f"compliance [{unit}]")
+    left.set_ylim(0.0, 1.45 * float(floor.max()))
+    handles, labels = left.get_legend_handles_labels()
+    legend(
+        left,
+        handles=handles[::-1],
+        labels=labels[::-1],
+        loc="upper center",
+        ncols=2,
+        fontsize=7.0,
+        handlelength=1.6,
+        columnspacing=1.0,
+    )
+    stiffness = components["stiffness"].to_numpy()
+    iso = float(components.attrs["iso_single_stiffness"])
+    factor, unit = scaled(stiffness, unit="N/m")
+    right.plot(xi, stiffness / factor, color=BLACK, label="tooth pair, energy")
+    right.axhline(iso / factor, color=RED, linestyle="--", label="ISO 6336-1, c' b")
+    for which, colour, dashes in (
+        ("pinion", PURPLE, (0, (1.2, 1.2))),
+        ("gear", BLUE, (0, (6, 1.5, 1.2, 1.5))),
+    ):
+        rows = np.char.endswith(names, which)
+        right.plot(
+            xi,
+            1.0 / compliance[rows].sum(axis=0) / factor,
+            color=colour,
+            linestyle=dashes,
+            label=f"tooth and body of the {which}",
+        )
+    right.set_ylabel(f"stiffness [{unit}]")
+    right.set_ylim(0.0, 1.45 * right.get_ylim()[1])
+    legend(right, loc="upper center", fontsize=7.5)
+    for ax in (left, right):
+        ax.set_xlabel("distance from X along the line of action [mm]")
+        ax.set_xlim(xi[0], xi[-1])
+        mark_switches(ax, path_marks(g))
+    return figure
+
+
+def energy_mesh_figure(energy: xr.Dataset) -> Figure:
+    """Total potential-energy mesh stiffness over the mesh cycle with its mean and ISO's.
+
+    Parameters
+    ----------
+    energy : dataset of ``lumped.mesh_stiffness`` for the energy model
+    """
+    figure, axes = new_figure(height=2.6)
+    ax = axes[0, 0]
+    phase = energy["phase"].to_numpy()
+    total = energy["mesh_stiffness"].to_numpy()
+    factor, unit = scaled(total, unit="N/m")
+    jumps = np.abs(np.diff(total)) > 0.1 * total.max()
+    places = np.flatnonzero(jumps) + 1
+    ax.plot(
+        np.insert(phase, places, np.nan),
+        np.insert(total, places, np.nan) / factor,
+        color=BLACK,
+        linewidth=1.8,
+        label="all pairs, energy",
+    )
+    ax.axhline(energy.attrs["mean"] / factor, color=BLUE, linestyle="-.", label="its mean")
+    ax.axhline(energy.attrs["iso_mean"] / factor, color=RED, linestyle="--", label="ISO 6336-1, c_γ b")
+    ax.set_xlim(0.0, 1.0)
+    ax.set_ylim(0.0, 1.3 * float(total.max()) / factor)
+    ax.set_xlabel("time [mesh cycles after a pair was at A]")
+    ax.set_ylabel(f"mesh stiffness [{unit}]")
+    legend(ax, loc="upper right", ncols=3)
     return figure

@@ -1,14 +1,112 @@
-"""Tongues of instability over speed and mesh damping, with the operating point."""
+"""Tongues of instability: named in a chart, traced over a parameter, and zones of one degree of freedom."""
 
 from __future__ import annotations
 
-from matplotlib.figure import Figure
+from collections.abc import Mapping, Sequence
 
-from floquet.gear.margins import StabilityMargins
-from validation.plots.labels import label_above
-from validation.plots.stability import UNSTABLE, mark_operating_point
-from validation.plots.style import GREY, RED, new_figure
-from validation.plots.tongue_chart import mark_operating_range
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from floquet.gear.margins import StabilityMargins, TongueMargin
+from floquet.gear.tongues import LabelledRegion
+from validation.plots.labels import WHITE_BOX, label_above
+from validation.plots.stability import UNSTABLE, axis_label, mark_operating_point, stability_figure
+from validation.plots.style import BLACK, BLUE, GREY, RED, new_figure
+
+
+def tongue_chart_figure(
+    chart: xr.Dataset,
+    y: str,
+    regions: Sequence[LabelledRegion | TongueMargin],
+    lines: Mapping[str, float] | None = None,
+    *,
+    point: tuple[float, float] | None = None,
+    operating_range: tuple[float, float] | None = None,
+) -> Figure:
+    """Spectral radius over speed and another axis, every tongue named.
+
+    Parameters
+    ----------
+    chart : dataset of ``floquet.stability_chart`` over speed_rpm and ``y``
+    y : the other axis
+    regions : unstable regions of the chart (``floquet.gear.tongues.label_regions``); or, with mesh damping as
+        the other axis, the traced tongues (``floquet.gear.margins``), whose edges are then drawn
+    lines : label -> predicted speed [rpm] (omega_i +- omega_j)/k, dotted where the tongue is named
+    point : operating point (speed, y)
+    operating_range : speeds of operation [rpm]
+    """
+    figure = stability_figure(chart, "speed_rpm", y, point)
+    ax = figure.axes[0]
+    (low, high), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+    largest: dict[str, tuple[float, float]] = {}
+    for region in regions:
+        if isinstance(region, TongueMargin):
+            if region.critical_damping <= bottom:
+                continue  # closed below the figure
+            name, place, weight = region.label, region.tip_speed, region.critical_damping
+            # Tongues thinner than the grid of the chart are seen by their traced edges alone.
+            inside = region.damping <= top
+            edges = (region.damping[inside], region.left[inside], region.right[inside])
+            ax.fill_betweenx(*edges, facecolor=UNSTABLE, edgecolor=BLACK, linewidth=0.8, zorder=0.9)
+        else:
+            name, place, weight = str(region.label), region.point["speed_rpm"], float(region.nodes)
+        if low <= place <= high and weight > largest.get(name, (0.0, 0.0))[1]:
+            largest[name] = (place, weight)  # the largest region of a label carries its name
+    places, weights = zip(*largest.values(), strict=True) if largest else ((), ())
+    label_above(ax, list(largest), places, weights)
+    for label, speed in (lines or {}).items():
+        if low <= speed <= high and label in largest:
+            ax.axvline(speed, color=GREY, linewidth=0.7, linestyle=(0, (1, 2)))
+    if operating_range is not None:
+        mark_operating_range(ax, operating_range)
+    return figure
+
+
+def mark_operating_range(ax: Axes, speeds: tuple[float, float], *, lower: bool = False) -> None:
+    """Bar along the upper (or lower) edge over the speeds of operation [rpm], as far as they are shown."""
+    left, right = sorted(ax.get_xlim())
+    shown = (max(speeds[0], left), min(speeds[1], right))
+    if shown[0] >= shown[1]:
+        return
+    height = 0.012 if lower else 0.985
+    ax.plot(shown, (height, height), transform=ax.get_xaxis_transform(), color=BLACK, linewidth=3.0)
+    ax.annotate(
+        "operating range", (0.5 * (shown[0] + shown[1]), height), xycoords=("data", "axes fraction"),
+        xytext=(0, 4 if lower else -4), textcoords="offset points", ha="center",
+        va="bottom" if lower else "top", fontsize=8.0, bbox=WHITE_BOX,
+    )  # fmt: skip
+
+
+def critical_damping_figure(tips: xr.Dataset, damping_ratio: float | None = None) -> Figure:
+    """Critical mesh damping of every tongue, by speed and name.
+
+    Parameters
+    ----------
+    tips : dataset of ``floquet.gear.tongues.critical_damping``
+    damping_ratio : mesh damping ratio of the pair, drawn as a line
+    """
+    figure, axes = new_figure(height=3.2)
+    ax = axes[0, 0]
+    closed = tips.isel(tongue=np.flatnonzero(tips["closed"].to_numpy()))
+    speed, damping = closed["speed"].to_numpy(), 100.0 * closed["critical_damping"].to_numpy()
+    ax.vlines(speed, 0.0, damping, color=BLUE, linewidth=1.2)
+    ax.plot(speed, damping, "o", color=BLUE, markersize=4)
+    ax.set_xlim(ax.get_xlim())
+    label_above(ax, list(map(str, closed["label"].to_numpy())), list(speed), list(damping))
+    if damping_ratio is not None:
+        ax.axhline(100.0 * damping_ratio, color=RED, linewidth=1.0)
+        ax.annotate(
+            "this pair", (1.0, 100.0 * damping_ratio), xycoords=("axes fraction", "data"), xytext=(-3, 3),
+            textcoords="offset points", ha="right", color=RED, fontsize=8.0,
+        )  # fmt: skip
+    highest = max([*damping, 100.0 * damping_ratio if damping_ratio else 0.0], default=1.0)
+    ax.set_ylim(0.0, 1.15 * highest)
+    ax.set_xlabel("pinion speed [rpm]")
+    ax.set_ylabel("critical mesh damping ratio [%]")
+    return figure
 
 
 def tongues_figure(margins: StabilityMargins, operating_range: tuple[float, float] | None = None) -> Figure:
@@ -39,4 +137,96 @@ def tongues_figure(margins: StabilityMargins, operating_range: tuple[float, floa
         mark_operating_range(ax, operating_range)
     ax.set_xlabel("pinion speed [rpm]")
     ax.set_ylabel("mesh damping ratio [-]")
+    return figure
+
+
+def boundaries_figure(
+    found: xr.Dataset, name: str, operating_range: tuple[float, float] | None = None
+) -> Figure:
+    """Unstable speeds over another parameter, every tongue named.
+
+    Parameters
+    ----------
+    found : dataset of ``floquet.stability_boundaries`` with one more axis
+    name : that axis
+    operating_range : speeds of operation [rpm]
+    """
+    figure, axes = new_figure(height=3.4)
+    ax = axes[0, 0]
+    values = found[name].to_numpy()
+    names, places, widths = [], [], []
+    for row in range(found.sizes["tongue"]):
+        tongue = found.isel(tongue=row)
+        here = tongue["present"].to_numpy()
+        lower, upper = (
+            tongue[f"interval_{edge}"].transpose(name, ...).to_numpy() for edge in ("lower", "upper")
+        )
+        for edges in zip(lower.T, upper.T, strict=True):
+            ax.fill_betweenx(values, *edges, color=UNSTABLE, linewidth=0.0)
+            for edge in edges:  # marks show a tongue that is met at one value alone
+                ax.plot(edge, values, color=RED, linewidth=1.0, marker=".", markersize=3.0)
+        # Named where the tongue leaves the figure, or at its last value.
+        last = int(np.flatnonzero(here)[-1])
+        names.append(str(tongue["label"].item()))
+        places.append(float(tongue["peak"][last]))
+        widths.append(float(np.nanmax(upper - lower)))
+    ax.set_ylim(values.min(), values.max())
+    if names:
+        low, high = float(found["lower"].min()), float(found["upper"].max())
+        aside = 0.05 * (high - low)
+        ax.set_xlim(low - aside, high + aside)
+        label_above(ax, names, places, widths)
+    else:
+        ax.set_xticks([])
+        ax.annotate("no speed of the range is unstable", (0.5, 0.5), xycoords="axes fraction", ha="center")
+    if operating_range is not None:
+        mark_operating_range(ax, operating_range)
+    ax.set_xlabel("pinion speed [rpm]")
+    ax.set_ylabel(axis_label(found, name))
+    return figure
+
+
+_CASES = {
+    "reversing": "friction turns round at the pitch point",
+    "constant": "friction of one sign",
+}
+
+
+def zones_figure(zones: xr.Dataset) -> Figure:
+    """Unstable zones over mesh frequency and damping, with friction over without.
+
+    Parameters
+    ----------
+    zones : dataset of ``floquet.gear.coulomb_zones.zones``
+    """
+    friction = float(zones.attrs["friction_coefficient"])
+    figure, axes = new_figure(2, 1, height=4.8, sharex=True, sharey=True)
+    x, y = zones["speed_ratio"].to_numpy(), zones["damping_ratio"].to_numpy()
+
+    def excess(case: str) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+        radius = zones["spectral_radius"].sel(friction=case).transpose("damping_ratio", "speed_ratio")
+        return np.asarray(radius.to_numpy() - 1.0)
+
+    for ax, (case, text) in zip(axes[:, 0], _CASES.items(), strict=True):
+        ax.contourf(x, y, excess(case), levels=[1e-9, np.inf], colors=[UNSTABLE])
+        ax.contour(x, y, excess(case), levels=[1e-9], colors=[RED], linewidths=1.0)
+        ax.contour(x, y, excess("none"), levels=[1e-9], colors=[BLACK], linewidths=1.0,
+                   linestyles=[(0, (3, 1.5))])  # fmt: skip
+        for order in range(1, 7):
+            place = 2.0 / order
+            if x[0] <= place <= x[-1]:
+                ax.axvline(place, color=GREY, linewidth=0.6, linestyle=(0, (1, 2)))
+        ax.set_ylabel("mesh damping ratio [-]")
+        ax.annotate(text, (0.01, 0.97), xycoords="axes fraction", va="top", fontsize=9.0)
+    axes[0, 0].set_xlim(x[0], x[-1])
+    places = {f"2w/{order}": 2.0 / order for order in range(1, 7) if x[0] <= 2.0 / order <= x[-1]}
+    label_above(axes[0, 0], list(places), list(places.values()), list(places.values()))
+    axes[1, 0].legend(
+        handles=[
+            Patch(facecolor=UNSTABLE, edgecolor=RED, label=f"unstable, μ = {friction:g}"),
+            Patch(facecolor="none", edgecolor=BLACK, linestyle="--", label="unstable without friction"),
+        ],
+        loc="upper left", bbox_to_anchor=(0.0, 0.88), frameon=False, fontsize=8.5,
+    )  # fmt: skip
+    axes[1, 0].set_xlabel("mesh frequency over natural frequency of the mean mesh [-]")
     return figure

@@ -20,7 +20,7 @@ from floquet.gear.vaishya_singh import CoulombGearPair
 from lumped.errors import NumericalError, refuse
 from validation.files.output import write_text
 from validation.plots.style import save
-from validation.plots.zones import zones_figure
+from validation.plots.tongues import zones_figure
 from validation.reporting.formatting import number
 from validation.verification import floquet_closed_forms as checks
 from validation.verification.coulomb_zones import MU, check_coulomb_gear_pair, zone_tips

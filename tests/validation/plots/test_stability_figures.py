@@ -19,12 +19,10 @@ from floquet.gear.tongues import critical_damping, label_regions
 from lumped import load_gear_pair
 from validation.cli import app
 from validation.plots.campbell import campbell_figure
-from validation.plots.labels import spread
-from validation.plots.multiplier_paths import multiplier_paths_figure
+from validation.plots.labels import pretty, spread
+from validation.plots.multipliers import multiplier_paths_figure
 from validation.plots.stability import stability_figure
-from validation.plots.tongue_chart import critical_damping_figure, tongue_chart_figure
-from validation.plots.tongue_names import pretty
-from validation.plots.tongues import tongues_figure
+from validation.plots.tongues import critical_damping_figure, tongue_chart_figure, tongues_figure
 
 
 @pytest.fixture(scope="module")

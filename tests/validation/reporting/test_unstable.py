@@ -5,7 +5,7 @@ import pytest
 
 import lumped
 from lumped.model.periodic_cycle import UNSTABLE
-from validation import plots
+from validation.plots.sweep import sweep_figure
 from validation.reporting.build import document, written
 from validation.reporting.chapters.steady_state import off_line_modes
 from validation.reporting.judged import failures
@@ -44,7 +44,7 @@ def test_the_sweep_counts_unstable_speeds_and_names_no_peak_among_them(data, uns
 
 def test_the_sweep_figure_crosses_unstable_motions_out(pair):
     sweep = lumped.speed_sweep(pair.with_({"mesh.damping_ratio": 0.0}), [4000, 17000], samples_per_cycle=16)
-    figure = plots.sweep_figure(sweep, 4000.0, 1000.0)
+    figure = sweep_figure(sweep, 4000.0, 1000.0)
     crosses = [line for line in figure.axes[0].lines if line.get_marker() == "x"]
     assert [line.get_xdata().tolist() for line in crosses] == [[17000.0]]
 

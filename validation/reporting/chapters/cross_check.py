@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 
 from lumped.model.results import VARIABLES
-from validation import plots
 from validation.cross_check.comparison import MEANINGS, RTOL, Agreement, CrossCheck, off_switch_samples
+from validation.plots.cross_check import cross_check_figure
 from validation.reporting.blocks import (
     Answer,
     Badge,
@@ -62,7 +62,7 @@ def write(results: Results) -> Content:
             Picture(
                 f"cross_check_{name}",
                 _CAPTIONS[name],
-                partial(plots.cross_check_figure, g, name, unit, check.lumped, models, keep),
+                partial(cross_check_figure, g, name, unit, check.lumped, models, keep),
             )
         )
     blocks += [

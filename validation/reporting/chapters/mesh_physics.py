@@ -6,9 +6,8 @@ import numpy as np
 
 from lumped import GearPair
 from lumped.quasi_static import OptimalRelief
-from validation.plots.harris_map import harris_figure, relief_figure
-from validation.plots.load_sharing import load_sharing_figure
-from validation.plots.stiffness_components import energy_mesh_figure, stiffness_components_figure
+from validation.plots.loaded_mesh import harris_figure, load_sharing_figure, relief_figure
+from validation.plots.stiffness import energy_mesh_figure, stiffness_components_figure
 from validation.reporting.blocks import Block, Content, Fact, Facts, Picture, Quantity, Rows, Table, Text
 from validation.reporting.chapter import Chapter
 from validation.reporting.mesh_physics import CURVES, MeshPhysics, mesh_physics

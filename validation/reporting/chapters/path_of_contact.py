@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from lumped import mesh_cycle
 from lumped.friction import LAWS
-from validation import plots
+from validation.plots.path_of_contact import friction_laws_figure, path_figure
+from validation.plots.stiffness import stiffness_figure
 from validation.reporting.blocks import Block, Content, Picture, Quantity, Rows, Table, Text
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
@@ -67,20 +68,20 @@ def write(results: Results) -> Content:
             "Velocities and film parameter over the path of contact at nominal speed. A to D: start of "
             "contact, lowest point of single contact, pitch point P, highest point of single contact, end "
             "of contact.",
-            lambda: plots.path_figure(g, profile),
+            lambda: path_figure(g, profile),
         ),
         conditions,
         Picture(
             "friction_laws",
             "Friction coefficient of all laws over the path of contact, negative in approach. The law used "
             "is drawn strongest; law V follows the law of its lubrication regime and lies on top of it.",
-            lambda: plots.friction_laws_figure(g, profile, chosen),
+            lambda: friction_laws_figure(g, profile, chosen),
         ),
         laws,
         Picture(
             "mesh_stiffness",
             "Stiffness of each tooth pair and of the mesh over one mesh cycle.",
-            lambda: plots.stiffness_figure(mesh_cycle(pair)),
+            lambda: stiffness_figure(mesh_cycle(pair)),
         ),
     ]
     left_out = list(profile.attrs["left_out"])

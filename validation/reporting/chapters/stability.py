@@ -6,8 +6,8 @@ import numpy as np
 
 from floquet.gear.chart_axes import chart_axes
 from floquet.gear.dense_chart import dense_chart
-from validation import plots
-from validation.plots.tongue_chart import tongue_chart_figure
+from validation.plots.multipliers import multipliers_figure
+from validation.plots.tongues import tongue_chart_figure
 from validation.reporting.blocks import (
     Answer,
     Badge,
@@ -109,7 +109,7 @@ def write(results: Results) -> Content:
             "multipliers",
             "Floquet multipliers at the operating point: inside the unit circle a disturbance dies. The "
             "free rotation of the pair is a double multiplier at +1 by nature and is taken out.",
-            lambda: plots.multipliers_figure(found),
+            lambda: multipliers_figure(found),
         ),
         Table(
             "multipliers_table",

@@ -10,8 +10,14 @@ from lumped import GearPair, bodies
 from lumped.model.averaged import Mode
 from lumped.model.periodic_cycle import UNSTABLE
 from lumped.model.results import VARIABLES
-from validation import plots
 from validation.cross_check.metrics import mesh_orders
+from validation.plots.motion import (
+    motions_figure,
+    orders_figure,
+    tooth_forces_figure,
+    transmission_error_figure,
+)
+from validation.plots.sweep import sweep_figure
 from validation.reporting.blocks import (
     Answer,
     Badge,
@@ -95,23 +101,23 @@ def write(results: Results) -> Content:
             "transmission_error",
             "Dynamic transmission error over one mesh cycle (dotted: its mean) and its amplitudes by mesh "
             "order.",
-            lambda: plots.transmission_error_figure(pair, g, motion, found["dte"]),
+            lambda: transmission_error_figure(pair, g, motion, found["dte"]),
         ),
         Picture(
             "tooth_forces",
             "Normal load and friction force of each tooth pair over one mesh cycle. Friction changes its "
             "sign at the pitch point P.",
-            lambda: plots.tooth_forces_figure(pair, g, motion),
+            lambda: tooth_forces_figure(pair, g, motion),
         ),
         Picture(
             "motions",
             "Motion of the gear centres along (left) and off (right) the line of action.",
-            lambda: plots.motions_figure(g, motion),
+            lambda: motions_figure(g, motion),
         ),
         Picture(
             "motions_by_order",
             "The same motions by mesh order.",
-            lambda: plots.orders_figure(found),
+            lambda: orders_figure(found),
         ),
         orders,
         *_over_speed(results),
@@ -135,7 +141,7 @@ def _over_speed(results: Results) -> list[Block]:
             "frequency of the averaged pair. Where the smallest load is negative the teeth would separate "
             "and the lumped model is not valid."
             + (" Crosses: unstable motions, which a pair leaves." if unstable.any() else ""),
-            lambda: plots.sweep_figure(sweep, results.operating_rpm, results.static_load, places),
+            lambda: sweep_figure(sweep, results.operating_rpm, results.static_load, places),
         ),
         Facts(
             "over_speed",

@@ -1,0 +1,182 @@
+"""Motion in time and by mesh order: histories, transmission error, tooth forces, displacements."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from lumped import Geometry, mesh_cycle
+from lumped.schema.pair import GearPair
+from validation.cross_check.metrics import MeshOrders
+from validation.plots.style import (
+    BLACK,
+    BLUE,
+    DASHES,
+    GREY,
+    LINES,
+    RED,
+    legend,
+    legend_above,
+    mark_switches,
+    mesh_cycles,
+    new_figure,
+    scaled,
+    with_gaps,
+)
+
+
+def history_figure(g: Geometry, result: xr.Dataset) -> Figure:
+    """Transmission error, and normal load per tooth pair, over the time of a run.
+
+    Parameters
+    ----------
+    g : geometry of the pair
+    result : dataset of ``simulate`` or ``steady_state`` of either model
+    """
+    figure, axes = new_figure(2, 1, height=4.2, sharex=True)
+    top, bottom = axes[:, 0]
+    x = mesh_cycles(result, g)
+    dte = result["dte"].to_numpy()
+    factor, unit = scaled(dte, unit="m")
+    top.plot(x, dte / factor, color=BLUE, linewidth=1.0)
+    top.set_ylabel(f"transmission error [{unit}]")
+    load = np.where(result["contact"].to_numpy() > 0, result["normal_load"].to_numpy(), np.nan)
+    factor, unit = scaled(load, unit="N")
+    for i, row in enumerate(load):
+        style = DASHES[i % len(DASHES)]
+        bottom.plot(
+            x, row / factor, color=LINES[i % len(LINES)], linestyle=style, linewidth=1.0, label=f"pair {i}"
+        )
+    bottom.axhline(0.0, color=GREY, linewidth=0.6)
+    bottom.set_ylabel(f"normal load [{unit}]")
+    bottom.set_xlabel("time [mesh cycles]")
+    bottom.set_xlim(x[0], x[-1])
+    legend_above(bottom, len(load))
+    figure.align_ylabels()
+    return figure
+
+
+def transmission_error_figure(pair: GearPair, g: Geometry, motion: xr.Dataset, orders: MeshOrders) -> Figure:
+    """Periodic dynamic transmission error: over one mesh cycle, and the amplitudes of its mesh orders.
+
+    Parameters
+    ----------
+    pair, g : the gear pair and its geometry
+    motion : dataset of ``lumped.steady_state``
+    orders : mesh orders of ``motion["dte"]``
+    """
+    figure, axes = new_figure(1, 2, height=2.7, width_ratios=(1.5, 1.0))
+    left, right = axes[0]
+    dte = motion["dte"].to_numpy()
+    factor, unit = scaled(dte, unit="m")
+    left.plot(mesh_cycles(motion, g), dte / factor, color=BLUE)
+    left.axhline(float(dte.mean()) / factor, color=GREY, linewidth=0.8, linestyle=":")
+    left.set_xlim(0.0, 1.0)
+    left.set_xlabel("time [mesh cycles]")
+    left.set_ylabel(f"dynamic transmission error [{unit}]")
+    cycle = mesh_cycle(pair)
+    mark_switches(left, {n: t / cycle.period for n, t in cycle.events.items()})
+    amplitude = orders.amplitude[1:]
+    factor, unit = scaled(amplitude, unit="m")
+    right.bar(orders.order[1:], amplitude / factor, width=0.6, color=BLUE)
+    right.set_xticks(np.asarray(orders.order[1:]))
+    right.set_xlabel("mesh order [-]")
+    right.set_ylabel(f"amplitude [{unit}]")
+    right.grid(False, axis="x")
+    return figure
+
+
+def tooth_forces_figure(pair: GearPair, g: Geometry, motion: xr.Dataset) -> Figure:
+    """Normal load and friction force per tooth pair and in total, over one mesh cycle.
+
+    Parameters
+    ----------
+    pair, g : the gear pair and its geometry
+    motion : dataset of ``lumped.steady_state``
+    """
+    figure, axes = new_figure(2, 1, height=4.4, sharex=True)
+    x = mesh_cycles(motion, g)
+    touching = motion["contact"].to_numpy() > 0
+    cycle = mesh_cycle(pair)
+    for ax, name, label in (
+        (axes[0, 0], "normal_load", "normal load"),
+        (axes[1, 0], "friction_force", "friction force"),
+    ):
+        values = motion[name].to_numpy()
+        factor, unit = scaled(values, values.sum(axis=0), unit="N")
+        ax.plot(x, values.sum(axis=0) / factor, color=BLACK, linewidth=0.9, label="all pairs")
+        for i, row in enumerate(values):
+            ax.plot(
+                x,
+                with_gaps(x, row, touching[i]) / factor,
+                color=LINES[i % len(LINES)],
+                linestyle=DASHES[i % len(DASHES)],
+                linewidth=1.8,
+                label=f"pair {i}" + (" (ahead)" if i == 0 else ""),
+            )
+        ax.axhline(0.0, color=GREY, linewidth=0.6)
+        ax.set_ylabel(f"{label} [{unit}]")
+    marks = {n: t / cycle.period for n, t in cycle.events.items()}
+    mark_switches(axes[0, 0], marks)
+    mark_switches(axes[1, 0], marks, letters=False)
+    axes[1, 0].set_xlabel("time [mesh cycles]")
+    axes[1, 0].set_xlim(0.0, 1.0)
+    legend(axes[0, 0], loc="best")
+    return figure
+
+
+_PANELS = (("x", "along the line of action"), ("y", "off the line of action"))
+
+
+def motions_figure(g: Geometry, motion: xr.Dataset) -> Figure:
+    """Displacements of both gears about their means, along (LOA) and off (OLOA) the line of action.
+
+    Parameters
+    ----------
+    g : geometry of the pair
+    motion : dataset of ``lumped.steady_state``
+    """
+    figure, axes = new_figure(1, 2, height=2.7)
+    x = mesh_cycles(motion, g)
+    for ax, (axis, label) in zip(axes[0], _PANELS, strict=True):
+        curves = {gear: motion[f"{axis}_{gear}"].to_numpy() for gear in "pg"}
+        moving = {gear: values - values.mean() for gear, values in curves.items()}
+        factor, unit = scaled(*moving.values(), unit="m")
+        for gear, name, colour, dash in (("p", "pinion", BLUE, DASHES[0]), ("g", "gear", RED, DASHES[1])):
+            mean, mean_unit = scaled(curves[gear], unit="m")
+            text = f"{name}, mean {curves[gear].mean() / mean:.3g} {mean_unit}"
+            ax.plot(x, moving[gear] / factor, color=colour, linestyle=dash, label=text)
+        ax.set_xlim(0.0, 1.0)
+        ax.set_xlabel("time [mesh cycles]")
+        ax.set_ylabel(f"{label}\nabout the mean [{unit}]")
+        legend(ax, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=1)
+    return figure
+
+
+def orders_figure(orders: Mapping[str, MeshOrders]) -> Figure:
+    """Amplitudes of the displacements by mesh order.
+
+    Parameters
+    ----------
+    orders : mesh orders of x_p, x_g, y_p, y_g
+    """
+    figure, axes = new_figure(1, 2, height=2.5)
+    for ax, (axis, label) in zip(axes[0], _PANELS, strict=True):
+        chosen = {gear: orders[f"{axis}_{gear}"] for gear in "pg"}
+        factor, unit = scaled(*(o.amplitude[1:] for o in chosen.values()), unit="m")
+        for offset, (gear, name, colour) in zip(
+            (-0.2, 0.2), (("p", "pinion", BLUE), ("g", "gear", RED)), strict=True
+        ):
+            found = chosen[gear]
+            ax.bar(
+                found.order[1:] + offset, found.amplitude[1:] / factor, width=0.38, color=colour, label=name
+            )
+        ax.set_xticks(np.asarray(chosen["p"].order[1:]))
+        ax.set_xlabel("mesh order [-]")
+        ax.set_ylabel(f"{label}\namplitude [{unit}]")
+        ax.grid(False, axis="x")
+    legend(axes[0, 0], loc="upper right")
+    return figure
