@@ -29,11 +29,10 @@ from validation.files.output import DATA_SUFFIXES, whole_file, write_dataset
 from validation.plots.campbell import campbell_figure
 from validation.plots.friction_effect import friction_effect_figure
 from validation.plots.multipliers import multiplier_paths_figure
-from validation.plots.stability import stability_figure, stability_line_figure
+from validation.plots.stability import mark_operating_range, stability_figure, stability_line_figure
 from validation.plots.style import save
 from validation.plots.tongues import (
     boundaries_figure,
-    mark_operating_range,
     tongue_chart_figure,
     tongues_figure,
     zones_figure,
@@ -161,7 +160,7 @@ def _chart(request: Request) -> View:
         else:
             x, y = sorted(names, key=lambda name: name != "speed_rpm")  # speed runs to the right
             figure = stability_figure(chart, x, y, (request.value(x), request.value(y)))
-        if request.operating_range is not None and "speed_rpm" in grid:
+        if "speed_rpm" in grid:
             mark_operating_range(figure.axes[0], request.operating_range)
         return figure
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 from validation.plots.labels import WHITE_BOX, label_above
-from validation.plots.style import BLACK, DASHES, GREY, LINES, RED, legend_above, new_figure
-from validation.plots.tongues import mark_operating_range
+from validation.plots.stability import mark_operating_range
+from validation.plots.style import BLACK, GREY, RED, legend_above, look, new_figure
 
 
 def campbell_figure(
@@ -33,9 +32,8 @@ def campbell_figure(
     frequency = diagram["frequency"].to_numpy() / 1e3
     ceiling = 1.12 * float(frequency.max())
     for index, mode in enumerate(diagram["mode"].to_numpy()):
-        style = {"color": LINES[index], "linestyle": DASHES[index], "linewidth": 1.6}
-        top.plot(speed, frequency[:, index], label=f"mode {mode}", **style)
-        bottom.plot(speed, diagram["decay"].to_numpy()[:, index] / 1e3, **style)
+        top.plot(speed, frequency[:, index], label=f"mode {mode}", **look(index), linewidth=1.6)
+        bottom.plot(speed, diagram["decay"].to_numpy()[:, index] / 1e3, **look(index), linewidth=1.6)
     for order, line in zip(
         diagram["mesh_order"].to_numpy(), diagram["mesh_frequency"].to_numpy().T / 1e3, strict=True
     ):
@@ -72,10 +70,6 @@ def campbell_figure(
             "operating point", (operating_rpm, 1.0), xycoords=("data", "axes fraction"), xytext=(3, -3),
             textcoords="offset points", va="top", fontsize=8.0, rotation=90, bbox=WHITE_BOX,
         )  # fmt: skip
-    if operating_range is not None:
-        mark_operating_range(
-            top, (max(operating_range[0], speed[0]), min(operating_range[1], speed[-1])), lower=True
-        )
+    mark_operating_range(top, operating_range, lower=True)
     top.tick_params(labelbottom=False)
-    assert np.isfinite(frequency).all()
     return figure

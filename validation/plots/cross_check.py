@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from lumped import Geometry
+from lumped.typing import FloatArray
 from validation.plots.style import BLACK, BLUE, DASHES, RED, legend_above, new_figure, scaled
 
 _LABELS = {
@@ -49,7 +50,7 @@ def cross_check_figure(
     shown = time >= time[-1] - (_SHOWN_CYCLES + 1e-9) * g.mesh_period
     x = (time[shown] - time[shown][0]) / g.mesh_period
 
-    def history(result: xr.Dataset) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    def history(result: xr.Dataset) -> FloatArray:
         values = result[quantity].to_numpy()[..., shown]
         return np.asarray(values.sum(axis=0) if values.ndim == 2 else values, dtype=np.float64)
 

@@ -15,9 +15,8 @@ from validation.plots.style import (
     RED,
     legend,
     legend_above,
-    mark_switches,
     new_figure,
-    path_marks,
+    path_axis,
     scaled,
 )
 
@@ -73,10 +72,8 @@ def sliding_power_figure(
         left.plot(
             1e3 * data["xi"], power / factor, color=colour, linestyle=dashes, label=label, linewidth=1.2
         )
-    left.set_xlabel("distance from X along the line of action [mm]")
     left.set_ylabel(f"sliding power of one pair [{unit}]")
-    left.set_xlim(1e3 * g.L_XA, 1e3 * g.L_XD)
-    mark_switches(left, path_marks(g))
+    path_axis(left, g)
     for data, (label, colour, dashes) in zip(instants, looks, strict=True):
         right.plot(
             data["time"] / g.mesh_period,
@@ -132,7 +129,5 @@ def film_figure(g: Geometry, profile: xr.Dataset, thresholds: tuple[float, ...])
             color="#404040",
         )
     for ax in (left, right):
-        ax.set_xlabel("distance from X along the line of action [mm]")
-        ax.set_xlim(xi[0], xi[-1])
-        mark_switches(ax, path_marks(g))
+        path_axis(ax, g, xi)
     return figure

@@ -48,8 +48,7 @@ def friction_effect_figure(
                             label=f"boundary, {name.replace('_', ' ')}"))  # fmt: skip
     ax.legend(handles=shown, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, frameon=False,
               fontsize=8.5, handlelength=2.6)  # fmt: skip
-    if point is not None:
-        mark_operating_point(ax, point)
+    mark_operating_point(ax, point)
     bar = figure.colorbar(drawn, ax=ax, pad=0.01, extend="both")
     bar.set_label("change of growth per mesh cycle [-]\n(purple: damps, orange: drives)", fontsize=8.5)
     bar.outline.set_linewidth(0.5)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from scipy.optimize import isotonic_regression
 
 from lumped.typing import FloatArray
 from validation.plots.style import BLACK, GREY, WIDTH
@@ -24,7 +25,7 @@ def spread(places: Sequence[float] | FloatArray, gap: float, low: float, high: f
     """Move places apart to at least ``gap``, within [low, high], by the least sum of squares.
 
     With p_i = place_i - i gap the wanted positions minimise sum (q_i - p_i)^2 for increasing q_i, which is
-    isotonic regression: neighbours that would overlap share their mean.
+    isotonic regression.
 
     Parameters
     ----------
@@ -37,14 +38,7 @@ def spread(places: Sequence[float] | FloatArray, gap: float, low: float, high: f
         return wanted
     step = min(gap, (high - low) / max(wanted.size - 1, 1))
     offsets = step * np.arange(wanted.size)
-    blocks: list[tuple[float, int]] = []
-    for value in wanted - offsets:
-        mean, size = float(value), 1
-        while blocks and blocks[-1][0] > mean:
-            before, count = blocks.pop()
-            mean, size = (before * count + mean * size) / (count + size), count + size
-        blocks.append((mean, size))
-    moved = np.concatenate([np.full(size, mean) for mean, size in blocks])
+    moved = isotonic_regression(wanted - offsets).x
     return np.asarray(np.clip(moved, low, high - offsets[-1]) + offsets)
 
 

@@ -9,12 +9,11 @@ from matplotlib.figure import Figure
 from lumped import Geometry
 from lumped.quasi_static import OptimalRelief
 from validation.plots.style import (
-    DASHES,
     GREY,
-    LINES,
-    RED,
     legend,
     legend_above,
+    look,
+    mark_operation,
     mark_switches,
     new_figure,
     path_marks,
@@ -22,14 +21,13 @@ from validation.plots.style import (
 )
 
 
-def load_sharing_figure(g: Geometry, static: xr.Dataset, torques: tuple[float, ...] = ()) -> Figure:
+def load_sharing_figure(g: Geometry, static: xr.Dataset) -> Figure:
     """Share of one tooth pair in the load over its position, beyond A and D where deflection lets it touch.
 
     Parameters
     ----------
     g : geometry of the pair
     static : dataset of ``lumped.static_transmission_error`` over one mesh cycle
-    torques : which of its torques to draw, nearest [N m]; default all
     """
     figure, axes = new_figure(height=2.9)
     ax = axes[0, 0]
@@ -37,15 +35,12 @@ def load_sharing_figure(g: Geometry, static: xr.Dataset, torques: tuple[float, .
     order = np.argsort(place)
     near = (place[order] > g.L_XA - 0.25 * g.base_pitch) & (place[order] < g.L_XD + 0.25 * g.base_pitch)
     shown = static["torque"].to_numpy()
-    if torques:
-        shown = np.unique([float(static["torque"].sel(torque=one, method="nearest")) for one in torques])
     for index, torque in enumerate(shown):
         share = static["load_share"].sel(torque=torque).to_numpy().ravel()[order]
         ax.plot(
             1e3 * place[order][near],
             share[near],
-            color=LINES[index % len(LINES)],
-            linestyle=DASHES[index % len(DASHES)],
+            **look(index),
             label=f"{torque:.4g} N m",
         )
     ax.set_ylim(0.0, 1.05)
@@ -77,8 +72,7 @@ def harris_figure(static: xr.Dataset, harris: xr.Dataset) -> Figure:
         left.plot(
             cycles,
             np.tile(te[index], 2) / factor,
-            color=LINES[index % len(LINES)],
-            linestyle=DASHES[index % len(DASHES)],
+            **look(index),
             label=f"{torque:.4g} N m",
         )
     left.set_xlim(0.0, 2.0)
@@ -93,22 +87,11 @@ def harris_figure(static: xr.Dataset, harris: xr.Dataset) -> Figure:
         right.plot(
             harris["torque"],
             error[index] / factor,
-            color=LINES[index % len(LINES)],
-            linestyle=DASHES[index % len(DASHES)],
+            **look(index),
             linewidth=2.2 if index == 0 else 1.3,
             label=str(flank),
         )
-    right.axvline(harris.attrs["operating_torque"], color=RED, linewidth=0.9)
-    right.annotate(
-        "operating torque",
-        (harris.attrs["operating_torque"], 1.0),
-        xycoords=("data", "axes fraction"),
-        xytext=(0, 2),
-        textcoords="offset points",
-        ha="center",
-        fontsize=8.0,
-        color=RED,
-    )
+    mark_operation(right, harris.attrs["operating_torque"], "operating torque")
     right.set_xlim(0.0, float(harris["torque"].max()))
     right.set_ylim(0.0, 1.6 * float(error.max()) / factor if error.max() > 0.0 else 1.0)
     right.set_xlabel("pinion torque [N m]")

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from lumped import Geometry, mesh_cycle
@@ -16,14 +17,15 @@ from validation.plots.style import (
     BLUE,
     DASHES,
     GREY,
-    LINES,
     RED,
     legend,
     legend_above,
+    look,
     mark_switches,
     mesh_cycles,
     new_figure,
     scaled,
+    switches_in_cycles,
     with_gaps,
 )
 
@@ -46,10 +48,7 @@ def history_figure(g: Geometry, result: xr.Dataset) -> Figure:
     load = np.where(result["contact"].to_numpy() > 0, result["normal_load"].to_numpy(), np.nan)
     factor, unit = scaled(load, unit="N")
     for i, row in enumerate(load):
-        style = DASHES[i % len(DASHES)]
-        bottom.plot(
-            x, row / factor, color=LINES[i % len(LINES)], linestyle=style, linewidth=1.0, label=f"pair {i}"
-        )
+        bottom.plot(x, row / factor, **look(i), linewidth=1.0, label=f"pair {i}")
     bottom.axhline(0.0, color=GREY, linewidth=0.6)
     bottom.set_ylabel(f"normal load [{unit}]")
     bottom.set_xlabel("time [mesh cycles]")
@@ -77,15 +76,8 @@ def transmission_error_figure(pair: GearPair, g: Geometry, motion: xr.Dataset, o
     left.set_xlim(0.0, 1.0)
     left.set_xlabel("time [mesh cycles]")
     left.set_ylabel(f"dynamic transmission error [{unit}]")
-    cycle = mesh_cycle(pair)
-    mark_switches(left, {n: t / cycle.period for n, t in cycle.events.items()})
-    amplitude = orders.amplitude[1:]
-    factor, unit = scaled(amplitude, unit="m")
-    right.bar(orders.order[1:], amplitude / factor, width=0.6, color=BLUE)
-    right.set_xticks(np.asarray(orders.order[1:]))
-    right.set_xlabel("mesh order [-]")
-    right.set_ylabel(f"amplitude [{unit}]")
-    right.grid(False, axis="x")
+    mark_switches(left, switches_in_cycles(mesh_cycle(pair)))
+    _bars(right, {"": orders}, 0.6, "amplitude")
     return figure
 
 
@@ -100,7 +92,6 @@ def tooth_forces_figure(pair: GearPair, g: Geometry, motion: xr.Dataset) -> Figu
     figure, axes = new_figure(2, 1, height=4.4, sharex=True)
     x = mesh_cycles(motion, g)
     touching = motion["contact"].to_numpy() > 0
-    cycle = mesh_cycle(pair)
     for ax, name, label in (
         (axes[0, 0], "normal_load", "normal load"),
         (axes[1, 0], "friction_force", "friction force"),
@@ -112,14 +103,13 @@ def tooth_forces_figure(pair: GearPair, g: Geometry, motion: xr.Dataset) -> Figu
             ax.plot(
                 x,
                 with_gaps(x, row, touching[i]) / factor,
-                color=LINES[i % len(LINES)],
-                linestyle=DASHES[i % len(DASHES)],
+                **look(i),
                 linewidth=1.8,
                 label=f"pair {i}" + (" (ahead)" if i == 0 else ""),
             )
         ax.axhline(0.0, color=GREY, linewidth=0.6)
         ax.set_ylabel(f"{label} [{unit}]")
-    marks = {n: t / cycle.period for n, t in cycle.events.items()}
+    marks = switches_in_cycles(mesh_cycle(pair))
     mark_switches(axes[0, 0], marks)
     mark_switches(axes[1, 0], marks, letters=False)
     axes[1, 0].set_xlabel("time [mesh cycles]")
@@ -165,18 +155,19 @@ def orders_figure(orders: Mapping[str, MeshOrders]) -> Figure:
     """
     figure, axes = new_figure(1, 2, height=2.5)
     for ax, (axis, label) in zip(axes[0], _PANELS, strict=True):
-        chosen = {gear: orders[f"{axis}_{gear}"] for gear in "pg"}
-        factor, unit = scaled(*(o.amplitude[1:] for o in chosen.values()), unit="m")
-        for offset, (gear, name, colour) in zip(
-            (-0.2, 0.2), (("p", "pinion", BLUE), ("g", "gear", RED)), strict=True
-        ):
-            found = chosen[gear]
-            ax.bar(
-                found.order[1:] + offset, found.amplitude[1:] / factor, width=0.38, color=colour, label=name
-            )
-        ax.set_xticks(np.asarray(chosen["p"].order[1:]))
-        ax.set_xlabel("mesh order [-]")
-        ax.set_ylabel(f"{label}\namplitude [{unit}]")
-        ax.grid(False, axis="x")
+        chosen = {gear: orders[f"{axis}_{gear[0]}"] for gear in ("pinion", "gear")}
+        _bars(ax, chosen, 0.38, f"{label}\namplitude")
     legend(axes[0, 0], loc="upper right")
     return figure
+
+
+def _bars(ax: Axes, found: Mapping[str, MeshOrders], width: float, label: str) -> None:
+    """Amplitudes by mesh order, side by side for each name."""
+    factor, unit = scaled(*(one.amplitude[1:] for one in found.values()), unit="m")
+    for place, ((name, one), colour) in enumerate(zip(found.items(), (BLUE, RED), strict=False)):
+        shift = 0.4 * place - 0.2 * (len(found) - 1)
+        ax.bar(one.order[1:] + shift, one.amplitude[1:] / factor, width=width, color=colour, label=name)
+        ax.set_xticks(np.asarray(one.order[1:]))
+    ax.set_xlabel("mesh order [-]")
+    ax.set_ylabel(f"{label} [{unit}]")
+    ax.grid(False, axis="x")

@@ -9,7 +9,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from floquet.gear.multipliers import GearPairMultipliers
-from validation.plots.labels import WHITE_BOX
+from validation.plots.stability import axis_label, mark_operating_value
 from validation.plots.style import BLACK, BLUE, GREY, RED, legend, new_figure
 
 
@@ -74,9 +74,7 @@ def multiplier_paths_figure(paths: xr.Dataset, operating: float | None = None) -
     left.set_aspect("equal", anchor="N")
     left.set_xlabel("real part [-]")
     left.set_ylabel("imaginary part [-]")
-    attrs = paths[name].attrs
-    unit = attrs.get("units", "1")
-    text = f"{attrs.get('long_name', name)} [{'-' if unit == '1' else unit}]"
+    text = axis_label(paths, name)
     bar = figure.colorbar(
         ScalarMappable(norm, drawn.get_cmap()), ax=[left, right], location="bottom", shrink=0.6, aspect=45
     )
@@ -87,11 +85,5 @@ def multiplier_paths_figure(paths: xr.Dataset, operating: float | None = None) -
     right.set_ylim(0.0, reach)
     right.set_xlabel(text)
     right.set_ylabel("modulus [-], red: unstable")
-    if operating is not None and parameter.min() <= operating <= parameter.max():
-        right.axvline(operating, color=BLACK, linewidth=1.0, linestyle="--")
-        right.annotate(
-            "operating point", (operating, 0.02), xycoords=("data", "axes fraction"), xytext=(3, 0),
-            textcoords="offset points", fontsize=8.0, rotation=90, va="bottom",
-            bbox=WHITE_BOX,
-        )  # fmt: skip
+    mark_operating_value(right, operating)
     return figure

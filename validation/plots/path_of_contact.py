@@ -12,12 +12,11 @@ from validation.plots.style import (
     DASHES,
     GREEN,
     GREY,
-    LINES,
     RED,
     legend,
-    mark_switches,
+    look,
     new_figure,
-    path_marks,
+    path_axis,
 )
 
 
@@ -41,9 +40,7 @@ def path_figure(g: Geometry, profile: xr.Dataset) -> Figure:
     right.set_ylabel("film parameter [-]")
     right.set_ylim(0.0, 1.15 * float(profile["film_parameter"].max()))
     for ax in (left, right):
-        ax.set_xlabel("distance from X along the line of action [mm]")
-        mark_switches(ax, path_marks(g))
-        ax.set_xlim(xi[0], xi[-1])
+        path_axis(ax, g, xi)
     for threshold, name in ((1.0, "mixed"), (4.0, "elastohydrodynamic"), (10.0, "full film")):
         if threshold < right.get_ylim()[1]:
             right.axhline(threshold, color=GREY, linewidth=0.8, linestyle=":")
@@ -85,16 +82,13 @@ def friction_laws_figure(g: Geometry, profile: xr.Dataset, chosen: str) -> Figur
         ax.plot(
             1e3 * x,
             y,
-            color=LINES[number % len(LINES)],
-            linestyle=DASHES[number % len(DASHES)],
+            **look(number),
             linewidth=2.4 if own else 1.2,
             label=title,
             zorder=3 if own else 2,
         )
     ax.axhline(0.0, color=GREY, linewidth=0.6)
-    ax.set_xlim(1e3 * xi[0], 1e3 * xi[-1])
-    ax.set_xlabel("distance from X along the line of action [mm]")
+    path_axis(ax, g, 1e3 * xi)
     ax.set_ylabel("friction coefficient, signed [-]")
-    mark_switches(ax, path_marks(g))
     legend(ax, loc="upper left")
     return figure

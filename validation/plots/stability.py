@@ -12,8 +12,8 @@ from matplotlib.collections import QuadMesh
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
-from numpy.typing import NDArray
 
+from lumped.typing import FloatArray
 from validation.plots.labels import WHITE_BOX
 from validation.plots.style import BLACK, RED, new_figure
 
@@ -41,8 +41,7 @@ def stability_figure(chart: xr.Dataset, x: str, y: str, point: tuple[float, floa
     ax.set_xlim(xs[0], xs[-1])
     ax.set_ylim(ys[0], ys[-1])
     mark_unstable(ax, xs, ys, values)
-    if point is not None:
-        mark_operating_point(ax, point)
+    mark_operating_point(ax, point)
     bar = figure.colorbar(drawn, ax=ax, pad=0.01)
     bar.set_label("spectral radius [-]; unstable above 1 (hatched)", fontsize=8.5)
     bar.outline.set_linewidth(0.5)
@@ -68,13 +67,8 @@ def stability_line_figure(chart: xr.Dataset, x: str, value: float | None) -> Fig
     ax.plot(xs, values, color="#08519c", linewidth=1.2)
     ax.axhline(1.0, color=BLACK, linewidth=0.8)
     ax.fill_between(xs, 1.0, np.maximum(values, 1.0), color=UNSTABLE, linewidth=0.0)
-    if value is not None and xs[0] <= value <= xs[-1]:
-        ax.axvline(value, color=BLACK, linewidth=1.0, linestyle="--")
-        ax.annotate(
-            "operating point", (value, 0.03), xycoords=("data", "axes fraction"), xytext=(3, 0),
-            textcoords="offset points", fontsize=8.0, rotation=90, va="bottom", bbox=WHITE_BOX,
-        )  # fmt: skip
     ax.set_xlim(xs[0], xs[-1])
+    mark_operating_value(ax, value)
     ax.set_xlabel(axis_label(chart, x))
     ax.set_ylabel("spectral radius [-], unstable above 1")
     return figure
@@ -82,9 +76,9 @@ def stability_line_figure(chart: xr.Dataset, x: str, value: float | None) -> Fig
 
 def field(
     ax: Axes,
-    xs: NDArray[np.float64],
-    ys: NDArray[np.float64],
-    values: NDArray[np.float64],
+    xs: FloatArray,
+    ys: FloatArray,
+    values: FloatArray,
     norm: Normalize,
     colours: mpl.colors.Colormap | str,
 ) -> AxesImage | QuadMesh:
@@ -105,9 +99,7 @@ def field(
     )
 
 
-def mark_unstable(
-    ax: Axes, xs: NDArray[np.float64], ys: NDArray[np.float64], radius: NDArray[np.float64]
-) -> None:
+def mark_unstable(ax: Axes, xs: FloatArray, ys: FloatArray, radius: FloatArray) -> None:
     """Fill, hatch and edge the region of radius (y, x) above 1."""
     if xs.size < 2 or ys.size < 2 or not (radius > 1.0).any():
         return
@@ -116,8 +108,10 @@ def mark_unstable(
     ax.contour(xs, ys, radius, levels=[1.0], colors=[BLACK], linewidths=1.0)
 
 
-def mark_operating_point(ax: Axes, point: tuple[float, float]) -> None:
+def mark_operating_point(ax: Axes, point: tuple[float, float] | None) -> None:
     """Circle at the point and its name beside it, on the side where there is room; nothing when outside."""
+    if point is None:
+        return
     (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
     if not (left <= point[0] <= right and bottom <= point[1] <= top):
         return
@@ -133,6 +127,35 @@ def mark_operating_point(ax: Axes, point: tuple[float, float]) -> None:
     ax.annotate(
         "operating point", point, xytext=(8 if east else -8, shift), textcoords="offset points",
         ha="left" if east else "right", va="bottom" if north else "top", fontsize=8.5, bbox=WHITE_BOX,
+    )  # fmt: skip
+
+
+def mark_operating_value(ax: Axes, value: float | None) -> None:
+    """Dashed line at the operating point's value on the x axis, named beside it; nothing when outside."""
+    low, high = sorted(ax.get_xlim())
+    if value is None or not low <= value <= high:
+        return
+    ax.axvline(value, color=BLACK, linewidth=1.0, linestyle="--")
+    ax.annotate(
+        "operating point", (value, 0.03), xycoords=("data", "axes fraction"), xytext=(3, 0),
+        textcoords="offset points", fontsize=8.0, rotation=90, va="bottom", bbox=WHITE_BOX,
+    )  # fmt: skip
+
+
+def mark_operating_range(ax: Axes, speeds: tuple[float, float] | None, *, lower: bool = False) -> None:
+    """Bar along the upper (or lower) edge over the speeds of operation [rpm], if any, as far as shown."""
+    if speeds is None:
+        return
+    left, right = sorted(ax.get_xlim())
+    shown = (max(speeds[0], left), min(speeds[1], right))
+    if shown[0] >= shown[1]:
+        return
+    height = 0.012 if lower else 0.985
+    ax.plot(shown, (height, height), transform=ax.get_xaxis_transform(), color=BLACK, linewidth=3.0)
+    ax.annotate(
+        "operating range", (0.5 * (shown[0] + shown[1]), height), xycoords=("data", "axes fraction"),
+        xytext=(0, 4 if lower else -4), textcoords="offset points", ha="center",
+        va="bottom" if lower else "top", fontsize=8.0, bbox=WHITE_BOX,
     )  # fmt: skip
 
 

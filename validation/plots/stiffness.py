@@ -21,8 +21,9 @@ from validation.plots.style import (
     legend,
     mark_switches,
     new_figure,
-    path_marks,
+    path_axis,
     scaled,
+    switches_in_cycles,
 )
 
 
@@ -49,7 +50,7 @@ def stiffness_figure(cycle: MeshCycle, points: int = 801) -> Figure:
     for i, row in enumerate(k):
         shown = np.where(row > 0, row, np.nan)
         ax.plot(x, shown / factor, color=LINES[i], linestyle=DASHES[i + 1], label=f"pair {i}")
-    mark_switches(ax, {n: t / period for n, t in cycle.events.items()})
+    mark_switches(ax, switches_in_cycles(cycle))
     ax.set_xlim(0.0, 1.0)
     ax.set_ylim(bottom=0.0)
     ax.set_xlabel("time [mesh cycles]")
@@ -127,9 +128,7 @@ def stiffness_components_figure(g: Geometry, components: xr.Dataset) -> Figure:
     right.set_ylim(0.0, 1.45 * right.get_ylim()[1])
     legend(right, loc="upper center", fontsize=7.5)
     for ax in (left, right):
-        ax.set_xlabel("distance from X along the line of action [mm]")
-        ax.set_xlim(xi[0], xi[-1])
-        mark_switches(ax, path_marks(g))
+        path_axis(ax, g, xi)
     return figure
 
 

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from lumped import Geometry
+from lumped import Geometry, MeshCycle
 from lumped.typing import FloatArray
 
 #: Okabe and Ito's palette, distinguishable with every common colour vision deficiency.
@@ -87,6 +87,11 @@ def legend_above(ax: Axes, columns: int) -> None:
     legend(ax, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, columnspacing=1.6)
 
 
+def look(index: int) -> dict[str, Any]:
+    """Colour and dashes of the line with this number, so that colour is never the only difference."""
+    return {"color": LINES[index % len(LINES)], "linestyle": DASHES[index % len(DASHES)]}
+
+
 def prefix(largest: float) -> tuple[float, str]:
     """Factor and SI prefix that bring a number of this size between 1 and 1000."""
     for factor, name in _LARGE:
@@ -138,6 +143,28 @@ def mark_switches(ax: Axes, events: Mapping[str, float], *, letters: bool = True
             fontsize=8.0,
             color=GREY,
         )
+
+
+def switches_in_cycles(cycle: MeshCycle) -> dict[str, float]:
+    """Letters of the events of a mesh cycle -> time [mesh cycles]."""
+    return {name: time / cycle.period for name, time in cycle.events.items()}
+
+
+def path_axis(ax: Axes, g: Geometry, ends: FloatArray | None = None) -> None:
+    """Label an x axis along the path of contact and mark its letters; ``ends`` [mm]: default A and D."""
+    marks = path_marks(g)
+    ax.set_xlabel("distance from X along the line of action [mm]")
+    ax.set_xlim(*((marks["A"], marks["D"]) if ends is None else (ends[0], ends[-1])))
+    mark_switches(ax, marks)
+
+
+def mark_operation(ax: Axes, place: float, words: str) -> None:
+    """Red line at the operating condition, named above the axes."""
+    ax.axvline(place, color=RED, linewidth=1.0)
+    ax.annotate(
+        words, (place, 1.0), xycoords=("data", "axes fraction"), xytext=(0, 2), textcoords="offset points",
+        ha="center", fontsize=8.0, color=RED,
+    )  # fmt: skip
 
 
 def path_marks(g: Geometry) -> dict[str, float]:

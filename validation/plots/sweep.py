@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from lumped.model.periodic_cycle import UNSTABLE
-from validation.plots.style import BLUE, GREY, LINES, RED, legend_above, new_figure, scaled
+from validation.plots.style import BLUE, GREY, LINES, RED, legend_above, mark_operation, new_figure, scaled
 
 
 def sweep_figure(
@@ -55,20 +55,11 @@ def sweep_figure(
     bottom.set_ylabel("tooth load over\nstatic load [-]")
     bottom.set_xlabel("pinion speed [rpm]")
     bottom.set_xlim(speed[0], speed[-1])
+    mark_operation(top, operating_rpm, "operating point")
+    bottom.axvline(operating_rpm, color=RED, linewidth=1.0)
     for ax in (top, bottom):
-        ax.axvline(operating_rpm, color=RED, linewidth=1.0)
         for place in resonances_rpm:
             if speed[0] <= place <= speed[-1]:
                 ax.axvline(place, color=GREY, linewidth=0.7, linestyle=":")
-    top.annotate(
-        "operating point",
-        (operating_rpm, 1.0),
-        xycoords=("data", "axes fraction"),
-        xytext=(0, 2),
-        textcoords="offset points",
-        ha="center",
-        fontsize=8.0,
-        color=RED,
-    )
     legend_above(bottom, 3)
     return figure

@@ -6,15 +6,21 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from floquet.gear.margins import StabilityMargins, TongueMargin
 from floquet.gear.tongues import LabelledRegion
-from validation.plots.labels import WHITE_BOX, label_above
-from validation.plots.stability import UNSTABLE, axis_label, mark_operating_point, stability_figure
-from validation.plots.style import BLACK, BLUE, GREY, RED, new_figure
+from lumped.typing import FloatArray
+from validation.plots.labels import label_above
+from validation.plots.stability import (
+    UNSTABLE,
+    axis_label,
+    mark_operating_point,
+    mark_operating_range,
+    stability_figure,
+)
+from validation.plots.style import BLACK, GREY, RED, new_figure
 
 
 def tongue_chart_figure(
@@ -60,52 +66,7 @@ def tongue_chart_figure(
     for label, speed in (lines or {}).items():
         if low <= speed <= high and label in largest:
             ax.axvline(speed, color=GREY, linewidth=0.7, linestyle=(0, (1, 2)))
-    if operating_range is not None:
-        mark_operating_range(ax, operating_range)
-    return figure
-
-
-def mark_operating_range(ax: Axes, speeds: tuple[float, float], *, lower: bool = False) -> None:
-    """Bar along the upper (or lower) edge over the speeds of operation [rpm], as far as they are shown."""
-    left, right = sorted(ax.get_xlim())
-    shown = (max(speeds[0], left), min(speeds[1], right))
-    if shown[0] >= shown[1]:
-        return
-    height = 0.012 if lower else 0.985
-    ax.plot(shown, (height, height), transform=ax.get_xaxis_transform(), color=BLACK, linewidth=3.0)
-    ax.annotate(
-        "operating range", (0.5 * (shown[0] + shown[1]), height), xycoords=("data", "axes fraction"),
-        xytext=(0, 4 if lower else -4), textcoords="offset points", ha="center",
-        va="bottom" if lower else "top", fontsize=8.0, bbox=WHITE_BOX,
-    )  # fmt: skip
-
-
-def critical_damping_figure(tips: xr.Dataset, damping_ratio: float | None = None) -> Figure:
-    """Critical mesh damping of every tongue, by speed and name.
-
-    Parameters
-    ----------
-    tips : dataset of ``floquet.gear.tongues.critical_damping``
-    damping_ratio : mesh damping ratio of the pair, drawn as a line
-    """
-    figure, axes = new_figure(height=3.2)
-    ax = axes[0, 0]
-    closed = tips.isel(tongue=np.flatnonzero(tips["closed"].to_numpy()))
-    speed, damping = closed["speed"].to_numpy(), 100.0 * closed["critical_damping"].to_numpy()
-    ax.vlines(speed, 0.0, damping, color=BLUE, linewidth=1.2)
-    ax.plot(speed, damping, "o", color=BLUE, markersize=4)
-    ax.set_xlim(ax.get_xlim())
-    label_above(ax, list(map(str, closed["label"].to_numpy())), list(speed), list(damping))
-    if damping_ratio is not None:
-        ax.axhline(100.0 * damping_ratio, color=RED, linewidth=1.0)
-        ax.annotate(
-            "this pair", (1.0, 100.0 * damping_ratio), xycoords=("axes fraction", "data"), xytext=(-3, 3),
-            textcoords="offset points", ha="right", color=RED, fontsize=8.0,
-        )  # fmt: skip
-    highest = max([*damping, 100.0 * damping_ratio if damping_ratio else 0.0], default=1.0)
-    ax.set_ylim(0.0, 1.15 * highest)
-    ax.set_xlabel("pinion speed [rpm]")
-    ax.set_ylabel("critical mesh damping ratio [%]")
+    mark_operating_range(ax, operating_range)
     return figure
 
 
@@ -133,8 +94,7 @@ def tongues_figure(margins: StabilityMargins, operating_range: tuple[float, floa
     )
     ax.axhline(margins.damping, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)))
     mark_operating_point(ax, (margins.rpm, margins.damping))
-    if operating_range is not None:
-        mark_operating_range(ax, operating_range)
+    mark_operating_range(ax, operating_range)
     ax.set_xlabel("pinion speed [rpm]")
     ax.set_ylabel("mesh damping ratio [-]")
     return figure
@@ -179,8 +139,7 @@ def boundaries_figure(
     else:
         ax.set_xticks([])
         ax.annotate("no speed of the range is unstable", (0.5, 0.5), xycoords="axes fraction", ha="center")
-    if operating_range is not None:
-        mark_operating_range(ax, operating_range)
+    mark_operating_range(ax, operating_range)
     ax.set_xlabel("pinion speed [rpm]")
     ax.set_ylabel(axis_label(found, name))
     return figure
@@ -203,7 +162,9 @@ def zones_figure(zones: xr.Dataset) -> Figure:
     figure, axes = new_figure(2, 1, height=4.8, sharex=True, sharey=True)
     x, y = zones["speed_ratio"].to_numpy(), zones["damping_ratio"].to_numpy()
 
-    def excess(case: str) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    places = {f"2w/{order}": 2.0 / order for order in range(1, 7) if x[0] <= 2.0 / order <= x[-1]}
+
+    def excess(case: str) -> FloatArray:
         radius = zones["spectral_radius"].sel(friction=case).transpose("damping_ratio", "speed_ratio")
         return np.asarray(radius.to_numpy() - 1.0)
 
@@ -212,14 +173,11 @@ def zones_figure(zones: xr.Dataset) -> Figure:
         ax.contour(x, y, excess(case), levels=[1e-9], colors=[RED], linewidths=1.0)
         ax.contour(x, y, excess("none"), levels=[1e-9], colors=[BLACK], linewidths=1.0,
                    linestyles=[(0, (3, 1.5))])  # fmt: skip
-        for order in range(1, 7):
-            place = 2.0 / order
-            if x[0] <= place <= x[-1]:
-                ax.axvline(place, color=GREY, linewidth=0.6, linestyle=(0, (1, 2)))
+        for place in places.values():
+            ax.axvline(place, color=GREY, linewidth=0.6, linestyle=(0, (1, 2)))
         ax.set_ylabel("mesh damping ratio [-]")
         ax.annotate(text, (0.01, 0.97), xycoords="axes fraction", va="top", fontsize=9.0)
     axes[0, 0].set_xlim(x[0], x[-1])
-    places = {f"2w/{order}": 2.0 / order for order in range(1, 7) if x[0] <= 2.0 / order <= x[-1]}
     label_above(axes[0, 0], list(places), list(places.values()), list(places.values()))
     axes[1, 0].legend(
         handles=[

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from lumped.model.periodic_cycle import UNSTABLE
+from lumped.typing import IntArray
 from validation.plots.style import BLACK, new_figure
 from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
 from validation.validity.map import REGIMES
@@ -84,7 +85,7 @@ def validity_map_figure(data: xr.Dataset, point: tuple[float, float] | None = No
 def _panel(
     ax: Axes,
     data: xr.Dataset,
-    values: np.ndarray[tuple[int, ...], np.dtype[np.int64]],
+    values: IntArray,
     colours: tuple[str, ...],
 ) -> None:
     ax.pcolormesh(

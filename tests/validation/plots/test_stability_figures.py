@@ -15,14 +15,14 @@ from floquet import predicted_lines, stability_chart
 from floquet.gear.campbell import campbell
 from floquet.gear.margins import stability_margins
 from floquet.gear.paths import multiplier_paths
-from floquet.gear.tongues import critical_damping, label_regions
+from floquet.gear.tongues import label_regions
 from lumped import load_gear_pair
 from validation.cli import app
 from validation.plots.campbell import campbell_figure
 from validation.plots.labels import pretty, spread
 from validation.plots.multipliers import multiplier_paths_figure
 from validation.plots.stability import stability_figure
-from validation.plots.tongues import critical_damping_figure, tongue_chart_figure, tongues_figure
+from validation.plots.tongues import tongue_chart_figure, tongues_figure
 
 
 @pytest.fixture(scope="module")
@@ -148,11 +148,6 @@ def test_paths_leave_the_unit_circle_in_the_tongue(pair) -> None:
     left, right = figure.axes[:2]
     assert left.get_xlim()[1] > 1.1
     assert "pinion speed [rpm]" in right.get_xlabel()
-
-
-def test_critical_damping_is_drawn_for_every_closed_tongue(pair) -> None:
-    tips = critical_damping(pair, (15000.0, 18000.0), damping_ratios=(0.0, 0.02, 0.08), orders=3)
-    assert {"2ω₃/2", "this pair"} <= texts(critical_damping_figure(tips, 0.01))
 
 
 def test_command_names_the_tongues(tmp_path) -> None:
