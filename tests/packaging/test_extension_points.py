@@ -1,4 +1,4 @@
-"""Do a new friction law, stiffness model and preset take no more files than the contributing page says?"""
+"""Does a new friction law, stiffness model, chapter, command or preset take as few files as the pages say?"""
 
 from __future__ import annotations
 
@@ -83,12 +83,105 @@ print("used")
 """
 
 
-def test_a_friction_law_and_a_stiffness_model_take_two_files_each(tmp_path):
-    shutil.copytree(ROOT / "lumped", tmp_path / "lumped", ignore=shutil.ignore_patterns("__pycache__"))
-    assert len(LAW) == len(MODEL) == 2
-    for name, change in (LAW | MODEL).items():
+#: A new chapter of the report with its figure, and a new command.
+CHAPTER = {
+    "validation/reporting/chapters/loudness.py": """
+from validation.plots.loudness import loudness_figure
+from validation.reporting.blocks import Answer, Badge, Content, Fact, Facts, Picture
+from validation.reporting.chapter import Chapter
+
+def write(results):
+    history = results.motion[["dte"]]
+    facts = Facts("level", (Fact("samples", "samples", results.samples),))
+    picture = Picture("loudness", "The sound of the gears.", lambda: loudness_figure(history))
+    return Content((facts, picture), Badge("ok"), {"loudness": history})
+
+def answer(results):
+    return Answer("Is it loud?", Badge("ok"), "No.")
+
+CHAPTER = Chapter("loudness", "Loudness", write, answer)
+""",
+    "validation/plots/loudness.py": """
+from validation.plots.style import new_figure
+
+def loudness_figure(history):
+    figure, axes = new_figure()
+    axes[0, 0].plot(history["dte"])
+    axes[0, 0].set(xlabel="sample [-]", ylabel="transmission error [m]")
+    return figure
+""",
+    "validation/reporting/chapters/__init__.py": [
+        ("    limitations,\n    losses,\n", "    limitations,\n    losses,\n    loudness,\n"),
+        ("        provenance,\n", "        provenance,\n        loudness,\n"),
+    ],
+}
+WRITE = """
+import dataclasses, json, xarray as xr
+from pathlib import Path
+from validation.reporting import build, report
+
+build.QUICK = dataclasses.replace(build.QUICK, samples=64, cycles=6, sweep_speeds=4)
+build.CHAPTERS = build.CHAPTERS[-2:]  # the others are computed by other tests
+build.write_interactive = lambda *_: None
+made = report("nasa_28_28", "out", quick=True)
+data = json.loads(Path("out/report.json").read_text())
+assert made.verdicts == {"loudness": "ok"}
+assert data["chapters"]["loudness"]["level"]["samples"]["value"] == 64
+assert [answer["chapter"] for answer in data["answers"]] == ["loudness"]
+assert "Loudness" in Path("out/index.html").read_text()
+assert "Loudness" in Path("out/report.junit.xml").read_text()
+assert Path("out/figures/loudness.svg").is_file() and xr.open_dataset("out/data/loudness.nc").dte.size == 64
+print("used")
+"""
+COMMAND = {
+    "validation/commands/count.py": """
+from validation.commands import options as opt
+from validation.commands.terminal import guarded, stdout
+
+@guarded
+def count(pair: opt.PairArgument = opt.DEFAULT_PAIR, settings: opt.Settings = None) -> None:
+    \"\"\"Count the teeth of a pair.
+
+    [bold]Example[/bold]
+
+    spurcheck count fzg_c
+    \"\"\"
+    found = opt.gear_pair(pair, None, None, None, settings)
+    stdout().print(found.pinion.teeth + found.gear.teeth)
+""",
+    "validation/cli.py": [
+        ("import crosscheck\n", "import crosscheck\nfrom validation.commands.count import count\n"),
+        ("    crosscheck,\n", "    crosscheck,\n    count,\n"),
+    ],
+}
+COUNT = """
+import sys
+from typer.testing import CliRunner
+from validation.cli import app
+
+help = CliRunner().invoke(app, ["--help"]).output
+assert "Count the teeth of a pair." in help and "numpy" not in sys.modules
+assert CliRunner().invoke(app, ["count", "nasa_28_28"]).stdout.strip() == "56"
+print("used")
+"""
+
+
+@pytest.mark.parametrize(
+    ("package", "changes", "files", "use"),
+    [
+        ("lumped", LAW | MODEL, 4, USE),
+        ("validation", CHAPTER, 3, WRITE),
+        ("validation", COMMAND, 2, COUNT),
+    ],
+    ids=["friction law and stiffness model", "chapter of the report", "command"],
+)
+def test_a_new_part_takes_as_few_files_as_stated(tmp_path, package, changes, files, use):
+    shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
+    assert len(changes) == files
+    for name, change in changes.items():
         path = tmp_path / name
         if isinstance(change, str):
+            assert not path.exists()
             path.write_text(change)
             continue
         text = path.read_text()
@@ -98,7 +191,7 @@ def test_a_friction_law_and_a_stiffness_model_take_two_files_each(tmp_path):
         path.write_text(text)
     environment = os.environ | {"PYTHONPATH": f"{tmp_path}{os.pathsep}{ROOT}"}
     done = subprocess.run(
-        [sys.executable, "-c", USE], env=environment, capture_output=True, text=True, cwd=tmp_path
+        [sys.executable, "-c", use], env=environment, capture_output=True, text=True, cwd=tmp_path
     )
     assert done.stdout == "used\n", done.stdout + done.stderr
 

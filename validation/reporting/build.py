@@ -99,14 +99,14 @@ def report(
     with whole_folder(target, force=force) as folder:
         effort = replace(QUICK if quick else FULL, paper=not quick if paper is None else paper)
         results = Results(gear_pair, effort)
-        chapters = written(results, lambda f, stage="", /: tell(0.75 * f, stage))
+        chapters = written(results, CHAPTERS, lambda f, stage="", /: tell(0.75 * f, stage))
         computed = time.perf_counter()
         comparison = None
         if earlier is not None:
             comparison = compare_reports(
                 earlier, document(results, chapters, quick=quick), tolerance=tolerance
             )
-            chapters += written(results, chapters=(changes(comparison),))
+            chapters += written(results, (changes(comparison),))
         images = _draw(chapters, folder / "figures", lambda f, stage="", /: tell(0.75 + 0.22 * f, stage))
         tell(0.97, "page and data")
         _write_data(results, chapters, folder / "data")
@@ -134,15 +134,15 @@ def report(
 
 
 def written(
-    results: Results, progress: Progress | None = None, chapters: tuple[Chapter, ...] = CHAPTERS
+    results: Results, chapters: tuple[Chapter, ...], progress: Progress | None = None
 ) -> tuple[Written, ...]:
     """Write chapters, without those that the report leaves out.
 
     Parameters
     ----------
     results : what chapters share, computed when the first of them asks for it
+    chapters : which, in their order
     progress : called with the finished fraction and what is being done
-    chapters : which
     """
     total = sum(chapter.seconds for chapter in chapters)
     made: list[Written] = []

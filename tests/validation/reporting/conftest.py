@@ -29,7 +29,7 @@ def computed(pair):
 @pytest.fixture(scope="package")
 def chapters(computed):
     """Key -> content of every chapter of a full report."""
-    return {chapter.key: content for chapter, content in build.written(computed)}
+    return {chapter.key: content for chapter, content in build.written(computed, build.CHAPTERS)}
 
 
 @pytest.fixture(scope="package")

@@ -7,13 +7,14 @@ import lumped
 from lumped.model.periodic_cycle import UNSTABLE
 from validation.plots.sweep import sweep_figure
 from validation.reporting.build import document, written
+from validation.reporting.chapters import CHAPTERS
 from validation.reporting.chapters.steady_state import off_line_modes
 from validation.reporting.judged import failures
 
 
 @pytest.fixture(scope="module")
 def data(unstable):
-    return document(unstable, written(unstable), quick=True)
+    return document(unstable, written(unstable, CHAPTERS), quick=True)
 
 
 def test_the_verdicts_that_fail_are_named(data):
