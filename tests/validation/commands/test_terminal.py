@@ -71,9 +71,13 @@ def test_what_is_unknown_is_quoted_in_the_refusal(tmp_path):
     assert r"a\x1b[31m[/red]\nerror: b" in run.output
 
 
-def test_an_encoding_without_box_drawing_characters_ends_no_command():
-    run = [sys.executable, "-m", "spurcheck", "--help"]
+def test_an_encoding_without_box_drawing_characters_ends_no_command(tmp_path):
+    pair = tmp_path / "pair.toml"
+    pair.write_text(
+        preset_text("nasa_28_28").replace('name = "nasa_28_28"', 'name = "─ é"'), encoding="utf-8"
+    )
+    run = [sys.executable, "-m", "spurcheck", "simulate", str(pair), "--steady"]
     shown = subprocess.run(
         run, env={**os.environ, "PYTHONIOENCODING": "ascii"}, capture_output=True, check=True
     )
-    assert b"??" in shown.stdout  # where the frames of the help are
+    assert b"? ?" in shown.stdout
