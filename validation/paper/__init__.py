@@ -2,10 +2,9 @@
 
 from validation.paper.claims.judge import claims
 from validation.paper.errata.catalogue import errata_chapter
-from validation.paper.figure_record import FigureRecord
-from validation.paper.figures.law_runs import law_runs
-from validation.paper.plots.errata import draw_errata
-from validation.paper.records import PAPER, Claim, ClaimsTable, ErrataChapter, Erratum, Evidence
+from validation.paper.figures.law_figures import law_runs
+from validation.paper.plots import draw_errata
+from validation.paper.records import PAPER, Claim, ClaimsTable, ErrataChapter, Erratum, Evidence, FigureRecord
 from validation.paper.reproduction import DRAW, PaperFigure, figure_records, paper_figures
 
 __all__ = [

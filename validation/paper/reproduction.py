@@ -14,20 +14,19 @@ from lumped.arguments import some_of
 from lumped.errors import refuse
 from lumped.typing import Progress
 from validation.measurements import Measurement
-from validation.paper.figure_record import FigureRecord
 from validation.paper.figures.figure2 import figure2
 from validation.paper.figures.figure3 import figure3
-from validation.paper.figures.figure4 import figure4
-from validation.paper.figures.figure5 import figure5
-from validation.paper.figures.figure6 import figure6
 from validation.paper.figures.figure7 import figure7
-from validation.paper.figures.law_runs import law_runs
-from validation.paper.plots.figure2 import draw_figure2
-from validation.paper.plots.figure3 import draw_figure3
-from validation.paper.plots.figure4 import draw_figure4
-from validation.paper.plots.figure5 import draw_figure5
-from validation.paper.plots.figure6 import draw_figure6
-from validation.paper.plots.figure7 import draw_figure7
+from validation.paper.figures.law_figures import figure4, figure5, figure6, law_runs
+from validation.paper.plots import (
+    draw_figure2,
+    draw_figure3,
+    draw_figure4,
+    draw_figure5,
+    draw_figure6,
+    draw_figure7,
+)
+from validation.paper.records import FigureRecord
 from validation.plots.style import save
 
 #: Number of a figure -> how it is drawn from its record.

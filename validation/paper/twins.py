@@ -12,7 +12,7 @@ from lumped import GearPair, NumericalError, steady_state
 from lumped.model.periodic_cycle import UNSTABLE
 from lumped.typing import FloatArray
 from validation.cross_check import metrics
-from validation.paper.figure_record import Number
+from validation.paper.records import Number
 
 MODELS = ("lumped", "multibody")
 VARIABLES = ("dte", "x_p", "x_g", "y_p", "y_g", "normal_load", "friction_force", "contact")

@@ -1,7 +1,6 @@
 """Do the claims' numbers mean what their definitions say, and do the verdicts follow from them?"""
 
 import dataclasses
-import json
 
 import numpy as np
 import pytest
@@ -128,7 +127,6 @@ def test_every_claim_has_a_number_a_criterion_and_a_verdict(table):
         assert claim.criterion
         assert 0.0 <= claim.share <= 1.0
         assert claim.low <= claim.high
-    json.dumps(table.as_dict())
 
 
 def test_verdicts_follow_from_the_criteria(table, stated):

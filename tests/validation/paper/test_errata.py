@@ -187,7 +187,6 @@ def test_the_chapter_has_every_row_with_numbers_and_text(chapter):
         assert len(erratum.text) > 80, erratum.equation
         values = [v for e in erratum.evidence for v in (e.printed, e.repaired) if not isinstance(v, str)]
         assert np.isfinite(values).all(), erratum.equation
-    assert chapter.as_dict()["errata"][0]["equation"] == "1"
 
 
 def test_dimension_checks_say_which_equations_they_can_judge(chapter):

@@ -10,9 +10,8 @@ from lumped.typing import Progress
 from validation.paper.claims import numbers as claim_numbers
 from validation.paper.claims.rules import RULES, ClaimRule, Numbers
 from validation.paper.claims.sensitivity import ASSUMPTIONS, Sensitivity, measure, sample_assumptions
-from validation.paper.figure_record import Number
 from validation.paper.operating_points import conditions
-from validation.paper.records import Claim, ClaimsTable, ClaimVerdict
+from validation.paper.records import Claim, ClaimsTable, ClaimVerdict, Number
 
 ACCURACY = "3 % error"
 

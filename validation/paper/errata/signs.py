@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import xarray as xr
 from scipy.optimize import linear_sum_assignment
@@ -13,6 +15,7 @@ from validation.paper.records import Erratum, Evidence
 
 #: Cycles of the free runs that show a drift of the mean speed.
 DRIFT_CYCLES = 20
+_SUM = "sum of the tooth forces on both bodies"
 
 
 def sign_errata(pair: GearPair) -> tuple[tuple[Erratum, ...], xr.Dataset]:
@@ -71,7 +74,7 @@ _TERMS = {
 
 def _erratum(pair: GearPair, number: int, printed: Response, repaired: Response, steady: float) -> Erratum:
     drift = speed_drift(pair, as_printed=(number,), cycles=DRIFT_CYCLES)
-    evidence = [*_balances(printed, repaired, drift, steady), *_effects(printed, repaired)]
+    evidence = _rows(printed, repaired, drift, steady)
     if number == 1:
         evidence.insert(0, _recess(pair))
     if number == 7:
@@ -80,71 +83,43 @@ def _erratum(pair: GearPair, number: int, printed: Response, repaired: Response,
     return Erratum(str(number), *_TERMS[number], "wrong", text, tuple(evidence))
 
 
-def _balances(printed: Response, repaired: Response, drift: float, steady: float) -> list[Evidence]:
+def _rows(printed: Response, repaired: Response, drift: float, steady: float) -> list[Evidence]:
+    """Balances that a right equation keeps, then effects on the motion."""
+    opposite = "0: Newton's third law"
+    drifts = f"drift of the mean speed in {DRIFT_CYCLES} mesh cycles under the repaired model's torques"
+
+    def both(quantity: str, unit: str, value: Callable[[Response], float], wanted: str = "") -> Evidence:
+        return Evidence(quantity, unit, value(printed), value(repaired), wanted)
+
     return [
-        Evidence(
+        both(
             "power created by the tooth forces",
             "% of the driving power",
-            100 * printed.created_power,
-            100 * repaired.created_power,
+            lambda r: 100 * r.created_power,
             "0: forces at one contact only pass on or dissipate power",
         ),
-        Evidence(
-            "sum of the tooth forces on both bodies, along the LOA",
-            "N",
-            printed.third_law_x,
-            repaired.third_law_x,
-            "0: Newton's third law",
-        ),
-        Evidence(
-            "sum of the tooth forces on both bodies, off the LOA",
-            "N",
-            printed.third_law_y,
-            repaired.third_law_y,
-            "0: Newton's third law",
-        ),
-        Evidence(
-            "mesh efficiency at steady mean speed",
-            "1",
-            printed.efficiency,
-            repaired.efficiency,
-            "between 0 and 1",
-        ),
-        Evidence(
+        both(f"{_SUM}, along the LOA", "N", lambda r: r.third_law_x, opposite),
+        both(f"{_SUM}, off the LOA", "N", lambda r: r.third_law_y, opposite),
+        both("mesh efficiency at steady mean speed", "1", lambda r: r.efficiency, "between 0 and 1"),
+        both(
             "brake torque that holds the mean speed",
             "N m",
-            printed.brake_torque,
-            repaired.brake_torque,
+            lambda r: r.brake_torque,
             "positive: the gear is driven",
         ),
-        Evidence(
-            f"drift of the mean speed in {DRIFT_CYCLES} mesh cycles under the repaired model's torques",
-            "% of the speed",
-            100 * drift,
-            100 * steady,
-            "0",
+        Evidence(drifts, "% of the speed", 100 * drift, 100 * steady, "0"),
+        *(
+            both(f"peak to peak of {name}", "µm", lambda r, name=name: r.peak_to_peak(name))  # type: ignore[misc]
+            for name in ("dte", "x_g", "y_p", "y_g")
         ),
+        *(
+            both(f"mean of {name}", "µm", lambda r, name=name: r.mean(name))  # type: ignore[misc]
+            for name in ("dte", "x_g")
+        ),
+        both("peak to peak of y_p - y_g", "µm", _relative_motion),
+        both("largest modulus of the Floquet multipliers", "1", lambda r: r.radius),
+        Evidence("largest change of a Floquet multiplier", "1", multiplier_change(printed, repaired), 0.0),
     ]
-
-
-def _effects(printed: Response, repaired: Response) -> list[Evidence]:
-    rows = [
-        Evidence(f"peak to peak of {name}", "µm", printed.peak_to_peak(name), repaired.peak_to_peak(name))
-        for name in ("dte", "x_g", "y_p", "y_g")
-    ]
-    rows += [
-        Evidence(f"mean of {name}", "µm", printed.mean(name), repaired.mean(name)) for name in ("dte", "x_g")
-    ]
-    rows.append(
-        Evidence("peak to peak of y_p - y_g", "µm", _relative_motion(printed), _relative_motion(repaired), "")
-    )
-    rows.append(
-        Evidence("largest modulus of the Floquet multipliers", "1", printed.radius, repaired.radius, "")
-    )
-    rows.append(
-        Evidence("largest change of a Floquet multiplier", "1", multiplier_change(printed, repaired), 0.0, "")
-    )
-    return rows
 
 
 def multiplier_change(first: Response, second: Response) -> float:

@@ -11,7 +11,6 @@ from lumped import GearPair
 from lumped.friction import mean_coefficient
 from lumped.path_of_contact import friction_path_function
 from lumped.typing import FloatArray
-from validation.paper.figure_record import FigureRecord, Number
 from validation.paper.operating_points import (
     CALIBRATIONS,
     FIGURE_2A,
@@ -19,6 +18,7 @@ from validation.paper.operating_points import (
     TORQUE_2B,
     second_pair,
 )
+from validation.paper.records import FigureRecord, Number
 
 _POINTS = 801
 _SPEEDS = np.concatenate(

@@ -8,8 +8,8 @@ import xarray as xr
 from lumped import GearPair
 from lumped.friction import mean_coefficient
 from lumped.path_of_contact import friction_path_function
-from validation.paper.figure_record import FigureRecord, Number
 from validation.paper.operating_points import FIGURE_4, LAWS
+from validation.paper.records import FigureRecord, Number
 
 _POINTS = 801
 

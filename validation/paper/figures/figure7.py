@@ -12,8 +12,8 @@ from lumped import GearPair
 from lumped.model.periodic_cycle import UNSTABLE
 from validation.measurements import Measurement, align, overlay, overlay_metrics, predict
 from validation.measurements.specification import PAIR_LABELS
-from validation.paper.figure_record import FigureRecord, Number
 from validation.paper.operating_points import FIGURE_7, OperatingPoint
+from validation.paper.records import FigureRecord, Number
 from validation.paper.twins import SETTLED, SPAN, agreement, continuous_labels, roll_angle, twins
 
 LAW = "xu_kahraman"
