@@ -8,8 +8,8 @@ from .engine.modes import FloquetModes as FloquetModes
 from .engine.modes import floquet_modes as floquet_modes
 from .engine.monodromy import Monodromy as Monodromy
 from .engine.monodromy import monodromy as monodromy
-from .engine.propagators import PROPAGATORS as PROPAGATORS
-from .engine.propagators import Propagator as Propagator
+from .engine.propagators.base import Propagator as Propagator
+from .engine.propagators.registry import PROPAGATORS as PROPAGATORS
 from .engine.spectrum import Spectrum as Spectrum
 from .engine.system import PeriodicSystem as PeriodicSystem
 from .engine.tongues import Tongue as Tongue
@@ -19,6 +19,8 @@ from .gear.boundaries import predicted_lines as predicted_lines
 from .gear.boundaries import stability_boundaries as stability_boundaries
 from .gear.campbell import campbell as campbell
 from .gear.chart import stability_chart as stability_chart
+from .gear.coulomb_zones import CoulombGearPair as CoulombGearPair
+from .gear.coulomb_zones import stability_zones as stability_zones
 from .gear.coverage import boundary_coverage as boundary_coverage
 from .gear.friction_effect import friction_effect as friction_effect
 from .gear.multipliers import GearPairMultipliers as GearPairMultipliers
@@ -30,8 +32,6 @@ from .gear.reference import stress_test as stress_test
 from .gear.sensitivities import gear_sensitivities as gear_sensitivities
 from .gear.tongues import critical_damping as critical_damping
 from .gear.tongues import label_regions as label_regions
-from .gear.vaishya_singh import CoulombGearPair as CoulombGearPair
-from .gear.vaishya_singh import stability_zones as stability_zones
 from .rank_one.batch import FastMonodromy as FastMonodromy
 from .rank_one.batch import FastMultipliers as FastMultipliers
 from .rank_one.batch import fast_monodromies as fast_monodromies

@@ -22,11 +22,11 @@ _SOURCES = ("lumped", "multibody", "floquet", "validation", "docs/computed")
 
 def writers() -> Mapping[str, Callable[[], str]]:
     """File name -> what writes its text."""
-    from computed import agreement, diagrams, errata, figures, interface, paper, schema, verification
+    from computed import agreement, diagrams, errata, figures, floquet, interface, paper, schema, verification
 
     return {
         name: function
-        for module in (verification, agreement, errata, paper, schema, interface, diagrams, figures)
+        for module in (verification, floquet, agreement, errata, paper, schema, interface, diagrams, figures)
         for name, function in module.FILES.items()
     }
 

@@ -1,12 +1,11 @@
-"""Closed forms, laws of mechanics, orders of convergence, refinement of every kind of solution."""
+"""Closed forms, laws of mechanics, refinement of every kind of solution."""
 
 from __future__ import annotations
 
 import lumped
 from computed.markdown import must_pass, table
 from lumped import GearPair
-from validation.reporting import floquet_page
-from validation.verification import code_checks, order_checks, refinements
+from validation.verification import code_checks, refinements
 
 _SAMPLES = 256
 
@@ -26,17 +25,6 @@ def closed_forms() -> str:
     )
 
 
-def orders() -> str:
-    """Observed orders of convergence."""
-    checks = order_checks()
-    for check in checks:
-        must_pass(check.method, check.passes)
-    return table(
-        ("method", "order by theory", "observed", "coarse steps", "error with twice as many"),
-        [(f"`{c.method}`", c.theory, c.observed, c.steps, c.error) for c in checks],
-    )
-
-
 def refinement() -> str:
     """Solutions against finer ones."""
     rows = []
@@ -50,7 +38,5 @@ def refinement() -> str:
 
 FILES = {
     "closed_forms.md": closed_forms,
-    "orders.md": orders,
     "refinement.md": refinement,
-    **floquet_page.FILES,
 }

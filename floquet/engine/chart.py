@@ -12,7 +12,7 @@ from joblib import Parallel, delayed
 
 from floquet.engine.monodromy import monodromy
 from floquet.engine.multipliers import verdicts
-from floquet.engine.propagators import Propagator
+from floquet.engine.propagators.base import Propagator
 from floquet.engine.spectrum import Spectrum
 from floquet.engine.system import PeriodicSystem
 from lumped.arguments import real_numbers, whole_number

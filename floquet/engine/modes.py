@@ -15,7 +15,8 @@ from scipy.linalg import eig
 
 from floquet.engine.monodromy import checked_effort
 from floquet.engine.propagation import Propagation, error_of_product, propagate
-from floquet.engine.propagators import Propagator, propagator
+from floquet.engine.propagators.base import Propagator
+from floquet.engine.propagators.registry import propagator
 from floquet.engine.system import PeriodicSystem
 from lumped.arguments import whole_number
 from lumped.errors import NumericalError, refuse

@@ -13,7 +13,8 @@ from numpy.polynomial.legendre import leggauss
 
 from floquet.engine.multipliers import multipliers_with_bounds
 from floquet.engine.propagation import Propagation, error_of_product, propagate
-from floquet.engine.propagators import Propagator, propagator
+from floquet.engine.propagators.base import Propagator
+from floquet.engine.propagators.registry import propagator
 from floquet.engine.spectrum import Spectrum
 from floquet.engine.system import PeriodicSystem
 from lumped.arguments import real_number, whole_number
@@ -62,7 +63,7 @@ def monodromy(
     ----------
     system : the periodic system; its forcing, if any, plays no part
     rtol : wanted error of the matrix relative to its norm (in balanced coordinates), 1e-14 to 1e-1
-    method : name in `floquet.engine.propagators.PROPAGATORS`, or a propagator
+    method : name in `floquet.PROPAGATORS`, or a propagator
     max_substeps : refuse to work harder than this
 
     Returns

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from floquet.engine.propagators import Propagator
+from floquet.engine.propagators.base import Propagator
 from floquet.engine.system import PeriodicSystem
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray

@@ -25,10 +25,14 @@ def second_order(stiffness: npt.ArrayLike, damping: npt.ArrayLike) -> FloatArray
 
 
 def meissner(delta: float, epsilon: float, period: float = 2.0 * np.pi) -> PeriodicSystem:
-    """Return x'' + (delta + epsilon sgn) x = 0, + in the first half of the period and - in the second."""
+    """Return x'' + (delta + epsilon sgn) x = 0, + in the first half of the period and - in the second.
+
+    At the switches A is not a number, so that a propagator that asks for it there is found out.
+    """
 
     def A(t: FloatArray) -> FloatArray:
         k = np.where(t < 0.5 * period, delta + epsilon, delta - epsilon)
+        k[(t == 0.0) | (t == 0.5 * period) | (t == period)] = np.nan
         return second_order(k[:, None, None], 0.0)
 
     return PeriodicSystem(A, period, (0.5 * period,), vectorized=True)

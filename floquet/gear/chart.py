@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from floquet.engine.chart import Axes, Progress, chart_dataset, checked_axes, scan
-from floquet.engine.propagators import Propagator
+from floquet.engine.propagators.base import Propagator
 from floquet.engine.spectrum import Spectrum
 from floquet.gear.axes import gear_axis, vary
 from floquet.gear.multipliers import gear_pair_multipliers

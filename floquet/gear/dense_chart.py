@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from floquet.engine.chart import checked_axes
-from floquet.engine.propagators import PROPAGATORS
+from floquet.engine.propagators.registry import PROPAGATORS
 from floquet.gear.chart import stability_chart
 from lumped import GearPair
 from lumped.errors import refuse
@@ -19,7 +19,7 @@ from lumped.typing import FloatArray
 Progress = Callable[[float], None]
 """Called with the finished fraction."""
 
-METHODS = ("auto", "taylor", "chebyshev", *sorted(PROPAGATORS))
+METHODS = ("auto", "taylor", "chebyshev", *PROPAGATORS)
 #: From here on interpolation costs less processor time than every point by itself (28/28, laws I to III).
 INTERPOLATE_FROM = 100_000
 _FAST = ("speed_rpm", "damping_ratio", "friction_coefficient")

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from floquet.engine.monodromy import monodromy
-from floquet.engine.propagators import Propagator
+from floquet.engine.propagators.base import Propagator
 from floquet.engine.spectrum import Spectrum
 from floquet.engine.system import PeriodicSystem
 from floquet.gear.axes import GearVariation
@@ -49,14 +49,13 @@ def gear_pair_system(source: GearPair | GearVariation, form: Form = "relative") 
     variation = GearVariation(source) if isinstance(source, GearPair) else source
     cycle = variation.cycle()
     system = periodic_system(variation.pair, form, cycle=cycle)
-    factor = variation.stiffness_variation
-    coefficients = system.matrices if factor == 1.0 else _VariedStiffness(system, factor)
+    coefficients = _Coefficients(system, variation.stiffness_variation)
     return PeriodicSystem(coefficients, system.period, tuple(system.breakpoints), vectorized=True)
 
 
 @dataclass(frozen=True, eq=False)
-class _VariedStiffness:
-    """A(t) with the total mesh stiffness k replaced by mean + factor (k - mean).
+class _Coefficients:
+    """A(t) strictly inside the smooth segments, the total mesh stiffness k being mean + factor (k - mean).
 
     Every pair keeps its share of k, so k_i is multiplied by f = (mean + factor (k - mean))/k and c_i, which
     goes with sqrt(k_i), by sqrt(f).
@@ -66,15 +65,20 @@ class _VariedStiffness:
     factor: float
 
     def __call__(self, times: FloatArray) -> FloatArray:
-        system = self.system
-        total = system.cycle.sample(times).stiffness.sum(axis=0)
-        mean = mean_mesh_stiffness(system)
-        f = (mean + self.factor * (total - mean)) / total
-        gain = system.gain(times)
+        system, edges = self.system, self.system.cycle.edges
+        # The mesh cycle by itself takes a time just before a switch as the switch: name the segment.
+        segment = np.clip(np.searchsorted(edges, times, side="right") - 1, 0, edges.size - 2)
+        gain = system.gain(times, segment)
+        stiffness, damping = gain.stiffness, gain.damping
+        if self.factor != 1.0:
+            total = system.cycle.sample(times, segment).stiffness.sum(axis=0)
+            mean = mean_mesh_stiffness(system)
+            f = ((mean + self.factor * (total - mean)) / total)[:, None]
+            stiffness, damping = f * stiffness, np.sqrt(f) * damping
         m = len(system.coordinates)
         A = np.repeat(system.constant[None], times.size, axis=0)
-        A[:, m:, :m] += (f[:, None] * gain.stiffness)[:, :, None] * system.deflection
-        A[:, m:, m:] += (np.sqrt(f)[:, None] * gain.damping)[:, :, None] * system.deflection
+        A[:, m:, :m] += stiffness[:, :, None] * system.deflection
+        A[:, m:, m:] += damping[:, :, None] * system.deflection
         return A
 
 

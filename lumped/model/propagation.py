@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
-from numpy.polynomial import legendre
 
 from lumped.errors import NumericalError
+from lumped.gauss_legendre import gauss_tableau
 from lumped.model.periodic_system import LTVSystem
 from lumped.typing import FloatArray, IntArray
 
@@ -20,18 +19,6 @@ STAGES = 4
 _BLOCK = 1024
 #: Most steps of a mesh cycle: some ten seconds of work.
 _MAX_STEPS = 1_000_000
-
-
-@cache
-def gauss_tableau(stages: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Butcher tableau (a, b, c) of the Gauss method with s stages, order 2 s, on [0, 1]."""
-    nodes, weights = legendre.leggauss(stages)
-    c, b = 0.5 * (nodes + 1.0), 0.5 * weights
-    # a_ij integrates the j-th Lagrange polynomial, written in Legendre polynomials: no rounding is amplified.
-    values, odd = legendre.legvander(nodes, stages), 2 * np.arange(stages) + 1
-    integrals = np.column_stack([nodes + 1.0, (values[:, 2:] - values[:, :-2]) / odd[1:]])
-    a = 0.5 * (integrals * odd) @ (values[:, :-1].T * b)
-    return a, b, c
 
 
 @dataclass(frozen=True, eq=False)

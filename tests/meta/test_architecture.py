@@ -90,11 +90,15 @@ def test_inside_every_folder_arrows_form_no_circle() -> None:
             pytest.fail(f"{'/'.join(folder)}: " + "; ".join(steps))
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "floquet" / "engine").rglob("*.py")), ids=named)
-def test_engine_knows_no_gears(path: Path) -> None:
-    found = imported(path)
-    allowed = {"lumped.arguments", "lumped.errors", "lumped.compiler", "lumped.typing"}
-    assert {name for name in found if name.split(".")[0] == "lumped"} <= allowed
+#: What the folders that hold for any periodic system may use of the gear model: nothing that knows gears.
+NO_GEARS = {f"lumped.{name}" for name in ("arguments", "compiler", "errors", "gauss_legendre", "typing")}
+
+
+@pytest.mark.parametrize("folder", ["engine", "rank_one"])
+def test_general_folders_of_floquet_know_no_gears(folder: str) -> None:
+    for path in sorted((ROOT / "floquet" / folder).rglob("*.py")):
+        gears = {name for name in imported(path) if name.startswith(("lumped", "floquet.gear"))} - NO_GEARS
+        assert not gears, named(path)
 
 
 def test_the_tests_above_see_imports() -> None:

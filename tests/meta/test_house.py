@@ -9,7 +9,16 @@ ROOT = Path(__file__).parents[2]
 PACKAGES = ("lumped", "multibody", "floquet", "validation")
 #: Files that every folder of a package may need; everything else has a folder.
 LOOSE = {
-    "lumped": {"errors", "typing", "labelling", "compiler", "arguments", "path_function", "ranges"},
+    "lumped": {
+        "arguments",
+        "compiler",
+        "errors",
+        "gauss_legendre",
+        "labelling",
+        "path_function",
+        "ranges",
+        "typing",
+    },
     "validation": {"stop_signals", "cli"},
 }
 #: Folders of tests that belong to no single package.

@@ -1,4 +1,4 @@
-"""Does a new friction law, stiffness model, chapter, command or preset take as few files as the pages say?"""
+"""Does a new law, model, propagator, chapter, command or preset take as few files as the pages say?"""
 
 from __future__ import annotations
 
@@ -166,14 +166,49 @@ print("used")
 """
 
 
+PROPAGATOR = {
+    "floquet/engine/propagators/three_eighths.py": """
+from floquet.engine.propagators.runge_kutta import ExplicitRungeKutta
+
+def three_eighths():
+    a = [[0, 0, 0, 0], [1 / 3, 0, 0, 0], [-1 / 3, 1, 0, 0], [1, -1, 1, 0]]
+    return ExplicitRungeKutta("three_eighths", 4, a, [1 / 8, 3 / 8, 3 / 8, 1 / 8], [0, 1 / 3, 2 / 3, 1])
+""",
+    "floquet/engine/propagators/registry.py": [
+        (
+            "PROPAGATORS: dict[str, Registered] = {\n",
+            "PROPAGATORS: dict[str, Registered] = {\n"
+            '    "three_eighths": Registered("rule of 3/8", 4, "4 products", '
+            '("three_eighths", "three_eighths"), coarse_steps=64),\n',
+        )
+    ],
+}
+USE_PROPAGATOR = """
+import math, floquet
+from typer.testing import CliRunner
+from validation.cli import app
+from validation.verification import order_checks
+
+found = floquet.monodromy(floquet.PeriodicSystem(lambda t: [[-1.0]], 1.0), 1e-6, method="three_eighths")
+assert abs(found.spectral_radius - math.exp(-1.0)) < 1e-6
+assert "three_eighths" in CliRunner(env={"COLUMNS": "200"}).invoke(app, ["stability", "--help"]).output
+words = ["stability", "nasa_28_28", "--axis", "speed_rpm=15000:16000:2", "--method", "three_eighths"]
+done = CliRunner().invoke(app, words)
+assert done.exit_code == 0 and "method three_eighths" in done.output, done.output
+assert {"three_eighths", "gauss"} <= {check.method for check in order_checks() if check.passes}
+print("used")
+"""
+
+
 @pytest.mark.parametrize(
     ("package", "changes", "files", "use"),
     [
         ("lumped", LAW | MODEL, 4, USE),
+        ("floquet", PROPAGATOR, 2, USE_PROPAGATOR),
         ("validation", CHAPTER, 3, WRITE),
         ("validation", COMMAND, 2, COUNT),
     ],
-    ids=["friction law and stiffness model", "chapter of the report", "command"],
+    ids=["friction law and stiffness model", "propagator", "chapter of the report", "command"],
 )
 def test_a_new_part_takes_as_few_files_as_stated(tmp_path, package, changes, files, use):
     shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
@@ -205,7 +240,7 @@ def test_the_places_that_contributors_are_sent_to_exist():
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     for target in re.findall(r"\]\((?!http)([^)]+)\)", text):
         assert (ROOT / target).exists(), target
-    for path in re.findall(r"`((?:lumped|tests|validation)/[\w/]+\.\w+)`", text):
+    for path in re.findall(r"`((?:floquet|lumped|tests|validation)/[\w/]+\.\w+)`", text):
         assert (ROOT / path).exists(), path
 
 

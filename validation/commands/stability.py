@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from floquet.engine.propagators.registry import PROPAGATORS
 from validation.commands import options as opt
 from validation.commands.terminal import FAILED, guarded, stderr, stdout, table
 
@@ -70,8 +71,8 @@ def stability(
         str,
         typer.Option(
             help="How a chart is computed: auto (the faster of the next two), taylor (every point), "
-            "chebyshev (interpolated between nodes, with checked error), or gauss, magnus6, dop853, ... as a "
-            "slow, independent check."
+            "chebyshev (interpolated between nodes, with checked error); or, as a slow, independent check, a "
+            f"propagator of the general engine: {', '.join(PROPAGATORS)}."
         ),
     ] = "auto",
     multipliers: Annotated[

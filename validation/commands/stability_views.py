@@ -14,7 +14,7 @@ from floquet import predicted_lines, stability_boundaries
 from floquet.gear.axes import GEAR_AXES, operating_value
 from floquet.gear.campbell import campbell
 from floquet.gear.chart_axes import chart_axes
-from floquet.gear.coulomb_zones import coulomb_gear_pair, zones
+from floquet.gear.coulomb_zones import coulomb_gear_pair, stability_zones
 from floquet.gear.dense_chart import METHODS, dense_chart
 from floquet.gear.friction_effect import friction_effect
 from floquet.gear.margins import StabilityMargins, margins_dataset, stability_margins
@@ -287,7 +287,7 @@ def _laws(request: Request) -> View:
 
 
 def _zones(request: Request) -> View:
-    found = zones(coulomb_gear_pair(request.pair, request.value("friction_coefficient")))
+    found = stability_zones(coulomb_gear_pair(request.pair, request.value("friction_coefficient")))
     unstable = (found["spectral_radius"] > 1.0 + 1e-9).mean(("damping_ratio", "speed_ratio"))
     for case, share in zip(found["friction"].to_numpy(), unstable.to_numpy(), strict=True):
         stdout().print(f"friction {case}: unstable at {100.0 * float(share):.2f} % of the points")

@@ -8,16 +8,17 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Check:
-    """A computed number against its exact value.
+    """A computed number and what it must be.
 
     Attributes
     ----------
     key : stable name for programs
     subject : the code that is checked
     exact : what it must equal, and where that comes from
-    value : error, relative where not said otherwise
-    limit : largest error that passes
+    value : error, relative where not said otherwise; or an observed order
+    limit : largest error that passes; or largest distance of the order from theory
     reason : why the limit is what it is
+    theory : the order that theory gives; None: ``value`` is an error
     """
 
     key: str
@@ -25,12 +26,30 @@ class Check:
     exact: str
     value: float
     limit: float
-    reason: str
+    reason: str = ""
+    theory: float | None = None
 
     @property
     def passes(self) -> bool:
-        """Whether the error is a number within its limit."""
-        return math.isfinite(self.value) and self.value <= self.limit
+        """Whether the number is one and within its limit."""
+        return math.isfinite(self.value) and abs(self.value - (self.theory or 0.0)) <= self.limit
+
+    @property
+    def wanted(self) -> str:
+        """What the number must be, in words."""
+        if self.theory is None:
+            return f"≤ {self.limit:g}"
+        return f"{self.theory - self.limit:g} to {self.theory + self.limit:g}"
+
+
+def error_check(subject: str, exact: str, value: float, limit: float) -> Check:
+    """Check of an error, its subject being the key too."""
+    return Check(subject, subject, exact, float(value), limit)
+
+
+def order_check(subject: str, value: float, theory: float, limit: float) -> Check:
+    """Check of an observed order against theory."""
+    return Check(subject, subject, f"observed order, theory {theory:g}", float(value), limit, theory=theory)
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The code against closed forms, laws of mechanics and theoretical orders, computed when asked.
+"""The code against closed forms and laws of mechanics, computed when asked.
 
 Sources: the closed forms are derived where they are used; Oberkampf and Roy, Verification and
 Validation in Scientific Computing, 2010, for the method.
@@ -7,22 +7,16 @@ Validation in Scientific Computing, 2010, for the method.
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import expm
-from scipy.special import mathieu_a, mathieu_b
 
 import multibody
-from floquet import PeriodicSystem, gear_pair_multipliers, gear_pair_system, monodromy
-from floquet.engine.propagation import propagate_fixed
-from floquet.engine.propagators import propagator
+from floquet import gear_pair_multipliers, gear_pair_system, monodromy
 from lumped import GearPair, steady_state
 from lumped.friction import benedict_kelley, xu_kahraman
 from lumped.lubrication.film import effective_modulus, film_parameter, film_thickness, hertz_half_width
-from lumped.typing import FloatArray
-from validation.verification.checks import Check, OrderCheck
+from validation.verification.checks import Check
+from validation.verification.closed_forms import closed_forms
 
 _CYCLES = 3
-#: Method -> steps over the period at which its error is above rounding and already asymptotic.
-_METHODS = {"rk4": 64, "gauss4": 16, "gauss6": 8, "gauss8": 8, "magnus4": 16, "magnus6": 8, "dop853": 16}
 
 
 def code_checks(pair: GearPair) -> tuple[Check, ...]:
@@ -36,9 +30,7 @@ def code_checks(pair: GearPair) -> tuple[Check, ...]:
         _law_ii(),
         _law_iii(),
         _film(),
-        _meissner(),
-        _mathieu(),
-        _constant(),
+        *closed_forms(),
         _block_form(pair),
         *_lumped_identities(pair),
         *(_energy(pair, fidelity) for fidelity in ("linear", "exact")),
@@ -78,75 +70,6 @@ def _film() -> Check:
         "film",
         "film thickness, Hertzian width, film parameter",
         [(a, b) for a, b in zip(found, wanted, strict=True)],
-    )
-
-
-def _oscillator(stiffness: FloatArray) -> FloatArray:
-    """System matrices (k, 2, 2) of x'' + stiffness x = 0."""
-    a = np.zeros((stiffness.size, 2, 2))
-    a[:, 0, 1], a[:, 1, 0] = 1.0, -stiffness
-    return a
-
-
-def _meissner() -> Check:
-    """Trace of M = 2 cos cos - (w1/w2 + w2/w1) sin sin of two harmonic motions, half a period each."""
-    worst, period = 0.0, 2 * np.pi
-    for delta, epsilon in ((1.3, 0.4), (4.0, 3.0), (2.2, 0.05)):
-        high, low = delta + epsilon, delta - epsilon
-        system = PeriodicSystem(
-            lambda t, a=high, b=low: _oscillator(np.asarray(np.where(t < np.pi, a, b), dtype=float)),
-            period,
-            (period / 2,),
-            vectorized=True,
-        )
-        w1, w2 = np.sqrt(high), np.sqrt(low)
-        p1, p2 = w1 * period / 2, w2 * period / 2
-        exact = 2 * np.cos(p1) * np.cos(p2) - (w1 / w2 + w2 / w1) * np.sin(p1) * np.sin(p2)
-        worst = max(worst, abs(float(np.trace(monodromy(system, rtol=1e-11).matrix) - exact)))
-    return Check(
-        key="meissner",
-        subject="monodromy matrix across jumps of stiffness",
-        exact="trace of Meissner's equation in closed form (1918), three cases; absolute",
-        value=worst,
-        limit=1e-9,
-        reason="asked for to 1e-11 of a matrix smaller than 10, with a factor ten of room",
-    )
-
-
-def _mathieu_system(a: float, q: float) -> PeriodicSystem:
-    """Mathieu's equation x'' + (a - 2 q cos 2t) x = 0 over its period pi."""
-    return PeriodicSystem(lambda t: _oscillator(a - 2 * q * np.cos(2 * t)), np.pi, vectorized=True)
-
-
-def _mathieu() -> Check:
-    worst = 0.0
-    for order in (1, 2, 3):
-        for boundary in (mathieu_a, mathieu_b):
-            system = _mathieu_system(float(boundary(order, 1.0)), 1.0)
-            trace = float(np.trace(monodromy(system, rtol=1e-11).matrix))
-            worst = max(worst, abs(trace - 2 * (-1) ** order))
-    return Check(
-        key="mathieu",
-        subject="stability boundaries of a smooth system",
-        exact="trace ±2 on the characteristic curves a_m, b_m of Mathieu's equation, m = 1 to 3, q = 1 "
-        "(DLMF 28.2); absolute",
-        value=worst,
-        limit=1e-9,
-        reason="characteristic values are good to 1e-13, times the slope of the trace",
-    )
-
-
-def _constant() -> Check:
-    matrix = np.random.default_rng(7).normal(size=(5, 5)) - 0.5 * np.eye(5)
-    found = monodromy(PeriodicSystem(lambda t: matrix, 2.0), rtol=1e-11).matrix
-    exact = expm(2.0 * matrix)
-    return Check(
-        key="constant",
-        subject="monodromy matrix of constant coefficients",
-        exact="the matrix exponential",
-        value=float(np.linalg.norm(found - exact) / np.linalg.norm(exact)),
-        limit=1e-10,
-        reason="asked for to 1e-11 in a balanced norm",
     )
 
 
@@ -212,19 +135,3 @@ def _energy(pair: GearPair, fidelity: str) -> Check:
         limit=1e-7,
         reason="integrated to 1e-8 per step",
     )
-
-
-def order_checks() -> tuple[OrderCheck, ...]:
-    """Observed orders of the propagators on Mathieu's equation, a = 3, q = 2, at a fixed number of steps."""
-    system = _mathieu_system(3.0, 2.0)
-    exact = propagate_fixed(system, propagator("gauss"), 64)
-    size = float(np.linalg.norm(exact))
-    rows = []
-    for name, steps in _METHODS.items():
-        method = propagator(name)
-        coarse, fine = (
-            float(np.linalg.norm(propagate_fixed(system, method, n) - exact)) / size
-            for n in (steps, 2 * steps)
-        )
-        rows.append(OrderCheck(name, method.order, float(np.log2(coarse / fine)), steps, fine))
-    return tuple(rows)

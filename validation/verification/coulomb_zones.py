@@ -13,12 +13,12 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from floquet import gear_pair_multipliers, monodromy
-from floquet.gear.vaishya_singh import CoulombGearPair
+from floquet.gear.coulomb_zones import CoulombGearPair
 from lumped import GearPair, load_gear_pair
 from lumped.model.bodies import bodies
 from lumped.model.periodic_system import periodic_system
 from lumped.typing import FloatArray
-from validation.verification.floquet_check import Check, error, order
+from validation.verification.checks import Check, error_check, order_check
 
 MU = 0.2
 _RATIOS = np.linspace(0.2, 3.0, 57)
@@ -27,35 +27,21 @@ CASES = ("none", "reversing", "constant")
 
 def check_coulomb_gear_pair() -> Iterator[Check]:
     """Closed form against engine and gear; what friction of either kind can and cannot change."""
-    yield error("gear pair with Coulomb friction", _transition(), 1e-10, "worst entry of M - closed form")
-    yield error(
-        "1 ± μ tan α in the equations of motion",
-        _factor(),
-        1e-12,
-        "28/28, J_p = J_g: worst relative deviation of a pair's gain over the cycle",
-    )
+    yield error_check("gear pair with Coulomb friction", "M in closed form", _transition(), 1e-10)
+    exact = "a pair's gain over the cycle, 28/28 with J_p = J_g"
+    yield error_check("1 ± μ tan α in the equations of motion", exact, _factor(), 1e-12)
     soft, stiff = (_on_bearings(factor) for factor in (1e4, 4e4))
-    yield error("rigid bearings", stiff, 2e-3, "worst |multiplier - closed form|, bearings 40000 times k")
-    yield order("rigid bearings: in the mesh stiffness over that of the bearings",
-                np.log2(soft / stiff) / 2.0, 1.0, 0.1)  # fmt: skip
-    yield error(
-        "friction of one sign",
-        _rescaled(),
-        1e-9,
-        "worst change of |multiplier| from the frictionless pair at speed/√f, damping ζ√f, f = 1 + μ tan α",
-    )
-    pair = CoulombGearPair(friction=MU)
-    decay = np.linalg.det(pair.monodromy_matrix(_RATIOS)) / np.linalg.det(
-        replace(pair, friction=0.0).monodromy_matrix(_RATIOS)
-    )
-    yield error(
-        "friction that reverses: decay",
-        np.abs(decay - 1.0).max(),
-        1e-12,
-        "worst relative change of det M by friction",
-    )
+    yield error_check("rigid bearings", "multipliers in closed form, bearings 40000 times k", stiff, 2e-3)
+    observed = np.log2(soft / stiff) / 2.0
+    yield order_check("rigid bearings: in the mesh stiffness over that of the bearings", observed, 1.0, 0.1)
+    exact = "|multiplier| of the frictionless pair at speed/√f, damping ζ√f, f = 1 + μ tan α"
+    yield error_check("friction of one sign", exact, _rescaled(), 1e-9)
+    wet, dry = CoulombGearPair(friction=MU), CoulombGearPair()
+    decay = np.linalg.det(wet.monodromy_matrix(_RATIOS)) / np.linalg.det(dry.monodromy_matrix(_RATIOS))
+    worst = np.abs(decay - 1.0).max()
+    yield error_check("friction that reverses: decay", "det M without friction", worst, 1e-12)
     full, half = (np.abs(_trace(mu) - _trace(0.0)).max() for mu in (MU, MU / 2))
-    yield order("friction that reverses: growth in μ", np.log2(full / half), 2.0, 0.05)
+    yield order_check("friction that reverses: growth in μ", np.log2(full / half), 2.0, 0.05)
 
 
 def _transition() -> float:

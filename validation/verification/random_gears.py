@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from floquet.gear.reference import stress_test
-from validation.verification.floquet_check import Check, error
+from validation.verification.checks import Check, error_check
 
 #: Gear pairs of the test and its seed; more of them by ``python benchmarks/bench_floquet.py``.
 COUNT, SEED = 100, 1
@@ -18,7 +18,6 @@ def check_random_gears() -> Iterator[Check]:
     for route, use in _ROUTES.items():
         one = found.sel(route=route)
         name = f"{COUNT} random gear pairs, {use}"
-        yield error(f"{name}: error", float(one["error"].max()), 1e-9, "worst |multiplier - reference|")
-        yield error(
-            f"{name}: error over bound", float(one["excess"].max()), 1.0, "worst ratio to the reported bound"
-        )
+        error, excess = float(one["error"].max()), float(one["excess"].max())
+        yield error_check(f"{name}: error", "multipliers of the reference", error, 1e-9)
+        yield error_check(f"{name}: error over bound", "within the reported bound", excess, 1.0)

@@ -15,7 +15,7 @@ class Propagator(ABC):
 
     Attributes
     ----------
-    name : the name under which it is registered
+    name : how results and error messages call it
     order : p; the error of one step is O(h^(p+1)) while A is smooth inside the step
     nodes : (s,) abscissae in [0, 1] at which A is needed
     """

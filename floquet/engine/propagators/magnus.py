@@ -11,7 +11,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from floquet.engine.propagators.base import Propagator
-from floquet.engine.propagators.gauss import butcher_gauss
+from lumped.gauss_legendre import gauss_tableau
 from lumped.typing import FloatArray
 
 
@@ -22,7 +22,7 @@ def _commutator(x: FloatArray, y: FloatArray) -> FloatArray:
 class _Exponential(Propagator):
     def __init__(self, name: str, order: int, stages: int) -> None:
         self.name, self.order = name, order
-        self.nodes = butcher_gauss(stages)[2]
+        self.nodes = gauss_tableau(stages)[2]
 
     @abstractmethod
     def exponent(self, hA: FloatArray) -> FloatArray:

@@ -107,7 +107,7 @@ def test_transient_growth_inside_the_period_is_accounted_for() -> None:
     assert np.linalg.norm(result.matrix - exact, 2) <= 1e-9 * np.linalg.norm(exact, 2)
 
 
-@pytest.mark.parametrize("method", sorted(set(PROPAGATORS) - {"expm"}))
+@pytest.mark.parametrize("method", [name for name, known in PROPAGATORS.items() if known.order > 2])
 def test_tolerance_is_met_by_every_method(known_system, method: str) -> None:
     rng = np.random.default_rng(21)
     B, S = rng.normal(size=(2, 3, 3))

@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 from floquet import PROPAGATORS, PeriodicSystem, monodromy
-from floquet.engine.propagation import propagate_fixed
-from floquet.engine.propagators import propagator
 
 
 def random_system(seed: int, n: int = 4) -> PeriodicSystem:
@@ -20,7 +18,7 @@ def random_system(seed: int, n: int = 4) -> PeriodicSystem:
     return PeriodicSystem(A, 1.0, vectorized=True)
 
 
-def hamiltonian_system(seed: int) -> tuple[PeriodicSystem, np.ndarray]:
+def hamiltonian_system(seed: int) -> PeriodicSystem:
     """x' = J H(t) x with H symmetric, two degrees of freedom, a jump of H at 0.4."""
     H = np.random.default_rng(seed).normal(size=(3, 4, 4))
     H = H + H.transpose(0, 2, 1)
@@ -30,7 +28,7 @@ def hamiltonian_system(seed: int) -> tuple[PeriodicSystem, np.ndarray]:
         s = t[:, None, None]
         return J @ (H[0] + np.cos(2 * np.pi * s) * H[1] + (s > 0.4) * H[2])
 
-    return PeriodicSystem(A, 1.0, (0.4,), vectorized=True), J
+    return PeriodicSystem(A, 1.0, (0.4,), vectorized=True)
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -48,29 +46,13 @@ def test_liouville_residual_sees_a_wrong_propagation() -> None:
     assert monodromy(random_system(1), rtol=1e-4, method="rk4").liouville_residual > 1e-9
 
 
-@pytest.mark.parametrize("name", ["gauss", "gauss4", "gauss6", "gauss8", "magnus4", "magnus6", "expm"])
-def test_symplectic_methods_keep_the_form_at_any_step(name: str) -> None:
-    # M^T J M = J to rounding even with 3 coarse steps per segment: Gauss methods conserve quadratic
-    # invariants and the exponential of a Hamiltonian matrix is symplectic.
-    system, J = hamiltonian_system(2)
-    M = propagate_fixed(system, propagator(name), 3)
-    assert np.abs(M.T @ J @ M - J).max() < 1e-12 * np.linalg.norm(M) ** 2
-
-
-def test_explicit_methods_do_not_keep_the_form() -> None:
-    system, J = hamiltonian_system(2)
-    M = propagate_fixed(system, propagator("rk4"), 3)
-    assert np.abs(M.T @ J @ M - J).max() > 1e-6 * np.linalg.norm(M) ** 2
-
-
 def test_hamiltonian_multipliers_come_in_reciprocal_pairs() -> None:
-    system, _ = hamiltonian_system(4)
-    values = monodromy(system, rtol=1e-12).multipliers
+    values = monodromy(hamiltonian_system(4), rtol=1e-12).multipliers
     for value in values:
         assert np.abs(values - 1 / value).min() < 1e-9 * max(1.0, abs(1 / value))
 
 
-@pytest.mark.parametrize("name", sorted(set(PROPAGATORS) - {"rk4", "expm", "gauss4", "magnus4"}))
+@pytest.mark.parametrize("name", [name for name, known in PROPAGATORS.items() if known.order > 4])
 def test_multipliers_do_not_depend_on_coordinates(name: str) -> None:
     # y = P x with a badly scaled P: A -> P A P^-1 has the same multipliers.
     system = random_system(3)
@@ -83,11 +65,3 @@ def test_multipliers_do_not_depend_on_coordinates(name: str) -> None:
     distance = np.abs(a.multipliers[:, None] - b.multipliers[None, :]).min(axis=1)
     assert (distance <= a.multiplier_errors + b.multiplier_errors.max()).all()
     assert distance.max() < 1e-8 * a.spectral_radius  # rtol, times the conditioning of the multipliers
-
-
-def test_period_shift_keeps_the_multipliers() -> None:
-    # Phi(t0 + T, t0) is similar to Phi(T, 0) for every t0.
-    system = random_system(8)
-    shifted = PeriodicSystem(lambda t: system.evaluate(np.mod(t + 0.37, 1.0)), 1.0, vectorized=True)
-    a, b = monodromy(system, rtol=1e-11), monodromy(shifted, rtol=1e-11)
-    assert np.allclose(a.multipliers, b.multipliers, rtol=0, atol=1e-9 * a.spectral_radius)

@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from floquet import gear_pair_multipliers, gear_pair_system, monodromy, stability_chart
+from floquet import PROPAGATORS, gear_pair_multipliers, gear_pair_system, monodromy, stability_chart
 from floquet.gear.axes import GEAR_AXES, GearVariation, vary
 from floquet.gear.multipliers import mean_mesh_stiffness
 from lumped import geometry, load_gear_pair, periodic_system
@@ -44,6 +44,16 @@ def test_block_and_closed_form_equal_the_ten_states(preset: str, law: str) -> No
     assert unmatched(parts.multipliers, whole.multipliers) < 1e-8
     assert abs(parts.spectral_radius - whole.spectral_radius) <= parts.error + whole.error
     assert parts.verdict == whole.verdict
+
+
+@pytest.mark.parametrize("method", PROPAGATORS)
+def test_every_propagator_finds_the_multipliers(pair, method: str) -> None:
+    # Explicit methods ask for A at the very ends of the segments.
+    fast = pair.with_(operating__pinion_speed=15000)
+    rtol = 1e-6 if PROPAGATORS[method].order > 2 else 1e-4
+    found, exact = gear_pair_multipliers(fast, rtol, method=method), gear_pair_multipliers(fast)
+    assert abs(found.spectral_radius - exact.spectral_radius) <= found.error + exact.error
+    assert found.error < 100 * rtol
 
 
 def test_against_an_independent_integrator(pair) -> None:

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar
 
+from floquet.gear.coulomb_zones import CoulombGearPair
 from floquet.gear.margins import margins_dataset, stability_margins
 from floquet.gear.multipliers import gear_pair_multipliers
-from floquet.gear.vaishya_singh import CoulombGearPair
 from lumped import geometry, load_gear_pair, periodic_system
 from lumped.model.bodies import bodies
 from validation.plots.tongues import tongues_figure

@@ -8,9 +8,10 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from lumped import NumericalError, geometry, periodic_system
+from lumped.gauss_legendre import gauss_tableau
 from lumped.model import propagation
 from lumped.model.periodic_system import MeshGain
-from lumped.model.propagation import fastest_frequency, gauss_tableau, step_maps
+from lumped.model.propagation import fastest_frequency, step_maps
 
 
 def system_of(constant, gain, deflection, edges):

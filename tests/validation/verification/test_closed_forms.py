@@ -1,0 +1,130 @@
+"""Does every number of the verification keep its limit, and would it notice a wrong engine?"""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from floquet import PROPAGATORS, monodromy
+from floquet.engine.propagators.gauss import GaussLegendre
+from floquet.engine.reference_systems import meissner, meissner_trace
+from validation.verification import closed_forms, combinations, coulomb_zones, random_gears
+from validation.verification.closed_forms import (
+    constant_error,
+    harmonic_motion_error,
+    mathieu_error,
+    meissner_error,
+    symplectic_defect,
+)
+
+#: Methods of low order would need very many steps for more.
+RTOL = {name: 1e-11 if known.order > 4 else 1e-8 for name, known in PROPAGATORS.items()}
+CHECKS = (
+    closed_forms.check_closed_forms,
+    closed_forms.check_forced_motion,
+    closed_forms.check_invariants,
+    combinations.check_hsu,
+    combinations.check_gear_chain,
+    coulomb_zones.check_coulomb_gear_pair,
+    random_gears.check_random_gears,
+)
+
+
+@pytest.mark.parametrize("function", CHECKS, ids=lambda f: f.__name__)
+def test_every_number_keeps_its_limit(function) -> None:
+    checks = list(function())
+    assert checks
+    assert not [check for check in checks if not check.passes]
+
+
+@pytest.mark.parametrize("method", PROPAGATORS)
+def test_every_propagator_ends_its_steps_at_switches(method: str) -> None:
+    for delta, epsilon in ((1.3, 0.4), (4.0, 3.0), (2.2, 0.05)):
+        # 100: |M| < 10, and the norm in which rtol is kept is a balanced one.
+        assert meissner_error(delta, epsilon, RTOL[method], method) < 100 * RTOL[method]
+
+
+@pytest.mark.parametrize(("delta", "part"), [(0.5, 0.9), (2.75, 0.5), (5.0, 0.05), (1.0, 0.4), (4.0, 0.75)])
+def test_the_verdict_is_that_of_the_closed_form(delta: float, part: float) -> None:
+    assert meissner_error(delta, part * delta) < 1e-9
+    unstable = abs(meissner_trace(delta, part * delta)) > 2.0
+    assert monodromy(meissner(delta, part * delta)).verdict == ("unstable" if unstable else "undecided")
+
+
+@pytest.mark.parametrize("method", PROPAGATORS)
+def test_constant_coefficients(method: str) -> None:
+    for n in (2, 8):
+        assert constant_error(n, RTOL[method], method) < 10 * RTOL[method]  # balanced norm
+
+
+@pytest.mark.parametrize("q", [0.1, 1.0, 5.0])
+def test_mathieu(q: float) -> None:
+    assert max(mathieu_error(m, q, 1e-10) for m in range(5)) < 1e-9
+
+
+@pytest.mark.parametrize("method", PROPAGATORS)
+def test_methods_are_symplectic_as_registered(method: str) -> None:
+    # Gauss methods conserve quadratic invariants; the exponential of a Hamiltonian matrix is symplectic.
+    defect = symplectic_defect(method)
+    assert defect < 1e-12 if PROPAGATORS[method].symplectic else defect > 1e-9
+
+
+@pytest.mark.parametrize("method", PROPAGATORS)
+def test_the_registry_tells_what_the_propagator_is(method: str) -> None:
+    known = PROPAGATORS[method]
+    assert known.make().order == known.order
+    assert known.title
+    assert known.needs
+
+
+def test_units_of_the_forcing_do_not_matter() -> None:
+    assert harmonic_motion_error(1e-10, unit=1e9) < 1e-8
+
+
+def test_zones_of_one_sign_close_where_a_change_of_scale_puts_them() -> None:
+    # Friction of one sign is the frictionless pair at speed/sqrt(f) with damping zeta sqrt(f), exactly.
+    f = np.sqrt(1.0 + coulomb_zones.MU * np.tan(np.deg2rad(20.0)))
+    rows = {(zone, case): (damping, ratio) for zone, case, damping, ratio in coulomb_zones.zone_tips(2)}
+    for zone in ("2ω", "2ω/2"):
+        damping, ratio = rows[zone, "none"]
+        assert rows[zone, "constant"] == pytest.approx((damping / f, ratio * f), rel=1e-6)
+        # Friction that reverses opens a zone, in second order of mu tan alpha = 0.07.
+        assert 0.0 < rows[zone, "reversing"][0] / damping - 1.0 < 2.0 * (f * f - 1.0) ** 2
+
+
+def failing(function) -> set[str]:
+    return {check.subject for check in function() if not check.passes}
+
+
+def test_a_wrong_closed_form_is_noticed(monkeypatch) -> None:
+    monkeypatch.setattr(closed_forms, "meissner_trace", lambda d, e: meissner_trace(d, e * (1.0 + 1e-6)))
+    assert failing(closed_forms.check_closed_forms) == {"monodromy matrix across jumps of stiffness"}
+
+
+def test_pieces_multiplied_in_the_wrong_order_are_noticed(monkeypatch) -> None:
+    def reversed_order(pair, ratio):
+        first, second, third = (pair.transition(ratio, piece) for piece in range(3))
+        return first @ second @ third
+
+    monkeypatch.setattr(coulomb_zones.CoulombGearPair, "monodromy_matrix", reversed_order)
+    assert "gear pair with Coulomb friction" in failing(coulomb_zones.check_coulomb_gear_pair)
+
+
+def test_a_wrong_tableau_is_noticed(monkeypatch) -> None:
+    step = GaussLegendre.step_matrices
+
+    def wrong(self, A, h):
+        return step(self, A, h * (1.0 + 1e-7))
+
+    monkeypatch.setattr(GaussLegendre, "step_matrices", wrong)
+    assert "Mathieu's equation with damping" in failing(closed_forms.check_closed_forms)
+    assert {check.method for check in closed_forms.order_checks() if not check.passes} >= {"rk4", "magnus6"}
+
+
+def test_an_order_beside_theory_fails_and_says_what_it_must_be() -> None:
+    (centre, *_) = combinations.check_hsu()
+    assert not dataclasses.replace(centre, value=1.0).passes
+    assert not dataclasses.replace(centre, value=np.nan).passes
+    assert centre.wanted == "1.9 to 2.1"

@@ -1,0 +1,85 @@
+"""Combination resonances against first-order theory: Hsu's system and the gear chains of Lin and Parker."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from floquet import monodromy
+from floquet.engine.reference_systems import GearChain, HsuSystem, tongue_ends
+from validation.verification.checks import Check, error_check, order_check
+
+_OMEGA = np.array([1.0, 2.3])
+_SYMMETRIC = np.array([[0.3, 0.8], [0.5, 0.4]])
+_SKEW = np.array([[0.3, 0.8], [-0.5, 0.4]])
+
+
+def _hsu_orders(system: HsuSystem, i: int, j: int, sign: int) -> tuple[float, float]:
+    """Orders in epsilon of the errors of centre and width of a tongue; damping goes with epsilon."""
+    errors = []
+    for epsilon in (0.1, 0.05):
+        one = HsuSystem(system.omega, system.coupling, system.damping * epsilon)
+        predicted = one.boundaries(i, j, sign, epsilon)
+        assert predicted is not None  # the cases below all have tongues
+        lower, upper = np.subtract(tongue_ends(one, predicted, epsilon), predicted)
+        errors.append((abs(lower + upper), abs(upper - lower)))
+    centre, width = np.log2(np.array(errors[0]) / np.array(errors[1]))
+    return float(centre), float(width)
+
+
+def check_hsu() -> Iterator[Check]:
+    """Ends of sum and difference tongues against first-order theory, and where there is none."""
+    still, damped = np.zeros(2), np.array([4e-3, 1.6e-2])
+    cases = (
+        ("sum, symmetric", _SYMMETRIC, still, 0, 1, 1),
+        ("difference, skew", _SKEW, still, 0, 1, -1),
+        ("sum, unequal damping", _SYMMETRIC, damped, 0, 1, 1),
+        ("difference, unequal damping", _SKEW, damped, 0, 1, -1),
+        ("twice one mode", _SYMMETRIC, still, 0, 0, 1),
+    )
+    for name, coupling, damping, i, j, sign in cases:
+        centre, width = _hsu_orders(HsuSystem(_OMEGA, coupling, damping), i, j, sign)
+        yield order_check(f"Hsu, {name}: centre", centre, 2.0, 0.1)
+        yield order_check(f"Hsu, {name}: width", width, 3.0, 0.3)
+    worst = 0.0
+    for coupling, sign in ((_SYMMETRIC, -1), (_SKEW, 1)):
+        system = HsuSystem(_OMEGA, coupling - np.diag(np.diag(coupling)), still)
+        centre = _OMEGA[1] + sign * _OMEGA[0]
+        for excitation in centre + np.linspace(-0.06, 0.06, 25):
+            worst = max(worst, monodromy(system.at(excitation, 0.1), 1e-11).spectral_radius - 1.0)
+    yield error_check("Hsu, the other combination", "no growth: theory has no tongue there", worst, 1e-5)
+
+
+def _chain(contact_ratio: float) -> GearChain:
+    """Idler chain of three gears."""
+    return GearChain(
+        mass=np.array([1.0, 1.6, 1.2]),
+        ground=np.diag([0.4, 0.0, 0.15]),
+        meshes=np.array([[1.0, -1.0, 0.0], [0.0, 1.0, -1.0]]),
+        stiffness=np.array([2.0, 3.0]),
+        contact_ratio=np.full(2, contact_ratio),
+        phase=np.array([0.0, 0.3]),
+    )
+
+
+def check_gear_chain() -> Iterator[Check]:
+    """Tongues of two meshes with rectangular waves, and the contact ratio that removes one."""
+    system = _chain(1.4)
+    for i, j, harmonic in ((2, 2, 1), (1, 2, 1), (1, 2, 2), (0, 2, 1)):
+        errors = []
+        for epsilon in (0.08, 0.04):
+            predicted = system.boundaries(i, j, harmonic, epsilon)
+            computed = tongue_ends(system, predicted, epsilon)
+            errors.append(np.abs(np.subtract(computed, predicted)).max())
+        name = f"gear chain, (w{i + 1}+w{j + 1})/{harmonic}: ends"
+        yield order_check(name, np.log2(errors[0] / errors[1]), 2.0, 0.25)
+    omega, _ = system.modes()
+    for sigma, expected in ((1.4, 1.0), (1.5, 2.0)):
+        growth = []
+        for epsilon in (0.04, 0.02):
+            excitations = 0.5 * (omega[1] + omega[2]) * (1.0 + np.linspace(-0.005, 0.005, 161))
+            radius = [monodromy(_chain(sigma).at(x, epsilon), 1e-11).spectral_radius for x in excitations]
+            growth.append(max(radius) - 1.0)
+        name = f"gear chain, growth in (w2+w3)/2, contact ratio {sigma}"
+        yield order_check(name, np.log2(growth[0] / growth[1]), expected, 0.2)
