@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
 from types import UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -14,6 +15,8 @@ from lumped.errors import MOST_PROBLEMS, FieldProblem, ParameterError, quoted, s
 from lumped.fields.section import OneOf
 from lumped.fields.units import Quantity
 
+#: What pydantic puts into a place for the parts of a union of plain types.
+_UNION_PARTS = {"int", "float", "str"}
 _RENAMED = {"model_type": "a table", "model_attributes_type": "a table", "dict_type": "a table"}
 
 
@@ -30,7 +33,8 @@ def translated(error: ValidationError, root: type[BaseModel]) -> list[FieldProbl
     first: dict[str, FieldProblem] = {}
     for problem in found:
         first.setdefault(problem.field, problem)
-    return list(first.values())
+    # A list whose items are refused is also "too short" for pydantic; the items are the reason.
+    return [p for path, p in first.items() if not any(other.startswith(f"{path}.") for other in first)]
 
 
 def field_of(root: type[BaseModel], path: str) -> FieldInfo:
@@ -43,6 +47,8 @@ def field_of(root: type[BaseModel], path: str) -> FieldInfo:
     models = [root]
     info: FieldInfo | None = None
     for part in path.split("."):
+        if part.isdigit() and info is not None and _is_list(info):
+            continue
         names = {name: field for model in models for name, field in model.model_fields.items()}
         if part not in names:
             raise ParameterError([unknown_key(path, list(names), part)])
@@ -57,11 +63,15 @@ def models_in(annotation: Any) -> list[type[BaseModel]]:
     origin = get_origin(annotation)
     if origin is Annotated:
         return models_in(get_args(annotation)[0])
-    if origin in (Union, UnionType):
+    if origin in (Union, UnionType, tuple, list):
         return [model for part in get_args(annotation) for model in models_in(part)]
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [annotation]
     return []
+
+
+def _is_list(info: FieldInfo) -> bool:
+    return get_origin(info.annotation) in (tuple, list)
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
@@ -101,9 +111,7 @@ def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
         known = [name for model in models for name in model.model_fields]
         return [unknown_key(path, known, parts[-1])]
     if kind == "missing" and parts and parts[-1].isidentifier():
-        return [
-            FieldProblem(path, "missing", _description(field_of(root, path)), "Add it to the parameter file.")
-        ]
+        return [FieldProblem(path, "missing", _description(field_of(root, path)), "Add it.")]
     if kind in ("union_tag_invalid", "union_tag_not_found"):
         given = context.get("tag", "missing")
         tags = [str(tag) for model in models_in(field_of(root, path).annotation) for tag in _tags(model)]
@@ -121,7 +129,11 @@ def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
         point = isinstance(item.get("input"), float)
         action = "Write it without a point." if point else "Write a whole number in that range."
         return [FieldProblem(path, value, _whole_number(field_of(root, path)), action)]
-    allowed = item["msg"].removeprefix("Input should be ").removeprefix("Value should be ")
+    allowed = item["msg"]
+    if found := re.fullmatch(r"Tuple should have (at \w+ \d+ items?) after validation, not (\d+)", allowed):
+        allowed = f"{found[1]} instead of {found[2]}"
+    for start in ("Input should be ", "Value should be ", "Input should ", "Value should "):
+        allowed = allowed.removeprefix(start)
     return [FieldProblem(path or "file", value, allowed, "Correct the value.")]
 
 
@@ -131,6 +143,7 @@ def _location(
     """Path of pydantic's location without union tags and tuple indices, and the sections that it ends in."""
     models = [root]
     parts: list[str] = []
+    listed = False
     for item in location:
         part = str(item)
         tagged = [model for model in models if len(models) > 1 and part in _tags(model)]
@@ -138,11 +151,13 @@ def _location(
             models = tagged
             continue
         owner = [model for model in models if part in model.model_fields]
-        if not owner and parts and not models:
-            continue  # an index into a tuple or a member of a plain union: the field itself is named
+        index = listed and part.isdigit()
+        if not owner and parts and (not models or part in _UNION_PARTS or "[" in part) and not index:
+            continue  # an index into numbers or a member of a union: the field itself is named
         parts.append(part)
         if owner:
             models = [m for model in owner for m in models_in(model.model_fields[part].annotation)]
+        listed = any(_is_list(model.model_fields[part]) for model in owner) and bool(models)
     return parts, models
 
 

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 from pydantic import Field, ValidationError, model_validator
 
 from lumped.errors import ParameterError, refuse, shown
+from lumped.fields.refusals import translated
 from lumped.fields.section import Section, Text
 from lumped.fields.text_file import parse_toml, read_text
 from lumped.fields.units import Quantity
-from validation.files.problems import translated
 
 if TYPE_CHECKING:
     import pint

@@ -9,10 +9,10 @@ from typing import Any
 from pydantic import ValidationError
 
 from lumped.errors import FieldProblem, ParameterError, refuse, shown
+from lumped.fields.refusals import translated
 from lumped.fields.text_file import parse_toml, read_text
 from lumped.schema.files import load_gear_pair, preset_names
 from lumped.schema.pair import GearPair
-from validation.files.problems import translated
 from validation.studies.schema import Study
 
 #: Largest study file read: a bound against a wrong path; a list of a million values fits.
