@@ -7,7 +7,6 @@ from validation.measurements.overlay import overlay, overlay_metrics
 from validation.measurements.prediction import Prediction, predict
 from validation.measurements.record import Measurement, load_measurement
 from validation.measurements.specification import MeasurementSpec
-from validation.measurements.study import identification_study
 from validation.measurements.synthetic import synthetic_measurement, write_measurement
 
 __all__ = [
@@ -19,7 +18,6 @@ __all__ = [
     "Prediction",
     "align",
     "evaluate",
-    "identification_study",
     "identify_friction",
     "load_measurement",
     "mesh_cycles",

@@ -11,7 +11,7 @@ which, unlike ordinary least squares on a noisy N, is not biased towards zero (F
 Models, 1987, section 1.3). The covariance is the sandwich estimator with Bartlett weights over the lags
 (Newey and West 1987), prewhitened (Andrews and Monahan 1992), the number of lags by Andrews' (1991) rule, so
 that filtered sensor noise does not make the interval too narrow. Of 200 noise seeds
-(``identification_study``, 100 samples a mesh cycle) the 95 % interval holds the truth in 192 with white
+(100 samples a mesh cycle) the 95 % interval holds the truth in 192 with white
 noise, and in 193, 191, 181 and 172 where neighbouring samples are correlated by 0.7, 0.9, 0.97 and 0.99:
 noise that hardly changes while a tooth pair is in contact looks like friction.
 """
