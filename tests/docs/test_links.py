@@ -51,6 +51,8 @@ def test_files_that_are_named_exist(page, root):
 
 
 def test_python_names_exist(page):
+    if page.name == "CHANGELOG.md":  # it names what is gone, too
+        return
     for name in _NAME.findall(page.read_text(encoding="utf-8")):
         parts = name.split(".")
         found: object = importlib.import_module(parts[0])
