@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import hashlib
-from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from markupsafe import Markup
 from floquet.gear.chart_axes import operating_rpm
 from lumped import GearPair, load_gear_pair
 from lumped.friction import LAWS
+from lumped.typing import Progress
 from validation.files.output import write_dataset, write_text
 from validation.interactive.payload import payload, script_json
 from validation.interactive.results import FINE, PageResults, Sampling, compute
@@ -32,7 +32,7 @@ def write_interactive_page(
     data: str | Path | None = None,
     sampling: Sampling = FINE,
     multibody: xr.Dataset | None = None,
-    progress: Callable[[float, str], None] | None = None,
+    progress: Progress | None = None,
 ) -> Path:
     """Write the interactive page of a gear pair and, as NetCDF, every number on it.
 

@@ -14,14 +14,13 @@ from floquet.gear.chart_axes import chart_axes, operating_rpm, speed_range
 from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
 from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError
 from lumped.friction import LAWS
+from lumped.labelling import Variable, labelled_dataset
 from lumped.model.averaged import modes
 from lumped.model.results import provenance
 from lumped.path_of_contact import law_range_violations
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, Progress
 from validation.interactive.slices import SLICES, Slices
 from validation.validity.map import STATES, validity_state
-
-Progress = Callable[[float, str], None]
 
 
 @dataclass(frozen=True)
@@ -107,7 +106,7 @@ def compute(
     ------
     NumericalError : the stability chart or the response with the pair's own law fails
     """
-    tell = progress or (lambda fraction, text: None)
+    tell: Progress = progress or (lambda fraction, stage="", /: None)
     try:
         found = modes(pair)
     except NumericalError:  # an overdamped mode has no natural frequency
@@ -175,10 +174,9 @@ def _sweep(pair: GearPair, speeds: FloatArray) -> xr.Dataset:
         "validity": validity_state(lowest, reversal),
         "spectral_radius": found["spectral_radius"].to_numpy(),
     }
-    labels = {name: {"units": unit, "long_name": text} for name, (unit, text) in _LABELS.items()}
-    return xr.Dataset(
-        {name: ("speed", array, labels[name]) for name, array in values.items()},
-        coords={"speed": ("speed", speeds, {"units": "rpm", "long_name": "pinion speed"})},
+    return labelled_dataset(
+        {name: ("speed", array, *_LABELS[name]) for name, array in values.items()},
+        {"speed": (speeds, "rpm", "pinion speed")},
     )
 
 
@@ -195,13 +193,9 @@ _LABELS = {
 
 def _points(pair: GearPair, motion: xr.Dataset) -> xr.Dataset:
     """Response of the multibody model at the operating speed."""
-    rpm = operating_rpm(pair)
-    points = xr.Dataset(
-        coords={"multibody_speed": ("multibody_speed", [rpm], {"units": "rpm", "long_name": "pinion speed"})}
-    )
+    variables: dict[str, Variable] = {}
     for name, variable in (("dte_peak_to_peak", "dte"), ("y_p_peak_to_peak", "y_p")):
         unit, text = _LABELS[name]
         value = float(np.ptp(motion[variable].to_numpy()))
-        attrs = {"units": unit, "long_name": f"{text}, multibody model"}
-        points[f"multibody_{name}"] = ("multibody_speed", [value], attrs)
-    return points
+        variables[f"multibody_{name}"] = ("multibody_speed", [value], unit, f"{text}, multibody model")
+    return labelled_dataset(variables, {"multibody_speed": ([operating_rpm(pair)], "rpm", "pinion speed")})

@@ -7,10 +7,10 @@ number that the file does not have.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import xarray as xr
 from matplotlib.figure import Figure
@@ -65,6 +65,7 @@ class Quantity:
 
 Cell = str | int | float | bool | Quantity | Badge | None
 Rows = list[tuple[Cell, ...]]
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -87,6 +88,34 @@ class Table:
     rows: tuple[tuple[Cell, ...], ...]
     marked: frozenset[int] = frozenset()
     note: str = ""
+
+
+def table_of(
+    key: str,
+    caption: str,
+    items: Sequence[T],
+    columns: Mapping[str, tuple[str, Callable[[T], Cell]]],
+    *,
+    marked: Callable[[T], bool] = lambda item: False,
+    note: str = "",
+) -> Table:
+    """Table with one row per item.
+
+    Parameters
+    ----------
+    key, caption, note : of the table
+    items : what the rows are about
+    columns : name in report.json -> heading, and the cell of an item
+    marked : whether to highlight an item's row
+    """
+    return Table(
+        key,
+        caption,
+        {name: heading for name, (heading, _) in columns.items()},
+        tuple(tuple(cell(item) for _, cell in columns.values()) for item in items),
+        frozenset(place for place, item in enumerate(items) if marked(item)),
+        note,
+    )
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,7 @@
 """Does the page show the data file's values in a real browser, by mouse, slider and keyboard?"""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -50,24 +52,28 @@ def test_its_policy_refuses_network_and_foreign_scripts(page):
     page.console()
 
 
-@pytest.mark.parametrize("key", AXES)
-@pytest.mark.parametrize(("k", "i", "j"), NODES)
-def test_hover_over_the_chart_shows_the_data_file(page, data, key, k, i, j):
-    page.choose("axis", AXES.index(key))
-    page.choose("slice", k)
-    page.drawn("stability-plot", "1")
-    speed, damping = float(data["speed_rpm"][j]), float(data["damping_ratio"][i])
-    # Half a step inside where the node lies on the edge of the axes.
-    x = np.clip(speed, *(data["speed_rpm"].to_numpy()[[0, -1]] + [20, -20]))
-    y = np.clip(damping, *(data["damping_ratio"].to_numpy()[[0, -1]] + [1e-3, -1e-3]))
-    lines = page.hover("stability-plot", float(x), float(y))
-    verdict = VERDICTS[int(data[f"verdict_over_{key}"].to_numpy()[k, i, j])]
-    assert lines == [
-        f"{speed:.6g} rpm",
-        f"damping ratio {damping:.6g}",
-        f"largest multiplier {chart(data, key)[k, i, j]:.6f}",
-        verdict,
+def test_hover_over_the_chart_shows_the_data_file(page, data):
+    inside = [np.array([20.0, -20.0]), np.array([1e-3, -1e-3])]
+    ends = [
+        data[name].to_numpy()[[0, -1]] + step
+        for name, step in zip(("speed_rpm", "damping_ratio"), inside, strict=True)
     ]
+    for key, (k, i, j) in itertools.product(AXES, NODES):
+        page.choose("axis", AXES.index(key))
+        page.choose("slice", k)
+        page.drawn("stability-plot", "1")
+        speed, damping = float(data["speed_rpm"][j]), float(data["damping_ratio"][i])
+        # Half a step inside where the node lies on the edge of the axes.
+        lines = page.hover(
+            "stability-plot", float(np.clip(speed, *ends[0])), float(np.clip(damping, *ends[1]))
+        )
+        verdict = VERDICTS[int(data[f"verdict_over_{key}"].to_numpy()[k, i, j])]
+        assert lines == [
+            f"{speed:.6g} rpm",
+            f"damping ratio {damping:.6g}",
+            f"largest multiplier {chart(data, key)[k, i, j]:.6f}",
+            verdict,
+        ]
 
 
 def test_hover_over_the_cut_shows_the_data_file(page, data):
@@ -78,25 +84,25 @@ def test_hover_over_the_cut_shows_the_data_file(page, data):
     assert lines == [f"{float(data['speed_rpm'][j]):.6g} rpm", f"largest multiplier {value:.6f}"]
 
 
-@pytest.mark.parametrize("key", AXES)
-def test_the_slider_shows_every_slice_of_the_data_file(page, data, key):
-    page.choose("axis", AXES.index(key))
-    values = chart(data, key)
-    assert len({values[k].tobytes() for k in range(3)}) == 3  # else the slider could be stuck unseen
-    for k in range(3):
-        page.choose("slice", k)
-        page.choose("damping", 1)
-        shown = page.drawn("stability-plot", "plot.data[0].z.map(row => Array.from(row))")
-        np.testing.assert_array_equal(np.float32(shown), np.float32(np.round(values[k], 6)))
-        cut = page.run("return Array.from(document.getElementById('stability-plot').data[5].y)")
-        np.testing.assert_array_equal(np.float32(cut), np.float32(np.round(values[k, 1], 6)))
-        dots = page.run("const p = document.getElementById('stability-plot').data[2]; return [p.x, p.y]")
-        unstable = data[f"verdict_over_{key}"].to_numpy()[k] != 1
-        rows, columns = np.nonzero(unstable)
-        assert dots[0] == six_digits(data["speed_rpm"].to_numpy()[columns])
-        assert dots[1] == six_digits(data["damping_ratio"].to_numpy()[rows])
-        assert f"{float(data[key][k]):.4g}" in page.text("slice-value")
-    assert unstable.any()
+def test_the_slider_shows_every_slice_of_the_data_file(page, data):
+    for key in AXES:
+        page.choose("axis", AXES.index(key))
+        values = chart(data, key)
+        assert len({values[k].tobytes() for k in range(3)}) == 3  # else the slider could be stuck unseen
+        for k in range(3):
+            page.choose("slice", k)
+            page.choose("damping", 1)
+            shown = page.drawn("stability-plot", "plot.data[0].z.map(row => Array.from(row))")
+            np.testing.assert_array_equal(np.float32(shown), np.float32(np.round(values[k], 6)))
+            cut = page.run("return Array.from(document.getElementById('stability-plot').data[5].y)")
+            np.testing.assert_array_equal(np.float32(cut), np.float32(np.round(values[k, 1], 6)))
+            dots = page.run("const p = document.getElementById('stability-plot').data[2]; return [p.x, p.y]")
+            unstable = data[f"verdict_over_{key}"].to_numpy()[k] != 1
+            rows, columns = np.nonzero(unstable)
+            assert dots[0] == six_digits(data["speed_rpm"].to_numpy()[columns])
+            assert dots[1] == six_digits(data["damping_ratio"].to_numpy()[rows])
+            assert f"{float(data[key][k]):.4g}" in page.text("slice-value")
+        assert unstable.any()
 
 
 def test_a_law_shows_its_response_of_the_data_file(page, data):
@@ -113,22 +119,18 @@ def test_a_law_shows_its_response_of_the_data_file(page, data):
             assert shown == six_digits(factor * one[variable].to_numpy()), (law, variable)
 
 
-@pytest.mark.parametrize(
-    ("axis", "variable", "text"),
-    [
+def test_hover_over_the_response_shows_the_data_file(page, data):
+    page.choose("law", 1)
+    page.drawn("sweep-plot", "1")
+    for axis, variable, text in (
         ("yaxis", "dte_peak_to_peak", "transmission error {} µm"),
         ("yaxis2", "y_p_peak_to_peak", "off line of action {} µm"),
         ("yaxis3", "lowest_load", "lowest load {}"),
-    ],
-)
-def test_hover_over_the_response_shows_the_data_file(page, data, axis, variable, text):
-    page.choose("law", 1)
-    page.drawn("sweep-plot", "1")
-    value = float(data[variable].isel(law=1)[5]) * (1.0 if variable == "lowest_load" else 1e6)
-    lines = page.hover("sweep-plot", float(data["speed"][5]), value, axis)
-    assert lines[0] == f"{float(data['speed'][5]):.6g} rpm"
-    shown = text.format(f"{value:.6g}")
-    assert lines[1].replace("−", "-") == shown
+    ):
+        value = float(data[variable].isel(law=1)[5]) * (1.0 if variable == "lowest_load" else 1e6)
+        lines = page.hover("sweep-plot", float(data["speed"][5]), value, axis)
+        assert lines[0] == f"{float(data['speed'][5]):.6g} rpm"
+        assert lines[1].replace("−", "-") == text.format(f"{value:.6g}")
 
 
 def test_flags_of_the_strip_are_those_of_the_data_file(page, data):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from validation.reporting.blocks import Badge, Block, Content, Rows, Table, Text
+from validation.reporting.blocks import Badge, Block, Content, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.compare import ERROR_GROWTH, Comparison
 
@@ -26,30 +26,19 @@ def _write(comparison: Comparison) -> Content:
         )
     ]
     if comparison.changes:
-        rows: Rows = [
-            (
-                c.path,
-                c.kind,
-                c.old,
-                c.new,
-                None if c.size is None else 100 * c.size,
-                Badge("outside" if c.fails else "within"),
-            )
-            for c in comparison.changes[:_MOST]
-        ]
         blocks.append(
-            Table(
+            table_of(
                 "changes",
                 "What changed, the worst first.",
+                comparison.changes[:_MOST],
                 {
-                    "path": "value",
-                    "kind": "kind",
-                    "old": "before",
-                    "new": "now",
-                    "size_percent": "change [%]",
-                    "verdict": "tolerance",
+                    "path": ("value", lambda c: c.path),
+                    "kind": ("kind", lambda c: c.kind),
+                    "old": ("before", lambda c: c.old),
+                    "new": ("now", lambda c: c.new),
+                    "size_percent": ("change [%]", lambda c: None if c.size is None else 100 * c.size),
+                    "verdict": ("tolerance", lambda c: Badge("outside" if c.fails else "within")),
                 },
-                tuple(rows),
                 note="" if len(comparison.changes) <= _MOST else f"The first {_MOST} are shown.",
             )
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from validation.reporting.blocks import Badge, Content, Table, Text
+from validation.reporting.blocks import Badge, Content, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 from validation.verification import Check, OrderCheck, code_checks, order_checks
@@ -25,52 +25,32 @@ def content(checks: tuple[Check, ...], orders: tuple[OrderCheck, ...]) -> Conten
         "report, with this installation: a formula against its published or closed-form value, a model "
         "against a law of mechanics, a method against its order of convergence."
     )
-    table = Table(
+    table = table_of(
         "closed_forms",
         "Errors against exact values; relative where not said otherwise.",
+        checks,
         {
-            "key": "check",
-            "subject": "what is checked",
-            "exact": "what it must equal",
-            "value": "error",
-            "limit": "limit",
-            "verdict": "verdict",
+            "key": ("check", lambda c: c.key),
+            "subject": ("what is checked", lambda c: c.subject),
+            "exact": ("what it must equal", lambda c: c.exact),
+            "value": ("error", lambda c: c.value),
+            "limit": ("limit", lambda c: c.limit),
+            "verdict": ("verdict", lambda c: Badge("within" if c.passes else "outside")),
         },
-        tuple(
-            (
-                c.key,
-                c.subject,
-                c.exact,
-                c.value,
-                c.limit,
-                Badge("within" if c.passes else "outside"),
-            )
-            for c in checks
-        ),
         note="Why these limits: " + "; ".join(f"{c.key}: {c.reason}" for c in checks) + ".",
     )
-    order_table = Table(
+    order_table = table_of(
         "orders",
         "Order of convergence on Mathieu's equation, a = 3, q = 2, over one period; step halved once.",
+        orders,
         {
-            "method": "method",
-            "theory": "theory",
-            "observed": "observed",
-            "steps": "coarse steps",
-            "error": "error, fine steps",
-            "verdict": "verdict",
+            "method": ("method", lambda o: o.method),
+            "theory": ("theory", lambda o: o.theory),
+            "observed": ("observed", lambda o: o.observed),
+            "steps": ("coarse steps", lambda o: o.steps),
+            "error": ("error, fine steps", lambda o: o.error),
+            "verdict": ("verdict", lambda o: Badge("within" if o.passes else "outside")),
         },
-        tuple(
-            (
-                o.method,
-                o.theory,
-                o.observed,
-                o.steps,
-                o.error,
-                Badge("within" if o.passes else "outside"),
-            )
-            for o in orders
-        ),
         note="Within: observed and theory differ by at most 0.3, which leaves room for the next term of the "
         "error series at these coarse steps.",
     )

@@ -14,7 +14,6 @@ from validation.reporting.blocks import (
     Answer,
     Badge,
     Block,
-    Cell,
     Content,
     Fact,
     Facts,
@@ -23,6 +22,7 @@ from validation.reporting.blocks import (
     Rows,
     Table,
     Text,
+    table_of,
 )
 from validation.reporting.causes import attribution, causes, meshing_teeth
 from validation.reporting.chapter import Chapter
@@ -124,29 +124,18 @@ def _judged(check: CrossCheck) -> Table:
         "maximum_over_span": "largest difference / peak to peak",
         "remainder_l2": "relative L2 left after what is predicted",
     }
-    rows: Rows = [
-        (
-            NAMES[a.quantity],
-            a.fidelity,
-            words[a.tolerance.metric],
-            a.judged,
-            a.tolerance.limit,
-            Badge("within" if a.within else "outside"),
-        )
-        for a in check.agreements
-    ]
-    return Table(
+    return table_of(
         "verdicts",
         "Verdict per quantity against its stated tolerance.",
+        check.agreements,
         {
-            "quantity": "quantity",
-            "fidelity": "multibody",
-            "metric": "metric judged",
-            "value": "value",
-            "tolerance": "tolerance",
-            "verdict": "verdict",
+            "quantity": ("quantity", lambda a: NAMES[a.quantity]),
+            "fidelity": ("multibody", lambda a: a.fidelity),
+            "metric": ("metric judged", lambda a: words[a.tolerance.metric]),
+            "value": ("value", lambda a: a.judged),
+            "tolerance": ("tolerance", lambda a: a.tolerance.limit),
+            "verdict": ("verdict", lambda a: Badge("within" if a.within else "outside")),
         },
-        tuple(rows),
     )
 
 
@@ -162,39 +151,23 @@ def _reasons(check: CrossCheck) -> Text:
 
 
 def _metrics(check: CrossCheck) -> Table:
-    def row(a: Agreement) -> tuple[Cell, ...]:
-        sg = a.sprague_geers
-        return (
-            NAMES[a.quantity],
-            a.fidelity,
-            a.relative_l2,
-            a.remainder_l2,
-            a.maximum_over_span,
-            a.rms_over_span,
-            a.mean_shift,
-            a.peak_to_peak_ratio,
-            sg.magnitude if sg else None,
-            sg.phase if sg else None,
-            sg.comprehensive if sg else None,
-        )
-
-    return Table(
+    return table_of(
         "metrics",
         "All metrics of multibody against lumped.",
+        check.agreements,
         {
-            "quantity": "quantity",
-            "fidelity": "multibody",
-            "relative_l2": "relative L2",
-            "remainder_l2": "L2 left",
-            "maximum_over_span": "largest",
-            "rms_over_span": "rms",
-            "mean_shift": "mean shift",
-            "peak_to_peak_ratio": "span ratio",
-            "sprague_geers_magnitude": "S-G M",
-            "sprague_geers_phase": "S-G P",
-            "sprague_geers_comprehensive": "S-G C",
+            "quantity": ("quantity", lambda a: NAMES[a.quantity]),
+            "fidelity": ("multibody", lambda a: a.fidelity),
+            "relative_l2": ("relative L2", lambda a: a.relative_l2),
+            "remainder_l2": ("L2 left", lambda a: a.remainder_l2),
+            "maximum_over_span": ("largest", lambda a: a.maximum_over_span),
+            "rms_over_span": ("rms", lambda a: a.rms_over_span),
+            "mean_shift": ("mean shift", lambda a: a.mean_shift),
+            "peak_to_peak_ratio": ("span ratio", lambda a: a.peak_to_peak_ratio),
+            "sprague_geers_magnitude": ("S-G M", lambda a: _sprague_geers(a, "magnitude")),
+            "sprague_geers_phase": ("S-G P", lambda a: _sprague_geers(a, "phase")),
+            "sprague_geers_comprehensive": ("S-G C", lambda a: _sprague_geers(a, "comprehensive")),
         },
-        tuple(row(a) for a in check.agreements),
         note="Relative L2: norm of the difference over the norm of the lumped history; L2 left: the same "
         "after what finite motions must change, predicted from the lumped model alone, is added to the "
         "lumped history. Largest, rms and mean shift are over the peak to peak of the lumped "
@@ -203,6 +176,11 @@ def _metrics(check: CrossCheck) -> Table:
         "I_xy = ∫ x y dt; C = √(M² + P²); M > 0 where multibody is larger. Span ratio: peak to peak over "
         "peak to peak. Samples on a switch are left out: they belong to either side of the jump.",
     )
+
+
+def _sprague_geers(agreement: Agreement, part: str) -> float | None:
+    found = agreement.sprague_geers
+    return None if found is None else float(getattr(found, part))
 
 
 def _orders(check: CrossCheck) -> Table:

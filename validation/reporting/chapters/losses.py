@@ -23,7 +23,7 @@ from lumped.losses import (
 from lumped.lubrication.viscosity import ZERO_CELSIUS
 from lumped.path_of_contact import contact_path
 from validation.plots.efficiency import efficiency_figure, film_figure, sliding_power_figure
-from validation.reporting.blocks import Block, Content, Fact, Facts, Picture, Quantity, Rows, Table, Text
+from validation.reporting.blocks import Block, Content, Fact, Facts, Picture, Quantity, Table, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 from validation.reporting.words import unstable_warning
@@ -46,22 +46,6 @@ def _losses(results: Results, by_law: xr.Dataset) -> list[Block]:
     blocks: list[Block] = []
     if by_law.sizes["law"]:
         chosen = pair.friction.law
-        rows: Rows = []
-        for name in by_law["law"].to_numpy():
-            row = by_law.sel(law=name)
-            dynamic = float(row["mesh_efficiency_dynamic"])
-            rows.append(
-                (
-                    str(row["law_title"].item()),
-                    float(row["path_coefficient"]),
-                    float(row["mean_coefficient"]),
-                    Quantity(float(row["power_loss"]), "W"),
-                    float(row["mesh_efficiency_closed_form"]),
-                    float(row["mesh_efficiency"]),
-                    None if np.isnan(dynamic) else dynamic,
-                )
-            )
-        own = [i for i, name in enumerate(by_law["law"].to_numpy()) if str(name) == chosen]
         blocks += [
             Picture(
                 "efficiency_by_law",
@@ -69,21 +53,7 @@ def _losses(results: Results, by_law: xr.Dataset) -> list[Block]:
                 "quasi-static integral, and the periodic motion.",
                 lambda: efficiency_figure(by_law, chosen),
             ),
-            Table(
-                "efficiency_by_law",
-                "Mesh efficiency by friction law, sliding losses only.",
-                {
-                    "law": "law",
-                    "path_coefficient": "mean |µ| over the path",
-                    "mean_coefficient": "µ weighted by the loss",
-                    "power_loss": "sliding loss, quasi-static",
-                    "closed_form": "efficiency, closed form",
-                    "quasi_static": "efficiency, quasi-static",
-                    "dynamic": "efficiency, periodic motion",
-                },
-                tuple(rows),
-                frozenset(own),
-            ),
+            _table_by_law(by_law, chosen),
         ]
     if by_law.attrs["left_out"]:
         blocks.append(Text("Laws that this pair does not allow:", tuple(by_law.attrs["left_out"])))
@@ -103,6 +73,28 @@ def _losses(results: Results, by_law: xr.Dataset) -> list[Block]:
         Facts("losses", _numbers(pair)),
     ]
     return blocks
+
+
+def _table_by_law(by_law: xr.Dataset, chosen: str) -> Table:
+    return table_of(
+        "efficiency_by_law",
+        "Mesh efficiency by friction law, sliding losses only.",
+        [by_law.sel(law=name) for name in by_law["law"].to_numpy()],
+        {
+            "law": ("law", lambda one: str(one["law_title"].item())),
+            "path_coefficient": ("mean |µ| over the path", lambda one: float(one["path_coefficient"])),
+            "mean_coefficient": ("µ weighted by the loss", lambda one: float(one["mean_coefficient"])),
+            "power_loss": ("sliding loss, quasi-static", lambda one: Quantity(float(one["power_loss"]), "W")),
+            "closed_form": ("efficiency, closed form", lambda one: float(one["mesh_efficiency_closed_form"])),
+            "quasi_static": ("efficiency, quasi-static", lambda one: float(one["mesh_efficiency"])),
+            "dynamic": ("efficiency, periodic motion", lambda one: _known(one["mesh_efficiency_dynamic"])),
+        },
+        marked=lambda one: str(one["law"].item()) == chosen,
+    )
+
+
+def _known(value: xr.DataArray) -> float | None:
+    return float(value) if np.isfinite(value) else None
 
 
 def _numbers(pair: GearPair) -> tuple[Fact, ...]:

@@ -8,9 +8,20 @@ from lumped import GearPair
 from lumped.quasi_static import OptimalRelief
 from validation.plots.loaded_mesh import harris_figure, load_sharing_figure, relief_figure
 from validation.plots.stiffness import energy_mesh_figure, stiffness_components_figure
-from validation.reporting.blocks import Block, Content, Fact, Facts, Picture, Quantity, Rows, Table, Text
+from validation.reporting.blocks import (
+    Block,
+    Content,
+    Fact,
+    Facts,
+    Picture,
+    Quantity,
+    Rows,
+    Table,
+    Text,
+    table_of,
+)
 from validation.reporting.chapter import Chapter
-from validation.reporting.mesh_physics import CURVES, MeshPhysics, mesh_physics
+from validation.reporting.mesh_physics import MeshPhysics, mesh_physics
 from validation.reporting.results import Results
 
 
@@ -148,25 +159,17 @@ def _loaded_mesh(results: Results, found: MeshPhysics) -> list[Block]:
             )
         )
         blocks.append(
-            Table(
+            table_of(
                 "static_transmission_error",
                 "Static transmission error by torque.",
+                [curves.isel(torque=i) for i in range(curves.sizes["torque"])],
                 {
-                    "torque": "pinion torque",
-                    "mean": "mean",
-                    "peak_to_peak": "peak to peak",
-                    "contact_ratio": "mean number of loaded pairs",
+                    "torque": ("pinion torque", lambda one: Quantity(float(one["torque"]), "N m")),
+                    "mean": ("mean", lambda one: Quantity(float(one["transmission_error"].mean()), "m")),
+                    "peak_to_peak": ("peak to peak", lambda one: Quantity(float(one["peak_to_peak"]), "m")),
+                    "contact_ratio": ("mean number of loaded pairs", lambda one: float(one["contact_ratio"])),
                 },
-                tuple(
-                    (
-                        Quantity(float(row["torque"]), "N m"),
-                        Quantity(float(row["transmission_error"].mean()), "m"),
-                        Quantity(float(row["peak_to_peak"]), "m"),
-                        float(row["contact_ratio"]),
-                    )
-                    for row in (curves.isel(torque=i) for i in range(curves.sizes["torque"]))
-                ),
-                frozenset({CURVES.index(1.0)}),
+                marked=lambda one: float(one["torque"]) == results.pair.operating.pinion_torque,
             )
         )
         blocks.append(

@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 
 from validation.paper import DRAW, PAPER, ClaimsTable
-from validation.reporting.blocks import Badge, Block, Content, Picture, Quantity, Rows, Table, Text
+from validation.reporting.blocks import Badge, Block, Content, Picture, Quantity, Rows, Table, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 
@@ -68,53 +68,40 @@ def write(results: Results) -> Content | None:
 
 
 def _claims(table: ClaimsTable) -> Table:
-    rows: Rows = [
-        (
-            c.name,
-            c.statement,
-            c.value,
-            c.unit if c.unit not in ("", "1") else "–",
-            c.criterion,
-            c.low,
-            c.high,
-            None if c.share is None else float(round(100 * c.share)),
-            Badge(c.verdict),
-            c.reason or "–",
-        )
-        for c in table.claims
-    ]
-    return Table(
+    return table_of(
         "claims",
         "The paper's statements as numbers.",
+        table.claims,
         {
-            "name": "claim",
-            "statement": "the paper says",
-            "value": "value",
-            "unit": "unit",
-            "criterion": "reproduced if",
-            "low": "5 %",
-            "high": "95 %",
-            "share_percent": "met in [%]",
-            "verdict": "verdict",
-            "reason": "why, or a remark",
+            "name": ("claim", lambda c: c.name),
+            "statement": ("the paper says", lambda c: c.statement),
+            "value": ("value", lambda c: c.value),
+            "unit": ("unit", lambda c: c.unit if c.unit not in ("", "1") else "–"),
+            "criterion": ("reproduced if", lambda c: c.criterion),
+            "low": ("5 %", lambda c: c.low),
+            "high": ("95 %", lambda c: c.high),
+            "share_percent": (
+                "met in [%]",
+                lambda c: None if c.share is None else float(round(100 * c.share)),
+            ),
+            "verdict": ("verdict", lambda c: Badge(c.verdict)),
+            "reason": ("why, or a remark", lambda c: c.reason or "–"),
         },
-        tuple(rows),
         note="5 %, 95 %: percentiles of the number over the samples of the assumptions; met in: share of the "
         "samples in which the criterion holds.",
     )
 
 
 def _definitions(table: ClaimsTable) -> Table:
-    rows: Rows = [(c.name, c.definition, c.usable) for c in table.claims]
-    return Table(
+    return table_of(
         "claim_definitions",
         "How each number is defined, and in how many samples its motion is stable and in contact.",
+        table.claims,
         {
-            "name": "claim",
-            "definition": "number",
-            "usable": "samples",
+            "name": ("claim", lambda c: c.name),
+            "definition": ("number", lambda c: c.definition),
+            "usable": ("samples", lambda c: c.usable),
         },
-        tuple(rows),
     )
 
 

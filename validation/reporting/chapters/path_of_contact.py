@@ -6,7 +6,7 @@ from lumped import mesh_cycle
 from lumped.friction import LAWS
 from validation.plots.path_of_contact import friction_laws_figure, path_figure
 from validation.plots.stiffness import stiffness_figure
-from validation.reporting.blocks import Block, Content, Picture, Quantity, Rows, Table, Text
+from validation.reporting.blocks import Block, Content, Picture, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 
@@ -15,52 +15,30 @@ def write(results: Results) -> Content:
     """Write the chapter."""
     pair, g, profile = results.pair, results.geometry, results.profile
     chosen = pair.friction.law
-    rows: Rows = []
-    marked: set[int] = set()
-    for index, law in enumerate(profile["law"].to_numpy()):
-        if str(law) == chosen:
-            marked.add(index)
-        mu = abs(profile["mu"].sel(law=law))
-        rows.append(
-            (
-                str(profile["law_title"].sel(law=law).item()),
-                float(profile["mean_mu"].sel(law=law)),
-                float(mu.max()),
-                str(law) == chosen,
-            )
-        )
-    laws = Table(
+    laws = table_of(
         "friction_laws",
         "Friction coefficient along the path of contact by law.",
+        [profile.sel(law=law) for law in profile["law"].to_numpy()],
         {
-            "law": "law",
-            "mean_mu": "mean |µ| [-]",
-            "largest_mu": "largest |µ| [-]",
-            "used": "used in this report",
+            "law": ("law", lambda one: str(one["law_title"].item())),
+            "mean_mu": ("mean |µ| [-]", lambda one: float(one["mean_mu"])),
+            "largest_mu": ("largest |µ| [-]", lambda one: float(abs(one["mu"]).max())),
+            "used": ("used in this report", lambda one: str(one["law"].item()) == chosen),
         },
-        tuple(rows),
-        frozenset(marked),
+        marked=lambda one: str(one["law"].item()) == chosen,
         note="Largest values are those at the sampled positions; law II is bounded at the pitch point by "
         f"friction.maximum = {pair.friction.maximum:g}.",
     )
-    conditions = Table(
+    names = ("sliding_velocity", "entraining_velocity", "hertz_pressure", "film_thickness", "film_parameter")
+    conditions = table_of(
         "contact_conditions",
         "Contact conditions over the path of contact.",
-        {"quantity": "quantity", "smallest": "smallest", "largest": "largest"},
-        tuple(
-            (
-                str(profile[name].attrs["long_name"]),
-                Quantity(float(profile[name].min()), str(profile[name].attrs["units"])),
-                Quantity(float(profile[name].max()), str(profile[name].attrs["units"])),
-            )
-            for name in (
-                "sliding_velocity",
-                "entraining_velocity",
-                "hertz_pressure",
-                "film_thickness",
-                "film_parameter",
-            )
-        ),
+        [profile[name] for name in names],
+        {
+            "quantity": ("quantity", lambda one: str(one.attrs["long_name"])),
+            "smallest": ("smallest", lambda one: Quantity(float(one.min()), str(one.attrs["units"]))),
+            "largest": ("largest", lambda one: Quantity(float(one.max()), str(one.attrs["units"]))),
+        },
     )
     blocks: list[Block] = [
         Picture(

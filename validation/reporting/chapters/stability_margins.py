@@ -6,7 +6,7 @@ from functools import partial
 
 from floquet.gear.margins import ORDERS
 from validation.plots.tongues import tongues_figure
-from validation.reporting.blocks import Block, Content, Fact, Facts, Picture, Quantity, Rows, Table, Text
+from validation.reporting.blocks import Block, Content, Fact, Facts, Picture, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 
@@ -79,19 +79,6 @@ def write(results: Results) -> Content:
         facts,
     ]
     if m.tongues:
-        rows: Rows = [
-            (
-                t.label.replace("w", "ω"),
-                Quantity(t.lower, "rpm"),
-                Quantity(t.upper, "rpm"),
-                t.radius,
-                t.critical_damping,
-                Quantity(t.tip_speed, "rpm"),
-                m.damping - t.critical_damping,
-                Quantity(t.distance(m.rpm), "rpm"),
-            )
-            for t in m.tongues
-        ]
         blocks += [
             Picture(
                 "tongues",
@@ -99,20 +86,20 @@ def write(results: Results) -> Content:
                 "point; dashed: its damping. Narrow neighbours are labelled in the table only.",
                 partial(tongues_figure, m),
             ),
-            Table(
+            table_of(
                 "tongues_table",
                 "Every tongue without mesh damping, and the mesh damping that closes it.",
+                m.tongues,
                 {
-                    "label": "mesh frequency",
-                    "lower": "from",
-                    "upper": "to",
-                    "radius": "largest multiplier",
-                    "critical_damping": "closed by damping",
-                    "tip_speed": "closes at",
-                    "damping_margin": "margin in damping",
-                    "distance": "distance in speed",
+                    "label": ("mesh frequency", lambda t: t.label.replace("w", "ω")),
+                    "lower": ("from", lambda t: Quantity(t.lower, "rpm")),
+                    "upper": ("to", lambda t: Quantity(t.upper, "rpm")),
+                    "radius": ("largest multiplier", lambda t: t.radius),
+                    "critical_damping": ("closed by damping", lambda t: t.critical_damping),
+                    "tip_speed": ("closes at", lambda t: Quantity(t.tip_speed, "rpm")),
+                    "damping_margin": ("margin in damping", lambda t: m.damping - t.critical_damping),
+                    "distance": ("distance in speed", lambda t: Quantity(t.distance(m.rpm), "rpm")),
                 },
-                tuple(rows),
             ),
         ]
     else:

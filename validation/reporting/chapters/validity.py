@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from validation.reporting.blocks import Answer, Badge, Content, Quantity, Table, Text
+from validation.reporting.blocks import Answer, Badge, Content, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 from validation.reporting.words import validity as words
@@ -19,29 +19,19 @@ def write(results: Results) -> Content:
     """Write the chapter."""
     flags = results.flags
     state = worst_state(flags)
-    table = Table(
+    table = table_of(
         "flags",
         "Assumptions of the lumped model, checked on the periodic motion (drift of the mean speed: on the "
         "linear multibody run).",
+        flags,
         {
-            "key": "check",
-            "state": "state",
-            "value": "value",
-            "detail": "where and how much",
-            "meaning": "what it means",
-            "action": "what to do",
+            "key": ("check", lambda f: f.name),
+            "state": ("state", lambda f: Badge(f.state)),
+            "value": ("value", lambda f: None if f.value is None else Quantity(f.value, f.unit)),
+            "detail": ("where and how much", lambda f: f.detail),
+            "meaning": ("what it means", lambda f: f.meaning),
+            "action": ("what to do", lambda f: f.action or None),
         },
-        tuple(
-            (
-                flag.name,
-                Badge(flag.state),
-                None if flag.value is None else Quantity(flag.value, flag.unit),
-                flag.detail,
-                flag.meaning,
-                flag.action or None,
-            )
-            for flag in flags
-        ),
     )
     return Content((Text(f"At the operating point {_WORDS[state]}."), table), Badge(state))
 
