@@ -18,6 +18,8 @@ from lumped.model.periodic_system import Form, LTVSystem, periodic_system
 from lumped.schema.pair import GearPair
 from lumped.typing import ComplexArray, FloatArray
 
+_U = 0.5 * float(np.finfo(np.float64).eps)
+
 
 @dataclass(frozen=True, eq=False)
 class GearPairMultipliers(Spectrum):
@@ -89,15 +91,42 @@ def mean_mesh_stiffness(system: LTVSystem) -> float:
     return k.mean() * (high - low) / system.cycle.geometry.base_pitch
 
 
-def oloa_exponents(system: LTVSystem) -> ComplexArray:
-    """Exponents (4,) [1/s] of the motions y_p, y_g off the line of action, closed form.
+@dataclass(frozen=True, eq=False)
+class OffLineOfAction:
+    """Exponents of the motions y_p, y_g off the line of action, closed form.
 
-    m y'' + c y' + K y = 0 for each: s = -c/(2 m) +- sqrt((c/(2 m))^2 - K/m), multipliers exp(s T).
+    m y'' + c y' + K y = 0 for each: s = -d +- sqrt(r), d = c/(2 m), r = d^2 - K/m, multipliers exp(s T).
+
+    Attributes
+    ----------
+    exponents : (4,) s [1/s]
+    errors : (4,) bounds on their errors for m, c and K that are right to rounding [1/s]. With e a bound on
+        the error of r, sqrt(r) is wrong by at most min(sqrt e, e/sqrt |r|): at critical damping by sqrt e.
     """
-    s = system.structure
-    decay = s.damping[4:] / (2.0 * s.mass[4:])
-    root = np.sqrt((decay**2 - s.stiffness[4:] / s.mass[4:]).astype(complex))
-    return np.concatenate([-decay + root, -decay - root])
+
+    exponents: ComplexArray
+    errors: FloatArray
+
+    @classmethod
+    def of(cls, system: LTVSystem) -> OffLineOfAction:
+        """Of the two bearings of a gear pair."""
+        s = system.structure
+        decay, square = s.damping[4:] / (2.0 * s.mass[4:]), s.stiffness[4:] / s.mass[4:]
+        r = decay**2 - square
+        root = np.sqrt(r.astype(complex))
+        # Twelve units of rounding: those of m, c and K, of d^2, of K/m and of the difference.
+        e = 12.0 * _U * (decay**2 + square)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            wrong = np.minimum(np.sqrt(e), np.where(r == 0.0, np.inf, e / np.abs(root)))
+        errors = wrong + 4.0 * _U * (decay + np.abs(root))
+        return cls(np.concatenate([-decay + root, -decay - root]), np.concatenate([errors, errors]))
+
+    def multipliers(self, periods: FloatArray) -> tuple[ComplexArray, FloatArray]:
+        """Multipliers over periods (N,) -> (N, 4), and bounds on their errors."""
+        angle = self.exponents * periods[:, None]
+        values = np.exp(angle)
+        wrong = self.errors * periods[:, None] + 4.0 * _U * np.abs(angle)
+        return values, np.abs(values) * (np.expm1(wrong) + 8.0 * _U)
 
 
 def gear_pair_multipliers(
@@ -124,11 +153,10 @@ def gear_pair_multipliers(
     """
     variation = GearVariation(source) if isinstance(source, GearPair) else source
     block = monodromy(gear_pair_system(variation, "feedback"), rtol, method=method)
-    angle = oloa_exponents(periodic_system(variation.pair, "relative")) * block.period
-    oloa = np.exp(angle)
+    bearings = OffLineOfAction.of(periodic_system(variation.pair, "relative"))
+    (oloa,), (oloa_errors,) = bearings.multipliers(np.array([block.period]))
     values = np.concatenate([block.multipliers, oloa])
-    # The closed form is exact up to the rounding of the exponent.
-    errors = np.concatenate([block.multiplier_errors, 4e-16 * (1.0 + np.abs(angle)) * np.abs(oloa)])
+    errors = np.concatenate([block.multiplier_errors, oloa_errors])
     order = np.argsort(-np.abs(values), kind="stable")
     return GearPairMultipliers(
         multipliers=values[order],

@@ -12,14 +12,14 @@ from floquet.engine.multipliers import radii_with_bounds
 from floquet.gear.axes import GearVariation, vary
 from floquet.gear.block import gear_block
 from floquet.gear.friction import FrictionFamily, factors_at, friction_families
-from floquet.gear.multipliers import oloa_exponents
+from floquet.gear.multipliers import OffLineOfAction
 from floquet.rank_one.batch import FastMonodromy, FastMultipliers, fast_monodromies, fast_multipliers
 from floquet.rank_one.coarsening import coarsened
 from floquet.rank_one.interpolation import interpolated_multipliers
 from floquet.rank_one.system import RankOneSystem
 from lumped.model.periodic_system import periodic_system
 from lumped.schema.pair import GearPair
-from lumped.typing import ComplexArray, FloatArray
+from lumped.typing import FloatArray
 
 Put = Callable[[npt.NDArray[np.intp], FastMultipliers], None]
 """(indices (k,) of points, their multipliers)."""
@@ -96,12 +96,17 @@ class Store:
         given = (self.radius, self.radius_error, self.multipliers, self.errors)
         return [array for array in given if array is not None]
 
-    def put(self, points: npt.NDArray[np.intp], found: FastMultipliers, exponents: ComplexArray) -> None:
-        """Take the feedback block of some points, and the exponents times period of the other bearings."""
-        oloa = np.exp(exponents)
+    def put(
+        self,
+        points: npt.NDArray[np.intp],
+        found: FastMultipliers,
+        bearings: OffLineOfAction,
+        periods: FloatArray,
+    ) -> None:
+        """Take the multipliers of the feedback block at some points (k,), and add those of the bearings."""
+        oloa, oloa_errors = bearings.multipliers(periods)
         values = np.concatenate([found.multipliers, oloa], axis=1)
-        # 4e-16: rounding of the exponent.
-        errors = np.concatenate([found.errors, 4e-16 * (1.0 + np.abs(exponents)) * np.abs(oloa)], axis=1)
+        errors = np.concatenate([found.errors, oloa_errors], axis=1)
         self.radius[points], self.radius_error[points] = radii_with_bounds(values, errors)
         if self.multipliers is not None and self.errors is not None:
             ranking = np.argsort(-np.abs(values), axis=1, kind="stable")
@@ -147,16 +152,16 @@ def plane_multipliers(
             friction_level=family.level,
         )
         periods = block.period * variation.pair.operating.pinion_speed * 30.0 / np.pi / speeds[part]
-        exponents = oloa_exponents(periodic_system(variation.pair, "relative"))
+        bearings = OffLineOfAction.of(periodic_system(variation.pair, "relative"))
 
         def put(
             index: npt.NDArray[np.intp],
             found: FastMultipliers,
             part: npt.NDArray[np.intp] = part,
             periods: FloatArray = periods,
-            exponents: ComplexArray = exponents,
+            bearings: OffLineOfAction = bearings,
         ) -> None:
-            store.put(part[index], found, exponents[None, :] * periods[index, None])
+            store.put(part[index], found, bearings, periods[index])
 
         done = False
         if several:

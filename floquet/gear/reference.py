@@ -82,9 +82,8 @@ def _steps(system: LTVSystem) -> tuple[LongArray, LongArray, LongArray]:
     normal = ((s.normal / s.mass) @ system.reduction.T).astype(_LD)
     arm = [((s.friction_arm[:, i] / s.mass) @ system.reduction.T).astype(_LD) for i in (0, 1)]
     stiffest = float(np.abs(system.constant[3:, :3]).max())
-    edges = np.unique(np.concatenate([[0.0], cycle.switch_times, cycle.knot_times, [cycle.period]]))
     lengths, gains, offsets = [], [], []
-    for low, high in pairwise(edges):
+    for low, high in pairwise(cycle.breaks):
         if high - low < 1e-13 * cycle.period:
             continue
         both = [np.zeros((30, 3), dtype=_LD) for _ in range(2)]

@@ -13,7 +13,7 @@ import numpy as np
 from floquet.engine.sensitivity import multiplier_derivatives, segment_time
 from floquet.engine.system import PeriodicSystem
 from floquet.gear.axes import GEAR_AXES, gear_axis, operating_value, vary
-from floquet.gear.multipliers import gear_pair_multipliers, gear_pair_system, oloa_exponents
+from floquet.gear.multipliers import OffLineOfAction, gear_pair_multipliers, gear_pair_system
 from lumped.arguments import some_of
 from lumped.errors import NumericalError
 from lumped.model.periodic_system import periodic_system
@@ -131,5 +131,5 @@ def _oloa_slope(pair: GearPair, name: str, points: list[tuple[float, float]]) ->
     moduli = []
     for _, value in points:
         system = periodic_system(vary(pair, {name: value}).pair, "relative")
-        moduli.append(float(np.exp(oloa_exponents(system).real * system.period).max()))
+        moduli.append(float(np.exp(OffLineOfAction.of(system).exponents.real * system.period).max()))
     return sum(weight * modulus for (weight, _), modulus in zip(points, moduli, strict=True))

@@ -1,9 +1,16 @@
-"""Piecewise polynomial fits of the periodic gains of a rank-one feedback system."""
+"""Piecewise polynomials of bounded degree in place of periodic gains that are polynomials of higher degree.
+
+On every segment the gains are polynomials of known degree, so their values at as many Chebyshev points
+determine them. What is dropped from the Chebyshev series is bounded by the sum of its coefficients, since
+|T_k| <= 1: the misfit is a bound everywhere in the piece, not only at the points.
+
+Sources: docs/theory/proven_bounds.md, "The gains".
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -12,44 +19,76 @@ from numpy.polynomial import chebyshev
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 
-Gains = Callable[[FloatArray, npt.NDArray[np.intp]], FloatArray]
-"""(phases (k, s), segment (k,) in which each row lies) -> G gains (G, k, s, m)."""
-
+_U = 0.5 * float(np.finfo(np.float64).eps)
 _MAX_HALVINGS = 40
 # A piece shorter than this may be worse fitted in proportion, since what counts is the integral of the error
 # over the period. Without this a gain that varies fast at a point would take many more pieces around it.
 _SHORT = 1.0 / 16.0
 
 
+class PolynomialGains(Protocol):
+    """G gains of m components, polynomials on every segment up to errors that are bounded.
+
+    Attributes
+    ----------
+    count : number of values that determine a gain on a piece: its degree plus one
+    """
+
+    count: int
+
+    def __call__(
+        self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Values (G, k, s, m) at centre + half nodes on k pieces, and bounds (G, k) on two kinds of error.
+
+        The norm of the gain less the polynomial through its values is at most the first, which halving the
+        piece reduces; the second bounds the rounding of values and phases, which it does not.
+        """
+        ...
+
+
 @cache
-def _matrices(degree: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Nodes, probes, node values -> Chebyshev coefficients, Chebyshev coefficients -> probe values."""
-    nodes = chebyshev.chebpts1(degree + 1)
-    probes = np.linspace(-0.999, 0.999, 2 * degree + 5)
-    to_series = np.linalg.inv(chebyshev.chebvander(nodes, degree))
-    to_probes = chebyshev.chebvander(probes, degree)
-    return nodes, probes, np.asarray(to_series, dtype=float), np.asarray(to_probes, dtype=float)
+def to_series(count: int) -> tuple[FloatArray, FloatArray]:
+    """Chebyshev points of the first kind, and values there -> Chebyshev coefficients (count, count).
+
+    The angles are reduced as whole numbers, so that every entry is right to 8 units of rounding of 2/count.
+    """
+    j, k = np.arange(count), np.arange(count)
+    nodes = np.cos((2 * j + 1) * (np.pi / (2 * count)))
+    matrix = np.cos(np.mod(np.outer(k, 2 * j + 1), 4 * count) * (np.pi / (2 * count))) * (2.0 / count)
+    matrix[0] *= 0.5
+    return nodes, np.asarray(matrix, dtype=float)
+
+
+def series_rounding(count: int) -> float:
+    """Bound on the sum of the errors of the coefficients by `to_series` per unit of the largest value.
+
+    Each entry is right to 8 u and each sum to count u, u being the unit of rounding; a point that is off by 2
+    u moves a value by at most 2 u count^2 (Markov), which the sum of the coefficients sees 2 count times less
+    than the first two. The constants are rounded up.
+    """
+    return 4.0 * count * (count + 12.0) * _U
 
 
 @cache
 def _power_matrix(degree: int) -> FloatArray:
-    """Chebyshev coefficients -> power coefficients."""
+    """Chebyshev coefficients -> power coefficients; whole numbers, exact."""
     conversion = np.zeros((degree + 1, degree + 1))
     for k in range(degree + 1):
         power = chebyshev.cheb2poly(np.eye(degree + 1)[k])
-        conversion[: power.size, k] = power
+        conversion[: power.size, k] = np.round(power)
     return conversion
 
 
 def fit_pieces(
-    gains: Gains, edges: FloatArray, metric: FloatArray, degree: int = 8, rtol: float = 1e-11
+    gains: PolynomialGains, edges: FloatArray, metric: FloatArray, degree: int = 8, rtol: float = 1e-11
 ) -> tuple[FloatArray, list[FloatArray], FloatArray]:
-    """Polynomials of G gains on pieces of the period, halved until the fit is good to rtol.
+    """Polynomials of G gains on pieces of the period, halved until what is dropped is small enough.
 
     Parameters
     ----------
-    gains : the gains strictly inside the smooth segments
-    edges : (S+1,) ends of the smooth segments as parts of the period, 0 to 1
+    gains : the gains, polynomials on every segment
+    edges : (S+1,) ends of the segments as parts of the period, 0 to 1
     metric : (m,) weights of the norm of errors, sum_i metric_i e_i^2
     degree : largest degree; where less is enough for all pieces, less is returned
     rtol : wanted error relative to the largest value of each gain; on pieces shorter than 1/16 of the period
@@ -57,15 +96,15 @@ def fit_pieces(
 
     Returns
     -------
-    phases (P+1,); for each gain (P, m, d+1) in powers of u in [-1, 1], lowest first; and (P, G) the largest
-    errors at 2 degree + 5 probes in each piece
+    phases (P+1,); for each gain (P, m, d+1) in powers of u in [-1, 1], lowest first; and (P, G) bounds on the
+    errors everywhere in each piece, rounding included
 
     Raises
     ------
     NumericalError
-        The gains are not finite, or not smooth inside a segment.
+        The gains are not finite, or not to be had to any accuracy on a segment.
     """
-    nodes, probes, to_series, to_probes = _matrices(degree)
+    nodes, matrix = to_series(gains.count)
     root = np.sqrt(metric)
     starts: list[FloatArray] = []
     fits: list[FloatArray] = []
@@ -74,71 +113,79 @@ def fit_pieces(
     segment = np.arange(centre.size)
     sizes: FloatArray | None = None
     for depth in range(_MAX_HALVINGS + 1):
-        places = np.concatenate([nodes, probes])
-        values = gains(centre[:, None] + half[:, None] * places, segment) * root
+        values, errors, fixed = gains(centre, half, segment, nodes)
+        values = values * root
         if not np.isfinite(values).all():
             bad = centre[~np.isfinite(values).all(axis=(0, 2, 3))][0]
             raise NumericalError(f"the feedback is not finite near {bad:g} of the period.")
+        largest = np.sqrt(np.square(values).sum(axis=3)).max(axis=2)  # (G, pieces)
         if sizes is None:
-            sizes = np.maximum(np.abs(values).max(axis=(1, 2, 3)), 1e-300)
-        series = np.einsum("dn,gpnm->gpdm", to_series, values[:, :, : nodes.size])
-        misfit = np.einsum("nd,gpdm->gpnm", to_probes, series) - values[:, :, nodes.size :]
-        errors = np.sqrt(np.square(misfit).sum(axis=3)).max(axis=2)  # (G, pieces)
-        allowed = rtol * np.maximum(1.0, _SHORT / (2.0 * half))
-        good = (errors <= allowed * sizes[:, None]).all(axis=0)
+            sizes = np.maximum(largest.max(axis=1), 1e-300)
+        series = np.einsum("dn,gpnm->gpdm", matrix, values)
+        allowed = rtol * np.maximum(1.0, _SHORT / (2.0 * half)) * sizes[:, None]
+        beyond = np.sqrt(np.square(series[:, :, degree + 1 :]).sum(axis=3)).sum(axis=2)
+        good = (beyond + errors <= allowed).all(axis=0)
         if depth == _MAX_HALVINGS:
-            if (errors > 1e-6 * sizes[:, None]).any():
-                raise NumericalError(
-                    f"the feedback is not smooth near {centre[~good][0]:g} of the period. "
-                    "Name the jump or kink as a switch."
-                )
+            if not np.isfinite(errors).all():
+                raise NumericalError(f"the feedback is not smooth near {centre[~good][0]:g} of the period.")
             good[:] = True
         if good.any():
-            _drop_powers(series, errors, 0.03 * allowed * sizes[:, None], good)
-            misfits.append(errors[:, good].T)
+            kept = _padded(series[:, good, : degree + 1], degree)
+            errors = errors[:, good] + beyond[:, good] + fixed[:, good]
+            errors += series_rounding(gains.count) * largest[:, good]
+            _drop_powers(kept, errors, 0.03 * allowed[:, good])
+            fits.append(_to_powers(kept, errors))
+            misfits.append(errors.T)
             starts.append(centre[good] - half[good])
-            fits.append(series[:, good])
         rest, quarter, owner = centre[~good], 0.5 * half[~good], segment[~good]
         if rest.size == 0:
             break
         centre = np.concatenate([rest - quarter, rest + quarter])
         half = np.concatenate([quarter, quarter])
         segment = np.concatenate([owner, owner])
-    assert sizes is not None
     start = np.concatenate(starts)
     order = np.argsort(start)
-    # Start points are exact only for the segments' own ends; others differ by rounding, which is harmless
-    # because neighbours share the computed value.
+    # Start points are exact only for the segments' own ends; others differ by rounding, which the second
+    # kind of error allows for.
     phases = np.append(start[order], edges[-1])
-    phases[0] = edges[0]
-    for edge in edges[1:-1]:
-        phases[np.argmin(np.abs(phases - edge))] = edge
-    power = _to_powers(np.concatenate(fits, axis=1)[:, order])
-    polynomials = [_trimmed(p, float(size)) / root[:, None] for p, size in zip(power, sizes, strict=True)]
-    return phases, polynomials, np.ascontiguousarray(np.concatenate(misfits)[order])
+    phases[_nearest(phases, edges)] = edges
+    power = np.concatenate(fits, axis=1)[:, order]
+    polynomials = [_trimmed(p) / root[:, None] for p in power]
+    # 1 + 1e-12: rounding of the sums that make the bounds.
+    return phases, polynomials, np.ascontiguousarray(np.concatenate(misfits)[order]) * (1.0 + 1e-12)
 
 
-def _drop_powers(
-    series: FloatArray, errors: FloatArray, room: FloatArray, good: npt.NDArray[np.bool_]
-) -> None:
+def _nearest(phases: FloatArray, edges: FloatArray) -> npt.NDArray[np.intp]:
+    """Index of the phase nearest to each edge; both increasing."""
+    after = np.clip(np.searchsorted(phases, edges), 1, phases.size - 1)
+    return np.asarray(np.where(edges - phases[after - 1] < phases[after] - edges, after - 1, after))
+
+
+def _padded(series: FloatArray, degree: int) -> FloatArray:
+    missing = degree + 1 - series.shape[2]
+    return np.pad(series, ((0, 0), (0, 0), (0, max(missing, 0)), (0, 0)))
+
+
+def _drop_powers(series: FloatArray, errors: FloatArray, room: FloatArray) -> None:
     """Set to zero the highest coefficients whose sum stays within the room, and count them as misfit."""
     size = np.sqrt(np.square(series).sum(axis=3))  # (G, pieces, d+1); |T_n| <= 1
     beyond = np.cumsum(size[:, :, ::-1], axis=2)[:, :, ::-1]
-    small = (beyond <= room[:, :, None]) & good[None, :, None]
+    small = beyond <= np.maximum(room, 4e-16 * size.max(axis=2))[:, :, None]
     small[:, :, 0] = False
     errors += np.where(small, size, 0.0).sum(axis=2)
     series[small] = 0.0
 
 
-def _to_powers(series: FloatArray) -> FloatArray:
-    """(G, P, d+1, m) Chebyshev coefficients -> (G, P, m, d+1) power coefficients."""
-    # Coefficients at rounding level would only add noise of higher degree.
-    size = np.abs(series).max(axis=2, keepdims=True)
-    cleaned = np.where(np.abs(series) < 4e-16 * size, 0.0, series)
-    return np.asarray(np.einsum("kd,gpdm->gpmk", _power_matrix(series.shape[2] - 1), cleaned))
+def _to_powers(series: FloatArray, errors: FloatArray) -> FloatArray:
+    """(G, P, d+1, m) Chebyshev coefficients -> (G, P, m, d+1) power coefficients; adds the rounding."""
+    conversion = _power_matrix(series.shape[2] - 1)
+    count = series.shape[2] + 2  # sums, the root of the metric and its division
+    size = np.sqrt(np.square(series).sum(axis=3))
+    errors += 2.0 * count * _U * (size @ np.abs(conversion).sum(axis=0))
+    return np.asarray(np.einsum("kd,gpdm->gpmk", conversion, series))
 
 
-def _trimmed(power: FloatArray, size: float) -> FloatArray:
-    """Drop the highest powers that vanish on all pieces."""
-    used = np.flatnonzero(np.abs(power).max(axis=(0, 1)) > 1e-15 * size)
+def _trimmed(power: FloatArray) -> FloatArray:
+    """Drop the highest powers that are zero on all pieces."""
+    used = np.flatnonzero(np.abs(power).max(axis=(0, 1)))
     return np.ascontiguousarray(power[:, :, : 1 + (int(used[-1]) if used.size else 0)])

@@ -20,19 +20,18 @@ if TYPE_CHECKING:
     import control
     import xarray as xr
 
-#: Gauss-Legendre rule per smooth segment of the average, exact to degree 47.
+#: Gauss-Legendre rule per polynomial piece of the average, exact to degree 47.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 INPUTS = ("torque_pinion", "torque_gear")
 OUTPUTS = ("dte", "x_p", "x_g")
 
 
 def averaged_matrix(system: LTVSystem) -> FloatArray:
-    """Mean of A(t) over one mesh cycle, integrated segment by segment."""
-    edges = system.cycle.edges
+    """Mean of A(t) over one mesh cycle, integrated piece by piece."""
     total = np.zeros((system.size, system.size))
-    for segment, (low, high) in enumerate(itertools.pairwise(edges)):
+    for low, high in itertools.pairwise(system.cycle.breaks):
         nodes = 0.5 * (low + high) + 0.5 * (high - low) * _NODES
-        total += 0.5 * (high - low) * np.tensordot(_WEIGHTS, system.matrices(nodes, segment), axes=1)
+        total += 0.5 * (high - low) * np.tensordot(_WEIGHTS, system.matrices(nodes), axes=1)
     return total / system.period
 
 

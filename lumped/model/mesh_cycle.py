@@ -20,6 +20,8 @@ from lumped.typing import FloatArray
 _INSIDE = 1e-12
 #: Switch times closer than this fraction of a cycle are one.
 _SAME = 1e-10
+#: The same for breaks: their phases are known to this.
+_ROUNDING = 1e-13
 
 
 @dataclass(frozen=True)
@@ -82,12 +84,6 @@ class MeshCycle:
         functions = (e.stiffness, e.damping, e.friction, e.error)
         return self._times([np.array([g.L_XP, g.L_XD]), *(f.switches for f in functions)])
 
-    @cached_property
-    def knot_times(self) -> FloatArray:
-        """Times strictly inside (0, T_m) at which a pair passes from one polynomial piece to the next [s]."""
-        e = self.elements
-        return self._times([f.breaks for f in (e.stiffness, e.damping, e.friction, e.error)])
-
     def _times(self, positions: list[FloatArray]) -> FloatArray:
         """Increasing times strictly inside (0, T_m) at which any pair is at any of the positions [s]."""
         g = self.geometry
@@ -98,8 +94,34 @@ class MeshCycle:
 
     @cached_property
     def edges(self) -> FloatArray:
-        """Ends of the smooth segments, 0 and T_m included [s]."""
+        """Ends of the segments without jumps and kinks, 0 and T_m included [s].
+
+        For integrators that control their steps. Whatever relies on smoothness takes ``breaks``.
+        """
         return np.concatenate([[0.0], self.switch_times, [self.period]])
+
+    @cached_property
+    def break_phases(self) -> FloatArray:
+        """Phases in [0, 1) at which a pair passes any break of k, c, mu or e, or A, P or D; as computed."""
+        g, e = self.geometry, self.elements
+        functions = (e.stiffness, e.damping, e.friction, e.error)
+        positions = np.concatenate([[g.L_XA, g.L_XP, g.L_XD], *(f.breaks for f in functions)])
+        return np.asarray(np.unique(np.mod((positions - g.L_XA) / g.base_pitch, 1.0)), dtype=np.float64)
+
+    @cached_property
+    def breaks(self) -> FloatArray:
+        """Ends of the pieces in which every law of every pair is one polynomial, 0 and T_m included [s].
+
+        The one list of such times: quadrature, propagation, fits and error bounds all read it. ``edges`` are
+        among them; other breaks that are closer together than rounding count as one.
+        """
+        near = _ROUNDING * self.period
+        marks = np.union1d(self.edges, self.break_phases * self.period)
+        marks = marks[(marks <= 0.0) | (marks >= near)]
+        marks = marks[(marks >= self.period) | (marks <= self.period - near)]
+        close = np.flatnonzero(np.diff(marks) < near)
+        fixed = np.isin(marks, self.edges)
+        return np.asarray(np.delete(marks, [j if fixed[j + 1] else j + 1 for j in close]), dtype=np.float64)
 
     @property
     def events(self) -> dict[str, float]:

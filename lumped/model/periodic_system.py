@@ -89,8 +89,8 @@ class LTVSystem:
 
     @property
     def breakpoints(self) -> FloatArray:
-        """Switch times strictly inside the period [s]."""
-        return self.cycle.switch_times
+        """Breaks of the coefficients strictly inside the period [s]."""
+        return self.cycle.breaks[1:-1]
 
     def gain(self, time: ArrayLike, segment: int | NDArray[np.int64] | None = None) -> MeshGain:
         """Rank-one feedback of the mesh at times (k,) [s]; ``segment`` as in ``MeshCycle.sample``."""

@@ -74,8 +74,7 @@ def fastest_frequency(system: LTVSystem) -> float:
 
     Frozen-time eigenvalues at the stiffest of three times on each polynomial piece, in each smooth segment.
     """
-    switches = system.cycle.edges
-    marks = np.union1d(switches, system.cycle.knot_times)
+    switches, marks = system.cycle.edges, system.cycle.breaks
     times = (marks[:-1] + np.multiply.outer([0.05, 0.5, 0.95], np.diff(marks))).ravel()
     segment = np.searchsorted(switches, times, side="right") - 1
     stiffness = np.abs(system.gain(times, segment).stiffness @ system.deflection)
@@ -208,7 +207,7 @@ def _step_grid(system: LTVSystem, outputs: FloatArray, step_angle: float) -> _St
     """Steps that end at every switch, knot and output."""
     period, switches = system.period, system.cycle.edges
     # Within a step each coefficient is one polynomial: where a law varies fast, its pieces are short.
-    marks = np.unique(np.concatenate([switches, system.cycle.knot_times, outputs]))
+    marks = np.union1d(system.cycle.breaks, outputs)
     # Marks that differ by rounding are one, and a switch stays where it is exactly.
     close = np.flatnonzero(np.diff(marks) < 1e-13 * period)
     drop = [j if marks[j + 1] in switches else j + 1 for j in close]

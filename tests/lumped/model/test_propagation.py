@@ -28,7 +28,7 @@ def system_of(constant, gain, deflection, edges):
     return SimpleNamespace(
         size=size,
         period=float(edges[-1]),
-        cycle=SimpleNamespace(edges=np.asarray(edges, dtype=float), knot_times=np.empty(0)),
+        cycle=SimpleNamespace(edges=np.asarray(edges, dtype=float), breaks=np.asarray(edges, dtype=float)),
         constant=constant,
         deflection=column,
         torque_pinion=np.zeros(size),
@@ -131,7 +131,7 @@ class TestSteps:
         system = periodic_system(nasa, "absolute")
         outputs = np.linspace(0.0, system.period, 37, endpoint=False)
         edges = step_maps(system, np.zeros((12, 0)), outputs=outputs).edges
-        for wanted in (system.cycle.edges, system.cycle.knot_times, outputs):
+        for wanted in (system.cycle.breaks, outputs):
             nearest = np.abs(edges[:, None] - wanted).min(axis=0)
             assert nearest.max() < 1e-12 * system.period
         assert set(system.cycle.edges) <= set(edges)  # bit for bit: a step must not straddle a switch

@@ -1,0 +1,300 @@
+"""What the mesh does to (q, x_p, x_g) and to the rigid rotation, as polynomials with bounds on their errors.
+
+The laws k, c, mu and e of a tooth pair are piecewise polynomials, so between two breaks of any law of any
+pair the gains are polynomials of known degree: k (normal + mu (arm_0 + arm_1 xi)) and the like.
+
+Sources: docs/theory/proven_bounds.md, "The gains".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from floquet.gear.multipliers import mean_mesh_stiffness
+from floquet.rank_one.piecewise import series_rounding, to_series
+from lumped.errors import NumericalError
+from lumped.model.periodic_system import LTVSystem
+from lumped.path_function import PathFunction
+from lumped.typing import FloatArray
+
+_U = 0.5 * float(np.finfo(np.float64).eps)
+#: Roundings on the way to one value: Horner's rule of degree 8 twice, products and sums over pairs.
+_ROUNDINGS = 80.0 * _U
+#: The same of a position, relative to the largest one: offset, phase, product, sum, difference.
+_PLACE = 16.0 * _U
+#: Breaks closer than this part of a base pitch may be one segment's end.
+_MERGED = 1e-12
+#: Degree of the polynomials in place of the factor on stiffness and of its root.
+_FACTOR_DEGREE = 8
+
+
+@dataclass(frozen=True, eq=False)
+class _Law:
+    """A law of one tooth pair on the segments of the cycle, for every pair that may touch.
+
+    Attributes
+    ----------
+    coefficients : (d+1, pairs, S) highest power first, of the position since ``start``; zero out of contact
+    start : (pairs, S) positions [m]
+    size, slope : (pairs, S) bounds on |law| and on its derivative there
+    near : (pairs, S+1) bound on |law| on both sides of each edge of the segments
+    """
+
+    coefficients: FloatArray
+    start: FloatArray
+    size: FloatArray
+    slope: FloatArray
+    near: FloatArray
+
+    @classmethod
+    def of(cls, law: PathFunction, middle: FloatArray, touch: npt.NDArray[np.bool_], pitch: float) -> _Law:
+        used = np.flatnonzero(np.abs(law.coefficients).max(axis=1))
+        rows = law.coefficients[used[0] if used.size else -1 :]
+        width = np.diff(law.breaks)
+        powers = np.arange(rows.shape[0])[::-1]
+        # A little beyond both ends, where rounding of the position may lead.
+        reach = width * (1.0 + 1e-9) + _PLACE * law.breaks[-1]
+        terms = np.abs(rows) * reach ** powers[:, None]
+        whole = terms.sum(axis=0)
+        slope = (terms * powers[:, None]).sum(axis=0) / reach
+        piece = np.clip(np.searchsorted(law.breaks, middle, side="right") - 1, 0, width.size - 1)
+        inside = touch & (middle >= law.breaks[0]) & (middle <= law.breaks[-1])
+        size = np.where(inside, whole[piece], 0.0)
+        near = np.maximum(np.pad(size, ((0, 0), (1, 0))), np.pad(size, ((0, 0), (0, 1))))
+        near[:, [0, -1]] = near[:, [0, -1]].max()
+        # Where rounding has made one of several breaks, the pieces between them have no segment of their own.
+        near = np.maximum(near, whole[width < _MERGED * pitch].max(initial=0.0))
+        return cls(
+            np.where(inside, rows[:, piece], 0.0),
+            law.breaks[piece],
+            size,
+            np.where(inside, slope[piece], 0.0),
+            near,
+        )
+
+    @property
+    def degree(self) -> int:
+        return self.coefficients.shape[0] - 1
+
+    def __call__(self, xi: FloatArray, pair: int, segment: npt.NDArray[np.intp]) -> FloatArray:
+        """Values at positions xi (k, s) that lie in these segments (k,)."""
+        x = xi - self.start[pair, segment][:, None]
+        rows = self.coefficients[:, pair, segment]
+        value = np.broadcast_to(rows[0][:, None], x.shape)
+        for row in rows[1:]:
+            value = value * x + row[:, None]
+        return np.asarray(value)
+
+
+class MeshGains:
+    """Gains on (q, x_p, x_g) and on the rigid rotation R/m_e, as `fit_pieces` asks for them.
+
+    In this order: feedback of deflection and of its rate by normal loads (with their friction, unless it is
+    apart), the same by each part of friction, forcing by the unloaded error and its rate likewise. The parts
+    of friction are mu less the sum of the ``levels``, and each level but the first, which is zero.
+
+    Parameters
+    ----------
+    system : the feedback form of the gear pair
+    factor : on the variation of the total stiffness about its mean
+    levels : of friction apart; empty where friction goes with the normal loads
+    metric : (3,) of the norm of errors, for q, x_p, x_g
+
+    Attributes
+    ----------
+    edges : (S+1,) ends of the segments as parts of the period
+    parts : 1 + number of levels
+    has_error : whether there are gains of the unloaded error
+    count : see `PolynomialGains`
+    """
+
+    def __init__(self, system: LTVSystem, factor: float, levels: Sequence[float], metric: FloatArray) -> None:
+        s, cycle = system.structure, system.cycle
+        g = cycle.geometry
+        rows = np.zeros((4, 6))
+        rows[:3] = system.reduction
+        effective = 1.0 / abs(float(rows[0] @ (s.normal / s.mass)))
+        rows[3, :2] = s.mass[:2] / np.array([g.base_radius_pinion, g.base_radius_gear]) / effective
+        self.normal = rows @ (s.normal / s.mass)
+        self.arm = np.stack([rows @ (s.friction_arm[:, i] / s.mass) for i in (0, 1)])
+        self.metric = np.append(metric, metric[0])  # the rigid rotation over m_e is weighed like q
+        self.levels, self.parts = levels, 1 + len(levels)
+        self.factor, self.mean = factor, mean_mesh_stiffness(system)
+        self.pitch, self.offsets = g.base_pitch, cycle.offsets
+        self.edges = cycle.breaks / cycle.period
+        middle = cycle.offsets[:, None] + g.base_pitch * 0.5 * (self.edges[:-1] + self.edges[1:])
+        self.touch = middle <= g.L_XD
+        self.side = np.sign(middle - g.L_XP)
+        e = cycle.elements
+        self.has_error = bool(np.any(e.error.coefficients))
+        laws = (e.stiffness, e.damping, e.friction, e.error, e.error.derivative())
+        self.k, self.c, self.mu, self.e, self.rate = (
+            _Law.of(law, middle, self.touch, g.base_pitch) for law in laws
+        )
+        self.place = _PLACE * (g.L_XD + g.base_pitch)
+        degree = max(self.k.degree, self.c.degree)
+        if self.has_error:
+            degree += self.e.degree
+        self.varied = factor != 1.0
+        self.count = 1 + degree + self.mu.degree + 1 + (_FACTOR_DEGREE if self.varied else 0)
+        self.slips = _slips(cycle.break_phases, self.edges, 8.0 * _U * (1.0 + g.contact_ratio))
+
+    def _loads(self) -> list[tuple[_Law, _Law | None, float]]:
+        """Law, further factor and constant of each load: k, c, k e, c e' lambda."""
+        loads: list[tuple[_Law, _Law | None, float]] = [(self.k, None, 1.0), (self.c, None, 1.0)]
+        return [*loads, (self.k, self.e, 1.0), (self.c, self.rate, self.pitch)] if self.has_error else loads
+
+    def __call__(
+        self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """See `PolynomialGains`."""
+        phases = centre[:, None] + half[:, None] * nodes
+        loads = self._loads()
+        groups = np.zeros((self.parts * len(loads), *phases.shape, 4))
+        errors = np.zeros((groups.shape[0], centre.size))
+        factors, fixed = [np.ones_like(phases)] * 2, self.fixed[:, segment]
+        if self.varied:
+            factors, off, most = self._factors(centre, half, segment, nodes)
+            fixed = fixed * most
+            for j, (law, other, constant) in enumerate(loads):
+                for p in range(self.parts):
+                    reach = self._reach(law.size, other, constant, p)[:, segment].sum(axis=0)
+                    errors[self._index(j, p)] = off[j % 2] * reach
+        for i in range(self.offsets.size):
+            if not self.touch[i, segment].any():
+                continue
+            xi = self.offsets[i] + self.pitch * phases
+            mu, arm = self.mu(xi, i, segment)[..., None], self.arm[0] + xi[..., None] * self.arm[1]
+            sign = self.side[i, segment][:, None, None]
+            rows = [np.broadcast_to(self.normal, (*xi.shape, 4))]
+            if self.levels:
+                rows += [(mu - sum(self.levels) * sign) * arm, *(s * sign * arm for s in self.levels[1:])]
+            else:
+                rows[0] = rows[0] + mu * arm
+            for j, (law, other, constant) in enumerate(loads):
+                load = law(xi, i, segment) * factors[j % 2]
+                if other is not None:
+                    load = load * other(xi, i, segment) * constant
+                for p, row in enumerate(rows):
+                    groups[self._index(j, p)] -= load[..., None] * row
+        return groups, errors, fixed
+
+    def _index(self, load: int, part: int) -> int:
+        return 2 * part + load if load < 2 else 2 * self.parts + 2 * part + load - 2
+
+    def _row(self, part: int) -> tuple[float, float, float, float]:
+        """Bounds on a row: constant, per unit of |mu|, of levels, and per unit of position and |mu|."""
+        root = np.sqrt(self.metric)
+        normal = float(np.linalg.norm(self.normal * root))
+        arms = [float(np.linalg.norm(a * root)) for a in self.arm]
+        arm = arms[0] + arms[1] * float(self.offsets[0] + self.pitch)
+        if not self.levels:
+            return normal, arm, 0.0, arms[1]
+        if part == 0:
+            return normal, 0.0, 0.0, 0.0
+        return (
+            (0.0, arm, sum(self.levels), arms[1]) if part == 1 else (0.0, 0.0, self.levels[part - 1], arms[1])
+        )
+
+    def _reach(
+        self, size: FloatArray, other: _Law | None, constant: float, part: int, *, near: bool = False
+    ) -> FloatArray:
+        """Bound on the norm of what one pair adds to a gain."""
+        normal, arm, level, _ = self._row(part)
+        full = self._row(1)[1] if self.levels and part else arm
+        mu = self.mu.near if near else self.mu.size
+        if other is not None:
+            size = size * (other.near if near else other.size) * constant
+        return np.asarray(size * (normal + arm * mu + full * level), dtype=float)
+
+    @cached_property
+    def fixed(self) -> FloatArray:
+        """Bounds (G, S): rounding of values and of positions, and edges that are off by rounding."""
+        loads = self._loads()
+        errors = np.zeros((self.parts * len(loads), self.edges.size - 1))
+        width = np.diff(self.edges)
+        for j, (law, other, constant) in enumerate(loads):
+            for p in range(self.parts):
+                reach = self._reach(law.size, other, constant, p)
+                _, arm, _, tilt = self._row(p)
+                slope, size = law.slope, law.size
+                if other is not None:
+                    slope = constant * (law.slope * other.size + law.size * other.slope)
+                    size = constant * law.size * other.size
+                moved = self._reach(slope, None, 1.0, p) + size * (
+                    arm * self.mu.slope + tilt * (self.mu.size + sum(self.levels))
+                )
+                errors[self._index(j, p)] = (_ROUNDINGS * reach + self.place * moved).sum(axis=0)
+                # For a time of slips the gain may be that of the other side of an edge.
+                jump = 2.0 * self.slips * self._reach(law.near, other, constant, p, near=True).sum(axis=0)
+                errors[self._index(j, p)] += (jump[:-1] + jump[1:]) / width
+        return errors
+
+    def _factors(
+        self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
+    ) -> tuple[list[FloatArray], list[FloatArray], FloatArray]:
+        """The factor f = (mean + factor (k - mean))/k on all stiffnesses and its root, by polynomials.
+
+        f ~ q and sqrt f ~ s of degree 8 at the nodes, and bounds (k,) on the errors everywhere in the piece,
+        which follow from polynomials: |q - f| = |q k - mean - factor (k - mean)|/k and |s - sqrt f| =
+        |s^2 - f|/(s + sqrt f), each residual bounded by the sum of its Chebyshev coefficients. The third
+        result (k,) bounds 1, q and s.
+        """
+        low, into = to_series(_FACTOR_DEGREE + 1)
+        high, onto = to_series(2 * _FACTOR_DEGREE + 1 + self.k.degree)
+        total, target = self._total(centre, half, segment, low)
+        f = target / total
+        if not (np.isfinite(f).all() and (f > 0.0).all()):
+            bad = centre[~(np.isfinite(f) & (f > 0.0)).all(axis=1)][0]
+            raise NumericalError(f"the varied stiffness is not positive near {bad:g} of the period.")
+        q, s = f @ into.T, np.sqrt(f) @ into.T
+        vander = np.polynomial.chebyshev.chebvander
+        total, target = self._total(centre, half, segment, high)
+        q_high, s_high = q @ vander(high, _FACTOR_DEGREE).T, s @ vander(high, _FACTOR_DEGREE).T
+        slack = series_rounding(high.size) + 4.0 * _FACTOR_DEGREE**2 * _ROUNDINGS
+
+        def sup(values: FloatArray, scale: FloatArray) -> FloatArray:
+            return np.asarray(np.abs(values @ onto.T).sum(axis=1) + slack * scale)
+
+        def least(values: FloatArray) -> FloatArray:
+            series = values @ onto.T
+            return np.asarray(
+                series[:, 0] - np.abs(series[:, 1:]).sum(axis=1) - slack * np.abs(values).max(axis=1)
+            )
+
+        most = np.abs(q).sum(axis=1)
+        size = most * total.max(axis=1) + np.abs(target).max(axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            floor = least(total)
+            off = np.where(floor > 0.0, sup(q_high * total - target, size) / floor, np.inf)
+            floor = least(s_high)
+            gap = sup(s_high**2 - q_high, np.abs(s).sum(axis=1) ** 2 + most) + off
+            off_root = np.where(floor > 0.0, gap / floor, np.inf)
+        off_root[~np.isfinite(off)] = np.inf
+        at = vander(nodes, _FACTOR_DEGREE)
+        return [q @ at.T, s @ at.T], [off, off_root], np.maximum(most, np.abs(s).sum(axis=1)) + 1.0
+
+    def _total(
+        self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Total stiffness k at the nodes of each piece, and mean + factor (k - mean)."""
+        phases = centre[:, None] + half[:, None] * nodes
+        total = np.zeros_like(phases)
+        for i, offset in enumerate(self.offsets):
+            total += self.k(offset + self.pitch * phases, i, segment)
+        return total, self.mean + self.factor * (total - self.mean)
+
+
+def _slips(raw: FloatArray, edges: FloatArray, rounding: float) -> FloatArray:
+    """How far (S+1,) each edge may be from the breaks that it stands for, in parts of the period."""
+    raw = np.concatenate([raw, raw[raw < 1e-6] + 1.0, raw[raw > 1.0 - 1e-6] - 1.0])
+    after = np.clip(np.searchsorted(edges, raw), 1, edges.size - 1)
+    nearest = np.where(raw - edges[after - 1] < edges[after] - raw, after - 1, after)
+    slips = np.zeros(edges.size)
+    np.maximum.at(slips, nearest, np.abs(raw - edges[nearest]))
+    return slips + rounding

@@ -1,0 +1,93 @@
+"""Do knots of tables end pieces everywhere, and is the misfit of the gains a bound between samples too?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from floquet import PeriodicSystem, gear_block, gear_pair_system, monodromy, stability_chart
+from floquet.gear.multipliers import OffLineOfAction
+from floquet.gear.reference import extended_monodromy
+from lumped import GearPair, load_gear_pair, steady_state
+from lumped.model.averaged import averaged_matrix
+from lumped.model.mesh_cycle import mesh_cycle
+from lumped.model.periodic_system import periodic_system
+
+
+def with_table(points: int, factor: float) -> GearPair:
+    """A constant table with one sample that stands out."""
+    pair = load_gear_pair("nasa_28_28").with_({"friction.law": "none", "mesh.damping_ratio": 0.02})
+    stiffness = np.full(points, 60e6)
+    stiffness[int(0.437 * points)] *= factor
+    table = {
+        "model": "table", "axis": "phase", "stiffness": stiffness.tolist(),
+        "points": np.linspace(0.0, pair.geometry.contact_ratio, points).tolist(),
+    }  # fmt: skip
+    return pair.with_({"mesh.stiffness": table})
+
+
+@pytest.mark.parametrize(("points", "factor"), [(1000, 300.0), (1000, 3.0), (200, 1.2)])
+def test_one_wild_sample_of_a_table_is_seen_by_every_route(points: int, factor: float) -> None:
+    pair = with_table(points, factor)
+    exact = float(np.abs(np.linalg.eigvals(extended_monodromy(pair))).max())
+    speed = {"speed_rpm": [pair.operating.pinion_speed * 30.0 / np.pi]}
+    chart = stability_chart(pair, speed)
+    engine = monodromy(gear_pair_system(pair, "feedback"))
+    assert abs(float(chart.spectral_radius[0]) - exact) <= float(chart.error[0])
+    assert abs(engine.spectral_radius - exact) <= engine.error + 1e-11
+    assert steady_state(pair).attrs["spectral_radius"] == pytest.approx(exact, rel=1e-6)
+
+
+def test_breaks_hold_every_knot_of_every_law() -> None:
+    for pair in (with_table(1000, 3.0), load_gear_pair("fzg_c").with_(friction__law="benedict_kelley")):
+        cycle = mesh_cycle(pair)
+        g, e = cycle.geometry, cycle.elements
+        for law in (e.stiffness, e.damping, e.friction, e.error):
+            times = np.mod((law.breaks - g.L_XA) / g.base_pitch, 1.0) * cycle.period
+            assert np.abs(times[:, None] - cycle.breaks).min(axis=1).max() <= 1e-13 * cycle.period
+        assert np.isin(cycle.edges, cycle.breaks).all()
+        assert set(cycle.breaks) - {0.0, cycle.period} == set(periodic_system(pair).breakpoints)
+
+
+def test_the_average_of_a_table_is_exact() -> None:
+    system = periodic_system(with_table(400, 50.0), "feedback")
+    mean = system.cycle.elements.stiffness.mean() * system.cycle.geometry.contact_ratio
+    direct = averaged_matrix(system)[3:, :3] - system.constant[3:, :3]
+    per_stiffness = (system.structure.normal / system.structure.mass) @ system.reduction.T
+    assert direct == pytest.approx(mean * np.outer(per_stiffness, system.deflection), rel=1e-12)
+
+
+@pytest.mark.parametrize("factor", [1.0, 0.5, 1.5])
+def test_the_misfit_holds_between_the_samples(factor: float) -> None:
+    from floquet.gear.axes import GearVariation
+
+    pair = with_table(60, 3.0).with_({"friction.law": "benedict_kelley", "mesh.damping_ratio": 0.1})
+    block = gear_block(GearVariation(pair, stiffness_variation=factor), rtol=1e-6)
+    A = gear_pair_system(GearVariation(pair, stiffness_variation=factor), "feedback")
+    fitted: PeriodicSystem = block.to_periodic_system()
+    rng = np.random.default_rng(3)
+    low, high = block.phases[:-1], block.phases[1:]
+    at = (low + (high - low) * rng.uniform(0.01, 0.99, (40, low.size))) * block.period
+    gap = (A.evaluate(at.ravel()) - fitted.evaluate(at.ravel())).reshape(40, low.size, 6, 6)
+    root = np.sqrt(block.metric)
+    for shift, kind in ((0, 0), (3, 1)):  # the column of x_p, for which v = 1
+        error = np.linalg.norm(gap[:, :, 3:, shift + 1] * root, axis=2).max(axis=0)
+        bound = block.gains.fit_errors[:, kind]
+        assert (error <= bound + 1e-13 * np.abs(block.gains.w).max()).all()
+        assert error.max() > 1e-3 * bound.max()
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1.0 - 1e-15, 1.0 + 1e-12, 0.3])
+def test_bearings_at_critical_damping_are_within_their_bound(ratio: float) -> None:
+    pair = load_gear_pair("nasa_28_28").with_({"bearings.pinion.oloa_damping_ratio": min(ratio, 1.0)})
+    system = periodic_system(pair, "relative")
+    T = np.array([system.period])
+    values, errors = OffLineOfAction.of(system).multipliers(T)
+    s = system.structure
+    omega = np.sqrt(s.stiffness[4] / s.mass[4])
+    zeta = min(ratio, 1.0)
+    root = np.emath.sqrt(zeta**2 - 1.0)
+    exact = np.exp(omega * system.period * np.array([-zeta + root, -zeta - root]))
+    assert (np.abs(values[0, [0, 2]] - exact) <= errors[0, [0, 2]]).all()
+    if ratio == 0.3:
+        assert errors[0, [0, 2]].max() < 1e-14
