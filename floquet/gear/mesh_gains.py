@@ -79,7 +79,7 @@ class _Law:
 
     @property
     def degree(self) -> int:
-        return self.coefficients.shape[0] - 1
+        return int(self.coefficients.shape[0]) - 1
 
     def __call__(self, xi: FloatArray, pair: int, segment: npt.NDArray[np.intp]) -> FloatArray:
         """Values at positions xi (k, s) that lie in these segments (k,)."""
