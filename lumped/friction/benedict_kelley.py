@@ -37,6 +37,11 @@ def friction_number(
     """The argument 29700 w / (eta v_s v_e^2) of law II's logarithm; infinite where v_s = 0.
 
     Units as in ``benedict_kelley``.
+
+    Examples
+    --------
+    >>> float(friction_number(100, 10, 2, 10))
+    1485.0
     """
     w = checked("unit_load", unit_load, "N/mm")
     eta = checked("viscosity", viscosity, "mPa s")

@@ -43,6 +43,11 @@ def composite(
     Returns
     -------
     mu [-]
+
+    Examples
+    --------
+    >>> float(composite(2.0, 0.05, 0.06, 0.03))
+    0.06
     """
     number = regime(film_parameter, thresholds)
     laws = {

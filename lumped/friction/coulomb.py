@@ -26,6 +26,11 @@ def coulomb(coefficient: ArrayLike, distance: ArrayLike) -> FloatArray:
     Returns
     -------
     mu [-], negative in approach, positive in recess, 0 at the pitch point
+
+    Examples
+    --------
+    >>> float(coulomb(0.05, -2.0))
+    -0.05
     """
     mu = checked("coefficient", coefficient, "", allow_zero=True)
     return np.asarray(mu * np.sign(real_array("distance", distance)), dtype=np.float64)

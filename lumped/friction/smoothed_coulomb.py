@@ -29,6 +29,11 @@ def smoothed_coulomb(coefficient: ArrayLike, distance: ArrayLike, sharpness: Arr
     Returns
     -------
     mu [-] with its sign; odd in d, and within 4 mu_avg / (3 pi |Phi d|^3) of law I for |Phi d| >> 1
+
+    Examples
+    --------
+    >>> round(float(smoothed_coulomb(0.05, 1.0, 1.0)), 8)
+    0.04091549
     """
     mu = checked("coefficient", coefficient, "", allow_zero=True)
     phi = checked("sharpness", sharpness, "1/length")

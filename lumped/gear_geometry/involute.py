@@ -13,12 +13,24 @@ from lumped.typing import FloatArray
 
 
 def involute(angle: float) -> float:
-    """Return inv(angle) = tan(angle) - angle [rad]."""
+    """Return inv(angle) = tan(angle) - angle [rad].
+
+    Examples
+    --------
+    >>> round(involute(math.radians(20.0)), 6)
+    0.014904
+    """
     return math.tan(angle) - angle
 
 
 def inverse_involute(value: float) -> float:
-    """Return the angle [rad] in [0, 1.5] whose involute is ``value`` >= 0."""
+    """Return the angle [rad] in [0, 1.5] whose involute is ``value`` >= 0.
+
+    Examples
+    --------
+    >>> round(math.degrees(inverse_involute(0.014904)), 3)
+    20.0
+    """
     return float(brentq(lambda angle: involute(angle) - value, 0.0, 1.5, xtol=1e-15, rtol=1e-15))
 
 

@@ -46,6 +46,11 @@ def anderson_loewenthal_coefficient(
     ----------
     N. E. Anderson and S. H. Loewenthal, "Spur-gear-system efficiency at part and full load",
     NASA TP-1622, 1980.
+
+    Examples
+    --------
+    >>> round(float(anderson_loewenthal_coefficient(100, 0.01, 2, 10)), 5)
+    0.04027
     """
     w = checked("unit_load", unit_load, "N/mm")
     eta = checked("viscosity", viscosity, "Pa s")

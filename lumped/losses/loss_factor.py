@@ -48,6 +48,11 @@ def ohlendorf(
     ----------
     H. Ohlendorf, "Verlustleistung und Erwaermung von Stirnraedern", dissertation, TH Muenchen, 1958; the
     tooth loss factor of ISO/TR 14179-2.
+
+    Examples
+    --------
+    >>> round(ohlendorf(28, 28, 0.819, 0.819), 4)
+    0.1579
     """
     u = teeth_gear / teeth_pinion
     overlap = 1.0 - contact_ratio_1 - contact_ratio_2 + contact_ratio_1**2 + contact_ratio_2**2

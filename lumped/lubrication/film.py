@@ -56,6 +56,11 @@ def effective_modulus(
     Raises
     ------
     ParameterError : a modulus not finite and positive, a Poisson's ratio outside -1 to 0.5 or at -1
+
+    Examples
+    --------
+    >>> round(float(effective_modulus(206e3, 0.3, 206e3, 0.3)), 1)
+    226373.6
     """
     pinion = _strain("poisson_ratio_pinion", poisson_ratio_pinion) / checked(
         "youngs_modulus_pinion", youngs_modulus_pinion, ""
@@ -96,6 +101,11 @@ def hertz_half_width(unit_load: ArrayLike, radius: ArrayLike, effective_modulus:
     Returns
     -------
     b_H [mm]
+
+    Examples
+    --------
+    >>> round(float(hertz_half_width(100, 8, 226373.6)), 7)
+    0.0948642
     """
     w, rho, modulus = _line_contact(unit_load, radius, effective_modulus)
     return np.asarray(np.sqrt(8.0 * w * rho / (np.pi * modulus)), dtype=np.float64)
@@ -113,6 +123,11 @@ def hertz_pressure(unit_load: ArrayLike, radius: ArrayLike, effective_modulus: A
     Returns
     -------
     p_h [GPa]
+
+    Examples
+    --------
+    >>> round(float(hertz_pressure(100, 8, 226373.6)), 6)
+    0.671086
     """
     w, rho, modulus = _line_contact(unit_load, radius, effective_modulus)
     return np.asarray(1e-3 * np.sqrt(w * modulus / (2.0 * np.pi * rho)), dtype=np.float64)
@@ -131,6 +146,11 @@ def pressure_viscosity(
     Returns
     -------
     alpha [mm^2/N]
+
+    Examples
+    --------
+    >>> round(float(pressure_viscosity(10)), 6)
+    0.014282
     """
     factor = checked("pressure_viscosity_k", k, "mm^2/N")
     exponent = checked("pressure_viscosity_s", s, "", allow_zero=True)
@@ -211,6 +231,11 @@ def film_parameter(
     Returns
     -------
     Lambda [-]
+
+    Examples
+    --------
+    >>> round(float(film_parameter(0.312115, 0.0948642, 0.5, 0.8)), 5)
+    1.28181
     """
     h_c = checked("film_thickness", film_thickness, "um", allow_zero=True)
     b_h = checked("half_width", half_width, "mm")
@@ -230,6 +255,11 @@ def regime(film_parameter: ArrayLike, thresholds: Sequence[float] = DEFAULT_THRE
     Raises
     ------
     ParameterError : the thresholds are not three increasing positive numbers
+
+    Examples
+    --------
+    >>> int(regime(2.0))
+    1
     """
     limits = real_array("friction.thresholds", thresholds)
     if limits.shape != (3,) or not (np.diff(limits) > 0).all() or limits[0] <= 0:

@@ -29,6 +29,11 @@ def rms_from_mean(roughness: ArrayLike, profile: Profile = "gaussian") -> FloatA
     Raises
     ------
     ParameterError : a negative roughness or an unknown profile
+
+    Examples
+    --------
+    >>> round(float(rms_from_mean(0.8)), 4)
+    1.0027
     """
     return np.asarray(
         checked("roughness", roughness, "", allow_zero=True) * _ratio(profile), dtype=np.float64
@@ -41,6 +46,11 @@ def mean_from_rms(roughness: ArrayLike, profile: Profile = "gaussian") -> FloatA
     Raises
     ------
     ParameterError : a negative roughness or an unknown profile
+
+    Examples
+    --------
+    >>> round(float(mean_from_rms(1.0)), 4)
+    0.7979
     """
     return np.asarray(
         checked("roughness", roughness, "", allow_zero=True) / _ratio(profile), dtype=np.float64
@@ -52,6 +62,11 @@ def composite_roughness(pinion: ArrayLike, gear: ArrayLike) -> FloatArray:
 
     The root sum of squares belongs to independent surfaces: variances add. Lambda on Ra is 1.25 times Lambda
     on Rq for Gaussian heights.
+
+    Examples
+    --------
+    >>> float(composite_roughness(0.3, 0.4))
+    0.5
     """
     a = checked("pinion.roughness", pinion, "", allow_zero=True)
     b = checked("gear.roughness", gear, "", allow_zero=True)
@@ -59,7 +74,13 @@ def composite_roughness(pinion: ArrayLike, gear: ArrayLike) -> FloatArray:
 
 
 def mean_roughness(pinion: ArrayLike, gear: ArrayLike) -> FloatArray:
-    """S = (R_p + R_g)/2, the average roughness that laws II and III take, in the unit of its arguments."""
+    """S = (R_p + R_g)/2, the average roughness that laws II and III take, in the unit of its arguments.
+
+    Examples
+    --------
+    >>> float(mean_roughness(0.3, 0.4))
+    0.35
+    """
     a = checked("pinion.roughness", pinion, "", allow_zero=True)
     return np.asarray(0.5 * (a + checked("gear.roughness", gear, "", allow_zero=True)), dtype=np.float64)
 

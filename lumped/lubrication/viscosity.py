@@ -36,6 +36,11 @@ def walther_constants(
     Notes
     -----
     0.7 stands for Z of ASTM D341, whose further exponential terms matter below about 2 mm^2/s only.
+
+    Examples
+    --------
+    >>> [round(x, 4) for x in walther_constants(100, 40, 11.1, 100)]
+    [9.2034, 3.5668]
     """
     nu = checked("kinematic_viscosity", [viscosity_1, viscosity_2], "mm^2/s")
     if (temperature_2 - temperature_1) * (viscosity_1 - viscosity_2) <= 0.0:
@@ -63,6 +68,11 @@ def kinematic_viscosity(temperature: ArrayLike, constants: tuple[float, float]) 
     Returns
     -------
     nu [mm^2/s]
+
+    Examples
+    --------
+    >>> round(float(kinematic_viscosity(60, walther_constants(100, 40, 11.1, 100))), 2)
+    39.68
     """
     a, b = constants
     kelvin = np.asarray(temperature, dtype=float) + ZERO_CELSIUS
@@ -84,6 +94,11 @@ def oil_density(density_15: ArrayLike, temperature: ArrayLike) -> FloatArray:
     References
     ----------
     ASTM D1250 / API MPMS 11.1, thermal expansion of lubricating oils (commodity group D).
+
+    Examples
+    --------
+    >>> round(float(oil_density(870, 60)), 1)
+    841.5
     """
     rho = checked("density", density_15, "kg/m^3")
     expansion = 0.6278 / rho * (np.asarray(temperature, dtype=float) - 15.0)

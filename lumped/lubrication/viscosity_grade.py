@@ -92,6 +92,11 @@ def viscosity_index(viscosity_40: float, viscosity_100: float) -> float:
     Raises
     ------
     ParameterError : less than 2 mm^2/s at 100 degC, or not less than at 40 degC
+
+    Examples
+    --------
+    >>> round(viscosity_index(73.30, 8.86))
+    92
     """
     u, y = viscosity_40, viscosity_100
     if not (_LOWEST_Y <= y < u and math.isfinite(u)):
@@ -116,6 +121,11 @@ def viscosity_at_100(viscosity_40: float, index: float = DEFAULT_VISCOSITY_INDEX
     Raises
     ------
     ParameterError : no oil with at least 2 mm^2/s at 100 degC has this viscosity and index
+
+    Examples
+    --------
+    >>> round(viscosity_at_100(73.30, 92), 2)
+    8.84
     """
     top = 0.9 * viscosity_40
 
@@ -147,6 +157,11 @@ def grade_viscosity(grade: int, temperature: ArrayLike, index: float = DEFAULT_V
     Raises
     ------
     ParameterError : not a grade, or an index that this grade cannot have
+
+    Examples
+    --------
+    >>> round(float(grade_viscosity(100, 60)), 1)
+    39.6
     """
     middle = _midpoint(grade)
     constants = walther_constants(middle, 40.0, viscosity_at_100(middle, index), 100.0)

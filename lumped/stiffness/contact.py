@@ -19,6 +19,11 @@ def linear_hertz_compliance(modulus: tuple[float, float], poisson: tuple[float, 
     Parameters
     ----------
     modulus, poisson : E [Pa] and nu [-] of both gears
+
+    Examples
+    --------
+    >>> f"{linear_hertz_compliance((206e9, 206e9), (0.3, 0.3)):.4e}"
+    '5.6245e-12'
     """
     return 2.0 / math.pi * sum((1.0 - nu**2) / e for e, nu in zip(modulus, poisson, strict=True))
 
@@ -33,6 +38,11 @@ def contact_half_width(
     load : w, normal load per face width [N/m]
     radius : rho, reduced radius of curvature [m], any shape
     modulus, poisson : E [Pa] and nu [-] of both gears
+
+    Examples
+    --------
+    >>> f"{contact_half_width(100e3, np.array(0.008), (206e9, 206e9), (0.3, 0.3)):.5e}"
+    '9.48642e-05'
     """
     plane = sum((1.0 - nu**2) / e for e, nu in zip(modulus, poisson, strict=True))
     return np.asarray(np.sqrt(4.0 * load * radius * plane / math.pi), dtype=np.float64)
@@ -51,6 +61,11 @@ def local_compliance(half_width: FloatArray, depth: FloatArray, modulus: float, 
     half_width : a [m], any shape
     depth : h, from the flank to the tooth's centre line along the load [m], same shape
     modulus, poisson : E [Pa], nu [-]
+
+    Examples
+    --------
+    >>> f"{local_compliance(np.array(1e-4), np.array(2e-3), 206e9, 0.3):.4e}"
+    '9.7714e-12'
     """
     shape = np.log(2.0 * depth / half_width) - poisson / (2.0 * (1.0 - poisson))
     return np.asarray(2.0 * (1.0 - poisson**2) / (math.pi * modulus) * shape, dtype=np.float64)

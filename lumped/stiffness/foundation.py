@@ -48,6 +48,11 @@ def coefficients(ratio: ArrayLike, half_angle: ArrayLike) -> FloatArray:
     ----------
     ratio : h_f, root over bore radius [-], any shape
     half_angle : theta_f [rad], same shape
+
+    Examples
+    --------
+    >>> coefficients(4.0, 0.05).round(4).tolist()
+    [6.9356, 1.3823, 5.9122, 0.346]
     """
     h, theta = np.asarray(ratio, dtype=float), np.asarray(half_angle, dtype=float)
     terms = np.stack([1.0 / theta**2, h**2, h / theta, 1.0 / theta, h, np.ones_like(h)])
@@ -70,6 +75,11 @@ def ring_twist(
     Returns
     -------
     compliance times face width [m^2/N]
+
+    Examples
+    --------
+    >>> f"{ring_twist(0.04, 0.04, 0.01, 206e9, 0.3):.4e}"
+    '1.5066e-11'
     """
     shear_modulus = modulus / (2.0 * (1.0 + poisson))
     return base_radius**2 * (bore_radius**-2 - root_radius**-2) / (4.0 * math.pi * shear_modulus)

@@ -44,6 +44,11 @@ def theoretical_single_stiffness(z_1: float, z_2: float, x_1: float, x_2: float)
     Notes
     -----
     Valid for x1 >= x2 and -0.5 <= x1 + x2 <= 2 (``RANGES``).
+
+    Examples
+    --------
+    >>> round(theoretical_single_stiffness(28, 28, 0.0, 0.0), 4)
+    16.1303
     """
     c = COEFFICIENTS
     flexibility = (
@@ -67,6 +72,11 @@ def basic_rack_factor(dedendum: float, pressure_angle: float) -> float:
     ----------
     dedendum : dedendum of the basic rack over module, h_fP/m [-]
     pressure_angle : of the basic rack [deg]
+
+    Examples
+    --------
+    >>> round(basic_rack_factor(1.25, 20.0), 4)
+    0.975
     """
     return (1.0 + 0.5 * (1.2 - dedendum)) * (1.0 - 0.02 * (20.0 - pressure_angle))
 
@@ -77,6 +87,11 @@ def material_factor(modulus_1: float, modulus_2: float) -> float:
     Parameters
     ----------
     modulus_1, modulus_2 : Young's moduli [GPa]
+
+    Examples
+    --------
+    >>> round(material_factor(206.0, 103.0), 4)
+    0.6667
     """
     return 2.0 * modulus_1 * modulus_2 / (modulus_1 + modulus_2) / STEEL_MODULUS
 
@@ -87,6 +102,11 @@ def low_load_factor(load: float) -> float:
     Parameters
     ----------
     load : tangential load per face width F_t K_A/b [N/mm]
+
+    Examples
+    --------
+    >>> round(low_load_factor(50.0), 4)
+    0.8409
     """
     return math.sqrt(math.sqrt(min(load / LOW_LOAD, 1.0)))
 
@@ -106,6 +126,11 @@ def single_stiffness(
     theoretical : c'_th [N/(mm um)]
     basic_rack, blank, material : factors C_B, C_R (1 for solid discs) and E/E_St [-]
     helix : helix angle [deg]
+
+    Examples
+    --------
+    >>> round(single_stiffness(16.1303, basic_rack=0.975), 4)
+    12.5816
     """
     return theoretical * CORRECTION * blank * basic_rack * material * math.cos(math.radians(helix))
 
@@ -117,6 +142,11 @@ def mean_mesh_stiffness(single: float, contact_ratio: float) -> float:
     ----------
     single : c' [N/(mm um)]
     contact_ratio : transverse contact ratio, >= 1.2 in the standard [-]
+
+    Examples
+    --------
+    >>> round(mean_mesh_stiffness(14.0, 1.6), 4)
+    20.3
     """
     return single * (0.75 * contact_ratio + 0.25)
 

@@ -30,6 +30,11 @@ def iso_end_ratio(contact_ratio: float) -> float:
     Parameters
     ----------
     contact_ratio : eps_alpha [-]
+
+    Examples
+    --------
+    >>> iso_end_ratio(1.5)
+    0.75
     """
     return 0.25 + 0.75 / contact_ratio
 
