@@ -26,7 +26,7 @@ from lumped.typing import FloatArray
 FIT_DEGREE = 8
 _MAX_HALVINGS = 40
 #: Halving without end means rounding noise or an undeclared kink; smooth laws take fewer than 100 pieces.
-_MAX_PIECES = 4000
+_MAX_PIECES = 1000
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +88,18 @@ class PathFunction:
     def scaled(self, factor: float) -> PathFunction:
         """The function multiplied by a constant."""
         return PathFunction(self.breaks, self.coefficients * factor, self.switches)
+
+    def split(self, positions: ArrayLike) -> PathFunction:
+        """The same function with further breaks at positions inside the interval [m], any shape."""
+        low, high = self.interval
+        new = np.ravel(np.asarray(positions, dtype=float))
+        breaks = np.unique(np.concatenate([self.breaks, new[(new > low) & (new < high)]]))
+        piece = np.searchsorted(self.breaks, breaks[:-1], side="right") - 1
+        by, moved = breaks[:-1] - self.breaks[piece], self.coefficients[:, piece]
+        for last in range(moved.shape[0] - 1, 0, -1):  # Taylor shift by synthetic division
+            for i in range(1, last + 1):
+                moved[i] += by * moved[i - 1]
+        return PathFunction(breaks, moved, self.switches)
 
     @classmethod
     def constant(cls, value: float, low: float, high: float) -> PathFunction:

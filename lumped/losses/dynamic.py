@@ -12,14 +12,15 @@ import numpy as np
 
 from lumped.arguments import some_of
 from lumped.errors import ParameterError, refuse
-from lumped.friction import LAWS
+from lumped.friction import FRICTIONAL, LAWS
+from lumped.labelling import labelled_dataset
 from lumped.losses.quasi_static import quasi_static_losses
 from lumped.losses.sharing import Sharing
+from lumped.model.solution import steady_state
+from lumped.schema.pair import GearPair
 
 if TYPE_CHECKING:
     import xarray as xr
-
-    from lumped.schema.pair import GearPair
 
 
 def dynamic_losses(pair: GearPair, solution: xr.Dataset) -> xr.Dataset:
@@ -44,8 +45,6 @@ def dynamic_losses(pair: GearPair, solution: xr.Dataset) -> xr.Dataset:
     ------
     ParameterError : the dataset has no friction power
     """
-    import xarray as xr
-
     if "friction_power_nominal" not in solution:
         raise refuse(
             "solution",
@@ -55,25 +54,22 @@ def dynamic_losses(pair: GearPair, solution: xr.Dataset) -> xr.Dataset:
         )
     torque = float(solution.attrs.get("pinion_torque", pair.operating.pinion_torque))
     power_in = torque * pair.geometry.omega_pinion
-    loss = -solution["friction_power_nominal"].sum("pair")
+    loss = -solution["friction_power_nominal"].sum("pair").to_numpy()
     mean = float(loss.mean())
-    result = xr.Dataset(
+    kept = {key: solution.attrs[key] for key in ("gear_pair", "parameters_sha256") if key in solution.attrs}
+    return labelled_dataset(
         {
-            "sliding_loss": loss.assign_attrs(units="W", long_name="sliding loss of the mesh"),
-            "instantaneous_efficiency": (1.0 - loss / power_in).assign_attrs(
-                units="1", long_name="instantaneous mesh efficiency"
-            ),
+            "sliding_loss": ("time", loss, "W", "sliding loss of the mesh"),
+            "instantaneous_efficiency": ("time", 1.0 - loss / power_in, "1", "instantaneous mesh efficiency"),
         },
-        attrs={
-            key: solution.attrs[key] for key in ("gear_pair", "parameters_sha256") if key in solution.attrs
+        {"time": (solution["time"].to_numpy(), "s", "time")},
+        kept
+        | {
+            "input_power": power_in,
+            "power_loss": mean,
+            "mesh_efficiency": float(solution.attrs.get("mesh_efficiency", 1.0 - mean / power_in)),
         },
     )
-    result.attrs |= {
-        "input_power": power_in,
-        "power_loss": mean,
-        "mesh_efficiency": float(solution.attrs.get("mesh_efficiency", 1.0 - mean / power_in)),
-    }
-    return result
 
 
 def sliding_power_along_path(solution: xr.Dataset) -> xr.Dataset:
@@ -91,8 +87,6 @@ def sliding_power_along_path(solution: xr.Dataset) -> xr.Dataset:
     xarray.Dataset over ``xi`` [m], increasing: sliding_power [W] (>= 0 where friction opposes sliding) and
     normal_load [N]
     """
-    import xarray as xr
-
     name = "friction_power_nominal" if "friction_power_nominal" in solution else "friction_power"
     touching = solution["contact"].to_numpy().ravel() > 0.0
     xi = solution["position"].to_numpy().ravel()[touching]
@@ -101,12 +95,12 @@ def sliding_power_along_path(solution: xr.Dataset) -> xr.Dataset:
         "sliding_power": (-solution[name], "W", "sliding power of one tooth pair"),
         "normal_load": (solution["normal_load"], "N", "normal load of one tooth pair"),
     }
-    return xr.Dataset(
+    return labelled_dataset(
         {
-            key: ("xi", array.to_numpy().ravel()[touching][order], {"units": unit, "long_name": text})
+            key: ("xi", array.to_numpy().ravel()[touching][order], unit, text)
             for key, (array, unit, text) in along.items()
         },
-        coords={"xi": ("xi", xi[order], {"units": "m", "long_name": "distance of the contact point from X"})},
+        {"xi": (xi[order], "m", "distance of the contact point from X")},
     )
 
 
@@ -122,7 +116,7 @@ def losses_of_laws(
     Parameters
     ----------
     pair : the gear pair
-    laws : names of the laws; default all five that the pair allows
+    laws : names of the laws; default every law with friction that the pair allows
     sharing : load sharing of the quasi-static result
     dynamic : whether to add the efficiency of the periodic motion
 
@@ -131,9 +125,7 @@ def losses_of_laws(
     xarray.Dataset over ``law``: mesh_efficiency, power_loss [W], mean_coefficient (quasi-static), and
     mesh_efficiency_dynamic; attribute ``left_out``, laws that the pair does not allow and why
     """
-    import xarray as xr
-
-    names = [name for name in LAWS if name != "none"] if laws is None else some_of("laws", laws, LAWS)
+    names = FRICTIONAL if laws is None else some_of("laws", laws, LAWS)
     rows: dict[str, dict[str, float]] = {}
     left_out: list[str] = []
     for name in names:
@@ -141,8 +133,6 @@ def losses_of_laws(
             static = quasi_static_losses(pair, name, sharing, samples_per_cycle=8).attrs
             rows[name] = {key: static[key] for key in ("mesh_efficiency", "power_loss", "mean_coefficient")}
             if dynamic:
-                from lumped.model.solution import steady_state
-
                 run = steady_state(pair.with_(friction__law=name), samples_per_cycle=8)
                 rows[name]["mesh_efficiency_dynamic"] = run.attrs["mesh_efficiency"]
         except ParameterError as error:
@@ -157,18 +147,12 @@ def losses_of_laws(
         "mean_coefficient": "loss over loss factor and power",
     }
     columns = next(iter(rows.values()), {})
-    return xr.Dataset(
+    result = labelled_dataset(
         {
-            key: (
-                "law",
-                np.array([row[key] for row in rows.values()]),
-                {"units": units.get(key, "1"), "long_name": texts[key]},
-            )
+            key: ("law", np.array([row[key] for row in rows.values()]), units.get(key, "1"), texts[key])
             for key in columns
         },
-        coords={
-            "law": ("law", list(rows), {"long_name": "friction law"}),
-            "law_title": ("law", [LAWS[name].title for name in rows]),
-        },
-        attrs={"left_out": left_out},
+        {"law": (list(rows), "1", "friction law")},
+        {"left_out": left_out},
     )
+    return result.assign_coords(law_title=("law", [LAWS[name].title for name in rows]))

@@ -9,7 +9,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from lumped.schema.pair import Gear, GearPair
+from lumped.schema.gear import Gear
+from lumped.schema.pair import GearPair
 
 
 @dataclass(frozen=True)

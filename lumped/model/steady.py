@@ -8,9 +8,15 @@ import numpy as np
 
 from lumped.arguments import whole_number
 from lumped.errors import NumericalError
-from lumped.model.periodic_system import LTVSystem
+from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.propagation import STAGES, step_maps
+from lumped.model.results import response
+from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
+
+#: A largest multiplier above this is an instability. Without damping it is 1, and steps and rounding move a
+#: defective multiplier by up to the root of their error, 1e-12.
+UNSTABLE = 1.0 + 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +43,11 @@ class PeriodicSolution:
     closure: float
     error: float | None
     spectral_radius: float
+
+    @property
+    def values(self) -> dict[str, FloatArray]:
+        """Variable of ``lumped.model.results.VARIABLES`` -> (k,) or (pairs, k), in SI."""
+        return response(self.system, self.time, self.states)
 
     @property
     def balance(self) -> dict[str, float]:
@@ -93,6 +104,22 @@ def periodic_solution(
         error=error,
         spectral_radius=relative_spectral_radius(system, transition),
     )
+
+
+def periodic_cycle(pair: GearPair, samples: int) -> PeriodicSolution:
+    """Periodic motion of a gear pair without error estimate, labels and provenance: half the time.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    samples : times per mesh cycle
+
+    Raises
+    ------
+    NumericalError : the speed sits on a stability boundary, where no periodic motion exists
+    """
+    system = periodic_system(pair, "absolute")
+    return periodic_solution(system, sample_times(system.period, samples), estimate_error=False)
 
 
 def _closure(system: LTVSystem, states: FloatArray) -> float:

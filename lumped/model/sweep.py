@@ -17,7 +17,7 @@ from lumped.labelling import labelled_dataset
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.mesh_elements import MeshElements, mesh_elements
 from lumped.model.periodic_system import LTVSystem, periodic_system
-from lumped.model.results import provenance, response
+from lumped.model.results import provenance
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.path_of_contact import friction_path_function
 from lumped.schema.pair import GearPair
@@ -80,7 +80,7 @@ def speed_sweep(
             if progress is not None:
                 progress((j + 1) / speeds.size)
         periodic[j] = True
-        run = response(system, times, solution.states)
+        run = solution.values
         for name in names:
             table[f"{name}_peak_to_peak"][j] = np.ptp(run[name])
             table[f"{name}_rms"][j] = np.std(run[name])

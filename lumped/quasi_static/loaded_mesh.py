@@ -129,17 +129,8 @@ def _positive_intervals(
 def _restricted(k: PathFunction, contact: FloatArray) -> PathFunction:
     """The function on the intervals, zero between them; jumps are switches."""
     low, high = k.interval
-    ends = contact.ravel()
-    new = ends[(ends > low) & (ends < high)]
-    breaks = np.unique(np.concatenate([k.breaks, new]))
-    left = np.searchsorted(k.breaks, breaks[:-1], side="right") - 1
-    order = k.coefficients.shape[0]
-    shift = breaks[:-1] - k.breaks[left]
-    moved = np.zeros((order, breaks.size - 1))
-    for column, (j, s) in enumerate(zip(left, shift, strict=True)):
-        poly = np.polynomial.Polynomial(k.coefficients[::-1, j])
-        shifted = poly(np.polynomial.Polynomial([s, 1.0])).coef
-        moved[order - shifted.size :, column] = shifted[::-1]
-    middle = 0.5 * (breaks[:-1] + breaks[1:])
+    k, ends = k.split(contact), contact.ravel()
+    middle = 0.5 * (k.breaks[:-1] + k.breaks[1:])
     loaded = ((middle[:, None] > contact[:, 0]) & (middle[:, None] < contact[:, 1])).any(axis=1)
-    return PathFunction(breaks, np.where(loaded, moved, 0.0), np.union1d(k.switches, new))
+    jumps = ends[(ends > low) & (ends < high)]
+    return PathFunction(k.breaks, np.where(loaded, k.coefficients, 0.0), np.union1d(k.switches, jumps))

@@ -21,6 +21,7 @@ from scipy.optimize import minimize
 from lumped.arguments import one_of, real_number, real_numbers
 from lumped.errors import refuse
 from lumped.gear_geometry.geometry import Geometry
+from lumped.labelling import labelled_dataset
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.transmission_error import MeshPositions, mesh_positions
 from lumped.schema.pair import GearPair
@@ -84,8 +85,6 @@ def relief_map(
     -------
     xarray.Dataset : ``peak_to_peak`` [m] over ``amount`` [m] and ``length`` [m]
     """
-    import xarray as xr
-
     amount = real_numbers("amounts", amounts, 0.0, unit="m", action="Give the material removed at the tip.")
     length = real_numbers("lengths", lengths, 0.0, above=True, unit="m")
     g, bare, force = _prepared(pair, torque, shape, phases)
@@ -93,19 +92,10 @@ def relief_map(
     if not (length < path).all():
         raise refuse("lengths", length, f"> 0 and < {path:.6g} m, the path of contact", "Shorten the relief.")
     values = np.stack([_peak_to_peak(bare, g, force, amount, float(one), shape) for one in length], axis=1)
-    return xr.Dataset(
-        {
-            "peak_to_peak": (
-                ("amount", "length"),
-                values,
-                {"units": "m", "long_name": "peak to peak static transmission error"},
-            )
-        },
-        coords={
-            "amount": ("amount", amount, {"units": "m", "long_name": "amount of tip relief"}),
-            "length": ("length", length, {"units": "m", "long_name": "length of tip relief"}),
-        },
-        attrs={"pair": pair.name, "torque": force * g.base_radius_pinion, "shape": shape},
+    return labelled_dataset(
+        {"peak_to_peak": (("amount", "length"), values, "m", "peak to peak static transmission error")},
+        {"amount": (amount, "m", "amount of tip relief"), "length": (length, "m", "length of tip relief")},
+        {"pair": pair.name, "torque": force * g.base_radius_pinion, "shape": shape},
     )
 
 

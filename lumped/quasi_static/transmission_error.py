@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import real_numbers, whole_number
 from lumped.errors import NumericalError
+from lumped.labelling import labelled_dataset
 from lumped.path_of_contact import pair_stiffness
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.tooth_error import corner_gap, relief_error
@@ -121,8 +122,6 @@ def static_transmission_error(
     ParameterError : a negative torque, or a relief that starts outside the active flank
     NumericalError : contact reaches further beyond the path than the pairs are followed
     """
-    import xarray as xr
-
     given = pair.operating.pinion_torque if torques is None else torques
     torque = real_numbers("torques", given, 0.0, unit="N m", action="Give driving torques.")
     g = pair.geometry
@@ -134,30 +133,32 @@ def static_transmission_error(
     te = result.transmission_error
     share = result.load / np.where(force > 0.0, force, np.inf)[:, None, None]  # no load, no share
     axes = ("torque", "phase", "pair")
-    return xr.Dataset(
+    return labelled_dataset(
         {
-            "transmission_error": (axes[:2], te, _attrs("m", "static transmission error, driven gear late")),
+            "transmission_error": (axes[:2], te, "m", "static transmission error, driven gear late"),
             "peak_to_peak": (
                 axes[:1],
                 np.ptp(te, axis=1),
-                _attrs("m", "peak to peak static transmission error"),
+                "m",
+                "peak to peak static transmission error",
             ),
-            "normal_load": (axes, result.load, _attrs("N", "normal load of a tooth pair")),
-            "load_share": (axes, share, _attrs("1", "share of a tooth pair in the load")),
+            "normal_load": (axes, result.load, "N", "normal load of a tooth pair"),
+            "load_share": (axes, share, "1", "share of a tooth pair in the load"),
             "contact_ratio": (
                 axes[:1],
                 (result.load > 0.0).sum(axis=2).mean(axis=1),
-                _attrs("1", "mean number of loaded pairs"),
+                "1",
+                "mean number of loaded pairs",
             ),
-            "position": (axes[1:], mesh.xi, _attrs("m", "position from X along the line of action")),
-            "error": (axes[1:], mesh.error, _attrs("m", "unloaded error of a tooth pair")),
+            "position": (axes[1:], mesh.xi, "m", "position from X along the line of action"),
+            "error": (axes[1:], mesh.error, "m", "unloaded error of a tooth pair"),
         },
-        coords={
-            "torque": (axes[0], torque, _attrs("N*m", "pinion torque")),
-            "phase": (axes[1], mesh.phase, _attrs("1", "mesh cycles after a pair was at A")),
-            "pair": (axes[2], mesh.ahead, _attrs("1", "pitches ahead of the pair that was at A")),
+        {
+            "torque": (torque, "N*m", "pinion torque"),
+            "phase": (mesh.phase, "1", "mesh cycles after a pair was at A"),
+            "pair": (mesh.ahead, "1", "pitches ahead of the pair that was at A"),
         },
-        attrs={"pair": pair.name, "extended_contact": int(bool(extended))},
+        {"pair": pair.name, "extended_contact": int(bool(extended))},
     )
 
 
@@ -169,10 +170,6 @@ def _at_torques(stiffness: FloatArray, torque: FloatArray, pair: GearPair) -> Fl
     ratio = np.maximum(torque / pair.operating.pinion_torque, _LEAST_TORQUE)
     change = softening * np.log(ratio)[:, None, None]
     return np.asarray(stiffness / (1.0 - change * stiffness), dtype=np.float64)
-
-
-def _attrs(units: str, name: str) -> dict[str, str]:
-    return {"units": units, "long_name": name}
 
 
 def _check_reach(mesh: MeshPositions, load: FloatArray, low: float, high: float, pitch: float) -> None:

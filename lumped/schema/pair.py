@@ -24,8 +24,8 @@ from lumped.fields.units import Quantity
 from lumped.gear_geometry.existence import existence_problems
 from lumped.gear_geometry.geometry import Geometry, Wheel, build_geometry
 from lumped.gear_geometry.involute import RackTooth
-from lumped.schema.contact import Friction, Lubricant, ViscosityLaw
-from lumped.schema.gear import BasicRack, Gear, ProfileRelief
+from lumped.schema.contact import Friction, Lubricant
+from lumped.schema.gear import BasicRack, Gear
 from lumped.schema.mesh import Mesh
 
 
@@ -294,22 +294,3 @@ def stated_unit(path: str) -> str | None:
     # A quantity that may also be a word has its unit in the JSON Schema alone.
     extra = info.json_schema_extra
     return str(extra["unit"]) if isinstance(extra, dict) and "unit" in extra else None
-
-
-__all__ = [
-    "BasicRack",
-    "Bearing",
-    "Bearings",
-    "Friction",
-    "Gear",
-    "GearPair",
-    "Lubricant",
-    "Mesh",
-    "OperatingPoint",
-    "ProfileRelief",
-    "Section",
-    "ViscosityLaw",
-    "field_at",
-    "stated_unit",
-    "validated",
-]

@@ -96,21 +96,6 @@ def material_factor(modulus_1: float, modulus_2: float) -> float:
     return 2.0 * modulus_1 * modulus_2 / (modulus_1 + modulus_2) / STEEL_MODULUS
 
 
-def low_load_factor(load: float) -> float:
-    """Factor (load/100)^0.25 on c' below 100 N/mm, 1 above [-], eq. (92).
-
-    Parameters
-    ----------
-    load : tangential load per face width F_t K_A/b [N/mm]
-
-    Examples
-    --------
-    >>> round(low_load_factor(50.0), 4)
-    0.8409
-    """
-    return math.sqrt(math.sqrt(min(load / LOW_LOAD, 1.0)))
-
-
 def single_stiffness(
     theoretical: float,
     *,

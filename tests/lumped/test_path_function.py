@@ -43,3 +43,11 @@ def test_noise_is_refused_after_a_bounded_number_of_pieces():
     rng = np.random.default_rng(1)
     with pytest.raises(NumericalError, match="noisy"):
         PathFunction.fit(lambda x: x + 1e-8 * rng.standard_normal(x.size), [0.0, 1.0], tolerance=1e-10)
+
+
+def test_further_breaks_change_nothing():
+    function = PathFunction.fit(np.exp, [0.0, 0.4, 1.0], tolerance=1e-12)
+    split = function.split([0.1, 0.5, 0.51, 2.0])
+    assert set(split.breaks) == {*function.breaks, 0.1, 0.5, 0.51}
+    x = np.linspace(0.0, 0.999, 201)
+    np.testing.assert_allclose(split(x), function(x), rtol=1e-14)

@@ -24,8 +24,6 @@ FORMULAS = {
         "regime",
     },
     "lumped.lubrication.roughness": {
-        "rms_from_mean",
-        "mean_from_rms",
         "composite_roughness",
         "mean_roughness",
     },
@@ -37,7 +35,6 @@ FORMULAS = {
         "theoretical_single_stiffness",
         "basic_rack_factor",
         "material_factor",
-        "low_load_factor",
         "single_stiffness",
         "mean_mesh_stiffness",
     },

@@ -16,8 +16,8 @@ import multibody
 from lumped import GearPair
 from lumped.arguments import some_of, whole_number
 from lumped.errors import NumericalError, refuse
-from lumped.model.periodic_cycle import UNSTABLE, periodic_cycle
 from lumped.model.results import VARIABLES
+from lumped.model.steady import UNSTABLE, periodic_cycle
 from lumped.typing import FloatArray, Progress
 from validation.cross_check import metrics
 from validation.cross_check.agreement import (

@@ -9,7 +9,7 @@ import xarray as xr
 
 import multibody
 from lumped import GearPair, NumericalError, steady_state
-from lumped.model.periodic_cycle import UNSTABLE
+from lumped.model.steady import UNSTABLE
 from lumped.typing import FloatArray
 from validation.cross_check import metrics
 from validation.paper.records import Number

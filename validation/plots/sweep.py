@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from lumped.model.periodic_cycle import UNSTABLE
+from lumped.model.steady import UNSTABLE
 from validation.plots.style import BLUE, GREY, LINES, RED, legend_above, mark_operation, new_figure, scaled
 
 

@@ -10,7 +10,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from lumped.model.periodic_cycle import UNSTABLE
+from lumped.model.steady import UNSTABLE
 from lumped.typing import IntArray
 from validation.plots.style import BLACK, new_figure
 from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS

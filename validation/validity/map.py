@@ -12,8 +12,8 @@ import lumped
 from lumped import GearPair, LawRangeWarning
 from lumped.arguments import real_numbers
 from lumped.lubrication.film import regime
-from lumped.model.periodic_cycle import UNSTABLE
 from lumped.model.results import provenance
+from lumped.model.steady import UNSTABLE
 from lumped.path_of_contact import contact_path
 from lumped.typing import FloatArray, Progress
 from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS

@@ -14,9 +14,9 @@ import multibody
 from floquet import gear_pair_system, monodromy
 from lumped import GearPair
 from lumped.arguments import whole_number
-from lumped.model.periodic_cycle import periodic_cycle
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.propagation import STAGES, STEP_ANGLE, step_maps
+from lumped.model.steady import periodic_cycle
 from lumped.typing import FloatArray
 from validation.verification.checks import Level, Refinement
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import lumped
-from lumped.model.periodic_cycle import UNSTABLE
+from lumped.model.steady import UNSTABLE
 from validation.plots.sweep import sweep_figure
 from validation.reporting.build import document, written
 from validation.reporting.chapters import CHAPTERS

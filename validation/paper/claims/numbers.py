@@ -13,7 +13,7 @@ import xarray as xr
 
 from lumped import GearPair, PathFunction
 from lumped.friction import mean_coefficient
-from lumped.model.periodic_cycle import periodic_cycle
+from lumped.model.steady import periodic_cycle
 from lumped.path_of_contact import contact_path, friction_path_function
 from lumped.typing import FloatArray
 from validation.paper.operating_points import FIGURE_2A, FIGURE_7, LAWS, TORQUE_2B, second_pair

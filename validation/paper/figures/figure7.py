@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from lumped import GearPair
-from lumped.model.periodic_cycle import UNSTABLE
+from lumped.model.steady import UNSTABLE
 from validation.measurements import Measurement, align, overlay, overlay_metrics, predict
 from validation.measurements.specification import PAIR_LABELS
 from validation.paper.operating_points import FIGURE_7, OperatingPoint

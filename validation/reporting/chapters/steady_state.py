@@ -8,8 +8,8 @@ import numpy as np
 
 from lumped import GearPair, bodies
 from lumped.model.averaged import Mode
-from lumped.model.periodic_cycle import UNSTABLE
 from lumped.model.results import VARIABLES
+from lumped.model.steady import UNSTABLE
 from validation.cross_check.metrics import mesh_orders
 from validation.plots.motion import (
     motions_figure,

@@ -8,7 +8,7 @@ import numpy as np
 
 from floquet.gear.chart_axes import operating_rpm, with_point
 from lumped import GearPair
-from lumped.model.periodic_cycle import UNSTABLE
+from lumped.model.steady import UNSTABLE
 from lumped.typing import BoolArray, FloatArray
 from validation.plots.validity_map import validity_map_figure
 from validation.reporting.blocks import Content, Fact, Facts, Picture, Quantity, Rows, Table, Text
