@@ -7,3 +7,15 @@ from .rexs.exporting import write_rexs as write_rexs
 from .rexs.importing import gear_pair_from_rexs as gear_pair_from_rexs
 from .rexs.stages import Stage as Stage
 from .rexs.stages import rexs_stages as rexs_stages
+
+__all__ = [
+    "Stage",
+    "gear_pair_from_rexs",
+    "parameter_text",
+    "read_netcdf",
+    "rexs_stages",
+    "scipy_state_space",
+    "write_results",
+    "write_rexs",
+    "write_state_space",
+]

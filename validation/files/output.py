@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import os
 import tempfile
 from collections.abc import Iterator
@@ -129,6 +128,8 @@ def _inert(texts: np.ndarray[Any, np.dtype[Any]]) -> np.ndarray[Any, np.dtype[An
 
 def _write_csv(result: xr.Dataset, path: Path) -> None:
     """One row per point of the axes, one column per variable (and tooth pair, multiplier or law)."""
+    import pandas as pd
+
     ready = _real(result)
     axes = [str(d) for d in ready.sizes if d not in COLUMN_DIMENSIONS]
     grid = np.meshgrid(*(ready[d].to_numpy() for d in axes), indexing="ij")
@@ -147,9 +148,5 @@ def _write_csv(result: xr.Dataset, path: Path) -> None:
             known = ready[d].to_numpy() if d in ready.coords else np.arange(ready.sizes[d])
             labels = [f"{label}_{d}{k}" for label in labels for k in known]
         columns += [(f"{name}{label} [{unit}]", row) for label, row in zip(labels, values, strict=True)]
-    columns = [(heading, _inert(v) if v.dtype.kind in "OU" else v) for heading, v in columns]
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow([heading for heading, _ in columns])
-        for row in zip(*(values.tolist() for _, values in columns), strict=True):
-            writer.writerow(row)
+    table = pd.DataFrame({heading: _inert(v) if v.dtype.kind in "OU" else v for heading, v in columns})
+    table.to_csv(path, index=False, na_rep="nan", lineterminator="\r\n", encoding="utf-8")

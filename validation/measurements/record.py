@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import hashlib
-from collections.abc import Iterator, Mapping
+import io
+import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from validation.measurements.specification import (
     sampling_rate,
     si_factor,
 )
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 _MAX_BYTES = 2_000_000_000
 #: Values whose squares can be summed.
@@ -81,15 +84,8 @@ def load_measurement(source: str | Path | Mapping[str, Any], data: str | Path | 
 
 def parse_measurement(spec: MeasurementSpec, text: str) -> Measurement:
     """Read the samples of a record from CSV text: optional # lines, one line of headings, then numbers."""
-    lines = text.splitlines()
-    first = next((j for j, line in enumerate(lines) if line.strip() and not line.startswith("#")), None)
-    if first is None:
-        raise refuse("data", "empty", "a line of headings and numbers", "Check the file.")
-    try:
-        headings = next(csv.reader([lines[first]], delimiter=spec.delimiter))
-    except csv.Error as error:
-        raise refuse("data", "the line of headings", "names of columns", f"{error}.") from None
-    columns = _columns(headings)
+    cells = _cells(spec, text)
+    columns = _columns([str(heading) for heading in cells.columns])
     wanted = [(c.column, f"channel.{c.name}.column") for c in spec.channel]
     if spec.abscissa.column is not None:
         wanted.insert(0, (spec.abscissa.column, "abscissa.column"))
@@ -97,9 +93,7 @@ def parse_measurement(spec: MeasurementSpec, text: str) -> Measurement:
         if column not in columns:
             known = ", ".join(map(shown, columns))
             raise refuse(field, shown(column), f"one of {known}", "Correct the column's name.")
-    if not any(line.split("#")[0].strip() for line in islice(lines, first + 1, None)):
-        raise refuse("data", "0 rows", ">= 8 rows", "Check the file.")
-    table = _numbers(spec, lines, first + 1, [columns[column][0] for column, _ in wanted])
+    table = _numbers(cells.iloc[:, [columns[column][0] for column, _ in wanted]])
     if table.shape[0] < 8:
         raise refuse("data", f"{table.shape[0]} rows", ">= 8 rows", "Check the file.")
     units = [columns[column][1] for column, _ in wanted]
@@ -144,23 +138,42 @@ def _name_and_unit(heading: str) -> tuple[str, str | None]:
     return heading, None
 
 
-def _numbers(spec: MeasurementSpec, lines: list[str], start: int, places: list[int]) -> FloatArray:
-    def cells() -> Iterator[str]:
-        for line in islice(lines, start, None):
-            yield line.replace(",", ".") if spec.decimal == "," else line
+def _cells(spec: MeasurementSpec, text: str) -> pd.DataFrame:
+    """Read the table; a column that holds anything but numbers stays one of texts."""
+    import pandas as pd
 
     try:
-        table = np.loadtxt(cells(), delimiter=spec.delimiter, usecols=places, ndmin=2, comments="#")
-    except (ValueError, IndexError) as error:
-        raise refuse(
-            "data", "a cell", "a finite number in every cell of a named column", f"{shown(str(error))}."
-        ) from None
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", pd.errors.ParserWarning)  # lines longer than the headings
+            return pd.read_csv(
+                io.StringIO(text),
+                sep=spec.delimiter,
+                decimal=spec.decimal,
+                comment="#",
+                skipinitialspace=True,
+                index_col=False,
+                low_memory=False,
+            )
+    except pd.errors.EmptyDataError:
+        raise refuse("data", "empty", "a line of headings and numbers", "Check the file.") from None
+    except (ValueError, OverflowError, pd.errors.ParserWarning) as error:
+        allowed = "a finite number in every cell of a named column"
+        raise refuse("data", "a line", allowed, f"{shown(str(error).strip())}.") from None
+
+
+def _numbers(cells: pd.DataFrame) -> FloatArray:
+    """Numbers of the named columns (rows, columns); the first cell that is none is refused by its place."""
+    import pandas as pd
+
+    table = cells.apply(pd.to_numeric, errors="coerce").to_numpy(dtype=np.float64)
     bad = np.argwhere(~np.isfinite(table))
     if bad.size:
+        row, column = bad[0]
         raise refuse(
             "data",
-            f"row {bad[0, 0] + 1} after the headings is not finite",
-            "finite numbers",
+            f"{shown(str(cells.iloc[row, column]))} in row {row + 1} after the headings, "
+            f"column {shown(str(cells.columns[column]))}",
+            "a finite number in every cell of a named column",
             "Remove or repair the row; gaps are not filled.",
         )
     return np.asarray(table, dtype=np.float64)
