@@ -16,6 +16,7 @@ from lumped import friction, losses, quasi_static
 from lumped.errors import ParameterError, SpurcheckError
 from lumped.lubrication import film
 from lumped.model.averaged import averaged_state_space, frequency_response
+from lumped.path_of_contact.friction_profile import friction_profile
 from validation import crosscheck
 from validation.measurements import predict
 from validation.verification import refinements
@@ -53,7 +54,7 @@ CALLS = {
         {"pair": PAIR, "amounts": 1e-5, "lengths": 1e-3},
         "amounts lengths torque shape phases",
     ),
-    friction.friction_profile: ({"pair": PAIR}, "laws points"),
+    friction_profile: ({"pair": PAIR}, "laws points"),
     losses.quasi_static_losses: ({"pair": PAIR}, "law sharing samples_per_cycle"),
     losses.losses_of_laws: ({"pair": PAIR}, "laws"),
     losses.loss_factor: ({"pair": PAIR}, "sharing"),
