@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from floquet import (
         PeriodicSystem,
         campbell,
-        critical_damping,
         monodromy,
         stability_boundaries,
         stability_chart,
+        stability_margins,
     )
     from lumped import (
         GearPair,
@@ -71,7 +71,6 @@ __all__ = [
     "attribution",
     "bodies",
     "campbell",
-    "critical_damping",
     "crosscheck",
     "floquet",
     "gear_pair_from_rexs",
@@ -93,6 +92,7 @@ __all__ = [
     "speed_sweep",
     "stability_boundaries",
     "stability_chart",
+    "stability_margins",
     "static_transmission_error",
     "steady_state",
     "validation",

@@ -11,9 +11,9 @@ import xarray as xr
 from matplotlib.figure import Figure
 from scipy.linalg import eigh
 
+import floquet
 import lumped
 from floquet.gear.axes import vary
-from floquet.gear.tongues import critical_damping
 
 
 def compute() -> xr.Dataset:
@@ -32,9 +32,8 @@ def compute() -> xr.Dataset:
 
 
 def _critical(pair: lumped.GearPair) -> float:
-    ladder = [0.0, 0.02, 0.06]
-    found = critical_damping(pair, (13000.0, 20000.0), damping_ratios=ladder, orders=2, rtol=1e-8)
-    return max(found["critical_damping"].to_numpy()[found["label"].to_numpy() == "2w3/2"], default=0.0)
+    tongues = floquet.stability_margins(pair, (13000.0, 20000.0)).tongues
+    return max((tongue.critical_damping for tongue in tongues if tongue.label == "2w3/2"), default=0.0)
 
 
 def draw(result: xr.Dataset) -> Figure:

@@ -1,11 +1,6 @@
-from .engine.chart import chart as chart
-from .engine.chart import load_chart as load_chart
-from .engine.chart import save_chart as save_chart
 from .engine.chart import scan as scan
 from .engine.forced import PeriodicMotion as PeriodicMotion
 from .engine.forced import periodic_motion as periodic_motion
-from .engine.modes import FloquetModes as FloquetModes
-from .engine.modes import floquet_modes as floquet_modes
 from .engine.monodromy import Monodromy as Monodromy
 from .engine.monodromy import monodromy as monodromy
 from .engine.propagators.base import Propagator as Propagator
@@ -21,8 +16,8 @@ from .gear.campbell import campbell as campbell
 from .gear.chart import stability_chart as stability_chart
 from .gear.coulomb_zones import CoulombGearPair as CoulombGearPair
 from .gear.coulomb_zones import stability_zones as stability_zones
-from .gear.coverage import boundary_coverage as boundary_coverage
 from .gear.friction_effect import friction_effect as friction_effect
+from .gear.margins import stability_margins as stability_margins
 from .gear.multipliers import GearPairMultipliers as GearPairMultipliers
 from .gear.multipliers import gear_pair_multipliers as gear_pair_multipliers
 from .gear.multipliers import gear_pair_system as gear_pair_system
@@ -30,7 +25,6 @@ from .gear.paths import multiplier_paths as multiplier_paths
 from .gear.reference import extended_monodromy as extended_monodromy
 from .gear.reference import stress_test as stress_test
 from .gear.sensitivities import gear_sensitivities as gear_sensitivities
-from .gear.tongues import critical_damping as critical_damping
 from .gear.tongues import label_regions as label_regions
 from .rank_one.batch import FastMonodromy as FastMonodromy
 from .rank_one.batch import FastMultipliers as FastMultipliers

@@ -2,29 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 from joblib import Parallel, delayed
 
-from floquet.engine.monodromy import monodromy
 from floquet.engine.multipliers import verdicts
-from floquet.engine.propagators.base import Propagator
 from floquet.engine.spectrum import Spectrum
-from floquet.engine.system import PeriodicSystem
 from lumped.arguments import real_numbers, whole_number
 from lumped.errors import NumericalError, refuse, shown
-from lumped.typing import FloatArray
+from lumped.labelling import Variable, labelled_dataset
+from lumped.typing import FloatArray, Progress
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Axes = Mapping[str, npt.ArrayLike]
-Progress = Callable[[int, int], None]
-"""Called with (points done, points in all)."""
 
 VERDICTS = {"stable": 1, "undecided": 0, "unstable": -1}
 """Values of the chart variable ``verdict``."""
@@ -63,7 +58,7 @@ def scan(
     evaluate : parameters -> `Spectrum`; every point must give the same number of multipliers
     axes : name -> values
     n_jobs : processes, as in joblib; -1 for all cores. ``evaluate`` must then be picklable.
-    progress : called with (points done, points in all)
+    progress : told the finished fraction
 
     Returns
     -------
@@ -91,7 +86,7 @@ def scan(
     for spectrum in stream:
         results.append(spectrum)
         if progress is not None:
-            progress(len(results), len(points))
+            progress(len(results) / len(points))
     multipliers = np.array([r.multipliers for r in results])
     errors = np.array([r.multiplier_errors for r in results])
     radius = np.array([r.spectral_radius for r in results])
@@ -121,106 +116,32 @@ def chart_dataset(
     Dataset with spectral_radius, error, verdict (1 stable, 0 undecided, -1 unstable) over the axes, and where
     given, multipliers, multiplier_errors over the axes and ``multiplier``
     """
-    import xarray as xr
-
     shape = tuple(values.size for values in grid.values())
     dims = tuple(grid)
-    verdict = verdicts(radius, radius_error)
-    dataset = xr.Dataset(
-        {
-            "spectral_radius": (
-                dims,
-                radius.reshape(shape),
-                {"units": "1", "long_name": "spectral radius, largest modulus of the multipliers"},
-            ),
-            "error": (
-                dims,
-                radius_error.reshape(shape),
-                {"units": "1", "long_name": "bound on the error of the spectral radius"},
-            ),
-            "verdict": (
-                dims,
-                verdict.reshape(shape),
-                {
-                    "units": "1",
-                    "long_name": "stability verdict, undecided where the bound contains 1",
-                    "flag_values": [-1, 0, 1],
-                    "flag_meanings": "unstable undecided stable",
-                },
-            ),
-        },
-        coords={name: (name, values) for name, values in grid.items()},
-    )
+    bound = "bound on the error of "
+    variables: dict[str, Variable] = {
+        "spectral_radius": (
+            dims, radius.reshape(shape), "1", "spectral radius, largest modulus of the multipliers"
+        ),
+        "error": (dims, radius_error.reshape(shape), "1", bound + "the spectral radius"),
+        "verdict": (
+            dims,
+            verdicts(radius, radius_error).reshape(shape),
+            "1",
+            "stability verdict, undecided where the bound contains 1",
+        ),
+    }  # fmt: skip
     if multipliers is not None and multiplier_errors is not None:
-        full = (*dims, "multiplier")
-        dataset["multipliers"] = (
+        full, each = (*dims, "multiplier"), (*shape, -1)
+        variables["multipliers"] = (
+            full, multipliers.reshape(each), "1", "Floquet multipliers, largest modulus first"
+        )  # fmt: skip
+        variables["multiplier_errors"] = (
             full,
-            multipliers.reshape(*shape, -1),
-            {"units": "1", "long_name": "Floquet multipliers, largest modulus first"},
+            multiplier_errors.reshape(each),
+            "1",
+            bound + "each multiplier",
         )
-        dataset["multiplier_errors"] = (
-            full,
-            multiplier_errors.reshape(*shape, -1),
-            {"units": "1", "long_name": "bound on the error of each multiplier"},
-        )
-    return dataset
-
-
-def chart(
-    factory: Callable[[dict[str, float]], PeriodicSystem],
-    axes: Axes,
-    *,
-    rtol: float = 1e-10,
-    method: str | Propagator = "gauss",
-    n_jobs: int = 1,
-    progress: Progress | None = None,
-) -> xr.Dataset:
-    """Stability chart of any family of periodic systems.
-
-    Parameters
-    ----------
-    factory : parameters {axis name: value} -> `PeriodicSystem`
-    axes : name -> values
-    rtol, method : as in `monodromy`
-    n_jobs, progress : as in `scan`
-
-    Returns
-    -------
-    xarray.Dataset, see `chart_dataset`
-    """
-
-    def evaluate(point: dict[str, float]) -> Spectrum:
-        return monodromy(factory(point), rtol, method=method)
-
-    return scan(evaluate, axes, n_jobs=n_jobs, progress=progress)
-
-
-def save_chart(dataset: xr.Dataset, path: str | Path) -> None:
-    """Write a chart as NetCDF, which has no complex numbers: they become ``_real`` and ``_imag``.
-
-    Parameters
-    ----------
-    dataset : the chart, as `stability_chart` or `chart` returns it
-    path : of the file
-    """
-    split = dataset.copy()
-    for name, variable in dataset.data_vars.items():
-        if np.iscomplexobj(variable.values):
-            split[f"{name}_real"] = variable.real.assign_attrs(variable.attrs)
-            split[f"{name}_imag"] = variable.imag.assign_attrs(variable.attrs)
-            split = split.drop_vars(str(name))
-    split.to_netcdf(path, engine="h5netcdf")
-
-
-def load_chart(path: str | Path) -> xr.Dataset:
-    """Read a chart written by `save_chart`."""
-    import xarray as xr
-
-    with xr.open_dataset(path, engine="h5netcdf") as opened:
-        dataset = opened.load()
-    names: Sequence[str] = [str(n)[:-5] for n in dataset.data_vars if str(n).endswith("_real")]
-    for name in names:
-        real, imag = dataset[f"{name}_real"], dataset[f"{name}_imag"]
-        dataset[name] = (real + 1j * imag).assign_attrs(real.attrs)
-        dataset = dataset.drop_vars([f"{name}_real", f"{name}_imag"])
+    dataset = labelled_dataset(variables, {name: (values, "", name) for name, values in grid.items()})
+    dataset["verdict"].attrs.update(flag_values=[-1, 0, 1], flag_meanings="unstable undecided stable")
     return dataset

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from floquet.engine.chart import Progress, checked_axes
+from floquet.engine.chart import checked_axes
 from floquet.engine.intervals import UnstableInterval, seeded_nodes, unstable_intervals
 from floquet.engine.tongues import ModeShares, Tongue, label_tongue
 from floquet.gear.axes import GEAR_AXES, GearVariation, gear_axis, vary
@@ -22,7 +22,7 @@ from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_number, real_numbers, whole_number
 from lumped.errors import refuse, shown
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, Progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -117,7 +117,7 @@ def stability_boundaries(
     orders : largest k of the clusters
     xtol : relative accuracy of the boundaries
     rtol : of the monodromy matrices
-    progress : called with (values done, values in all)
+    progress : told the finished fraction
 
     Returns
     -------
@@ -161,7 +161,7 @@ def stability_boundaries(
             label, _ = label_variation(vary(pair, {**point, "speed_rpm": interval.peak}))
             found.setdefault(label, {}).setdefault(index, []).append(interval)
         if progress is not None:
-            progress(index + 1, values.size)
+            progress((index + 1) / values.size)
     result = _dataset(pair, found, name, values)
     result["complete"] = (name, complete, {"units": "1", "long_name": "grid as fine as the damping asks for"})
     return result if axes else result.isel({name: 0}, drop=True)

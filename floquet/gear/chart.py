@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from floquet.engine.chart import Axes, Progress, chart_dataset, checked_axes, scan
+from floquet.engine.chart import Axes, chart_dataset, checked_axes, scan
 from floquet.engine.propagators.base import Propagator
 from floquet.engine.spectrum import Spectrum
 from floquet.gear.axes import gear_axis, vary
@@ -22,7 +22,7 @@ from floquet.gear.plane import Plane, Store, plane_multipliers
 from lumped.arguments import one_of, real_number, whole_number
 from lumped.errors import refuse
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, Progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -59,7 +59,7 @@ def stability_chart(
     store : "all"; or "radius" for the spectral radius, its error and the verdict without the multipliers: 17
         bytes a point instead of 257
     n_jobs : threads (Taylor) or processes (others); default all cores for Taylor, 1 for the others
-    progress : called with (points done, points in all)
+    progress : told the finished fraction
 
     Returns
     -------
@@ -139,7 +139,7 @@ def _compiled_chart(
         nonlocal done
         done += count
         if progress is not None:
-            progress(done, math.prod(shape))
+            progress(done / math.prod(shape))
 
     for index in product(*(range(grid[name].size) for name in outer)):
         where = dict(zip(outer, index, strict=True))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Literal
 
 import numpy as np
@@ -13,11 +13,9 @@ from floquet.engine.chart import checked_axes
 from floquet.engine.propagators.registry import PROPAGATORS
 from floquet.gear.chart import stability_chart
 from lumped import GearPair
+from lumped.arguments import one_of
 from lumped.errors import refuse
-from lumped.typing import FloatArray
-
-Progress = Callable[[float], None]
-"""Called with the finished fraction."""
+from lumped.typing import FloatArray, Progress
 
 METHODS = ("auto", "taylor", "chebyshev", *PROPAGATORS)
 #: From here on interpolation costs less processor time than every point by itself (28/28, laws I to III).
@@ -62,13 +60,11 @@ def dense_chart(
     points = math.prod(values.size for values in grid.values())
     if points > _LARGEST:
         raise refuse("points of the chart", points, f"at most {_LARGEST}", "Give the axes smaller counts.")
-    if method not in METHODS:
-        raise refuse("method", method, ", ".join(METHODS), "Choose among these.")
+    one_of("method", method, METHODS)
     chosen = chart_method(grid) if method == "auto" else method
     store: Literal["all", "radius"] = "all" if multipliers else "radius"
     if set(grid) - set(_FAST) or "speed_rpm" not in grid:
-        tell = None if progress is None else lambda done, total: progress(done / total)
-        return stability_chart(pair, grid, rtol=rtol, method=chosen, store=store, progress=tell)
+        return stability_chart(pair, grid, rtol=rtol, method=chosen, store=store, progress=progress)
     speeds = grid["speed_rpm"]
     rows = max(_SPEEDS, _SLICE * speeds.size // points)
     parts: list[xr.Dataset] = []

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from floquet.engine.chart import Axes, Progress, checked_axes
+from floquet.engine.chart import Axes, checked_axes
 from floquet.gear.chart import stability_chart
 from lumped.arguments import one_of, some_of
 from lumped.errors import refuse
 from lumped.friction import FRICTIONAL, LAWS
 from lumped.schema.pair import GearPair
+from lumped.typing import Progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,7 +42,7 @@ def friction_effect(
     laws : friction laws to compare
     reference : law from which the differences are taken
     rtol : as in `stability_chart`
-    progress : called with (laws done, laws in all)
+    progress : told the finished fraction
 
     Returns
     -------
@@ -66,7 +67,7 @@ def friction_effect(
     for index, law in enumerate((reference, *laws)):
         charts.append(stability_chart(pair, grid, friction_law=law, rtol=rtol))
         if progress is not None:
-            progress(index + 1, len(laws) + 1)
+            progress((index + 1) / (len(laws) + 1))
     base, others = charts[0], charts[1:]
     dims = tuple(grid)
     growth = np.stack([np.log(c.spectral_radius.values) for c in others])

@@ -2,6 +2,8 @@
 
 Every number is a root: edges of tongues over speed and over damping by bisection, tips by `tongue_tip`. No
 chart is read.
+
+Sources: docs/theory/floquet.md, "Where instability is, and what it is called".
 """
 
 from __future__ import annotations
@@ -18,7 +20,7 @@ from floquet.engine.intervals import UnstableInterval, seeded_nodes, unstable_in
 from floquet.engine.tongues import TongueTip, tongue_tip
 from floquet.gear.axes import vary
 from floquet.gear.block import gear_block
-from floquet.gear.boundaries import label_at, predicted_lines
+from floquet.gear.boundaries import checked_range, label_at, predicted_lines
 from floquet.gear.chart import stability_chart
 from floquet.rank_one.batch import fast_multipliers
 from lumped import GearPair
@@ -120,7 +122,7 @@ class StabilityMargins:
         return max((t.critical_damping for t in self.tongues), default=0.0)
 
 
-def stability_margins(pair: GearPair, speed_range: tuple[float, float]) -> StabilityMargins:
+def stability_margins(pair: GearPair, speed_rpm: tuple[float, float]) -> StabilityMargins:
     """Find every tongue over speed and its distance to the operating point, in speed and in damping.
 
     Friction is held at its mean over the path of contact: it moves tongues by far less than their width
@@ -130,12 +132,14 @@ def stability_margins(pair: GearPair, speed_range: tuple[float, float]) -> Stabi
     Parameters
     ----------
     pair : the gear pair
-    speed_range : pinion speeds searched [rpm]
+    speed_rpm : pinion speeds searched [rpm]
 
     Raises
     ------
+    ParameterError : not two increasing positive speeds
     NumericalError : a monodromy matrix cannot be computed; the text says what to try
     """
+    speed_range = checked_range(speed_rpm)
     rpm = pair.operating.pinion_speed * 30.0 / np.pi
     here = pair.mesh.damping_ratio
     coefficient = mean_coefficient(friction_path_function(pair))

@@ -75,7 +75,6 @@ CALLS = {
     floquet.PeriodicSystem: ({"A": SYSTEM.A, "period": 1.0}, "A period breakpoints b"),
     floquet.monodromy: ({"system": SYSTEM}, "rtol method max_substeps"),
     floquet.periodic_motion: ({"system": SYSTEM}, "times rtol method max_substeps"),
-    floquet.floquet_modes: ({"system": SYSTEM}, "samples rtol method max_substeps"),
     floquet.gear_pair_system: ({"source": PAIR}, "form"),
     floquet.gear_pair_multipliers: ({"source": PAIR}, "rtol method"),
     floquet.stability_chart: (
@@ -84,8 +83,7 @@ CALLS = {
     ),
     floquet.stability_boundaries: ({"pair": PAIR}, "speed_rpm axes nodes orders xtol rtol"),
     floquet.predicted_lines: ({"pair": PAIR}, "orders"),
-    floquet.chart: ({"factory": lambda _: SYSTEM, "axes": {"a": [1.0]}}, "axes rtol method n_jobs"),
-    floquet.critical_damping: ({"pair": PAIR}, "speed_rpm damping_ratios orders rtol"),
+    floquet.stability_margins: ({"pair": PAIR}, "speed_rpm"),
     floquet.campbell: ({"pair": PAIR, "speeds_rpm": [4000.0]}, "speeds_rpm mesh_orders orders rtol"),
     floquet.multiplier_paths: (
         {"pair": PAIR, "name": "speed_rpm", "values": [4000.0]},

@@ -222,7 +222,7 @@ def _boundaries(request: Request) -> View:
             pair,
             (float(speeds.min()), float(speeds.max())),
             {name: values} if values is not None else None,
-            progress=lambda done, total: tell(done / total, ""),
+            progress=tell,
         )
     if not found.sizes["tongue"]:
         stdout().print(f"no unstable speed from {speeds.min():g} to {speeds.max():g} rpm at any value")
@@ -272,7 +272,7 @@ def _laws(request: Request) -> View:
     with progress_bar("difference of two friction laws") as tell:
         effect = friction_effect(
             pair, grid, [law], reference=request.against, rtol=1e-8,
-            progress=lambda done, total: tell(done / total, ""),
+            progress=tell,
         )  # fmt: skip
     change = effect["growth_change"].to_numpy()
     flips = effect["verdict_change"].to_numpy()
