@@ -3,6 +3,11 @@
 With all of them off the exact model solves the lumped equations, so every difference between the two models
 is the sum of what these switches add. A new effect is its physics and its bit in ``kernels`` and its entry
 here.
+
+The momentary load in the friction law is no finite motion. The laws are stated for the full static load, and
+reading them at a pair's own load changes the coefficient by some ten per cent however small the torque is: a
+change that does not vanish with the motion would hide those that do. So it acts only where it is asked for,
+and the attribution shows what it does.
 """
 
 from __future__ import annotations
@@ -46,7 +51,7 @@ EFFECTS: dict[str, Effect] = {
     ),
     "sliding_velocity": Effect(
         kn.SLIDING,
-        "friction follows the actual sliding velocity in size and sign",
+        "friction follows the actual sliding and rolling velocities",
         "sliding_velocity",
     ),
     "entry_shift": Effect(
@@ -59,15 +64,23 @@ EFFECTS: dict[str, Effect] = {
         "teeth push but never pull; after the backlash the back sides touch",
         "contact_loss",
     ),
+    "friction_load": Effect(
+        kn.FRICTION_LOAD,
+        "the friction law reads the momentary load of each tooth pair, not the full static load",
+        "friction_load",
+    ),
 }
 #: Why the models may differ, in words. Rotations and centres together place the contact; one without the
 #: other is no motion of the machine, so the two effects count as one cause.
 CAUSES: dict[str, str] = {
     "contact_position": "contact moves with the actual rotations and centres",
-    "sliding_velocity": "friction follows the actual sliding velocity",
+    "sliding_velocity": "friction follows the actual sliding and rolling velocities",
     "entry_shift": "teeth enter and leave where the deflected flanks cross the tip circles",
     "contact_loss": "teeth push but never pull",
+    "friction_load": "friction law at the momentary load of each pair (no finite motion, not part of all)",
 }
+#: Effects that act where none are named: all finite motions.
+DEFAULT_EFFECTS: tuple[str, ...] = tuple(name for name in EFFECTS if name != "friction_load")
 
 
 def effect_flags(effects: Collection[str] | Mapping[str, bool] | None) -> int:
@@ -75,20 +88,21 @@ def effect_flags(effects: Collection[str] | Mapping[str, bool] | None) -> int:
 
     Parameters
     ----------
-    effects : names of the effects that act, or a mapping name -> bool where names left out act; None: all act
+    effects : names of the effects that act, or a mapping name -> bool; names that a mapping
+        leaves out, or all of them with None, act if they are ``DEFAULT_EFFECTS``
 
     Raises
     ------
     ParameterError : unknown effect
     """
     if effects is None:
-        names: set[str] = set(EFFECTS)
+        names = set(DEFAULT_EFFECTS)
     elif isinstance(effects, Mapping):
         some_of("effects", list(effects), EFFECTS)
         for name, acts in effects.items():
             if not isinstance(acts, bool | np.bool_):
                 raise refuse(f"effects.{name}", acts, "True or False", "Say whether the effect acts.")
-        names = {name for name in EFFECTS if effects.get(name, True)}
+        names = {name for name in EFFECTS if effects.get(name, name in DEFAULT_EFFECTS)}
     else:
         names = set(some_of("effects", effects, EFFECTS, "Name the effects to keep."))
     return sum(EFFECTS[name].bits for name in names)

@@ -9,6 +9,7 @@ and start again behind it. A wrong prediction costs time and nothing else: the f
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -24,34 +25,36 @@ ENTRY, EXIT, SWITCH, SLIDING = 0.0, 1.0, 2.0, 3.0
 #: Length of an ordinary step over the base pitch. Where the jumps of a law and its first two derivatives come
 #: to less than this share of its largest value within a step, nothing happens.
 _STEP, _NEGLIGIBLE = 0.005, 1e-6
-#: Most switches per mesh cycle at which to stop, the largest; to stop at each of a table's hundreds would
-#: cost more than it saves.
+#: Most switches of the stiffness per mesh cycle at which to stop, the largest; to stop at each of a table's
+#: hundreds would cost more than it saves.
 _MOST_SWITCHES = 12
 #: A prediction is repeated until it moves by less than this share of the mesh cycle, or so often.
 _SHARP, _MOST_ITERATIONS = 1e-13, 10
 
 
 def event_table(
-    stiffness: PathFunction, damping: PathFunction, friction: PathFunction, error: PathFunction, pitch: float
+    stiffness: PathFunction, bends: Sequence[float], friction: Sequence[tuple[float, float]], pitch: float
 ) -> FloatArray:
     """Rows (kind, place) of what makes the force jump or bend once per mesh cycle, (n, 2).
 
     Parameters
     ----------
-    stiffness, damping, friction, error : element laws over the path of contact
+    stiffness : of a tooth pair over the path of contact
+    bends : where a relief starts [m]
+    friction : (kind, place) of the jumps and kinks of the friction law
     pitch : base pitch [m]
     """
     step = _STEP * pitch
-    found = []
-    for kind, law in ((SWITCH, stiffness), (SWITCH, damping), (SWITCH, error), (SLIDING, friction)):
-        for j in np.searchsorted(law.breaks, law.switches):
-            found.append((_change(law, int(j), step), kind, float(law.breaks[j])))
-    sizes = {(kind, place): size for size, kind, place in sorted(found) if size > _NEGLIGIBLE}
-    rows = sorted(sizes, key=lambda row: -sizes[row])[:_MOST_SWITCHES]
-    if (
-        max(_change(law, j, step) for law in (stiffness, damping) for j in (0, law.breaks.size - 1))
-        > _NEGLIGIBLE
-    ):
+    sizes = {
+        place: _change(stiffness, int(np.searchsorted(stiffness.breaks, place)), step)
+        for place in stiffness.switches.tolist()
+    }
+    largest = [place for place in sorted(sizes, key=lambda at: -sizes[at]) if sizes[place] > _NEGLIGIBLE]
+    rows = [*friction, *((SWITCH, place) for place in {*bends, *largest[:_MOST_SWITCHES]})]
+    low, high = stiffness.interval
+    if stiffness(
+        [low + step, high - step]
+    ).any():  # the damping, as sqrt(k), bends also where k starts from 0
         rows += [(ENTRY, 0.0), (EXIT, 0.0)]
     return np.array(rows, dtype=float).reshape(-1, 2)
 
@@ -80,9 +83,9 @@ def distance(
 ) -> float:
     """How far one tooth pair has to travel along the path of contact to an event, modulo the base pitch [m].
 
-    Friction is read where the nominal motion slides as fast as the teeth do, xi = L_XP + v_s/(Omega_p +
-    Omega_g). The sliding velocity v_s is linear along the line of action, so the place where it takes a given
-    value is exact.
+    Friction jumps or bends at a sliding velocity v_s, given by the place where the nominal motion slides so
+    fast, xi = L_XP + v_s/(Omega_p + Omega_g). The actual v_s is linear along the line of action, so the place
+    where it takes that value is exact.
     """
     ex, ey, length, delta, rho, xi = mesh_position(t, q, p, flags, DRIVE)
     if kind == EXIT:

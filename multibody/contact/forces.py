@@ -18,14 +18,13 @@ def tooth_forces(
     p: FloatArray,
     flags: int,
     table: FloatArray,
-    offsets: IntArray,
     wrench: FloatArray,
     contacts: FloatArray,
 ) -> int:
     """Wrench and contact records of one state; arguments and result as ``kernels.contact_forces``."""
     if flags & LINEAR:
-        return linear_forces(t, q, v, p, table, offsets, wrench, contacts)
-    return contact_forces(t, q, v, p, flags, table, offsets, wrench, contacts)
+        return linear_forces(t, q, v, p, table, wrench, contacts)
+    return contact_forces(t, q, v, p, flags, table, wrench, contacts)
 
 
 @compiled
@@ -36,7 +35,6 @@ def tooth_forces_over(
     p: FloatArray,
     flags: int,
     table: FloatArray,
-    offsets: IntArray,
     wrenches: FloatArray,
     contacts: FloatArray,
 ) -> IntArray:
@@ -47,9 +45,9 @@ def tooth_forces_over(
     times : (n,) [s]
     q, v, wrenches : (n, 6)
     contacts : (n, 2 MAX_PAIRS, N_RECORD)
-    p, flags, table, offsets : as ``tooth_forces``
+    p, flags, table : as ``tooth_forces``
     """
     counts = np.empty(times.size, np.int64)
     for i in range(times.size):
-        counts[i] = tooth_forces(times[i], q[i], v[i], p, flags, table, offsets, wrenches[i], contacts[i])
+        counts[i] = tooth_forces(times[i], q[i], v[i], p, flags, table, wrenches[i], contacts[i])
     return counts

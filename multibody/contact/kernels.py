@@ -1,7 +1,8 @@
 """Forces of the tooth contacts for one state of the two bodies: the compiled heart of the exact model.
 
-The geometry comes from ``multibody.contact.kinematics``; this file adds the element laws k(xi), c(xi),
-mu(xi), e(xi) and the switches of the finite-motion effects (``multibody.contact.effects``).
+The geometry comes from ``multibody.contact.kinematics`` and the friction laws from
+``multibody.contact.friction``; this file adds stiffness, damping and relief of a tooth pair, and the switches
+of the finite-motion effects (``multibody.contact.effects``).
 
 State: q = (x_p, y_p, phi_p, x_g, y_g, phi_g), deviations from the nominal position and rotation, world axes
 x, y, angles counter-clockwise. In the drive sense the pinion turns clockwise and the gear counter-clockwise.
@@ -13,7 +14,8 @@ import math
 
 import numpy as np
 
-from lumped.typing import FloatArray, IntArray
+from lumped.typing import FloatArray
+from multibody.contact import friction as fr
 from multibody.contact.compiled import compiled
 from multibody.contact.kinematics import (
     COAST,
@@ -29,6 +31,7 @@ from multibody.contact.kinematics import (
 
 # Bits of the effect switches, and of the linear mesh, which has none of the effects.
 ROTATION_PHASE, MOVING_LINE, SLIDING, ENTRY_SHIFT, CONTACT_LOSS, BACK_SIDE, LINEAR = 1, 2, 4, 8, 16, 32, 64
+FRICTION_LOAD = 128
 
 # Places in the parameter vector. Lengths in m, angles in rad, speeds in rad/s.
 (
@@ -39,11 +42,15 @@ ROTATION_PHASE, MOVING_LINE, SLIDING, ENTRY_SHIFT, CONTACT_LOSS, BACK_SIDE, LINE
     OMEGA_P, OMEGA_G,  # nominal speeds
     V_REG,  # velocity over which friction changes sign; 0 = at once
     T_LOW, T_HIGH,  # the nominal phase is clamped to this open time interval (a smooth segment)
-    N_PARAMETERS,
-) = range(23)  # fmt: skip
-
-# Rows of the law table's offsets.
-STIFFNESS, DAMPING, FRICTION, ERROR = 0, 1, 2, 3
+    DAMPING,  # c/sqrt(k) of a tooth pair, 2 zeta sqrt(m_e) [sqrt(kg)]
+    RELIEFS,  # number of reliefs that act
+    FIRST_RELIEF,  # of each: gear, roll angles of start and end [rad], amount [m], power of growth
+) = range(25)  # fmt: skip
+#: Columns of one relief, and the most reliefs: tip and root of both flanks.
+RELIEF_COLUMNS, MOST_RELIEFS = 5, 4
+#: Where the parameters of the friction laws start, see ``multibody.contact.friction``.
+FRICTION = FIRST_RELIEF + RELIEF_COLUMNS * MOST_RELIEFS
+N_PARAMETERS = FRICTION + fr.N_FRICTION
 
 # Columns of a contact record.
 # OVERLAP and its rate are those pressed elastically (tooth error taken off); CLOSING is the overlap's own
@@ -53,14 +60,13 @@ N_RECORD = 11
 
 
 @compiled
-def law(table: FloatArray, offsets: IntArray, which: int, xi: float) -> tuple[float, float]:
-    """Value and slope of one element law at xi, clamped to the ends of its path.
+def stiffness_at(table: FloatArray, xi: float) -> float:
+    """Stiffness of one tooth pair at xi [N/m], clamped to the ends of its path.
 
     ``table`` has one row per polynomial piece: its left end, its right end, then coefficients, highest
-    power of (xi - left) first; ``offsets[which]`` is the first row of a law.
+    power of (xi - left) first.
     """
-    low, high = offsets[which], offsets[which + 1] - 1
-    last = table.shape[1]
+    low, high = 0, table.shape[0] - 1
     x = min(max(xi, table[low, 0]), table[high, 1])
     while low < high:
         middle = (low + high + 1) // 2
@@ -69,30 +75,84 @@ def law(table: FloatArray, offsets: IntArray, which: int, xi: float) -> tuple[fl
         else:
             high = middle - 1
     s = x - table[low, 0]
-    value = slope = 0.0
-    for column in range(2, last):
-        slope = slope * s + value
+    value = 0.0
+    for column in range(2, table.shape[1]):
         value = value * s + table[low, column]
-    return value, slope
+    return value
+
+
+@compiled
+def relief_at(p: FloatArray, xi: float) -> tuple[float, float]:
+    """Material missing from both flanks that touch at xi [m], and its slope over xi.
+
+    Each relief grows over the roll angle of its own gear, the flank's distance from the base circle over the
+    base radius, from its start to the end of the flank.
+    """
+    error = slope = 0.0
+    for i in range(int(p[RELIEFS])):
+        row = FIRST_RELIEF + RELIEF_COLUMNS * i
+        pinion = p[row] == 0.0
+        sense = 1.0 / p[RADIUS_P] if pinion else -1.0 / p[RADIUS_G]
+        roll = xi / p[RADIUS_P] if pinion else (p[L_XY] - xi) / p[RADIUS_G]
+        width = p[row + 2] - p[row + 1]
+        share = (roll - p[row + 1]) / width
+        if share > 0.0:
+            power = p[row + 4]
+            error += p[row + 3] * share**power
+            slope += p[row + 3] * power * share ** (power - 1.0) * sense / width
+    return error, slope
+
+
+@compiled
+def nominal_friction(p: FloatArray, xi: float) -> float:
+    """Signed friction coefficient of the nominal motion at xi, under the full static load w_n."""
+    f = p[FRICTION:]
+    distance = xi - p[L_XP]
+    sliding = (p[OMEGA_P] + p[OMEGA_G]) * abs(distance)
+    rho_g = p[L_XY] - xi
+    rolling = p[OMEGA_P] * xi + p[OMEGA_G] * rho_g
+    mu = fr.magnitude(f, sliding, rolling, xi, rho_g, distance, f[fr.NOMINAL_LOAD])
+    return math.copysign(mu, distance) if distance != 0.0 else 0.0
 
 
 @compiled
 def signed_friction(
-    table: FloatArray, offsets: IntArray, xi: float, slide: float, p: FloatArray, flags: int, flank: float
+    p: FloatArray,
+    flags: int,
+    flank: float,
+    xi: float,
+    slide: float,
+    rolling: float,
+    rho_p: float,
+    rho_g: float,
+    normal: float,
 ) -> float:
-    """Friction coefficient with the sign of the sliding velocity.
+    """Friction coefficient with the sign of the sliding velocity, by the law at this contact.
 
-    The law is known as mu(xi) along the nominal path, where xi - L_XP = v_s/(Omega_p + Omega_g). With the
-    actual sliding velocity it is read at the position where the nominal motion slides as fast, and its sign
-    is that of v_s.
+    Without the effect of the actual sliding velocity the contact slides and rolls as in the nominal motion at
+    xi, without that of the momentary load it carries w_n.
+
+    Parameters
+    ----------
+    p, flags : as ``contact_forces``
+    flank : +1 drive, -1 coast
+    xi : position on the path of contact [m]
+    slide, rolling : actual sliding velocity and sum of the rolling velocities [m/s]
+    rho_p, rho_g : radii of curvature at the contact [m]
+    normal : load of the contact [N]
     """
+    f = p[FRICTION:]
+    load = max(normal, 0.0) / f[fr.FACE_WIDTH] if flags & FRICTION_LOAD else f[fr.NOMINAL_LOAD]
+    speeds = p[OMEGA_P] + p[OMEGA_G]
     if not flags & SLIDING:
-        return flank * law(table, offsets, FRICTION, xi)[0]
-    equivalent = p[L_XP] + flank * slide / (p[OMEGA_P] + p[OMEGA_G])
-    magnitude = abs(law(table, offsets, FRICTION, equivalent)[0])
-    if p[V_REG] > 0.0:
-        return magnitude * math.tanh(slide / p[V_REG])
-    return math.copysign(magnitude, slide) if slide != 0.0 else 0.0
+        slide, rho_p, rho_g = flank * speeds * (xi - p[L_XP]), xi, p[L_XY] - xi
+        rolling = p[OMEGA_P] * rho_p + p[OMEGA_G] * rho_g
+    if slide == 0.0:
+        return 0.0
+    mu = fr.magnitude(f, abs(slide), rolling, rho_p, rho_g, slide / speeds, load)
+    if flags & SLIDING and p[V_REG] > 0.0:
+        return mu * math.tanh(slide / p[V_REG])
+    return math.copysign(mu, slide)
 
 
 @compiled
@@ -154,7 +214,6 @@ def contact_forces(
     p: FloatArray,
     flags: int,
     table: FloatArray,
-    offsets: IntArray,
     wrench: FloatArray,
     contacts: FloatArray,
 ) -> int:
@@ -166,7 +225,7 @@ def contact_forces(
     q, v : (6,) deviations from nominal position and rotation, and their rates [m, rad, s]
     p : (N_PARAMETERS,) parameters in the order named above
     flags : effect switches, a sum of bits
-    table, offsets : the element laws, see ``law``
+    table : the stiffness, see ``stiffness_at``
     wrench : (6,) receives (Fx, Fy, M) of pinion and gear [N, N m]
     contacts : (2 MAX_PAIRS, N_RECORD) receives the records, drive flank first; back sides only when pressed
 
@@ -196,17 +255,19 @@ def contact_forces(
             xi = 0.5 * (arms[i, 0] - arms[i, 1] + p[L_XY])
             arm_p = 0.5 * (arms[i, 0] - arms[i, 1] + length)
             arm_g = length - arm_p
-            error, error_slope = law(table, offsets, ERROR, xi)
+            error, error_slope = relief_at(p, xi)
             pressed, pressing = delta - error, rate - error_slope * xi_rate
             if side == 1 and unilateral and pressed <= 0.0:
                 continue
-            stiffness = law(table, offsets, STIFFNESS, xi)[0]
-            damping = law(table, offsets, DAMPING, xi)[0]
+            stiffness = stiffness_at(table, xi)
+            damping = p[DAMPING] * math.sqrt(max(stiffness, 0.0))
             normal = stiffness * pressed + damping * pressing
             if unilateral and (pressed <= 0.0 or normal < 0.0):
                 normal = 0.0
             slide = sliding_velocity(ex, ey, vx, vy, omega_p, omega_g, arm_p, arm_g, flank)
-            mu = signed_friction(table, offsets, xi, slide, p, flags, flank)
+            # Each surface against the contact point, which turns with the line of action.
+            rolling = flank * (arm_p * (psi_rate - omega_p) + arm_g * (omega_g - psi_rate))
+            mu = signed_friction(p, flags, flank, xi, slide, rolling, arm_p, arm_g, normal)
             add_wrench(wrench, ex, ey, normal, mu * normal, arm_p, arm_g, rp, rg, flank)
             record = contacts[count]
             record[XI], record[LOAD], record[FRICTION_FORCE], record[MU] = xi, normal, mu * normal, mu

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 
-from lumped.typing import FloatArray, IntArray
+from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.compiled import compiled
-from multibody.contact.kernels import law
+from multibody.contact.kernels import nominal_friction, relief_at, stiffness_at
 
 
 @compiled
@@ -21,7 +21,6 @@ def linear_forces(
     v: FloatArray,
     p: FloatArray,
     table: FloatArray,
-    offsets: IntArray,
     wrench: FloatArray,
     contacts: FloatArray,
 ) -> int:
@@ -41,10 +40,10 @@ def linear_forces(
     count = 0
     xi = p[kn.L_XA] + advance
     while xi <= p[kn.L_XD]:
-        error, slope = law(table, offsets, kn.ERROR, xi)
-        stiffness = law(table, offsets, kn.STIFFNESS, xi)[0]
-        damping = law(table, offsets, kn.DAMPING, xi)[0]
-        mu = law(table, offsets, kn.FRICTION, xi)[0]
+        error, slope = relief_at(p, xi)
+        stiffness = stiffness_at(table, xi)
+        damping = p[kn.DAMPING] * math.sqrt(max(stiffness, 0.0))
+        mu = nominal_friction(p, xi)
         pressed, pressing = delta - error, rate - slope * speed
         normal = stiffness * pressed + damping * pressing
         friction = mu * normal

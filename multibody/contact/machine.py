@@ -1,26 +1,28 @@
 """A gear pair turned into the plain numbers that a multibody model needs.
 
-Only the drawing (teeth, module, pressure angle, tip radii, centre distance), the element laws and the loads
-are taken from ``lumped``. Base circles, line of action, path of contact and tooth thickness are derived
-here again, so that agreement of the two models is evidence for both.
+Only the stiffness of a tooth pair is taken from ``lumped``. Circles, path of contact, tooth thickness,
+bodies, bearings, damping, relief and friction are derived here again from the fields of the schema, so that
+agreement of the two models is evidence for both (``multibody.SHARED`` lists what is not).
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from lumped.model.bodies import bodies
 from lumped.model.mesh_elements import mesh_elements
 from lumped.path_function import PathFunction
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray, IntArray
+from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
+from multibody.contact.drawing import base_tooth_angle, bearing_constants, circles, masses, reliefs
 from multibody.contact.events import event_table
-from multibody.contact.kinematics import DRIVE, line_of_action, mesh_phase, wrap
+from multibody.contact.friction_parameters import fill_friction, friction_switches
+from multibody.contact.kinematics import DRIVE, add_wrench, line_of_action, mesh_phase, wrap
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +32,7 @@ class Machine:
     Attributes
     ----------
     parameters : (kernels.N_PARAMETERS,) geometry and nominal motion, in the order of ``kernels``
-    table, offsets : element laws as ``kernels.law`` reads them
+    table : stiffness of a tooth pair as ``kernels.stiffness_at`` reads it
     mass, inertia : (2,) pinion, gear [kg], [kg m^2]
     bearing_stiffness, bearing_damping : (2, 2) rows pinion, gear; columns x, y [N/m], [N s/m]
     torque_pinion, torque_gear : driving and braking torque, both positive [N m]
@@ -42,7 +44,6 @@ class Machine:
 
     parameters: FloatArray
     table: FloatArray
-    offsets: IntArray
     mass: FloatArray
     inertia: FloatArray
     bearing_stiffness: FloatArray
@@ -75,10 +76,9 @@ class Machine:
         The mesh acts along the nominal line of action, without friction and damping.
         """
         inertia, bearings, _, _ = self.bodies
-        rows = self.table[self.offsets[kn.STIFFNESS] : self.offsets[kn.STIFFNESS + 1]]
-        middle = 0.5 * (rows[:, 0] + rows[:, 1])
-        places = np.concatenate([rows[:, 0], middle, rows[:, 1]])
-        largest = max(abs(kn.law(self.table, self.offsets, kn.STIFFNESS, xi)[0]) for xi in places)
+        left, right = self.table[:, 0], self.table[:, 1]
+        places = np.concatenate([left, 0.5 * (left + right), right])
+        largest = max(abs(kn.stiffness_at(self.table, xi)) for xi in places)
         p = self.parameters
         mesh = np.array([1.0, 0.0, -p[kn.RADIUS_P], -1.0, 0.0, -p[kn.RADIUS_G]])
         stiffness = self.pairs * largest * np.outer(mesh, mesh) + np.diag(bearings)
@@ -93,14 +93,9 @@ def machine(pair: GearPair) -> Machine:
     ----------
     pair : validated gear pair
     """
-    drawing, body, elements = pair.geometry, bodies(pair), mesh_elements(pair)
-    alpha, module = pair.basic_rack.pressure_angle, pair.basic_rack.module
-    r_p = 0.5 * module * pair.pinion.teeth * math.cos(alpha)
-    r_g = 0.5 * module * pair.gear.teeth * math.cos(alpha)
-    pitch = math.pi * module * math.cos(alpha)
-    l_xy = math.sqrt(drawing.centre_distance**2 - (r_p + r_g) ** 2)
-    tip_p = math.sqrt(drawing.tip_radius_pinion**2 - r_p**2)
-    tip_g = math.sqrt(drawing.tip_radius_gear**2 - r_g**2)
+    drawn, stiffness = circles(pair), mesh_elements(pair).stiffness
+    r_p, r_g, pitch, l_xy = drawn.base_pinion, drawn.base_gear, drawn.pitch, drawn.tangent
+    tip_p, tip_g = drawn.reach_pinion, drawn.reach_gear
     l_xa, l_xp = l_xy - tip_g, l_xy * r_p / (r_p + r_g)
     omega_p = pair.operating.pinion_speed
     p = np.zeros(kn.N_PARAMETERS)
@@ -108,40 +103,50 @@ def machine(pair: GearPair) -> Machine:
     p[kn.TIP_P], p[kn.TIP_G] = tip_p, tip_g
     # At t = 0 the line of action is the x axis and one pair touches at A: rho_p = L_XA, rho_g = L_XY - L_XA.
     p[kn.CHI_P], p[kn.CHI_G] = -l_xa / r_p, math.pi - tip_g / r_g
-    for place, drive, radius, gear in (
-        (kn.CHI_P_BACK, kn.CHI_P, r_p, pair.pinion),
-        (kn.CHI_G_BACK, kn.CHI_G, r_g, pair.gear),
-    ):
-        # The other flank of the same tooth starts one base tooth thickness further on (see kinematics).
-        inv = math.tan(alpha) - alpha
-        thickness = module * math.cos(alpha) * (0.5 * math.pi + 2 * gear.profile_shift * math.tan(alpha))
-        thickness += 2.0 * radius * inv - 0.5 * pair.mesh.backlash
-        p[place] = p[drive] + math.pi + thickness / radius
+    # The other flank of the same tooth starts one base tooth thickness further on (see kinematics).
+    p[kn.CHI_P_BACK] = p[kn.CHI_P] + math.pi + base_tooth_angle(pair, pair.pinion, r_p)
+    p[kn.CHI_G_BACK] = p[kn.CHI_G] + math.pi + base_tooth_angle(pair, pair.gear, r_g)
     p[kn.CENTRE_PY], p[kn.CENTRE_GX], p[kn.CENTRE_GY] = -r_p, l_xy, r_g
     p[kn.L_XA], p[kn.L_XP], p[kn.L_XD], p[kn.L_XY] = l_xa, l_xp, tip_p, l_xy
     p[kn.OMEGA_P], p[kn.OMEGA_G] = omega_p, omega_p * r_p / r_g
     p[kn.T_LOW], p[kn.T_HIGH] = -math.inf, math.inf
-    mass = np.array([body.mass_pinion, body.mass_gear])
-    bearings = (pair.bearings.pinion, pair.bearings.gear)
-    stiffness = np.array([[b.loa_stiffness, b.oloa_stiffness] for b in bearings])
-    ratio = np.array([[b.loa_damping_ratio, b.oloa_damping_ratio] for b in bearings])
-    laws = (elements.stiffness, elements.damping, elements.friction, elements.error)
-    table, offsets = pack_laws(laws)
+    mass, inertia = masses(pair)
+    p[kn.DAMPING] = 2.0 * pair.mesh.damping_ratio * math.sqrt(mesh_mass(p, inertia))
+    rows = reliefs(pair, drawn)
+    p[kn.RELIEFS] = len(rows)
+    p[kn.FIRST_RELIEF : kn.FIRST_RELIEF + kn.RELIEF_COLUMNS * len(rows)] = np.ravel(rows)
+    fill_friction(pair, p)
+    starts = [at * r_p if which == 0.0 else l_xy - at * r_g for which, at, *_ in rows]
+    friction = friction_switches(p)
+    places = [place for _, place in friction]
+    bearing_stiffness, bearing_damping = bearing_constants(pair, mass)
     return Machine(
         parameters=p,
-        table=table,
-        offsets=offsets,
+        table=pack(stiffness),
         mass=mass,
-        inertia=np.array([body.inertia_pinion, body.inertia_gear]),
-        bearing_stiffness=stiffness,
-        bearing_damping=2.0 * ratio * np.sqrt(stiffness * mass[:, None]),
+        inertia=inertia,
+        bearing_stiffness=bearing_stiffness,
+        bearing_damping=bearing_damping,
         torque_pinion=pair.operating.pinion_torque,
         torque_gear=pair.operating.pinion_torque,
         pairs=math.floor((tip_p - l_xa) / pitch) + 1,
         period=pitch / (omega_p * r_p),
-        switches=switch_phases(laws, l_xa, tip_p, pitch),
-        events=event_table(*laws, pitch),
+        switches=switch_phases([*stiffness.switches, *starts, *places], l_xa, tip_p, pitch),
+        events=event_table(stiffness, starts, friction, pitch),
     )
+
+
+def mesh_mass(p: FloatArray, inertia: FloatArray) -> float:
+    """Mass that the rotations oppose to the mesh [kg], from the moments of a unit contact force.
+
+    Parameters
+    ----------
+    p : parameters whose base radii are set
+    inertia : (2,) pinion, gear [kg m^2]
+    """
+    wrench = np.zeros(6)
+    add_wrench(wrench, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, p[kn.RADIUS_P], p[kn.RADIUS_G], DRIVE)
+    return float(1.0 / np.sum(wrench[[2, 5]] ** 2 / inertia))
 
 
 def loaded_phase(machine: Machine, flags: int, q: FloatArray) -> Machine:
@@ -174,24 +179,21 @@ def loaded_phase(machine: Machine, flags: int, q: FloatArray) -> Machine:
     return replace(machine, parameters=p)
 
 
-def pack_laws(laws: tuple[PathFunction, ...]) -> tuple[FloatArray, IntArray]:
-    """Stack piecewise polynomials into one table for ``kernels.law``: rows of (left, right, coefficients)."""
-    order = max(law.coefficients.shape[0] for law in laws)
-    blocks, offsets = [], [0]
-    for law in laws:
-        pieces = law.coefficients.shape[1]
-        block = np.zeros((pieces, 2 + order))
-        block[:, 0], block[:, 1] = law.breaks[:-1], law.breaks[1:]
-        block[:, 2 + order - law.coefficients.shape[0] :] = law.coefficients.T
-        blocks.append(block)
-        offsets.append(offsets[-1] + pieces)
-    return np.ascontiguousarray(np.vstack(blocks)), np.array(offsets, dtype=np.int64)
+def pack(law: PathFunction) -> FloatArray:
+    """A piecewise polynomial as rows (left, right, coefficients), for ``kernels.stiffness_at``."""
+    return np.ascontiguousarray(np.column_stack([law.breaks[:-1], law.breaks[1:], law.coefficients.T]))
 
 
-def switch_phases(laws: tuple[PathFunction, ...], l_xa: float, l_xd: float, pitch: float) -> FloatArray:
-    """Phases of the nominal mesh cycle in [0, 1) where a pair meets a jump or a kink; 0 is always one."""
-    places = np.concatenate([[l_xa, l_xd], *(law.switches for law in laws)])
-    phases = np.sort(np.mod((places - l_xa) / pitch, 1.0))
+def switch_phases(places: Sequence[float], l_xa: float, l_xd: float, pitch: float) -> FloatArray:
+    """Phases of the nominal mesh cycle in [0, 1) where a pair meets a jump or a kink; 0 is always one.
+
+    Parameters
+    ----------
+    places : of jumps and kinks on the path of contact [m]
+    l_xa, l_xd, pitch : ends of the path, base pitch [m]
+    """
+    ends_and_places = np.array([l_xa, l_xd, *places])
+    phases = np.sort(np.mod((ends_and_places - l_xa) / pitch, 1.0))
     # Places that differ by rounding (or by a whole pitch) are one event.
     keep = np.diff(phases, prepend=-1.0) > 1e-11
     phases = phases[keep]

@@ -25,6 +25,7 @@ SMALL_VELOCITY = 1e-4
 #: A law is continuous at the pitch point if it jumps by less than this share of its largest value.
 _CONTINUOUS = 1e-3
 _BESIDE = 1e-9  # m
+_PLACES = 101  # at which the largest coefficient is looked for
 
 
 def friction_velocity(machine: Machine) -> tuple[float, str]:
@@ -68,17 +69,11 @@ def _accelerations(machine: Machine) -> tuple[float, float, float]:
 
 def _largest(machine: Machine) -> float:
     """Largest friction coefficient on the path of contact."""
-    first, last = machine.offsets[kn.FRICTION], machine.offsets[kn.FRICTION + 1]
-    rows = machine.table[first:last]
-    places = np.concatenate([rows[:, 0], 0.5 * (rows[:, 0] + rows[:, 1])])
-    return max(abs(_mu(machine, float(xi))) for xi in places)
+    p = machine.parameters
+    return max(abs(kn.nominal_friction(p, xi)) for xi in np.linspace(p[kn.L_XA], p[kn.L_XD], _PLACES))
 
 
 def _beside_pitch_point(machine: Machine) -> float:
     """Larger friction coefficient just before and after the pitch point."""
     place = float(machine.parameters[kn.L_XP])
-    return max(abs(_mu(machine, place + side * _BESIDE)) for side in (-1.0, 1.0))
-
-
-def _mu(machine: Machine, xi: float) -> float:
-    return float(kn.law(machine.table, machine.offsets, kn.FRICTION, xi)[0])
+    return max(abs(kn.nominal_friction(machine.parameters, place + side * _BESIDE)) for side in (-1.0, 1.0))

@@ -166,14 +166,14 @@ def _force_function(
     q, v = np.frombuffer(buffer).reshape(2, 6)
     wrench = np.empty(6)
     contacts = np.empty((2 * MAX_PAIRS, kn.N_RECORD))
-    table, offsets, pack = machine.table, machine.offsets, struct.Struct("12d").pack_into
+    table, pack = machine.table, struct.Struct("12d").pack_into
 
     def forces(
         _system: exu.MainSystem, t: float, _item: int, coordinates: list[float], rates: list[float]
     ) -> FloatArray:
         budget.calls += 1
         pack(buffer, 0, *coordinates, *rates)
-        if tooth_forces(t, q, v, p, flags, table, offsets, wrench, contacts) < 0:
+        if tooth_forces(t, q, v, p, flags, table, wrench, contacts) < 0:
             budget.reason = "not finite"
             raise _Stop
         if budget.calls - budget.before > budget.limit:
@@ -211,7 +211,7 @@ def contact_state(
     m = model.machine
     wrenches, contacts = np.empty((times.size, 6)), np.zeros((times.size, 2 * MAX_PAIRS, kn.N_RECORD))
     p, flags = model.parameters, model.flags
-    counts = tooth_forces_over(times, q, v, p, flags, m.table, m.offsets, wrenches, contacts)
+    counts = tooth_forces_over(times, q, v, p, flags, m.table, wrenches, contacts)
     return wrenches, contacts, counts
 
 

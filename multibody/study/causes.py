@@ -13,7 +13,7 @@ from lumped.labelling import labelled_dataset
 from lumped.model.results import provenance
 from lumped.schema.pair import GearPair
 from lumped.typing import Progress
-from multibody.contact.effects import CAUSES, EFFECTS
+from multibody.contact.effects import CAUSES, DEFAULT_EFFECTS, EFFECTS
 from multibody.run.flow_map import steady_state
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def attribution(
     rtol: float = 1e-9,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """How much each finite-motion effect changes the periodic motion.
+    """How much each finite-motion effect changes the periodic motion, and the momentary load in friction.
 
     Each motion has the brake torque that balances it: in a run from the same state every effect that changes
     the losses would also let the pair drift, and the phase with it.
@@ -46,20 +46,23 @@ def attribution(
     xarray.Dataset over ``cause`` and ``quantity``: ``alone``, the largest change when only this cause acts,
     and ``without``, the largest change when all causes but this one act; both over the peak to peak of the
     motion without any, so they are shares of the difference from the lumped model. Cause "all" is the whole
-    difference; the attribute ``largest`` names the cause that changes the transmission error most. A
-    quantity that does not move without effects (y_p without friction) is NaN.
+    difference: all finite motions, so not the cause "friction_load", whose ``without`` is NaN. The attribute
+    ``largest`` names the finite motion that changes the transmission error most. A quantity that does not
+    move without effects (y_p without friction) is NaN.
     """
 
     def motion(effects: set[str]) -> xr.Dataset:
         return steady_state(pair, effects=effects, samples_per_cycle=samples_per_cycle, rtol=rtol)
 
-    every = set(EFFECTS)
+    every = set(DEFAULT_EFFECTS)
     groups = {cause: {name for name in EFFECTS if EFFECTS[name].cause == cause} for cause in CAUSES}
     groups["all"] = every
     base = motion(set())
-    table = {kind: np.zeros((len(groups), len(_QUANTITIES))) for kind in _KINDS}
+    table = {kind: np.full((len(groups), len(_QUANTITIES)), np.nan) for kind in _KINDS}
     for row, own in enumerate(groups.values()):
         for kind, effects in (("alone", own), ("without", every - own)):
+            if kind == "without" and not own <= every:
+                continue  # it is no part of the whole
             run = motion(effects)
             for column, name in enumerate(_QUANTITIES):
                 swing = float(np.ptp(base[name].to_numpy()))
@@ -68,6 +71,7 @@ def attribution(
         if progress is not None:
             progress((row + 1) / len(groups))
     causes = list(groups)
+    motions = [cause for cause in CAUSES if groups[cause] <= every]
     return labelled_dataset(
         {
             kind: (("cause", "quantity"), table[kind], "1", f"largest change over peak to peak, {text}")
@@ -78,5 +82,5 @@ def attribution(
             "quantity": (list(_QUANTITIES), "1", "quantity that changes"),
         },
         provenance(pair, samples_per_cycle=samples_per_cycle, rtol=rtol)
-        | {"largest": causes[int(np.argmax(table["alone"][:-1, 0]))]},
+        | {"largest": max(motions, key=lambda cause: table["alone"][causes.index(cause), 0])},
     )

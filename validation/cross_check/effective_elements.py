@@ -33,16 +33,21 @@ def moved(law: PathFunction, place: FloatArray, stands_at: FloatArray) -> PathFu
     PathFunction, linear between the places and the crossings of breaks of the law
     """
 
-    def value(actual: FloatArray) -> FloatArray:
+    def value(actual: FloatArray, _nodes: FloatArray) -> FloatArray:
         return law(np.clip(actual, *law.interval))
 
     return _through(value, law, law.breaks[1:-1], place, stands_at)
 
 
 def at_sliding(
-    law: PathFunction, pitch_point: float, place: FloatArray, slides_as: FloatArray, width: float
+    law: PathFunction,
+    pitch_point: float,
+    place: FloatArray,
+    slides_as: FloatArray,
+    width: float,
+    ratio: FloatArray,
 ) -> PathFunction:
-    """Friction coefficient at the actual sliding velocity, with its sign.
+    """Friction coefficient at the actual contact, with the sign that the law has where it slides as fast.
 
     Parameters
     ----------
@@ -52,19 +57,19 @@ def at_sliding(
     slides_as : (k,) where the nominal motion slides as fast as the teeth do there [m]
     width : distance from the pitch point over which the sign changes, as tanh [m]; at once if it is less than
         the places lie apart
+    ratio : (k,) coefficient at the actual contact over that of the nominal motion where it slides as fast
 
     Returns
     -------
     PathFunction, linear between the places and the crossings of breaks of the law
     """
-
-    def value(equivalent: FloatArray) -> FloatArray:
-        magnitude = np.abs(law(np.clip(equivalent, *law.interval)))
-        beyond = equivalent - pitch_point
-        sign = np.tanh(beyond / width) if width > 0.0 else np.sign(beyond)
-        return np.asarray(sign * magnitude, dtype=np.float64)
-
     width = width if width > np.diff(place).max() else 0.0
+
+    def value(equivalent: FloatArray, nodes: FloatArray) -> FloatArray:
+        mu = law(np.clip(equivalent, *law.interval)) * np.interp(nodes, place, ratio)
+        sharpness = np.tanh(np.abs(equivalent - pitch_point) / width) if width > 0.0 else 1.0
+        return np.asarray(sharpness * mu, dtype=np.float64)
+
     pieces = law.breaks.size - 1
     parts = np.interp(np.arange(pieces * _PARTS + 1) / _PARTS, np.arange(pieces + 1), law.breaks)
     marks = np.union1d(parts, pitch_point + width * _TANH)
@@ -95,13 +100,13 @@ def shortened(law: PathFunction, first: float, last: float) -> PathFunction:
 
 
 def _through(
-    value: Callable[[FloatArray], FloatArray],
+    value: Callable[[FloatArray, FloatArray], FloatArray],
     law: PathFunction,
     marks: FloatArray,
     place: FloatArray,
     image: FloatArray,
 ) -> PathFunction:
-    """``value`` of each place's image: lines, broken at the places and where the image meets a mark."""
+    """``value`` of each place's image and place: lines, broken at places and where the image meets a mark."""
     low, high = law.interval
     before, after = image[:-1, None] - marks, image[1:, None] - marks
     crossing = np.nonzero(before * after < 0.0)
@@ -112,7 +117,8 @@ def _through(
     nodes[-1] = high
     # Each line goes through two inner points, so a jump at its end stays outside.
     width = np.diff(nodes)
-    near, far = (value(np.interp(nodes[:-1] + s * width, place, image)) for s in (0.25, 0.75))
+    inner = (nodes[:-1] + share * width for share in (0.25, 0.75))
+    near, far = (value(np.interp(x, place, image), x) for x in inner)
     slope = (far - near) / (0.5 * width)
     start = near - 0.25 * width * slope
     jump = np.abs(start[1:] - (start + slope * width)[:-1]) > _JUMP * np.abs(near).max()

@@ -22,8 +22,10 @@ nominal position is :math:`L_{XA} + s - p` and :math:`L_{XD} - s - p`.
 .. math:: v_s = (\Omega_p + \dot\theta_p) \xi - (\Omega_g + \dot\theta_g)(L_{XY} - \xi)
           - (\dot y_p - \dot y_g) + (\Omega_p + \Omega_g) p + \tfrac12 (\Omega_p - \Omega_g)(L - L_{XY}).
 
-Where the sign of friction changes over a velocity :math:`v_r`, a choice of the numerics, it is that of
-:math:`\tanh(v_s/v_r)` here too.
+The laws read this velocity, the radii :math:`\rho_p, \rho_g` of the actual contact, and the sum of the
+rolling velocities :math:`(\Omega_p + \dot\theta_p + \dot\psi) \rho_p + (\Omega_g + \dot\theta_g -
+\dot\psi) \rho_g`. Where the sign of friction changes over a velocity :math:`v_r`, a choice of the numerics,
+it is that of :math:`\tanh(v_s/v_r)` here too.
 
 *Turned line of action.* The normal load N acts along a line turned by :math:`\psi`, which pushes the pinion
 off the nominal line by :math:`-N \psi` and the gear by :math:`+N \psi`: a spring :math:`N/L_{XY}` between y_p

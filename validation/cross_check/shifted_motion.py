@@ -16,6 +16,7 @@ from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.steady import periodic_solution
 from lumped.typing import FloatArray
+from validation.cross_check.actual_friction import law_ratio
 from validation.cross_check.effective_elements import at_sliding, moved, shortened
 
 #: Times of the motion lie at least so far apart, over the mesh cycle.
@@ -44,6 +45,8 @@ class Shifts:
     place : (k,) nominal places
     stands_at : (k,) where the contact stands there
     slides_as : (k,) where the nominal motion slides as fast as the teeth do there
+    rolling : (k,) sum of the rolling velocities there [m/s]
+    arm_pinion, arm_gear : (k,) distances of the contact from both tangent points there
     """
 
     entry: float
@@ -51,6 +54,9 @@ class Shifts:
     place: FloatArray
     stands_at: FloatArray
     slides_as: FloatArray
+    rolling: FloatArray
+    arm_pinion: FloatArray
+    arm_gear: FloatArray
 
     def judged(self, place: FloatArray) -> FloatArray:
         """What must settle: the two ends, and the sliding at some places, (2 + k,)."""
@@ -170,6 +176,12 @@ class ShiftedModel:
         stands_at = slides_as = place + further[at]
         if "sliding_velocity" in self.effects:
             slides_as = stands_at + sliding / (g.omega_pinion + g.omega_gear)
+        arm_p = stands_at + 0.5 * longer[at]
+        arm_g = g.L_XY + longer[at] - arm_p
+        rates = motion.states[at, 6:].T
+        turning = moving * (rates[5] - rates[4]) / g.L_XY
+        rolling = (g.omega_pinion + rates[0] + turning) * arm_p
+        rolling += (g.omega_gear + rates[1] - turning) * arm_g
         way = motion.times * (g.base_pitch / self.cycle.period)
         return Shifts(
             entry=self._met(way, reach - further, 0.0, 1.0),
@@ -177,6 +189,9 @@ class ShiftedModel:
             place=place,
             stands_at=stands_at,
             slides_as=slides_as,
+            rolling=rolling,
+            arm_pinion=arm_p,
+            arm_gear=arm_g,
         )
 
     def held(self, motion: Motion) -> bool:
@@ -204,7 +219,12 @@ class ShiftedModel:
         friction = e.friction
         if friction.coefficients.any():
             width = self.friction_velocity / (g.omega_pinion + g.omega_gear)
-            friction = at_sliding(friction, g.L_XP, shifts.place, shifts.slides_as, width)
+            ratio = np.ones_like(shifts.place)
+            if "sliding_velocity" in self.effects:
+                ratio = law_ratio(
+                    self.pair, shifts.slides_as, shifts.rolling, shifts.arm_pinion, shifts.arm_gear
+                )
+            friction = at_sliding(friction, g.L_XP, shifts.place, shifts.slides_as, width, ratio)
         elements = replace(
             e,
             stiffness=shortened(moved(e.stiffness, shifts.place, shifts.stands_at), *ends),

@@ -14,7 +14,7 @@ from multibody.study.pictures import gear_picture
 from validation.reporting.blocks import Block, Picture, Rows, Table, Text
 from validation.reporting.results import Results
 
-_CAUSES = CAUSES | {"all": "all of them"}
+_CAUSES = CAUSES | {"all": "all finite motions"}
 _QUANTITIES = {"dte": "transmission error", "x_p": "pinion x", "y_p": "pinion y"}
 
 

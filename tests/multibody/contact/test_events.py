@@ -23,8 +23,8 @@ UNEQUAL = JUMPS.with_(
 def contacts(numbers, flags, t, q, v):
     """What jumps with the force: the number of pairs and the sign of each friction coefficient."""
     wrench, records = np.zeros(6), np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
-    p, table, offsets = numbers.parameters, numbers.table, numbers.offsets
-    count = kn.contact_forces(t, q, v, p, flags, table, offsets, wrench, records)
+    p, table = numbers.parameters, numbers.table
+    count = kn.contact_forces(t, q, v, p, flags, table, wrench, records)
     return count, tuple(np.sign(records[:count, kn.MU]))
 
 
@@ -62,11 +62,7 @@ def test_which_places_are_events():
     g = lumped.geometry(JUMPS)
 
     def events(pair):
-        e = lumped.mesh_elements(pair)
-        return {
-            (kind, round(place * 1e3, 3))
-            for kind, place in event_table(e.stiffness, e.damping, e.friction, e.error, g.base_pitch)
-        }
+        return {(kind, round(place * 1e3, 3)) for kind, place in machine(pair).events}
 
     ends, pitch_point = {(ENTRY, 0.0), (EXIT, 0.0)}, (SLIDING, round(g.L_XP * 1e3, 3))
     assert events(JUMPS) == ends | {pitch_point}
@@ -83,8 +79,7 @@ def test_of_many_switches_only_the_largest_are_events():
     breaks = np.linspace(7.5e-3, 22.9e-3, 101)
     heights = 1.0 + np.arange(100.0) ** 2  # jumps grow along the path
     steps = PathFunction(breaks, heights[None], breaks[1:-1])
-    smooth = PathFunction(breaks[[0, -1]], np.array([[1.0]]), np.empty(0))
-    rows = event_table(steps, smooth, smooth, smooth, 9.4e-3)
+    rows = event_table(steps, (), (), 9.4e-3)
     switches = rows[rows[:, 0] == SWITCH, 1]
     np.testing.assert_allclose(np.sort(switches), breaks[-13:-1], rtol=1e-15)
 

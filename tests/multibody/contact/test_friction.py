@@ -1,0 +1,118 @@
+"""Are the multibody model's own friction laws the published ones, and those of the lumped model?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import lumped
+from multibody.contact import friction as fr
+from multibody.contact import kernels as kn
+from multibody.contact.effects import effect_flags
+from multibody.contact.machine import machine
+
+#: Error of the lumped model's polynomials, which carry the law there.
+FIT = 1e-10
+
+
+def parameters(**values):
+    f = np.zeros(fr.N_FRICTION)
+    for name, value in values.items():
+        f[getattr(fr, name)] = value
+    return f
+
+
+def test_published_check_values():
+    """Laws II and III and the film at the values worked out twice by hand (docs/theory/friction.md)."""
+    f = parameters(VISCOSITY=0.010, ROUGHNESS=0.4e-6, MAXIMUM=0.2)
+    assert fr.benedict_kelley(f, 2.0, 10.0, 100e3) == pytest.approx(0.06235267, abs=5e-9)
+    radius = 0.008
+    f = parameters(VISCOSITY=0.010, ROUGHNESS=0.3e-6, MODULUS=2.0 * np.pi * radius * 1e18 / 100e3)
+    assert fr.hertz_pressure(f, radius, 100e3) == pytest.approx(1e9)
+    assert fr.xu_kahraman(f, 1.0, 20.0, radius, 100e3) == pytest.approx(0.01039515, abs=5e-9)
+    f = parameters(
+        VISCOSITY=0.010,
+        MODULUS=206e9 / (1.0 - 0.3**2),
+        PRESSURE_K=0.010471,
+        PRESSURE_S=0.1348,
+        COMPOSITE_ROUGHNESS=0.5e-6,
+        FILM_LENGTH=0.8e-3,
+    )
+    assert fr.film_parameter(f, 10.0, radius, 100e3) == pytest.approx(1.281808, abs=5e-7)
+
+
+@pytest.mark.parametrize("name", lumped.preset_names())
+@pytest.mark.parametrize("law", [name for name in fr.LAWS if name != "none"])
+@pytest.mark.parametrize("rpm", [800.0, None], ids=["800 rpm", "own speed"])
+def test_the_nominal_motion_has_the_lumped_coefficient(name, law, rpm):
+    """Laws, units, film, mean of law II and regimes of law V, each written twice."""
+    pair = lumped.load_gear_pair(name).with_(friction__law=law)
+    if rpm is not None:
+        pair = pair.with_(operating__pinion_speed=rpm)
+    p, table = machine(pair).parameters, lumped.mesh_elements(pair).friction
+    xi = np.random.default_rng(15).uniform(p[kn.L_XA], p[kn.L_XD], 400)
+    own = [kn.nominal_friction(p, x) for x in xi]
+    np.testing.assert_allclose(own, table(xi), rtol=0.0, atol=FIT)
+
+
+@pytest.mark.parametrize(
+    "oil",
+    [
+        {"iso_vg": 100, "viscosity_index": 110.0, "temperature": "60 degC"},
+        {"kinematic_viscosity_40": 95.0, "kinematic_viscosity_100": 10.5, "temperature": "75 degC"},
+    ],
+    ids=["grade", "two points"],
+)
+def test_viscosity_of_an_oil_is_that_of_the_lumped_model(oil):
+    changes = {"lubricant.viscosity_law": oil, "friction.law": "benedict_kelley"}
+    pair = lumped.load_gear_pair("fzg_c").with_(changes)
+    p, table = machine(pair).parameters, lumped.mesh_elements(pair).friction
+    xi = 0.3 * p[kn.L_XA] + 0.7 * p[kn.L_XP]
+    assert kn.nominal_friction(p, xi) == pytest.approx(float(table(xi)), abs=FIT)
+
+
+def test_jumps_and_kinks_are_found_where_the_lumped_law_has_them():
+    """Law V at a speed where the film makes it mixed near A and fluid near D, and law II at its bounds."""
+    pair = lumped.load_gear_pair("nasa_28_28").with_(operating__pinion_torque=22.6)
+    found = 0
+    for changes in (
+        {"friction__law": "composite", "operating__pinion_speed": 2500},
+        {"friction__law": "benedict_kelley", "friction__maximum": 0.05},
+        {"friction__law": "xu_kahraman"},
+    ):
+        at = pair.with_(**changes)
+        own, theirs = machine(at).switches, lumped.mesh_cycle(at).edges[:-1]
+        np.testing.assert_allclose(own, theirs / lumped.geometry(at).mesh_period, rtol=0.0, atol=1e-9)
+        found += own.size
+    assert found > 10
+
+
+def test_the_momentary_load_is_an_effect_of_its_own():
+    """Off: w_n, whatever the load. On: load over face width, which law III feels and law I does not."""
+    for law, feels in (("xu_kahraman", True), ("coulomb", False)):
+        pair = lumped.load_gear_pair("fzg_c").with_(friction__law=law, friction__coefficient=0.05)
+        p = machine(pair).parameters
+        xi, w = p[kn.L_XP] + 2e-3, p[kn.FRICTION + fr.NOMINAL_LOAD] * pair.gear.face_width
+
+        def mu(flags, normal, p=p, xi=xi):
+            return kn.signed_friction(p, flags, 1.0, xi, 1.0, 1.0, xi, p[kn.L_XY] - xi, normal)
+
+        on = effect_flags({"friction_load"})
+        assert mu(0, 0.5 * w) == mu(0, w) == pytest.approx(mu(on, w))
+        assert (abs(mu(on, 0.5 * w) / mu(on, w) - 1.0) > 0.1) == feels
+
+
+def test_actual_rolling_velocities_belong_to_the_sliding_velocity():
+    pair = lumped.load_gear_pair("fzg_c").with_(friction__law="xu_kahraman")
+    p = machine(pair).parameters
+    xi = p[kn.L_XP] + 2e-3
+    rolling = p[kn.OMEGA_P] * xi + p[kn.OMEGA_G] * (p[kn.L_XY] - xi)
+    slide = 2e-3 * (p[kn.OMEGA_P] + p[kn.OMEGA_G])
+
+    def mu(flags, factor):
+        return kn.signed_friction(p, flags, 1.0, xi, slide, factor * rolling, xi, p[kn.L_XY] - xi, 1.0)
+
+    on = effect_flags({"sliding_velocity"})
+    assert mu(on, 1.0) == pytest.approx(kn.nominal_friction(p, xi), rel=1e-12)
+    assert mu(0, 2.0) == mu(0, 1.0)
+    assert mu(on, 2.0) < 0.7 * mu(on, 1.0)
