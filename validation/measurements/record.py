@@ -93,7 +93,7 @@ def parse_measurement(spec: MeasurementSpec, text: str) -> Measurement:
         if column not in columns:
             known = ", ".join(map(shown, columns))
             raise refuse(field, shown(column), f"one of {known}", "Correct the column's name.")
-    table = _numbers(cells.iloc[:, [columns[column][0] for column, _ in wanted]])
+    table = _numbers(spec, cells.iloc[:, [columns[column][0] for column, _ in wanted]])
     if table.shape[0] < 8:
         raise refuse("data", f"{table.shape[0]} rows", ">= 8 rows", "Check the file.")
     units = [columns[column][1] for column, _ in wanted]
@@ -161,11 +161,16 @@ def _cells(spec: MeasurementSpec, text: str) -> pd.DataFrame:
         raise refuse("data", "a line", allowed, f"{shown(str(error).strip())}.") from None
 
 
-def _numbers(cells: pd.DataFrame) -> FloatArray:
+def _numbers(spec: MeasurementSpec, cells: pd.DataFrame) -> FloatArray:
     """Numbers of the named columns (rows, columns); the first cell that is none is refused by its place."""
     import pandas as pd
 
-    table = cells.apply(pd.to_numeric, errors="coerce").to_numpy(dtype=np.float64)
+    def numbers(column: pd.Series[Any]) -> pd.Series[Any]:
+        if column.dtype.kind in "iuf":
+            return column
+        return pd.to_numeric(column.astype(str).str.replace(spec.decimal, ".", regex=False), errors="coerce")
+
+    table = cells.apply(numbers).to_numpy(dtype=np.float64)
     bad = np.argwhere(~np.isfinite(table))
     if bad.size:
         row, column = bad[0]
