@@ -86,7 +86,7 @@ app.callback(help=paragraphs(spurcheck.__doc__))(spurcheck)
 
 
 def _open_streams() -> None:
-    """Give streams that a daemon closed a place: the next file opened, a journal, would take their number."""
+    """Open closed standard streams; otherwise the next file opened, such as a journal, takes their number."""
     for number in range(3):
         try:
             os.fstat(number)

@@ -136,7 +136,7 @@ def crosscheck(
 
 def _write(check: CrossCheck, target: Path) -> None:
     from validation.cross_check.agreement import off_switch_samples
-    from validation.files.output import whole_file, write_text
+    from validation.files.output import write_text
 
     if target.suffix.lower() == ".json":
         data = {"verdict": check.verdict, "agreements": [_data(a) for a in check.agreements]}
@@ -147,8 +147,7 @@ def _write(check: CrossCheck, target: Path) -> None:
 
     keep = off_switch_samples(check.pair, check.lumped["time"].to_numpy())
     models = {str(fidelity): result for fidelity, result in check.multibody.items()}
-    with whole_file(target) as temporary:
-        save(cross_check_figure(check.pair.geometry, "dte", "m", check.lumped, models, keep), temporary)
+    save(cross_check_figure(check.pair.geometry, "dte", "m", check.lumped, models, keep), target)
 
 
 def _data(agreement: Agreement) -> dict[str, Any]:

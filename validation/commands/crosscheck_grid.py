@@ -150,7 +150,7 @@ def _named(point: Mapping[str, str | float]) -> str:
 
 
 def _write(result: xr.Dataset, target: Path) -> None:
-    from validation.files.output import DATA_SUFFIXES, whole_file, write_dataset
+    from validation.files.output import DATA_SUFFIXES, write_dataset
 
     if target.suffix.lower() in DATA_SUFFIXES:
         write_dataset(result, target)
@@ -158,5 +158,4 @@ def _write(result: xr.Dataset, target: Path) -> None:
     from validation.plots.grid import grid_figure
     from validation.plots.style import save
 
-    with whole_file(target) as temporary:
-        save(grid_figure(result), temporary)
+    save(grid_figure(result), target)

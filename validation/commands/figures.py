@@ -39,7 +39,7 @@ def figures(
         ),
     ] = None,
     settings: opt.Settings = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace earlier figures in that folder.")] = False,
+    force: opt.ForceFolder = False,
 ) -> None:
     """Reproduce figures 2 to 7 of the paper.
 

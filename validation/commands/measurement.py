@@ -60,9 +60,7 @@ def measurement(
             help="Write an example into the new folder RECORD instead: computed forces with noise.",
         ),
     ] = False,
-    force: Annotated[
-        bool, typer.Option("--force", help="Replace an earlier evaluation in that folder.")
-    ] = False,
+    force: opt.ForceFolder = False,
 ) -> None:
     """Lay a measured record over its prediction and identify the friction coefficient.
 

@@ -47,6 +47,11 @@ Settings = Annotated[
 Force = Annotated[bool, typer.Option("--force", help="Overwrite what is there already.")]
 
 
+ForceFolder = Annotated[
+    bool, typer.Option("--force", help="Replace what this command wrote into that folder earlier.")
+]
+
+
 def gear_pair(
     source: str, speed: str | None, torque: str | None, law: str | None, settings: list[str] | None
 ) -> GearPair:
@@ -77,7 +82,7 @@ def gear_pair(
 
 
 def value_of(text: str) -> Any:
-    """Value of an option as a parameter file would read it; what is no TOML value is text."""
+    """Value of an option as a parameter file would read it; anything but a TOML value is text."""
     try:
         return tomllib.loads(f"value = {text}")["value"]
     except (tomllib.TOMLDecodeError, RecursionError):

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from validation.commands.options import DEFAULT_PAIR, Force
-from validation.commands.terminal import guarded, stderr, stdout, table
+from validation.commands.terminal import guarded, note, stderr, stdout, table
 
 
 @guarded
@@ -78,15 +78,26 @@ def init(
 
     text, name = preset_text(preset), preset
     if from_rexs is not None or stage is not None:
-        from validation.commands.rexs_file import text_from_rexs
-
-        text, name = text_from_rexs(from_rexs, stage)
+        text, name = _text_from_rexs(from_rexs, stage)
     if output is not None and str(output) == "-":
         typer.echo(text, nl=False)
         return
     path = check_file(output or Path(f"{name}.toml"), (".toml",), force=force)
     write_text(path, text)
     stderr().print(f"wrote {path}; next: spurcheck report {path} -o report", soft_wrap=True)
+
+
+def _text_from_rexs(path: Path | None, stage: int | None) -> tuple[str, str]:
+    """Parameter file of a stage of a REXS file, and a name for it; notes of the import go to stderr."""
+    from lumped.errors import refuse
+    from validation.exchange import gear_pair_from_rexs, parameter_text
+
+    if path is None:
+        raise refuse("--stage", stage, "a stage of the file of --from-rexs", "Give --from-rexs FILE too.")
+    mapping, notes = gear_pair_from_rexs(path, stage)
+    for text in notes:
+        note(text)
+    return parameter_text(mapping, notes), path.name.split(".")[0] or "rexs"
 
 
 @guarded

@@ -51,7 +51,7 @@ def report(
     torque: opt.Torque = None,
     law: opt.Law = None,
     settings: opt.Settings = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace an earlier report in that folder.")] = False,
+    force: opt.ForceFolder = False,
 ) -> None:
     """Write the verification report of a gear pair.
 

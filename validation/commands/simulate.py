@@ -56,7 +56,7 @@ def simulate(
     """
     import lumped
     from lumped.errors import refuse
-    from validation.files.output import FIGURE_SUFFIXES, whole_file, write_dataset
+    from validation.files.output import FIGURE_SUFFIXES, write_dataset
 
     target = opt.figure_or_data(output, force=force)
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
@@ -122,8 +122,7 @@ def simulate(
         from validation.plots.motion import history_figure
         from validation.plots.style import save
 
-        with whole_file(target) as temporary:
-            save(history_figure(g, result), temporary)
+        save(history_figure(g, result), target)
     else:
         write_dataset(result, target)
     stderr().print(f"wrote {target}", soft_wrap=True)

@@ -25,7 +25,7 @@ from lumped.errors import refuse
 from lumped.friction import LAWS
 from lumped.typing import FloatArray
 from validation.commands.terminal import progress_bar, stdout, table
-from validation.files.output import DATA_SUFFIXES, whole_file, write_dataset
+from validation.files.output import DATA_SUFFIXES, write_dataset
 from validation.plots.campbell import campbell_figure
 from validation.plots.friction_effect import friction_effect_figure
 from validation.plots.multipliers import multiplier_paths_figure
@@ -114,8 +114,7 @@ def show(view: str, request: Request) -> None:
             write_dataset(data, target)
             continue
         figure = figure or draw()
-        with whole_file(target) as temporary:
-            save(figure, temporary)
+        save(figure, target)
 
 
 def _chart(request: Request) -> View:

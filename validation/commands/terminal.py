@@ -24,7 +24,7 @@ P = ParamSpec("P")
 FAILED, REFUSED, NUMERICAL, INTERRUPTED = 1, 2, 3, 130
 
 
-#: Categories of characters that command a terminal or reorder a line instead of being seen; a line end may.
+#: Categories of characters that control a terminal or reorder a line; only the line end is let through.
 _UNSEEN = ("Cc", "Cf", "Cs")
 
 
@@ -35,7 +35,7 @@ class PlainConsole(Console):
         super().__init__(markup=False, highlight=False, emoji=False, **options)
 
     def render_str(self, text: str, **options: Any) -> Text:
-        """Return the text with what cannot be seen written as code writes it."""
+        """Return the text with invisible characters written as escape sequences."""
         if not text.isprintable():
             text = "".join(
                 c.encode("unicode_escape").decode() if unicodedata.category(c) in _UNSEEN and c != "\n" else c
@@ -94,7 +94,7 @@ def fail(text: str, code: int) -> NoReturn:
 
 
 def note(text: str) -> None:
-    """Tell something that is not the result."""
+    """Print a remark on stderr, apart from the result."""
     stderr().print(f"[yellow]note:[/yellow] {escape(text)}", markup=True, soft_wrap=True)
 
 

@@ -9,13 +9,15 @@ from validation.plots.labels import WHITE_BOX, label_above
 from validation.plots.stability import mark_operating_range
 from validation.plots.style import BLACK, GREY, RED, legend_above, look, new_figure
 
+#: Predicted lines up to this order are named.
+_NAMED_ORDERS = 2
+
 
 def campbell_figure(
     diagram: xr.Dataset,
     *,
     operating_rpm: float | None = None,
     operating_range: tuple[float, float] | None = None,
-    label_orders: int = 2,
 ) -> Figure:
     """Frequencies of the Floquet solutions and their growth over pinion speed.
 
@@ -24,7 +26,6 @@ def campbell_figure(
     diagram : dataset of ``floquet.gear.campbell.campbell``
     operating_rpm : operating speed, marked [rpm]
     operating_range : speeds of operation [rpm]
-    label_orders : predicted lines up to this order are named
     """
     figure, axes = new_figure(2, 1, height=5.2, sharex=True, gridspec_kw={"height_ratios": [2.2, 1.0]})
     top, bottom = axes[:, 0]
@@ -45,10 +46,10 @@ def campbell_figure(
                 ha="right", fontsize=7.5, color=GREY,
             )  # fmt: skip
     lines = list(zip(*(diagram[name].to_numpy() for name in ("line_speed", "order", "label")), strict=True))
-    named = [(float(x), str(label), order) for x, order, label in lines if order <= label_orders]
+    named = [(float(x), str(label), order) for x, order, label in lines if order <= _NAMED_ORDERS]
     for x, order, _ in lines:
         for ax in (top, bottom):
-            ax.axvline(x, color=RED, linewidth=0.8 if order <= label_orders else 0.3, alpha=0.5, zorder=0.5)
+            ax.axvline(x, color=RED, linewidth=0.8 if order <= _NAMED_ORDERS else 0.3, alpha=0.5, zorder=0.5)
     unstable = diagram["decay"].to_numpy().min(axis=1) < 0.0
     bottom.fill_between(
         speed, 0, 1, where=unstable, transform=bottom.get_xaxis_transform(), color=RED, alpha=0.2, linewidth=0

@@ -26,7 +26,6 @@ from validation.plots.style import (
     new_figure,
     scaled,
     switches_in_cycles,
-    with_gaps,
 )
 
 
@@ -102,7 +101,7 @@ def tooth_forces_figure(pair: GearPair, g: Geometry, motion: xr.Dataset) -> Figu
         for i, row in enumerate(values):
             ax.plot(
                 x,
-                with_gaps(x, row, touching[i]) / factor,
+                np.where(touching[i], row, np.nan) / factor,
                 **look(i),
                 linewidth=1.8,
                 label=f"pair {i}" + (" (ahead)" if i == 0 else ""),

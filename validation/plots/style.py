@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from lumped import Geometry, MeshCycle
 from lumped.typing import FloatArray
+from validation.files.output import whole_file
 
 #: Okabe and Ito's palette, distinguishable with every common colour vision deficiency.
 BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PURPLE = (
@@ -117,11 +118,6 @@ def mesh_cycles(result: xr.Dataset, g: Geometry) -> FloatArray:
     return np.asarray((time - time[0]) / g.mesh_period, dtype=np.float64)
 
 
-def with_gaps(x: FloatArray, y: FloatArray, present: NDArray[np.bool_]) -> FloatArray:
-    """Values with gaps where a tooth pair is out of contact, so that no line is drawn across."""
-    return np.asarray(np.where(present, y, np.nan), dtype=np.float64)
-
-
 def mark_switches(ax: Axes, events: Mapping[str, float], *, letters: bool = True) -> None:
     """Mark events on the x axis by thin lines, letters above the axes; equal places share a label."""
     places: dict[float, list[str]] = {}
@@ -174,7 +170,7 @@ def path_marks(g: Geometry) -> dict[str, float]:
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a figure as SVG, PDF or PNG; the same figure gives the same bytes, without dates.
+    """Write a figure whole as SVG, PDF or PNG; the same figure gives the same bytes, without dates.
 
     Parameters
     ----------
@@ -184,5 +180,5 @@ def save(figure: Figure, path: Path) -> None:
     suffix = path.suffix.lower().removeprefix(".")
     dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None, "ModDate": None}}
     metadata: dict[str, Any] = dates.get(suffix, {"Software": None})
-    with mpl.rc_context(_RC):
-        figure.savefig(path, format=suffix, dpi=_PNG_DPI, metadata=metadata)
+    with whole_file(path) as temporary, mpl.rc_context(_RC):
+        figure.savefig(temporary, format=suffix, dpi=_PNG_DPI, metadata=metadata)

@@ -1,7 +1,7 @@
 """What a chapter of the report is made of: plain data that becomes both HTML and JSON.
 
-A number is shown only through these blocks, and every block goes into report.json, so the page cannot show a
-number that the file does not have.
+Chapters show numbers only through these blocks, and every block goes into report.json. The page therefore
+shows no number that report.json does not have.
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ _ERRORS = frozenset(
 )
 _ERROR_ROWS = ("change over one more cycle",)
 _ERROR_TABLES = frozenset({"code_verification/closed_forms", "solution_verification/refinement"})
-#: Size below which a number counts as zero beside the largest of its unit in its table, or of its column.
+#: A number counts as zero below this share of the largest of its unit in its table, or of its column.
 _SMALL = 1e-4
 _LARGEST_TEXT = 60
 #: Blocks that repeat the input, or name the software, which is free to change.
@@ -87,8 +87,8 @@ def compare(old: Mapping[str, Any], new: Mapping[str, Any], *, tolerance: float 
     A number fails where it changes by more than the tolerance, relative to the larger of the two and to a
     ten-thousandth of the largest number of its unit in its table, without a unit in its column. Where a row
     states the unit of its numbers each stands for itself. One that measures a numerical error fails where it
-    grows tenfold and beyond rounding. A verdict fails where it gets worse. An entry fails where it is gone,
-    as one where a whole chapter is. Texts, new entries, changed parameters and settings are shown and do not
+    grows tenfold and beyond rounding. A verdict fails where it gets worse. An entry fails where it is gone; a
+    chapter that is gone counts once. Texts, new entries, changed parameters and settings are shown and do not
     fail.
 
     Parameters

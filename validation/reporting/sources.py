@@ -11,6 +11,11 @@ from lumped.schema.files import leaf_paths, preset_names
 DEFAULT = "default of the schema"
 
 
+def sources(pair: GearPair) -> dict[str, str]:
+    """Path of every value of a gear pair -> its source."""
+    return {path: source_of(pair, path) for path in leaf_paths(pair) if path not in ("name", "description")}
+
+
 def source_of(pair: GearPair, path: str) -> str:
     """Where the value of a field comes from: the source of the longest prefix of its path that has one.
 

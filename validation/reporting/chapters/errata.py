@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from validation.paper import draw_errata
-from validation.reporting.blocks import Badge, Block, Content, Fact, Facts, Picture, Rows, Table, Text
+from validation.reporting.blocks import Badge, Block, Content, Fact, Facts, Picture, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.paper_results import PaperResults
 from validation.reporting.results import Results
@@ -17,29 +17,21 @@ def write(results: Results) -> Content | None:
     if not isinstance(results.paper, PaperResults):
         return None
     chapter = results.paper.errata
-    rows: Rows = [
-        (e.equation, e.printed, e.repaired, Badge("misprint", e.verdict), e.text) for e in chapter.errata
-    ]
-    evidence: Rows = [
-        (e.equation, v.quantity, v.printed, v.repaired, v.unit or "–", v.requirement or None)
-        for e in chapter.errata
-        for v in e.evidence
-    ]
     blocks: list[Block] = [
         *unstable_warning(results),
         Text(chapter.text),
         Facts("conditions", tuple(Fact(name, name, value) for name, value in chapter.conditions.items())),
-        Table(
+        table_of(
             "errata",
             "Misprints and their repair.",
+            chapter.errata,
             {
-                "equation": "equation",
-                "printed": "printed",
-                "repaired": "repaired",
-                "verdict": "the print is",
-                "text": "what shows it",
+                "equation": ("equation", lambda e: e.equation),
+                "printed": ("printed", lambda e: e.printed),
+                "repaired": ("repaired", lambda e: e.repaired),
+                "verdict": ("the print is", lambda e: Badge("misprint", e.verdict)),
+                "text": ("what shows it", lambda e: e.text),
             },
-            tuple(rows),
         ),
         Picture(
             "errata",
@@ -47,18 +39,18 @@ def write(results: Results) -> Content | None:
             "each printed sign put back alone.",
             partial(draw_errata, chapter),
         ),
-        Table(
+        table_of(
             "evidence",
             "The computations.",
+            [(e.equation, one) for e in chapter.errata for one in e.evidence],
             {
-                "equation": "equation",
-                "quantity": "quantity",
-                "printed": "as printed",
-                "repaired": "repaired",
-                "unit": "unit",
-                "requirement": "must hold",
+                "equation": ("equation", lambda item: item[0]),
+                "quantity": ("quantity", lambda item: item[1].quantity),
+                "printed": ("as printed", lambda item: item[1].printed),
+                "repaired": ("repaired", lambda item: item[1].repaired),
+                "unit": ("unit", lambda item: item[1].unit or "–"),
+                "requirement": ("must hold", lambda item: item[1].requirement or None),
             },
-            tuple(evidence),
         ),
     ]
     return Content(tuple(blocks))

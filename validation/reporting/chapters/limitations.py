@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from lumped.schema.files import leaf_paths
 from validation.reporting.blocks import Badge, Content, Rows, Table, Text
 from validation.reporting.chapter import Chapter
 from validation.reporting.formatting import number
 from validation.reporting.results import Results
-from validation.reporting.sources import is_assumed, source_of
+from validation.reporting.sources import is_assumed, sources
 from validation.validity.flag import Flag
 
 
@@ -38,19 +37,15 @@ def write(results: Results) -> Content:
             "says nothing about it; a measured record does (spurcheck measurement).",
         ),
     )
-    assumed, total = _assumed(results)
+    stated = sources(results.pair).values()
+    assumed = sum(map(is_assumed, stated))
     text = Text(
         f"Verification asks whether the equations are solved right; validation, whether they are the right "
-        f"equations, and only measurements decide that. {assumed} of {total} parameter values of this pair "
-        "are assumed: no conclusion is firmer than these. Apart from the paper's claims this report does not "
-        "vary them; a study says how far they move a result (spurcheck sweep)."
+        f"equations, and only measurements decide that. {assumed} of {len(stated)} parameter values of this "
+        "pair are assumed: no conclusion is firmer than these. Apart from the paper's claims this report "
+        "does not vary them; a study says how far they move a result (spurcheck sweep)."
     )
     return Content((text, table, outside))
-
-
-def _assumed(results: Results) -> tuple[int, int]:
-    paths = [path for path in leaf_paths(results.pair) if path not in ("name", "description")]
-    return sum(is_assumed(source_of(results.pair, path)) for path in paths), len(paths)
 
 
 def _rows(results: Results) -> Rows:

@@ -4,44 +4,34 @@ from __future__ import annotations
 
 import math
 import re
+from typing import Any
 
 from lumped import bodies, mesh_elements
 from lumped.schema.files import leaf_paths
 from lumped.schema.pair import stated_unit
-from validation.reporting.blocks import Badge, Content, Fact, Facts, Quantity, Rows, Table, Text
+from validation.reporting.blocks import Badge, Cell, Content, Fact, Facts, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
-from validation.reporting.sources import is_assumed, source_of
+from validation.reporting.sources import is_assumed, sources
 
 
 def write(results: Results) -> Content:
     """Write the chapter."""
     pair, g = results.pair, results.geometry
-    rows: Rows = []
-    assumed: set[int] = set()
-    for path, value in leaf_paths(pair).items():
-        if path in ("name", "description"):
-            continue
-        source = source_of(pair, path)
-        if is_assumed(source):
-            assumed.add(len(rows))
-        unit = stated_unit(path) or ""
-        shown = ", ".join(f"{v:g}" for v in value) if isinstance(value, list) else value
-        flag = Badge("warning", "assumed") if is_assumed(source) else ""
-        worded = unit == "1" or isinstance(value, str)
-        rows.append((path, shown, "" if worded else unit_text(unit), source, flag))
-    table = Table(
+    values, stated = leaf_paths(pair), sources(pair)
+    assumed = {path for path, source in stated.items() if is_assumed(source)}
+    table = table_of(
         "parameters",
-        f"Parameters of {pair.name}. {len(assumed)} of {len(rows)} values are assumed.",
+        f"Parameters of {pair.name}. {len(assumed)} of {len(stated)} values are assumed.",
+        list(stated),
         {
-            "field": "field",
-            "value": "value",
-            "unit": "unit",
-            "source": "source",
-            "assumed": "",
+            "field": ("field", lambda path: path),
+            "value": ("value", lambda path: _shown(values[path])),
+            "unit": ("unit", lambda path: _unit(path, values[path])),
+            "source": ("source", lambda path: stated[path]),
+            "assumed": ("", lambda path: Badge("warning", "assumed") if path in assumed else ""),
         },
-        tuple(rows),
-        frozenset(assumed),
+        marked=lambda path: path in assumed,
     )
     b = bodies(pair)
     stiffness = mesh_elements(pair).stiffness
@@ -84,6 +74,15 @@ def write(results: Results) -> Content:
         ),
     )
     return Content((table, Text("What follows from the parameters:"), derived))
+
+
+def _shown(value: Any) -> Cell:
+    return ", ".join(f"{v:g}" for v in value) if isinstance(value, list) else value
+
+
+def _unit(path: str, value: Any) -> str:
+    unit = stated_unit(path) or ""
+    return "" if unit == "1" or isinstance(value, str) else unit_text(unit)
 
 
 _EXPONENTS = str.maketrans("123456789", "¹²³⁴⁵⁶⁷⁸⁹")
