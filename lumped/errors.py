@@ -94,5 +94,15 @@ class NumericalError(SpurcheckError, ArithmeticError):
     """A computation did not reach its accuracy or met a non-finite number; the text says what to try."""
 
 
+class StorageError(SpurcheckError, OSError):
+    """A result cannot be written; the text names the path, the reason and what to do."""
+
+    @classmethod
+    def of(cls, path: Path, error: OSError) -> StorageError:
+        """Return the error for a file or folder that cannot be written."""
+        reason = error.strerror or str(error) or type(error).__name__
+        return cls(f"{path}: cannot be written: {reason}. Free space or choose another place.")
+
+
 class LawRangeWarning(UserWarning):
     """A friction or film law was evaluated outside the range in which it was fitted."""

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import functools
+import traceback
 import unicodedata
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec
 
 import typer
@@ -20,7 +22,8 @@ if TYPE_CHECKING:
 
 P = ParamSpec("P")
 
-#: Exit codes: a verdict that fails, an input that is refused, a computation that fails, an interruption.
+#: Exit codes: a verdict that fails, an input that is refused, a computation or the writing of its result
+#: that fails, an interruption.
 FAILED, REFUSED, NUMERICAL, INTERRUPTED = 1, 2, 3, 130
 
 
@@ -59,7 +62,7 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
 
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
-        from lumped.errors import LawRangeWarning, NumericalError, ParameterError
+        from lumped.errors import LawRangeWarning, NumericalError, ParameterError, StorageError
 
         told: set[str] = set()
 
@@ -76,13 +79,26 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
                 command(*args, **kwargs)
         except ParameterError as error:
             fail(str(error), REFUSED)
-        except NumericalError as error:
+        except (NumericalError, StorageError) as error:
             fail(str(error), NUMERICAL)
         except OSError as error:
             name = f"{error.filename}: " if error.filename else ""
             fail(f"{name}{error.strerror or type(error).__name__}", REFUSED)
         except KeyboardInterrupt:
             fail("interrupted", INTERRUPTED)
+        except MemoryError:
+            fail("not enough memory: ask for fewer points, samples or cycles", NUMERICAL)
+        except (typer.Exit, typer.Abort):
+            raise
+        except Exception as error:  # noqa: BLE001
+            # A fault of the program must not look like a verdict that failed, which is what Python's own exit
+            # code 1 means here.
+            place = traceback.extract_tb(error.__traceback__)[-1]
+            where = f"{Path(place.filename).name}:{place.lineno}"
+            fail(
+                f"a fault in spurcheck: {type(error).__name__} at {where}: {error}. Please report it.",
+                NUMERICAL,
+            )
 
     return run
 

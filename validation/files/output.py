@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import tempfile
 from collections.abc import Iterator
@@ -12,7 +13,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from lumped.errors import refuse
+from lumped.errors import StorageError, refuse
 from validation.files.matlab import mat_contents, save_mat
 
 DATA_SUFFIXES = (".nc", ".csv", ".mat")
@@ -56,18 +57,28 @@ def whole_file(path: Path) -> Iterator[Path]:
     """Give a temporary file beside ``path`` to write, and put it in place of ``path`` at the end.
 
     On any failure nothing is left behind and an existing file stays as it was.
+
+    Raises
+    ------
+    StorageError : the disk is full, or the place cannot be written any more
     """
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=path.suffix, dir=path.parent)
-    os.close(handle)
-    temporary = Path(name)
+    temporary: Path | None = None
     try:
+        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=path.suffix, dir=path.parent)
+        temporary = Path(name)
+        os.close(handle)
         yield temporary
         mask = os.umask(0)
         os.umask(mask)
         temporary.chmod(0o666 & ~mask)  # mkstemp makes it private
         temporary.replace(path)
+    except StorageError:
+        raise
+    except OSError as error:
+        raise StorageError.of(path, error) from error
     finally:
-        temporary.unlink(missing_ok=True)
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)
 
 
 def write_text(path: Path, text: str) -> None:
@@ -98,7 +109,10 @@ def _write_netcdf(result: xr.Dataset, path: Path) -> None:
         for name, variable in ready.data_vars.items()
         if variable.ndim and variable.dtype.kind == "f"
     }
-    ready.to_netcdf(path, engine="h5netcdf", encoding=encoding)
+    # HDF5 ends the process where a disk is full: it writes to memory, and only Python to the disk.
+    content = io.BytesIO()
+    ready.to_netcdf(content, engine="h5netcdf", encoding=encoding)
+    path.write_bytes(content.getbuffer())
 
 
 def _real(result: xr.Dataset) -> xr.Dataset:

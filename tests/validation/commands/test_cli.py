@@ -107,7 +107,7 @@ def test_malformed_toml_is_refused_with_its_place(tmp_path):
 def test_report_refuses_a_folder_with_content_and_one_that_cannot_be_written(tmp_path):
     (tmp_path / "notes.txt").write_text("mine")
     assert "--force" in refused("report", "-o", tmp_path)
-    assert "does not delete" in refused("report", "-o", tmp_path, "--force")
+    assert "nothing in it is replaced" in refused("report", "-o", tmp_path, "--force")
     assert "cannot be written" in refused("report", "-o", tmp_path / "notes.txt" / "below")
     assert [p.name for p in tmp_path.iterdir()] == ["notes.txt"]
 

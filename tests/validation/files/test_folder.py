@@ -1,18 +1,28 @@
-"""Which folders may a report replace, and what is left after success and failure?"""
+"""Which folders may results replace, what stays the user's, and what is left after success and failure?"""
 
 import json
 
 import pytest
 
 from lumped import ParameterError
-from validation.files.folder import FORMAT, check_target, is_report, whole_folder
+from lumped.errors import StorageError
+from validation.files.folder import CONTENTS, FIGURES, check_target, whole_folder
 
 
-def _earlier(folder):
-    folder.mkdir()
-    (folder / "report.json").write_text(json.dumps({"format": FORMAT}))
-    (folder / "old.txt").write_text("old")
-    return folder
+def write(out, files, **options):
+    with whole_folder(out, **{"force": True, **options}) as folder:
+        for name, text in files.items():
+            (folder / name).parent.mkdir(exist_ok=True)
+            (folder / name).write_text(text)
+
+
+def tree(folder):
+    """Relative path -> text of every file, hidden ones included."""
+    return {p.relative_to(folder).as_posix(): p.read_text() for p in folder.rglob("*") if p.is_file()}
+
+
+def names(folder):
+    return sorted(p.name for p in folder.iterdir())
 
 
 def test_a_new_folder_appears_only_at_the_end(tmp_path):
@@ -20,51 +30,122 @@ def test_a_new_folder_appears_only_at_the_end(tmp_path):
     with whole_folder(out, force=False) as folder:
         (folder / "x").write_text("1")
         assert not out.exists()
-    assert [p.name for p in out.iterdir()] == ["x"]
-    assert [p.name for p in out.parent.iterdir()] == ["b"]
+    assert names(out) == [CONTENTS, "x"]
+    assert names(out.parent) == ["b"]
 
 
 def test_an_empty_folder_is_filled(tmp_path):
     out = tmp_path / "out"
     out.mkdir()
-    with whole_folder(out, force=False) as folder:
-        (folder / "x").write_text("1")
-    assert (out / "x").exists()
+    write(out, {"x": "1"}, force=False)
+    assert names(out) == [CONTENTS, "x"]
 
 
-def test_force_replaces_an_earlier_report_completely(tmp_path):
-    out = _earlier(tmp_path / "out")
-    with whole_folder(out, force=True) as folder:
-        (folder / "x").write_text("1")
-    assert [p.name for p in out.iterdir()] == ["x"]
-    assert [p.name for p in tmp_path.iterdir()] == ["out"]
+def test_force_replaces_what_was_written_and_nothing_else(tmp_path):
+    out = tmp_path / "out"
+    write(out, {"page": "old", "figures/a.png": "old", "figures/b.png": "old"})
+    (out / "thesis.tex").write_text("years of work")
+    (out / "figures" / "mine.png").write_text("mine")
+    write(out, {"page": "new", "data/x": "new"})
+    found = tree(out)
+    found.pop(CONTENTS)
+    assert found == {
+        "page": "new",
+        "data/x": "new",
+        "thesis.tex": "years of work",
+        "figures/mine.png": "mine",
+    }
+    assert names(tmp_path) == ["out"]
 
 
-def test_force_does_not_replace_anything_else(tmp_path):
+def test_folders_that_became_empty_go(tmp_path):
+    out = tmp_path / "out"
+    write(out, {"figures/a.png": "old"})
+    write(out, {"page": "new"})
+    assert names(out) == [CONTENTS, "page"]
+
+
+@pytest.mark.parametrize(
+    "content",
+    ["{}", "[1]", "no json", '{"format": "other", "files": {}}', '{"format": "spurcheck-report"}']
+    + [
+        json.dumps({"format": "spurcheck-report", "files": {name: "0"}})
+        for name in ("../x", "/etc/passwd", "")
+    ],
+)
+def test_a_folder_without_a_list_of_ours_is_not_touched(tmp_path, content):
     out = tmp_path / "out"
     out.mkdir()
-    (out / "thesis.tex").write_text("years of work")
-    for content in ("{}", "[1]", "no json", '{"format": "other"}'):
-        (out / "report.json").write_text(content)
-        assert not is_report(out)
-        with pytest.raises(ParameterError, match="does not delete"):
-            check_target(out, force=True)
-    assert (out / "thesis.tex").exists()
+    (out / "report.json").write_text('{"format": "spurcheck-report"}')
+    (out / CONTENTS).write_text(content)
+    before = tree(out)
+    with pytest.raises(ParameterError, match="nothing in it is replaced"):
+        check_target(out, force=True)
+    assert tree(out) == before
 
 
-def _write_while_someone_else_does(out):
-    with whole_folder(out, force=False) as folder:
-        (folder / "x").write_text("1")
-        out.mkdir()
-        (out / "theirs").write_text("2")
+def test_results_of_another_kind_are_not_replaced(tmp_path):
+    out = tmp_path / "out"
+    write(out, {"x": "1"}, kind=FIGURES)
+    with pytest.raises(ParameterError, match="an earlier report"):
+        check_target(out, force=True)
+
+
+def test_a_written_file_that_the_user_changed_is_not_replaced(tmp_path):
+    out = tmp_path / "out"
+    write(out, {"summary.md": "ours"})
+    (out / "summary.md").write_text("ours, with notes")
+    with pytest.raises(ParameterError, match=r"summary\.md.*changed since"):
+        write(out, {"summary.md": "new"})
+    assert (out / "summary.md").read_text() == "ours, with notes"
+
+
+def test_a_file_of_the_user_is_not_overwritten_by_a_new_result(tmp_path):
+    out = tmp_path / "out"
+    write(out, {"x": "1"})
+    (out / "margins.csv").write_text("mine")
+    before = tree(out)
+    with pytest.raises(ParameterError, match=r"margins\.csv"):
+        write(out, {"x": "2", "margins.csv": "new"})
+    assert tree(out) == before
+
+
+def test_a_failure_in_the_middle_puts_everything_back(tmp_path, monkeypatch):
+    out = tmp_path / "out"
+    write(out, {"a": "old", "b": "old"})
+    before = tree(out)
+    moves = []
+
+    own = type(out).replace
+
+    def move(here, there):
+        moves.append(there)
+        if len(moves) == 4:  # two old files are away, one new one is in place
+            raise OSError(28, "No space left on device")
+        return own(here, there)
+
+    monkeypatch.setattr(type(out), "replace", move)
+    with pytest.raises(StorageError, match="No space left"):
+        write(out, {"a": "new", "b": "new"})
+    assert tree(out) == before
+    assert names(tmp_path) == ["out"]
 
 
 def test_content_that_appears_meanwhile_is_not_lost(tmp_path):
     out = tmp_path / "out"
-    with pytest.raises(ParameterError, match="not empty"):
-        _write_while_someone_else_does(out)
-    assert [p.name for p in out.iterdir()] == ["theirs"]
-    assert [p.name for p in tmp_path.iterdir()] == ["out"]
+    with pytest.raises(ParameterError, match="not empty"), whole_folder(out, force=False) as folder:  # noqa: PT012
+        (folder / "x").write_text("1")
+        out.mkdir()
+        (out / "theirs").write_text("2")
+    assert names(out) == ["theirs"]
+    assert names(tmp_path) == ["out"]
+
+
+def test_a_full_disk_names_the_folder_and_leaves_nothing(tmp_path):
+    out = tmp_path / "a" / "out"
+    with pytest.raises(StorageError, match=str(out)), whole_folder(out, force=False):
+        raise OSError(28, "No space left on device")
+    assert names(tmp_path) == []
 
 
 def test_a_file_and_a_place_below_a_file_are_refused(tmp_path):
@@ -86,4 +167,4 @@ def test_a_folder_that_cannot_be_made_is_refused_before_work(tmp_path, monkeypat
         whole_folder(tmp_path / "out", force=False),
     ):
         raise AssertionError("no folder should be given")
-    assert list(tmp_path.iterdir()) == []
+    assert names(tmp_path) == []
