@@ -11,19 +11,20 @@ printed with it.
 from __future__ import annotations
 
 import argparse
+import contextlib
+import multiprocessing
 import os
 import resource
 import tempfile
 import time
 from pathlib import Path
 
+import numpy as np
+
 from validation.studies import load_study, run_sweep
-from validation.studies.analyses import Evaluator
 from validation.studies.cases import case_list
 from validation.studies.cli_sweep import cores
-from validation.studies.journal import Journal, Key, scan
-from validation.studies.record import Record, Status
-from validation.studies.results import Table, results_dataset, write_results
+from validation.studies.results import results_dataset, write_results
 
 RUNS = 3
 
@@ -51,13 +52,10 @@ def seconds_of(function, *arguments, clock=time.process_time, **options):
 def children_memory():
     """Resident memory [MB] of each worker process of this process."""
     found = {}
-    for pid in Path(f"/proc/{os.getpid()}/task/{os.getpid()}/children").read_text().split():
-        try:
-            if b"popen_loky" in Path(f"/proc/{pid}/cmdline").read_bytes():
-                pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
-                found[pid] = pages * resource.getpagesize() / 1e6
-        except (FileNotFoundError, ProcessLookupError):
-            pass
+    for child in multiprocessing.active_children():
+        with contextlib.suppress(FileNotFoundError, ProcessLookupError):
+            pages = int(Path(f"/proc/{child.pid}/statm").read_text().split()[1])
+            found[child.pid] = pages * resource.getpagesize() / 1e6
     return found
 
 
@@ -66,7 +64,7 @@ def overhead(count):
 
     def times(number):
         study = study_of(number)
-        evaluate, values = Evaluator.of(study), case_list(study).values(range(number))
+        evaluate, values = StudyEvaluator.of(study), case_list(study).values(range(number))
         plain, swept = [], []
         for _ in range(RUNS):
             plain.append(seconds_of(lambda: [evaluate(v) for v in values])[0])
@@ -87,29 +85,28 @@ def overhead(count):
 
 
 def store(count):
-    """Cost of the journal and of compiling the result."""
-    study = study_of(count)
-    cases = case_list(study)
-    key = Key(cases)
+    """Cost of the store and of compiling the result."""
+    cases = case_list(study_of(count))
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder, "journal.bin")
 
         def write(block):
-            path.unlink(missing_ok=True)
-            with Journal(path, key) as journal:
+            Path(folder, STORE).unlink(missing_ok=True)
+            with Store(Path(folder), cases) as opened:
+                opened.begin_run()
                 for start in range(0, count, block):
                     numbers = range(start, min(start + block, count))
-                    journal.append([Record(n, Status.OK, 1e-3, (1.5, n * 0.25)) for n in numbers])
+                    values = np.outer(numbers, [1.5, 0.25])
+                    status = np.zeros(len(numbers), np.int8)
+                    opened.add(Batch(numbers, status, values, {}, 1e-3, provenance()))
 
         for block in (1, 100):
             took, _ = seconds_of(write, block)
-            print(f"journal, {block:3d} a write    {1e6 * took / count:10.2f} us a case")
+            size = Path(folder, STORE).stat().st_size / count
+            print(f"store, {block:3d} a batch      {1e6 * took / count:10.2f} us, {size:.1f} bytes a case")
         record_seconds = took / count
-        print(f"journal                 {path.stat().st_size / count:10.1f} bytes a case (2 outputs)")
-        table = Table.of(cases)
-        took, found = seconds_of(scan, path, key, table.add)
-        print(f"scan on resume          {1e6 * took / count:10.2f} us a case")
-        took, written = seconds_of(lambda: write_results(Path(folder), results_dataset(cases, table, found)))
+        took, table = seconds_of(read_table, Path(folder), cases)
+        print(f"read on resume          {1e6 * took / count:10.2f} us a case")
+        took, written = seconds_of(lambda: write_results(Path(folder), results_dataset(cases, table)))
         print(f"compile to NetCDF       {1e6 * took / count:10.2f} us a case")
         print(f"result                  {written.stat().st_size / count:10.1f} bytes a case")
     return record_seconds
@@ -190,9 +187,9 @@ def project(overhead_seconds, record_seconds, task_seconds, case_seconds=20e-3, 
     core and do nothing in parallel; the network carries 1 kB a batch and 100 bytes a case, far below its
     limits.
     """
-    size = (25 + 8 * outputs) * cases
+    size = (2 + 8 * outputs) * cases
     held = 8 * outputs * cases
-    print(f"1e8 cases of {1e3 * case_seconds:g} ms, {outputs} outputs: journal {size / 1e9:.1f} GB, ", end="")
+    print(f"1e8 cases of {1e3 * case_seconds:g} ms, {outputs} outputs: store {size / 1e9:.1f} GB, ", end="")
     print(f"result {held / 1e9:.1f} GB, {(held + 11 * cases) / 1e9:.1f} GB of memory to compile it")
     for nodes in (1, 4, 16, 64, 256):
         slots = 64 * nodes

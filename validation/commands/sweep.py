@@ -39,6 +39,9 @@ def sweep(
             "--scheduler", metavar="tcp://HOST:PORT", help="Run on the Dask cluster of this scheduler."
         ),
     ] = None,
+    other_code: Annotated[
+        bool, typer.Option("--other-code", help="With --resume: also when spurcheck was changed since.")
+    ] = False,
     case_seconds: Annotated[
         float | None,
         typer.Option(
@@ -87,8 +90,10 @@ def sweep(
                 scheduler=scheduler,
                 resume=resume,
                 retry_failed=retry_failed,
+                other_code=other_code,
                 case_seconds=case_seconds,
                 progress=progress,
+                tell=progress.tell,
             )
     except ParameterError:
         raise

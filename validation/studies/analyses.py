@@ -1,92 +1,122 @@
-"""One case: the varied pair through one analysis to plain numbers."""
+"""The analyses of a study: what each computes of a case, and the numbers it gives. One registry holds all."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 import xarray as xr
+from pydantic import Field, model_validator
 
-from floquet.gear.axes import GEAR_AXES, GearVariation
+from floquet.gear.axes import GearVariation
+from lumped.errors import FieldProblem, ParameterError
+from lumped.fields.section import Section
+from lumped.fields.units import Quantity
 from lumped.model.solution import steady_state
-from lumped.schema.pair import GearPair
-from validation.studies.outputs import OUTPUTS, Analysis
 
-if TYPE_CHECKING:
-    from validation.studies.axes import AxisValue
-    from validation.studies.schema import Settings, Study
-
+AnalysisName = Literal["geometry", "lumped", "multibody", "floquet"]
 Values = dict[str, float]
-_LOADED = {"multibody": "multibody", "floquet": "floquet.gear.multipliers"}
+Labels = Mapping[str, tuple[str, str]]
 _VERDICT = {"stable": 1.0, "undecided": 0.0, "unstable": -1.0}
 
 
+class Settings(Section):
+    """Numerical settings of the analyses; each reads its own."""
+
+    samples_per_cycle: Annotated[int, Field(ge=8, le=65536, strict=True)] = Field(
+        128, description="output times per mesh cycle (lumped, multibody)"
+    )
+    cycles: Annotated[int, Field(ge=2, le=100_000, strict=True)] = Field(
+        20, description="mesh cycles simulated (multibody)"
+    )
+    kept_cycles: Annotated[int, Field(ge=1, le=100_000, strict=True)] = Field(
+        1, description="last mesh cycles that the outputs are taken from (multibody)"
+    )
+    fidelity: Literal["linear", "exact"] = Field("exact", description="contact kinematics (multibody)")
+    rtol: Annotated[float | None, Quantity("1", at_least=1e-13, at_most=1e-2, optional=True)] = Field(
+        None, description="relative tolerance (multibody, floquet); default that of the analysis"
+    )
+
+    @model_validator(mode="after")
+    def _kept(self) -> Self:
+        if self.kept_cycles > self.cycles:
+            problem = FieldProblem(
+                "kept_cycles", str(self.kept_cycles), f"<= cycles = {self.cycles}", "Lower it."
+            )
+            raise ParameterError([problem])
+        return self
+
+
 @dataclass(frozen=True)
-class Evaluator:
-    """Everything a worker needs for a case, small enough to travel with every task.
+class Analysis:
+    """One analysis.
 
     Attributes
     ----------
-    pair : the pair that is varied
-    fields : paths of each axis
-    analysis, outputs, settings : as in the study
+    compute : the varied pair and the settings to the outputs
+    outputs : name -> (unit, plain name); all are plain numbers
+    module : what is loaded before the first case
     """
 
-    pair: GearPair
-    fields: tuple[tuple[str, ...], ...]
-    analysis: Analysis
-    outputs: tuple[str, ...]
-    settings: Settings
-
-    @staticmethod
-    def of(study: Study) -> Evaluator:
-        """Return the evaluator of a study."""
-        fields = tuple(axis.field for axis in study.axes)
-        return Evaluator(study.gear_pair, fields, study.analysis, study.outputs, study.settings)
+    compute: Callable[[GearVariation, Settings], Values]
+    outputs: Labels
+    module: str = "lumped"
 
     def prepare(self) -> None:
-        """Load what the analysis needs, so that the first case takes no longer than the others."""
-        import_module(_LOADED.get(self.analysis, "lumped"))
+        """Load what it needs, so that the first case takes no longer than the others."""
+        import_module(self.module)
 
-    def variation(self, values: tuple[AxisValue, ...]) -> GearVariation:
-        """Return the pair with the axes' values; the plain fields change at once, so they need only fit
-        together.
 
-        Raises
-        ------
-        ParameterError : a combination that cannot exist
-        """
-        changes: dict[str, AxisValue] = {}
-        charted: list[tuple[str, float]] = []
-        for paths, value in zip(self.fields, values, strict=True):
-            for path in paths:
-                if path in GEAR_AXES:
-                    charted.append((path, float(value)))
-                else:
-                    changes[path] = value
-        variation = GearVariation(self.pair.with_(dict(changes)) if changes else self.pair)
-        for name, number in charted:
-            variation = GEAR_AXES[name].apply(variation, number)
-        return variation
+_MOTIONS = {
+    "dte": "transmission error",
+    "x_p": "pinion displacement along the line of action",
+    "x_g": "gear displacement along the line of action",
+    "y_p": "pinion displacement off the line of action",
+    "y_g": "gear displacement off the line of action",
+}
+_MOTION: Labels = {
+    f"{name}_{kind}": ("m", f"{text}, {words}")
+    for name, text in _MOTIONS.items()
+    for kind, words in (("peak_to_peak", "peak to peak"), ("rms", "root mean square about its mean"))
+} | {
+    "normal_load_max": ("N", "largest normal load of a tooth pair in contact"),
+    "normal_load_min": ("N", "smallest normal load of a tooth pair in contact; negative: the teeth separate"),
+    "friction_force_peak_to_peak": ("N", "friction force of all tooth pairs, peak to peak"),
+    "friction_power_mean": ("W", "mean friction power of all tooth pairs"),
+}
 
-    def __call__(self, values: tuple[AxisValue, ...]) -> tuple[float, ...]:
-        """Outputs of one case, in the study's order.
-
-        Raises
-        ------
-        ParameterError : a combination that cannot exist
-        NumericalError : the analysis fails
-        """
-        result = ANALYSES[self.analysis](self.variation(values), self.settings)
-        return tuple(float(result[name]) for name in self.outputs)
+_GEOMETRY: Labels = {
+    "contact_ratio": ("1", "contact ratio"),
+    "mesh_frequency": ("Hz", "mesh frequency"),
+    "pitch_line_velocity": ("m/s", "pitch line velocity"),
+    "operating_pressure_angle": ("rad", "operating pressure angle"),
+    "centre_distance": ("m", "centre distance"),
+    "normal_backlash": ("m", "normal backlash"),
+    "base_pitch": ("m", "base pitch"),
+    "L_XA": ("m", "distance from X to the start of contact"),
+    "L_XD": ("m", "distance from X to the end of contact"),
+    "L_XY": ("m", "length of the line of action between the base circles"),
+}
+_LUMPED: Labels = {
+    **_MOTION,
+    "mesh_efficiency": ("1", "mesh efficiency"),
+    "brake_torque": ("N*m", "brake torque that holds the mean speed"),
+    "error_estimate": ("1", "estimate of the largest relative error of the transmission error"),
+}
+_FLOQUET: Labels = {
+    "spectral_radius": ("1", "largest modulus of the multipliers"),
+    "spectral_radius_error": ("1", "bound on the error of the largest modulus"),
+    "verdict": ("1", "1 stable, 0 undecided within the error, -1 unstable"),
+    "liouville_residual": ("1", "mismatch of the determinant with Liouville's formula"),
+}
 
 
 def _geometry(variation: GearVariation, settings: Settings) -> Values:
     g = variation.pair.geometry
-    return {name: float(getattr(g, name)) for name in OUTPUTS["geometry"]}
+    return {name: float(getattr(g, name)) for name in _GEOMETRY}
 
 
 def _lumped(variation: GearVariation, settings: Settings) -> Values:
@@ -142,9 +172,9 @@ def _motion(run: xr.Dataset) -> Values:
     return values
 
 
-ANALYSES: Mapping[Analysis, Callable[[GearVariation, Settings], Values]] = {
-    "geometry": _geometry,
-    "lumped": _lumped,
-    "multibody": _multibody,
-    "floquet": _floquet,
+ANALYSES: dict[AnalysisName, Analysis] = {
+    "geometry": Analysis(_geometry, _GEOMETRY),
+    "lumped": Analysis(_lumped, _LUMPED),
+    "multibody": Analysis(_multibody, _MOTION, "multibody"),
+    "floquet": Analysis(_floquet, _FLOQUET, "floquet.gear.multipliers"),
 }

@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 import hashlib
-import inspect
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 from scipy.stats import qmc
 
+from floquet.gear.axes import GEAR_AXES, GearVariation
+from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
+from validation.studies.analyses import ANALYSES, AnalysisName, Settings
 from validation.studies.axes import AxisValue
 from validation.studies.schema import Study
-
-_BLOCK = 65_536
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,9 +50,7 @@ class CaseList:
         design, d = self.study.design, len(self.study.axes)
         columns = 2 * d if design.sensitivity else d
         kind: Any = qmc.LatinHypercube if design.method == "latin_hypercube" else qmc.Sobol
-        # scipy renamed the argument in 1.15.
-        word = "rng" if "rng" in inspect.signature(kind).parameters else "seed"
-        arguments: dict[str, Any] = {word: np.random.default_rng(design.seed)}
+        arguments: dict[str, Any] = {"rng": np.random.default_rng(design.seed)}
         if kind is qmc.Sobol:
             arguments["bits"] = 64
         assert design.samples is not None
@@ -104,10 +101,15 @@ class CaseList:
             digest.update(np.ascontiguousarray(self._shares).tobytes())
         return digest.hexdigest()
 
-    def pending(self, wanted: npt.NDArray[np.bool_]) -> Iterator[int]:
-        """Numbers of the wanted cases, in order, without holding them all."""
-        for start in range(0, self.count, _BLOCK):
-            yield from (start + np.flatnonzero(wanted[start : start + _BLOCK])).tolist()
+    @property
+    def definition(self) -> str:
+        """The study's text."""
+        return self.study.to_toml()
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the numbers that are kept of a case."""
+        return self.study.outputs
 
 
 def case_list(study: Study) -> CaseList:
@@ -117,3 +119,64 @@ def case_list(study: Study) -> CaseList:
         return CaseList(study, math.prod(len(axis.listed()) for axis in study.axes))
     assert design.samples is not None
     return CaseList(study, design.samples * (len(study.axes) + 2 if design.sensitivity else 1))
+
+
+@dataclass(frozen=True)
+class StudyEvaluator:
+    """What computes a case of a study; see ``validation.studies.evaluate.Evaluator``.
+
+    Attributes
+    ----------
+    pair : the pair that is varied
+    fields : paths of each axis
+    analysis, outputs, settings : as in the study
+    """
+
+    pair: GearPair
+    fields: tuple[tuple[str, ...], ...]
+    analysis: AnalysisName
+    outputs: tuple[str, ...]
+    settings: Settings
+    nan_allowed: ClassVar[bool] = False
+
+    @staticmethod
+    def of(study: Study) -> StudyEvaluator:
+        """Return the evaluator of a study."""
+        fields = tuple(axis.field for axis in study.axes)
+        return StudyEvaluator(study.gear_pair, fields, study.analysis, study.outputs, study.settings)
+
+    def prepare(self) -> None:
+        """Load what the analysis needs."""
+        ANALYSES[self.analysis].prepare()
+
+    def variation(self, values: tuple[AxisValue, ...]) -> GearVariation:
+        """Return the pair with the axes' values; the plain fields change at once, so they need only fit
+        together.
+
+        Raises
+        ------
+        ParameterError : a combination that cannot exist
+        """
+        changes: dict[str, AxisValue] = {}
+        charted: list[tuple[str, float]] = []
+        for paths, value in zip(self.fields, values, strict=True):
+            for path in paths:
+                if path in GEAR_AXES:
+                    charted.append((path, float(value)))
+                else:
+                    changes[path] = value
+        variation = GearVariation(self.pair.with_(dict(changes)) if changes else self.pair)
+        for name, number in charted:
+            variation = GEAR_AXES[name].apply(variation, number)
+        return variation
+
+    def __call__(self, values: tuple[AxisValue, ...]) -> tuple[float, ...]:
+        """Outputs of one case, in the study's order.
+
+        Raises
+        ------
+        ParameterError : a combination that cannot exist
+        NumericalError : the analysis fails
+        """
+        result = ANALYSES[self.analysis].compute(self.variation(values), self.settings)
+        return tuple(float(result[name]) for name in self.outputs)

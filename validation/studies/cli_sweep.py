@@ -19,7 +19,7 @@ from rich.progress import (
 )
 from rich.table import Table
 
-from validation.studies.record import MEANINGS
+from validation.studies.evaluate import MEANINGS
 from validation.studies.runner import Summary
 
 _PLAIN_SECONDS = 10.0
@@ -52,6 +52,7 @@ class SweepProgress:
         )
         self._task = self._bar.add_task("", total=None, rate="", failed=0)
         self._start = self._printed = time.monotonic()
+        self._told = ""
 
     def __call__(self, done: int, total: int, failed: int) -> None:
         """Show how far the sweep is."""
@@ -65,6 +66,13 @@ class SweepProgress:
             left = (total - done) / rate
             with suppress(OSError):  # a full disk under a log file must not end the sweep
                 self._console.print(f"{done}/{total}, {text}, {failed} failed, {left:.0f} s left")
+
+    def tell(self, text: str) -> None:
+        """Say once that something stands still, and again when it is something else."""
+        if text != self._told:
+            self._told = text
+            with suppress(OSError):
+                self._console.print(text, soft_wrap=True)
 
     def __enter__(self) -> Self:
         self._bar.__enter__()
@@ -87,11 +95,9 @@ def print_summary(summary: Summary, console: Console) -> None:
         console.print(f"case {case}: {first}", style="red", soft_wrap=True)
     if summary.failed > len(summary.failures):
         more = summary.failed - len(summary.failures)
-        console.print(f"... and {more} more: see status and failure_message in the results")
-    if summary.damaged_bytes:
-        console.print(
-            f"{summary.damaged_bytes} damaged bytes of the journal were skipped, their cases computed"
-        )
+        console.print(f"... and {more} more: see status in the results")
+    if summary.damaged:
+        console.print(f"{summary.damaged} damaged batches of the store were skipped, their cases computed")
     rate = summary.computed / max(summary.seconds, 1e-9)
     console.print(
         f"{summary.computed} computed, {summary.before} kept from before, in {summary.seconds:.3g} s "

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import time
 from collections import Counter, deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
+from concurrent.futures.process import BrokenProcessPool
 from itertools import islice
+from typing import Any
 
-from validation.studies.analyses import Evaluator
-from validation.studies.batch import Batch, evaluate_batch, versions
-from validation.studies.cases import CaseList
+import pebble
+
+from validation.studies.evaluate import Batch, Evaluator, Status, late
 from validation.studies.pools import Pool, SweepStopped
-from validation.studies.record import Record, Status
+from validation.studies.provenance import provenance
 
 #: Aim of the time of a batch [s]; a killed run loses at most two batches under way a worker.
 BATCH_SECONDS = 0.5
@@ -21,93 +23,81 @@ BATCHES_PER_SECOND = 500.0
 MAX_BATCH = 10_000
 #: How often a case may kill its worker, alone on it, before it counts as failed.
 MAX_DEATHS = 2
-_CHECK_SECONDS = 2.0
+_CHECK_SECONDS = 1.0
+#: How often all workers may die, before any batch ends, until the sweep stops.
+_MAX_BROKEN = 3
+Values = Callable[[Sequence[int]], Sequence[tuple[Any, ...]]]
 
 
 class Dispatcher:
     """Evaluates cases on a pool.
 
+    A batch on which a worker died, or which took longer than a case may, is divided into single cases, which
+    find out the one to blame.
+
     Parameters
     ----------
     pool : where
-    cases : the list that numbers refer to
+    evaluator : what to do
+    values : parameters of the cases of given numbers
     limit : longest time of a case [s]
+    tell : called with what the user should know of the workers
     """
 
-    def __init__(self, pool: Pool, cases: CaseList, limit: float | None = None) -> None:
-        self._pool, self._cases, self._limit = pool, cases, limit
-        self._evaluator = Evaluator.of(cases.study)
+    def __init__(
+        self,
+        pool: Pool,
+        evaluator: Evaluator,
+        values: Values,
+        limit: float | None = None,
+        tell: Callable[[str], None] = lambda text: None,
+    ) -> None:
+        self._pool, self._evaluator, self._values, self._limit = pool, evaluator, values, limit
+        self._tell = tell
         self._seconds: float | None = None
         self._left = 0
         self._checked = time.monotonic()
-        self._suspects: deque[int] = deque()
+        self._singles: deque[int] = deque()
         self._deaths: Counter[int] = Counter()
+        self._broken = 0
+        self._running: dict[Future[Batch], list[int]] = {}
 
-    def records(self, numbers: Iterator[int], count: int) -> Iterator[tuple[Record, ...]]:
-        """Evaluate ``count`` cases; yields records as they come, in any order, each case once.
+    def batches(self, numbers: Iterator[int], count: int) -> Iterator[Batch]:
+        """Evaluate ``count`` cases; yields outcomes as they come, in any order, each case once.
 
         Raises
         ------
         SweepStopped : the workers cannot go on
         """
         self._left = count
-        running: dict[Future[Batch], list[int]] = {}
         while True:
-            while len(running) < 2 * self._pool.slots:
-                batch = list(islice(numbers, self._size()))
-                if not batch:
+            while len(self._running) < 2 * self._pool.slots:
+                cases = [self._singles.popleft()] if self._singles else list(islice(numbers, self._size()))
+                if not cases:
                     break
-                running[self._submit(batch)] = batch
-            if not running:
+                future = self._pool.submit(self._evaluator, cases, self._values(cases), self._limit)
+                self._running[future] = cases
+            if not self._running:
                 return
-            died = False
-            for future in self._finished(running):
-                batch = running.pop(future)
-                records = self._result(future)
-                if records is None:
-                    died = True
-                    self._suspects += batch
-                else:
-                    yield self._counted(records)
-            if died:
-                yield from self._quarantine(running)
+            for future in self._finished():
+                batch = self._result(future, self._running.pop(future))
+                if batch is not None:
+                    self._count(batch)
+                    yield batch
 
-    def _quarantine(self, running: dict[Future[Batch], list[int]]) -> Iterator[tuple[Record, ...]]:
-        """A worker died: nobody knows on which of its cases, so run these one by one, alone."""
-        if self._pool.dies_together:
-            for future, batch in running.items():
-                records = self._result(future) if future.done() else None
-                if records is not None:
-                    yield self._counted(records)
-                else:
-                    self._suspects += batch
-            running.clear()
-        self._pool.restart()
-        while self._suspects:
-            case = self._suspects.popleft()
-            alone = {self._submit([case]): [case]}
-            (future,) = self._finished(alone)
-            records = self._result(future)
-            if records is None:
-                self._deaths[case] += 1
-                self._pool.restart()
-                if self._deaths[case] < MAX_DEATHS:
-                    self._suspects.appendleft(case)
-                    continue
-                text = "the worker process died on this case, alone on it, every time"
-                records = (Record(case, Status.WORKER_DIED, 0.0, message=text),)
-            yield self._counted(records)
+    def done(self) -> Iterator[Batch]:
+        """Yield the batches that have ended but were not asked for, after an interrupt."""
+        for future in self._running:
+            if future.done() and not future.cancelled() and future.exception() is None:
+                yield future.result()
 
-    def _submit(self, numbers: list[int]) -> Future[Batch]:
-        batch = list(zip(numbers, self._cases.values(numbers), strict=True))
-        return self._pool.submit(evaluate_batch, self._evaluator, batch, self._limit)
-
-    def _finished(self, running: dict[Future[Batch], list[int]]) -> set[Future[Batch]]:
+    def _finished(self) -> set[Future[Batch]]:
         while True:
-            done, _ = wait(running, timeout=_CHECK_SECONDS, return_when=FIRST_COMPLETED)
+            done, _ = wait(self._running, timeout=_CHECK_SECONDS, return_when=FIRST_COMPLETED)
             if time.monotonic() - self._checked >= _CHECK_SECONDS:  # also while batches end: workers may join
                 try:
-                    self._pool.check()
+                    if text := self._pool.check():
+                        self._tell(text)
                 except SweepStopped:
                     if not done:  # what is done is kept first
                         raise
@@ -115,11 +105,23 @@ class Dispatcher:
             if done:
                 return done
 
-    def _result(self, future: Future[Batch]) -> tuple[Record, ...] | None:
-        """Records of a finished batch, None when its worker died."""
+    def _result(self, future: Future[Batch], cases: list[int]) -> Batch | None:
+        """Outcomes of a finished batch, None when its cases run again."""
         try:
             batch = future.result()
-        except self._pool.died:
+        except (pebble.ProcessExpired, TimeoutError) as error:
+            if len(cases) > 1:
+                self._singles += cases
+                return None
+            return self._blamed(cases[0], died=isinstance(error, pebble.ProcessExpired))
+        except BrokenProcessPool as error:
+            self._singles += cases
+            self._broken += 1
+            if self._broken > _MAX_BROKEN * self._pool.slots:
+                raise SweepStopped(
+                    "The worker processes end as soon as they start: check the memory of this machine; in a "
+                    "script, call run_sweep under `if __name__ == '__main__':`. Then go on with --resume."
+                ) from error
             return None
         except CancelledError as error:
             raise SweepStopped(
@@ -130,24 +132,41 @@ class Dispatcher:
                 f"The workers cannot run cases ({type(error).__name__}: {error}): install this version of "
                 "spurcheck on them, then run the same command with --resume."
             ) from error
-        if batch.versions != versions():
+        if batch.provenance != provenance():
+            theirs, ours = batch.provenance, provenance()
             raise SweepStopped(
-                f"A worker runs {batch.versions} but this process {versions()}: install the same versions, "
-                "or results depend on where a case ran."
+                f"A worker runs {theirs.versions}, code {theirs.code[:12]}, but this process {ours.versions}"
+                f", code {ours.code[:12]}: install the same code and the same versions, or results depend on "
+                "where a case ran."
             )
-        return batch.records
+        return batch
 
-    def _counted(self, records: tuple[Record, ...]) -> tuple[Record, ...]:
-        self._left -= len(records)
-        mean = sum(record.seconds for record in records) / max(len(records), 1)
+    def _blamed(self, case: int, *, died: bool) -> Batch | None:
+        """Outcome of a case that ended its worker, alone on it; None when it has another chance."""
+        outputs = len(self._evaluator.outputs)
+        if not died and self._limit is not None:
+            status, _, text = late(self._limit)
+            return Batch.failure(case, outputs, status, text)
+        self._deaths[case] += 1
+        if self._deaths[case] < MAX_DEATHS:
+            self._singles.append(case)
+            return None
+        text = "the worker process died on this case, alone on it, every time"
+        return Batch.failure(case, outputs, Status.WORKER_DIED, text)
+
+    def _count(self, batch: Batch) -> None:
+        self._left -= len(batch.cases)
+        self._broken = 0
+        mean = batch.seconds / len(batch.cases)
         self._seconds = mean if self._seconds is None else 0.8 * self._seconds + 0.2 * mean
-        return records
 
     def _size(self) -> int:
         """Cases of the next batch: by time, and small at the end so that all workers stay busy."""
         if self._seconds is None:
             return 1
         slots = max(self._pool.slots, 1)
-        by_time = int(max(BATCH_SECONDS, slots / BATCHES_PER_SECOND) / max(self._seconds, 1e-6))
-        share = self._left // (4 * slots)
-        return max(1, min(by_time, share, MAX_BATCH))
+        seconds = max(BATCH_SECONDS, slots / BATCHES_PER_SECOND)
+        if self._limit is not None:
+            seconds = min(seconds, self._limit / 4.0)
+        by_time = int(seconds / max(self._seconds, 1e-6))
+        return max(1, min(by_time, self._left // (4 * slots), MAX_BATCH))

@@ -1,9 +1,7 @@
-"""The labelled results of a study, compiled from its journal."""
+"""The labelled results of a study, compiled from its store."""
 
 from __future__ import annotations
 
-from collections import Counter
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,56 +9,16 @@ import numpy as np
 import xarray as xr
 
 from lumped.model.results import parameters_hash
-from lumped.typing import FloatArray
-from validation.files.regular import StoreError, read_bytes, replaced, storage_failure
+from validation.files.output import whole_file
+from validation.studies.analyses import ANALYSES
 from validation.studies.axes import target_of
 from validation.studies.cases import CaseList, case_list
-from validation.studies.journal import Key, Scan, scan
+from validation.studies.evaluate import Status
 from validation.studies.load import load_study
-from validation.studies.outputs import OUTPUTS
-from validation.studies.record import MEANINGS, Record, Status
 from validation.studies.sensitivity import add_sensitivity
+from validation.studies.store import STORE, Table, read_definition, read_table, storage_failure
 
-JOURNAL, STUDY, RESULTS = "journal.bin", "study.toml", "results.nc"
-_MAX_STUDY_BYTES = 100_000_000
-
-
-@dataclass
-class Table:
-    """Outcomes of all cases, filled record by record; a later record of a case replaces the earlier one.
-
-    Attributes
-    ----------
-    status : (cases,) ``Status`` codes
-    values : (outputs, cases), NaN where the status says that there is no result; None when not wanted
-    messages : case -> error text of the failed ones
-    """
-
-    status: np.ndarray[Any, np.dtype[np.int8]]
-    values: FloatArray | None
-    messages: dict[int, str]
-
-    @staticmethod
-    def of(cases: CaseList, *, with_values: bool = True) -> Table:
-        """Return an empty table."""
-        values = np.full((len(cases.study.outputs), cases.count), np.nan) if with_values else None
-        return Table(np.full(cases.count, Status.MISSING, dtype=np.int8), values, {})
-
-    def add(self, record: Record) -> None:
-        """Enter a record."""
-        case = record.case
-        self.status[case] = record.status
-        if record.status.failed:
-            self.messages[case] = record.message
-        else:
-            self.messages.pop(case, None)
-        if self.values is not None:
-            self.values[:, case] = np.nan if record.status.failed else record.values
-
-    def counts(self) -> Counter[Status]:
-        """Cases by status."""
-        codes, numbers = np.unique(self.status, return_counts=True)
-        return Counter({Status(int(c)): int(n) for c, n in zip(codes, numbers, strict=True)})
+RESULTS = "results.nc"
 
 
 def read_results(folder: str | Path) -> xr.Dataset:
@@ -79,39 +37,35 @@ def read_results(folder: str | Path) -> xr.Dataset:
     StoreError, ParameterError : no store, or not one of its own study
     """
     root = Path(folder)
-    text = read_bytes(root / STUDY, _MAX_STUDY_BYTES)
-    cases = case_list(load_study(text.decode("utf-8", "replace"), name=str(root / STUDY)))
-    table = Table.of(cases)
-    found = scan(root / JOURNAL, Key(cases), table.add)
-    return results_dataset(cases, table, found)
+    cases = case_list(load_study(read_definition(root), name=str(root / STORE)))
+    return results_dataset(cases, read_table(root, cases))
 
 
-def results_dataset(cases: CaseList, table: Table, found: Scan) -> xr.Dataset:
+def results_dataset(cases: CaseList, table: Table) -> xr.Dataset:
     """Label the outcomes of a study.
 
     Returns
     -------
-    xarray.Dataset with the study's outputs and ``status`` (flag meanings in its attributes); the cases
-    without outputs with their error text in ``failure_message`` over ``failure``; the axes in the fields'
-    stated units; sensitivity indices where the design asks for them
+    xarray.Dataset with the study's outputs and ``status`` (flag meanings in its attributes); the failed cases
+    with their error text in ``failure_message`` over ``failure``, the first ``store.MAX_FAILURES`` of them;
+    the axes in the fields' stated units; sensitivity indices where the design asks for them
     """
     study = cases.study
     assert table.values is not None
     dims, shape = cases.dims, cases.shape
-    result = xr.Dataset(attrs=_attributes(cases, found))
+    result = xr.Dataset(attrs=_attributes(cases, table))
     for label, coordinate in _coordinates(cases).items():
         result = result.assign_coords({label: coordinate})
-    for name, row in zip(study.outputs, table.values, strict=True):
-        unit, text = OUTPUTS[study.analysis][name]
+    for name, row in zip(study.outputs, table.values.T, strict=True):
+        unit, text = ANALYSES[study.analysis].outputs[name]
         result[name] = xr.DataArray(row.reshape(shape), dims=dims, attrs={"units": unit, "long_name": text})
-    flags = [status for status in MEANINGS if status is not Status.SESSION]
     result["status"] = xr.DataArray(
         table.status.reshape(shape),
         dims=dims,
         attrs={
             "long_name": "what became of the case",
-            "flag_values": np.array(flags, dtype=np.int8),
-            "flag_meanings": " ".join(flag.name.lower() for flag in flags),
+            "flag_values": np.array(list(Status), dtype=np.int8),
+            "flag_meanings": " ".join(flag.name.lower() for flag in Status),
         },
     )
     failed = sorted(table.messages)
@@ -122,7 +76,7 @@ def results_dataset(cases: CaseList, table: Table, found: Scan) -> xr.Dataset:
     result["failure_message"] = xr.DataArray(
         text_type, dims="failure", attrs={"long_name": "why the case failed"}
     )
-    return add_sensitivity(result, cases, table.status, table.values)
+    return add_sensitivity(result, cases, table.status, table.values.T)
 
 
 def write_results(folder: Path, result: xr.Dataset) -> Path:
@@ -133,11 +87,11 @@ def write_results(folder: Path, result: xr.Dataset) -> Path:
     StoreError : it cannot be written
     """
     path = folder / RESULTS
-    with replaced(path) as part:
-        try:
+    try:
+        with whole_file(path) as part:
             result.to_netcdf(part, engine="h5netcdf", format="NETCDF4")
-        except (RuntimeError, ValueError) as error:  # how HDF5 may report a failed write
-            raise storage_failure(path, "write it", OSError(str(error))) from error
+    except (OSError, RuntimeError, ValueError) as error:  # HDF5 reports a failed write in several ways
+        raise storage_failure(path, "write it", error) from error
     return path
 
 
@@ -162,7 +116,7 @@ def _coordinates(cases: CaseList) -> dict[str, xr.DataArray]:
     return found
 
 
-def _attributes(cases: CaseList, found: Scan) -> dict[str, Any]:
+def _attributes(cases: CaseList, table: Table) -> dict[str, Any]:
     study = cases.study
     return {
         "title": study.name,
@@ -173,9 +127,7 @@ def _attributes(cases: CaseList, found: Scan) -> dict[str, Any]:
         "study_sha256": study.sha256,
         "parameters_sha256": parameters_hash(study.gear_pair),
         "cases_sha256": cases.sha256,
-        # Runs with the same versions count once, so a resumed sweep gives the same file.
-        "versions": "; ".join(dict.fromkeys(found.sessions)),
+        # Runs with the same versions and code count once, so a resumed sweep gives the same file.
+        "versions": "; ".join(dict.fromkeys(run.versions for run in table.runs)),
+        "code_sha256": "; ".join(dict.fromkeys(run.code for run in table.runs)),
     }
-
-
-__all__ = ["StoreError", "Table", "read_results", "results_dataset", "write_results"]

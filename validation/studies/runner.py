@@ -6,29 +6,36 @@ import contextlib
 import os
 import shutil
 import time
-from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, Protocol
 
 import numpy as np
 
 from lumped.errors import refuse
-from validation.files.regular import StoreError, write_text
-from validation.stop_signals import stopping_as_interrupt
-from validation.studies.batch import versions
-from validation.studies.cases import CaseList, case_list
+from validation.stop_signals import stopping_as_interrupt, undisturbed
+from validation.studies import store as stores
+from validation.studies.cases import CaseList, StudyEvaluator, case_list
 from validation.studies.dispatch import Dispatcher
-from validation.studies.journal import NOTHING, Journal, Key, scan
+from validation.studies.evaluate import Evaluator, Status
 from validation.studies.pools import pool_of
-from validation.studies.record import Record, Status
-from validation.studies.results import JOURNAL, RESULTS, STUDY, Table, results_dataset, write_results
+from validation.studies.results import RESULTS, results_dataset, write_results
 from validation.studies.schema import Study
+from validation.studies.store import STORE, Store, StoreError, Table
 
-#: Called after every block of records with (cases computed in this run, cases to compute, failed so far).
+#: Called after every batch with (cases computed in this run, cases to compute, failed so far).
 Progress = Callable[[int, int, int], None]
 _SHOWN_FAILURES = 20
-_RECORD_BYTES = 25
+_BLOCK = 65_536
+
+
+class ComputedCases(stores.Cases, Protocol):
+    """Cases whose parameters are known by number."""
+
+    def values(self, cases: Sequence[int]) -> Sequence[tuple[Any, ...]]:
+        """Return the parameters of the cases of given numbers."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -37,32 +44,28 @@ class Summary:
 
     Attributes
     ----------
-    study : name
     cases : number of cases of the study
     before : of these, computed by earlier runs
     computed : computed by this run
     statuses : (status, number) of all cases, by status
     failures : (case, text) of the first failed ones
-    damaged_bytes : bytes of the journal that a crash had left unusable; their cases were computed again
+    damaged : batches of the store whose checksum was wrong; their cases were computed again
     seconds : wall time of this run
-    case_seconds : computing time of this run's cases together
     results : the compiled file
     """
 
-    study: str
     cases: int
     before: int
     computed: int
     statuses: tuple[tuple[Status, int], ...]
     failures: tuple[tuple[int, str], ...]
-    damaged_bytes: int
+    damaged: int
     seconds: float
-    case_seconds: float
     results: Path
 
     @property
     def failed(self) -> int:
-        """Cases without outputs; missing are those whose records something else took away."""
+        """Cases without outputs."""
         return sum(number for status, number in self.statuses if status.failed or status is Status.MISSING)
 
     @property
@@ -79,23 +82,27 @@ def run_sweep(
     scheduler: str | None = None,
     resume: bool = False,
     retry_failed: bool = False,
+    other_code: bool = False,
     case_seconds: float | None = None,
     progress: Progress | None = None,
+    tell: Callable[[str], None] | None = None,
 ) -> Summary:
     """Compute every case of a study into a folder.
 
     Parameters
     ----------
     study : the study
-    folder : output folder; it is created, and holds ``study.toml``, ``journal.bin`` and ``results.nc``
+    folder : output folder; it is created, and holds ``store.sqlite`` and ``results.nc``
     workers : processes of this machine, in which a case may crash without ending the sweep; 0 computes in
         this process, which starts faster
     scheduler : address of a Dask scheduler, instead of ``workers``
     resume : go on where an earlier run of the same study in that folder ended
     retry_failed : with ``resume``, also compute the failed cases again
-    case_seconds : longest time of a case [s]; with it, processes of their own evaluate the cases, and are
-        killed when one is late
+    other_code : with ``resume``, also when the source of spurcheck was changed since
+    case_seconds : longest time of a case [s]; with it, cases run in worker processes (one with ``workers``
+        = 0), which are ended when a case is late
     progress : called with (computed, to compute, failed)
+    tell : called with a text when a worker, the scheduler or the cluster gives no sign of life
 
     Returns
     -------
@@ -109,79 +116,111 @@ def run_sweep(
     KeyboardInterrupt : Ctrl-C, SIGTERM or SIGHUP; nothing computed before is lost
     """
     start = time.perf_counter()
-    if case_seconds is not None and not 1e-3 <= case_seconds <= 1e9:
+    if case_seconds is not None and not 1e-3 <= case_seconds <= 1e6:
         raise refuse(
-            "case_seconds", f"{case_seconds:g} s", "0.001 s to 1e9 s", "Give the longest time of a case."
+            "case_seconds", f"{case_seconds:g} s", "0.001 s to 1e6 s", "Give the longest time of a case."
         )
     root = Path(folder)
     cases = case_list(study)
     _check_memory(cases)
-    key = Key(cases)
-    begun = _prepare(root, resume)
-    path = root / JOURNAL
-    table = Table.of(cases, with_values=False)
-    found = scan(path, key, table.add) if begun else NOTHING
-    wanted = table.status == Status.MISSING
-    if retry_failed:
-        wanted |= table.status >= Status.REFUSED
-    todo = int(np.count_nonzero(wanted))
-    with (
-        stopping_as_interrupt(),
-        contextlib.closing(pool_of(workers, scheduler, todo)) as pool,
-        Journal(path, key, found) as journal,
-    ):
-        # Only with the lock, so that of two runs into a new folder one leaves the other's study alone.
-        if not (root / STUDY).exists():
-            write_text(root / STUDY, study.to_toml())
-        spent = 0.0
-        if todo:
-            _check_space(root, key, todo)
-            journal.append([Record(len(found.sessions), Status.SESSION, 0.0, message=versions())])
-            spent = _compute(cases, journal, Dispatcher(pool, cases, case_seconds), wanted, progress)
-        journal.sync()
-        full = Table.of(cases)
-        complete = scan(path, key, full.add)
-        write_results(root, results_dataset(cases, full, complete))
+    _prepare(root, resume)
+    with stopping_as_interrupt(), Store(root, cases, other_code=other_code, new=not resume) as store:
+        found = store.table(with_values=False)
+        todo = wanted(found, retry_failed)
+        number = int(np.count_nonzero(todo))
+        _check_space(root, cases, number)
+        compute(
+            cases,
+            StudyEvaluator.of(study),
+            store,
+            todo,
+            workers=workers,
+            scheduler=scheduler,
+            limit=case_seconds,
+            progress=progress,
+            tell=tell,
+        )
+        store.sync()
+        table = store.table()
+        write_results(root, results_dataset(cases, table))
     return Summary(
-        study=study.name,
         cases=cases.count,
-        before=cases.count - todo,
-        computed=todo,
-        statuses=tuple(sorted(full.counts().items())),
-        failures=tuple(sorted(full.messages.items())[:_SHOWN_FAILURES]),
-        damaged_bytes=found.damaged_bytes,
+        before=cases.count - number,
+        computed=number,
+        statuses=tuple(sorted(table.counts().items())),
+        failures=tuple(sorted(table.messages.items())[:_SHOWN_FAILURES]),
+        damaged=found.damaged,
         seconds=time.perf_counter() - start,
-        case_seconds=spent,
         results=root / RESULTS,
     )
 
 
-def _compute(
-    cases: CaseList,
-    journal: Journal,
-    dispatcher: Dispatcher,
-    wanted: np.ndarray[tuple[int], np.dtype[np.bool_]],
-    progress: Progress | None,
-) -> float:
-    """Compute the wanted cases into the journal; returns their computing time [s]."""
-    todo = int(np.count_nonzero(wanted))
-    statuses: Counter[bool] = Counter()
-    spent = 0.0
-    for records in dispatcher.records(cases.pending(wanted), todo):
-        journal.append(records)
-        statuses.update(record.status.failed for record in records)
-        spent += sum(record.seconds for record in records)
-        if progress is not None:
-            progress(statuses.total(), todo, statuses[True])
-    return spent
+def wanted(table: Table, retry_failed: bool = False) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    """Return which cases are to compute, (cases,)."""
+    todo: np.ndarray[Any, np.dtype[np.bool_]] = table.status == Status.MISSING
+    if retry_failed:
+        todo |= table.status >= Status.REFUSED
+    return todo
 
 
-def _prepare(root: Path, resume: bool) -> bool:
-    """Make the folder; returns whether it has a journal.
+def compute(
+    cases: ComputedCases,
+    evaluator: Evaluator,
+    store: Store,
+    todo: np.ndarray[Any, np.dtype[np.bool_]],
+    *,
+    workers: int,
+    scheduler: str | None = None,
+    limit: float | None = None,
+    progress: Progress | None = None,
+    tell: Callable[[str], None] | None = None,
+) -> None:
+    """Compute cases into a store; see ``run_sweep``.
+
+    Parameters
+    ----------
+    cases, evaluator : what to compute
+    store : where the outcomes go
+    todo : (cases,) which of them
+    limit : longest time of a case [s]
 
     Raises
     ------
-    ParameterError : the folder holds a sweep and ``resume`` was not asked for, or holds something else
+    StoreError, SweepStopped, KeyboardInterrupt : see ``run_sweep``
+    """
+    number = int(np.count_nonzero(todo))
+    done = failed = 0
+    with contextlib.closing(pool_of(workers, scheduler, limit is not None, number)) as pool:
+        if not number:
+            return
+        store.begin_run()
+        dispatcher = Dispatcher(pool, evaluator, cases.values, limit, tell or (lambda text: None))
+        try:
+            for batch in dispatcher.batches(_numbers(todo), number):
+                store.add(batch)
+                done += len(batch.cases)
+                failed += int(np.count_nonzero(batch.status >= Status.REFUSED))
+                if progress is not None:
+                    progress(done, number, failed)
+        except KeyboardInterrupt:
+            with undisturbed():
+                for batch in dispatcher.done():
+                    store.add(batch)
+            raise
+
+
+def _numbers(todo: np.ndarray[Any, np.dtype[np.bool_]]) -> Iterator[int]:
+    """Numbers of the wanted cases, in order, without holding them all."""
+    for start in range(0, todo.size, _BLOCK):
+        yield from (start + np.flatnonzero(todo[start : start + _BLOCK])).tolist()
+
+
+def _prepare(root: Path, resume: bool) -> None:
+    """Make the folder.
+
+    Raises
+    ------
+    ParameterError : it holds a sweep and ``resume`` was not asked for, or holds something else
     """
     try:
         root.mkdir(parents=True, exist_ok=True)
@@ -191,7 +230,9 @@ def _prepare(root: Path, resume: bool) -> bool:
     except OSError as error:
         reason = f"It cannot be used: {error.strerror}."
         raise refuse("output", root, "a folder that can be made and read", reason) from error
-    begun = JOURNAL in names
+    stores.check_version(root)
+    store = root / STORE
+    begun = store.is_symlink() or (STORE in names and (not store.is_file() or store.stat().st_size > 0))
     if begun and not resume:
         raise refuse(
             "output",
@@ -199,13 +240,12 @@ def _prepare(root: Path, resume: bool) -> bool:
             "a new folder",
             "It holds a sweep: go on with --resume, or choose another --output.",
         )
-    # The journal is the first file of a sweep, so without one all others, a study.toml too, are the user's.
+    # The store is the first file of a sweep, so without one all others are the user's.
     foreign = sorted(name for name in names if not name.startswith("."))
-    if foreign and not begun:
+    if foreign and STORE not in names:
         raise refuse(
             "output", root, "a new or empty folder", f"It holds {foreign[0]}: choose another --output."
         )
-    return begun
 
 
 def _check_memory(cases: CaseList) -> None:
@@ -214,7 +254,7 @@ def _check_memory(cases: CaseList) -> None:
         return  # this system does not say
     # Measured: the outputs, one of them again while it is written, the status; sampled axes as Python floats.
     sampled = 0 if cases.study.design.method == "grid" else len(cases.study.axes)
-    need = cases.count * (8 * (len(cases.study.outputs) + 1) + 3 + 65 * sampled)
+    need = cases.count * (8 * (len(cases.outputs) + 1) + 3 + 65 * sampled)
     present = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     if need > present:
         raise refuse(
@@ -225,9 +265,9 @@ def _check_memory(cases: CaseList) -> None:
         )
 
 
-def _check_space(root: Path, key: Key, todo: int) -> None:
-    """Refuse a sweep that cannot fit on the disk before it starts."""
-    need = todo * (_RECORD_BYTES + 8 * key.outputs) + key.count * (1 + 8 * key.outputs)
+def _check_space(root: Path, cases: CaseList, todo: int) -> None:
+    """Refuse a sweep that cannot fit on the disk before it starts: store and results."""
+    need = (todo + cases.count) * (1 + 8 * len(cases.outputs))
     free = shutil.disk_usage(root).free
     if need > free:
         raise StoreError(

@@ -10,10 +10,9 @@ from pydantic import BeforeValidator, Field, PlainSerializer, model_validator
 
 from lumped.errors import FieldProblem, ParameterError, shown
 from lumped.fields.section import Section, Text
-from lumped.fields.units import Quantity
 from lumped.schema.pair import GearPair
+from validation.studies.analyses import ANALYSES, AnalysisName, Settings
 from validation.studies.axes import Axis, target_of
-from validation.studies.outputs import OUTPUTS, Analysis
 
 #: Most cases of one study: bookkeeping takes about 1 byte of memory a case, results 8 bytes an output.
 MAX_CASES = 1_000_000_000
@@ -68,33 +67,6 @@ class Design(Section):
         return self
 
 
-class Settings(Section):
-    """Numerical settings of the analyses; each reads its own."""
-
-    samples_per_cycle: Annotated[int, Field(ge=8, le=65536, strict=True)] = Field(
-        128, description="output times per mesh cycle (lumped, multibody)"
-    )
-    cycles: Annotated[int, Field(ge=2, le=100_000, strict=True)] = Field(
-        20, description="mesh cycles simulated (multibody)"
-    )
-    kept_cycles: Annotated[int, Field(ge=1, le=100_000, strict=True)] = Field(
-        1, description="last mesh cycles that the outputs are taken from (multibody)"
-    )
-    fidelity: Literal["linear", "exact"] = Field("exact", description="contact kinematics (multibody)")
-    rtol: Annotated[float | None, Quantity("1", at_least=1e-13, at_most=1e-2, optional=True)] = Field(
-        None, description="relative tolerance (multibody, floquet); default that of the analysis"
-    )
-
-    @model_validator(mode="after")
-    def _kept(self) -> Self:
-        if self.kept_cycles > self.cycles:
-            problem = FieldProblem(
-                "kept_cycles", str(self.kept_cycles), f"<= cycles = {self.cycles}", "Lower it."
-            )
-            raise ParameterError([problem])
-        return self
-
-
 def _pair_in(value: object) -> object:
     return value.to_mapping() if isinstance(value, GearPair) else value
 
@@ -111,7 +83,7 @@ class Study(Section):
     gear_pair: Annotated[GearPair, BeforeValidator(_pair_in), PlainSerializer(_pair_out)] = Field(
         description="preset name, TOML path beside the study file, or the gear pair's sections"
     )
-    analysis: Analysis = Field(description="what is computed for every case")
+    analysis: AnalysisName = Field(description="what is computed for every case")
     outputs: Annotated[tuple[str, ...], Field(min_length=1)] = Field(description="what is kept of a case")
     design: Design = Field(
         default_factory=lambda: Design.model_validate({}),
@@ -155,7 +127,7 @@ def _lists(value: Any) -> Any:
 
 
 def _output_problems(study: Study) -> list[FieldProblem]:
-    known = OUTPUTS[study.analysis]
+    known = ANALYSES[study.analysis].outputs
     problems = [
         FieldProblem(f"outputs.{j}", shown(repr(name)), "one of " + ", ".join(known), "Correct the name.")
         for j, name in enumerate(study.outputs)

@@ -10,7 +10,7 @@ from scipy import stats
 
 from lumped.typing import FloatArray
 from validation.studies.cases import CaseList
-from validation.studies.record import Status
+from validation.studies.evaluate import Status
 
 #: Resamplings of the confidence interval.
 RESAMPLES = 200

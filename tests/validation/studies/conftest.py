@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import dataclasses
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Collection
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from validation.studies import Study, Summary, load_study, run_sweep
-from validation.studies.cases import case_list
-from validation.studies.journal import Key, scan
+from validation.studies import Study, Summary, load_study, run_sweep, runner
+from validation.studies.analyses import ANALYSES
+from validation.studies.cases import StudyEvaluator, case_list
+from validation.studies.evaluate import Status
+from validation.studies.store import StoreError, read_table
+
+#: Worker processes find the evaluators of ``odd_evaluators`` here.
+sys.path.insert(0, str(Path(__file__).parent))
 
 Make = Callable[..., Study]
 
@@ -76,13 +83,13 @@ class Sweep:
     """
 
     SLOW = """
-import time
+import dataclasses, time
 from validation.studies import analyses
 fast = analyses.ANALYSES["geometry"]
 def slow(variation, settings):
     time.sleep(0.02)
-    return fast(variation, settings)
-analyses.ANALYSES["geometry"] = slow
+    return fast.compute(variation, settings)
+analyses.ANALYSES["geometry"] = dataclasses.replace(fast, compute=slow)
 """
 
     def __init__(self, study: Study, undisturbed: bytes, file: Path, out: Path) -> None:
@@ -99,12 +106,12 @@ analyses.ANALYSES["geometry"] = slow
         return subprocess.Popen(command, text=True, stderr=subprocess.PIPE, **options)
 
     def finished(self) -> list[int]:
-        """Numbers of the cases that the journal holds."""
-        found: list[int] = []
-        if (self.out / "journal.bin").exists():
-            key = Key(case_list(self.study))
-            scan(self.out / "journal.bin", key, lambda record: found.append(record.case))
-        return found
+        """Numbers of the cases that the store holds."""
+        try:
+            status = read_table(self.out, case_list(self.study)).status
+        except StoreError:  # none yet
+            return []
+        return [case for case, code in enumerate(status) if code != Status.MISSING]
 
     def wait_for(self, condition: Callable[[], bool], what: str, seconds: float = 60.0) -> None:
         """Wait until a condition holds."""
@@ -114,12 +121,37 @@ analyses.ANALYSES["geometry"] = slow
             time.sleep(0.005)
 
     def check_resume(self, before: Collection[int]) -> Summary:
-        """Resume: what the journal holds is not computed again, and the result is the undisturbed one."""
+        """Resume: what the store holds is not computed again, and the result is the undisturbed one."""
         summary = run_sweep(self.study, self.out, resume=True)
         assert summary.before == len(set(before))
         assert summary.computed == summary.cases - summary.before
         assert summary.results.read_bytes() == self.undisturbed
         return summary
+
+
+@pytest.fixture
+def replace_analysis(monkeypatch: pytest.MonkeyPatch) -> Callable[[Any], None]:
+    """Put another function in the place of the geometry analysis, in this process."""
+
+    def put(function: Any) -> None:
+        changed = dataclasses.replace(ANALYSES["geometry"], compute=function)
+        monkeypatch.setitem(ANALYSES, "geometry", changed)
+
+    return put
+
+
+@pytest.fixture
+def odd(study: Study, monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
+    """Let a case of the study do something odd, in worker processes too; see ``odd_evaluators``."""
+    from odd_evaluators import Odd
+
+    def put(what: str, case: int, note: str = "") -> None:
+        evaluator = StudyEvaluator.of(study)
+        (values,) = case_list(study).values([case])
+        changed = SimpleNamespace(of=lambda study: Odd(evaluator, what, values, note))
+        monkeypatch.setattr(runner, "StudyEvaluator", changed)
+
+    return put
 
 
 @pytest.fixture

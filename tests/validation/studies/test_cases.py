@@ -109,12 +109,3 @@ def test_samples_can_be_asked_for_in_any_order_and_block(make_study):
     rng = np.random.default_rng(11)
     order = rng.permutation(cases.count)
     assert cases.values(order) == [everything[j] for j in order]
-
-
-def test_pending_cases_come_in_order_over_block_borders(make_study):
-    axes = [{"field": "operating.pinion_speed", "low": 1, "high": 9000, "count": 200_000}]
-    cases = case_list(make_study(axes=axes))
-    wanted = np.zeros(cases.count, dtype=bool)
-    numbers = [0, 65_535, 65_536, 131_072, 199_999]
-    wanted[numbers] = True
-    assert list(cases.pending(wanted)) == numbers

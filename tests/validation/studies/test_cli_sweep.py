@@ -84,7 +84,7 @@ def test_the_second_run_needs_resume(command):
 
 def test_a_store_that_cannot_be_written_is_3(command, tmp_path):
     (tmp_path / "out").mkdir()
-    (tmp_path / "out" / "journal.bin").symlink_to(tmp_path / "elsewhere")
+    (tmp_path / "out" / "store.sqlite").symlink_to(tmp_path / "elsewhere")
     code, text = command(output=tmp_path / "out", resume=True)
     assert code == STOPPED
     assert "symbolic link" in text

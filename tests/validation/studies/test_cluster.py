@@ -10,11 +10,12 @@ import sys
 import threading
 import time
 
+import pebble
 import pytest
 
 from lumped.errors import ParameterError
 from validation.studies import Status, SweepStopped, dispatch, pools, run_sweep
-from validation.studies.batch import evaluate_batch
+from validation.studies.provenance import Provenance
 
 distributed = pytest.importorskip("distributed")
 pytestmark = [
@@ -62,33 +63,29 @@ def test_a_cluster_gives_the_same_bytes_also_after_losing_a_worker(study, tmp_pa
     assert summary.results.read_bytes() == undisturbed
 
 
-def test_a_case_that_kills_every_worker_is_found_out(study, tmp_path, cluster, monkeypatch, undisturbed):
-    def deadly(evaluator, cases, limit):
-        if any(number == 41 for number, values in cases):
-            os.kill(os.getpid(), signal.SIGKILL)
-        return evaluate_batch(evaluator, cases, limit)
-
+def test_a_case_that_kills_every_worker_is_found_out(study, tmp_path, cluster, odd, monkeypatch, undisturbed):
     with distributed.Client(cluster) as client:
         client.run_on_scheduler(lambda dask_scheduler: setattr(dask_scheduler, "allowed_failures", 0))
-    with monkeypatch.context() as patch:
-        patch.setattr(dispatch, "evaluate_batch", deadly)
-        summary = run_sweep(study, tmp_path / "out", scheduler=cluster.scheduler_address)
+    odd("is_killed", 41)
+    summary = run_sweep(study, tmp_path / "out", scheduler=cluster.scheduler_address)
+    monkeypatch.undo()
     assert dict(summary.statuses)[Status.WORKER_DIED] == 1
     assert 41 in dict(summary.failures)
     again = run_sweep(study, tmp_path / "out", resume=True, retry_failed=True)
     assert again.results.read_bytes() == undisturbed
 
 
-def test_a_result_lost_before_it_is_fetched_ends_its_future(tmp_path, cluster):
+def test_a_result_lost_before_it_is_fetched_ends_its_future(tmp_path, cluster, monkeypatch):
     # The batch is done, its worker dies before the result is fetched, and computing it again kills the next.
     second = tmp_path / "computed once"
 
-    def work():
+    def work(*arguments):
         if second.exists():
             os.kill(os.getpid(), signal.SIGKILL)
         second.touch()
         return os.getpid()
 
+    monkeypatch.setattr(pools, "evaluate_on_cluster", work)
     pool = pools.DaskPool(cluster.scheduler_address)
     pool._client.run_on_scheduler(lambda dask_scheduler: setattr(dask_scheduler, "allowed_failures", 0))
     fetch, killed = pool._client._gather, []
@@ -103,12 +100,12 @@ def test_a_result_lost_before_it_is_fetched_ends_its_future(tmp_path, cluster):
     pid_of = pool._client.run(os.getpid)
     pool._client._gather = late
     try:
-        error = pool.submit(work).exception(timeout=60)
+        error = pool.submit(None, [], [], None).exception(timeout=60)
     finally:
         pool.close()
     assert killed
     assert second.exists()
-    assert isinstance(error, pool.died)
+    assert isinstance(error, pebble.ProcessExpired)
 
 
 def test_a_lost_scheduler_stops_the_sweep_and_nothing_is_lost(study, tmp_path, undisturbed):
@@ -154,7 +151,7 @@ def test_a_scheduler_that_stands_still_stops_the_sweep(study, tmp_path, schedule
 
     def freeze(done, total, failed):
         if thaw.ident is None:
-            monkeypatch.setattr(pools, "WORKER_WAIT", 2.0)
+            monkeypatch.setattr(pools, "GIVEN_UP_SECONDS", 2.0)
             process.send_signal(signal.SIGSTOP)  # its connections stay open
             thaw.start()  # so that a client that waits for ever fails this test instead of hanging it
 
@@ -165,6 +162,30 @@ def test_a_scheduler_that_stands_still_stops_the_sweep(study, tmp_path, schedule
     summary = run_sweep(study, tmp_path / "out", resume=True)
     assert summary.before > 0
     assert summary.results.read_bytes() == undisturbed
+
+
+def test_a_cluster_with_other_code_is_refused(study, tmp_path, scheduler, monkeypatch):
+    monkeypatch.setattr(dispatch, "provenance", lambda: Provenance("python 3", "0" * 64))
+    with pytest.raises(SweepStopped, match="same code"):
+        run_sweep(study, tmp_path / "out", scheduler=scheduler[1])
+
+
+def test_ctrl_c_is_answered_at_once_also_by_a_scheduler_that_stands_still(study, tmp_path, scheduler):
+    process, address = scheduler
+    asked = []
+
+    def freeze(done, total, failed):
+        if not asked:
+            asked.append(time.monotonic())
+            process.send_signal(signal.SIGSTOP)
+            threading.Timer(1.0, os.kill, [os.getpid(), signal.SIGINT]).start()
+
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            run_sweep(study, tmp_path / "out", scheduler=address, progress=freeze)
+        assert time.monotonic() - asked[0] < 1.0 + 4.0  # 2 s by the rule, and room for a loaded machine
+    finally:
+        process.send_signal(signal.SIGCONT)
 
 
 def test_the_command_says_in_one_line_that_the_scheduler_died(make_study, tmp_path, scheduler):
@@ -180,7 +201,8 @@ def test_the_command_says_in_one_line_that_the_scheduler_died(make_study, tmp_pa
     sweep = subprocess.Popen(
         command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     )
-    while not (tmp_path / "long-sweep" / "journal.bin").exists():
+    store = tmp_path / "long-sweep" / "store.sqlite"
+    while not (store.exists() and store.stat().st_size):
         assert sweep.poll() is None
         time.sleep(0.1)
     time.sleep(1.0)  # the cases are on their way
@@ -215,7 +237,7 @@ def test_the_time_limit_holds_on_threads_of_a_worker(study, make_study, tmp_path
         n_workers=1, threads_per_worker=2, protocol="tcp", dashboard_address=":0", silence_logs=50
     ) as cluster:
         address = cluster.scheduler_address
-        summary = run_sweep(endless, tmp_path / "endless", scheduler=address, case_seconds=2.0)
+        summary = run_sweep(endless, tmp_path / "endless", scheduler=address, case_seconds=1.0)
         assert dict(summary.statuses) == {Status.TIME_LIMIT: 2}
         plain = run_sweep(study, tmp_path / "plain", scheduler=address, case_seconds=60.0)
     assert plain.results.read_bytes() == undisturbed

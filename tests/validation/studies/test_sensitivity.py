@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
 import pytest
 
-from validation.studies import analyses, read_results, run_sweep
+from validation.studies import read_results, run_sweep
+from validation.studies.analyses import ANALYSES
 from validation.studies.sensitivity import indices
 
 SAMPLES = 1024
@@ -45,7 +47,7 @@ def result(make_study, tmp_path_factory):
     out = tmp_path_factory.mktemp("ishigami") / "out"
     design = {"method": "sobol", "samples": SAMPLES, "seed": 1, "sensitivity": True}
     with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(analyses.ANALYSES, "geometry", ishigami)
+        patch.setitem(ANALYSES, "geometry", dataclasses.replace(ANALYSES["geometry"], compute=ishigami))
         run_sweep(make_study(design=design, axes=AXES), out)
     return read_results(out)
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field, fields
-from typing import Any
+from dataclasses import dataclass, field
 
 import numpy as np
 
 import lumped
 from lumped import GearPair
-from lumped.errors import SpurcheckError
 from lumped.typing import FloatArray
 from validation.cross_check.agreement import (
     FIDELITIES,
@@ -26,7 +24,17 @@ from validation.cross_check.tolerances import tolerance
 from validation.validity.flags import LOAD_NOISE
 
 #: What can come of a point, beside the text of an error.
-COMPARED, SEPARATED, STICKING = "compared", "teeth separate", "sliding may stick"
+COMPARED, SEPARATED, STICKING = STATES = ("compared", "teeth separate", "sliding may stick")
+#: Names of ``GridPoint.numbers``.
+NUMBERS = (
+    *("status", "load_min", "seconds", "expected"),
+    *(
+        f"{table}_{fidelity}_{quantity}"
+        for table in ("judged", "limit", "total", "largest")
+        for fidelity in FIDELITIES
+        for quantity in QUANTITIES
+    ),
+)
 _RTOL = 1e-9
 
 
@@ -40,7 +48,7 @@ class GridPoint:
 
     Attributes
     ----------
-    status : ``COMPARED``, ``SEPARATED``, ``STICKING`` or the text of an error
+    status : ``COMPARED``, ``SEPARATED``, ``STICKING`` or the text of an error (then nothing else is known)
     load_min : smallest normal load of the lumped model over the static load
     seconds : processor time
     expected : largest change of the transmission error that finite motions must make, over its peak to peak
@@ -58,26 +66,32 @@ class GridPoint:
     total: FloatArray = field(default_factory=_missing)
     largest: FloatArray = field(default_factory=_missing)
 
-    def to_data(self) -> dict[str, Any]:
-        """Plain data for JSON; NaN as None."""
-        return {f.name: _plain(getattr(self, f.name)) for f in fields(self)}
+    def numbers(self) -> tuple[float, ...]:
+        """The point as numbers, for a store; see ``from_numbers``. The status must not be an error."""
+        tables = np.concatenate(
+            [table.ravel() for table in (self.judged, self.limit, self.total, self.largest)]
+        )
+        return (STATES.index(self.status), self.load_min, self.seconds, self.expected, *tables.tolist())
 
     @classmethod
-    def from_data(cls, data: dict[str, Any]) -> GridPoint:
-        """The point that ``to_data`` gave."""
-        values = {name: value for name, value in data.items() if name not in ("status",)}
-        numbers = {name: np.array(value, dtype=float) for name, value in values.items()}
-        scalars = {name: float(v) for name, v in numbers.items() if v.ndim == 0}
-        return cls(data["status"], **(numbers | scalars))  # type: ignore[arg-type]  # mixed types
+    def from_numbers(cls, numbers: FloatArray) -> GridPoint:
+        """The point that ``numbers`` gave."""
+        state, load_min, seconds, expected = numbers[:4].tolist()
+        tables = numbers[4:].reshape(4, len(FIDELITIES), len(QUANTITIES))
+        return cls(STATES[int(state)], load_min, seconds, expected, *tables)
 
 
 def compare_point(pair: GearPair, samples: int) -> GridPoint:
-    """Compare the models in periodic motion; a failure becomes the status.
+    """Compare the models in periodic motion.
 
     Parameters
     ----------
     pair : a validated gear pair
     samples : output times per mesh cycle
+
+    Raises
+    ------
+    SpurcheckError : a model fails
 
     Notes
     -----
@@ -87,42 +101,30 @@ def compare_point(pair: GearPair, samples: int) -> GridPoint:
     (``validation.cross_check.finite_motion``).
     """
     started = time.process_time()
-    load_min = np.nan
 
     def spent() -> float:
         return time.process_time() - started
 
-    try:
-        reference = lumped.steady_state(pair, samples_per_cycle=samples)
-        static = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
-        load_min = float(reference["normal_load"].min()) / static
-        if load_min < -LOAD_NOISE:
-            return GridPoint(SEPARATED, load_min, spent())
-        shift, predicted = contact_shift(pair, reference), finite_motion(pair, reference)
-        keep = off_switch_samples(pair, reference["time"].to_numpy())
-        dte = reference["dte"].to_numpy()[keep]
-        expected = maximum_over_span(dte + predicted.over("dte", keep.size)[keep], dte)
-        tables = [_missing() for _ in range(4)]
-        for i, fidelity in enumerate(FIDELITIES):
-            run = periodic_motion(pair, fidelity, samples=samples, rtol=_RTOL, passes=predicted.settled)
-            foreseen = predicted
-            if fidelity == "exact" and run.attrs["friction_velocity"] == BLUNT:  # a choice of the numerics
-                foreseen = finite_motion(pair, reference, friction_velocity=BLUNT)
-            for j, quantity in enumerate(QUANTITIES):
-                allowed = tolerance(quantity, fidelity, shift)
-                change = foreseen.over(quantity, keep.size) if fidelity == "exact" else 0.0
-                found = agreement(quantity, fidelity, run, reference, keep, allowed, change)
-                values = found.judged, allowed.limit, found.relative_l2, found.maximum_over_span
-                for table, value in zip(tables, values, strict=True):
-                    table[i, j] = value
-    except SpurcheckError as error:
-        return GridPoint(str(error), load_min, spent())
+    reference = lumped.steady_state(pair, samples_per_cycle=samples)
+    static = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
+    load_min = float(reference["normal_load"].min()) / static
+    if load_min < -LOAD_NOISE:
+        return GridPoint(SEPARATED, load_min, spent())
+    shift, predicted = contact_shift(pair, reference), finite_motion(pair, reference)
+    keep = off_switch_samples(pair, reference["time"].to_numpy())
+    dte = reference["dte"].to_numpy()[keep]
+    expected = maximum_over_span(dte + predicted.over("dte", keep.size)[keep], dte)
+    tables = [_missing() for _ in range(4)]
+    for i, fidelity in enumerate(FIDELITIES):
+        run = periodic_motion(pair, fidelity, samples=samples, rtol=_RTOL, passes=predicted.settled)
+        foreseen = predicted
+        if fidelity == "exact" and run.attrs["friction_velocity"] == BLUNT:  # a choice of the numerics
+            foreseen = finite_motion(pair, reference, friction_velocity=BLUNT)
+        for j, quantity in enumerate(QUANTITIES):
+            allowed = tolerance(quantity, fidelity, shift)
+            change = foreseen.over(quantity, keep.size) if fidelity == "exact" else 0.0
+            found = agreement(quantity, fidelity, run, reference, keep, allowed, change)
+            values = found.judged, allowed.limit, found.relative_l2, found.maximum_over_span
+            for table, value in zip(tables, values, strict=True):
+                table[i, j] = value
     return GridPoint(COMPARED if predicted.settled else STICKING, load_min, spent(), expected, *tables)
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, np.ndarray):
-        return [_plain(row) for row in value]
-    if isinstance(value, float):
-        return None if np.isnan(value) else float(value)
-    return value

@@ -11,27 +11,38 @@ Every point compares two periodic motions, each with the brake torque that balan
 
 from __future__ import annotations
 
-import itertools
+import json
+import math
 import time
-import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from hashlib import sha256
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, ClassVar
 
-import joblib
 import numpy as np
 import xarray as xr
 
 import lumped
 from lumped import GearPair
-from lumped.errors import LawRangeWarning, refuse
+from lumped.errors import refuse
 from lumped.friction import FRICTIONAL, LAWS
+from lumped.labelling import Variable, labelled_dataset
 from lumped.typing import FloatArray, Progress
 from validation.cross_check.agreement import FIDELITIES, QUANTITIES
-from validation.cross_check.grid.checkpoint import Checkpoint
-from validation.cross_check.grid.point import COMPARED, SEPARATED, STICKING, GridPoint, compare_point
+from validation.cross_check.grid.point import (
+    COMPARED,
+    NUMBERS,
+    SEPARATED,
+    STICKING,
+    GridPoint,
+    compare_point,
+)
+from validation.stop_signals import stopping_as_interrupt
+from validation.studies.evaluate import Status
+from validation.studies.runner import compute, wanted
+from validation.studies.store import Store, check_version
 
 __all__ = ["AXES", "COMPARED", "SEPARATED", "STICKING", "STIFFNESS", "Grid", "crosscheck_grid"]
 
@@ -121,9 +132,9 @@ def crosscheck_grid(
     Parameters
     ----------
     grid : points; default the full grid
-    workers : processes
-    checkpoint : folder that keeps every finished block of points, so that an interrupted run goes on where it
-        was; made if missing
+    workers : processes; 0 computes in this process
+    checkpoint : folder whose store keeps every finished point, so that an interrupted run goes on where it was;
+        made if missing
     progress : called with the finished fraction
 
     Returns
@@ -150,37 +161,72 @@ def crosscheck_grid(
 
     Raises
     ------
-    ParameterError : the checkpoint belongs to another grid or version
+    ParameterError : the checkpoint belongs to another grid, or other code began it
+    StoreError : it cannot be written, or another process writes to it; what it holds is kept
     """
     g = grid or Grid()
     started = time.perf_counter()
-    store = None if checkpoint is None else Checkpoint(checkpoint, asdict(g))
-    blocks = list(itertools.product(g.presets, g.laws, g.stiffness))
-    found = {} if store is None else store.load(blocks)
-    resumed = sum(map(len, found.values()))
-    jobs = (joblib.delayed(_block)(g, *block) for block in blocks if block not in found)
-    for block, points in joblib.Parallel(n_jobs=workers, return_as="generator_unordered")(jobs):
-        found[block] = points
-        if store is not None:
-            store.save(block, points)
-        if progress is not None:
-            progress(len(found) / len(blocks))
-    result = _dataset(g, [point for block in blocks for point in found[block]])
+    if checkpoint is not None:
+        try:
+            checkpoint.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            reason = error.strerror or type(error).__name__
+            raise refuse("checkpoint", checkpoint, "a folder that can be written", f"{reason}.") from None
+        check_version(checkpoint)
+    cases = _GridCases(g)
+    with stopping_as_interrupt(), Store(checkpoint, cases) as store:
+        todo = wanted(store.table(with_values=False))
+
+        def told(done: int, number: int, failed: int) -> None:
+            if progress is not None:
+                progress((cases.count - number + done) / cases.count)
+
+        compute(cases, _GridEvaluator(g), store, todo, workers=workers, progress=told)
+        table = store.table()
+    assert table.values is not None
+    points = [
+        GridPoint(table.messages[case]) if status >= Status.REFUSED else GridPoint.from_numbers(numbers)
+        for case, (status, numbers) in enumerate(zip(table.status, table.values, strict=True))
+    ]
+    resumed = cases.count - int(np.count_nonzero(todo))
+    result = _dataset(g, points)
     seconds = time.perf_counter() - started
     result.attrs |= {"seconds": seconds, "workers": workers, "resumed": resumed}
     return result
 
 
-def _block(grid: Grid, preset: str, law: str, stiffness: str) -> tuple[tuple[str, str, str], list[GridPoint]]:
-    """All speeds and torques of one pair, law and stiffness: one job."""
-    with warnings.catch_warnings():
-        # The law's range concerns both models alike; single runs warn.
-        warnings.simplefilter("ignore", LawRangeWarning)
-        points = [
-            compare_point(grid.pair(preset, law, stiffness, speed, torque), grid.samples)
-            for speed, torque in itertools.product(grid.speeds, grid.torques)
+class _GridCases:
+    """The points of a grid, as cases of a store; see ``validation.studies.store.Cases``."""
+
+    outputs = NUMBERS
+
+    def __init__(self, grid: Grid) -> None:
+        self.axes = (grid.presets, grid.laws, grid.stiffness, grid.speeds, grid.torques)
+        self.definition = "cross-check grid\n" + json.dumps(asdict(grid))
+        self.sha256 = sha256(self.definition.encode()).hexdigest()
+        self.count = math.prod(grid.shape)
+
+    def values(self, cases: Sequence[int]) -> list[tuple[Any, ...]]:
+        """Preset, law, stiffness, speed and torque of points."""
+        places = np.unravel_index(np.asarray(cases), tuple(map(len, self.axes)))
+        return [
+            tuple(axis[i] for axis, i in zip(self.axes, at, strict=True)) for at in zip(*places, strict=True)
         ]
-    return (preset, law, stiffness), points
+
+
+@dataclass(frozen=True)
+class _GridEvaluator:
+    """What computes a point; see ``validation.studies.evaluate.Evaluator``."""
+
+    grid: Grid
+    outputs: ClassVar[tuple[str, ...]] = NUMBERS
+    nan_allowed: ClassVar[bool] = True
+
+    def prepare(self) -> None:
+        """Everything is loaded with this module."""
+
+    def __call__(self, values: tuple[Any, ...]) -> tuple[float, ...]:
+        return compare_point(self.grid.pair(*values), self.grid.samples).numbers()
 
 
 def _dataset(g: Grid, points: list[GridPoint]) -> xr.Dataset:
@@ -194,7 +240,7 @@ def _dataset(g: Grid, points: list[GridPoint]) -> xr.Dataset:
     inner = (*AXES, "fidelity", "quantity")
     largest, expected = every("largest"), each("expected")
     dte = largest[..., FIDELITIES.index("exact"), QUANTITIES.index("dte")]
-    variables: dict[str, tuple[tuple[str, ...], Any, str, str]] = {
+    variables: dict[str, Variable] = {
         "difference": (inner, every("judged"), "1", "judged metric of the difference"),
         "limit": (inner, every("limit"), "1", "tolerance of the judged metric"),
         "total": (inner, every("total"), "1", "relative L2 of the whole difference"),
@@ -207,25 +253,19 @@ def _dataset(g: Grid, points: list[GridPoint]) -> xr.Dataset:
         "ratio_judged": (AXES, _ratio_judged(g), "1", "whether the law of torque must hold"),
         "seconds": (AXES, each("seconds"), "s", "processor time of the point"),
     }
-    return xr.Dataset(
+    share = "share of the preset's "
+    return labelled_dataset(
+        variables,
         {
-            name: xr.DataArray(values, dims=dims, attrs={"units": unit, "long_name": text})
-            for name, (dims, values, unit, text) in variables.items()
+            "preset": (list(g.presets), "1", "gear pair"),
+            "law": (list(g.laws), "1", "friction law"),
+            "stiffness": (list(g.stiffness), "1", "stiffness model"),
+            "speed": (list(g.speeds), "1", share + "speed"),
+            "torque": (list(g.torques), "1", share + "torque"),
+            "fidelity": (list(FIDELITIES), "1", "fidelity of the multibody model"),
+            "quantity": (list(QUANTITIES), "1", "compared quantity"),
         },
-        coords={
-            "preset": list(g.presets),
-            "law": list(g.laws),
-            "stiffness": list(g.stiffness),
-            "speed": ("speed", list(g.speeds), {"units": "1", "long_name": "share of the preset's speed"}),
-            "torque": (
-                "torque",
-                list(g.torques),
-                {"units": "1", "long_name": "share of the preset's torque"},
-            ),
-            "fidelity": list(FIDELITIES),
-            "quantity": list(QUANTITIES),
-        },
-        attrs={"samples_per_cycle": g.samples},
+        {"samples_per_cycle": g.samples},
     )
 
 
