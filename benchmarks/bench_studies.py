@@ -22,9 +22,12 @@ from pathlib import Path
 import numpy as np
 
 from validation.studies import load_study, run_sweep
-from validation.studies.cases import case_list
+from validation.studies.cases import StudyEvaluator, case_list
 from validation.studies.cli_sweep import cores
+from validation.studies.evaluate import Batch
+from validation.studies.provenance import provenance
 from validation.studies.results import results_dataset, write_results
+from validation.studies.store import STORE, Store, read_table
 
 RUNS = 3
 

@@ -133,7 +133,7 @@ def crosscheck_grid(
     ----------
     grid : points; default the full grid
     workers : processes; 0 computes in this process
-    checkpoint : folder whose store keeps every finished point, so that an interrupted run goes on where it was;
+    checkpoint : folder whose store keeps every finished point, so that an interrupted run goes on there;
         made if missing
     progress : called with the finished fraction
 
