@@ -27,7 +27,8 @@ from validation.studies.cli_sweep import cores
 from validation.studies.evaluate import Batch
 from validation.studies.provenance import provenance
 from validation.studies.results import results_dataset, write_results
-from validation.studies.store import STORE, Store, read_table
+from validation.studies.storage import STORE
+from validation.studies.store import Store, read_table
 
 RUNS = 3
 

@@ -8,7 +8,7 @@ from validation.studies.pools import SweepStopped
 from validation.studies.results import read_results
 from validation.studies.runner import Summary, run_sweep
 from validation.studies.schema import Design, Study
-from validation.studies.store import StoreError
+from validation.studies.storage import StoreError
 
 __all__ = [
     "Axis",

@@ -16,7 +16,8 @@ from validation.studies.cases import CaseList, case_list
 from validation.studies.evaluate import Status
 from validation.studies.load import load_study
 from validation.studies.sensitivity import add_sensitivity
-from validation.studies.store import STORE, Table, read_definition, read_table, storage_failure
+from validation.studies.storage import STORE, storage_failure
+from validation.studies.store import Table, read_definition, read_table
 
 RESULTS = "results.nc"
 

@@ -22,7 +22,8 @@ from validation.studies.evaluate import Evaluator, Status
 from validation.studies.pools import pool_of
 from validation.studies.results import RESULTS, results_dataset, write_results
 from validation.studies.schema import Study
-from validation.studies.store import STORE, Store, StoreError, Table
+from validation.studies.storage import STORE, StoreError, check_version
+from validation.studies.store import Store, Table
 
 #: Called after every batch with (cases computed in this run, cases to compute, failed so far).
 Progress = Callable[[int, int, int], None]
@@ -230,7 +231,7 @@ def _prepare(root: Path, resume: bool) -> None:
     except OSError as error:
         reason = f"It cannot be used: {error.strerror}."
         raise refuse("output", root, "a folder that can be made and read", reason) from error
-    stores.check_version(root)
+    check_version(root)
     store = root / STORE
     begun = store.is_symlink() or (STORE in names and (not store.is_file() or store.stat().st_size > 0))
     if begun and not resume:

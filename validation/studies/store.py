@@ -16,7 +16,6 @@ import contextlib
 import hashlib
 import os
 import sqlite3
-import stat
 import time
 import zlib
 from collections import Counter
@@ -28,18 +27,21 @@ from typing import Any, Protocol, Self
 
 import numpy as np
 
-from lumped.errors import SpurcheckError, refuse
+from lumped.errors import refuse
 from lumped.typing import FloatArray
 from validation.stop_signals import undisturbed
 from validation.studies.evaluate import Batch, Status
 from validation.studies.provenance import Provenance, processor, provenance
+from validation.studies.storage import (
+    STORE,
+    StoreError,
+    check_plain,
+    check_version,
+    damaged,
+    locked,
+    translated,
+)
 
-try:
-    import fcntl
-except ImportError:  # pragma: no cover  (no advisory locks on this system)
-    fcntl = None  # type: ignore[assignment]
-
-STORE, OLD_STORE, _LOCK = "store.sqlite", "journal.bin", ".lock"
 #: What is written reaches the disk itself at most this much later [s].
 SYNC_SECONDS = 1.0
 #: Error texts kept: those of the failed cases with the lowest numbers.
@@ -53,19 +55,6 @@ CREATE TABLE failure (number INTEGER PRIMARY KEY, message TEXT);
 """
 _KEEP_FIRST = """DELETE FROM failure WHERE number >=
 (SELECT number FROM failure ORDER BY number LIMIT 1 OFFSET ?)"""
-
-
-class StoreError(SpurcheckError, OSError):
-    """The store cannot be read or written; what it holds is kept, and the text says how to go on."""
-
-
-def storage_failure(path: Path, doing: str, error: Exception) -> StoreError:
-    """Return the error for a failed file operation, with what to do next."""
-    reason = getattr(error, "strerror", None) or str(error)
-    return StoreError(
-        f"{path}: cannot {doing}: {reason}. What was computed so far is kept; "
-        "free space or restore the permission, then run the same command with --resume."
-    )
 
 
 class Cases(Protocol):
@@ -138,12 +127,12 @@ class Store:
     ) -> None:
         self._cases = cases
         self._path = Path(":memory:") if folder is None else folder / STORE
-        self._lock = None if folder is None else _locked(folder)
+        self._lock = None if folder is None else locked(folder)
         self._in_memory = folder is None
         try:
             if folder is not None:
-                _check_plain(self._path)
-            with _translated(self._path, "write it"):
+                check_plain(self._path)
+            with translated(self._path, "write it"):
                 self._db = sqlite3.connect(self._path, isolation_level=None)
                 try:
                     self._open(other_code, new)
@@ -164,7 +153,7 @@ class Store:
                 )
             for (found,) in self._db.execute("PRAGMA quick_check(1)"):
                 if found != "ok":
-                    raise _damaged(self._path, found)
+                    raise damaged(self._path, found)
             _check_same(self._db, self._path, self._cases)
             if not other_code:
                 self._check_code()
@@ -201,7 +190,7 @@ class Store:
         StoreError : it cannot be written
         """
         now = datetime.now(UTC).isoformat(timespec="seconds")
-        with _translated(self._path, "write to it"):
+        with translated(self._path, "write to it"):
             self._db.execute("PRAGMA journal_mode=WAL")
             self._db.execute("PRAGMA synchronous=NORMAL")
             with self._transaction():
@@ -226,7 +215,7 @@ class Store:
         for run in np.split(np.arange(cases.size), np.flatnonzero(np.diff(cases) != 1) + 1):
             data = batch.status[run].tobytes() + batch.values[run].astype("<f8").tobytes()
             rows.append((int(cases[run[0]]), run.size, zlib.crc32(data), data))
-        with _translated(self._path, "write to it"), self._transaction():
+        with translated(self._path, "write to it"), self._transaction():
             self._db.executemany("INSERT INTO batch (first, count, crc, data) VALUES (?, ?, ?, ?)", rows)
             for first, count, *_ in rows:
                 self._db.execute(
@@ -257,12 +246,12 @@ class Store:
                 f"{self._path} was moved, deleted or replaced while the sweep ran. If it was moved, go on "
                 "there with --resume; else begin again in a new --output."
             )
-        with _translated(self._path, "write to it"):
+        with translated(self._path, "write to it"):
             self._db.execute("PRAGMA wal_checkpoint(PASSIVE)")
 
     def table(self, *, with_values: bool = True) -> Table:
         """Return the outcomes so far."""
-        with _translated(self._path, "read it"):
+        with translated(self._path, "read it"):
             return _table(None if self._new else self._db, self._cases, with_values)
 
     def close(self) -> None:
@@ -310,29 +299,12 @@ def read_table(folder: Path, cases: Cases) -> Table:
         return _table(db, cases, with_values=True)
 
 
-def check_version(folder: Path) -> None:
-    """Refuse a folder with the store of an earlier version.
-
-    Raises
-    ------
-    ParameterError : it holds one
-    """
-    if (folder / OLD_STORE).is_symlink() or (folder / OLD_STORE).exists():
-        raise refuse(
-            "output",
-            folder / OLD_STORE,
-            f"a folder whose store is {STORE}",
-            "An earlier version of spurcheck wrote this one: finish it with that version, or choose another "
-            "--output. It stays as it is.",
-        )
-
-
 @contextlib.contextmanager
 def _reader(folder: Path) -> Iterator[sqlite3.Connection]:
     check_version(folder)
     path = folder / STORE
-    _check_plain(path)
-    with _translated(path, "read it"):
+    check_plain(path)
+    with translated(path, "read it"):
         if not path.exists():
             raise StoreError(f"{path}: no store of a study. Name the folder that a sweep wrote.")
         db = sqlite3.connect(path.absolute().as_uri() + "?mode=ro", uri=True, isolation_level=None)
@@ -340,59 +312,6 @@ def _reader(folder: Path) -> Iterator[sqlite3.Connection]:
             if _is_new(db, path):
                 raise StoreError(f"{path} holds nothing yet. Run its sweep again with --resume.")
             yield db
-
-
-@contextlib.contextmanager
-def _translated(path: Path, doing: str) -> Iterator[None]:
-    """Give the errors of SQLite in the user's words."""
-    try:
-        yield
-    except sqlite3.OperationalError as error:
-        raise storage_failure(path, doing, error) from error
-    except sqlite3.Error as error:
-        raise _damaged(path, str(error)) from error
-
-
-def _damaged(path: Path, why: str) -> StoreError:
-    reason = " ".join(why.split())
-    return StoreError(
-        f"{path} is damaged or no store: {reason}. It stays as it is. Put a copy back, rescue its cases with "
-        f"the SQLite command `sqlite3 {path.name} .recover`, or begin again in a new --output."
-    )
-
-
-def _locked(folder: Path) -> int:
-    """Open the lock file of a folder; no other process can until it is closed or this one ends."""
-    path = folder / _LOCK
-    try:
-        lock = os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o644)
-    except OSError as error:
-        _check_plain(path)
-        raise storage_failure(path, "open it", error) from error
-    try:
-        if fcntl is not None:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as error:
-        os.close(lock)
-        if isinstance(error, BlockingIOError):
-            text = "another run is writing to this folder. Wait for it, or choose another --output."
-            raise StoreError(f"{folder}: {text}") from None
-        raise storage_failure(path, "lock it", error) from error
-    return lock
-
-
-def _check_plain(path: Path) -> None:
-    """Refuse a link, folder, pipe or device in the place of a file of the store: nothing is followed."""
-    for name in (path.name, f"{path.name}-wal", f"{path.name}-shm", f"{path.name}-journal"):
-        try:
-            mode = os.lstat(path.with_name(name)).st_mode
-        except OSError:
-            continue
-        if not stat.S_ISREG(mode):
-            kind = "a symbolic link" if stat.S_ISLNK(mode) else "not a regular file"
-            raise StoreError(
-                f"{path.with_name(name)} is {kind}; a store only uses files of its own. Remove it."
-            )
 
 
 def _is_new(db: sqlite3.Connection, path: Path) -> bool:
@@ -404,7 +323,7 @@ def _is_new(db: sqlite3.Connection, path: Path) -> bool:
     if application == 0 and tables == 0:
         return True
     if application != _APPLICATION:
-        raise _damaged(path, "it belongs to another program")
+        raise damaged(path, "it belongs to another program")
     if version != _FORMAT:
         raise StoreError(
             f"{path} has format {version}; this version of spurcheck uses {_FORMAT}. It stays as it is: use "

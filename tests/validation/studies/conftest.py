@@ -17,7 +17,8 @@ from validation.studies import Study, Summary, load_study, run_sweep, runner
 from validation.studies.analyses import ANALYSES
 from validation.studies.cases import StudyEvaluator, case_list
 from validation.studies.evaluate import Status
-from validation.studies.store import StoreError, read_table
+from validation.studies.storage import StoreError
+from validation.studies.store import read_table
 
 #: Worker processes find the evaluators of ``odd_evaluators`` here.
 sys.path.insert(0, str(Path(__file__).parent))

@@ -17,6 +17,7 @@ from validation.studies import store as stores
 from validation.studies.cases import case_list
 from validation.studies.evaluate import MAX_MESSAGE, Batch, Status, evaluate_batch
 from validation.studies.provenance import provenance
+from validation.studies.storage import OLD_STORE, STORE
 from validation.studies.store import Store, read_table
 
 
@@ -62,7 +63,7 @@ def test_a_case_takes_its_outputs_and_a_byte(make_study, tmp_path):
         for start in range(0, cases.count, 1000):
             store.add(batch_of(range(start, start + 1000)))
     # 2 outputs of 8 bytes, a status, and what pages leave empty; the old store used 41 bytes.
-    assert (tmp_path / stores.STORE).stat().st_size / cases.count < 21
+    assert (tmp_path / STORE).stat().st_size / cases.count < 21
 
 
 def test_the_status_codes_are_those_of_the_stores_there_are():
@@ -91,7 +92,7 @@ def test_texts_are_bounded_in_length_and_number(store, monkeypatch, study):
 
 def test_a_flipped_bit_costs_its_batch_which_is_computed_again(study, tmp_path, undisturbed):
     run_sweep(study, tmp_path / "out")
-    with sqlite3.connect(tmp_path / "out" / stores.STORE) as db:
+    with sqlite3.connect(tmp_path / "out" / STORE) as db:
         number, data = db.execute("SELECT id, data FROM batch ORDER BY length(data) DESC").fetchone()
         changed = bytes([data[0]]) + bytes([data[1] ^ 4]) + data[2:]
         assert zlib.crc32(changed) != zlib.crc32(data)
@@ -121,7 +122,7 @@ def refused_and_kept(study, folder, name, error, words):
 
 @pytest.mark.parametrize("where", ["header", "middle", "end", "cut", "text"])
 def test_a_damaged_store_is_refused_and_left_as_it_is(study, folder, where):
-    path = folder / stores.STORE
+    path = folder / STORE
     data = bytearray(path.read_bytes())
     noise = os.urandom(4096)
     if where == "text":
@@ -132,27 +133,27 @@ def test_a_damaged_store_is_refused_and_left_as_it_is(study, folder, where):
         at = {"header": 0, "middle": 4096, "end": len(data) - 4096}[where]
         data[at : at + 4096] = noise
     path.write_bytes(data)
-    refused_and_kept(study, folder, stores.STORE, StoreError, "damaged or no store.*new --output|cannot")
+    refused_and_kept(study, folder, STORE, StoreError, "damaged or no store.*new --output|cannot")
 
 
 def test_the_database_of_another_program_is_refused(study, folder):
-    (folder / stores.STORE).unlink()
-    db = sqlite3.connect(folder / stores.STORE)
+    (folder / STORE).unlink()
+    db = sqlite3.connect(folder / STORE)
     db.execute("CREATE TABLE thesis (words)")
     db.close()
-    refused_and_kept(study, folder, stores.STORE, StoreError, "another program")
+    refused_and_kept(study, folder, STORE, StoreError, "another program")
 
 
 def test_a_store_of_a_later_format_is_refused(study, folder):
-    with sqlite3.connect(folder / stores.STORE) as db:
+    with sqlite3.connect(folder / STORE) as db:
         db.execute("PRAGMA user_version=2")
     db.close()
-    refused_and_kept(study, folder, stores.STORE, StoreError, "format 2.*the version that wrote it")
+    refused_and_kept(study, folder, STORE, StoreError, "format 2.*the version that wrote it")
 
 
 def test_a_store_of_an_earlier_version_is_refused(study, folder):
-    (folder / stores.STORE).rename(folder / stores.OLD_STORE)
-    refused_and_kept(study, folder, stores.OLD_STORE, ParameterError, "earlier version.*another --output")
+    (folder / STORE).rename(folder / OLD_STORE)
+    refused_and_kept(study, folder, OLD_STORE, ParameterError, "earlier version.*another --output")
 
 
 def test_the_store_of_another_study_is_refused(folder, make_study):
@@ -173,14 +174,14 @@ def test_the_store_of_other_samples_of_the_study_is_refused(make_study, tmp_path
 
 
 def test_what_a_kill_before_the_first_transaction_leaves_is_no_store_yet(study, tmp_path, undisturbed):
-    (tmp_path / stores.STORE).touch()
+    (tmp_path / STORE).touch()
     with pytest.raises(StoreError, match="holds nothing yet"):
         read_results(tmp_path)
     assert run_sweep(study, tmp_path).results.read_bytes() == undisturbed
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="links and pipes")
-@pytest.mark.parametrize("name", [stores.STORE, f"{stores.STORE}-wal", f"{stores.STORE}-shm"])
+@pytest.mark.parametrize("name", [STORE, f"{STORE}-wal", f"{STORE}-shm"])
 @pytest.mark.parametrize("kind", ["link", "pipe", "folder"])
 def test_only_a_regular_file_is_opened(study, folder, tmp_path, name, kind):
     target = tmp_path / "precious"
@@ -202,7 +203,7 @@ def test_only_a_regular_file_is_opened(study, folder, tmp_path, name, kind):
 def test_a_store_that_is_taken_away_is_told_at_once_not_at_the_end(store, cases, tmp_path, monkeypatch, what):
     monkeypatch.setattr(stores, "SYNC_SECONDS", -1.0)
     store.add(batch_of([0]))
-    path, aside = tmp_path / stores.STORE, tmp_path / "aside"
+    path, aside = tmp_path / STORE, tmp_path / "aside"
     path.rename(aside)
     if what == "replaced":
         path.write_bytes(aside.read_bytes())
@@ -229,7 +230,7 @@ def test_no_file_is_left_open(study, make_study, folder):
     read_results(folder).close()
     with pytest.raises(ParameterError):
         run_sweep(make_study(outputs=["base_pitch"]), folder, resume=True)
-    (folder / stores.STORE).write_bytes(b"x" * 5000)
+    (folder / STORE).write_bytes(b"x" * 5000)
     with pytest.raises(StoreError):
         read_results(folder)
     with pytest.raises(StoreError):

@@ -42,7 +42,8 @@ from validation.cross_check.grid.point import (
 from validation.stop_signals import stopping_as_interrupt
 from validation.studies.evaluate import Status
 from validation.studies.runner import compute, wanted
-from validation.studies.store import Store, check_version
+from validation.studies.storage import check_version
+from validation.studies.store import Store
 
 __all__ = ["AXES", "COMPARED", "SEPARATED", "STICKING", "STIFFNESS", "Grid", "crosscheck_grid"]
 
