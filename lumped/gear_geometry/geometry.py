@@ -137,13 +137,13 @@ def theoretical_backlash(pinion: Wheel, gear: Wheel, pressure_angle: float) -> f
     pinion, gear : as cut
     pressure_angle : operating pressure angle [rad]
     """
-    thickness = 0.0
-    for wheel in (pinion, gear):
-        tooth = wheel.tooth
-        half = tooth_half_angle(tooth.teeth, tooth.profile_shift, tooth.pressure_angle, pressure_angle)
-        thickness += 2.0 * half * tooth.base_radius / math.cos(pressure_angle)
-    pitch = 2.0 * math.pi * pinion.tooth.base_radius / math.cos(pressure_angle) / pinion.tooth.teeth
-    return (pitch - thickness) * math.cos(pressure_angle)
+    radii = [wheel.tooth.base_radius / math.cos(pressure_angle) for wheel in (pinion, gear)]
+    halves = [
+        tooth_half_angle(w.tooth.teeth, w.tooth.profile_shift, w.tooth.pressure_angle, pressure_angle)
+        for w in (pinion, gear)
+    ]
+    pitch = 2.0 * math.pi * radii[0] / pinion.tooth.teeth
+    return (pitch - 2.0 * (radii[0] * halves[0] + radii[1] * halves[1])) * math.cos(pressure_angle)
 
 
 def _build(
@@ -201,7 +201,7 @@ def _root_radius(tooth: RackTooth) -> float:
 def _centre_distance(pinion: RackTooth, gear: RackTooth, given: float | None) -> tuple[float, float]:
     """Centre distance [m] and operating pressure angle [rad]."""
     teeth, alpha = pinion.teeth + gear.teeth, pinion.pressure_angle
-    base = pinion.base_radius + gear.base_radius
+    base = 0.5 * pinion.module * teeth * math.cos(alpha)
     if given is not None:
         if given <= base:
             allowed = f"> {base * 1e3:.4f} mm, the sum of the base radii"
