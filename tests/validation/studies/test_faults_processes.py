@@ -203,7 +203,8 @@ def test_a_worker_that_stands_still_is_told_and_given_up(sweep, odd, monkeypatch
     odd("stands_still_once", 41, str(note))
     summary = run_sweep(sweep.study, sweep.out, workers=2, tell=told.append)
     assert len(note.read_text().split()) == 2
-    assert f"Worker process {note.read_text().split()[0]} uses no processor time" in told[0]
+    assert note.read_text().split()[0] in told[0]  # an idle worker may be named beside it
+    assert "uses no processor time" in told[0]
     assert summary.results.read_bytes() == sweep.undisturbed
 
 
