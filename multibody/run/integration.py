@@ -212,7 +212,7 @@ def _run(
     system.systemData.SetODE2Coordinates(q.tolist(), configuration=exu.ConfigurationType.Initial)
     system.systemData.SetODE2Coordinates_t(v.tolist(), configuration=exu.ConfigurationType.Initial)
     try:
-        with _quiet():
+        with quiet():
             finished = system.SolveDynamic(s)
     except Exception as error:  # exudyn wraps whatever a user function raises in its own types
         if "KeyboardInterrupt" in str(error):  # Ctrl-C lands in the user function and is wrapped as well
@@ -241,7 +241,7 @@ def _run(
 
 
 @contextlib.contextmanager
-def _quiet() -> Iterator[None]:
+def quiet() -> Iterator[None]:
     """Keep exudyn from writing to the console; what went wrong is in the exception."""
     before = exu.config.printToConsole
     exu.config.printToConsole = False

@@ -77,7 +77,14 @@ class ExudynModel:
     budget: CallBudget
 
 
-def build(machine: Machine, flags: int, call_limit: int, drive: DriveTables | None = None) -> ExudynModel:
+def build(
+    machine: Machine,
+    flags: int,
+    call_limit: int,
+    drive: DriveTables | None = None,
+    *,
+    turning: bool = False,
+) -> ExudynModel:
     """Assemble the exudyn system.
 
     Parameters
@@ -86,6 +93,7 @@ def build(machine: Machine, flags: int, call_limit: int, drive: DriveTables | No
     flags : effect switches (bits of ``kernels``), or ``kernels.LINEAR``
     call_limit : most force evaluations of one integration interval
     drive : torques beyond the constant ones; they act on the same two nodes as the contacts
+    turning : the nodes hold whole angles and speeds, nominal rotation included, not deviations from it
     """
     container = exu.SystemContainer()
     system = container.AddSystem()
@@ -96,12 +104,14 @@ def build(machine: Machine, flags: int, call_limit: int, drive: DriveTables | No
     torques = (-machine.torque_pinion, -machine.torque_gear)
     nodes = tuple(_add_gear(system, ground, machine, i, centres[i], torques[i]) for i in range(2))
     parameters = p.copy()
+    if turning:  # the force core has no nominal rotation to add
+        parameters[[kn.T_LOW, kn.T_HIGH]] = 0.0
     budget = CallBudget(call_limit)
     mesh = system.AddObject(
         items.ObjectGenericODE2(
             nodeNumbers=list(nodes),
             massMatrix=np.zeros((6, 6)),
-            forceUserFunction=_force_function(machine, flags, parameters, budget, drive),
+            forceUserFunction=_force_function(machine, flags, parameters, budget, drive, turning),
         )
     )
     position, velocity = (
@@ -155,7 +165,12 @@ def _add_gear(
 
 
 def _force_function(
-    machine: Machine, flags: int, p: FloatArray, budget: CallBudget, drive: DriveTables | None
+    machine: Machine,
+    flags: int,
+    p: FloatArray,
+    budget: CallBudget,
+    drive: DriveTables | None,
+    turning: bool,
 ) -> Callable[..., FloatArray]:
     """Return the user function of the contact object; it writes into its own buffers.
 
@@ -173,6 +188,9 @@ def _force_function(
     ) -> FloatArray:
         budget.calls += 1
         pack(buffer, 0, *coordinates, *rates)
+        if turning:  # the core wants rates beyond the nominal speeds
+            v[2] += p[kn.OMEGA_P]
+            v[5] -= p[kn.OMEGA_G]
         if tooth_forces(t, q, v, p, flags, table, wrench, contacts) < 0:
             budget.reason = "not finite"
             raise _Stop

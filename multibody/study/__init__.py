@@ -1,1 +1,1 @@
-"""What runs are for: power balance, causes of differences, reversed sliding, pictures."""
+"""What runs are for: power balance, causes of differences, checks of the model itself, pictures."""

@@ -1,0 +1,80 @@
+"""What the lumped and the multibody model still have in common, and what else speaks for each of it.
+
+Agreement of the two models says nothing about what both read from the same place, so each such thing is named
+here with the evidence that does not come from their comparison.
+
+Sources: docs/theory/multibody.md, "What is own and what is shared".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Shared:
+    """One thing that both models take from the same place.
+
+    Attributes
+    ----------
+    what : the number or formula
+    why : why the multibody model has none of its own
+    evidence : what else says that it is right
+    where : files of the repository in which the evidence is
+    """
+
+    what: str
+    why: str
+    evidence: str
+    where: tuple[str, ...]
+
+
+SHARED: tuple[Shared, ...] = (
+    Shared(
+        "stiffness k of a tooth pair along the path of contact",
+        "rigid bodies have no elasticity; with mesh.relief = 'static' the stretch under load is part of k",
+        "the mean against ISO 6336-1 method B, the tooth as a cantilever, published curves, energy balance",
+        ("lumped/path_of_contact/iso_comparison.py", "tests/lumped/stiffness", "docs/theory/mesh_physics.md"),
+    ),
+    Shared(
+        "drawing and operating point: the fields of the parameter file in SI units",
+        "both models are of the same pair",
+        "every unit and range of the schema is tested, and the report prints every value with its source",
+        ("tests/lumped/schema",),
+    ),
+    Shared(
+        "printed formulas of the friction laws, the film and Walther's law, with their constants",
+        "they are what the prediction is about; each is written twice",
+        "published values of each law, reproduced by both",
+        (
+            "tests/multibody/contact/test_friction.py",
+            "tests/lumped/friction",
+            "docs/theory/friction.md",
+        ),
+    ),
+    Shared(
+        "the load of the friction laws: full static load w_n, whatever a tooth pair carries",
+        "the paper's assumption; the momentary load is the effect 'friction_load'",
+        "the attribution shows what the momentary load changes",
+        ("multibody/contact/effects.py",),
+    ),
+    Shared(
+        "viscosity at 100 degC of an oil of an ISO VG grade (tables of ASTM D2270)",
+        "a table of constants that would only be copied",
+        "values of the standard and of data sheets",
+        ("tests/lumped/lubrication",),
+    ),
+    Shared(
+        "definition c = 2 zeta sqrt(k m_e) of the mesh damping, and of bodies as discs",
+        "definitions of the schema; both sides work them out for themselves",
+        "free vibration decays with the damping ratio of the schema (damping_check); the outline of each "
+        "gear is integrated and the difference to the disc stated (blanks)",
+        ("multibody/study/free_vibration.py", "multibody/study/blanks.py"),
+    ),
+    Shared(
+        "initial state of a run, its time origin, and its brake torque where it is balanced",
+        "the lumped periodic solution starts both models alike",
+        "multibody.steady_state finds its own periodic motion and the brake torque that balances it",
+        ("multibody/run/flow_map.py",),
+    ),
+)
