@@ -26,14 +26,14 @@ def crosscheck_grid(
     output : file to write
     checkpoint : folder that keeps finished parts
     given : options that name one pair and have no meaning here
-    strict : also fail on "bounded"
+    strict : also fail on "explained"
     force : overwrite
     """
     from lumped.errors import refuse
-    from validation.cross_check.agreement import MEANINGS
     from validation.cross_check.grid.run import Grid
     from validation.cross_check.grid.run import crosscheck_grid as run
     from validation.cross_check.grid.summary import explain, failures, outside_tolerance, summarise_grid
+    from validation.cross_check.judgement import MEANINGS
     from validation.files.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
 
     if given:

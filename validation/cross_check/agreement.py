@@ -1,9 +1,9 @@
-"""How one quantity of the multibody model agrees with the lumped model, and the verdict on all of them."""
+"""How one quantity of the multibody model agrees with the lumped model."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -15,20 +15,14 @@ from lumped.errors import NumericalError
 from lumped.model.results import VARIABLES
 from lumped.typing import FloatArray
 from validation.cross_check import metrics
+from validation.cross_check.judgement import Judgement
 from validation.cross_check.metrics import SpragueGeers
-from validation.cross_check.tolerances import GROUPS, LOST, Tolerance
+from validation.cross_check.tolerances import GROUPS, LOST, LOST_REASON, Tolerance
 
 Fidelity = Literal["linear", "exact"]
-Verdict = Literal["confirmed", "bounded", "not confirmed"]
 
 QUANTITIES: tuple[str, ...] = tuple(GROUPS)
 FIDELITIES: tuple[Fidelity, ...] = ("linear", "exact")
-#: Verdict -> what it means.
-MEANINGS: Mapping[str, str] = {
-    "confirmed": "the multibody model gives the same motion within the stated tolerances",
-    "bounded": "the equations agree, and the effect of finite motions is stated but larger than expected",
-    "not confirmed": "the multibody model does not support the lumped prediction",
-}
 #: A sample this close to a switch, in mesh cycles, may lie on either side of the jump by rounding alone.
 _SWITCH_MARGIN = 1e-6
 #: Quantity whose size scales the difference when the reference does not vary, as y without friction.
@@ -48,13 +42,15 @@ class Agreement:
     quantity, unit, long_name : what is compared
     fidelity : "linear" or "exact"
     relative_l2 : L2 norm of the difference over that of the lumped history
-    remainder_l2 : the same after what finite motions must change (``validation.cross_check.finite_motion``)
-        is added to the lumped history
+    predicted_l2 : the same of what finite motions must change (``validation.cross_check.finite_motion``)
+    remainder_l2 : the same of the difference after that change is taken off
+    effects : finite-motion effect -> what it alone changes, likewise
     maximum_over_span, rms_over_span, mean_shift : difference over the peak to peak of the lumped history:
         largest, root mean square, of the means (signed)
     peak_to_peak_ratio : multibody over lumped; None where the lumped history does not vary
     sprague_geers : of the oscillations about the means; None likewise
     tolerance : metric judged, limit and reason
+    raw_limit : of ``relative_l2``; None at fidelity "linear"
     """
 
     quantity: str
@@ -62,6 +58,7 @@ class Agreement:
     long_name: str
     fidelity: Fidelity
     relative_l2: float
+    predicted_l2: float
     remainder_l2: float
     maximum_over_span: float
     rms_over_span: float
@@ -69,6 +66,8 @@ class Agreement:
     peak_to_peak_ratio: float | None
     sprague_geers: SpragueGeers | None
     tolerance: Tolerance
+    raw_limit: Tolerance | None = None
+    effects: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def judged(self) -> float:
@@ -80,21 +79,43 @@ class Agreement:
         """Whether the judged metric is within its limit."""
         return self.judged <= self.tolerance.limit
 
+    @property
+    def judgements(self) -> tuple[Judgement, ...]:
+        """What must hold of this quantity."""
+        limit = self.tolerance
+        if self.fidelity == "linear":
+            return (Judgement(f"linear: {self.quantity}", self.judged, limit.limit, limit.reason),)
+        found = [Judgement(f"remainder: {self.quantity}", self.judged, limit.limit, limit.reason)]
+        if self.quantity == "dte":
+            found.append(Judgement("same motion: dte", self.relative_l2, LOST, LOST_REASON))
+        return tuple(found)
 
-def overall_verdict(agreements: Sequence[Agreement]) -> Verdict:
-    """Verdict from single agreements.
+    @property
+    def raw(self) -> tuple[Judgement, ...]:
+        """The whole difference against its limit; beyond it, it needs an explanation."""
+        limit = self.raw_limit
+        if limit is None:
+            return ()
+        return (Judgement(f"raw: {self.quantity}", self.relative_l2, limit.limit, limit.reason),)
 
-    "not confirmed": a quantity disagrees at fidelity "linear", or the transmission error of the exact model
-    differs by more than ``tolerances.LOST``, or one of the two fidelities is missing; "bounded": one of
-    the exact model's quantities exceeds its tolerance; else "confirmed".
+
+def relative_size(change: FloatArray, quantity: str, reference: Mapping[str, FloatArray]) -> float:
+    """Norm of a change over the norm of the history it changes.
+
+    Of a history that does not vary, as y without friction: root mean square over the size of its companion.
+
+    Parameters
+    ----------
+    change : change of the quantity, of the shape of its history
+    quantity : a key of ``GROUPS``
+    reference : quantity -> history
     """
-    linear = [a for a in agreements if a.fidelity == "linear"]
-    exact = [a for a in agreements if a.fidelity == "exact"]
-    if not linear or not exact or not all(a.within for a in linear):
-        return "not confirmed"
-    if any(a.quantity == "dte" and a.relative_l2 > LOST for a in exact):
-        return "not confirmed"
-    return "confirmed" if all(a.within for a in exact) else "bounded"
+    history = reference[quantity]
+    if metrics.is_constant(history):
+        companion = reference[_COMPANION.get(quantity, quantity)]
+        scale = max(float(np.abs(companion).max()), np.finfo(float).tiny)
+        return float(np.sqrt(np.mean(change**2))) / scale
+    return float(np.linalg.norm(change) / np.linalg.norm(history))
 
 
 def contact_shift(pair: GearPair, motion: xr.Dataset) -> float:
@@ -120,6 +141,8 @@ def agreement(
     keep: np.ndarray[tuple[int], np.dtype[np.bool_]],
     limit: Tolerance,
     predicted: FloatArray | float,
+    raw_limit: Tolerance | None = None,
+    effects: Mapping[str, float] | None = None,
 ) -> Agreement:
     """Compare one quantity of a multibody motion with the lumped one.
 
@@ -130,6 +153,7 @@ def agreement(
     keep : (k,) which of these times count, see ``off_switch_samples``
     limit : tolerance of the judged metric
     predicted : change by finite motions, see ``validation.cross_check.finite_motion``; 0 where there are none
+    raw_limit, effects : limit of the whole difference, and what each effect changes alone
 
     Raises
     ------
@@ -144,6 +168,7 @@ def agreement(
     _, unit, long_name = VARIABLES[quantity]
     ratio: float | None = None
     oscillation: SpragueGeers | None = None
+    foreseen = relative_size(change, quantity, {q: reference[q].to_numpy()[..., keep] for q in GROUPS})
     if metrics.is_constant(b):
         companion = reference[_COMPANION.get(quantity, quantity)].to_numpy()
         scale = max(float(np.abs(companion).max()), np.finfo(float).tiny)
@@ -164,6 +189,7 @@ def agreement(
         long_name=long_name,
         fidelity=fidelity,
         relative_l2=l2,
+        predicted_l2=foreseen,
         remainder_l2=remainder,
         maximum_over_span=largest,
         rms_over_span=rms,
@@ -171,4 +197,6 @@ def agreement(
         peak_to_peak_ratio=ratio,
         sprague_geers=oscillation,
         tolerance=limit,
+        raw_limit=raw_limit,
+        effects={} if effects is None else effects,
     )

@@ -22,20 +22,19 @@ from lumped.typing import FloatArray, Progress
 from validation.cross_check import metrics
 from validation.cross_check.agreement import (
     FIDELITIES,
-    MEANINGS,
     QUANTITIES,
     Agreement,
     Fidelity,
-    Verdict,
     agreement,
     contact_shift,
     off_switch_samples,
-    overall_verdict,
 )
 from validation.cross_check.exact_motion import BLUNT, periodic_motion
 from validation.cross_check.finite_motion import FiniteMotion, finite_motion
+from validation.cross_check.first_order import Effects, first_order
+from validation.cross_check.judgement import MEANINGS, Judgement, Verdict, verdict_of
 from validation.cross_check.metrics import MeshOrders
-from validation.cross_check.tolerances import tolerance
+from validation.cross_check.tolerances import raw_tolerance, tolerance
 
 __all__ = [
     "FIDELITIES",
@@ -89,6 +88,7 @@ class CrossCheck:
     cycles, compared_cycles : numbers of mesh cycles simulated, and of those at the end compared for "exact"
     contact_shift : mean shift of the contact by finite motions, over the base pitch
     finite_motion : what finite motions must change, predicted from the lumped model; None without "exact"
+    effects : what each finite-motion effect can change and changes; None without "exact"
     unsettled : fidelity -> change of the multibody transmission error over the last two cycles, over its peak
         to peak: what is left of the transient; of a periodic motion, its relative mismatch after a cycle
     """
@@ -103,12 +103,34 @@ class CrossCheck:
     compared_cycles: int
     contact_shift: float
     finite_motion: FiniteMotion | None
+    effects: Effects | None
     unsettled: Mapping[Fidelity, float]
+
+    @property
+    def judgements(self) -> tuple[Judgement, ...]:
+        """Everything that must hold."""
+        found = [j for a in self.agreements for j in a.judgements]
+        found += [
+            Judgement(f"{fidelity}: compared", 1.0, 0.0, "a verdict needs both fidelities")
+            for fidelity in FIDELITIES
+            if not self.of(fidelity)
+        ]
+        return tuple(found)
+
+    @property
+    def failures(self) -> tuple[Judgement, ...]:
+        """What does not hold; with any of them the verdict is "not confirmed"."""
+        return tuple(j for j in self.judgements if not j.within)
+
+    @property
+    def explained(self) -> tuple[Agreement, ...]:
+        """Quantities whose whole difference is above its limit."""
+        return tuple(a for a in self.agreements if not all(j.within for j in a.raw))
 
     @property
     def verdict(self) -> Verdict:
         """Overall verdict, see ``MEANINGS``."""
-        return overall_verdict(self.agreements)
+        return verdict_of(self.judgements, [j for a in self.agreements for j in a.raw])
 
     def of(self, fidelity: Fidelity) -> tuple[Agreement, ...]:
         """Agreements at one fidelity."""
@@ -166,6 +188,7 @@ def crosscheck(
     last = reference.isel(time=slice(-samples_per_cycle - 1, -1))
     results: dict[Fidelity, xr.Dataset] = {}
     predicted: FiniteMotion | None = None
+    effects: Effects | None = None
     one: xr.Dataset | None = None
     for done, fidelity in enumerate(fidelities, 1):
         if fidelity == "exact":
@@ -173,6 +196,7 @@ def crosscheck(
             one = _periodic(pair, samples_per_cycle, predicted.settled)
             if one is not None and one.attrs["friction_velocity"] == BLUNT:  # a choice of the numerics
                 predicted = finite_motion(pair, last, friction_velocity=BLUNT)
+            effects = first_order(predicted)
         if fidelity == "exact" and one is not None:
             places = np.arange(reference.sizes["time"]) % samples_per_cycle
             results[fidelity] = one.isel(time=places).assign_coords(time=reference["time"])
@@ -192,11 +216,23 @@ def crosscheck(
         keep = off_switch_samples(pair, reference["time"].to_numpy())
         keep[:first] = False
         for quantity in quantities:
-            limit = tolerance(quantity, fidelity, shift)
-            change: FloatArray | float = 0.0
-            if predicted is not None and fidelity == "exact":
-                change = predicted.over(quantity, keep.size)
-            agreements.append(agreement(quantity, fidelity, result, reference, keep, limit, change))
+            if predicted is None or effects is None or fidelity == "linear":
+                limit = tolerance(quantity, fidelity, shift)
+                agreements.append(agreement(quantity, fidelity, result, reference, keep, limit, 0.0))
+            else:
+                agreements.append(
+                    agreement(
+                        quantity,
+                        fidelity,
+                        result,
+                        reference,
+                        keep,
+                        tolerance(quantity, fidelity, shift, effects.unpredicted(quantity)),
+                        predicted.over(quantity, keep.size),
+                        raw_tolerance(effects.largest(quantity), shift),
+                        {effect: changes[quantity] for effect, changes in effects.alone.items()},
+                    )
+                )
             orders.append(_orders(quantity, fidelity, result, reference, compared, samples_per_cycle))
     unsettled = {f: _unsettled(r, samples_per_cycle) for f, r in results.items()}
     if one is not None:
@@ -212,6 +248,7 @@ def crosscheck(
         compared_cycles=compared,
         contact_shift=shift,
         finite_motion=predicted,
+        effects=effects,
         unsettled=unsettled,
     )
 

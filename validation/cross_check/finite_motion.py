@@ -59,7 +59,7 @@ from lumped.model.results import dataset
 from lumped.model.solution import initial_state
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.typing import FloatArray
-from validation.cross_check.shifted_motion import ShiftedModel
+from validation.cross_check.shifted_motion import ShiftedModel, Shifts
 
 #: Times per mesh cycle at which the motion is read off: while it settles, and in the end at least.
 _COARSE, _FINE = 1024, 4096
@@ -79,12 +79,16 @@ class FiniteMotion:
     settled : whether friction and motion settled and pass zero sliding; if not, friction may hold the teeth,
         and in the prediction it stays that of the nominal sliding velocity. Where not even that settles,
         nothing is predicted
+    model : the lumped model with the effects that are predicted
+    shifts : what the predicted motion moves; None where nothing is predicted
     """
 
     changes: Mapping[str, FloatArray]
     entry: float
     exit: float
     settled: bool
+    model: ShiftedModel
+    shifts: Shifts | None
 
     def over(self, quantity: str, length: int) -> FloatArray:
         """Change of a quantity over whole cycles cut to ``length`` times."""
@@ -136,9 +140,10 @@ def finite_motion(
         model = replace(model, times=fine, effects=model.effects - {"sliding_velocity"})
         shifts, without = model.settle(None)
         if not without:
-            return FiniteMotion({name: np.zeros(cycle[name].shape) for name in _CHANGED}, 0.0, 0.0, False)
+            still = {name: np.zeros(cycle[name].shape) for name in _CHANGED}
+            return FiniteMotion(still, 0.0, 0.0, False, model, None)
     found = model.motion(shifts)
     states = found.states[np.searchsorted(found.times, fine)]
     motion = dataset(found.system, fine, states, {})
     changes = {name: motion[name].to_numpy()[..., ::every] - cycle[name].to_numpy() for name in _CHANGED}
-    return FiniteMotion(changes, shifts.entry, shifts.exit, settled)
+    return FiniteMotion(changes, shifts.entry, shifts.exit, settled, model, shifts)

@@ -140,8 +140,11 @@ class ShiftedModel:
             shifts = replace(found, entry=float(first), exit=float(last), slides_as=guess[2:])
         return best, closest < _ACCEPTED
 
-    def motion(self, shifts: Shifts | None) -> Motion:
-        """Periodic motion under these shifts; None is the nominal motion."""
+    def motion(self, shifts: Shifts | None, *, line: float | None = None) -> Motion:
+        """Periodic motion under these shifts; None is the nominal motion.
+
+        ``line`` is a constant turn of the line of action [rad] instead of the motion's own.
+        """
         system = self.nominal if shifts is None else self._system(shifts)
         times = self._with_jumps(system)
         states = periodic_solution(system, times, estimate_error=False).states
@@ -155,7 +158,14 @@ class ShiftedModel:
         load = e.stiffness(place) * (overlap - e.error(place))
         load += e.damping(place) * (rate - e.error.derivative()(place) * speed)
         found = Motion(system, times, states, place, at, load)
-        return self._on_turned_line(found) if "moving_line" in self.effects else found
+        if line is not None:
+            return self._on_turned_line(found, line)
+        return self._on_turned_line(found, self.turns(found)) if "moving_line" in self.effects else found
+
+    def turns(self, motion: Motion) -> FloatArray:
+        """By how much the line of action turns at each time, (n,) [rad]."""
+        turned: FloatArray = (motion.states[:, 5] - motion.states[:, 4]) / self.cycle.geometry.L_XY
+        return turned
 
     def shifts_after(self, motion: Motion) -> Shifts:
         """What a motion moves."""
@@ -233,12 +243,12 @@ class ShiftedModel:
         )
         return periodic_system(self.pair, "absolute", cycle=MeshCycle(g, elements))
 
-    def _on_turned_line(self, motion: Motion) -> Motion:
+    def _on_turned_line(self, motion: Motion, turned: float | FloatArray) -> Motion:
         """Let the normal load act along the turned line: y moves by the receptances of eqs. 8 and 9."""
         s, n, period = motion.system.structure, self.times.size, self.cycle.period
         z = motion.states
         total = np.bincount(motion.at, motion.load, motion.times.size)
-        force = total * (z[:, 5] - z[:, 4]) / self.cycle.geometry.L_XY
+        force = total * turned
         spectrum = np.fft.rfft(force[np.searchsorted(motion.times, self.times)])
         omega = 2.0 * np.pi * np.fft.rfftfreq(n, period / n)
         states = z.copy()

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
 
-Metric = Literal["maximum_over_span", "remainder_l2"]
+Metric = Literal["maximum_over_span", "remainder_l2", "relative_l2"]
 Group = Literal["dte", "x", "y", "normal_load", "friction_force"]
 
 #: Quantity -> group that shares a tolerance.
@@ -56,9 +56,13 @@ LINEAR: Mapping[Group, Tolerance] = MappingProxyType(
 
 #: Beyond this relative L2 of the transmission error the lumped motion no longer describes the exact one.
 LOST = 0.5
+LOST_REASON = (
+    "with the transmission error so different the lumped motion no longer describes the exact one, even "
+    "where finite motions account for the difference"
+)
 
 
-def tolerance(quantity: str, fidelity: str, shift: float) -> Tolerance:
+def tolerance(quantity: str, fidelity: str, shift: float, unpredicted: float = 0.0) -> Tolerance:
     """Limit for one quantity.
 
     At fidelity "exact" what finite motions change first of all is predicted
@@ -72,13 +76,34 @@ def tolerance(quantity: str, fidelity: str, shift: float) -> Tolerance:
     fidelity : "linear" or "exact"
     shift : mean distance by which wind-up and bearing deflection move the contact along the line of action,
         over the base pitch; the small parameter of every finite-motion effect
+    unpredicted : largest first-order change by the effects that could not be predicted
     """
     group = GROUPS[quantity]
     if fidelity == "linear":
         return LINEAR[group]
-    return Tolerance(
-        "remainder_l2",
-        shift,
+    reason = (
         f"finite motions shift the contact by {shift:.2e} of a base pitch; what they change first "
-        "of all is predicted and taken off, and the rest must be smaller than the shift itself",
+        "of all is predicted and taken off, and the rest must be smaller than the shift itself"
+    )
+    if unpredicted:
+        reason += (
+            f"; no motion of its own was found for all effects, so the most that the others change to first "
+            f"order, {unpredicted:.2e}, is allowed too"
+        )
+    return Tolerance("remainder_l2", shift + unpredicted, reason)
+
+
+def raw_tolerance(largest: float, shift: float) -> Tolerance:
+    """Limit of the whole difference of one quantity at fidelity "exact".
+
+    Parameters
+    ----------
+    largest : sum over the effects of the largest first-order change (``first_order.Effects.largest``)
+    shift : as for ``tolerance``
+    """
+    return Tolerance(
+        "relative_l2",
+        largest + shift,
+        f"sum over the finite-motion effects of the largest change that each can make to first order, "
+        f"{largest:.2e}, and the shift of the contact over the base pitch, {shift:.2e}",
     )

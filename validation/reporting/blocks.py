@@ -22,7 +22,7 @@ STATES = {
     "stable": "good",
     "within": "good",
     "warning": "fair",
-    "bounded": "fair",
+    "explained": "good",
     "undecided": "fair",
     "violated": "bad",
     "not confirmed": "bad",

@@ -149,7 +149,7 @@ def test_multibody_runs_from_the_command():
 
 @pytest.mark.parametrize(
     ("verdict", "strict", "code"),
-    [("confirmed", True, 0), ("bounded", False, 0), ("bounded", True, 1), ("not confirmed", False, 1)],
+    [("confirmed", True, 0), ("explained", False, 0), ("explained", True, 1), ("not confirmed", False, 1)],
 )
 def test_crosscheck_exits_by_its_verdict(check, monkeypatch, tmp_path, verdict, strict, code):
     class Judged(type(check)):

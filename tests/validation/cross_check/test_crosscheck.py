@@ -13,9 +13,9 @@ from validation.cross_check.agreement import (
     agreement,
     contact_shift,
     off_switch_samples,
-    overall_verdict,
 )
 from validation.cross_check.comparison import crosscheck
+from validation.cross_check.first_order import EFFECT_WORDS
 from validation.cross_check.tolerances import LOST, tolerance
 
 
@@ -119,15 +119,39 @@ def _with(agreements, fidelity, quantity, **changes):
 
 
 def test_verdict_follows_from_the_agreements(check):
-    agreeing = tuple(
-        dataclasses.replace(a, **{a.tolerance.metric: 0.5 * a.tolerance.limit}) for a in check.agreements
-    )
-    assert overall_verdict(agreeing) == "confirmed"
-    assert overall_verdict(_with(agreeing, "exact", "y_p", remainder_l2=1.0)) == "bounded"
-    assert overall_verdict(_with(agreeing, "exact", "dte", relative_l2=1.01 * LOST)) == "not confirmed"
-    assert overall_verdict(_with(agreeing, "linear", "x_p", maximum_over_span=1e-3)) == "not confirmed"
-    assert overall_verdict([a for a in agreeing if a.fidelity == "linear"]) == "not confirmed"
-    assert overall_verdict([a for a in agreeing if a.fidelity == "exact"]) == "not confirmed"
+    def verdict(agreements):
+        return dataclasses.replace(check, agreements=tuple(agreements)).verdict
+
+    agreeing = check.agreements
+    assert verdict(agreeing) == "confirmed"
+    assert verdict(_with(agreeing, "exact", "y_p", relative_l2=0.4)) == "explained"
+    assert verdict(_with(agreeing, "exact", "y_p", remainder_l2=0.01)) == "not confirmed"
+    assert verdict(_with(agreeing, "exact", "y_p", remainder_l2=np.nan)) == "not confirmed"
+    assert verdict(_with(agreeing, "exact", "dte", relative_l2=1.01 * LOST)) == "not confirmed"
+    assert verdict(_with(agreeing, "linear", "x_p", maximum_over_span=1e-3)) == "not confirmed"
+    assert verdict([a for a in agreeing if a.fidelity == "linear"]) == "not confirmed"
+    assert verdict([a for a in agreeing if a.fidelity == "exact"]) == "not confirmed"
+
+
+def test_a_failure_names_check_value_and_limit(check):
+    wrong = dataclasses.replace(check, agreements=_with(check.agreements, "exact", "y_p", remainder_l2=1.0))
+    [failure] = wrong.failures
+    assert (failure.check, failure.value) == ("remainder: y_p", 1.0)
+    assert failure.limit == check.contact_shift
+    assert "base pitch" in failure.reason
+
+
+def test_raw_limits_are_what_the_effects_can_do_to_first_order(check):
+    """Every quantity of the default pair is within; friction of the wrong sign would be twice itself away."""
+    effects = check.effects
+    assert set(effects.most) == set(effects.alone) == set(EFFECT_WORDS)
+    for a in check.of("exact"):
+        assert a.raw_limit.limit == effects.largest(a.quantity) + check.contact_shift
+        assert a.relative_l2 < a.raw_limit.limit < 0.5, a.quantity
+        assert a.remainder_l2 < 0.1 * a.predicted_l2
+    # Late entry moves the transmission error, friction at the actual sliding moves y.
+    assert effects.alone["entry_shift"]["dte"] > 10.0 * effects.alone["sliding_velocity"]["dte"]
+    assert effects.alone["sliding_velocity"]["y_p"] > 3.0 * effects.alone["entry_shift"]["y_p"]
 
 
 def test_exact_tolerance_is_the_shift_of_the_contact_and_linear_is_fixed(pair):

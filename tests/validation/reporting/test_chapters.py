@@ -169,7 +169,7 @@ def test_the_headline_states_the_largest_difference_also_when_it_is_within_its_t
             ),
         )
 
-    assert widened(0.07).verdict == "confirmed"
+    assert widened(0.07).verdict == "explained"
     text = finite_motions(widened(0.07)).replace("\u00a0", " ")
     assert "changes the transmission error by 30 % and gear y, most of all, by 40 %" in text
     assert text.endswith("the lumped motion alone accounts for all but 7 % (tolerance 100 %).")

@@ -59,7 +59,7 @@ def test_a_shown_quantity_is_right_to_four_digits(value, unit):
 def test_cells():
     assert cell(None) == "–"
     assert cell(True) == "yes"
-    assert cell(Badge("bounded")) == "bounded"
+    assert cell(Badge("explained")) == "explained"
     assert plain(Quantity(math.inf, "m")) == {"value": None, "unit": "m"}
 
 

@@ -10,8 +10,8 @@ import xarray as xr
 
 import multibody
 from lumped.typing import Progress
-from validation.cross_check.agreement import Verdict
 from validation.cross_check.grid.run import AXES, COMPARED, SCALING_TOLERANCE, SEPARATED, STICKING, Grid
+from validation.cross_check.judgement import Verdict
 from validation.cross_check.tolerances import LOST
 
 
@@ -22,8 +22,8 @@ class GridSummary:
     Attributes
     ----------
     verdict : "not confirmed": a quantity disagrees at fidelity "linear", the law of torque is broken where it
-        must hold, or the exact transmission error differs by more than ``tolerances.LOST``; "bounded": an
-        exact quantity exceeds its tolerance; else "confirmed"
+        must hold, the exact transmission error differs by more than ``tolerances.LOST``, or what is left of
+        an exact quantity exceeds its tolerance; else "confirmed"
     points : how many there are
     compared : of them judged by every rule
     separated, sticking, failed : how many are not, because the lumped loads turn negative, because friction
@@ -77,7 +77,7 @@ def summarise_grid(result: xr.Dataset) -> GridSummary:
     if bool(ran.any()):
         worst = {axis: place.item() for axis, place in _place(dte).items()}
     return GridSummary(
-        verdict="not confirmed" if broken else "bounded" if outside else "confirmed",
+        verdict="not confirmed" if broken or outside else "confirmed",
         points=int(status.size),
         compared=int(compared.sum()),
         separated=int((status == SEPARATED).sum()),

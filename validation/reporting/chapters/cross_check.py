@@ -9,6 +9,7 @@ import xarray as xr
 
 from lumped.model.results import VARIABLES
 from validation.cross_check.comparison import MEANINGS, RTOL, Agreement, CrossCheck, off_switch_samples
+from validation.cross_check.first_order import EFFECT_WORDS, Effects
 from validation.plots.cross_check import cross_check_figure
 from validation.reporting.blocks import (
     Answer,
@@ -52,7 +53,7 @@ def write(results: Results) -> Content:
             f"lumped periodic motion and is compared over {check.cycles} mesh cycles. {_exact_motion(check)}"
         ),
         meshing_teeth(results),
-        _judged(check),
+        *_judged(check),
         _reasons(check),
         *(causes(attribution(results.pair)) if results.effort.full else ()),
     ]
@@ -119,23 +120,74 @@ def _exact_motion(check: CrossCheck) -> str:
     )
 
 
-def _judged(check: CrossCheck) -> Table:
-    words = {
-        "maximum_over_span": "largest difference / peak to peak",
-        "remainder_l2": "relative L2 left after what is predicted",
-    }
-    return table_of(
-        "verdicts",
-        "Verdict per quantity against its stated tolerance.",
-        check.agreements,
+def _judged(check: CrossCheck) -> list[Block]:
+    tables: list[Block] = [
+        table_of(
+            "verdicts_linear",
+            "The same equations in both models: largest difference over the peak to peak.",
+            check.of("linear"),
+            {
+                "quantity": ("quantity", lambda a: NAMES[a.quantity]),
+                "value": ("largest difference", lambda a: a.judged),
+                "tolerance": ("limit", lambda a: a.tolerance.limit),
+                "verdict": ("verdict", lambda a: Badge("within" if a.within else "outside")),
+            },
+        ),
+        table_of(
+            "verdicts",
+            "Exact contact: the whole difference, what finite motions must change, and what they leave; "
+            "each a norm over the norm of the lumped history.",
+            check.of("exact"),
+            {
+                "quantity": ("quantity", lambda a: NAMES[a.quantity]),
+                "raw": ("difference", lambda a: a.relative_l2),
+                "raw_limit": ("its limit", lambda a: _raw_limit(a)),
+                "predicted": ("predicted", lambda a: a.predicted_l2),
+                "value": ("left", lambda a: a.remainder_l2),
+                "tolerance": ("its limit", lambda a: a.tolerance.limit),
+                "verdict": ("verdict", lambda a: Badge(_verdict(a))),
+            },
+        ),
+    ]
+    if check.effects is not None:
+        tables.append(_effects(check, check.effects))
+    return tables
+
+
+def _raw_limit(agreement: Agreement) -> float | None:
+    return None if agreement.raw_limit is None else agreement.raw_limit.limit
+
+
+def _verdict(agreement: Agreement) -> str:
+    if not all(j.within for j in agreement.judgements):
+        return "outside"
+    return "within" if all(j.within for j in agreement.raw) else "explained"
+
+
+def _effects(check: CrossCheck, effects: Effects) -> Table:
+    rows: Rows = []
+    for name, most in effects.most.items():
+        alone = effects.alone.get(name)
+        cells: list[float | None] = []
+        for quantity in _SHOWN:
+            cells += [None if alone is None else alone[quantity], most[quantity]]
+        rows.append((EFFECT_WORDS[name], effects.size[name], *cells))
+    return Table(
+        "effects",
+        "Finite-motion effects by the lumped model: what each changes alone, and the most that it can change "
+        "to first order; the raw limit is the sum of the latter and the shift of the contact.",
         {
-            "quantity": ("quantity", lambda a: NAMES[a.quantity]),
-            "fidelity": ("multibody", lambda a: a.fidelity),
-            "metric": ("metric judged", lambda a: words[a.tolerance.metric]),
-            "value": ("value", lambda a: a.judged),
-            "tolerance": ("tolerance", lambda a: a.tolerance.limit),
-            "verdict": ("verdict", lambda a: Badge("within" if a.within else "outside")),
+            "effect": "effect",
+            "size": "displacement / base pitch",
+            **{
+                f"{quantity}_{key}": f"{NAMES[quantity]}, {word}"
+                for quantity in _SHOWN
+                for key, word in (("alone", "alone"), ("most", "most"))
+            },
         },
+        tuple(rows),
+        note="Of the turned line of action the displacement is its angle [rad]. An empty cell: no motion was "
+        "found with this effect, so friction may hold the teeth, and its most is allowed in what is left.",
     )
 
 
