@@ -29,7 +29,11 @@ def coulomb(name, mu, **changes):
     return load_gear_pair(name).with_(friction__law="coulomb", friction__coefficient=mu, **changes)
 
 
-@pytest.mark.parametrize("name", preset_names())
+#: Pairs with contact ratios below 2, for which closed forms are known.
+UP_TO_TWO_PAIRS = [name for name in preset_names() if load_gear_pair(name).geometry.contact_ratio < 2.0]
+
+
+@pytest.mark.parametrize("name", UP_TO_TWO_PAIRS)
 def test_small_friction_loses_mu_times_the_closed_form(name):
     # 1 - eta = mu H_v (1 + O(mu)); at 1e-6 four digits are safe and rounding in 1 - eta leaves 1e-9
     result = quasi_static_losses(coulomb(name, 1e-6), sharing="uniform")
@@ -67,7 +71,7 @@ def efficiency_of_constant_friction(pair, mu):
     return 1 - lost
 
 
-@pytest.mark.parametrize("name", preset_names())
+@pytest.mark.parametrize("name", UP_TO_TWO_PAIRS)
 @pytest.mark.parametrize("mu", [0.02, 0.05, 0.1])
 def test_efficiency_of_constant_friction_in_closed_form(name, mu):
     result = quasi_static_losses(coulomb(name, mu), sharing="uniform")

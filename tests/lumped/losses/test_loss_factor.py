@@ -12,8 +12,11 @@ from lumped.errors import ParameterError
 from lumped.losses import addendum_contact_ratios, loss_factor, ohlendorf, ohlendorf_of
 from lumped.path_function import PathFunction
 
+#: Pairs with contact ratios below 2, for which closed forms are known.
+UP_TO_TWO_PAIRS = [name for name in preset_names() if load_gear_pair(name).geometry.contact_ratio < 2.0]
 
-@pytest.mark.parametrize("name", preset_names())
+
+@pytest.mark.parametrize("name", UP_TO_TWO_PAIRS)
 def test_closed_form_is_the_integral(name):
     # Derived in ohlendorf's docstring; both are exact, so only rounding may differ.
     pair = load_gear_pair(name)
