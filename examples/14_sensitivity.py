@@ -11,7 +11,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import lumped
-from floquet.gear.sensitivities import gear_sensitivities
+from floquet import gear_sensitivities
 
 
 def compute() -> xr.Dataset:

@@ -24,7 +24,7 @@ from .gear.multipliers import gear_pair_system as gear_pair_system
 from .gear.paths import multiplier_paths as multiplier_paths
 from .gear.reference import extended_monodromy as extended_monodromy
 from .gear.reference import stress_test as stress_test
-from .gear.sensitivities import gear_sensitivities as gear_sensitivities
+from .gear.sensitivity import gear_sensitivities as gear_sensitivities
 from .gear.tongues import label_regions as label_regions
 from .rank_one.batch import FastMonodromy as FastMonodromy
 from .rank_one.batch import FastMultipliers as FastMultipliers

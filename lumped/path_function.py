@@ -25,8 +25,8 @@ from lumped.typing import FloatArray
 #: rounding errors, 2.5e-13 at degree 8, so the fit stays below its tolerances.
 FIT_DEGREE = 8
 _MAX_HALVINGS = 40
-#: Halving without end means rounding noise or an undeclared kink; smooth laws take fewer than 100 pieces.
-_MAX_PIECES = 1000
+#: Halving without end means rounding noise or an undeclared kink; a table of 1000 rows has 1000 pieces.
+_MAX_PIECES = 4000
 
 
 @dataclass(frozen=True, eq=False)

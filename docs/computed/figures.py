@@ -12,7 +12,7 @@ import lumped
 from computed import GENERATED
 from computed.agreement import torque_series
 from computed.diagrams import svg
-from floquet.gear.dense_chart import dense_chart
+from floquet import stability_chart
 from floquet.gear.margins import stability_margins
 from floquet.gear.paths import multiplier_paths
 from lumped import GearPair
@@ -57,7 +57,8 @@ def tongues() -> str:
     axes = {"speed_rpm": np.linspace(2000.0, 20000.0, 361), "damping_ratio": np.linspace(0.002, 0.06, 59)}
     point = (4875.0, pair.mesh.damping_ratio)
     traced = stability_margins(pair, (2000.0, 20000.0)).tongues
-    return svg(tongue_chart_figure(dense_chart(pair, axes), "damping_ratio", traced, point=point))
+    chart = stability_chart(pair, axes, rtol=1e-8, method="auto", store="radius")
+    return svg(tongue_chart_figure(chart, "damping_ratio", traced, point=point))
 
 
 def torque_law() -> str:

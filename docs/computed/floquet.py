@@ -15,10 +15,14 @@ from validation.plots.tongues import zones_figure
 from validation.reporting.formatting import number
 from validation.verification import order_checks
 from validation.verification.checks import Check
-from validation.verification.closed_forms import check_closed_forms, check_forced_motion, check_invariants
+from validation.verification.closed_forms import (
+    check_closed_forms,
+    check_forced_motion,
+    check_invariants,
+    check_random_gears,
+)
 from validation.verification.combinations import check_gear_chain, check_hsu
 from validation.verification.coulomb_zones import MU, check_coulomb_gear_pair, zone_tips
-from validation.verification.random_gears import check_random_gears
 
 
 def numbers(*functions: Callable[[], Iterable[Check]]) -> str:

@@ -30,8 +30,7 @@ def checked_axes(axes: Axes) -> dict[str, FloatArray]:
 
     Raises
     ------
-    ParameterError
-        No axis, or an axis that is empty, not finite, not 1-D or has repeated values.
+    ParameterError : no axis, or an axis that is empty, not finite, not 1-D or has repeated values
     """
     if not isinstance(axes, Mapping) or not axes:
         raise refuse("axes", shown(axes), "at least one name -> values", "Give the parameters to vary.")
@@ -66,8 +65,7 @@ def scan(
 
     Raises
     ------
-    ParameterError
-        Unusable axes.
+    ParameterError : unusable axes
     NumericalError
         A point fails; the message names it.
     """

@@ -73,8 +73,7 @@ def periodic_motion(
 
     Raises
     ------
-    ParameterError
-        Times outside the period, or rtol out of range.
+    ParameterError : times outside the period, or rtol out of range
     NumericalError
         A multiplier is +1 within the error, as it is for a free rigid motion: no periodic motion, or many.
     """

@@ -48,8 +48,7 @@ class MultiplierDerivatives:
 
         Raises
         ------
-        NumericalError
-            The largest multiplier is (nearly) defective.
+        NumericalError : the largest multiplier is (nearly) defective
         """
         if self.conditions[0] > _CONDITION:
             raise NumericalError(

@@ -5,8 +5,11 @@ Sources: docs/theory/floquet.md, "Where instability is, and what it is called".
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from itertools import combinations_with_replacement
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -46,6 +49,23 @@ class Tongue:
             return f"2w{self.mode_i}/{self.order}"
         first, second = (self.mode_i, self.mode_j) if self.sign > 0 else (self.mode_j, self.mode_i)
         return f"(w{first}{'+' if self.sign > 0 else '-'}w{second})/{self.order}"
+
+
+def tongue_coordinates(dim: str, tongues: Iterable[Tongue]) -> dict[str, tuple[str, npt.NDArray[Any]]]:
+    """Coordinates of a dataset whose dimension goes over tongues: label, modes, sign and order."""
+    rows = np.array([(str(t), t.mode_i, t.mode_j, t.sign, t.order) for t in tongues], dtype=object)
+    label, *numbers = rows.reshape(-1, 5).T
+    names = ("mode_i", "mode_j", "sign", "order")
+    whole = {name: (dim, column.astype(np.int64)) for name, column in zip(names, numbers, strict=True)}
+    return {"label": (dim, label), **whole}
+
+
+def combinations(omega: FloatArray) -> Iterator[tuple[int, int, int, float]]:
+    """Pairs of modes i <= j from 0, sign, and the frequency omega_j + sign omega_i that they resonate at."""
+    for i, j in combinations_with_replacement(range(omega.size), 2):
+        yield i, j, 1, float(omega[j] + omega[i])
+        if i < j:
+            yield i, j, -1, float(omega[j] - omega[i])
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,19 +123,13 @@ def label_tongue(matrix: npt.ArrayLike, omega: FloatArray, excitation: float) ->
     values, vectors = np.linalg.eig(np.asarray(matrix, dtype=float))
     shares = mode_shares(vectors[:, np.argmax(np.abs(values))], omega)
     fits: list[tuple[bool, float, Tongue]] = []
-    for i in range(omega.size):
-        for j in range(i, omega.size):
-            against = np.sqrt(shares.forward[i] * shares.backward[j])
-            against = max(against, np.sqrt(shares.backward[i] * shares.forward[j]))
-            along = np.sqrt(shares.forward[i] * shares.forward[j])
-            along = max(along, np.sqrt(shares.backward[i] * shares.backward[j]))
-            for sign, weight in ((1, against), (-1, along)):
-                if i == j and sign < 0:
-                    continue
-                total = float(omega[j] + sign * omega[i])
-                order = max(1, round(total / excitation))
-                near = abs(total / (order * excitation) - 1.0) <= _DETUNING
-                fits.append((near, float(weight), Tongue(i + 1, j + 1, sign, order)))
+    forward, backward = shares.forward, shares.backward
+    for i, j, sign, total in combinations(omega):
+        along, against = (forward, backward) if sign < 0 else (backward, forward)
+        weight = math.sqrt(max(forward[i] * along[j], backward[i] * against[j]))
+        order = max(1, round(total / excitation))
+        near = abs(total / (order * excitation) - 1.0) <= _DETUNING
+        fits.append((near, weight, Tongue(i + 1, j + 1, sign, order)))
     return max(fits)[2], shares
 
 
@@ -147,8 +161,7 @@ def tongue_tip(
 
     Raises
     ------
-    NumericalError
-        The tongue is closed at the first damping, or open at the second.
+    NumericalError : the tongue is closed at the first damping, or open at the second
     """
     places: dict[float, float] = {}
 

@@ -1,4 +1,4 @@
-"""What a stability chart of a gear pair can vary, each with its unit and how it changes the pair."""
+"""What a stability chart of a gear pair can vary: units, how the pair changes, and the range to show."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from lumped.arguments import one_of
-from lumped.errors import refuse
+from lumped.errors import NumericalError, refuse
 from lumped.friction import LAWS, mean_coefficient
+from lumped.labelling import Coordinate
+from lumped.model.averaged import Mode, modes
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -30,6 +32,11 @@ class GearVariation:
     pair: GearPair
     friction_mean: float | None = None
     stiffness_variation: float = 1.0
+
+    @classmethod
+    def of(cls, source: GearPair | GearVariation) -> GearVariation:
+        """A pair as it is, or a variation of one."""
+        return cls(source) if isinstance(source, GearPair) else source
 
     def cycle(self) -> MeshCycle:
         """Mesh cycle, with the friction law scaled to ``friction_mean``."""
@@ -57,12 +64,14 @@ class GearAxis:
     ----------
     units, long_name : labels of the axis
     apply : (variation, value) -> variation
+    own : pair -> value that the pair itself has
     allowed : text of the allowed range, with ``low`` and ``high`` as its ends
     """
 
     units: str
     long_name: str
     apply: Callable[[GearVariation, float], GearVariation] = field(repr=False)
+    own: Callable[[GearPair], float] = field(repr=False)
     low: float = -np.inf
     high: float = np.inf
     open_low: bool = False
@@ -120,23 +129,40 @@ def _variation(variation: GearVariation, value: float) -> GearVariation:
     return replace(variation, stiffness_variation=value)
 
 
+def operating_rpm(pair: GearPair) -> float:
+    """Operating speed of the pinion [rpm]."""
+    return float(pair.operating.pinion_speed * 30.0 / np.pi)
+
+
 GEAR_AXES: Mapping[str, GearAxis] = {
-    "speed_rpm": GearAxis("rpm", "pinion speed", _field("operating.pinion_speed"), 0.0, open_low=True),
-    "damping_ratio": GearAxis("1", "mesh damping ratio", _field("mesh.damping_ratio"), 0.0, 1.0),
-    "friction_coefficient": GearAxis("1", "mean friction coefficient", _friction, 0.0, 1.0),
-    "torque": GearAxis("N m", "pinion torque", _field("operating.pinion_torque"), 0.0, open_low=True),
+    "speed_rpm": GearAxis(
+        "rpm", "pinion speed", _field("operating.pinion_speed"), operating_rpm, 0.0, open_low=True
+    ),
+    "damping_ratio": GearAxis(
+        "1", "mesh damping ratio", _field("mesh.damping_ratio"),
+        lambda pair: pair.mesh.damping_ratio, 0.0, 1.0,
+    ),
+    "friction_coefficient": GearAxis(
+        "1", "mean friction coefficient", _friction,
+        lambda pair: mean_coefficient(mesh_cycle(pair).elements.friction), 0.0, 1.0,
+    ),
+    "torque": GearAxis(
+        "N m", "pinion torque", _field("operating.pinion_torque"),
+        lambda pair: pair.operating.pinion_torque, 0.0, open_low=True,
+    ),
     "stiffness_variation": GearAxis(
-        "1", "variation of mesh stiffness about its mean, 1 as given", _variation, 0.0, 2.0
+        "1", "variation of mesh stiffness about its mean, 1 as given", _variation, lambda pair: 1.0, 0.0, 2.0
     ),
-    "contact_ratio": GearAxis("1", "contact ratio, by the tip diameters", _contact_ratio, 1.0, 3.0),
+    "contact_ratio": GearAxis(
+        "1", "contact ratio, by the tip diameters", _contact_ratio,
+        lambda pair: pair.geometry.contact_ratio, 1.0, 3.0,
+    ),
     "bearing_stiffness": GearAxis(
-        "N/m",
-        "stiffness of all bearings, LOA and OLOA",
+        "N/m", "stiffness of all bearings, LOA and OLOA",
         _field(*(f"bearings.{g}.{d}_stiffness" for g in ("pinion", "gear") for d in ("loa", "oloa"))),
-        0.0,
-        open_low=True,
+        lambda pair: pair.bearings.pinion.loa_stiffness, 0.0, open_low=True,
     ),
-}
+}  # fmt: skip
 """Axis name -> what it varies."""
 
 
@@ -145,10 +171,16 @@ def gear_axis(name: str) -> GearAxis:
 
     Raises
     ------
-    ParameterError
-        Unknown name.
+    ParameterError : unknown name
     """
     return GEAR_AXES[one_of("axes", name, GEAR_AXES)]
+
+
+def axis_coordinates(grid: Mapping[str, FloatArray]) -> dict[str, Coordinate]:
+    """Values of some axes with units and plain names; "value" for a name that is no axis."""
+    unnamed = ("1", "value")
+    known = {name: (axis.units, axis.long_name) for name, axis in GEAR_AXES.items()}
+    return {name: (values, *known.get(name, unnamed)) for name, values in grid.items()}
 
 
 def vary(pair: GearPair, point: Mapping[str, float]) -> GearVariation:
@@ -164,17 +196,41 @@ def operating_value(pair: GearPair, name: str) -> float:
 
     Raises
     ------
-    ParameterError
-        Unknown name.
+    ParameterError : unknown name
     """
-    gear_axis(name)
-    loa = pair.bearings.pinion.loa_stiffness
+    return gear_axis(name).own(pair)
+
+
+def speed_range(pair: GearPair, found: tuple[Mode, ...]) -> tuple[float, float]:
+    """Speeds [rpm] that charts and the report cover.
+
+    The upper end is past the operating speed by half and past the speed where the mesh frequency meets the
+    highest mode of the averaged pair, which is also the widest parametric resonance 2 omega/2 below its
+    first tongue.
+    """
+    rpm = operating_rpm(pair)
+    top = max([1.5 * rpm, *(1.2 * mode.resonant_speed for mode in found)])
+    # Two digits are enough for the end of an axis.
+    digits = 10.0 ** (np.floor(np.log10(top)) - 1)
+    top = float(np.ceil(top / digits) * digits)
+    return min(0.05 * top, 0.5 * rpm), top
+
+
+def chart_axes(pair: GearPair, speeds: int, dampings: int) -> dict[str, FloatArray]:
+    """Nodes of the stability chart: so many speeds [rpm] and mesh damping ratios."""
+    try:
+        found = modes(pair)
+    except NumericalError:
+        found = ()
+    largest = min(max(0.08, 1.5 * pair.mesh.damping_ratio), 1.0)
     return {
-        "speed_rpm": lambda: pair.operating.pinion_speed * 30.0 / math.pi,
-        "damping_ratio": lambda: pair.mesh.damping_ratio,
-        "friction_coefficient": lambda: mean_coefficient(mesh_cycle(pair).elements.friction),
-        "torque": lambda: pair.operating.pinion_torque,
-        "stiffness_variation": lambda: 1.0,
-        "contact_ratio": lambda: pair.geometry.contact_ratio,
-        "bearing_stiffness": lambda: loa,
-    }[name]()
+        "speed_rpm": with_point(np.linspace(*speed_range(pair, found), speeds), operating_rpm(pair)),
+        "damping_ratio": with_point(np.linspace(0.0, largest, dampings), pair.mesh.damping_ratio),
+    }
+
+
+def with_point(values: FloatArray, point: float) -> FloatArray:
+    """Axis values with the node nearest to a point moved onto it."""
+    nodes = values.copy()
+    nodes[np.argmin(np.abs(nodes - point))] = point
+    return nodes

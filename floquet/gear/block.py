@@ -49,7 +49,7 @@ def gear_block(
     rtol = real_number("rtol", rtol, 1e-14, 0.1)
     if friction_level is not None:
         friction_level = real_number("friction_level", friction_level, 0.0, 10.0)
-    variation = GearVariation(source) if isinstance(source, GearPair) else source
+    variation = GearVariation.of(source)
     system = periodic_system(variation.pair, "feedback", cycle=variation.cycle())
     per_load = -(system.structure.normal / system.structure.mass) @ system.reduction.T
     metric = 1.0 / np.abs(per_load)

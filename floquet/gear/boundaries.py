@@ -13,14 +13,15 @@ import numpy.typing as npt
 
 from floquet.engine.chart import checked_axes
 from floquet.engine.intervals import UnstableInterval, seeded_nodes, unstable_intervals
-from floquet.engine.tongues import ModeShares, Tongue, label_tongue
-from floquet.gear.axes import GEAR_AXES, GearVariation, gear_axis, vary
+from floquet.engine.tongues import ModeShares, Tongue, combinations, label_tongue, tongue_coordinates
+from floquet.gear.axes import GearVariation, axis_coordinates, gear_axis, vary
 from floquet.gear.block import gear_block
 from floquet.gear.chart import stability_chart
 from floquet.rank_one.batch import fast_monodromies
 from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_number, real_numbers, whole_number
 from lumped.errors import refuse, shown
+from lumped.labelling import labelled_dataset
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
 
@@ -35,8 +36,7 @@ def checked_range(speed_rpm: tuple[float, float]) -> tuple[float, float]:
 
     Raises
     ------
-    ParameterError
-        Not two increasing positive speeds.
+    ParameterError : not two increasing positive speeds
     """
     speeds = real_numbers("speed_rpm", speed_rpm, 0.0, above=True, increasing=True, unit="rpm")
     if speeds.size != 2:
@@ -56,33 +56,21 @@ def predicted_lines(pair: GearPair | GearVariation, orders: int = 12) -> dict[To
     """
     orders = whole_number("orders", orders, 1, 1000)
     omega = gear_block(pair).modal().omega
-    teeth = (pair if isinstance(pair, GearPair) else pair.pair).pinion.teeth
-    per_rpm = teeth * 2.0 * np.pi / 60.0  # mesh frequency [rad/s] per rpm
-    lines = {}
-    for i in range(omega.size):
-        for j in range(i, omega.size):
-            for sign in (1, -1):
-                total = omega[j] + sign * omega[i]
-                if i == j and sign < 0:
-                    continue
-                for k in range(1, orders + 1):
-                    lines[Tongue(i + 1, j + 1, sign, k)] = float(total / k / per_rpm)
-    return lines
-
-
-def label_at(pair: GearPair, speed_rpm: float) -> tuple[Tongue, FloatArray]:
-    """Label the largest multiplier at a speed by its mode shape, see `label_tongue`.
-
-    Returns
-    -------
-    label, and the (m,) shares of the modes of the mean system in the growing motion, by action
-    """
-    label, shares = label_variation(GearVariation(pair.with_({"operating.pinion_speed": speed_rpm})))
-    return label, shares.total
+    per_rpm = GearVariation.of(pair).pair.pinion.teeth * 2.0 * np.pi / 60.0  # mesh frequency [rad/s] per rpm
+    return {
+        Tongue(i + 1, j + 1, sign, k): float(total / k / per_rpm)
+        for i, j, sign, total in combinations(omega)
+        for k in range(1, orders + 1)
+    }
 
 
 def label_variation(variation: GearVariation) -> tuple[Tongue, ModeShares]:
-    """Name the fastest growing motion of a pair as a chart varies it, see `label_tongue`."""
+    """Label the fastest growing motion of a pair by its mode shape, see `label_tongue`.
+
+    Returns
+    -------
+    label, and the shares of the modes of the mean system in that motion
+    """
     block = gear_block(variation)
     matrix = fast_monodromies(block).matrices[0]
     return label_tongue(matrix, block.modal().omega, 2.0 * np.pi / block.period)
@@ -131,8 +119,7 @@ def stability_boundaries(
 
     Raises
     ------
-    ParameterError
-        Unusable range or axis.
+    ParameterError : unusable range or axis
     """
     low, high = checked_range(speed_rpm)
     nodes = whole_number("nodes", nodes, 0, 1_000_000)
@@ -162,8 +149,7 @@ def stability_boundaries(
             found.setdefault(label, {}).setdefault(index, []).append(interval)
         if progress is not None:
             progress((index + 1) / values.size)
-    result = _dataset(pair, found, name, values)
-    result["complete"] = (name, complete, {"units": "1", "long_name": "grid as fine as the damping asks for"})
+    result = _dataset(pair, found, name, values, complete)
     return result if axes else result.isel({name: 0}, drop=True)
 
 
@@ -198,64 +184,35 @@ def _dataset(
     found: dict[Tongue, dict[int, list[UnstableInterval]]],
     name: str,
     values: FloatArray,
+    complete: npt.NDArray[np.bool_],
 ) -> xr.Dataset:
-    import xarray as xr
-
     tongues = sorted(found)
     shape = (len(tongues), values.size)
-    numbers = {key: np.full(shape, np.nan) for key in ("lower", "upper", "peak", "peak_radius")}
     most = max((len(parts) for columns in found.values() for parts in columns.values()), default=0)
-    ends = np.full((2, *shape, most), np.nan)
-    present, open_end = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
-    intervals = np.zeros(shape, dtype=np.int64)
+    ends, numbers = np.full((2, *shape, most), np.nan), np.full((4, *shape), np.nan)
+    open_end, count = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=np.int64)
     for row, tongue in enumerate(tongues):
         for column, parts in found[tongue].items():
+            lower, upper = np.array([(part.lower, part.upper) for part in parts]).T
             top = max(parts, key=lambda part: part.peak_radius)
-            numbers["lower"][row, column] = min(part.lower for part in parts)
-            numbers["upper"][row, column] = max(part.upper for part in parts)
-            numbers["peak"][row, column] = top.peak
-            numbers["peak_radius"][row, column] = top.peak_radius
-            present[row, column] = True
+            ends[:, row, column, : len(parts)] = lower, upper
+            numbers[:, row, column] = lower.min(), upper.max(), top.peak, top.peak_radius
             open_end[row, column] = any(part.open_below or part.open_above for part in parts)
-            intervals[row, column] = len(parts)
-            for index, part in enumerate(parts):
-                ends[:, row, column, index] = part.lower, part.upper
-    dims = ("tongue", name)
-    names = {
-        "lower": ("rpm", "lower boundary of the tongue"),
-        "upper": ("rpm", "upper boundary of the tongue"),
-        "peak": ("rpm", "speed of the largest spectral radius in the tongue"),
-        "peak_radius": ("1", "largest spectral radius in the tongue"),
-    }
-    rpm = {"units": "rpm"}
-    data: dict[str, tuple[tuple[str, ...], npt.NDArray[np.generic], dict[str, str]]] = {
-        key: (dims, numbers[key], {"units": unit, "long_name": text}) for key, (unit, text) in names.items()
-    }
-    data["present"] = (dims, present, {"units": "1", "long_name": "tongue exists at this value"})
-    data["open_end"] = (dims, open_end, {"units": "1", "long_name": "tongue runs out of the range searched"})
-    data["intervals"] = (dims, intervals, {"units": "1", "long_name": "number of intervals of this label"})
-    data["interval_lower"] = (
-        (*dims, "interval"),
-        ends[0],
-        rpm | {"long_name": "lower ends of the intervals"},
-    )
-    data["interval_upper"] = (
-        (*dims, "interval"),
-        ends[1],
-        rpm | {"long_name": "upper ends of the intervals"},
-    )
-    result = xr.Dataset(
-        data,
-        coords={
-            name: values,
-            "label": ("tongue", np.array([str(t) for t in tongues], dtype=object)),
-            "mode_i": ("tongue", np.array([t.mode_i for t in tongues], dtype=np.int64)),
-            "mode_j": ("tongue", np.array([t.mode_j for t in tongues], dtype=np.int64)),
-            "sign": ("tongue", np.array([t.sign for t in tongues], dtype=np.int64)),
-            "order": ("tongue", np.array([t.order for t in tongues], dtype=np.int64)),
+            count[row, column] = len(parts)
+    dims, each = ("tongue", name), ("tongue", name, "interval")
+    return labelled_dataset(
+        {
+            "lower": (dims, numbers[0], "rpm", "lower boundary of the tongue"),
+            "upper": (dims, numbers[1], "rpm", "upper boundary of the tongue"),
+            "peak": (dims, numbers[2], "rpm", "speed of the largest spectral radius in the tongue"),
+            "peak_radius": (dims, numbers[3], "1", "largest spectral radius in the tongue"),
+            "present": (dims, count > 0, "1", "tongue exists at this value"),
+            "open_end": (dims, open_end, "1", "tongue runs out of the range searched"),
+            "intervals": (dims, count, "1", "number of intervals of this label"),
+            "interval_lower": (each, ends[0], "rpm", "lower ends of the intervals"),
+            "interval_upper": (each, ends[1], "rpm", "upper ends of the intervals"),
+            "complete": (name, complete, "1", "grid as fine as the damping asks for"),
         },
-        attrs={"title": f"stability boundaries of {pair.name}", "friction_law": pair.friction.law},
-    )
-    if name in GEAR_AXES:
-        result[name].attrs.update(units=GEAR_AXES[name].units, long_name=GEAR_AXES[name].long_name)
-    return result
+        axis_coordinates({name: values}),
+        {"title": f"stability boundaries of {pair.name}", "friction_law": pair.friction.law},
+    ).assign_coords(tongue_coordinates("tongue", tongues))

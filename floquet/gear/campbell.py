@@ -11,13 +11,14 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
-from floquet.engine.tongues import mode_shares
-from floquet.gear.axes import vary
+from floquet.engine.tongues import mode_shares, tongue_coordinates
+from floquet.gear.axes import axis_coordinates, vary
 from floquet.gear.block import gear_block
 from floquet.gear.boundaries import predicted_lines
 from floquet.rank_one.batch import fast_monodromies
 from lumped.arguments import real_number, real_numbers, whole_number
 from lumped.errors import NumericalError
+from lumped.labelling import labelled_dataset
 from lumped.schema.pair import GearPair
 from lumped.typing import ComplexArray, FloatArray
 
@@ -53,13 +54,10 @@ def campbell(
 
     Raises
     ------
-    ParameterError
-        Speeds that are not increasing.
+    ParameterError : speeds that are not increasing
     NumericalError
         A speed so low that a multiplier is too small for a number.
     """
-    import xarray as xr
-
     speeds = real_numbers("speeds_rpm", speeds_rpm, 0.0, above=True, increasing=True, unit="rpm")
     mesh_orders = whole_number("mesh_orders", mesh_orders, 1, 1000)
     rtol = real_number("rtol", rtol, 1e-13, 1e-3)
@@ -90,38 +88,34 @@ def campbell(
         if speeds[0] <= speed <= speeds[-1] and meshing[tongue.mode_i - 1] and meshing[tongue.mode_j - 1]
     }
     line_speed = np.array(list(lines.values()))
-    hertz = {"units": "Hz"}
-    return xr.Dataset(
+    each = ("speed_rpm", "mode")
+    return labelled_dataset(
         {
-            "frequency": (
-                ("speed_rpm", "mode"), frequency, hertz | {"long_name": "frequency of the Floquet solution"}
-            ),
-            "decay": (("speed_rpm", "mode"), decay, {"units": "1/s", "long_name": "decay rate, < 0 growth"}),
+            "frequency": (each, frequency, "Hz", "frequency of the Floquet solution"),
+            "decay": (each, decay, "1/s", "decay rate, < 0 growth"),
             "natural_frequency": (
-                "mode", modes / (2.0 * np.pi), hertz | {"long_name": "natural frequency of the mean system"}
+                "mode",
+                modes / (2.0 * np.pi),
+                "Hz",
+                "that of the mean system",
             ),
             "mesh_frequency": (
                 ("speed_rpm", "mesh_order"),
                 speeds[:, None] * teeth / 60.0 * mesh_order,
-                hertz | {"long_name": "multiples of the mesh frequency"},
+                "Hz",
+                "multiples of the mesh frequency",
             ),
-            "line_speed": ("line", line_speed, {"units": "rpm", "long_name": "predicted speed of a tongue"}),
-            "line_frequency": (
-                "line", line_speed * teeth / 60.0, hertz | {"long_name": "mesh frequency on the line"}
-            ),
-            "spectral_radius": ("speed_rpm", radius, {"units": "1", "long_name": "spectral radius"}),
+            "line_speed": ("line", line_speed, "rpm", "predicted speed of a tongue"),
+            "line_frequency": ("line", line_speed * teeth / 60.0, "Hz", "mesh frequency on the line"),
+            "spectral_radius": ("speed_rpm", radius, "1", "spectral radius"),
         },
-        coords={
-            "speed_rpm": ("speed_rpm", speeds, {"units": "rpm", "long_name": "pinion speed"}),
-            "mode": np.arange(1, modes.size + 1),
-            "mesh_order": mesh_order,
-            "label": ("line", np.array([str(t) for t in lines], dtype=object)),
-            "mode_i": ("line", np.array([t.mode_i for t in lines], dtype=np.int64)),
-            "mode_j": ("line", np.array([t.mode_j for t in lines], dtype=np.int64)),
-            "order": ("line", np.array([t.order for t in lines], dtype=np.int64)),
+        {
+            **axis_coordinates({"speed_rpm": speeds}),
+            "mode": (np.arange(1, modes.size + 1), "1", "mode of the mean system"),
+            "mesh_order": (mesh_order, "1", "multiple of the mesh frequency"),
         },
-        attrs={"title": f"Campbell diagram of {pair.name}"},
-    )  # fmt: skip
+        {"title": f"Campbell diagram of {pair.name}"},
+    ).assign_coords(tongue_coordinates("line", lines))
 
 
 def _exponents_by_mode(matrix: FloatArray, omega: FloatArray, period: float) -> ComplexArray:

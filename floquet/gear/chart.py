@@ -15,6 +15,7 @@ import numpy as np
 
 from floquet.engine.chart import Axes, chart_dataset, checked_axes, scan
 from floquet.engine.propagators.base import Propagator
+from floquet.engine.propagators.registry import PROPAGATORS
 from floquet.engine.spectrum import Spectrum
 from floquet.gear.axes import gear_axis, vary
 from floquet.gear.multipliers import gear_pair_multipliers
@@ -27,7 +28,14 @@ from lumped.typing import FloatArray, Progress
 if TYPE_CHECKING:
     import xarray as xr
 
+METHODS = ("auto", "taylor", "chebyshev", *PROPAGATORS)
+#: From here on interpolation costs less processor time than every point by itself (28/28, laws I to III).
+INTERPOLATE_FROM = 100_000
 _INNER = ("speed_rpm", "damping_ratio", "friction_coefficient")
+# The compiled chart is cut along speed, which bounds its memory and lets it tell its progress: points of a
+# slice, and speeds of one at least, since interpolation over few speeds saves nothing.
+_SLICE, _SPEEDS = 1 << 18, 128
+_LARGEST = 25_000_000
 
 
 def stability_chart(
@@ -47,15 +55,15 @@ def stability_chart(
     ----------
     pair : the gear pair
     axes : name -> values, names out of `GEAR_AXES`: speed_rpm, damping_ratio (mesh), friction_coefficient,
-        torque, stiffness_variation, bearing_stiffness, in their stated units
+        torque, stiffness_variation, bearing_stiffness, in their stated units; at most 25 million points
     friction_law : law to use instead of the pair's: "coulomb" for a constant |mu| that changes sign at the
         pitch point, the others for mu that varies along the path. With an axis friction_coefficient the law
         is scaled to that mean of |mu|.
     rtol : wanted accuracy of the monodromy matrices, relative to their scale; 1e-13 to 1e-3
     method : "taylor", the compiled kernel; "chebyshev", the same at some thousand nodes with a checked
         interpolation in speed and in damping or friction between them, for charts of many more points than
-        that (speeds at which a friction law changes its regimes are computed directly); or a method of
-        `monodromy` for an independent check
+        that (speeds at which a friction law changes its regimes are computed directly); "auto", whichever of
+        the two costs less; or a method of `monodromy` for an independent check
     store : "all"; or "radius" for the spectral radius, its error and the verdict without the multipliers: 17
         bytes a point instead of 257
     n_jobs : threads (Taylor) or processes (others); default all cores for Taylor, 1 for the others
@@ -69,19 +77,23 @@ def stability_chart(
 
     Raises
     ------
-    ParameterError
-        Unknown axis, or values outside the range of an axis.
+    ParameterError : unknown axis or method, values outside the range of an axis, or too many points
     NumericalError
         A point fails; the message names it.
     """
     grid = checked_axes(axes)
     for name, values in grid.items():
         gear_axis(name).check(name, values)
+    points = math.prod(values.size for values in grid.values())
+    if points > _LARGEST:
+        raise refuse("points of the chart", points, f"at most {_LARGEST}", "Give the axes smaller counts.")
     if n_jobs is not None:
         n_jobs = whole_number("n_jobs", n_jobs, 1, 1024)
     one_of("store", store, ("all", "radius"))
     if friction_law is not None:
         pair = pair.with_({"friction.law": friction_law})
+    if isinstance(method, str):
+        method = chart_method(grid) if method == "auto" else one_of("method", method, METHODS)
     if isinstance(method, str) and method in ("taylor", "chebyshev"):
         rtol = real_number("rtol", rtol, 1e-13, 1e-3, action="Use 1e-8 for charts, 1e-10 for verdicts.")
         if method == "chebyshev" and "speed_rpm" not in grid:
@@ -106,6 +118,17 @@ def stability_chart(
     return dataset
 
 
+def chart_method(axes: Mapping[str, FloatArray]) -> str:
+    """Method that costs least: "chebyshev" for many points over speed, damping and friction, else "taylor".
+
+    Parameters
+    ----------
+    axes : of the chart
+    """
+    many = math.prod(np.size(values) for name, values in axes.items() if name in _INNER) >= INTERPOLATE_FROM
+    return "chebyshev" if many and "speed_rpm" in axes else "taylor"
+
+
 def _evaluate(pair: GearPair, rtol: float, method: str | Propagator, point: dict[str, float]) -> Spectrum:
     return gear_pair_multipliers(vary(pair, point), rtol, method=method)
 
@@ -124,39 +147,29 @@ def _compiled_chart(
     Damping only scales wd, the mean friction coefficient only scales what friction adds to w, and speed only
     changes the period, and with many friction laws scales friction too.
     """
-    names, shape = list(grid), tuple(values.size for values in grid.values())
-    inner = [name for name in names if name in _INNER and not _is_slow(name, grid)]
+    # A friction axis that is zero throughout has no reference to scale.
+    inner = [n for n in grid if n in _INNER and (n != "friction_coefficient" or grid[n].max() > 0.0)]
     if interpolate and len(inner) == 3:
         inner.remove("friction_coefficient")
-    outer = [name for name in names if name not in inner]
-    mesh = np.meshgrid(*(grid[name] for name in inner), indexing="ij")
-    flat = {name: m.ravel() for name, m in zip(inner, mesh, strict=True)}
-    inner_shape = tuple(grid[name].size for name in inner)
-    whole = Store(math.prod(shape), multipliers)
-    done = 0
-
-    def report(count: int) -> None:
-        nonlocal done
-        done += count
+    shape = tuple(values.size for values in grid.values())
+    steps = {name: grid[name].size if name in inner else 1 for name in grid}
+    if "speed_rpm" in inner:
+        steps["speed_rpm"] = max(_SPEEDS, _SLICE * steps["speed_rpm"] // math.prod(steps.values()))
+    whole, done = Store(math.prod(shape), multipliers), 0
+    for block in product(
+        *([slice(i, i + steps[name]) for i in range(0, grid[name].size, steps[name])] for name in grid)
+    ):
+        here = {name: values[part] for (name, values), part in zip(grid.items(), block, strict=True)}
+        mesh = np.meshgrid(*(here[name] for name in inner), indexing="ij")
+        flat = {name: values.ravel() for name, values in zip(inner, mesh, strict=True)}
+        point = {name: float(values[0]) for name, values in here.items() if name not in inner}
+        size = tuple(values.size for values in here.values())
+        plane, found = Plane(pair, point, flat, math.prod(size)), Store(math.prod(size), multipliers)
+        plane_multipliers(plane, found, rtol, threads, interpolate)
+        for target, source in zip(whole.arrays(), found.arrays(), strict=True):
+            rest = target.shape[1:]
+            target.reshape((*shape, *rest))[block] = source.reshape((*size, *rest))
+        done += plane.count
         if progress is not None:
             progress(done / math.prod(shape))
-
-    for index in product(*(range(grid[name].size) for name in outer)):
-        where = dict(zip(outer, index, strict=True))
-        point = {name: float(grid[name][i]) for name, i in where.items()}
-        plane = Plane(pair, point, flat, math.prod(inner_shape))
-        if not outer:  # the plane is the whole chart
-            plane_multipliers(plane, whole, rtol, threads, report, interpolate)
-            break
-        part = Store(plane.count, multipliers)
-        plane_multipliers(plane, part, rtol, threads, report, interpolate)
-        key = tuple(where.get(name, slice(None)) for name in names)
-        for target, source in zip(whole.arrays(), part.arrays(), strict=True):
-            rest = target.shape[1:]
-            target.reshape((*shape, *rest))[key] = source.reshape((*inner_shape, *rest))
     return chart_dataset(grid, whole.multipliers, whole.errors, whole.radius, whole.radius_error)
-
-
-def _is_slow(name: str, grid: Mapping[str, FloatArray]) -> bool:
-    """A friction axis that is zero throughout has no reference to scale."""
-    return name == "friction_coefficient" and float(grid[name].max()) == 0.0

@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from floquet.engine.chart import Axes, checked_axes
+from floquet.gear.axes import axis_coordinates
 from floquet.gear.chart import stability_chart
 from lumped.arguments import one_of, some_of
 from lumped.errors import refuse
 from lumped.friction import FRICTIONAL, LAWS
+from lumped.labelling import labelled_dataset
 from lumped.schema.pair import GearPair
 from lumped.typing import Progress
 
@@ -53,11 +55,8 @@ def friction_effect(
 
     Raises
     ------
-    ParameterError
-        Unknown law, or an unusable axis.
+    ParameterError : unknown law, or an unusable axis
     """
-    import xarray as xr
-
     grid = checked_axes(axes)
     laws = some_of("laws", laws, LAWS)
     one_of("reference", reference, LAWS)
@@ -72,28 +71,21 @@ def friction_effect(
     dims = tuple(grid)
     growth = np.stack([np.log(c.spectral_radius.values) for c in others])
     error = np.stack([_log_error(c) + _log_error(base) for c in others])
-    verdict = np.stack([c.verdict.values for c in others])
-    before = base.verdict.values
-    flips = np.where((before == -1) & (verdict == 1), 1, np.where((before == 1) & (verdict == -1), -1, 0))
+    before, after = base.verdict.values, np.stack([c.verdict.values for c in others])
+    flips = np.where(before * after == -1, after, 0).astype(np.int8)
     reference_growth = np.log(base.spectral_radius.values)
     full = ("law", *dims)
-    return xr.Dataset(
+    return labelled_dataset(
         {
-            "growth": (full, growth, {"units": "1", "long_name": "growth per mesh cycle, log of the radius"}),
-            "growth_change": (
-                full, growth - reference_growth, {"units": "1", "long_name": "change of growth per cycle"}
-            ),
-            "growth_error": (full, error, {"units": "1", "long_name": "bound on the error of the change"}),
-            "verdict_change": (
-                full, flips.astype(np.int8), {"units": "1", "long_name": "+1 stabilised, -1 destabilised"}
-            ),
-            "reference_growth": (
-                dims, reference_growth, {"units": "1", "long_name": f"growth per cycle, law {reference}"}
-            ),
+            "growth": (full, growth, "1", "growth per mesh cycle, log of the radius"),
+            "growth_change": (full, growth - reference_growth, "1", "change of growth per cycle"),
+            "growth_error": (full, error, "1", "bound on the error of the change"),
+            "verdict_change": (full, flips, "1", "+1 stabilised, -1 destabilised"),
+            "reference_growth": (dims, reference_growth, "1", f"growth per cycle, law {reference}"),
         },
-        coords={"law": np.array(list(laws), dtype=object), **{n: base[n] for n in dims}},
-        attrs={"title": f"effect of friction on {pair.name}", "reference": reference},
-    )  # fmt: skip
+        {"law": (np.array(laws, dtype=object), "1", "friction law"), **axis_coordinates(grid)},
+        {"title": f"effect of friction on {pair.name}", "reference": reference},
+    )
 
 
 def _log_error(chart: xr.Dataset) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:

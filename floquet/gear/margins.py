@@ -11,22 +11,26 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from floquet.engine.intervals import UnstableInterval, seeded_nodes, unstable_intervals
 from floquet.engine.tongues import TongueTip, tongue_tip
-from floquet.gear.axes import vary
+from floquet.gear.axes import operating_rpm, vary
 from floquet.gear.block import gear_block
-from floquet.gear.boundaries import checked_range, label_at, predicted_lines
+from floquet.gear.boundaries import checked_range, label_variation, predicted_lines
 from floquet.gear.chart import stability_chart
 from floquet.rank_one.batch import fast_multipliers
 from lumped import GearPair
 from lumped.friction import mean_coefficient
+from lumped.labelling import labelled_dataset
 from lumped.path_of_contact import friction_path_function
 from lumped.typing import FloatArray
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Radius = Callable[[npt.ArrayLike, npt.ArrayLike], FloatArray]
 """(pinion speeds [rpm], mesh damping ratios), broadcast -> spectral radii of the feedback block."""
@@ -140,7 +144,7 @@ def stability_margins(pair: GearPair, speed_rpm: tuple[float, float]) -> Stabili
     NumericalError : a monodromy matrix cannot be computed; the text says what to try
     """
     speed_range = checked_range(speed_rpm)
-    rpm = pair.operating.pinion_speed * 30.0 / np.pi
+    rpm = operating_rpm(pair)
     here = pair.mesh.damping_ratio
     coefficient = mean_coefficient(friction_path_function(pair))
     held = pair.with_({"friction.law": "coulomb", "friction.coefficient": coefficient})
@@ -159,7 +163,7 @@ def stability_margins(pair: GearPair, speed_rpm: tuple[float, float]) -> Stabili
     dampings = np.concatenate([[0.0], np.geomspace(1e-7, _LARGEST_DAMPING, 150)])
     at_speed = unstable_intervals(lambda z: radius(rpm, z), dampings, xtol=1e-8)
     return StabilityMargins(
-        rpm=float(rpm),
+        rpm=rpm,
         damping=here,
         speed_range=speed_range,
         friction_coefficient=coefficient,
@@ -184,26 +188,22 @@ def margins_dataset(margins: StabilityMargins) -> xr.Dataset:
     for index, t in enumerate(tongues):
         edges[:, index, : t.damping.size] = t.damping, t.left, t.right
     tips = np.array([(t.critical_damping, t.tip_speed, t.radius) for t in tongues]).reshape(-1, 3).T
-    edge, tip = ("tongue", "row"), ("tongue",)
-    columns = (
-        ("damping_ratio", edge, edges[0], "1", "mesh damping ratio of a point of the edges"),
-        ("lower", edge, edges[1], "rpm", "lower edge of the tongue"),
-        ("upper", edge, edges[2], "rpm", "upper edge of the tongue"),
-        ("critical_damping", tip, tips[0], "1", "mesh damping that closes the tongue"),
-        ("tip_speed", tip, tips[1], "rpm", "pinion speed where the tongue closes"),
-        ("peak_radius", tip, tips[2], "1", "largest multiplier without mesh damping"),
-    )
-    return xr.Dataset(
+    edge = ("tongue", "row")
+    return labelled_dataset(
         {
-            name: (dims, values, {"units": unit, "long_name": text})
-            for name, dims, values, unit, text in columns
+            "damping_ratio": (edge, edges[0], "1", "mesh damping ratio of a point of the edges"),
+            "lower": (edge, edges[1], "rpm", "lower edge of the tongue"),
+            "upper": (edge, edges[2], "rpm", "upper edge of the tongue"),
+            "critical_damping": ("tongue", tips[0], "1", "mesh damping that closes the tongue"),
+            "tip_speed": ("tongue", tips[1], "rpm", "pinion speed where the tongue closes"),
+            "peak_radius": ("tongue", tips[2], "1", "largest multiplier without mesh damping"),
         },
-        coords={"label": ("tongue", np.array([t.label for t in tongues], dtype=object))},
-        attrs={
+        {},
+        {
             "title": "tongues of instability over speed and mesh damping",
             "friction_coefficient_held": margins.friction_coefficient,
         },
-    )
+    ).assign_coords(label=("tongue", np.array([t.label for t in tongues], dtype=object)))
 
 
 def feedback_radius(pair: GearPair) -> Radius:
@@ -214,13 +214,12 @@ def feedback_radius(pair: GearPair) -> Radius:
     pair : the gear pair, with a friction law that does not depend on speed
     """
     block = gear_block(vary(pair, {"damping_ratio": _LARGEST_DAMPING}), rtol=0.1 * _RTOL)
-    own_rpm = pair.operating.pinion_speed * 30.0 / np.pi
 
     def radius(speeds: npt.ArrayLike, dampings: npt.ArrayLike) -> FloatArray:
         rpm, zeta = np.broadcast_arrays(np.asarray(speeds, dtype=float), np.asarray(dampings, dtype=float))
         found = fast_multipliers(
             block,
-            block.period * own_rpm / rpm.ravel(),
+            block.period * operating_rpm(pair) / rpm.ravel(),
             zeta.ravel() / _LARGEST_DAMPING,
             tolerance=1e-3 * _RTOL,
         )
@@ -256,7 +255,7 @@ def _tongue(
         tip = tongue_tip(excess, window, (0.0, _LARGEST_DAMPING))
     damping, left, right = _edges(radius, interval, window, tip)
     return TongueMargin(
-        label=str(label_at(pair.with_({"mesh.damping_ratio": 0.0}), interval.peak)[0]),
+        label=str(label_variation(vary(pair, {"damping_ratio": 0.0, "speed_rpm": interval.peak}))[0]),
         lower=interval.lower,
         upper=interval.upper,
         radius=interval.peak_radius,

@@ -48,7 +48,7 @@ def gear_pair_system(source: GearPair | GearVariation, form: Form = "relative") 
     source : the pair
     form : "relative" (10 states), "feedback" (6) or "absolute" (12), as in ``lumped.periodic_system``
     """
-    variation = GearVariation(source) if isinstance(source, GearPair) else source
+    variation = GearVariation.of(source)
     cycle = variation.cycle()
     system = periodic_system(variation.pair, form, cycle=cycle)
     coefficients = _Coefficients(system, variation.stiffness_variation)
@@ -148,10 +148,9 @@ def gear_pair_multipliers(
 
     Raises
     ------
-    NumericalError
-        As in `monodromy`.
+    NumericalError : as in `monodromy`
     """
-    variation = GearVariation(source) if isinstance(source, GearPair) else source
+    variation = GearVariation.of(source)
     block = monodromy(gear_pair_system(variation, "feedback"), rtol, method=method)
     bearings = OffLineOfAction.of(periodic_system(variation.pair, "relative"))
     (oloa,), (oloa_errors,) = bearings.multipliers(np.array([block.period]))

@@ -13,11 +13,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
-from floquet.gear.axes import gear_axis, vary
+from floquet.gear.axes import axis_coordinates, gear_axis, operating_rpm, vary
 from floquet.gear.block import gear_block
-from floquet.gear.friction import depends_on_speed
+from floquet.gear.friction_over_speed import depends_on_speed
 from floquet.rank_one.batch import fast_monodromies
 from lumped.arguments import real_number, real_numbers
+from lumped.labelling import labelled_dataset
 from lumped.schema.pair import GearPair
 from lumped.typing import ComplexArray, FloatArray
 
@@ -52,11 +53,8 @@ def multiplier_paths(pair: GearPair, name: str, values: npt.ArrayLike, *, rtol: 
 
     Raises
     ------
-    ParameterError
-        Unknown axis, or values that are not increasing.
+    ParameterError : unknown axis, or values that are not increasing
     """
-    import xarray as xr
-
     axis = gear_axis(name)
     points = real_numbers("values", values, increasing=True)
     axis.check(name, points)
@@ -71,15 +69,14 @@ def multiplier_paths(pair: GearPair, name: str, values: npt.ArrayLike, *, rtol: 
         here, sure = line.follow(here, float(low), float(high), halvings)
         paths.append(here.multipliers)
         certain.append(sure)
-    units = {"units": "1"}
-    return xr.Dataset(
+    return labelled_dataset(
         {
-            "multipliers": ((name, "path"), np.array(paths), units | {"long_name": "Floquet multipliers"}),
-            "certain": ((name, "path"), np.array(certain), units | {"long_name": "joined for certain"}),
+            "multipliers": ((name, "path"), np.array(paths), "1", "Floquet multipliers"),
+            "certain": ((name, "path"), np.array(certain), "1", "joined for certain"),
         },
-        coords={name: (name, points, {"units": axis.units, "long_name": axis.long_name})},
-        attrs={"title": f"multiplier paths of {pair.name}"},
-    )  # fmt: skip
+        axis_coordinates({name: points}),
+        {"title": f"multiplier paths of {pair.name}"},
+    )
 
 
 class _Place(NamedTuple):
@@ -97,7 +94,7 @@ class _Line:
 
     def __init__(self, pair: GearPair, name: str, rtol: float) -> None:
         self.pair, self.name, self.tolerance = pair, name, 0.01 * rtol
-        self.rpm = pair.operating.pinion_speed * 30.0 / np.pi
+        self.rpm = operating_rpm(pair)
         # Without laws that change with speed one block serves all speeds.
         self.block = gear_block(pair) if name == "speed_rpm" and not depends_on_speed(pair) else None
 

@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from floquet.engine.multipliers import radii_with_bounds
-from floquet.gear.axes import GearVariation, vary
+from floquet.gear.axes import GearVariation, operating_rpm, vary
 from floquet.gear.block import gear_block
-from floquet.gear.friction import FrictionFamily, factors_at, friction_families
+from floquet.gear.friction_over_speed import FrictionFamily, factors_at, friction_families
 from floquet.gear.multipliers import OffLineOfAction
 from floquet.rank_one.batch import FastMonodromy, FastMultipliers, fast_monodromies, fast_multipliers
 from floquet.rank_one.coarsening import coarsened
@@ -119,7 +119,6 @@ def plane_multipliers(
     store: Store,
     rtol: float,
     threads: int | None,
-    report: Callable[[int], None],
     interpolate: bool,
 ) -> None:
     """Multipliers of all points: the feedback block and the bearings off the line of action.
@@ -130,12 +129,10 @@ def plane_multipliers(
     store : takes the multipliers
     rtol : wanted error relative to the scale of the monodromy matrices
     threads : default one per core
-    report : called with the number of points done since the last call
     interpolate : over speed and over damping or friction, where speeds are many and share one friction law
     """
     first = plane.variation()
-    own = first.pair.operating.pinion_speed * 30.0 / np.pi
-    speeds = plane.flat.get("speed_rpm", np.full(plane.count, own))
+    speeds = plane.flat.get("speed_rpm", np.full(plane.count, operating_rpm(first.pair)))
     unique, which = np.unique(speeds, return_inverse=True)
     damping, friction = plane.damping(), plane.friction()
     for family in friction_families(first, unique):
@@ -171,7 +168,6 @@ def plane_multipliers(
         if not done:
             factors = friction[part, None] * family.factors[row[which[part]]]
             _direct(block, periods, damping[part], factors, rtol, threads, put)
-        report(part.size)
 
 
 def _direct(

@@ -24,6 +24,7 @@ from lumped import load_gear_pair
 from lumped.arguments import whole_number
 from lumped.errors import LawRangeWarning
 from lumped.friction import LAWS
+from lumped.labelling import labelled_dataset
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.path_function import PathFunction
 from lumped.schema.pair import GearPair
@@ -190,11 +191,13 @@ def stress_test(count: int, seed: int) -> xr.Dataset:
                 # LAPACK's own error in the eigenvalues of the reference is no error of ours.
                 ratio = np.maximum(error - _LAPACK, 0.0) / found.errors[0]
                 result[:, route, index] = error.max(), found.errors[0].max(), ratio.max()
-    return xr.Dataset(
+    dims = ("route", "pair")
+    return labelled_dataset(
         {
-            name: (("route", "pair"), values)
-            for name, values in zip(("error", "bound", "excess"), result, strict=True)
+            "error": (dims, result[0], "1", "largest error of a multiplier"),
+            "bound": (dims, result[1], "1", "largest bound reported"),
+            "excess": (dims, result[2], "1", "largest error over its bound"),
         },
-        coords={"route": ["fine", "joined"]},
-        attrs={"seed": seed, "mantissa_bits": np.finfo(np.longdouble).nmant + 1},
+        {"route": (["fine", "joined"], "1", "pieces of the compiled route")},
+        {"seed": seed, "mantissa_bits": np.finfo(np.longdouble).nmant + 1},
     )

@@ -144,8 +144,7 @@ def fast_monodromies(
 
     Raises
     ------
-    NumericalError
-        Too many steps or terms, or a result that is not finite.
+    NumericalError : too many steps or terms, or a result that is not finite
     """
     points = Points.of(system, periods, damping_factors, gain_factors, tolerance, threads, max_steps)
     n, N = 2 * system.v.size, points.periods.size
@@ -170,12 +169,10 @@ class FastMultipliers:
     Attributes
     ----------
     multipliers, errors : (N, 2m) with a bound on the error of each, dimensionless, in no particular order
-    matrix_errors : (N,) bound on the error of the monodromy matrix in energy coordinates
     """
 
     multipliers: ComplexArray
     errors: FloatArray
-    matrix_errors: FloatArray
 
 
 def fast_multipliers(
@@ -204,7 +201,6 @@ def fast_multipliers(
     return FastMultipliers(
         np.concatenate([part.multipliers for part in parts]),
         np.concatenate([part.errors for part in parts]),
-        flow.errors,
     )
 
 
@@ -215,7 +211,7 @@ def multipliers_of(matrices: FloatArray, errors: FloatArray) -> FastMultipliers:
     spectra(matrices, errors, values, radii, safe)
     for point in np.flatnonzero(~safe):
         values[point], radii[point] = multipliers_with_bounds(matrices[point], float(errors[point]))
-    return FastMultipliers(values, radii, errors)
+    return FastMultipliers(values, radii)
 
 
 def _factors(

@@ -77,8 +77,7 @@ def interpolant(
 
     Raises
     ------
-    NumericalError
-        The tolerance is not met with 400000 nodes.
+    NumericalError : the tolerance is not met with 400000 nodes
     """
     K = math.ceil(0.5 * turns) + 24
     L = 1 if parameter[0] == parameter[1] else 12

@@ -101,8 +101,7 @@ def fit_pieces(
 
     Raises
     ------
-    NumericalError
-        The gains are not finite, or not to be had to any accuracy on a segment.
+    NumericalError : the gains are not finite, or not to be had to any accuracy on a segment
     """
     nodes, matrix = to_series(gains.count)
     root = np.sqrt(metric)

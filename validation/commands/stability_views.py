@@ -11,11 +11,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from floquet import predicted_lines, stability_boundaries
-from floquet.gear.axes import GEAR_AXES, operating_value
+from floquet.gear.axes import GEAR_AXES, chart_axes, operating_value
 from floquet.gear.campbell import campbell
-from floquet.gear.chart_axes import chart_axes
+from floquet.gear.chart import METHODS, stability_chart
 from floquet.gear.coulomb_zones import coulomb_gear_pair, stability_zones
-from floquet.gear.dense_chart import METHODS, dense_chart
 from floquet.gear.friction_effect import friction_effect
 from floquet.gear.margins import StabilityMargins, margins_dataset, stability_margins
 from floquet.gear.paths import multiplier_paths
@@ -121,7 +120,14 @@ def _chart(request: Request) -> View:
     pair = request.pair
     grid = dict(request.axes) or chart_axes(pair, *_CHART)
     with progress_bar("stability chart") as tell:
-        chart = dense_chart(pair, grid, method=request.method, multipliers=request.multipliers, progress=tell)
+        chart = stability_chart(
+            pair,
+            grid,
+            rtol=1e-8,
+            method=request.method,
+            store="all" if request.multipliers else "radius",
+            progress=tell,
+        )
     stable = chart["verdict"].to_numpy() == 1
     radius = chart["spectral_radius"]
     worst = radius.isel(radius.argmax(...))

@@ -12,7 +12,7 @@ import xarray as xr
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from floquet.gear.chart_axes import operating_rpm
+from floquet.gear.axes import operating_rpm
 from lumped import GearPair, load_gear_pair
 from lumped.friction import LAWS
 from lumped.typing import Progress

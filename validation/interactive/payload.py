@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from floquet.gear.chart_axes import operating_rpm
+from floquet.gear.axes import operating_rpm
 from lumped.friction import LAWS
 from validation.interactive.results import PageResults
 from validation.interactive.slices import Slices

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 import lumped
-from floquet.gear.chart_axes import chart_axes, operating_rpm, speed_range
+from floquet.gear.axes import chart_axes, operating_rpm, speed_range
 from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
 from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError
 from lumped.friction import LAWS

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from floquet.gear.axes import gear_axis, operating_value
+from floquet.gear.axes import gear_axis, operating_value, with_point
 from floquet.gear.chart import stability_chart
-from floquet.gear.chart_axes import with_point
 from floquet.gear.tongues import LabelledRegion, label_regions
 from lumped import GearPair
 from lumped.errors import ParameterError

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 import lumped
-from floquet.gear.chart_axes import operating_rpm, speed_range
+from floquet.gear.axes import operating_rpm, speed_range
 from floquet.gear.margins import StabilityMargins, stability_margins
 from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
 from lumped import GearPair, Geometry, NumericalError, ParameterError

@@ -27,6 +27,7 @@ from floquet import (
 from floquet.engine.propagation import propagate_fixed
 from floquet.engine.propagators.registry import propagator
 from floquet.engine.reference_systems import mathieu, meissner, meissner_trace
+from floquet.gear.reference import stress_test
 from lumped import GearPair, load_gear_pair, steady_state
 from lumped.typing import FloatArray
 from validation.verification.checks import Check, OrderCheck, error_check
@@ -181,21 +182,30 @@ def check_invariants() -> Iterator[Check]:
     yield error_check("Liouville's formula", "sum of log det = integral of tr A", liouville, 1e-10)
 
 
-def observed_order(system: PeriodicSystem, method: str, exact: FloatArray, steps: int) -> tuple[float, float]:
-    """Order seen when ``steps`` equal steps a segment are halved, and the relative error of the fine ones."""
-    coarse, fine = (
-        float(np.linalg.norm(propagate_fixed(system, propagator(method), n) - exact) / np.linalg.norm(exact))
-        for n in (steps, 2 * steps)
-    )
-    return float(np.log2(coarse / fine)), fine
-
-
 def order_checks() -> tuple[OrderCheck, ...]:
-    """Observed orders of all propagators on Mathieu's equation, a = 3, q = 2, at a fixed number of steps."""
+    """Observed orders of all propagators on Mathieu's equation, a = 3, q = 2: equal steps, halved once."""
     system = mathieu(3.0, 2.0)
     exact = propagate_fixed(system, propagator("gauss"), 64)
-    rows = []
-    for name, known in PROPAGATORS.items():
-        observed, error = observed_order(system, name, exact, known.coarse_steps)
-        rows.append(OrderCheck(name, known.order, observed, known.coarse_steps, error))
-    return tuple(rows)
+
+    def row(name: str, order: int, steps: int) -> OrderCheck:
+        found = [propagate_fixed(system, propagator(name), count) for count in (steps, 2 * steps)]
+        coarse, fine = (float(np.linalg.norm(M - exact) / np.linalg.norm(exact)) for M in found)
+        return OrderCheck(name, order, float(np.log2(coarse / fine)), steps, fine)
+
+    return tuple(row(name, known.order, known.coarse_steps) for name, known in PROPAGATORS.items())
+
+
+#: Gear pairs of the stress test and its seed; more of them by ``python benchmarks/bench_floquet.py``.
+COUNT, SEED = 100, 1
+
+
+def check_random_gears() -> Iterator[Check]:
+    """Compiled route on random gear pairs: worst error, its ratio to its bound, and the median bound."""
+    found = stress_test(COUNT, SEED)
+    routes = {"fine": ("single points", 1e-11, 1e-9), "joined": ("dense charts", 1e-9, 1e-8)}
+    for route, (use, limit, tight) in routes.items():
+        one, name = found.sel(route=route), f"{COUNT} random gear pairs, {use}"
+        error, excess, bound = (float(x) for x in (one.error.max(), one.excess.max(), one.bound.median()))
+        yield error_check(f"{name}: error", "multipliers of the reference", error, limit)
+        yield error_check(f"{name}: error over bound", "within the reported bound", excess, 1.0)
+        yield error_check(f"{name}: median bound", "small, so that the bound says something", bound, tight)

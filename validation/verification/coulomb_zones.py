@@ -5,14 +5,14 @@ Unity ratio and equal inertias: friction multiplies the stiffness of each tooth 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
 
 from floquet import gear_pair_multipliers, monodromy
+from floquet.engine.tongues import tongue_tip
 from floquet.gear.coulomb_zones import CoulombGearPair
 from lumped import GearPair, load_gear_pair
 from lumped.model.bodies import bodies
@@ -22,7 +22,6 @@ from validation.verification.checks import Check, error_check, order_check
 
 MU = 0.2
 _RATIOS = np.linspace(0.2, 3.0, 57)
-CASES = ("none", "reversing", "constant")
 
 
 def check_coulomb_gear_pair() -> Iterator[Check]:
@@ -103,31 +102,23 @@ def _trace(mu: float) -> FloatArray:
 
 def zone_tips(orders: int = 4) -> list[tuple[str, str, float, float]]:
     """Where the zones 2 omega/k close: (zone, friction, damping ratio, mesh over natural frequency)."""
-    rows = []
     f = np.sqrt(1.0 + MU * np.tan(np.deg2rad(20.0)))
+    cases = {
+        "none": (CoulombGearPair(), 1.0),
+        "reversing": (CoulombGearPair(friction=MU), 1.0),
+        "constant": (CoulombGearPair(friction=MU, sign="constant"), f),
+    }
+    rows = []
     for k in range(1, orders + 1):
-        for case in CASES:
-            pair = CoulombGearPair(
-                friction=0.0 if case == "none" else MU,
-                sign="constant" if case == "constant" else "reversing",
-            )
-            tip = _tip(pair, 2.0 / k * (f if case == "constant" else 1.0))
-            rows.append((f"2ω/{k}" if k > 1 else "2ω", case, *tip))
+        for case, (pair, stretch) in cases.items():
+            centre = 2.0 / k * stretch
+            tip = tongue_tip(_radius_of(pair), (0.96 * centre, 1.02 * centre), (1e-4, 0.3), xtol=1e-10)
+            rows.append((f"2ω/{k}" if k > 1 else "2ω", case, tip.damping, tip.place))
     return rows
 
 
-def _tip(pair: CoulombGearPair, centre: float) -> tuple[float, float]:
-    """Damping ratio and speed ratio at which the zone around ``centre`` closes."""
+def _radius_of(pair: CoulombGearPair) -> Callable[[FloatArray, float], FloatArray]:
+    def radius(ratios: FloatArray, damping: float) -> FloatArray:
+        return np.asarray(np.abs(replace(pair, damping_ratio=damping).multipliers(ratios)[:, 0]))
 
-    def top(damping: float) -> tuple[float, float]:
-        one = replace(pair, damping_ratio=damping)
-        found = minimize_scalar(
-            lambda ratio: -float(np.abs(one.multipliers(ratio)[0])),
-            bounds=(0.96 * centre, 1.02 * centre),
-            method="bounded",
-            options={"xatol": 1e-9},
-        )
-        return float(found.x), -float(found.fun)
-
-    damping = float(brentq(lambda z: top(z)[1] - 1.0, 1e-4, 0.3, xtol=1e-10))
-    return damping, top(damping)[0]
+    return radius

@@ -40,14 +40,8 @@ def refinements(pair: GearPair, samples: int) -> tuple[Refinement, ...]:
     NumericalError : a model fails; the text says what to try
     """
     samples = whole_number("samples", samples, 8, 8192)
-    return (
-        _stages(pair),
-        _sampling(pair, samples),
-        _transient(pair),
-        _closure(pair),
-        _multibody(pair),
-        _monodromy(pair),
-    )
+    others = (study(pair) for study in (_transient, _closure, _multibody, _monodromy))
+    return (_stages(pair), _sampling(pair, samples), *others)
 
 
 def enough_samples(pair: GearPair, samples: int) -> int:
@@ -117,13 +111,15 @@ def _sampling(pair: GearPair, samples: int) -> Refinement:
     )
 
 
-def _by_tolerance(
-    dte: Callable[[float], FloatArray], finest: float, tolerances: tuple[float, ...]
-) -> tuple[Level, ...]:
-    """Largest difference of the transmission error to the finest run; the report uses the last tolerance."""
+def _over_tolerance(error: Callable[[float], float], *tolerances: float) -> tuple[Level, ...]:
+    """Levels of an integrator; the report uses the last tolerance."""
+    return tuple(Level(f"rtol {rtol:.0e}", error(rtol), rtol == tolerances[-1]) for rtol in tolerances)
+
+
+def _against(dte: Callable[[float], FloatArray], finest: float) -> Callable[[float], float]:
+    """Largest difference of the transmission error to the finest run, over the peak to peak."""
     reference = dte(finest)
-    errors = ((rtol, np.abs(dte(rtol) - reference).max() / np.ptp(reference)) for rtol in tolerances)
-    return tuple(Level(f"rtol {rtol:.0e}", float(error), rtol == tolerances[-1]) for rtol, error in errors)
+    return lambda rtol: float(np.abs(dte(rtol) - reference).max() / np.ptp(reference))
 
 
 def _transient(pair: GearPair) -> Refinement:
@@ -135,7 +131,7 @@ def _transient(pair: GearPair) -> Refinement:
         key="transient",
         subject=f"transient of the lumped model, {_CYCLES} mesh cycles from rest: tolerance",
         measure="transmission error against rtol 1e-12, largest difference over the peak to peak",
-        levels=_by_tolerance(dte, 1e-12, (1e-6, 1e-8, 1e-10)),
+        levels=_over_tolerance(_against(dte, 1e-12), 1e-6, 1e-8, 1e-10),
         limit=1e-7,
         reason="errors of a step add up over the transient",
     )
@@ -143,19 +139,18 @@ def _transient(pair: GearPair) -> Refinement:
 
 def _closure(pair: GearPair) -> Refinement:
     """The transient integrator, started in the periodic motion, must stay in it."""
-    levels = []
-    for rtol in (1e-6, 1e-8, 1e-10):
+
+    def error(rtol: float) -> float:
         run = lumped.simulate(pair, 2, samples_per_cycle=_SAMPLES, rtol=rtol, initial="periodic")
-        dte = np.asarray(run["dte"].to_numpy(), dtype=np.float64)
-        first, second = dte[:_SAMPLES], dte[_SAMPLES : 2 * _SAMPLES]
-        error = float(np.abs(second - first).max() / np.ptp(first))
-        levels.append(Level(f"rtol {rtol:.0e}", error, rtol == 1e-10))
+        first, second = run["dte"].to_numpy()[: 2 * _SAMPLES].reshape(2, _SAMPLES)
+        return float(np.abs(second - first).max() / np.ptp(first))
+
     return Refinement(
         key="closure",
         subject="periodic motion carried on by the transient integrator",
         measure="second mesh cycle against the first, transmission error, largest difference over the peak "
         "to peak",
-        levels=tuple(levels),
+        levels=_over_tolerance(error, 1e-6, 1e-8, 1e-10),
         limit=1e-7,
         reason="two independent integrators (Gauss collocation, DOP853) share only the equations",
     )
@@ -172,7 +167,7 @@ def _multibody(pair: GearPair) -> Refinement:
         key="multibody",
         subject=f"exact multibody model, {_CYCLES} mesh cycles: tolerance",
         measure="transmission error against rtol 1e-10, largest difference over the peak to peak",
-        levels=_by_tolerance(dte, 1e-10, (1e-5, 1e-6, 1e-8)),
+        levels=_over_tolerance(_against(dte, 1e-10), 1e-5, 1e-6, 1e-8),
         limit=1e-4,
         reason="a hundredth of the smallest difference of the models that is discussed",
     )

@@ -82,8 +82,7 @@ def propagator(method: str | Propagator) -> Propagator:
 
     Raises
     ------
-    ParameterError
-        The name is not registered.
+    ParameterError : the name is not registered
     """
     # Imported here: help texts read the names above, and must not wait for the numerics.
     from floquet.engine.propagators.base import Propagator

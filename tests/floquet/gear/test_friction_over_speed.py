@@ -7,7 +7,7 @@ import pytest
 
 from floquet import gear_block, gear_pair_multipliers, stability_chart
 from floquet.gear.axes import GearVariation, vary
-from floquet.gear.friction import friction_families
+from floquet.gear.friction_over_speed import friction_families
 from lumped import load_gear_pair
 from lumped.errors import ParameterError
 from lumped.path_of_contact.friction import friction_path_function

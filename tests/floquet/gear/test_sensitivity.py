@@ -8,7 +8,7 @@ import pytest
 from floquet import PeriodicSystem, gear_pair_multipliers
 from floquet.engine.sensitivity import multiplier_derivatives, segment_time
 from floquet.gear.axes import GEAR_AXES, operating_value, vary
-from floquet.gear.sensitivities import gear_sensitivities
+from floquet.gear.sensitivity import gear_sensitivities
 from lumped import load_gear_pair
 from lumped.errors import NumericalError, ParameterError
 

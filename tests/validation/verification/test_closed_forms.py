@@ -10,7 +10,7 @@ import pytest
 from floquet import PROPAGATORS, monodromy
 from floquet.engine.propagators.gauss import GaussLegendre
 from floquet.engine.reference_systems import meissner, meissner_trace
-from validation.verification import closed_forms, combinations, coulomb_zones, random_gears
+from validation.verification import closed_forms, combinations, coulomb_zones
 from validation.verification.closed_forms import (
     constant_error,
     harmonic_motion_error,
@@ -21,18 +21,21 @@ from validation.verification.closed_forms import (
 
 #: Methods of low order would need very many steps for more.
 RTOL = {name: 1e-11 if known.order > 4 else 1e-8 for name, known in PROPAGATORS.items()}
+extended = pytest.mark.skipif(
+    np.finfo(np.longdouble).nmant < 63, reason="long double is no more than double on this platform"
+)
 CHECKS = (
     closed_forms.check_closed_forms,
     closed_forms.check_forced_motion,
     closed_forms.check_invariants,
+    pytest.param(closed_forms.check_random_gears, marks=extended),
     combinations.check_hsu,
     combinations.check_gear_chain,
     coulomb_zones.check_coulomb_gear_pair,
-    random_gears.check_random_gears,
 )
 
 
-@pytest.mark.parametrize("function", CHECKS, ids=lambda f: f.__name__)
+@pytest.mark.parametrize("function", CHECKS, ids=lambda f: getattr(f, "__name__", None))
 def test_every_number_keeps_its_limit(function) -> None:
     checks = list(function())
     assert checks
@@ -89,7 +92,7 @@ def test_zones_of_one_sign_close_where_a_change_of_scale_puts_them() -> None:
     rows = {(zone, case): (damping, ratio) for zone, case, damping, ratio in coulomb_zones.zone_tips(2)}
     for zone in ("2ω", "2ω/2"):
         damping, ratio = rows[zone, "none"]
-        assert rows[zone, "constant"] == pytest.approx((damping / f, ratio * f), rel=1e-6)
+        assert rows[zone, "constant"] == pytest.approx((damping / f, ratio * f), rel=3e-6)
         # Friction that reverses opens a zone, in second order of mu tan alpha = 0.07.
         assert 0.0 < rows[zone, "reversing"][0] / damping - 1.0 < 2.0 * (f * f - 1.0) ** 2
 

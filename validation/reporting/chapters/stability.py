@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from floquet.gear.chart_axes import chart_axes
-from floquet.gear.dense_chart import dense_chart
+from floquet.gear.axes import chart_axes
+from floquet.gear.chart import stability_chart
 from validation.plots.multipliers import multipliers_figure
 from validation.plots.tongues import tongue_chart_figure
 from validation.reporting.blocks import (
@@ -30,10 +30,12 @@ def write(results: Results) -> Content:
     """Write the chapter."""
     pair, found, m = results.pair, results.multipliers, results.margins
     effort = results.effort
-    chart = dense_chart(
+    chart = stability_chart(
         pair,
         chart_axes(pair, effort.chart_speeds, effort.chart_dampings),
         rtol=effort.chart_rtol,
+        method="auto",
+        store="radius",
         progress=results.stage("stability chart"),
     )
     here = chart.sel(damping_ratio=pair.mesh.damping_ratio, method="nearest")

@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from floquet.gear.chart_axes import operating_rpm, with_point
+from floquet.gear.axes import operating_rpm, with_point
 from lumped import GearPair
 from lumped.model.steady import UNSTABLE
 from lumped.typing import BoolArray, FloatArray

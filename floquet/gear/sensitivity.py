@@ -16,6 +16,7 @@ from floquet.gear.axes import GEAR_AXES, gear_axis, operating_value, vary
 from floquet.gear.multipliers import OffLineOfAction, gear_pair_multipliers, gear_pair_system
 from lumped.arguments import some_of
 from lumped.errors import NumericalError
+from lumped.labelling import labelled_dataset
 from lumped.model.periodic_system import periodic_system
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -55,13 +56,10 @@ def gear_sensitivities(
 
     Raises
     ------
-    ParameterError
-        Unknown parameter.
+    ParameterError : unknown parameter
     NumericalError
         The largest multiplier is nearly defective, or a switch passes another one at this very point.
     """
-    import xarray as xr
-
     names = list(GEAR_AXES if parameters is None else some_of("parameters", parameters, GEAR_AXES))
     axes = [gear_axis(name) for name in names]
     whole = gear_pair_multipliers(pair, rtol)
@@ -80,26 +78,26 @@ def gear_sensitivities(
         found = multiplier_derivatives(base, dA, rtol, magnitude=abs(value[row]) or 1.0)
         values[row], slopes[row] = found.multipliers, found.derivatives
         slope[row] = _oloa_slope(pair, name, points) if oloa else found.radius()
-    return xr.Dataset(
+    each = ("parameter", "multiplier")
+    return labelled_dataset(
         {
-            "value": ("parameter", value, {"long_name": "value at the operating point"}),
-            "derivative": ("parameter", slope, {"long_name": "derivative of the spectral radius"}),
-            "relative": (
-                "parameter", slope * value, {"units": "1", "long_name": "parameter times derivative"}
+            "value": ("parameter", value, "that of the parameter", "value at the operating point"),
+            "derivative": (
+                "parameter", slope, "1 over that of the parameter", "derivative of the spectral radius"
             ),
-            "multipliers": (("parameter", "multiplier"), values, {"units": "1"}),
-            "multiplier_derivatives": (("parameter", "multiplier"), slopes),
+            "relative": ("parameter", slope * value, "1", "parameter times derivative"),
+            "multipliers": (each, values, "1", "Floquet multipliers of the feedback block"),
+            "multiplier_derivatives": (
+                each, slopes, "1 over that of the parameter", "derivatives of the multipliers"
+            ),
         },
-        coords={
-            "parameter": np.array(names, dtype=object),
-            "units": ("parameter", np.array([axis.units for axis in axes], dtype=object)),
-        },
-        attrs={
+        {"parameter": (np.array(names, dtype=object), "1", "parameter")},
+        {
             "title": f"sensitivity of the largest multiplier of {pair.name}",
             "spectral_radius": whole.spectral_radius,
             "largest": "oloa" if oloa else "feedback",
         },
-    )  # fmt: skip
+    ).assign_coords(units=("parameter", np.array([axis.units for axis in axes], dtype=object)))  # fmt: skip
 
 
 class _Difference:

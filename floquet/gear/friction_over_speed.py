@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from floquet.gear.axes import GearVariation
+from floquet.gear.axes import GearVariation, operating_rpm
 from lumped.friction.base import PITCH_RESOLUTION, ContactPath
 from lumped.friction.fitted import mean_coefficient
 from lumped.friction.registry import law_named
@@ -58,8 +58,7 @@ def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[
     pair = variation.pair
     rest = np.arange(speeds_rpm.size)
     if not depends_on_speed(pair):
-        own = pair.operating.pinion_speed * 30.0 / np.pi
-        return [FrictionFamily(own, rest, None, np.ones((rest.size, 1)))]
+        return [FrictionFamily(operating_rpm(pair), rest, None, np.ones((rest.size, 1)))]
     law = _Law(variation)
     families = []
     while rest.size:
