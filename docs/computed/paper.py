@@ -20,7 +20,7 @@ def claims_table() -> str:
         (
             c.statement,
             c.definition,
-            None if c.value is None else f"{text(float(c.value))} {'' if c.unit == '1' else c.unit}".strip(),
+            f"{text(float(c.value))} {'' if c.unit == '1' else c.unit}".strip(),
             _range(c.low, c.high),
             c.verdict,
             None if c.share is None else f"{100.0 * c.share:.0f} %",

@@ -83,14 +83,7 @@ def evaluate(
         points=overlay(measurement, prediction, phase, bins=bins),
         metrics=overlay_metrics(measurement, prediction, phase),
         found=tuple(
-            identify_friction(
-                measurement,
-                prediction,
-                phase,
-                law=None if name == CONSTANT else name,
-                normal=normal,
-                zero=zero,
-            )
-            for name in identify
+            identify_friction(measurement, prediction, phase, law=law, normal=normal, zero=zero)
+            for law in (None if name == CONSTANT else name for name in identify)
         ),
     )

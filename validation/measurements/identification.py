@@ -126,6 +126,7 @@ def identify_friction(
     error = float(np.sqrt(covariance[0, 0]))
     reach = float(student.ppf(0.5 + 0.5 * level, samples.friction.size - count)) * error
     beta = float(estimate[0])
+    mean = 1.0 if law is None else mean_coefficient(friction_path_function(prediction.pair, law=law))
     return Identification(
         parameter="mu" if law is None else f"scale on {law}",
         law=law,
@@ -135,18 +136,12 @@ def identify_friction(
         high=beta + reach,
         level=level,
         zero=tuple(float(b) for b in estimate[1:]),
-        mean_mu=abs(beta) * _mean_shape(prediction, law),
+        mean_mu=abs(beta) * mean,
         samples=samples.friction.size,
         lags=lags,
         residual_rms=float(np.sqrt(np.mean(misfit(samples, estimate) ** 2))),
         normal=normal,
     )
-
-
-def _mean_shape(prediction: Prediction, law: str | None) -> float:
-    if law is None:
-        return 1.0
-    return mean_coefficient(friction_path_function(prediction.pair, law=law))
 
 
 def _collect(
@@ -174,41 +169,19 @@ def _collect(
             raise refuse("channel", name, f"a normal_load of pair {label} too", "Or use normal='predicted'.")
         xi = prediction.position(u, label)
         inside = prediction.contact(u, label) & (np.abs(xi - g.L_XP) > guard)
-        load = (
-            measurement.channels[loads[label]]
-            if normal == "measured"
-            else prediction.value("normal_load", u, label)
-        )
-        noise_f = noises[name] if known else 1.0
-        noise_n = noises[loads[label]] if known and normal == "measured" else 0.0
-        xi = xi[inside]
+        measured = normal == "measured"
+        load = measurement.channels[loads[label]] if measured else prediction.value("normal_load", u, label)
+        of_friction = noises[name] if known else 1.0
+        of_load = noises[loads[label]] if known and measured else 0.0
+        xi, full = xi[inside], np.ones(np.count_nonzero(inside))
         sides = np.sign(xi - g.L_XP) if shape is None else shape(xi)
-        full = np.ones(xi.size)
         engagement = np.floor((u[inside] - PAIR_LABELS.index(label)) / prediction.recurrence)
-        parts.append(
-            (
-                measurement.channels[name][inside],
-                load[inside],
-                sides,
-                noise_f * full,
-                noise_n * full,
-                number * full,
-                engagement + 1e9 * number,
-            )
-        )
-    columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
-    if columns[0].size < _FEWEST:
+        own = (of_friction * full, of_load * full, number * full, engagement + 1e9 * number)
+        parts.append((measurement.channels[name][inside], load[inside], sides, *own))
+    force, load, sides, noise_f, noise_n, channel, block = map(np.concatenate, zip(*parts, strict=True))
+    if force.size < _FEWEST:
         raise NumericalError(
-            f"Only {columns[0].size} samples are in contact; check the alignment, the labels and the guard."
+            f"Only {force.size} samples are in contact; check the alignment, the labels and the guard."
         )
-    blocks = np.unique(columns[6], return_inverse=True)[1]
-    forces = columns[:5]
-    return Samples(
-        forces[0],
-        forces[1],
-        forces[2],
-        forces[3],
-        forces[4],
-        columns[5].astype(np.int64),
-        blocks.astype(np.int64),
-    )
+    blocks = np.unique(block, return_inverse=True)[1].astype(np.int64)
+    return Samples(force, load, sides, noise_f, noise_n, channel.astype(np.int64), blocks)

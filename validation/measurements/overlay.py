@@ -10,7 +10,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from lumped.errors import NumericalError, refuse
+from lumped.arguments import real_number, whole_number
+from lumped.errors import NumericalError
+from lumped.labelling import labelled_dataset
 from lumped.typing import FloatArray
 from validation.measurements.alignment import Alignment
 from validation.measurements.prediction import Prediction
@@ -45,8 +47,7 @@ def overlay(
     of the bin), predicted (likewise), scatter (standard deviation of measured - predicted in the bin),
     standard_error (of the bin's mean) and count; empty bins are NaN with count 0
     """
-    if not 4 <= bins <= 4096:
-        raise refuse("bins", bins, "4 to 4096", "Choose a number in that range.")
+    bins = whole_number("bins", bins, 4, 4096)
     names = list(measurement.channels)
     table = {n: np.full((len(names), bins), np.nan) for n in ("measured", "predicted", "scatter")}
     phase, count = np.zeros((len(names), bins)), np.zeros((len(names), bins), dtype=np.int64)
@@ -67,15 +68,19 @@ def overlay(
         variance = mean(error**2) - mean(error) ** 2
         correction = count[j][full] / np.maximum(count[j][full] - 1, 1)
         table["scatter"][j, full] = np.sqrt(np.maximum(variance[full] * correction, 0.0))
-    result = xr.Dataset(
-        {name: (("channel", "bin"), values) for name, values in table.items()}
-        | {
-            "phase": (("channel", "bin"), phase, {"units": "1", "long_name": "mesh cycles since A"}),
-            "count": (("channel", "bin"), count, {"units": "1", "long_name": "samples in the bin"}),
-            "units": ("channel", [QUANTITIES[c.quantity][0] for c in measurement.spec.channel]),
+    dims, own = ("channel", "bin"), "SI, by channel"
+    units = [QUANTITIES[c.quantity][0] for c in measurement.spec.channel]
+    result = labelled_dataset(
+        {
+            "measured": (dims, table["measured"], own, "mean of the measured values"),
+            "predicted": (dims, table["predicted"], own, "mean of the predicted values"),
+            "scatter": (dims, table["scatter"], own, "standard deviation of measured - predicted"),
+            "phase": (dims, phase, "1", "mesh cycles since A"),
+            "count": (dims, count, "1", "samples in the bin"),
+            "units": ("channel", units, "1", "SI unit of the channel"),
         },
-        coords={"channel": names},
-        attrs={"record": measurement.spec.name, "source": measurement.spec.source},
+        {"channel": (names, "1", "channel")},
+        {"record": measurement.spec.name, "source": measurement.spec.source},
     )
     result["standard_error"] = result["scatter"] / np.sqrt(result["count"].where(result["count"] > 0))
     return result
@@ -113,10 +118,11 @@ def overlay_metrics(
     ------
     NumericalError : no sample of a channel is in contact
     """
-    if resamples < 99 or not 0.5 <= level < 1.0:
-        raise refuse("resamples, level", (resamples, level), ">= 99, 0.5 to 1", "Use 999 and 0.95.")
+    resamples = whole_number("resamples", resamples, 99, 1_000_000, "Use 999.")
+    level = real_number("level", level, 0.5, 1.0 - 1e-12, action="Use 0.95.")
     rng = np.random.default_rng(seed)
     names = list(measurement.channels)
+    one_turn = np.linspace(0.0, prediction.geometry.pairs, 2048, endpoint=False)
     tails = [50.0 * (1.0 - level), 50.0 * (1.0 + level)]
     columns: dict[str, list[float]] = {}
     for j, channel in enumerate(measurement.spec.channel):
@@ -128,7 +134,7 @@ def overlay_metrics(
         e = y - p
         terms = (np.ones(y.size), e, e**2, np.abs(e), y, p, y * p, y**2, p**2)
         sums = np.stack([np.bincount(number, weights=term, minlength=blocks) for term in terms])
-        span = float(np.ptp(prediction.value(channel.quantity, _one_turn(prediction), channel.pair)))
+        span = float(np.ptp(prediction.value(channel.quantity, one_turn, channel.pair)))
         draws = rng.integers(0, blocks, (resamples, blocks))
         whole = _metrics(sums.sum(axis=1), span)
         spread = _metrics(sums[:, draws].sum(axis=2), span)
@@ -143,10 +149,6 @@ def overlay_metrics(
         coords={"channel": names},
         attrs={"level": level, "resamples": resamples, "seed": seed, "definitions": str(METRICS)},
     )
-
-
-def _one_turn(prediction: Prediction) -> FloatArray:
-    return np.linspace(0.0, prediction.geometry.pairs, 2048, endpoint=False)
 
 
 def _metrics(sums: FloatArray, span: float) -> dict[str, FloatArray]:

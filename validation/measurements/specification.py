@@ -12,7 +12,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from lumped.errors import ParameterError, refuse, shown
 from lumped.fields.refusals import translated
-from lumped.fields.section import Section, Text
+from lumped.fields.section import OneOf, Section, Text
 from lumped.fields.text_file import parse_toml, read_text
 from lumped.fields.units import Quantity
 
@@ -34,19 +34,7 @@ QUANTITIES: dict[str, tuple[str, bool]] = {
     "bearing_force_y_p": ("N", False),
     "bearing_force_y_g": ("N", False),
 }
-QuantityName = Literal[
-    "normal_load",
-    "friction_force",
-    "dte",
-    "x_p",
-    "x_g",
-    "y_p",
-    "y_g",
-    "bearing_force_x_p",
-    "bearing_force_x_g",
-    "bearing_force_y_p",
-    "bearing_force_y_g",
-]
+QuantityName = Annotated[str, OneOf(tuple(QUANTITIES))]
 PAIR_LABELS = "ABCDEFGH"
 #: Largest description read: a bound against a wrong path.
 MAX_FILE_BYTES = 1_000_000
@@ -86,7 +74,9 @@ class Channel(Section):
 
     name: str = Field(min_length=1, max_length=60, pattern=r"^\w+$", description="name in results")
     column: str = Field(min_length=1, description="heading of the column, without its unit")
-    quantity: QuantityName = Field(description="what is measured, by the models' name")
+    quantity: Annotated[str, OneOf(tuple(QUANTITIES))] = Field(
+        description="what is measured, by the models' name"
+    )
     unit: str | None = Field(None, description="unit of the cells; default the unit in the column's heading")
     pair: str | None = Field(
         None, pattern="^[A-H]$", description="tooth pair: A, or B that follows it one pitch later, ..."

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from lumped import GearPair, load_gear_pair
 from lumped.friction import LAWS as ALL_LAWS
-from lumped.path_of_contact import contact_path
+from lumped.friction import mean_coefficient
+from lumped.path_of_contact import contact_path, friction_path_function
 
 #: Friction laws that the paper compares: name in parameter files -> its number and name there.
 LAWS = {name: law.title for name, law in ALL_LAWS.items() if law.in_paper}
@@ -72,6 +72,6 @@ def conditions(pair: GearPair) -> dict[str, str]:
     }
 
 
-def rpm(pair: GearPair) -> float:
-    """Pinion speed [rpm]."""
-    return pair.operating.pinion_speed * 30.0 / math.pi
+def mean_of_law(pair: GearPair, law: str) -> float:
+    """Mean of |mu| over the path of contact under a friction law [-]."""
+    return mean_coefficient(friction_path_function(pair, law=law))

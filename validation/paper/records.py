@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
@@ -119,10 +119,7 @@ class Erratum:
         ------
         KeyError : there is none of that name
         """
-        for row in self.evidence:
-            if row.quantity == quantity:
-                return row
-        raise KeyError(quantity)
+        return {row.quantity: row for row in self.evidence}[quantity]
 
 
 @dataclass(frozen=True)
@@ -145,24 +142,36 @@ class ErrataChapter:
 
     def equation(self, number: str) -> Erratum:
         """The erratum of an equation number as it stands in the table, e.g. "7" or "13b, 14"."""
-        for erratum in self.errata:
-            if erratum.equation == number:
-                return erratum
-        raise KeyError(number)
+        return {erratum.equation: erratum for erratum in self.errata}[number]
 
 
-@dataclass(frozen=True)
-class Claim:
-    """One statement of the paper as a number with a verdict.
+@dataclass(frozen=True, kw_only=True)
+class Statement:
+    """One statement of the paper that one number can judge.
 
     Attributes
     ----------
     name : short name
     statement : what the paper says, in other words
     definition : how the number is computed
-    value : the number at the stated assumptions; None where nothing can be computed
     unit : its unit
     criterion : when the statement counts as reproduced
+    """
+
+    name: str
+    statement: str
+    definition: str
+    unit: str
+    criterion: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Claim(Statement):
+    """A statement with its number and its verdict.
+
+    Attributes
+    ----------
+    value : the number at the stated assumptions
     verdict : "reproduced", "not reproduced" or "cannot be judged"
     reason : why it is not reproduced or cannot be judged; of a reproduced one a remark, or ""
     details : further numbers
@@ -172,19 +181,14 @@ class Claim:
     low, high : 5th and 95th percentile of the number over these samples
     """
 
-    name: str
-    statement: str
-    definition: str
-    value: float | None
-    unit: str
-    criterion: str
+    value: float
     verdict: ClaimVerdict
-    reason: str = ""
-    details: Mapping[str, Number] = field(default_factory=dict)
-    share: float | None = None
-    usable: int = 0
-    low: float | None = None
-    high: float | None = None
+    reason: str
+    details: Mapping[str, Number]
+    share: float | None
+    usable: int
+    low: float | None
+    high: float | None
 
 
 @dataclass(frozen=True)
@@ -218,7 +222,4 @@ class ClaimsTable:
         ------
         KeyError : there is none of that name
         """
-        for claim in self.claims:
-            if claim.name == name:
-                return claim
-        raise KeyError(name)
+        return {claim.name: claim for claim in self.claims}[name]

@@ -11,34 +11,28 @@ from matplotlib.figure import Figure
 
 from lumped import GearPair, load_gear_pair
 from lumped.arguments import some_of
-from lumped.errors import refuse
 from lumped.typing import Progress
 from validation.measurements import Measurement
+from validation.paper import plots
 from validation.paper.figures.figure2 import figure2
 from validation.paper.figures.figure3 import figure3
 from validation.paper.figures.figure7 import figure7
 from validation.paper.figures.law_figures import figure4, figure5, figure6, law_runs
-from validation.paper.plots import (
-    draw_figure2,
-    draw_figure3,
-    draw_figure4,
-    draw_figure5,
-    draw_figure6,
-    draw_figure7,
-)
 from validation.paper.records import FigureRecord
 from validation.plots.style import save
 
 #: Number of a figure -> how it is drawn from its record.
 DRAW: dict[str, Callable[[FigureRecord], Figure]] = {
-    "2": draw_figure2,
-    "3": draw_figure3,
-    "4": draw_figure4,
-    "5": draw_figure5,
-    "6": draw_figure6,
-    "7": draw_figure7,
+    "2": plots.draw_figure2,
+    "3": plots.draw_figure3,
+    "4": plots.draw_figure4,
+    "5": plots.draw_figure5,
+    "6": plots.draw_figure6,
+    "7": plots.draw_figure7,
 }
-_NEED_RUNS = {"4", "5", "6"}
+#: Figures of ``law_runs``, and figures of the pair alone.
+_OF_RUNS = {"4": figure4, "5": figure5, "6": figure6}
+_OF_PAIR = {"2": figure2, "3": figure3}
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,17 +79,17 @@ def figure_records(
     """
     some_of("figures", figures, DRAW, "Correct the number.")
     gears = load_gear_pair("nasa_28_28") if pair is None else pair
-    if runs is None and _NEED_RUNS & set(figures):
+    if runs is None and _OF_RUNS.keys() & set(figures):
         runs = law_runs(gears, with_multibody=with_multibody)
     records = []
     for done, name in enumerate(figures, 1):
-        if name in _NEED_RUNS:
-            assert runs is not None  # computed above for exactly these
-            records.append({"4": figure4, "5": figure5, "6": figure6}[name](runs))
+        if name in _OF_PAIR:
+            records.append(_OF_PAIR[name](gears))
         elif name == "7":
             records.append(figure7(gears, measurements, with_multibody=with_multibody))
         else:
-            records.append({"2": figure2, "3": figure3}[name](gears))
+            assert runs is not None  # computed above for exactly these
+            records.append(_OF_RUNS[name](runs))
         if progress is not None:
             progress(done / len(figures))
     return tuple(records)
@@ -123,9 +117,7 @@ def paper_figures(
     -------
     one record per figure, in the given order
     """
-    for name in formats:
-        if name not in ("svg", "png"):
-            raise refuse("formats", name, "svg or png", "Choose among these.")
+    some_of("formats", formats, ("svg", "png"))
     folder = Path(out)
     folder.mkdir(parents=True, exist_ok=True)
     records = figure_records(

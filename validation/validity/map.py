@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 import lumped
 from lumped import GearPair, LawRangeWarning
 from lumped.arguments import real_numbers
+from lumped.labelling import labelled_dataset
 from lumped.lubrication.film import regime
 from lumped.model.results import provenance
 from lumped.model.steady import UNSTABLE
@@ -70,16 +71,13 @@ def validity_map(
             found["lowest_load"][row] = sweep["normal_load_min"].to_numpy() / static
             found["reversal"][row] = sweep["sliding_reversal"].to_numpy() / g.base_pitch
             found["spectral_radius"][row] = sweep["spectral_radius"].to_numpy()
-            found["film_parameter"][row] = [_thinnest_film(at, float(rpm)) for rpm in speed]
+            for column, rpm in enumerate(speed):
+                path = contact_path(at.with_({"operating.pinion_speed": float(rpm)}))
+                film = path.film_parameter(np.linspace(path.L_XA, path.L_XD, 65))
+                found["film_parameter"][row, column] = film.min()
             if progress is not None:
                 progress((row + 1) / torque.size)
     return _dataset(pair, speed, torque, found)
-
-
-def _thinnest_film(pair: GearPair, rpm: float) -> float:
-    """Smallest film parameter over the path of contact."""
-    path = contact_path(pair.with_({"operating.pinion_speed": rpm}))
-    return float(path.film_parameter(np.linspace(path.L_XA, path.L_XD, 65)).min())
 
 
 def validity_state(
@@ -113,12 +111,13 @@ def _dataset(
         "spectral_radius": "largest Floquet multiplier of the periodic motion",
         "film_parameter": "smallest film parameter along the path of contact",
     }
-    data = {name: (dims, values, {"units": "1", "long_name": names[name]}) for name, values in found.items()}
     film = regime(found["film_parameter"], pair.friction.thresholds)
-    result = xr.Dataset(data, attrs=provenance(pair) | {"model": "lumped"})
-    result["regime"] = (dims, film, {"units": "1", "long_name": "0 to 3: " + ", ".join(REGIMES)})
-    result["state"] = (dims, state, {"units": "1", "long_name": "0 to 3: " + ", ".join(STATES)})
-    return result.assign_coords(
-        speed=("speed", speed, {"units": "rpm", "long_name": "pinion speed"}),
-        torque=("torque", torque, {"units": "N m", "long_name": "pinion torque"}),
+    return labelled_dataset(
+        {name: (dims, found[name], "1", text) for name, text in names.items()}
+        | {
+            "regime": (dims, film, "1", "0 to 3: " + ", ".join(REGIMES)),
+            "state": (dims, state, "1", "0 to 3: " + ", ".join(STATES)),
+        },
+        {"speed": (speed, "rpm", "pinion speed"), "torque": (torque, "N m", "pinion torque")},
+        provenance(pair) | {"model": "lumped"},
     )

@@ -13,7 +13,7 @@ from lumped.path_of_contact import contact_path
 from validation.paper.claims import numbers
 from validation.paper.claims.judge import ACCURACY, claims, judged
 from validation.paper.claims.rules import RULES
-from validation.paper.claims.sensitivity import Sensitivity, measure
+from validation.paper.claims.sensitivity import Sensitivity
 from validation.paper.operating_points import FIGURE_4, FIGURE_7, LAWS
 
 
@@ -24,7 +24,7 @@ def pair():
 
 @pytest.fixture(scope="module")
 def stated(pair):
-    return measure(pair)
+    return numbers.measure(pair)
 
 
 @pytest.fixture(scope="module")
@@ -74,7 +74,8 @@ def test_load_spread_is_of_the_total():
 
 
 def test_regime_change_is_where_half_of_the_path_has_changed(pair):
-    speed, width, _ = numbers.regime_change(pair)
+    found = numbers.regime_change(pair)
+    speed, width = found["switch_speed"], found["switch_width"]
     at = pair.with_(operating__pinion_torque=22.6)
     g = geometry(at)
     xi = np.linspace(g.L_XA, g.L_XD, 4001)
@@ -188,12 +189,12 @@ def test_samples_that_prove_nothing_are_left_out_of_the_share(stated):
         {**stated, "rms_y_p": 0.01, "radius_4": 1.2},
     ]
     varied = Sensitivity(
-        {name: np.array([row[name] for row in rows]) for name in stated}, np.zeros((4, 1)), 0, 0, 1
+        {name: np.array([row[name] for row in rows]) for name in stated}, np.zeros((4, 1)), 0
     )
     claim = judged(rule, stated, varied, {})
     assert (claim.usable, claim.share) == (2, 0.5)
     assert 1.0 <= claim.low <= claim.high <= 30.0
-    none = Sensitivity({k: v[2:] for k, v in varied.numbers.items()}, np.zeros((2, 1)), 0, 0, 1)
+    none = Sensitivity({k: v[2:] for k, v in varied.numbers.items()}, np.zeros((2, 1)), 0)
     assert judged(rule, stated, none, {}).share is None
 
 
@@ -231,8 +232,6 @@ def test_percentiles_and_the_accuracy_claim(stated):
         {k: np.full(n, v) for k, v in stated.items()} | {"peak_friction": peak * factors},
         np.zeros((n, 1)),
         0,
-        0,
-        1,
     )
     claim = judged(rule, stated, varied, {})
     assert claim.share == pytest.approx(0.03)  # 0.971, 1 and 1.029 of a hundred

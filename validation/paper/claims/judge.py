@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
+
 import numpy as np
 import xarray as xr
 
@@ -9,9 +11,9 @@ from lumped import GearPair
 from lumped.typing import Progress
 from validation.paper.claims import numbers as claim_numbers
 from validation.paper.claims.rules import RULES, ClaimRule, Numbers
-from validation.paper.claims.sensitivity import ASSUMPTIONS, Sensitivity, measure, sample_assumptions
+from validation.paper.claims.sensitivity import ASSUMPTIONS, Sensitivity, sample_assumptions
 from validation.paper.operating_points import conditions
-from validation.paper.records import Claim, ClaimsTable, ClaimVerdict, Number
+from validation.paper.records import Claim, ClaimsTable, ClaimVerdict, Number, Statement
 
 ACCURACY = "3 % error"
 
@@ -51,7 +53,7 @@ def claims(
     ------
     NumericalError : the pair has no periodic motion at an operating point of the paper
     """
-    stated = measure(pair)
+    stated = claim_numbers.measure(pair)
     varied = sample_assumptions(pair, samples, seed=seed, progress=progress) if samples else None
     twin = {} if runs is None else twin_numbers(runs)
     return ClaimsTable(
@@ -101,12 +103,8 @@ def judged(
     details = {name: Number(function(stated), unit) for name, (function, unit) in rule.details.items()}
     details |= twin.get(rule.name, {})
     return Claim(
-        name=rule.name,
-        statement=rule.statement,
-        definition=rule.definition,
+        **{field.name: getattr(rule, field.name) for field in fields(Statement)},
         value=value,
-        unit=rule.unit,
-        criterion=rule.criterion,
         verdict=verdict,
         reason=reason,
         details=details,

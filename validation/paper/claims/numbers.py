@@ -16,7 +16,15 @@ from lumped.friction import mean_coefficient
 from lumped.model.steady import periodic_cycle
 from lumped.path_of_contact import contact_path, friction_path_function
 from lumped.typing import FloatArray
-from validation.paper.operating_points import FIGURE_2A, FIGURE_7, LAWS, TORQUE_2B, second_pair
+from validation.paper.operating_points import (
+    FIGURE_2A,
+    FIGURE_4,
+    FIGURE_7,
+    LAWS,
+    TORQUE_2B,
+    mean_of_law,
+    second_pair,
+)
 from validation.paper.twins import mesh_orders, total
 
 #: Half width of "at the pitch point" [mesh cycles].
@@ -28,17 +36,25 @@ _FILM_POWER = 0.69
 _ORDERS = 10
 
 
+def measure(pair: GearPair) -> dict[str, float]:
+    """All claim numbers of a pair, name -> value."""
+    return (
+        {"mean_ratio": mean_ratio(pair)}
+        | at_pitch_point(pair)
+        | regime_change(pair)
+        | {f"jump_{law}": value for law, value in pitch_jumps(FIGURE_4.of(pair)).items()}
+        | fig4_motions(pair)
+        | fig7_motion(pair)
+    )
+
+
 def mean_ratio(pair: GearPair) -> float:
     """Mean |mu| of II over that of III at Fig. 2a's point, the smaller of the two gear pairs."""
-    ratios = []
-    for gears in (pair, second_pair(pair)):
-        at = FIGURE_2A.of(gears)
-        ii, iii = (friction_path_function(at, law=law) for law in ("benedict_kelley", "xu_kahraman"))
-        ratios.append(mean_coefficient(ii) / mean_coefficient(iii))
-    return min(ratios)
+    points = (FIGURE_2A.of(gears) for gears in (pair, second_pair(pair)))
+    return min(mean_of_law(at, "benedict_kelley") / mean_of_law(at, "xu_kahraman") for at in points)
 
 
-def at_pitch_point(pair: GearPair) -> tuple[float, float]:
+def at_pitch_point(pair: GearPair) -> dict[str, float]:
     """Largest |mu| within ``AT_PITCH`` of P: of III over its mean, of II over its largest elsewhere."""
     at = FIGURE_2A.of(pair)
     g = at.geometry
@@ -46,13 +62,13 @@ def at_pitch_point(pair: GearPair) -> tuple[float, float]:
     path = np.linspace(g.L_XA, np.nextafter(g.L_XD, 0.0), 2001)
     away = path[np.abs(path - g.L_XP) > AT_PITCH * g.base_pitch]
     ii, iii = (friction_path_function(at, law=law) for law in ("benedict_kelley", "xu_kahraman"))
-    return (
-        float(np.abs(iii(near)).max()) / mean_coefficient(iii),
-        float(np.abs(ii(near)).max()) / max(float(np.abs(ii(away)).max()), 1e-12),
-    )
+    return {
+        "iii_at_pitch": float(np.abs(iii(near)).max()) / mean_coefficient(iii),
+        "ii_at_pitch": float(np.abs(ii(near)).max()) / max(float(np.abs(ii(away)).max()), 1e-12),
+    }
 
 
-def regime_change(pair: GearPair) -> tuple[float, float, float]:
+def regime_change(pair: GearPair) -> dict[str, float]:
     """Speed [rpm], relative width and drop of mean |mu| of the change from law II to III at Fig. 2b's torque.
 
     Lambda grows with v_e^0.69 at every place, so each place changes its law at a speed of its own. Speed:
@@ -66,10 +82,8 @@ def regime_change(pair: GearPair) -> tuple[float, float, float]:
     speeds = 1000.0 * (level / path.film_parameter(xi)) ** (1.0 / _FILM_POWER)
     low, middle, high = (float(np.percentile(speeds, p)) for p in (10, 50, 90))
     at = reference.with_({"operating.pinion_speed": min(max(middle, 1.0), 1.9e5)})
-    ii, iii = (
-        mean_coefficient(friction_path_function(at, law=law)) for law in ("benedict_kelley", "xu_kahraman")
-    )
-    return middle, (high - low) / middle, ii / iii
+    drop = mean_of_law(at, "benedict_kelley") / mean_of_law(at, "xu_kahraman")
+    return {"switch_speed": middle, "switch_width": (high - low) / middle, "switch_drop": drop}
 
 
 def pitch_jumps(pair: GearPair) -> dict[str, float]:
@@ -140,22 +154,42 @@ def largest_order(cycles: xr.Dataset, name: str, *, relative: bool = False) -> i
     return int(np.argmax(spread_by_order(cycles, name)[int(relative)])) + 1
 
 
-def mean_iii(pair: GearPair) -> tuple[float, ...]:
-    """Mean |mu| of law III at the points of Fig. 7."""
-    return tuple(
-        mean_coefficient(friction_path_function(point.of(pair), law="xu_kahraman")) for point in FIGURE_7
-    )
+def fig4_motions(pair: GearPair) -> dict[str, float]:
+    """How laws I to IV differ in the motions of Figs. 4 to 6, and whether these motions count.
 
-
-def fig7_peaks(pair: GearPair) -> tuple[float, float, float, float]:
-    """The motion of Fig. 7's faster point under law III in four numbers.
-
-    Largest normal load and friction force of a tooth pair [N], smallest load of a pair in contact over the
-    static load, largest multiplier.
+    radius_4: largest multiplier; min_load_4: smallest load of a pair in contact over the static load.
     """
+    at = FIGURE_4.of(pair)
+    cycles = law_cycles(at)
+    static = at.operating.pinion_torque / at.geometry.base_radius_pinion
+    found = {
+        "radius_4": float(cycles["spectral_radius"].max()),
+        "min_load_4": float(cycles["normal_load"].where(cycles["contact"] > 0).min()) / static,
+    }
+    found["load_spread"], found["load_spread_rms"] = load_spread(cycles)
+    for name in ("x_p", "y_p", "dte"):
+        found[f"rms_{name}"], found[f"mean_absolute_{name}"] = motion_differences(cycles, name)
+        found[f"order_{name}"] = float(largest_order(cycles, name))
+        found[f"relative_order_{name}"] = float(largest_order(cycles, name, relative=True))
+    return found
+
+
+def fig7_motion(pair: GearPair) -> dict[str, float]:
+    """Law III at the points of Fig. 7: mean |mu| at both, and the motion at the faster one.
+
+    Largest normal load and friction force of a tooth pair [N]; radius_7 and min_load_7 as in
+    ``fig4_motions``.
+    """
+    slow, fast = (mean_of_law(point.of(pair), "xu_kahraman") for point in FIGURE_7)
     at = FIGURE_7[1].of(pair).with_({"friction.law": "xu_kahraman"})
     run = periodic_cycle(at, 128)
     normal, friction = run.values["normal_load"], run.values["friction_force"]
     static = at.operating.pinion_torque / at.geometry.base_radius_pinion
-    lowest = float(normal[run.values["contact"] > 0].min()) / static
-    return float(normal.max()), float(np.abs(friction).max()), lowest, run.spectral_radius
+    return {
+        "mean_iii_slow": slow,
+        "mean_iii_fast": fast,
+        "peak_normal": float(normal.max()),
+        "peak_friction": float(np.abs(friction).max()),
+        "radius_7": run.spectral_radius,
+        "min_load_7": float(normal[run.values["contact"] > 0].min()) / static,
+    }

@@ -8,23 +8,23 @@ anew.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from lumped.model.steady import UNSTABLE
+from validation.paper.records import Statement
 from validation.validity.flags import LOAD_NOISE
 
 Numbers = Mapping[str, float]
 
 
-@dataclass(frozen=True)
-class ClaimRule:
+@dataclass(frozen=True, kw_only=True)
+class ClaimRule(Statement):
     """One statement of the paper, how its number is computed and when it holds.
 
     Attributes
     ----------
-    name, statement, definition, unit, criterion : as in ``Claim``
-    value : number from the claim numbers of ``sensitivity.measure``
+    value : number from the claim numbers of ``numbers.measure``
     holds : whether the criterion is met
     details : further numbers, name -> (function, unit)
     remark, otherwise : on the outcome where the criterion is met, and why where it is not
@@ -33,14 +33,9 @@ class ClaimRule:
     unpublished : why the claim cannot be judged from what was published; "" where it can
     """
 
-    name: str
-    statement: str
-    definition: str
-    unit: str
-    criterion: str
     value: Callable[[Numbers], float]
     holds: Callable[[Numbers], bool]
-    details: Mapping[str, tuple[Callable[[Numbers], float], str]]
+    details: Mapping[str, tuple[Callable[[Numbers], float], str]] = field(default_factory=dict)
     remark: str = ""
     otherwise: str = ""
     figure: Literal["", "4", "7"] = ""
@@ -82,7 +77,6 @@ RULES: tuple[ClaimRule, ...] = (
         criterion="at least 2 times",
         value=_key("mean_ratio"),
         holds=lambda n: n["mean_ratio"] >= 2.0,
-        details={},
         otherwise="Law II falls with speed and viscosity (14), law III grows with roughness (18): "
         "with this oil and these flanks they come closer.",
     ),
@@ -123,7 +117,6 @@ RULES: tuple[ClaimRule, ...] = (
         criterion="2000 to 3000 rpm",
         value=_key("switch_speed"),
         holds=lambda n: 2000.0 <= n["switch_speed"] <= 3000.0,
-        details={},
         unpublished="Composite roughness and viscosity decide the speed, and the paper gives neither. The "
         "28/28 preset is calibrated to meet 2500 rpm, so its agreement is no evidence.",
     ),
@@ -189,7 +182,6 @@ RULES: tuple[ClaimRule, ...] = (
         criterion="at most 5 %",
         value=_key("rms_y_p", 100.0),
         holds=lambda n: n["rms_y_p"] <= 0.05,
-        details={},
         otherwise="Off the line of action friction is the only excitation, so the motion is as large as the "
         "coefficient, and the laws' coefficients differ several times.",
         figure="4",

@@ -45,7 +45,7 @@ def errata_chapter(pair: GearPair) -> ErrataChapter:
     NumericalError : the pair has no periodic motion at its operating point
     """
     shown = pair.with_({"friction.law": "coulomb", "friction.coefficient": SHOWN_COEFFICIENT})
-    (first, second, seventh, ninth), histories = sign_errata(shown)
+    (*first, ninth), histories = sign_errata(shown)
     return ErrataChapter(
         title="Errata of the paper, shown by computation",
         text=_TEXT,
@@ -54,21 +54,8 @@ def errata_chapter(pair: GearPair) -> ErrataChapter:
             "pinion speed": f"{pair.operating.pinion_speed * 30.0 / math.pi:.6g} rpm",
             "pinion torque": f"{pair.operating.pinion_torque:.6g} N m",
             "friction of the sign errata": f"Coulomb, mu = {SHOWN_COEFFICIENT}",
-            "composite roughness": f"{_roughness(pair):.4g} µm",
+            "composite roughness": f"{1e6 * contact_path(pair).composite_roughness:.4g} µm",
         },
-        errata=(
-            first,
-            second,
-            seventh,
-            erratum_8(),
-            ninth,
-            erratum_5b(pair),
-            *law_errata(pair),
-            *film_errata(pair),
-        ),
+        errata=(*first, erratum_8(), ninth, erratum_5b(pair), *law_errata(pair), *film_errata(pair)),
         histories=histories,
     )
-
-
-def _roughness(pair: GearPair) -> float:
-    return contact_path(pair).composite_roughness * 1e6

@@ -6,10 +6,15 @@ decide are not here: the errata say so.
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from validation.paper.records import Evidence
+
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import pint
 
 PASSES = "passes"
@@ -35,7 +40,18 @@ def _sum_check(*terms: Any) -> str:
     return PASSES
 
 
-def equation_8() -> str:
+def evidence(what: str, check: Callable[[bool], str]) -> Evidence:
+    """The dimension check of an equation as printed and as repaired.
+
+    Parameters
+    ----------
+    what : part of the equation, "" for all of it
+    check : a function of this module
+    """
+    return Evidence(f"dimension check {what}".rstrip(), "", check(True), check(False), PASSES)
+
+
+def equation_8(printed: bool) -> str:
     """Inertia, damping, stiffness and friction terms of the pinion's OLOA equation."""
     u = _registry()
     # x and y are both lengths: the mixed-up symbols of the print do not show in the dimensions.
@@ -81,8 +97,6 @@ def equation_19(printed: bool) -> str:
 
 def speed_exponent() -> float:
     """log10 of the factor that makes eta v_e/(E rho) dimensionless for mPa s, m/s, N/mm^2 and mm (21d)."""
-    import math
-
     u = _registry()
     value = (1.0 * u.mPa * u.s) * (1.0 * u.m / u.s) / ((1.0 * u.N / u.mm**2) * (1.0 * u.mm))
     return math.log10(float(value.to("").magnitude))
@@ -90,6 +104,4 @@ def speed_exponent() -> float:
 
 def film_exponent() -> float:
     """log10 of the factor from H_c rho in mm to a film in um (21a)."""
-    import math
-
     return math.log10(float((1.0 * _registry().mm).to("um").magnitude))

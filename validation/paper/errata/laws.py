@@ -16,38 +16,29 @@ from validation.paper.errata.printed_laws import (
 )
 from validation.paper.errata.response import response
 from validation.paper.errata.signs import multiplier_change
+from validation.paper.operating_points import mean_of_law
 from validation.paper.records import Erratum, Evidence
 
 
 def law_errata(pair: GearPair) -> tuple[Erratum, ...]:
     """Errata of the laws; ``pair`` at the operating point of their effects."""
-    return (
-        _erratum_14(pair),
-        _erratum_16(pair),
-        _erratum_18(pair),
-        _erratum_19(pair),
-    )
+    return _erratum_14(pair), _erratum_16(pair), _erratum_18(pair), _erratum_19(pair)
 
 
 def law_effects(pair: GearPair, printed: PathFunction, law: str) -> list[Evidence]:
     """Mean coefficient, motions, efficiency and multipliers with a law as printed and as repaired."""
     own = pair.with_({"friction.law": law})
     right, wrong = response(own), response(own, friction=printed)
-    rows = [
-        Evidence(
-            "mean of |mu| over the path of contact",
-            "1",
-            mean_coefficient(printed),
-            mean_coefficient(friction_path_function(own)),
-        )
+    mean = "mean of |mu| over the path of contact"
+    return [
+        Evidence(mean, "1", mean_coefficient(printed), mean_of_law(pair, law)),
+        *(
+            Evidence(f"peak to peak of {name}", "µm", wrong.peak_to_peak(name), right.peak_to_peak(name))
+            for name in ("dte", "y_g")
+        ),
+        Evidence("mesh efficiency", "1", wrong.efficiency, right.efficiency),
+        Evidence("largest change of a Floquet multiplier", "1", multiplier_change(wrong, right), 0.0),
     ]
-    rows += [
-        Evidence(f"peak to peak of {name}", "µm", wrong.peak_to_peak(name), right.peak_to_peak(name))
-        for name in ("dte", "y_g")
-    ]
-    rows.append(Evidence("mesh efficiency", "1", wrong.efficiency, right.efficiency))
-    rows.append(Evidence("largest change of a Floquet multiplier", "1", multiplier_change(wrong, right), 0.0))
-    return rows
 
 
 def _ratio(row: Evidence) -> float:
@@ -74,13 +65,7 @@ def _erratum_14(pair: GearPair) -> Erratum:
                 check[1],
                 "0.06235267 (worked out by hand)",
             ),
-            Evidence(
-                "dimension check of the logarithm",
-                "",
-                dimensions.equation_14(True),
-                dimensions.equation_14(False),
-                "passes",
-            ),
+            dimensions.evidence("of the logarithm", dimensions.equation_14),
             *effects,
         ),
     )
@@ -101,13 +86,7 @@ def _erratum_16(pair: GearPair) -> Erratum:
         f"{dimensions.hertz_factor():.5f} = 1/sqrt(1000), which is the 2000 in the place of 2. At the pitch "
         f"point it is {at_pitch:.4f} GPa; Hertz's formula in SI units gives {si:.4f} GPa.",
         (
-            Evidence(
-                "dimension check of the left side",
-                "",
-                dimensions.equation_16(True),
-                dimensions.equation_16(False),
-                "passes",
-            ),
+            dimensions.evidence("of the left side", dimensions.equation_16),
             Evidence("Hertz pressure at the pitch point, (16) and Hertz in SI", "GPa", at_pitch, si, "equal"),
             Evidence(
                 "motion, mean speed and multipliers",
@@ -196,13 +175,7 @@ def _erratum_19(pair: GearPair) -> Erratum:
                 100 * residual[1],
                 "0",
             ),
-            Evidence(
-                "dimension check of the sum",
-                "",
-                dimensions.equation_19(True),
-                dimensions.equation_19(False),
-                "passes",
-            ),
+            dimensions.evidence("of the sum", dimensions.equation_19),
             *effects,
         ),
     )

@@ -10,10 +10,11 @@ from collections.abc import Callable
 import numpy as np
 
 from lumped import GearPair, PathFunction
-from lumped.friction import ContactPath, mean_coefficient, xu_kahraman
+from lumped.friction import ContactPath, xu_kahraman
 from lumped.lubrication.film import film_thickness
-from lumped.path_of_contact import contact_path, friction_path_function
+from lumped.path_of_contact import contact_path
 from lumped.typing import FloatArray
+from validation.paper.operating_points import mean_of_law
 
 Law = Callable[[FloatArray], FloatArray]
 
@@ -25,9 +26,8 @@ PRINTED_FILM_EXPONENT, PRINTED_SPEED_EXPONENT = 8, -16
 
 def average_coefficient(pair: GearPair) -> float:
     """mu_avg of laws I and IV: the pair's own coefficient, else the mean of law II over the path."""
-    if pair.friction.coefficient is not None:
-        return pair.friction.coefficient
-    return mean_coefficient(friction_path_function(pair, law="benedict_kelley"))
+    own = pair.friction.coefficient
+    return mean_of_law(pair, "benedict_kelley") if own is None else own
 
 
 def law_ii_level(path: ContactPath, xi: FloatArray) -> FloatArray:

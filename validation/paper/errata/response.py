@@ -31,8 +31,7 @@ class Response:
     created_power : mean power that the tooth forces bring into the bodies beyond what the contact gives, over
         the driving power: 0 for forces that obey Newton's third law at the contact point
     third_law_x, third_law_y : largest sum of the tooth forces on both bodies [N]
-    radius, radius_error : spectral radius of one mesh cycle in the 10-state relative form, and its error
-        bound
+    radius : spectral radius of one mesh cycle in the 10-state relative form
     multipliers : (10,) Floquet multipliers, largest modulus first
     """
 
@@ -43,7 +42,6 @@ class Response:
     third_law_x: float
     third_law_y: float
     radius: float
-    radius_error: float
     multipliers: NDArray[np.complex128]
 
     def peak_to_peak(self, name: str) -> float:
@@ -101,7 +99,6 @@ def response(
         third_law_x=float(np.abs((s.normal[2] + s.normal[3]) * normal.sum(0)).max()),
         third_law_y=float(np.abs((s.friction_arm[4, 0] + s.friction_arm[5, 0]) * sliding.sum(0)).max()),
         radius=floquet.spectral_radius,
-        radius_error=floquet.error,
         multipliers=floquet.multipliers,
     )
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from operator import methodcaller
 
 import numpy as np
 import xarray as xr
 from scipy.optimize import linear_sum_assignment
 
 from lumped import GearPair
+from lumped.labelling import labelled_dataset
 from lumped.model.equations import PRINTED_EQUATIONS
 from validation.paper.errata.response import Response, response, speed_drift
 from validation.paper.records import Erratum, Evidence
@@ -16,6 +18,7 @@ from validation.paper.records import Erratum, Evidence
 #: Cycles of the free runs that show a drift of the mean speed.
 DRIFT_CYCLES = 20
 _SUM = "sum of the tooth forces on both bodies"
+_DRIFT = f"drift of the mean speed in {DRIFT_CYCLES} mesh cycles under the repaired model's torques"
 
 
 def sign_errata(pair: GearPair) -> tuple[tuple[Erratum, ...], xr.Dataset]:
@@ -36,12 +39,16 @@ def sign_errata(pair: GearPair) -> tuple[tuple[Erratum, ...], xr.Dataset]:
     cycles = [repaired.cycle, *(r.cycle for r in variants.values())]
     names = ["repaired", *(f"equation {number}" for number in variants)]
     samples = repaired.cycle.sizes["time"]
-    return errata, xr.Dataset(
+    texts = {"dte": "dynamic transmission error", "x_g": "LOA motion of the gear", "y_g": "its OLOA motion"}
+    return errata, labelled_dataset(
         {
-            name: (("variant", "phase"), np.array([c[name].to_numpy() for c in cycles]), {"units": "m"})
-            for name in ("dte", "x_g", "y_g")
+            name: (("variant", "phase"), np.array([c[name].to_numpy() for c in cycles]), "m", text)
+            for name, text in texts.items()
         },
-        coords={"variant": names, "phase": np.arange(samples) / samples},
+        {
+            "variant": (names, "1", "equations"),
+            "phase": (np.arange(samples) / samples, "1", "mesh cycles"),
+        },
     )
 
 
@@ -86,38 +93,34 @@ def _erratum(pair: GearPair, number: int, printed: Response, repaired: Response,
 def _rows(printed: Response, repaired: Response, drift: float, steady: float) -> list[Evidence]:
     """Balances that a right equation keeps, then effects on the motion."""
     opposite = "0: Newton's third law"
-    drifts = f"drift of the mean speed in {DRIFT_CYCLES} mesh cycles under the repaired model's torques"
-
-    def both(quantity: str, unit: str, value: Callable[[Response], float], wanted: str = "") -> Evidence:
-        return Evidence(quantity, unit, value(printed), value(repaired), wanted)
-
-    return [
-        both(
+    contact = "0: forces at one contact only pass on or dissipate power"
+    rows: list[tuple[str, str, Callable[[Response], float], str]] = [
+        (
             "power created by the tooth forces",
             "% of the driving power",
             lambda r: 100 * r.created_power,
-            "0: forces at one contact only pass on or dissipate power",
+            contact,
         ),
-        both(f"{_SUM}, along the LOA", "N", lambda r: r.third_law_x, opposite),
-        both(f"{_SUM}, off the LOA", "N", lambda r: r.third_law_y, opposite),
-        both("mesh efficiency at steady mean speed", "1", lambda r: r.efficiency, "between 0 and 1"),
-        both(
+        (f"{_SUM}, along the LOA", "N", lambda r: r.third_law_x, opposite),
+        (f"{_SUM}, off the LOA", "N", lambda r: r.third_law_y, opposite),
+        ("mesh efficiency at steady mean speed", "1", lambda r: r.efficiency, "between 0 and 1"),
+        (
             "brake torque that holds the mean speed",
             "N m",
             lambda r: r.brake_torque,
             "positive: the gear is driven",
         ),
-        Evidence(drifts, "% of the speed", 100 * drift, 100 * steady, "0"),
+        (_DRIFT, "% of the speed", lambda r: 100 * (drift if r is printed else steady), "0"),
         *(
-            both(f"peak to peak of {name}", "µm", lambda r, name=name: r.peak_to_peak(name))  # type: ignore[misc]
-            for name in ("dte", "x_g", "y_p", "y_g")
+            (f"peak to peak of {n}", "µm", methodcaller("peak_to_peak", n), "")
+            for n in ("dte", "x_g", "y_p", "y_g")
         ),
-        *(
-            both(f"mean of {name}", "µm", lambda r, name=name: r.mean(name))  # type: ignore[misc]
-            for name in ("dte", "x_g")
-        ),
-        both("peak to peak of y_p - y_g", "µm", _relative_motion),
-        both("largest modulus of the Floquet multipliers", "1", lambda r: r.radius),
+        *((f"mean of {n}", "µm", methodcaller("mean", n), "") for n in ("dte", "x_g")),
+        ("peak to peak of y_p - y_g", "µm", _relative_motion, ""),
+        ("largest modulus of the Floquet multipliers", "1", lambda r: r.radius, ""),
+    ]
+    return [
+        *(Evidence(name, unit, value(printed), value(repaired), must) for name, unit, value, must in rows),
         Evidence("largest change of a Floquet multiplier", "1", multiplier_change(printed, repaired), 0.0),
     ]
 
@@ -137,13 +140,9 @@ def _recess(pair: GearPair) -> Evidence:
     g = pair.geometry
     # A place late in recess; 21 mm from X for the 28/28 pair, as far along the recess for any other.
     xi = g.L_XP + 0.7551 * (g.L_XD - g.L_XP)
-    return Evidence(
-        quantity=f"efficiency of one pair in recess, xi = {1e3 * xi:.1f} mm, mu = 0.05",
-        unit="1",
-        printed=one_pair_efficiency(pair, xi, 0.05, printed=True),
-        repaired=one_pair_efficiency(pair, xi, 0.05, printed=False),
-        requirement="below 1",
-    )
+    wrong, right = (one_pair_efficiency(pair, xi, 0.05, printed=printed) for printed in (True, False))
+    name = f"efficiency of one pair in recess, xi = {1e3 * xi:.1f} mm, mu = 0.05"
+    return Evidence(name, "1", wrong, right, "below 1")
 
 
 def _bearing_symbol(pair: GearPair, repaired: Response) -> Evidence:

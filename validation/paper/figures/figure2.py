@@ -9,13 +9,14 @@ import xarray as xr
 
 from lumped import GearPair
 from lumped.friction import mean_coefficient
+from lumped.labelling import labelled_dataset
 from lumped.path_of_contact import friction_path_function
-from lumped.typing import FloatArray
 from validation.paper.operating_points import (
     CALIBRATIONS,
     FIGURE_2A,
     SWITCH_SPEED,
     TORQUE_2B,
+    mean_of_law,
     second_pair,
 )
 from validation.paper.records import FigureRecord, Number
@@ -38,32 +39,33 @@ def friction_in_time(pair: GearPair) -> xr.Dataset:
     Dataset over gears, law and point: mu, time [s], cycles (mesh cycles since A), denser around the pitch
     point; over gears: contact_ratio, pitch (mesh cycles from A to P), mean_mu (gears, law)
     """
-    columns: dict[str, list[FloatArray]] = {"mu": [], "time": [], "cycles": [], "mean_mu": []}
-    ratios, pitches, names = [], [], []
-    for gears in (pair, second_pair(pair)):
-        at = FIGURE_2A.of(gears)
+    rows = []
+    both = (pair, second_pair(pair))
+    for at in map(FIGURE_2A.of, both):
         g = at.geometry
         near = np.geomspace(5e-9, 1e-3, 80)
         xi = np.linspace(g.L_XA, np.nextafter(g.L_XD, 0.0), _POINTS)  # a path function is zero from D on
         xi = np.sort(np.concatenate([xi, g.L_XP - near, g.L_XP + near]))
         laws = [friction_path_function(at, law=law) for law in ("benedict_kelley", "xu_kahraman")]
-        columns["mu"].append(np.array([law(xi) for law in laws]))
-        columns["mean_mu"].append(np.array([mean_coefficient(law) for law in laws]))
-        columns["cycles"].append((xi - g.L_XA) / g.base_pitch)
-        columns["time"].append(columns["cycles"][-1] * g.mesh_period)
-        ratios.append(g.contact_ratio)
-        pitches.append((g.L_XP - g.L_XA) / g.base_pitch)
-        names.append(f"{gears.pinion.teeth}/{gears.gear.teeth}")
-    return xr.Dataset(
+        cycles = (xi - g.L_XA) / g.base_pitch
+        means = [mean_coefficient(law) for law in laws]
+        to_pitch = (g.L_XP - g.L_XA) / g.base_pitch
+        mu = [law(xi) for law in laws]
+        rows.append((mu, means, cycles * g.mesh_period, cycles, g.contact_ratio, to_pitch))
+    all_mu, mean_mu, time, since_a, ratio, pitch = map(np.array, zip(*rows, strict=True))
+    return labelled_dataset(
         {
-            "mu": (("gears", "law", "point"), np.array(columns["mu"]), {"units": "1"}),
-            "mean_mu": (("gears", "law"), np.array(columns["mean_mu"]), {"units": "1"}),
-            "time": (("gears", "point"), np.array(columns["time"]), {"units": "s"}),
-            "cycles": (("gears", "point"), np.array(columns["cycles"]), {"units": "1"}),
-            "contact_ratio": ("gears", ratios, {"units": "1"}),
-            "pitch": ("gears", pitches, {"units": "1", "long_name": "mesh cycles from A to P"}),
+            "mu": (("gears", "law", "point"), all_mu, "1", "friction coefficient"),
+            "mean_mu": (("gears", "law"), mean_mu, "1", "mean of |mu| over the path of contact"),
+            "time": (("gears", "point"), time, "s", "time since A"),
+            "cycles": (("gears", "point"), since_a, "1", "mesh cycles since A"),
+            "contact_ratio": ("gears", ratio, "1", "contact ratio"),
+            "pitch": ("gears", pitch, "1", "mesh cycles from A to P"),
         },
-        coords={"gears": names, "law": ["II", "III"]},
+        {
+            "gears": ([f"{p.pinion.teeth}/{p.gear.teeth}" for p in both], "1", "teeth of pinion and gear"),
+            "law": (["II", "III"], "1", "friction law"),
+        },
     )
 
 
@@ -92,17 +94,17 @@ def mean_over_speed(pair: GearPair) -> xr.Dataset:
         for k, speed in enumerate(_SPEEDS):
             at = oil.with_({"operating.pinion_speed": float(speed)})
             for j, law in enumerate(laws.values()):
-                table[i, j, k] = mean_coefficient(friction_path_function(at, law=law))
-    return xr.Dataset(
+                table[i, j, k] = mean_of_law(at, law)
+    return labelled_dataset(
         {
-            "mean_mu": (("calibration", "law", "speed"), table, {"units": "1"}),
-            "viscosity": ("calibration", [c[0] for c in CALIBRATIONS], {"units": "mPa s"}),
-            "composite_roughness": ("calibration", [c[1] for c in CALIBRATIONS], {"units": "um"}),
+            "mean_mu": (("calibration", "law", "speed"), table, "1", "mean of |mu| over the path of contact"),
+            "viscosity": ("calibration", [c[0] for c in CALIBRATIONS], "mPa s", "viscosity"),
+            "composite_roughness": ("calibration", [c[1] for c in CALIBRATIONS], "um", "composite roughness"),
         },
-        coords={
-            "law": list(laws),
-            "speed": ("speed", _SPEEDS, {"units": "rpm", "long_name": "pinion speed"}),
-            "calibration": [f"{v:g} mPa s, {r:g} µm" for v, r in CALIBRATIONS],
+        {
+            "law": (list(laws), "1", "friction law"),
+            "speed": (_SPEEDS, "rpm", "pinion speed"),
+            "calibration": ([f"{v:g} mPa s, {r:g} µm" for v, r in CALIBRATIONS], "1", "oil and roughness"),
         },
     )
 

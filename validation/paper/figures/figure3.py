@@ -7,6 +7,7 @@ import xarray as xr
 
 from lumped import GearPair
 from lumped.friction import mean_coefficient
+from lumped.labelling import labelled_dataset
 from lumped.path_of_contact import friction_path_function
 from validation.paper.operating_points import FIGURE_4, LAWS
 from validation.paper.records import FigureRecord, Number
@@ -30,16 +31,13 @@ def normalised_laws(pair: GearPair) -> xr.Dataset:
         mu = friction_path_function(pair, law=law)
         means.append(mean_coefficient(mu))
         rows.append(mu(g.L_XA + cycles * g.base_pitch) / means[-1])
-    return xr.Dataset(
+    return labelled_dataset(
         {
-            "normalised_mu": (("law", "cycles"), np.array(rows), {"units": "1"}),
-            "mean_mu": ("law", means, {"units": "1", "long_name": "mean of |mu| over the path of contact"}),
+            "normalised_mu": (("law", "cycles"), np.array(rows), "1", "friction coefficient over its mean"),
+            "mean_mu": ("law", means, "1", "mean of |mu| over the path of contact"),
         },
-        coords={
-            "law": list(LAWS),
-            "cycles": ("cycles", cycles, {"units": "1", "long_name": "t/t_c, mesh cycles since A"}),
-        },
-        attrs={"contact_ratio": g.contact_ratio, "pitch": pitch},
+        {"law": (list(LAWS), "1", "friction law"), "cycles": (cycles, "1", "t/t_c, mesh cycles since A")},
+        {"contact_ratio": g.contact_ratio, "pitch": pitch},
     )
 
 

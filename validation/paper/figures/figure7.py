@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from lumped import GearPair
+from lumped.labelling import Variable, labelled_dataset
 from lumped.model.steady import UNSTABLE
 from validation.measurements import Measurement, align, overlay, overlay_metrics, predict
 from validation.measurements.specification import PAIR_LABELS
@@ -18,6 +19,7 @@ from validation.paper.twins import SETTLED, SPAN, agreement, continuous_labels, 
 
 LAW = "xu_kahraman"
 _CYCLES = 3
+_FORCES = {"normal_load": "normal load", "friction_force": "friction force"}
 
 
 def pair_forces(pair: GearPair, point: OperatingPoint, *, with_multibody: bool = True) -> xr.Dataset:
@@ -30,28 +32,29 @@ def pair_forces(pair: GearPair, point: OperatingPoint, *, with_multibody: bool =
     """
     at = point.of(pair).with_({"friction.law": LAW})
     runs = twins({"III": at}, with_multibody=with_multibody)
-    places = at.geometry.pairs
     samples = runs.sizes["phase"]
     cycles = np.arange(_CYCLES * samples) / samples
-    found = {}
-    for name in ("normal_load", "friction_force"):
+    found: dict[str, Variable] = {
+        "roll_angle": ("cycles", roll_angle(at, cycles), "deg", "pinion roll angle of pair A")
+    }
+    for name, text in _FORCES.items():
         one = runs[name].isel(variant=0).transpose("model", "pair", "phase").to_numpy()
         labelled = np.array([continuous_labels(model, _CYCLES) for model in one])
-        found[name] = (("model", "label", "cycles"), labelled, {"units": "N"})
+        found[name] = (("model", "label", "cycles"), labelled, "N", f"{text} of a tooth pair")
     attrs: dict[str, float] = {"speed_rpm": point.speed, "torque": point.torque}
     attrs["spectral_radius"] = float(runs["spectral_radius"].max())
     if with_multibody:
-        for name, value in agreement(runs, ("normal_load", "friction_force")).items():
+        for name, value in agreement(runs, list(_FORCES)).items():
             attrs[f"rms_difference_{name}"] = value
         attrs["unsettled"] = float(runs["unsettled"].max())
-    return xr.Dataset(
-        found | {"roll_angle": ("cycles", roll_angle(at, cycles), {"units": "deg"})},
-        coords={
-            "model": runs["model"],
-            "label": list(PAIR_LABELS[:places]),
-            "cycles": ("cycles", cycles, {"units": "1", "long_name": "mesh cycles since pair A was at A"}),
+    return labelled_dataset(
+        found,
+        {
+            "model": (runs["model"].to_numpy(), "1", "model"),
+            "label": (list(PAIR_LABELS[: at.geometry.pairs]), "1", "tooth pair"),
+            "cycles": (cycles, "1", "mesh cycles since pair A was at A"),
         },
-        attrs=attrs,
+        attrs,
     )
 
 
@@ -101,8 +104,7 @@ def figure7(
     numbers: dict[str, Number] = {}
     for part in data.values():
         speed, lumped = f"{part.attrs['speed_rpm']:g} rpm", part.sel(model="lumped")
-        for name in ("normal_load", "friction_force"):
-            text = name.replace("_", " ")
+        for name, text in _FORCES.items():
             largest = float(np.abs(lumped[name]).max())
             numbers[f"{speed}: largest {text} of a pair"] = Number(largest, "N")
             if with_multibody:
