@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from validation.plots.labels import WHITE_BOX, label_above
 from validation.plots.stability import mark_operating_range
-from validation.plots.style import BLACK, GREY, RED, legend_above, look, new_figure
+from validation.plots.style import BLACK, GREY, IN_X, RED, legend_above, look, new_figure, write_beside
 
 #: Predicted lines up to this order are named.
 _NAMED_ORDERS = 2
@@ -41,10 +41,8 @@ def campbell_figure(
         top.plot(speed, line, color=GREY, linewidth=0.8)
         x = min(speed[-1], speed[-1] * ceiling / line[-1])
         if x > speed[0]:
-            top.annotate(
-                f"{order}×", (x, min(line[-1], ceiling)), xytext=(-2, -8), textcoords="offset points",
-                ha="right", fontsize=7.5, color=GREY,
-            )  # fmt: skip
+            place = (x, min(line[-1], ceiling))
+            write_beside(top, f"{order}×", place, (-2, -8), ha="right", fontsize=7.5, color=GREY)
     lines = list(zip(*(diagram[name].to_numpy() for name in ("line_speed", "order", "label")), strict=True))
     named = [(float(x), str(label), order) for x, order, label in lines if order <= _NAMED_ORDERS]
     for x, order, _ in lines:
@@ -55,8 +53,7 @@ def campbell_figure(
         speed, 0, 1, where=unstable, transform=bottom.get_xaxis_transform(), color=RED, alpha=0.2, linewidth=0
     )
     bottom.axhline(0.0, color=BLACK, linewidth=0.8)
-    top.set_ylim(0.0, ceiling)
-    top.set_xlim(speed[0], speed[-1])
+    top.set(ylim=(0.0, ceiling), xlim=(speed[0], speed[-1]))
     # Sums grow more easily than differences, which only friction makes unstable.
     weights = [1.0 / order - ("-" in label) for _, label, order in named]
     label_above(bottom, [label for _, label, _ in named], [x for x, _, _ in named], weights)
@@ -67,10 +64,8 @@ def campbell_figure(
     if operating_rpm is not None and speed[0] <= operating_rpm <= speed[-1]:
         for ax in (top, bottom):
             ax.axvline(operating_rpm, color=BLACK, linewidth=1.0, linestyle="--")
-        top.annotate(
-            "operating point", (operating_rpm, 1.0), xycoords=("data", "axes fraction"), xytext=(3, -3),
-            textcoords="offset points", va="top", fontsize=8.0, rotation=90, bbox=WHITE_BOX,
-        )  # fmt: skip
+        place = (operating_rpm, 1.0)
+        write_beside(top, "operating point", place, (3, -3), IN_X, va="top", rotation=90, bbox=WHITE_BOX)
     mark_operating_range(top, operating_range, lower=True)
     top.tick_params(labelbottom=False)
     return figure

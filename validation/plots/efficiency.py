@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -12,12 +14,15 @@ from validation.plots.style import (
     BLUE,
     GREEN,
     GREY,
+    IN_Y,
     RED,
     legend,
     legend_above,
     new_figure,
+    one_panel,
     path_axis,
     scaled,
+    write_beside,
 )
 
 
@@ -30,8 +35,7 @@ def efficiency_figure(losses: xr.Dataset, chosen: str) -> Figure:
     chosen : name of the pair's law
     """
     laws = [str(name) for name in losses["law"].to_numpy()]
-    figure, axes = new_figure(height=0.9 + 0.4 * max(len(laws), 2))
-    ax = axes[0, 0]
+    figure, ax = one_panel(0.9 + 0.4 * max(len(laws), 2))
     place = np.arange(len(laws))
     series = (
         ("mesh_efficiency_closed_form", "mean |µ| times closed form", "s", BLACK, -0.18),
@@ -45,9 +49,7 @@ def efficiency_figure(losses: xr.Dataset, chosen: str) -> Figure:
     shown = [t + (" (used)" if n == chosen else "") for n, t in zip(laws, titles, strict=True)]
     ax.set_yticks(place, shown)
     ax.invert_yaxis()
-    ax.set_xlim(left=0.0)
-    ax.set_xlabel("loss of the mesh over input power [%]")
-    ax.set_ylabel("friction law")
+    ax.set(xlim=(0.0, None), xlabel="loss of the mesh over input power [%]", ylabel="friction law")
     legend_above(ax, 3)
     return figure
 
@@ -68,25 +70,15 @@ def sliding_power_figure(
     powers = [data["sliding_power"].to_numpy() for data in (quasi_static, periodic)]
     factor, unit = scaled(*powers, unit="W")
     looks = (("quasi-static", BLUE, "--"), ("periodic motion", RED, "-"))
-    for data, power, (label, colour, dashes) in zip((quasi_static, periodic), powers, looks, strict=True):
-        left.plot(
-            1e3 * data["xi"], power / factor, color=colour, linestyle=dashes, label=label, linewidth=1.2
-        )
+    paths = (quasi_static, periodic)
+    for path, power, instant, (label, colour, dashes) in zip(paths, powers, instants, looks, strict=True):
+        style: Any = {"color": colour, "linestyle": dashes, "label": label, "linewidth": 1.2}
+        left.plot(1e3 * path["xi"], power / factor, **style)
+        right.plot(instant["time"] / g.mesh_period, 100.0 * instant["instantaneous_efficiency"], **style)
     left.set_ylabel(f"sliding power of one pair [{unit}]")
     path_axis(left, g)
-    for data, (label, colour, dashes) in zip(instants, looks, strict=True):
-        right.plot(
-            data["time"] / g.mesh_period,
-            100.0 * data["instantaneous_efficiency"],
-            color=colour,
-            linestyle=dashes,
-            linewidth=1.2,
-            label=label,
-        )
     right.axhline(100.0, color=GREY, linewidth=0.6)
-    right.set_xlim(0.0, 1.0)
-    right.set_xlabel("time [mesh cycles]")
-    right.set_ylabel("instantaneous efficiency [%]")
+    right.set(xlim=(0.0, 1.0), xlabel="time [mesh cycles]", ylabel="instantaneous efficiency [%]")
     legend(right, loc="lower right")
     return figure
 
@@ -118,16 +110,7 @@ def film_figure(g: Geometry, profile: xr.Dataset, thresholds: tuple[float, ...])
         if low >= top:
             continue
         right.axhspan(low, high, color=GREY, alpha=0.08 * index, linewidth=0)
-        right.annotate(
-            name,
-            (0.01, high),
-            xycoords=("axes fraction", "data"),
-            xytext=(0, -2),
-            va="top",
-            textcoords="offset points",
-            fontsize=7.5,
-            color="#404040",
-        )
+        write_beside(right, name, (0.01, high), (0, -2), IN_Y, va="top", fontsize=7.5, color="#404040")
     for ax in (left, right):
         path_axis(ax, g, xi)
     return figure

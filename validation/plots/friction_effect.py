@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from validation.plots.stability import axis_label, field, mark_operating_point
-from validation.plots.style import BLACK, new_figure
+from validation.plots.style import BLACK, one_panel
 
 
 def friction_effect_figure(
@@ -26,15 +26,13 @@ def friction_effect_figure(
     x, y : names of the axes
     point : operating point (x, y); None: not marked
     """
-    figure, axes = new_figure(height=3.5)
-    ax = axes[0, 0]
+    figure, ax = one_panel(3.5)
     one = effect.sel(law=law).transpose(y, x).sortby([x, y])
     xs, ys, change = one[x].to_numpy(), one[y].to_numpy(), one["growth_change"].to_numpy()
     # Changes peak sharply at the edges of tongues; the scale serves the rest.
     reach = float(np.nanpercentile(np.abs(change), 98.0)) or 1e-12
     drawn = field(ax, xs, ys, change, Normalize(-reach, reach), "PuOr_r")
-    ax.set_xlim(xs[0], xs[-1])
-    ax.set_ylim(ys[0], ys[-1])
+    ax.set(xlim=(xs[0], xs[-1]), ylim=(ys[0], ys[-1]))
     shown = []
     dashes: tuple[tuple[str, xr.DataArray, Literal["-", "--"]], ...] = (
         (law, one["growth"], "-"),
@@ -52,7 +50,6 @@ def friction_effect_figure(
     bar = figure.colorbar(drawn, ax=ax, pad=0.01, extend="both")
     bar.set_label("change of growth per mesh cycle [-]\n(purple: damps, orange: drives)", fontsize=8.5)
     bar.outline.set_linewidth(0.5)
-    ax.set_xlabel(axis_label(effect, x))
-    ax.set_ylabel(axis_label(effect, y))
+    ax.set(xlabel=axis_label(effect, x), ylabel=axis_label(effect, y))
     ax.grid(False)
     return figure

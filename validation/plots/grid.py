@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from lumped.friction import LAWS
 from validation.cross_check.grid.run import COMPARED, SEPARATED, STICKING
-from validation.plots.style import BLACK, GREY, new_figure
+from validation.plots.style import BLACK, GREY, IN_X, new_figure, write_beside
 
 _MARKS = {SEPARATED: ("s", "teeth separate"), STICKING: ("o", "friction may hold the teeth")}
 
@@ -99,12 +99,5 @@ def _laws(ax: Axes, result: xr.Dataset) -> None:
     width = result.sizes["speed"] * result.sizes["torque"]
     for i, law in enumerate(result["law"].to_numpy()):
         name = str(law)
-        ax.annotate(
-            f"law {LAWS[name].numeral}" if LAWS[name].numeral else name,
-            (width * (i + 0.5) - 0.5, 1.0),
-            xycoords=("data", "axes fraction"),
-            xytext=(0, 3),
-            textcoords="offset points",
-            ha="center",
-            fontsize=8.0,
-        )
+        words = f"law {LAWS[name].numeral}" if LAWS[name].numeral else name
+        write_beside(ax, words, (width * (i + 0.5) - 0.5, 1.0), (0, 3), IN_X, ha="center")

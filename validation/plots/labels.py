@@ -70,9 +70,6 @@ def label_above(ax: Axes, names: Sequence[str], places: Sequence[float], weights
     return len(names) - len(kept)
 
 
-"""Names of tongues as written in print."""
-
-
 def pretty(label: str) -> str:
     """Label as written in text, with omega and indices: 2w3/5 -> 2ω₃/5."""
     digits = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")

@@ -49,9 +49,7 @@ def history_figure(g: Geometry, result: xr.Dataset) -> Figure:
     for i, row in enumerate(load):
         bottom.plot(x, row / factor, **look(i), linewidth=1.0, label=f"pair {i}")
     bottom.axhline(0.0, color=GREY, linewidth=0.6)
-    bottom.set_ylabel(f"normal load [{unit}]")
-    bottom.set_xlabel("time [mesh cycles]")
-    bottom.set_xlim(x[0], x[-1])
+    bottom.set(ylabel=f"normal load [{unit}]", xlabel="time [mesh cycles]", xlim=(x[0], x[-1]))
     legend_above(bottom, len(load))
     figure.align_ylabels()
     return figure
@@ -72,9 +70,7 @@ def transmission_error_figure(pair: GearPair, g: Geometry, motion: xr.Dataset, o
     factor, unit = scaled(dte, unit="m")
     left.plot(mesh_cycles(motion, g), dte / factor, color=BLUE)
     left.axhline(float(dte.mean()) / factor, color=GREY, linewidth=0.8, linestyle=":")
-    left.set_xlim(0.0, 1.0)
-    left.set_xlabel("time [mesh cycles]")
-    left.set_ylabel(f"dynamic transmission error [{unit}]")
+    left.set(xlim=(0.0, 1.0), xlabel="time [mesh cycles]", ylabel=f"dynamic transmission error [{unit}]")
     mark_switches(left, switches_in_cycles(mesh_cycle(pair)))
     _bars(right, {"": orders}, 0.6, "amplitude")
     return figure
@@ -91,28 +87,19 @@ def tooth_forces_figure(pair: GearPair, g: Geometry, motion: xr.Dataset) -> Figu
     figure, axes = new_figure(2, 1, height=4.4, sharex=True)
     x = mesh_cycles(motion, g)
     touching = motion["contact"].to_numpy() > 0
-    for ax, name, label in (
-        (axes[0, 0], "normal_load", "normal load"),
-        (axes[1, 0], "friction_force", "friction force"),
-    ):
+    for ax, name in zip(axes[:, 0], ("normal_load", "friction_force"), strict=True):
         values = motion[name].to_numpy()
         factor, unit = scaled(values, values.sum(axis=0), unit="N")
         ax.plot(x, values.sum(axis=0) / factor, color=BLACK, linewidth=0.9, label="all pairs")
         for i, row in enumerate(values):
-            ax.plot(
-                x,
-                np.where(touching[i], row, np.nan) / factor,
-                **look(i),
-                linewidth=1.8,
-                label=f"pair {i}" + (" (ahead)" if i == 0 else ""),
-            )
+            label = f"pair {i}" + (" (ahead)" if i == 0 else "")
+            ax.plot(x, np.where(touching[i], row, np.nan) / factor, **look(i), linewidth=1.8, label=label)
         ax.axhline(0.0, color=GREY, linewidth=0.6)
-        ax.set_ylabel(f"{label} [{unit}]")
+        ax.set_ylabel(f"{name.replace('_', ' ')} [{unit}]")
     marks = switches_in_cycles(mesh_cycle(pair))
     mark_switches(axes[0, 0], marks)
     mark_switches(axes[1, 0], marks, letters=False)
-    axes[1, 0].set_xlabel("time [mesh cycles]")
-    axes[1, 0].set_xlim(0.0, 1.0)
+    axes[1, 0].set(xlabel="time [mesh cycles]", xlim=(0.0, 1.0))
     legend(axes[0, 0], loc="best")
     return figure
 
@@ -138,9 +125,7 @@ def motions_figure(g: Geometry, motion: xr.Dataset) -> Figure:
             mean, mean_unit = scaled(curves[gear], unit="m")
             text = f"{name}, mean {curves[gear].mean() / mean:.3g} {mean_unit}"
             ax.plot(x, moving[gear] / factor, color=colour, linestyle=dash, label=text)
-        ax.set_xlim(0.0, 1.0)
-        ax.set_xlabel("time [mesh cycles]")
-        ax.set_ylabel(f"{label}\nabout the mean [{unit}]")
+        ax.set(xlim=(0.0, 1.0), xlabel="time [mesh cycles]", ylabel=f"{label}\nabout the mean [{unit}]")
         legend(ax, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=1)
     return figure
 
@@ -167,6 +152,5 @@ def _bars(ax: Axes, found: Mapping[str, MeshOrders], width: float, label: str) -
         shift = 0.4 * place - 0.2 * (len(found) - 1)
         ax.bar(one.order[1:] + shift, one.amplitude[1:] / factor, width=width, color=colour, label=name)
         ax.set_xticks(np.asarray(one.order[1:]))
-    ax.set_xlabel("mesh order [-]")
-    ax.set_ylabel(f"{label} [{unit}]")
+    ax.set(xlabel="mesh order [-]", ylabel=f"{label} [{unit}]")
     ax.grid(False, axis="x")

@@ -12,11 +12,15 @@ from validation.plots.style import (
     DASHES,
     GREEN,
     GREY,
+    IN_Y,
     RED,
     legend,
     look,
     new_figure,
+    one_panel,
     path_axis,
+    without_jumps,
+    write_beside,
 )
 
 
@@ -33,27 +37,17 @@ def path_figure(g: Geometry, profile: xr.Dataset) -> Figure:
     left, right = axes[0]
     left.plot(xi, profile["entraining_velocity"], color=BLUE, linestyle=DASHES[0], label="entraining (sum)")
     left.plot(xi, profile["sliding_velocity"], color=RED, linestyle=DASHES[1], label="sliding")
-    left.set_ylabel("velocity [m/s]")
-    left.set_ylim(bottom=0.0)
+    left.set(ylabel="velocity [m/s]", ylim=(0.0, None))
     legend(left, loc="center left", bbox_to_anchor=(0.0, 0.72))
     right.plot(xi, profile["film_parameter"], color=GREEN, label="film parameter")
-    right.set_ylabel("film parameter [-]")
-    right.set_ylim(0.0, 1.15 * float(profile["film_parameter"].max()))
+    right.set(ylabel="film parameter [-]", ylim=(0.0, 1.15 * float(profile["film_parameter"].max())))
     for ax in (left, right):
         path_axis(ax, g, xi)
     for threshold, name in ((1.0, "mixed"), (4.0, "elastohydrodynamic"), (10.0, "full film")):
         if threshold < right.get_ylim()[1]:
             right.axhline(threshold, color=GREY, linewidth=0.8, linestyle=":")
-            right.annotate(
-                f"{name} above {threshold:g}",
-                (0.99, threshold),
-                xycoords=("axes fraction", "data"),
-                xytext=(0, 2),
-                textcoords="offset points",
-                ha="right",
-                fontsize=7.5,
-                color=GREY,
-            )
+            words, place = f"{name} above {threshold:g}", (0.99, threshold)
+            write_beside(right, words, place, (0, 2), IN_Y, ha="right", fontsize=7.5, color=GREY)
     return figure
 
 
@@ -66,27 +60,15 @@ def friction_laws_figure(g: Geometry, profile: xr.Dataset, chosen: str) -> Figur
     profile : dataset of ``lumped.path_of_contact.friction_profile``
     chosen : name of the pair's law
     """
-    figure, axes = new_figure(height=3.3)
-    ax = axes[0, 0]
+    figure, ax = one_panel(3.3)
     xi = profile["xi"].to_numpy()
     for number, law in enumerate(profile["law"].to_numpy()):
         mu = profile["mu"].sel(law=law).to_numpy()
-        # A jump at the pitch point is drawn as one: no line joins its two sides.
-        jump = np.abs(np.diff(mu)) > 0.3 * np.ptp(mu)
-        x, y = (
-            np.insert(xi, np.flatnonzero(jump) + 1, np.nan),
-            np.insert(mu, np.flatnonzero(jump) + 1, np.nan),
-        )
+        x, y = without_jumps(1e3 * xi, mu, 0.3 * np.ptp(mu))
         own = str(law) == chosen
         title = str(profile["law_title"].sel(law=law).item()) + (" (used)" if own else "")
-        ax.plot(
-            1e3 * x,
-            y,
-            **look(number),
-            linewidth=2.4 if own else 1.2,
-            label=title,
-            zorder=3 if own else 2,
-        )
+        weight, order = (2.4, 3) if own else (1.2, 2)
+        ax.plot(x, y, **look(number), linewidth=weight, label=title, zorder=order)
     ax.axhline(0.0, color=GREY, linewidth=0.6)
     path_axis(ax, g, 1e3 * xi)
     ax.set_ylabel("friction coefficient, signed [-]")

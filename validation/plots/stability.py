@@ -15,7 +15,7 @@ from matplotlib.image import AxesImage
 
 from lumped.typing import FloatArray
 from validation.plots.labels import WHITE_BOX
-from validation.plots.style import BLACK, RED, new_figure
+from validation.plots.style import BLACK, IN_X, RED, one_panel, write_beside
 
 #: Blue for fast decay to white at the boundary.
 _STABLE = LinearSegmentedColormap.from_list("decay", ["#08519c", "#6baed6", "#f7fbff"])
@@ -32,21 +32,18 @@ def stability_figure(chart: xr.Dataset, x: str, y: str, point: tuple[float, floa
     x, y : names of its axes
     point : operating point (x, y); None: not marked
     """
-    figure, axes = new_figure(height=3.4)
-    ax = axes[0, 0]
+    figure, ax = one_panel(3.4)
     radius = chart["spectral_radius"].transpose(y, x).sortby([x, y])
     xs, ys, values = radius[x].to_numpy(), radius[y].to_numpy(), radius.to_numpy()
     low = float(np.nanmin(values))
     drawn = field(ax, xs, ys, np.minimum(values, 1.0), Normalize(min(low, 0.999), 1.0), _STABLE)
-    ax.set_xlim(xs[0], xs[-1])
-    ax.set_ylim(ys[0], ys[-1])
+    ax.set(xlim=(xs[0], xs[-1]), ylim=(ys[0], ys[-1]))
     mark_unstable(ax, xs, ys, values)
     mark_operating_point(ax, point)
     bar = figure.colorbar(drawn, ax=ax, pad=0.01)
     bar.set_label("spectral radius [-]; unstable above 1 (hatched)", fontsize=8.5)
     bar.outline.set_linewidth(0.5)
-    ax.set_xlabel(axis_label(chart, x))
-    ax.set_ylabel(axis_label(chart, y))
+    ax.set(xlabel=axis_label(chart, x), ylabel=axis_label(chart, y))
     ax.grid(False)
     return figure
 
@@ -60,8 +57,7 @@ def stability_line_figure(chart: xr.Dataset, x: str, value: float | None) -> Fig
     x : its name
     value : of the operating point; None: not marked
     """
-    figure, axes = new_figure(height=2.9)
-    ax = axes[0, 0]
+    figure, ax = one_panel(2.9)
     radius = chart["spectral_radius"].sortby(x)
     xs, values = radius[x].to_numpy(), radius.to_numpy()
     ax.plot(xs, values, color="#08519c", linewidth=1.2)
@@ -69,8 +65,7 @@ def stability_line_figure(chart: xr.Dataset, x: str, value: float | None) -> Fig
     ax.fill_between(xs, 1.0, np.maximum(values, 1.0), color=UNSTABLE, linewidth=0.0)
     ax.set_xlim(xs[0], xs[-1])
     mark_operating_value(ax, value)
-    ax.set_xlabel(axis_label(chart, x))
-    ax.set_ylabel("spectral radius [-], unstable above 1")
+    ax.set(xlabel=axis_label(chart, x), ylabel="spectral radius [-], unstable above 1")
     return figure
 
 
@@ -124,10 +119,10 @@ def mark_operating_point(ax: Axes, point: tuple[float, float] | None) -> None:
     north = height < 0.5
     # Below the bar of the operating range, which runs along the upper edge.
     shift = 7 if north else -7 if height < 0.9 else -22
-    ax.annotate(
-        "operating point", point, xytext=(8 if east else -8, shift), textcoords="offset points",
-        ha="left" if east else "right", va="bottom" if north else "top", fontsize=8.5, bbox=WHITE_BOX,
-    )  # fmt: skip
+    aside, va = (8, "left") if east else (-8, "right"), "bottom" if north else "top"
+    write_beside(
+        ax, "operating point", point, (aside[0], shift), ha=aside[1], va=va, fontsize=8.5, bbox=WHITE_BOX
+    )
 
 
 def mark_operating_value(ax: Axes, value: float | None) -> None:
@@ -136,10 +131,8 @@ def mark_operating_value(ax: Axes, value: float | None) -> None:
     if value is None or not low <= value <= high:
         return
     ax.axvline(value, color=BLACK, linewidth=1.0, linestyle="--")
-    ax.annotate(
-        "operating point", (value, 0.03), xycoords=("data", "axes fraction"), xytext=(3, 0),
-        textcoords="offset points", fontsize=8.0, rotation=90, va="bottom", bbox=WHITE_BOX,
-    )  # fmt: skip
+    look = {"rotation": 90, "va": "bottom", "bbox": WHITE_BOX}
+    write_beside(ax, "operating point", (value, 0.03), (3, 0), IN_X, **look)
 
 
 def mark_operating_range(ax: Axes, speeds: tuple[float, float] | None, *, lower: bool = False) -> None:
@@ -150,13 +143,10 @@ def mark_operating_range(ax: Axes, speeds: tuple[float, float] | None, *, lower:
     shown = (max(speeds[0], left), min(speeds[1], right))
     if shown[0] >= shown[1]:
         return
-    height = 0.012 if lower else 0.985
+    height, shift, va = (0.012, 4, "bottom") if lower else (0.985, -4, "top")
     ax.plot(shown, (height, height), transform=ax.get_xaxis_transform(), color=BLACK, linewidth=3.0)
-    ax.annotate(
-        "operating range", (0.5 * (shown[0] + shown[1]), height), xycoords=("data", "axes fraction"),
-        xytext=(0, 4 if lower else -4), textcoords="offset points", ha="center",
-        va="bottom" if lower else "top", fontsize=8.0, bbox=WHITE_BOX,
-    )  # fmt: skip
+    place = (0.5 * (shown[0] + shown[1]), height)
+    write_beside(ax, "operating range", place, (0, shift), IN_X, ha="center", va=va, bbox=WHITE_BOX)
 
 
 def axis_label(chart: xr.Dataset, name: str) -> str:

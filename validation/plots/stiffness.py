@@ -21,9 +21,11 @@ from validation.plots.style import (
     legend,
     mark_switches,
     new_figure,
+    one_panel,
     path_axis,
     scaled,
     switches_in_cycles,
+    without_jumps,
 )
 
 
@@ -35,8 +37,7 @@ def stiffness_figure(cycle: MeshCycle, points: int = 801) -> Figure:
     cycle : mesh cycle of the pair
     points : per smooth segment, in proportion to its length
     """
-    figure, axes = new_figure(height=2.8)
-    ax = axes[0, 0]
+    figure, ax = one_panel(2.8)
     period = cycle.period
     times, values = [], []
     for segment, (low, high) in enumerate(zip(cycle.edges[:-1], cycle.edges[1:], strict=True)):
@@ -51,10 +52,7 @@ def stiffness_figure(cycle: MeshCycle, points: int = 801) -> Figure:
         shown = np.where(row > 0, row, np.nan)
         ax.plot(x, shown / factor, color=LINES[i], linestyle=DASHES[i + 1], label=f"pair {i}")
     mark_switches(ax, switches_in_cycles(cycle))
-    ax.set_xlim(0.0, 1.0)
-    ax.set_ylim(bottom=0.0)
-    ax.set_xlabel("time [mesh cycles]")
-    ax.set_ylabel(f"stiffness [{unit}]")
+    ax.set(xlim=(0.0, 1.0), ylim=(0.0, None), xlabel="time [mesh cycles]", ylabel=f"stiffness [{unit}]")
     # Above the letters of the switches, which stand on the axes.
     legend(ax, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=len(k) + 1, borderaxespad=1.7)
     return figure
@@ -82,50 +80,22 @@ def stiffness_components_figure(g: Geometry, components: xr.Dataset) -> Figure:
     for (part, colour), hatch in zip(_PARTS, _HATCHES, strict=True):
         rows = np.char.startswith(names, part)
         top = floor + compliance[rows].sum(axis=0) / factor
-        left.fill_between(
-            xi,
-            floor,
-            top,
-            facecolor=colour,
-            edgecolor="white",
-            linewidth=0.4,
-            hatch=hatch,
-            alpha=0.75,
-            label=part if part == "contact" else f"{part}, both teeth",
-        )
+        label = part if part == "contact" else f"{part}, both teeth"
+        look = {"facecolor": colour, "hatch": hatch, "label": label, "edgecolor": "white", "linewidth": 0.4}
+        left.fill_between(xi, floor, top, **look, alpha=0.75)
         floor = top
-    left.set_ylabel(f"compliance [{unit}]")
-    left.set_ylim(0.0, 1.45 * float(floor.max()))
-    handles, labels = left.get_legend_handles_labels()
-    legend(
-        left,
-        handles=handles[::-1],
-        labels=labels[::-1],
-        loc="upper center",
-        ncols=2,
-        fontsize=7.0,
-        handlelength=1.6,
-        columnspacing=1.0,
-    )
+    left.set(ylabel=f"compliance [{unit}]", ylim=(0.0, 1.45 * float(floor.max())))
+    look = {"loc": "upper center", "fontsize": 7.0, "handlelength": 1.6, "columnspacing": 1.0}
+    legend(left, reverse=True, ncols=2, **look)
     stiffness = components["stiffness"].to_numpy()
     iso = float(components.attrs["iso_single_stiffness"])
     factor, unit = scaled(stiffness, unit="N/m")
     right.plot(xi, stiffness / factor, color=BLACK, label="tooth pair, energy")
     right.axhline(iso / factor, color=RED, linestyle="--", label="ISO 6336-1, c' b")
-    for which, colour, dashes in (
-        ("pinion", PURPLE, (0, (1.2, 1.2))),
-        ("gear", BLUE, (0, (6, 1.5, 1.2, 1.5))),
-    ):
-        rows = np.char.endswith(names, which)
-        right.plot(
-            xi,
-            1.0 / compliance[rows].sum(axis=0) / factor,
-            color=colour,
-            linestyle=dashes,
-            label=f"tooth and body of the {which}",
-        )
-    right.set_ylabel(f"stiffness [{unit}]")
-    right.set_ylim(0.0, 1.45 * right.get_ylim()[1])
+    for which, colour, dashes in (("pinion", PURPLE, DASHES[2]), ("gear", BLUE, DASHES[3])):
+        own = 1.0 / compliance[np.char.endswith(names, which)].sum(axis=0) / factor
+        right.plot(xi, own, color=colour, linestyle=dashes, label=f"tooth and body of the {which}")
+    right.set(ylabel=f"stiffness [{unit}]", ylim=(0.0, 1.45 * right.get_ylim()[1]))
     legend(right, loc="upper center", fontsize=7.5)
     for ax in (left, right):
         path_axis(ax, g, xi)
@@ -139,25 +109,15 @@ def energy_mesh_figure(energy: xr.Dataset) -> Figure:
     ----------
     energy : dataset of ``lumped.mesh_stiffness`` for the energy model
     """
-    figure, axes = new_figure(height=2.6)
-    ax = axes[0, 0]
+    figure, ax = one_panel(2.6)
     phase = energy["phase"].to_numpy()
     total = energy["mesh_stiffness"].to_numpy()
     factor, unit = scaled(total, unit="N/m")
-    jumps = np.abs(np.diff(total)) > 0.1 * total.max()
-    places = np.flatnonzero(jumps) + 1
-    ax.plot(
-        np.insert(phase, places, np.nan),
-        np.insert(total, places, np.nan) / factor,
-        color=BLACK,
-        linewidth=1.8,
-        label="all pairs, energy",
-    )
+    x, y = without_jumps(phase, total / factor, 0.1 * float(total.max()) / factor)
+    ax.plot(x, y, color=BLACK, linewidth=1.8, label="all pairs, energy")
     ax.axhline(energy.attrs["mean"] / factor, color=BLUE, linestyle="-.", label="its mean")
     ax.axhline(energy.attrs["iso_mean"] / factor, color=RED, linestyle="--", label="ISO 6336-1, c_γ b")
-    ax.set_xlim(0.0, 1.0)
-    ax.set_ylim(0.0, 1.3 * float(total.max()) / factor)
-    ax.set_xlabel("time [mesh cycles after a pair was at A]")
-    ax.set_ylabel(f"mesh stiffness [{unit}]")
+    ax.set(xlim=(0.0, 1.0), ylim=(0.0, 1.3 * float(total.max()) / factor))
+    ax.set(xlabel="time [mesh cycles after a pair was at A]", ylabel=f"mesh stiffness [{unit}]")
     legend(ax, loc="upper right", ncols=3)
     return figure

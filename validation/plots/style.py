@@ -33,7 +33,10 @@ LINES = (BLUE, RED, GREEN, PURPLE, ORANGE, SKY, BLACK)
 #: Line styles that go with ``LINES``, so that colour is never the only difference.
 DASHES = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (6, 1.5, 1.2, 1.5)), (0, (3, 1, 1, 1, 1, 1)), "-", ":")
 GREY = "#6b6b6b"
+#: Coordinates of a place: one in data, the other as a share of the axes.
+IN_X, IN_Y = ("data", "axes fraction"), ("axes fraction", "data")
 WIDTH = 7.2
+Point = tuple[float, float]
 _PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p"))
 _LARGE = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
 _PNG_DPI = 150
@@ -75,6 +78,12 @@ def new_figure(
         for spine in ax.spines.values():
             spine.set_linewidth(0.6)
     return figure, axes
+
+
+def one_panel(height: float) -> tuple[Figure, Axes]:
+    """Return an empty figure of one panel and its axes; height [inch]."""
+    figure, axes = new_figure(height=height)
+    return figure, axes[0, 0]
 
 
 def legend(ax: Axes, **options: Any) -> None:
@@ -128,17 +137,7 @@ def mark_switches(ax: Axes, events: Mapping[str, float], *, letters: bool = True
         ax.axvline(place, color=GREY, linewidth=0.6, linestyle=(0, (2, 2)), zorder=0.5)
         if not letters:
             continue
-        ax.annotate(
-            ", ".join(names),
-            (place, 1.0),
-            xycoords=("data", "axes fraction"),
-            xytext=(0, 2),
-            textcoords="offset points",
-            ha="center",
-            va="bottom",
-            fontsize=8.0,
-            color=GREY,
-        )
+        write_beside(ax, ", ".join(names), (place, 1.0), (0, 2), IN_X, ha="center", va="bottom", color=GREY)
 
 
 def switches_in_cycles(cycle: MeshCycle) -> dict[str, float]:
@@ -157,10 +156,26 @@ def path_axis(ax: Axes, g: Geometry, ends: FloatArray | None = None) -> None:
 def mark_operation(ax: Axes, place: float, words: str) -> None:
     """Red line at the operating condition, named above the axes."""
     ax.axvline(place, color=RED, linewidth=1.0)
-    ax.annotate(
-        words, (place, 1.0), xycoords=("data", "axes fraction"), xytext=(0, 2), textcoords="offset points",
-        ha="center", fontsize=8.0, color=RED,
-    )  # fmt: skip
+    write_beside(ax, words, (place, 1.0), (0, 2), IN_X, ha="center", color=RED)
+
+
+def write_beside(ax: Axes, words: str, place: Point, shift: Point, axes: Any = "data", **look: Any) -> None:
+    """Write words beside a place.
+
+    Parameters
+    ----------
+    place : in data coordinates, or those that ``axes`` names (``IN_X``, ``IN_Y``)
+    shift : of the words from the place [points]
+    **look : of ``Axes.annotate``
+    """
+    look = {"fontsize": 8.0} | look
+    ax.annotate(words, place, xycoords=axes, xytext=shift, textcoords="offset points", **look)
+
+
+def without_jumps(x: FloatArray, y: FloatArray, largest: float) -> tuple[FloatArray, FloatArray]:
+    """Curve with a gap wherever neighbours differ by more than ``largest``, so that no line joins a jump."""
+    places = np.flatnonzero(np.abs(np.diff(y)) > largest) + 1
+    return np.insert(x, places, np.nan), np.insert(y, places, np.nan)
 
 
 def path_marks(g: Geometry) -> dict[str, float]:

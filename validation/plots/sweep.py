@@ -35,25 +35,15 @@ def sweep_figure(
     unstable = sweep["spectral_radius"].to_numpy() > UNSTABLE
     if unstable.any():
         top.plot(speed[unstable], values[unstable] / factor, "x", color=RED, markersize=4.5)
-    top.set_ylabel(f"transmission error,\npeak to peak [{unit}]")
-    top.set_ylim(bottom=0.0)
+    top.set(ylabel=f"transmission error,\npeak to peak [{unit}]", ylim=(0.0, None))
     low = sweep["normal_load_min"].to_numpy() / static_load
     bottom.plot(speed, sweep["normal_load_max"].to_numpy() / static_load, color=BLUE, label="largest")
     bottom.plot(speed, low, color=LINES[2], linestyle="--", label="smallest")
     with np.errstate(invalid="ignore"):
-        bottom.fill_between(
-            speed,
-            low,
-            0.0,
-            where=low < 0.0,
-            color=RED,
-            alpha=0.3,
-            linewidth=0,
-            label="teeth separate: not valid",
-        )
+        shade = {"color": RED, "alpha": 0.3, "linewidth": 0, "label": "teeth separate: not valid"}
+        bottom.fill_between(speed, low, 0.0, where=low < 0.0, **shade)
     bottom.axhline(0.0, color=GREY, linewidth=0.6)
-    bottom.set_ylabel("tooth load over\nstatic load [-]")
-    bottom.set_xlabel("pinion speed [rpm]")
+    bottom.set(ylabel="tooth load over\nstatic load [-]", xlabel="pinion speed [rpm]")
     bottom.set_xlim(speed[0], speed[-1])
     mark_operation(top, operating_rpm, "operating point")
     bottom.axvline(operating_rpm, color=RED, linewidth=1.0)

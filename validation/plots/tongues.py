@@ -20,7 +20,7 @@ from validation.plots.stability import (
     mark_operating_range,
     stability_figure,
 )
-from validation.plots.style import BLACK, GREY, RED, new_figure
+from validation.plots.style import BLACK, GREY, RED, new_figure, one_panel
 
 
 def tongue_chart_figure(
@@ -78,10 +78,8 @@ def tongues_figure(margins: StabilityMargins, operating_range: tuple[float, floa
     margins : of ``floquet.gear.margins.stability_margins``
     operating_range : speeds of operation [rpm]
     """
-    figure, axes = new_figure(height=3.2)
-    ax = axes[0, 0]
-    ax.set_xlim(*margins.speed_range)
-    ax.set_ylim(0.0, 1.25 * max(margins.critical_damping, margins.damping, 1e-3))
+    figure, ax = one_panel(3.2)
+    ax.set(xlim=margins.speed_range, ylim=(0.0, 1.25 * max(margins.critical_damping, margins.damping, 1e-3)))
     for tongue in margins.tongues:
         ax.fill_betweenx(
             tongue.damping, tongue.left, tongue.right, color=UNSTABLE, edgecolor=RED, linewidth=1.0
@@ -95,8 +93,7 @@ def tongues_figure(margins: StabilityMargins, operating_range: tuple[float, floa
     ax.axhline(margins.damping, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)))
     mark_operating_point(ax, (margins.rpm, margins.damping))
     mark_operating_range(ax, operating_range)
-    ax.set_xlabel("pinion speed [rpm]")
-    ax.set_ylabel("mesh damping ratio [-]")
+    ax.set(xlabel="pinion speed [rpm]", ylabel="mesh damping ratio [-]")
     return figure
 
 
@@ -111,8 +108,7 @@ def boundaries_figure(
     name : that axis
     operating_range : speeds of operation [rpm]
     """
-    figure, axes = new_figure(height=3.4)
-    ax = axes[0, 0]
+    figure, ax = one_panel(3.4)
     values = found[name].to_numpy()
     names, places, widths = [], [], []
     for row in range(found.sizes["tongue"]):
@@ -140,8 +136,7 @@ def boundaries_figure(
         ax.set_xticks([])
         ax.annotate("no speed of the range is unstable", (0.5, 0.5), xycoords="axes fraction", ha="center")
     mark_operating_range(ax, operating_range)
-    ax.set_xlabel("pinion speed [rpm]")
-    ax.set_ylabel(axis_label(found, name))
+    ax.set(xlabel="pinion speed [rpm]", ylabel=axis_label(found, name))
     return figure
 
 

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.artist import Artist
-from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from lumped.model.steady import UNSTABLE
-from lumped.typing import IntArray
 from validation.plots.style import BLACK, new_figure
 from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
 from validation.validity.map import REGIMES
@@ -30,6 +30,7 @@ def validity_map_figure(data: xr.Dataset, point: tuple[float, float] | None = No
     point : operating point (rpm, N m); None: not marked
     """
     figure, axes = new_figure(1, 3, height=3.5, sharey=True)
+    speed, torque = data["speed"].to_numpy(), data["torque"].to_numpy()
     lowest, reversal = data["lowest_load"].to_numpy(), data["reversal"].to_numpy()
     nothing = np.isnan(lowest)
     unstable = data["spectral_radius"].to_numpy() > UNSTABLE
@@ -51,28 +52,26 @@ def validity_map_figure(data: xr.Dataset, point: tuple[float, float] | None = No
         ("film, thinnest place", data["regime"].to_numpy(), _REGIMES, REGIMES),
     )
     for ax, (title, values, colours, names) in zip(axes[0], panels, strict=True):
-        _panel(ax, data, values, colours)
+        norm = BoundaryNorm(np.arange(-0.5, 4.5), 4)
+        shading: Any = {"cmap": ListedColormap(list(colours)), "norm": norm, "shading": "nearest"}
+        ax.pcolormesh(speed, torque, values, **shading, rasterized=True)
+        ax.set_yscale("log")
+        ax.grid(False)
         present = [k for k in range(4) if (values == k).any()]
         handles: list[Artist] = [
             Patch(facecolor=colours[k], edgecolor=BLACK, linewidth=0.4, label=names[k]) for k in present
         ]
         if ax is axes[0, 0] and unstable.any():
             row, column = np.nonzero(unstable)
-            handles += ax.plot(
-                data["speed"].to_numpy()[column],
-                data["torque"].to_numpy()[row],
-                "x",
-                color=BLACK,
-                markersize=3.5,
-                markeredgewidth=0.7,
-                label="unstable motion",
-            )
+            look: Any = {
+                "color": BLACK,
+                "markersize": 3.5,
+                "markeredgewidth": 0.7,
+                "label": "unstable motion",
+            }
+            handles += ax.plot(speed[column], torque[row], "x", **look)
         ax.legend(
-            handles=handles,
-            loc="upper center",
-            bbox_to_anchor=(0.5, -0.2),
-            frameon=False,
-            fontsize=8.0,
+            handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.2), frameon=False, fontsize=8.0
         )
         ax.set_title(title, fontsize=9.0)
         ax.set_xlabel("pinion speed [rpm]")
@@ -80,22 +79,3 @@ def validity_map_figure(data: xr.Dataset, point: tuple[float, float] | None = No
             ax.plot(*point, "o", markersize=7, markerfacecolor="white", markeredgecolor=BLACK)
     axes[0, 0].set_ylabel("pinion torque [N m]")
     return figure
-
-
-def _panel(
-    ax: Axes,
-    data: xr.Dataset,
-    values: IntArray,
-    colours: tuple[str, ...],
-) -> None:
-    ax.pcolormesh(
-        data["speed"].to_numpy(),
-        data["torque"].to_numpy(),
-        values,
-        cmap=ListedColormap(list(colours)),
-        norm=BoundaryNorm(np.arange(-0.5, 4.5), 4),
-        shading="nearest",
-        rasterized=True,
-    )
-    ax.set_yscale("log")
-    ax.grid(False)
