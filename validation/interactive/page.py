@@ -19,7 +19,7 @@ from lumped.typing import Progress
 from validation.files.output import write_dataset, write_text
 from validation.interactive.payload import payload, script_json
 from validation.interactive.results import FINE, PageResults, Sampling, compute
-from validation.validity.map import STATES
+from validation.validity.map import STATES, speed_spans
 
 #: Parts of the page's own script, in this order.
 _SCRIPTS = ("data.js", "chart.js", "stability.js", "sweep.js", "start.js")
@@ -127,14 +127,7 @@ def _safe(script: str) -> str:
 def unstable_speeds(chart: xr.Dataset, key: str, index: int, damping: float) -> str:
     """Speeds of a slice that are not stable at a damping ratio, in words."""
     row = chart.isel({key: index}).sel(damping_ratio=damping, method="nearest")
-    bad = row["verdict"].to_numpy() != 1
-    speed = row["speed_rpm"].to_numpy()
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], bad.astype(int), [0]])))
-    spans = [
-        f"{speed[a]:.5g}" if b - a == 1 else f"{speed[a]:.5g} to {speed[b - 1]:.5g}"
-        for a, b in zip(edges[::2], edges[1::2], strict=True)
-    ]
-    return ", ".join(spans) or "none"
+    return ", ".join(speed_spans(row["speed_rpm"].to_numpy(), row["verdict"].to_numpy() != 1)) or "none"
 
 
 def _response_rows(results: PageResults, most: int = 16) -> list[list[str]]:

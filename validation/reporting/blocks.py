@@ -136,6 +136,19 @@ class Facts:
     items: tuple[Fact, ...]
 
 
+FactRow = tuple[str, str, Cell] | tuple[str, str, Cell, str] | tuple[str, str, Cell, str, str]
+
+
+def facts(key: str, *rows: FactRow) -> Facts:
+    """List of facts: a row is key, label and value, then the unit of a number ("" for none), then a note."""
+    return Facts(key, tuple(map(_fact, rows)))
+
+
+def _fact(row: FactRow) -> Fact:
+    key, label, value, unit, note = (*row, "", "")[:5]
+    return Fact(key, label, Quantity(float(value), unit) if unit else value, note)
+
+
 @dataclass(frozen=True)
 class Picture:
     """A figure, drawn when it is needed.

@@ -16,7 +16,7 @@ from lumped.lubrication.film import regime
 from lumped.model.results import provenance
 from lumped.model.steady import UNSTABLE
 from lumped.path_of_contact import contact_path
-from lumped.typing import FloatArray, Progress
+from lumped.typing import BoolArray, FloatArray, Progress
 from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
 
 #: Values of ``state``: the worst of contact, sliding and stability.
@@ -98,6 +98,15 @@ def validity_state(
         state[spectral_radius > UNSTABLE] = 2
     state[np.isnan(lowest_load)] = 3
     return state
+
+
+def speed_spans(speed: FloatArray, chosen: BoolArray) -> list[str]:
+    """Runs of neighbouring chosen speeds in words, without their unit: "1200 to 3400", or "1200" for one."""
+    edges = np.flatnonzero(np.diff(chosen.astype(int), prepend=0, append=0))
+    return [
+        f"{speed[first]:.5g}" if end - first == 1 else f"{speed[first]:.5g} to {speed[end - 1]:.5g}"
+        for first, end in zip(edges[::2], edges[1::2], strict=True)
+    ]
 
 
 def _dataset(

@@ -9,7 +9,7 @@ from typing import Any
 from lumped import bodies, mesh_elements
 from lumped.schema.files import leaf_paths
 from lumped.schema.pair import stated_unit
-from validation.reporting.blocks import Badge, Cell, Content, Fact, Facts, Quantity, Text, table_of
+from validation.reporting.blocks import Badge, Cell, Content, Text, facts, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 from validation.reporting.sources import is_assumed, sources
@@ -35,42 +35,42 @@ def write(results: Results) -> Content:
     )
     b = bodies(pair)
     stiffness = mesh_elements(pair).stiffness
-    derived = Facts(
+    derived = facts(
         "derived",
+        ("contact_ratio", "contact ratio", g.contact_ratio),
+        ("base_pitch", "base pitch", g.base_pitch, "m"),
         (
-            Fact("contact_ratio", "contact ratio", g.contact_ratio),
-            Fact("base_pitch", "base pitch", Quantity(g.base_pitch, "m")),
-            Fact(
-                "operating_pressure_angle",
-                "operating pressure angle",
-                Quantity(math.degrees(g.operating_pressure_angle), "°"),
-            ),
-            Fact("base_radius_pinion", "base radius, pinion", Quantity(g.base_radius_pinion, "m")),
-            Fact("base_radius_gear", "base radius, gear", Quantity(g.base_radius_gear, "m")),
-            *(
-                Fact(f"L_X{letter}", f"X to {letter}", Quantity(getattr(g, f"L_X{letter}"), "m"), note)
-                for letter, note in (
-                    ("A", "start of contact"),
-                    ("B", "lowest point of single contact, pinion"),
-                    ("P", "pitch point"),
-                    ("C", "highest point of single contact, pinion"),
-                    ("D", "end of contact"),
-                    ("Y", "gear's tangent point"),
-                )
-            ),
-            Fact("mesh_frequency", "mesh frequency", Quantity(g.mesh_frequency, "Hz")),
-            Fact("pitch_line_velocity", "pitch line velocity", Quantity(g.pitch_line_velocity, "m/s")),
-            Fact("static_load", "static load along the line of action", Quantity(results.static_load, "N")),
-            Fact("mass_pinion", "mass, pinion", Quantity(b.mass_pinion, "kg")),
-            Fact("mass_gear", "mass, gear", Quantity(b.mass_gear, "kg")),
-            Fact("inertia_pinion", "inertia, pinion", Quantity(b.inertia_pinion, "kg m²")),
-            Fact("inertia_gear", "inertia, gear", Quantity(b.inertia_gear, "kg m²")),
-            Fact(
-                "mean_mesh_stiffness",
-                "mean mesh stiffness",
-                Quantity(stiffness.mean() * g.contact_ratio, "N/m"),
-                "of all pairs in contact, over a mesh cycle",
-            ),
+            "operating_pressure_angle",
+            "operating pressure angle",
+            math.degrees(g.operating_pressure_angle),
+            "°",
+        ),
+        ("base_radius_pinion", "base radius, pinion", g.base_radius_pinion, "m"),
+        ("base_radius_gear", "base radius, gear", g.base_radius_gear, "m"),
+        *(
+            (f"L_X{letter}", f"X to {letter}", getattr(g, f"L_X{letter}"), "m", note)
+            for letter, note in (
+                ("A", "start of contact"),
+                ("B", "lowest point of single contact, pinion"),
+                ("P", "pitch point"),
+                ("C", "highest point of single contact, pinion"),
+                ("D", "end of contact"),
+                ("Y", "gear's tangent point"),
+            )
+        ),
+        ("mesh_frequency", "mesh frequency", g.mesh_frequency, "Hz"),
+        ("pitch_line_velocity", "pitch line velocity", g.pitch_line_velocity, "m/s"),
+        ("static_load", "static load along the line of action", results.static_load, "N"),
+        ("mass_pinion", "mass, pinion", b.mass_pinion, "kg"),
+        ("mass_gear", "mass, gear", b.mass_gear, "kg"),
+        ("inertia_pinion", "inertia, pinion", b.inertia_pinion, "kg m²"),
+        ("inertia_gear", "inertia, gear", b.inertia_gear, "kg m²"),
+        (
+            "mean_mesh_stiffness",
+            "mean mesh stiffness",
+            stiffness.mean() * g.contact_ratio,
+            "N/m",
+            "of all pairs in contact, over a mesh cycle",
         ),
     )
     return Content((table, Text("What follows from the parameters:"), derived))

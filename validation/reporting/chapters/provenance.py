@@ -9,7 +9,7 @@ from importlib import metadata, resources
 from pathlib import Path
 
 from lumped.model.results import parameters_hash
-from validation.reporting.blocks import Content, Fact, Facts, Table, Text
+from validation.reporting.blocks import Content, Table, Text, facts
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 
@@ -21,17 +21,15 @@ _PACKAGES = ("spurcheck", "numpy", "scipy", "numba", "exudyn", "control", "xarra
 def write(results: Results) -> Content:
     """Write the chapter."""
     effort = results.effort
-    facts = Facts(
+    made = facts(
         "made_from",
-        (
-            Fact("parameters_sha256", "SHA-256 of the parameters", parameters_hash(results.pair)),
-            Fact("source_sha256", "SHA-256 of the program's source", source_hash()),
-            Fact("samples", "samples per mesh cycle", results.samples),
-            Fact("cycles", "mesh cycles of the cross-check", effort.cycles),
-            Fact("sweep_speeds", "speeds of the response", effort.sweep_speeds),
-            Fact("chart_nodes", "nodes of the stability chart", effort.chart_speeds * effort.chart_dampings),
-            Fact("chart_rtol", "tolerance of the chart", effort.chart_rtol),
-        ),
+        ("parameters_sha256", "SHA-256 of the parameters", parameters_hash(results.pair)),
+        ("source_sha256", "SHA-256 of the program's source", source_hash()),
+        ("samples", "samples per mesh cycle", results.samples),
+        ("cycles", "mesh cycles of the cross-check", effort.cycles),
+        ("sweep_speeds", "speeds of the response", effort.sweep_speeds),
+        ("chart_nodes", "nodes of the stability chart", effort.chart_speeds * effort.chart_dampings),
+        ("chart_rtol", "tolerance of the chart", effort.chart_rtol),
     )
     versions = Table(
         "versions",
@@ -49,7 +47,7 @@ def write(results: Results) -> Content:
         "behind them (data/, NetCDF) and the parameter file that reproduces the report "
         "(data/parameters.toml)."
     )
-    return Content((text, facts, versions))
+    return Content((text, made, versions))
 
 
 @cache

@@ -6,7 +6,7 @@ from functools import partial
 
 from floquet.gear.margins import ORDERS
 from validation.plots.tongues import tongues_figure
-from validation.reporting.blocks import Block, Content, Fact, Facts, Picture, Quantity, Text, table_of
+from validation.reporting.blocks import Block, Content, Picture, Quantity, Text, facts, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 
@@ -17,55 +17,59 @@ def write(results: Results) -> Content:
     low, high = m.speed_range
     reach = f"{low:.5g} to {high:.5g} rpm"
     nearest = m.nearest
-    facts = Facts(
+    distances = facts(
         "distances",
         (
-            Fact(
-                "speed_margin",
-                "nearest unstable speed at this damping",
-                "none in the range" if m.speed_margin is None else Quantity(m.speed_margin, "rpm"),
-                f"distance from {m.rpm:.5g} rpm; range {reach}",
-            ),
-            Fact(
-                "nearest_tongue",
-                "nearest tongue without mesh damping",
-                "none in the range" if nearest is None else nearest.label.replace("w", "ω"),
-                "" if nearest is None else f"{nearest.lower:.5g} to {nearest.upper:.5g} rpm",
-            ),
-            Fact(
-                "nearest_tongue_distance",
-                "distance to it",
-                None if nearest is None else Quantity(nearest.distance(m.rpm), "rpm"),
-            ),
-            Fact(
-                "critical_damping",
-                "mesh damping ratio that closes every tongue",
-                m.critical_damping,
-                f"this pair has {m.damping:g}",
-            ),
-            Fact(
-                "damping_margin",
-                "margin in mesh damping ratio over the range",
-                m.damping - m.critical_damping,
-                "negative: some speed of the range is unstable",
-            ),
-            Fact(
-                "damping_at_speed",
-                "mesh damping ratio above which this speed is stable",
-                "none, not even 0" if m.damping_at_speed is None else m.damping_at_speed,
-            ),
-            Fact(
-                "friction_coefficient",
-                "friction coefficient held",
-                m.friction_coefficient,
-                "mean of the law over the path of contact",
-            ),
-            Fact(
-                "law_difference",
-                "largest effect of that on a multiplier",
-                m.law_difference,
-                "law against constant coefficient, in the middle of every tongue without mesh damping",
-            ),
+            "speed_margin",
+            "nearest unstable speed at this damping",
+            "none in the range" if m.speed_margin is None else Quantity(m.speed_margin, "rpm"),
+            "",
+            f"distance from {m.rpm:.5g} rpm; range {reach}",
+        ),
+        (
+            "nearest_tongue",
+            "nearest tongue without mesh damping",
+            "none in the range" if nearest is None else nearest.label.replace("w", "ω"),
+            "",
+            "" if nearest is None else f"{nearest.lower:.5g} to {nearest.upper:.5g} rpm",
+        ),
+        (
+            "nearest_tongue_distance",
+            "distance to it",
+            None if nearest is None else Quantity(nearest.distance(m.rpm), "rpm"),
+        ),
+        (
+            "critical_damping",
+            "mesh damping ratio that closes every tongue",
+            m.critical_damping,
+            "",
+            f"this pair has {m.damping:g}",
+        ),
+        (
+            "damping_margin",
+            "margin in mesh damping ratio over the range",
+            m.damping - m.critical_damping,
+            "",
+            "negative: some speed of the range is unstable",
+        ),
+        (
+            "damping_at_speed",
+            "mesh damping ratio above which this speed is stable",
+            "none, not even 0" if m.damping_at_speed is None else m.damping_at_speed,
+        ),
+        (
+            "friction_coefficient",
+            "friction coefficient held",
+            m.friction_coefficient,
+            "",
+            "mean of the law over the path of contact",
+        ),
+        (
+            "law_difference",
+            "largest effect of that on a multiplier",
+            m.law_difference,
+            "",
+            "law against constant coefficient, in the middle of every tongue without mesh damping",
         ),
     )
     blocks: list[Block] = [
@@ -76,7 +80,7 @@ def write(results: Results) -> Content:
             "roots of the largest multiplier minus one, not nodes of a chart. Bearings are damped as given; "
             "mesh damping is varied."
         ),
-        facts,
+        distances,
     ]
     if m.tongues:
         blocks += [

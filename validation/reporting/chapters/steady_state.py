@@ -23,13 +23,12 @@ from validation.reporting.blocks import (
     Badge,
     Block,
     Content,
-    Fact,
-    Facts,
     Picture,
     Quantity,
-    Rows,
     Table,
     Text,
+    facts,
+    table_of,
 )
 from validation.reporting.chapter import Chapter
 from validation.reporting.formatting import number
@@ -41,62 +40,36 @@ _ORDERS = 10
 
 def write(results: Results) -> Content:
     """Write the chapter."""
-    pair, g, motion = results.pair, results.geometry, results.motion
-    load = motion["normal_load"].to_numpy()
-    touching = motion["contact"].to_numpy() > 0
-    largest = float(load[touching].max())
+    pair, g, motion, multipliers = results.pair, results.geometry, results.motion, results.multipliers
+    dte, attrs, largest = motion["dte"], motion.attrs, _largest_load(results)
     friction = float(motion["friction_power"].sum("pair").mean())
-    facts = Facts(
+    radius = f"largest multiplier {multipliers.spectral_radius:.4g}"
+    key_results = facts(
         "key_results",
-        (
-            Fact(
-                "stability",
-                "this periodic motion is",
-                Badge(results.multipliers.verdict),
-                f"largest multiplier {results.multipliers.spectral_radius:.4g}",
-            ),
-            Fact(
-                "dte_peak_to_peak",
-                "transmission error, peak to peak",
-                Quantity(float(np.ptp(motion["dte"].to_numpy())), "m"),
-            ),
-            Fact("dte_mean", "transmission error, mean", Quantity(float(motion["dte"].mean()), "m")),
-            Fact("largest_load", "largest load of a tooth pair", Quantity(largest, "N")),
-            Fact("dynamic_factor", "that load over the static load", largest / results.static_load),
-            Fact(
-                "mesh_efficiency",
-                "mesh efficiency",
-                float(motion.attrs["mesh_efficiency"]),
-                "friction losses only",
-            ),
-            Fact(
-                "brake_torque",
-                "brake torque that holds the speed",
-                Quantity(motion.attrs["brake_torque"], "N m"),
-            ),
-            Fact("friction_power", "mean friction power", Quantity(friction, "W"), "negative: it is lost"),
-            Fact(
-                "error_estimate",
-                "estimated relative error of the motion",
-                float(motion.attrs["error_estimate"]),
-            ),
-        ),
+        ("stability", "this periodic motion is", Badge(multipliers.verdict), "", radius),
+        ("dte_peak_to_peak", "transmission error, peak to peak", float(np.ptp(dte.to_numpy())), "m"),
+        ("dte_mean", "transmission error, mean", float(dte.mean()), "m"),
+        ("largest_load", "largest load of a tooth pair", largest, "N"),
+        ("dynamic_factor", "that load over the static load", largest / results.static_load),
+        ("mesh_efficiency", "mesh efficiency", float(attrs["mesh_efficiency"]), "", "friction losses only"),
+        ("brake_torque", "brake torque that holds the speed", attrs["brake_torque"], "N m"),
+        ("friction_power", "mean friction power", friction, "W", "negative: it is lost"),
+        ("error_estimate", "estimated relative error of the motion", float(attrs["error_estimate"])),
     )
     names = ("dte", "x_p", "x_g", "y_p", "y_g")
     found = {name: mesh_orders(motion[name].to_numpy(), results.samples, _ORDERS) for name in names}
-    rows: Rows = [
-        (order, *(Quantity(float(found[name].amplitude[order]), "m") for name in names))
-        for order in range(1, 7)
-    ]
     orders = Table(
         "mesh_orders",
         "Amplitudes by mesh order.",
         {"order": "order", **{name: VARIABLES[name][2] for name in names}},
-        tuple(rows),
+        tuple(
+            (order, *(Quantity(float(found[name].amplitude[order]), "m") for name in names))
+            for order in range(1, 7)
+        ),
     )
     blocks: list[Block] = [
         *unstable_warning(results),
-        facts,
+        key_results,
         Picture(
             "transmission_error",
             "Dynamic transmission error over one mesh cycle (dotted: its mean) and its amplitudes by mesh "
@@ -114,11 +87,7 @@ def write(results: Results) -> Content:
             "Motion of the gear centres along (left) and off (right) the line of action.",
             lambda: motions_figure(g, motion),
         ),
-        Picture(
-            "motions_by_order",
-            "The same motions by mesh order.",
-            lambda: orders_figure(found),
-        ),
+        Picture("motions_by_order", "The same motions by mesh order.", lambda: orders_figure(found)),
         orders,
         *_over_speed(results),
     ]
@@ -143,22 +112,21 @@ def _over_speed(results: Results) -> list[Block]:
             + (" Crosses: unstable motions, which a pair leaves." if unstable.any() else ""),
             lambda: sweep_figure(sweep, results.operating_rpm, results.static_load, places),
         ),
-        Facts(
+        facts(
             "over_speed",
+            ("speed_low", "lowest speed", float(speed[0]), "rpm"),
+            ("speed_high", "highest speed", float(speed[-1]), "rpm"),
+            ("speeds", "speeds computed", int(speed.size)),
+            ("share_separating", "share of the speeds with negative loads", results.separating_share),
+            ("share_unstable", "share of the speeds with an unstable motion", float(unstable.mean())),
             (
-                Fact("speed_low", "lowest speed", Quantity(float(speed[0]), "rpm")),
-                Fact("speed_high", "highest speed", Quantity(float(speed[-1]), "rpm")),
-                Fact("speeds", "speeds computed", int(speed.size)),
-                Fact("share_separating", "share of the speeds with negative loads", results.separating_share),
-                Fact("share_unstable", "share of the speeds with an unstable motion", float(unstable.mean())),
-                Fact(
-                    "speed_of_largest",
-                    "speed of the largest transmission error",
-                    Quantity(float(speed[int(np.nanargmax(reached))]), "rpm")
-                    if np.isfinite(reached).any()
-                    else None,
-                    "among stable motions" if unstable.any() else "",
-                ),
+                "speed_of_largest",
+                "speed of the largest transmission error",
+                Quantity(float(speed[int(np.nanargmax(reached))]), "rpm")
+                if np.isfinite(reached).any()
+                else None,
+                "",
+                "among stable motions" if unstable.any() else "",
             ),
         ),
     ]
@@ -171,28 +139,24 @@ def _over_speed(results: Results) -> list[Block]:
         )
         return blocks
     along = [k for k in range(len(results.modes)) if k not in off]
-    rows: Rows = [
-        (
-            None if k in off else f"ω{along.index(k) + 1}",
-            Quantity(mode.natural_frequency, "Hz"),
-            mode.damping_ratio,
-            Quantity(mode.resonant_speed, "rpm"),
-            "off the line of action" if k in off else "along the line of action",
-        )
-        for k, mode in enumerate(results.modes)
-    ]
     blocks.append(
-        Table(
+        table_of(
             "modes",
             "Modes of the time-averaged pair; ω1 to ω3 name the tongues of instability.",
+            list(enumerate(results.modes)),
             {
-                "label": "name",
-                "natural_frequency": "natural frequency",
-                "damping_ratio": "damping ratio",
-                "resonant_speed": "pinion speed at mesh resonance",
-                "motion": "motion",
+                "label": ("name", lambda at: None if at[0] in off else f"ω{along.index(at[0]) + 1}"),
+                "natural_frequency": (
+                    "natural frequency",
+                    lambda at: Quantity(at[1].natural_frequency, "Hz"),
+                ),
+                "damping_ratio": ("damping ratio", lambda at: at[1].damping_ratio),
+                "resonant_speed": (
+                    "pinion speed at mesh resonance",
+                    lambda at: Quantity(at[1].resonant_speed, "rpm"),
+                ),
+                "motion": ("motion", lambda at: f"{'off' if at[0] in off else 'along'} the line of action"),
             },
-            tuple(rows),
         )
     )
     return blocks
@@ -217,12 +181,17 @@ def off_line_modes(pair: GearPair, modes: tuple[Mode, ...]) -> frozenset[int]:
     return frozenset(found)
 
 
+def _largest_load(results: Results) -> float:
+    """Largest normal load of a tooth pair in contact [N]."""
+    motion = results.motion
+    return float(motion["normal_load"].where(motion["contact"] > 0).max())
+
+
 def answer(results: Results) -> Answer:
     """What the model predicts, after the reasons not to rely on it."""
-    load = results.motion["normal_load"].to_numpy()[results.motion["contact"].to_numpy() > 0]
     text = (
         f"Transmission error {span(results)} peak to peak, tooth loads up to "
-        f"{number(float(load.max()) / results.static_load, 3)} times the static load, mesh efficiency "
+        f"{number(_largest_load(results) / results.static_load, 3)} times the static load, mesh efficiency "
         f"{efficiency(results)}."
     )
     badge = Badge("prediction")

@@ -5,17 +5,18 @@ from __future__ import annotations
 from functools import partial
 
 import numpy as np
+import xarray as xr
 
 from floquet.gear.axes import operating_rpm, with_point
 from lumped import GearPair
 from lumped.model.steady import UNSTABLE
 from lumped.typing import BoolArray, FloatArray
 from validation.plots.validity_map import validity_map_figure
-from validation.reporting.blocks import Content, Fact, Facts, Picture, Quantity, Rows, Table, Text
+from validation.reporting.blocks import Content, Picture, Quantity, Text, facts, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Effort, Results
 from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
-from validation.validity.map import REGIMES, STATES
+from validation.validity.map import REGIMES, STATES, speed_spans
 from validation.validity.map import validity_map as compute_map
 
 
@@ -25,37 +26,28 @@ def write(results: Results) -> Content:
     axes = map_axes(pair, results.speeds, results.effort)
     data = compute_map(pair, *axes, progress=results.stage("validity over speed and torque"))
     state, regime = data["state"].to_numpy(), data["regime"].to_numpy()
-    lowest, reversal = data["lowest_load"].to_numpy(), data["reversal"].to_numpy()
-    with np.errstate(invalid="ignore"):
-        shares = (
-            Fact("valid", "valid", float(np.mean(state == 0)), "share of the points"),
-            Fact("contact_lost", "contact lost", float(np.mean(lowest < -LOAD_NOISE))),
-            Fact(
-                "sliding_reversed",
-                "sliding reversed off the pitch point",
-                float(np.mean(reversal > REVERSAL_LIMITS[0])),
-                f"by more than {100 * REVERSAL_LIMITS[0]:g} % of a base pitch",
-            ),
-            Fact(
-                "unstable",
-                "unstable motion",
-                float(np.mean(data["spectral_radius"].to_numpy() > UNSTABLE)),
-            ),
-            Fact(
-                "no_motion", "no periodic motion", float(np.mean(state == STATES.index("no periodic motion")))
-            ),
-            *(
-                Fact(f"regime_{k}", f"film: {name}", float(np.mean(regime == k)))
-                for k, name in enumerate(REGIMES)
-            ),
-        )
+    limit = REVERSAL_LIMITS[0]
+
+    def share(where: BoolArray | xr.DataArray) -> float:
+        return float(np.mean(where))
+
+    shares = facts(
+        "shares",
+        ("valid", "valid", share(state == 0), "", "share of the points"),
+        ("contact_lost", "contact lost", share(data["lowest_load"] < -LOAD_NOISE)),
+        (
+            "sliding_reversed",
+            "sliding reversed off the pitch point",
+            share(data["reversal"] > limit),
+            "",
+            f"by more than {100 * limit:g} % of a base pitch",
+        ),
+        ("unstable", "unstable motion", share(data["spectral_radius"] > UNSTABLE)),
+        ("no_motion", "no periodic motion", share(state == STATES.index("no periodic motion"))),
+        *((f"regime_{k}", f"film: {name}", share(regime == k)) for k, name in enumerate(REGIMES)),
+    )
     torque, speed = data["torque"].to_numpy(), data["speed"].to_numpy()
     here = int(np.argmin(np.abs(torque - pair.operating.pinion_torque)))
-    rows: Rows = []
-    for row in sorted({0, here, torque.size - 1}):
-        spans = _spans(speed, state[row] == 0)
-        share = float(np.mean(state[row] == 0))
-        rows.append((Quantity(float(torque[row]), "N m"), share, spans or "nowhere"))
     blocks = (
         Text(
             f"The checks of the chapter before, at {speed.size} speeds and {torque.size} torques, all else "
@@ -70,17 +62,17 @@ def write(results: Results) -> Content:
             "motion is unstable.",
             partial(validity_map_figure, data, (results.operating_rpm, pair.operating.pinion_torque)),
         ),
-        Facts("shares", shares),
-        Table(
+        shares,
+        table_of(
             "valid_speeds",
             "Speeds at which contact and sliding are as the model assumes and the motion is stable, at "
             "three torques.",
+            sorted({0, here, torque.size - 1}),
             {
-                "torque": "pinion torque",
-                "share": "share of the speeds",
-                "speeds": "pinion speeds",
+                "torque": ("pinion torque", lambda row: Quantity(float(torque[row]), "N m")),
+                "share": ("share of the speeds", lambda row: share(state[row] == 0)),
+                "speeds": ("pinion speeds", lambda row: _valid(speed, state[row] == 0)),
             },
-            tuple(rows),
             note=f"Between neighbouring points, {speed[1] - speed[0]:.4g} rpm apart, the state may change "
             "unseen.",
         ),
@@ -97,17 +89,8 @@ def map_axes(pair: GearPair, speeds: tuple[float, float], effort: Effort) -> tup
     )
 
 
-def _spans(
-    speed: FloatArray,
-    good: BoolArray,
-) -> str:
-    """Runs of good speeds in words."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], good.astype(int), [0]])))
-    parts = []
-    for first, end in zip(edges[::2], edges[1::2], strict=True):
-        low, high = speed[first], speed[end - 1]
-        parts.append(f"{low:.5g} rpm" if low == high else f"{low:.5g} to {high:.5g} rpm")
-    return ", ".join(parts)
+def _valid(speed: FloatArray, valid: BoolArray) -> str:
+    return ", ".join(f"{span} rpm" for span in speed_spans(speed, valid)) or "nowhere"
 
 
 CHAPTER = Chapter("validity_map", "Validity over speed and torque", write, seconds=4)
