@@ -77,7 +77,7 @@ def export(
     else:
         pair = opt.gear_pair(source, speed, torque, law, settings)
         _export_pair(pair, output, rexs_version, form, force=force)
-    stderr().print(f"wrote {output}", soft_wrap=True)
+    stderr().print(f"wrote {output}")
 
 
 def _export_pair(

@@ -89,7 +89,7 @@ def figures(
         for name, value in one.record.numbers.items():
             shown.add_row(name, str(value))
         console.print(shown)
-    console.print(f"figures: {output}", soft_wrap=True)
+    console.print(f"figures: {output}")
 
 
 def _chosen(text: str | None, known: tuple[str, ...]) -> tuple[str, ...]:

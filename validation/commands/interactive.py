@@ -42,4 +42,4 @@ def interactive(
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
     with progress_bar("interactive page") as tell:
         write_interactive_page(gear_pair, output, data=data, progress=tell)
-    stderr().print(f"wrote {output} and {data}", soft_wrap=True)
+    stderr().print(f"wrote {output} and {data}")

@@ -91,7 +91,7 @@ def measurement(
     if output is not None:
         with whole_folder(output, force=force, kind=MEASUREMENT) as folder:
             _write(found, folder)
-        stderr().print(f"wrote {output}", soft_wrap=True)
+        stderr().print(f"wrote {output}")
 
 
 def _write_example(gear_pair: Any, record: Path, *, force: bool) -> None:
@@ -108,8 +108,7 @@ def _write_example(gear_pair: Any, record: Path, *, force: bool) -> None:
         (folder / MEASUREMENT.file).write_text(json.dumps(note) + "\n", encoding="utf-8")
     stderr().print(
         f"wrote {record / 'measurement.toml'}: tooth forces of {gear_pair.name} computed with "
-        f"{gear_pair.friction.law} friction, 2 % noise",
-        soft_wrap=True,
+        f"{gear_pair.friction.law} friction, 2 % noise"
     )
 
 
@@ -122,8 +121,7 @@ def _show(found: Evaluation) -> None:
         f"{spec.name}: {found.measurement.abscissa.size} samples at {rpm:.6g} rpm and "
         f"{spec.pinion_torque:.5g} N m; mesh phase {found.alignment.shift:.5f} "
         f"± {found.alignment.standard_error:.1g} mesh cycles, "
-        f"{100 * found.alignment.share_explained:.1f} % of the variation explained",
-        soft_wrap=True,
+        f"{100 * found.alignment.share_explained:.1f} % of the variation explained"
     )
     shown = table(
         f"measured against {found.prediction.pair.name}, {found.prediction.pair.friction.law} friction",
@@ -149,11 +147,10 @@ def _show(found: Evaluation) -> None:
         )
     console.print(shown)
     for one in found.found:
-        console.print(f"identified: {one.text}", soft_wrap=True)
+        console.print(f"identified: {one.text}")
         console.print(
             f"  mean |mu| over the path of contact {one.mean_mu:.4g}; left over "
-            f"{quantity(one.residual_rms, 'N', 3)} rms",
-            soft_wrap=True,
+            f"{quantity(one.residual_rms, 'N', 3)} rms"
         )
 
 

@@ -84,7 +84,7 @@ def init(
         return
     path = check_file(output or Path(f"{name}.toml"), (".toml",), force=force)
     write_text(path, text)
-    stderr().print(f"wrote {path}; next: spurcheck report {path} -o report", soft_wrap=True)
+    stderr().print(f"wrote {path}; next: spurcheck report {path} -o report")
 
 
 def _text_from_rexs(path: Path | None, stage: int | None) -> tuple[str, str]:
@@ -123,4 +123,4 @@ def schema(
         typer.echo(text, nl=False)
         return
     write_text(check_file(output, (".json",), force=force), text)
-    stderr().print(f"wrote {output}", soft_wrap=True)
+    stderr().print(f"wrote {output}")

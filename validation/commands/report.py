@@ -85,13 +85,13 @@ def report(
             progress=tell,
         )
     console = stdout()
-    console.print(written.sentence, soft_wrap=True)
-    console.print(f"\nreport: {written.folder / 'index.html'} ({written.seconds:.0f} s)", soft_wrap=True)
+    console.print(written.sentence)
+    console.print(f"\nreport: {written.folder / 'index.html'} ({written.seconds:.0f} s)")
     if written.comparison is not None:
         _show_changes(written.comparison)
     if strict:
         for line in written.failures:
-            console.print(f"fails: {line}", soft_wrap=True, markup=False)
+            console.print(f"fails: {line}", markup=False)
     changed = written.comparison is not None and written.comparison.regressions
     if changed or (strict and written.failures):
         raise typer.Exit(FAILED)
@@ -102,16 +102,15 @@ def _show_changes(comparison: Comparison) -> None:
     failed, changed = len(comparison.regressions), len(comparison.changes)
     console.print(
         f"\n{comparison.compared} values compared with the earlier report of {comparison.old_name}: "
-        f"{changed} changed, {failed} past tolerance",
-        soft_wrap=True,
+        f"{changed} changed, {failed} past tolerance"
     )
     inputs = [change for change in comparison.changes if change.path.startswith("input/")]
     if inputs:
         more = f" and {len(inputs) - _INPUTS} more" if len(inputs) > _INPUTS else ""
         listed = "; ".join(map(str, inputs[:_INPUTS]))
-        console.print(f"  the parameters differ: {listed}{more}", soft_wrap=True)
+        console.print(f"  the parameters differ: {listed}{more}")
     for change in comparison.changes[:_MOST]:
         mark = "past tolerance" if change.fails else "within"
-        console.print(f"  {mark}  {change}", style="red" if change.fails else None, soft_wrap=True)
+        console.print(f"  {mark}  {change}", style="red" if change.fails else None)
     if len(comparison.changes) > _MOST:
         console.print(f"  and {len(comparison.changes) - _MOST} more: see summary.md and report.json")

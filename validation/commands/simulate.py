@@ -125,4 +125,4 @@ def simulate(
         save(history_figure(g, result), target)
     else:
         write_dataset(result, target)
-    stderr().print(f"wrote {target}", soft_wrap=True)
+    stderr().print(f"wrote {target}")

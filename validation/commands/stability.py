@@ -119,7 +119,7 @@ def stability(
     if targets or axes or tongues or view != "chart":
         show(view, request)
         for target in targets:
-            stderr().print(f"wrote {target}", soft_wrap=True)
+            stderr().print(f"wrote {target}")
     if found.verdict != "stable":
         raise typer.Exit(FAILED)
 
@@ -156,12 +156,11 @@ def _axis(text: str) -> tuple[str, NDArray[np.float64]]:
     from lumped.errors import refuse
 
     name, separator, values = text.partition("=")
-    parts = values.split(":")
     try:
-        low, high, count = float(parts[0]), float(parts[1]), int(parts[2])
-        good = separator == "=" and len(parts) == 3 and 2 <= count <= _LARGEST_COUNT
-        good = good and bool(np.isfinite([low, high]).all())
-    except (ValueError, IndexError):
+        first, last, many = values.split(":")
+        low, high, count = float(first), float(last), int(many)
+        good = separator == "=" and 2 <= count <= _LARGEST_COUNT and np.isfinite([low, high]).all()
+    except ValueError:
         good = False
     if not good or low == high:
         allowed = f"NAME=FROM:TO:COUNT with different ends and a count from 2 to {_LARGEST_COUNT}"
@@ -175,17 +174,12 @@ def _range(text: str) -> tuple[float, float]:
     """Range of speeds [rpm] written FROM:TO."""
     from lumped.errors import refuse
 
-    parts = text.split(":")
     try:
-        low, high = map(float, parts)
+        low, high = map(float, text.split(":"))
         good = 0.0 < low < high < float("inf")
     except ValueError:
         good = False
     if not good:
-        raise refuse(
-            "--operating-range",
-            text,
-            "FROM:TO in rpm, 0 < FROM < TO",
-            "For example --operating-range 3000:8000.",
-        )
+        advice = "For example --operating-range 3000:8000."
+        raise refuse("--operating-range", text, "FROM:TO in rpm, 0 < FROM < TO", advice)
     return low, high

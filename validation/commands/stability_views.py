@@ -67,14 +67,10 @@ class Request:
         ------
         ParameterError : number of axes, method or law that the view cannot take
         """
-        counts, text = VIEWS[view][1:]
-        if self.axes and len(self.axes) not in counts:
-            raise refuse("--axis", ", ".join(self.axes), f"{text} for --view {view}", "Change the axes.")
-        if view == "campbell" and self.axes and "speed_rpm" not in self.axes:
-            raise refuse(
-                "--axis", ", ".join(self.axes), "speed_rpm for --view campbell", "Frequencies are over speed."
-            )
-        if view == "boundaries" and len(self.axes) == 2 and "speed_rpm" not in self.axes:
+        counts, over_speed, text = VIEWS[view][1:]
+        count = len(self.axes)
+        without_speed = count == over_speed and "speed_rpm" not in self.axes
+        if self.axes and (count not in counts or without_speed):
             raise refuse("--axis", ", ".join(self.axes), f"{text} for --view {view}", "Change the axes.")
         if view == "zones":
             coulomb_gear_pair(self.pair, 0.0)  # refuses a ratio for which there is no closed form
@@ -92,12 +88,12 @@ class Request:
                 "--output", figures[0], "a chart of one or two axes for a figure", "Write .nc or .csv."
             )
 
-    def axis(self, name: str, count: int = _LINE) -> tuple[str, FloatArray]:
+    def axis(self, name: str) -> tuple[str, FloatArray]:
         """Return the one axis asked for; else ``name`` over the range of the report's chart."""
         if self.axes:
             return next(iter(self.axes.items()))
         values = chart_axes(self.pair, *_CHART)[name]
-        return name, np.linspace(values[0], values[-1], count)
+        return name, np.linspace(values[0], values[-1], _LINE)
 
     def value(self, name: str) -> float:
         """Value of the operating point on an axis."""
@@ -136,8 +132,7 @@ def _chart(request: Request) -> View:
         + f"\n{int(stable.sum())} of {stable.size} points are stable; "
         + f"largest multiplier {float(worst):.6f} at "
         + ", ".join(f"{name} {float(worst[name]):.5g}" for name in grid)
-        + f"\nlargest bound on an error {float(chart['error'].max()):.1e}, method {chart.attrs['method']}",
-        soft_wrap=True,
+        + f"\nlargest bound on an error {float(chart['error'].max()):.1e}, method {chart.attrs['method']}"
     )  # fmt: skip
     traced: StabilityMargins | None = None
     regions: list[LabelledRegion] = []
@@ -174,9 +169,8 @@ def _chart(request: Request) -> View:
 
 def _traced(pair: GearPair, speeds: FloatArray) -> StabilityMargins:
     """Trace the tongues over a range of speeds, and print them by falling critical damping."""
-    with progress_bar("tongues") as tell:
+    with progress_bar("tongues"):
         found = stability_margins(pair, (float(speeds.min()), float(speeds.max())))
-        tell(1.0, "")
     shown = table(
         "tongues without mesh damping, and what closes them (rpm; w: natural frequencies)",
         "tongue", ">from", ">to", ">multiplier", ">critical damping", ">closes at",
@@ -189,8 +183,7 @@ def _traced(pair: GearPair, speeds: FloatArray) -> StabilityMargins:
     stdout().print(shown)
     stdout().print(
         f"Friction is held at its mean, {found.friction_coefficient:.4f}. Above a mesh damping ratio of "
-        f"{found.critical_damping:.6f} every speed is stable; this pair has {found.damping:g}.",
-        soft_wrap=True,
+        f"{found.critical_damping:.6f} every speed is stable; this pair has {found.damping:g}."
     )
     return found
 
@@ -199,13 +192,8 @@ def _regions(chart: xr.Dataset, pair: GearPair) -> list[LabelledRegion]:
     """Name the unstable regions of a chart, and print them."""
     regions = label_regions(pair, chart)
     names = list(map(str, chart["spectral_radius"].dims))
-    shown = table(
-        "unstable regions, by mode shape (w: natural frequencies)",
-        "tongue",
-        *(f">{name}" for name in names),
-        ">largest multiplier",
-        ">points",
-    )
+    headings = ("tongue", *(f">{name}" for name in names), ">largest multiplier", ">points")
+    shown = table("unstable regions, by mode shape (w: natural frequencies)", *headings)
     for region in regions:
         place = [f"{region.point[name]:.6g}" for name in names]
         shown.add_row(str(region.label), *place, f"{region.radius:.6f}", str(region.nodes))
@@ -218,31 +206,25 @@ def _boundaries(request: Request) -> View:
     ends = chart_axes(pair, *_CHART)["speed_rpm"][[0, -1]]
     grid = dict(request.axes)
     speeds = grid.pop("speed_rpm", ends)
-    name, values = next(iter(grid.items()), ("damping_ratio", None))
+    name, values = next(iter(grid.items()), ("damping_ratio", speeds))
     if name == "damping_ratio":
         traced = _traced(pair, speeds)
         return margins_dataset(traced), lambda: tongues_figure(traced, request.operating_range)
     with progress_bar("boundaries") as tell:
         found = stability_boundaries(
-            pair,
-            (float(speeds.min()), float(speeds.max())),
-            {name: values} if values is not None else None,
-            progress=tell,
+            pair, (float(speeds.min()), float(speeds.max())), {name: values}, progress=tell
         )
-    if not found.sizes["tongue"]:
-        stdout().print(f"no unstable speed from {speeds.min():g} to {speeds.max():g} rpm at any value")
-        return found, lambda: boundaries_figure(found, name, request.operating_range)
-    shown = table(
-        f"tongues over {GEAR_AXES[name].long_name}", "tongue", ">values", ">from, rpm", ">to, rpm",
-        ">largest multiplier",
-    )  # fmt: skip
+    headings = ("tongue", ">values", ">from, rpm", ">to, rpm", ">largest multiplier")
+    shown = table(f"tongues over {GEAR_AXES[name].long_name}", *headings)
     for row in range(found.sizes["tongue"]):
         part = found.isel(tongue=row)
-        shown.add_row(
-            str(part["label"].item()), str(int(part["present"].sum())), f"{float(part['lower'].min()):.1f}",
-            f"{float(part['upper'].max()):.1f}", f"{float(part['peak_radius'].max()):.6f}",
-        )  # fmt: skip
-    stdout().print(shown)
+        ends = (f"{float(part['lower'].min()):.1f}", f"{float(part['upper'].max()):.1f}")
+        radius = f"{float(part['peak_radius'].max()):.6f}"
+        shown.add_row(str(part["label"].item()), str(int(part["present"].sum())), *ends, radius)
+    if found.sizes["tongue"]:
+        stdout().print(shown)
+    else:
+        stdout().print(f"no unstable speed from {speeds.min():g} to {speeds.max():g} rpm at any value")
     return found, lambda: boundaries_figure(found, name, request.operating_range)
 
 
@@ -275,17 +257,13 @@ def _laws(request: Request) -> View:
         )
     law = pair.friction.law
     with progress_bar("difference of two friction laws") as tell:
-        effect = friction_effect(
-            pair, grid, [law], reference=request.against, rtol=1e-8,
-            progress=tell,
-        )  # fmt: skip
+        effect = friction_effect(pair, grid, [law], reference=request.against, rtol=1e-8, progress=tell)
     change = effect["growth_change"].to_numpy()
     flips = effect["verdict_change"].to_numpy()
     stdout().print(
         f"law {law} against {request.against}: growth per mesh cycle changes by {change.min():+.3e} to "
         f"{change.max():+.3e}; {int((flips == -1).sum())} points lose and {int((flips == 1).sum())} gain "
-        f"stability, of {change.size}",
-        soft_wrap=True,
+        f"stability, of {change.size}"
     )
     x, y = sorted(grid, key=lambda name: name != "speed_rpm")
     return effect, lambda: friction_effect_figure(effect, law, x, y, (request.value(x), request.value(y)))
@@ -299,12 +277,12 @@ def _zones(request: Request) -> View:
     return found, lambda: zones_figure(found)
 
 
-VIEWS: Mapping[str, tuple[Callable[[Request], View], tuple[int, ...], str]] = {
-    "chart": (_chart, (1, 2, 3, 4, 5, 6, 7), "any axes"),
-    "boundaries": (_boundaries, (1, 2), "speed_rpm and one more axis, or that one alone"),
-    "campbell": (_campbell, (1,), "one axis, speed_rpm,"),
-    "paths": (_paths, (1,), "one axis"),
-    "laws": (_laws, (2,), "two axes"),
-    "zones": (_zones, (), "no axis"),
+VIEWS: Mapping[str, tuple[Callable[[Request], View], tuple[int, ...], int | None, str]] = {
+    "chart": (_chart, (1, 2, 3, 4, 5, 6, 7), None, "any axes"),
+    "boundaries": (_boundaries, (1, 2), 2, "one axis other than speed_rpm, with or without speed_rpm,"),
+    "campbell": (_campbell, (1,), 1, "the one axis speed_rpm"),
+    "paths": (_paths, (1,), None, "one axis"),
+    "laws": (_laws, (2,), None, "two axes"),
+    "zones": (_zones, (), None, "no axis"),
 }
-"""View -> how it is made, how many axes it takes, and that in words."""
+"""View -> how it is made; how many axes it takes; which of these counts needs speed_rpm; these in words."""

@@ -46,6 +46,11 @@ class PlainConsole(Console):
             )
         return super().render_str(text, **options)
 
+    def print(self, *objects: Any, **options: Any) -> None:
+        """Print text in lines that are never broken, and tables as wide as the terminal."""
+        unbroken = all(isinstance(one, str) for one in objects)
+        super().print(*objects, **({"soft_wrap": unbroken} | options))
+
 
 def stdout() -> Console:
     """Console for results; made anew so that a replaced stream is used."""
