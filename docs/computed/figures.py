@@ -42,7 +42,7 @@ def friction_laws() -> str:
 
 def film() -> str:
     """Velocities and film parameter along the path of contact."""
-    return svg(path_figure(lumped.geometry(_pair()), _profile()))
+    return svg(path_figure(_pair().geometry, _profile(), _pair().friction.thresholds))
 
 
 def multipliers() -> str:

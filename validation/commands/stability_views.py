@@ -218,9 +218,9 @@ def _boundaries(request: Request) -> View:
     shown = table(f"tongues over {GEAR_AXES[name].long_name}", *headings)
     for row in range(found.sizes["tongue"]):
         part = found.isel(tongue=row)
-        ends = (f"{float(part['lower'].min()):.1f}", f"{float(part['upper'].max()):.1f}")
+        edges = (f"{float(part['lower'].min()):.1f}", f"{float(part['upper'].max()):.1f}")
         radius = f"{float(part['peak_radius'].max()):.6f}"
-        shown.add_row(str(part["label"].item()), str(int(part["present"].sum())), *ends, radius)
+        shown.add_row(str(part["label"].item()), str(int(part["present"].sum())), *edges, radius)
     if found.sizes["tongue"]:
         stdout().print(shown)
     else:

@@ -9,12 +9,12 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from lumped import Geometry
+from validation.plots.path_of_contact import film_parameter
 from validation.plots.style import (
     BLACK,
     BLUE,
     GREEN,
     GREY,
-    IN_Y,
     RED,
     legend,
     legend_above,
@@ -22,7 +22,6 @@ from validation.plots.style import (
     one_panel,
     path_axis,
     scaled,
-    write_beside,
 )
 
 
@@ -98,19 +97,7 @@ def film_figure(g: Geometry, profile: xr.Dataset, thresholds: tuple[float, ...])
     left.plot(xi, 1e6 * profile["film_thickness"], color=GREEN)
     left.set_ylabel("central film thickness [µm]")
     left.set_ylim(0.0, 1.2 * 1e6 * float(profile["film_thickness"].max()))
-    parameter = profile["film_parameter"].to_numpy()
-    right.plot(xi, parameter, color=BLUE)
-    right.set_ylabel("film parameter [-]")
-    top = 1.25 * float(parameter.max())
-    right.set_ylim(0.0, top)
-    edges = (0.0, *thresholds, np.inf)
-    names = str(profile["regime"].attrs["flag_meanings"]).split(", ")
-    for index, name in enumerate(names):
-        low, high = edges[index], min(edges[index + 1], top)
-        if low >= top:
-            continue
-        right.axhspan(low, high, color=GREY, alpha=0.08 * index, linewidth=0)
-        write_beside(right, name, (0.01, high), (0, -2), IN_Y, va="top", fontsize=7.5, color="#404040")
+    film_parameter(right, profile, thresholds)
     for ax in (left, right):
         path_axis(ax, g, xi)
     return figure

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from lumped import Geometry
 from validation.plots.style import (
     BLUE,
     DASHES,
-    GREEN,
     GREY,
     IN_Y,
     RED,
@@ -24,13 +24,14 @@ from validation.plots.style import (
 )
 
 
-def path_figure(g: Geometry, profile: xr.Dataset) -> Figure:
+def path_figure(g: Geometry, profile: xr.Dataset, thresholds: tuple[float, ...]) -> Figure:
     """Sliding and entraining velocity and film parameter along the path of contact.
 
     Parameters
     ----------
     g : geometry of the pair
     profile : dataset of ``lumped.path_of_contact.friction_profile``
+    thresholds : film parameters at which the lubrication regime changes
     """
     figure, axes = new_figure(1, 2, height=2.7)
     xi = 1e3 * profile["xi"].to_numpy()
@@ -39,16 +40,27 @@ def path_figure(g: Geometry, profile: xr.Dataset) -> Figure:
     left.plot(xi, profile["sliding_velocity"], color=RED, linestyle=DASHES[1], label="sliding")
     left.set(ylabel="velocity [m/s]", ylim=(0.0, None))
     legend(left, loc="center left", bbox_to_anchor=(0.0, 0.72))
-    right.plot(xi, profile["film_parameter"], color=GREEN, label="film parameter")
-    right.set(ylabel="film parameter [-]", ylim=(0.0, 1.15 * float(profile["film_parameter"].max())))
+    film_parameter(right, profile, thresholds)
     for ax in (left, right):
         path_axis(ax, g, xi)
-    for threshold, name in ((1.0, "mixed"), (4.0, "elastohydrodynamic"), (10.0, "full film")):
-        if threshold < right.get_ylim()[1]:
-            right.axhline(threshold, color=GREY, linewidth=0.8, linestyle=":")
-            words, place = f"{name} above {threshold:g}", (0.99, threshold)
-            write_beside(right, words, place, (0, 2), IN_Y, ha="right", fontsize=7.5, color=GREY)
     return figure
+
+
+def film_parameter(ax: Axes, profile: xr.Dataset, thresholds: tuple[float, ...]) -> None:
+    """Film parameter over the path of contact, with its lubrication regimes shaded and named."""
+    parameter = profile["film_parameter"].to_numpy()
+    ax.plot(1e3 * profile["xi"], parameter, color=BLUE)
+    ax.set_ylabel("film parameter [-]")
+    top = 1.25 * float(parameter.max())
+    ax.set_ylim(0.0, top)
+    edges = (0.0, *thresholds, np.inf)
+    names = str(profile["regime"].attrs["flag_meanings"]).split(", ")
+    for index, name in enumerate(names):
+        low, high = edges[index], min(edges[index + 1], top)
+        if low >= top:
+            continue
+        ax.axhspan(low, high, color=GREY, alpha=0.08 * index, linewidth=0)
+        write_beside(ax, name, (0.01, high), (0, -2), IN_Y, va="top", fontsize=7.5, color="#404040")
 
 
 def friction_laws_figure(g: Geometry, profile: xr.Dataset, chosen: str) -> Figure:

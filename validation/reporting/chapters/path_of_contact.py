@@ -46,7 +46,7 @@ def write(results: Results) -> Content:
             "Velocities and film parameter over the path of contact at nominal speed. A to D: start of "
             "contact, lowest point of single contact, pitch point P, highest point of single contact, end "
             "of contact.",
-            lambda: path_figure(g, profile),
+            lambda: path_figure(g, profile, pair.friction.thresholds),
         ),
         conditions,
         Picture(
