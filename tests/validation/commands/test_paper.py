@@ -42,7 +42,7 @@ def test_figures_writes_pictures_data_and_numbers(tmp_path):
     assert "Coulomb" in result.stdout
     # Replaced only when asked, and only by its own kind.
     assert "--force" in refused("figures", "--figures", "3", "-o", out)
-    assert "does not delete" in refused("report", "-o", out, "--force")
+    assert "nothing in it is replaced" in refused("report", "-o", out, "--force")
     assert run("figures", "--figures", "3", "--no-multibody", "-o", out, "--force").exit_code == 0
     assert not (out / "figure4.svg").exists()
 
@@ -90,6 +90,7 @@ def test_measurement_identifies_the_friction_that_made_the_record(example, tmp_p
     assert data["metrics"]["normal_A"]["relative_rms"] < 0.05  # 2 % noise, and a law's small effect
     assert data["metrics"]["friction_A"]["relative_rms"] > 0.2
     assert {p.name for p in out.iterdir()} == {
+        "contents.json",
         "measurement.json",
         "overlay.csv",
         "overlay.nc",
@@ -110,6 +111,6 @@ def test_measurement_refuses_what_it_cannot_use(example, tmp_path):
     assert "xu_kahraman" in refused("measurement", example / "measurement.toml", "--identify", "sandpaper")
     assert "--force" in refused("measurement", example, "--example")
     (tmp_path / "notes.txt").write_text("mine")
-    assert "does not delete" in refused(
+    assert "nothing in it is replaced" in refused(
         "measurement", example / "measurement.toml", "-o", tmp_path, "--force"
     )
