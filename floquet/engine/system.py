@@ -89,9 +89,17 @@ class PeriodicSystem:
         object.__setattr__(self, "dimension", int(probe.shape[1]))
 
     def _call(self, function: Callable[..., npt.ArrayLike], times: FloatArray) -> FloatArray:
-        if self.vectorized:
-            return np.asarray(function(times), dtype=float)
-        return np.array([function(float(t)) for t in times], dtype=float)
+        values = function(times) if self.vectorized else [function(float(t)) for t in times]
+        try:
+            found = np.asarray(values)
+        except ValueError:
+            found = np.empty(0, dtype=object)
+        if found.dtype.kind not in "fiu":  # complex numbers and text would become numbers without a word
+            kind = (
+                "numbers of different shapes" if found.dtype.kind == "O" else f"values of type {found.dtype}"
+            )
+            raise refuse("A or b", kind, "real numbers", "Return real numbers of one shape for every time.")
+        return found.astype(float)
 
     def evaluate(self, times: npt.ArrayLike) -> FloatArray:
         """Return A at times [s] strictly inside smooth segments, (k,) -> (k, n, n); checked finite."""

@@ -17,10 +17,12 @@ from floquet.gear.axes import axis_coordinates, gear_axis, operating_rpm, vary
 from floquet.gear.block import gear_block
 from floquet.gear.friction_over_speed import depends_on_speed
 from floquet.rank_one.batch import fast_monodromies
+from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_number, real_numbers
+from lumped.errors import refuse
 from lumped.labelling import labelled_dataset
 from lumped.schema.pair import GearPair
-from lumped.typing import ComplexArray, FloatArray
+from lumped.typing import ComplexArray, FloatArray, Progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,9 +31,18 @@ if TYPE_CHECKING:
 # a multiplier pass for its neighbour.
 _TURN = 1.0
 _HALVINGS = 10  # further ones, where multipliers come close to each other
+# Most radians of integration over all points, about two minutes.
+_EFFORT = 1e8
 
 
-def multiplier_paths(pair: GearPair, name: str, values: npt.ArrayLike, *, rtol: float = 1e-9) -> xr.Dataset:
+def multiplier_paths(
+    pair: GearPair,
+    name: str,
+    values: npt.ArrayLike,
+    *,
+    rtol: float = 1e-9,
+    progress: Progress | None = None,
+) -> xr.Dataset:
     """Paths of the multipliers of the feedback block in the complex plane as one parameter varies.
 
     Two points are joined where every multiplier moves less than it is apart from the others, and no mode
@@ -44,6 +55,7 @@ def multiplier_paths(pair: GearPair, name: str, values: npt.ArrayLike, *, rtol: 
     name : axis out of `GEAR_AXES`
     values : (k,) of the axis, increasing
     rtol : of the monodromy matrices
+    progress : told the finished fraction
 
     Returns
     -------
@@ -53,22 +65,26 @@ def multiplier_paths(pair: GearPair, name: str, values: npt.ArrayLike, *, rtol: 
 
     Raises
     ------
-    ParameterError : unknown axis, or values that are not increasing
+    ParameterError : unknown axis, values that are not increasing, or speeds so low that the modes turn
+        through millions of radians between two values
     """
     axis = gear_axis(name)
     points = real_numbers("values", values, increasing=True)
     axis.check(name, points)
     rtol = real_number("rtol", rtol, 1e-13, 1e-3)
     line = _Line(pair, name, rtol)
+    effort = _effort(line, points)
     here = line.at(float(points[0]))
     here = here.arranged(np.argsort(-np.abs(here.multipliers), kind="stable"))
     paths, certain = [here.multipliers], [np.ones(here.multipliers.size, dtype=bool)]
-    for low, high in pairwise(points):
+    for done, (low, high) in enumerate(pairwise(points)):
         turn = np.abs(line.at(float(high)).angles - here.angles).max()
         halvings = math.ceil(math.log2(max(turn / _TURN, 1.0))) + _HALVINGS
         here, sure = line.follow(here, float(low), float(high), halvings)
         paths.append(here.multipliers)
         certain.append(sure)
+        if progress is not None:
+            progress(float(effort[done]))
     return labelled_dataset(
         {
             "multipliers": ((name, "path"), np.array(paths), "1", "Floquet multipliers"),
@@ -77,6 +93,22 @@ def multiplier_paths(pair: GearPair, name: str, values: npt.ArrayLike, *, rtol: 
         axis_coordinates({name: points}),
         {"title": f"multiplier paths of {pair.name}"},
     )
+
+
+def _effort(line: _Line, points: FloatArray) -> FloatArray:
+    """Share of the work that is done after each interval; refused where all of it has no end in sight."""
+    angles = np.array([line.angles(float(value)).max() for value in points])
+    radians = np.maximum(np.abs(np.diff(angles)) / _TURN, 1.0) * np.maximum(angles[1:], angles[:-1])
+    total = np.cumsum(radians)
+    if points.size > 1 and total[-1] > _EFFORT:
+        worst = int(np.argmax(radians))
+        raise refuse(
+            line.name,
+            f"{points[worst]:g} to {points[worst + 1]:g}",
+            f"values between which the modes turn by less, {_EFFORT:g} rad of integration in all",
+            f"They would take {total[-1]:.1e} rad: begin at a higher speed.",
+        )
+    return np.asarray(total / max(float(total[-1]) if total.size else 1.0, 1e-300))
 
 
 class _Place(NamedTuple):
@@ -98,12 +130,20 @@ class _Line:
         # Without laws that change with speed one block serves all speeds.
         self.block = gear_block(pair) if name == "speed_rpm" and not depends_on_speed(pair) else None
 
+    def _system(self, value: float) -> tuple[RankOneSystem, float]:
+        """The block and its period [s]."""
+        if self.block is not None:
+            return self.block, self.block.period * self.rpm / value
+        block = gear_block(vary(self.pair, {self.name: value}))
+        return block, block.period
+
+    def angles(self, value: float) -> FloatArray:
+        """By how much each mode of the mean system turns in a period [rad]."""
+        block, period = self._system(value)
+        return block.modal().omega * period
+
     def at(self, value: float) -> _Place:
-        if self.block is None:
-            block = gear_block(vary(self.pair, {self.name: value}))
-            period = block.period
-        else:
-            block, period = self.block, self.block.period * self.rpm / value
+        block, period = self._system(value)
         matrix = fast_monodromies(block, [period], tolerance=self.tolerance).matrices[0]
         return _Place(np.linalg.eigvals(matrix).astype(complex), block.modal().omega * period)
 

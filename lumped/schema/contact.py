@@ -71,7 +71,7 @@ class ViscosityLaw(Section):
 class Lubricant(Section):
     """Lubricant: dynamic viscosity (a number or a law) and pressure-viscosity constants alpha = k eta^s."""
 
-    viscosity: Annotated[float | None, Quantity("mPa*s", above=0, at_most=1e5, optional=True)] = Field(
+    viscosity: Annotated[float | None, Quantity("mPa*s", at_least=1e-9, at_most=1e5, optional=True)] = Field(
         None, description="dynamic viscosity at the contact inlet"
     )
     viscosity_law: ViscosityLaw | None = Field(

@@ -111,7 +111,7 @@ class Gear(Section):
     """One gear. Mass and inertia default to a solid steel disc of the reference diameter."""
 
     teeth: Annotated[int, Field(ge=5, le=1000, strict=True)] = Field(description="number of teeth")
-    face_width: Annotated[float, Quantity("mm", above=0, at_most=2000, action=_SIZE)] = Field(
+    face_width: Annotated[float, Quantity("mm", at_least=0.01, at_most=2000, action=_SIZE)] = Field(
         description="face width"
     )
     profile_shift: Annotated[float, Quantity("1", at_least=-1.5, at_most=2)] = Field(
@@ -124,16 +124,18 @@ class Gear(Section):
         None, description="tip diameter, instead of addendum"
     )
     bore: Annotated[float, Quantity("mm", at_least=0)] = Field(0.0, description="bore diameter; 0 is solid")
-    mass: Annotated[float | None, Quantity("kg", above=0, optional=True)] = Field(
+    mass: Annotated[float | None, Quantity("kg", at_least=1e-9, at_most=1e7, optional=True)] = Field(
         None, description="mass; default disc of the reference diameter and face width"
     )
-    inertia: Annotated[float | None, Quantity("kg*m**2", above=0, optional=True)] = Field(
+    inertia: Annotated[float | None, Quantity("kg*m**2", at_least=1e-15, at_most=1e9, optional=True)] = Field(
         None, description="polar moment of inertia; default as for mass"
     )
-    density: Annotated[float, Quantity("kg/m**3", above=0)] = Field(
+    density: Annotated[float, Quantity("kg/m**3", at_least=10, at_most=30000)] = Field(
         7850.0, description="density, for the disc"
     )
-    youngs_modulus: Annotated[float, Quantity("GPa", above=0)] = Field(206e9, description="Young's modulus")
+    youngs_modulus: Annotated[float, Quantity("GPa", at_least=1e-6, at_most=2000)] = Field(
+        206e9, description="Young's modulus"
+    )
     poisson_ratio: Annotated[float, Quantity("1", at_least=0, below=0.5)] = Field(
         0.3, description="Poisson ratio"
     )

@@ -7,7 +7,8 @@ may carry any unit of that dimension (``lumped.fields.units``).
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+import math
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from pathlib import Path
@@ -28,12 +29,19 @@ from lumped.schema.contact import Friction, Lubricant
 from lumped.schema.gear import BasicRack, Gear
 from lumped.schema.mesh import Mesh
 
+#: From a hair to a bearing that is rigid beside any tooth.
+_STIFFNESS = Quantity("N/m", at_least=1e-6, at_most=1e30)
+
+
+#: Least mass and inertia of a gear as a share of the solid disc's.
+_LIGHTEST = 1e-4
+
 
 class Bearing(Section):
     """Radial support of one gear, along (LOA) and off (OLOA) the line of action."""
 
-    loa_stiffness: Annotated[float, Quantity("N/m", above=0)] = Field(description="stiffness along the LOA")
-    oloa_stiffness: Annotated[float, Quantity("N/m", above=0)] = Field(description="stiffness off the LOA")
+    loa_stiffness: Annotated[float, _STIFFNESS] = Field(description="stiffness along the LOA")
+    oloa_stiffness: Annotated[float, _STIFFNESS] = Field(description="stiffness off the LOA")
     loa_damping_ratio: Annotated[float, Quantity("1", at_least=0, at_most=2)] = Field(
         description="damping ratio of the gear mass on the LOA stiffness"
     )
@@ -49,7 +57,7 @@ class Bearings(Section):
     gear: Bearing
 
 
-_BRAKE = Quantity("N*m", above=0, action="Correct the value, or write 'balanced'.")
+_BRAKE = Quantity("N*m", above=0, at_most=1e9, action="Correct the value, or write 'balanced'.")
 
 
 def _brake(value: object) -> object:
@@ -77,7 +85,9 @@ class OperatingPoint(Section):
             action="Give the running speed; the pinion drives in its positive sense.",
         ),
     ] = Field(description="nominal speed of the pinion")
-    pinion_torque: Annotated[float, Quantity("N*m", above=0)] = Field(description="torque driving the pinion")
+    pinion_torque: Annotated[float, Quantity("N*m", at_least=1e-9, at_most=1e9)] = Field(
+        description="torque driving the pinion"
+    )
     brake_torque: Annotated[
         Literal["balanced"] | float, BeforeValidator(_brake, json_schema_input_type=float | str)
     ] = Field(
@@ -133,6 +143,7 @@ class GearPair(Section):
     @model_validator(mode="after")
     def _must_exist(self) -> GearPair:
         problems = existence_problems(*self._wheels(), self.geometry, self.mesh.backlash)
+        problems += [*self._too_light("pinion"), *self._too_light("gear")]
         if problems:
             raise ParameterError(problems, self.name)
         wrong = [problem for path, _ in self.sources for problem in _source_problems(path)]
@@ -171,6 +182,18 @@ class GearPair(Section):
         rack = self.basic_rack
         addendum = rack.module * (rack.addendum_coefficient + gear.profile_shift)
         return 0.5 * rack.module * gear.teeth + (addendum if gear.addendum is None else gear.addendum)
+
+    def _too_light(self, name: Literal["pinion", "gear"]) -> Iterator[FieldProblem]:
+        """Mass or inertia that no gear of this size has: its vibration would take years to compute."""
+        gear: Gear = getattr(self, name)
+        radius = 0.5 * self.basic_rack.module * gear.teeth
+        mass = gear.density * math.pi * radius**2 * gear.face_width
+        for field, disc, unit in (("mass", mass, "kg"), ("inertia", 0.5 * mass * radius**2, "kg*m**2")):
+            given = getattr(gear, field)
+            if given is not None and given < _LIGHTEST * disc:
+                allowed = f">= {_LIGHTEST * disc:.3g} {unit}, {_LIGHTEST:g} of the solid disc's"
+                action = "Check the unit, or leave it out: the disc's is taken."
+                yield FieldProblem(f"{name}.{field}", f"{given:g} {unit}", allowed, action)
 
     def to_mapping(self) -> dict[str, Any]:
         """Return the pair as nested plain data for TOML or JSON; reading it back gives an equal pair."""

@@ -81,7 +81,7 @@ class ParabolicStiffness(StiffnessModel):
     """Stiffness of a tooth pair as a parabola over the path of contact, with optional smooth engagement."""
 
     model: Literal["parabolic"] = "parabolic"
-    peak: Annotated[float | None, Quantity("N/m", above=0, at_most=1e12, optional=True)] = Field(
+    peak: Annotated[float | None, Quantity("N/m", at_least=1e-6, at_most=1e12, optional=True)] = Field(
         None,
         description="largest stiffness of one tooth pair; default ISO 6336-1 method B c' times face width",
     )

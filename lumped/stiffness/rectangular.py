@@ -17,8 +17,10 @@ class RectangularStiffness(StiffnessModel):
     """Constant stiffness of every tooth pair in contact: the total is a rectangular wave."""
 
     model: Literal["rectangular"] = "rectangular"
-    pair_stiffness: Annotated[float | None, Quantity("N/m", above=0, at_most=1e12, optional=True)] = Field(
-        None, description="stiffness of one tooth pair; default ISO 6336-1 method B c' times face width"
+    pair_stiffness: Annotated[float | None, Quantity("N/m", at_least=1e-6, at_most=1e12, optional=True)] = (
+        Field(
+            None, description="stiffness of one tooth pair; default ISO 6336-1 method B c' times face width"
+        )
     )
 
     def curve(self, pair: MeshingPair) -> PathFunction:

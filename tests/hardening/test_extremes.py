@@ -186,3 +186,19 @@ def test_the_phase_of_the_mesh_stays_within_a_pitch_after_any_number_of_turns(tu
     pitch = 9.373e-3
     rho, _ = mesh_phase(1.2, 30e-3, 2 * math.pi * turns, 0.3, 41e-3, 41e-3, pitch, 0.1, 0.2, 1.0)
     assert 0.0 <= rho <= pitch
+
+
+@pytest.mark.parametrize("path", ["density", "youngs_modulus", "face_width", "mass", "inertia"])
+@pytest.mark.parametrize("power", [-300, 300])
+def test_sizes_that_no_gear_has_are_refused_by_name(path, power):
+    # Each overflowed, or divided by zero, somewhere in the models.
+    for gear in GEARS:
+        with pytest.raises(SpurcheckError, match=f"{gear}.{path}"):
+            load_gear_pair("nasa_28_28").with_({f"{gear}.{path}": 10.0**power})
+
+
+@pytest.mark.parametrize("field", ["mass", "inertia"])
+def test_a_gear_lighter_than_any_of_its_size_is_refused(field):
+    # 1e-12 kg m^2 is within the range of the field, but not for a gear of 89 mm.
+    with pytest.raises(SpurcheckError, match=f"gear.{field}.*solid disc"):
+        load_gear_pair("nasa_28_28").with_({f"gear.{field}": 1e-8})

@@ -243,7 +243,8 @@ def _paths(request: Request) -> View:
         low, high = values.min(), values.max()
         by_period = 1.0 / np.linspace(1.0 / low, 1.0 / high, _LINE)[1:-1]
         values = np.unique(np.concatenate([values, by_period]))
-    paths = multiplier_paths(request.pair, name, values)
+    with progress_bar("multipliers") as tell:
+        paths = multiplier_paths(request.pair, name, values, progress=tell)
     return paths, lambda: multiplier_paths_figure(paths, request.value(name))
 
 

@@ -6,8 +6,12 @@ from pathlib import Path
 
 import xarray as xr
 
-from lumped.errors import refuse, shown
+from lumped.errors import ParameterError, refuse, shown
 from validation.files.output import COLUMN_DIMENSIONS, DATA_SUFFIXES, check_file, write_dataset
+
+_OURS = "a NetCDF file that spurcheck wrote"
+#: Most numbers in a result file, 4 GB in memory.
+_MOST_NUMBERS = 500_000_000
 
 
 def write_results(result: xr.Dataset, path: str | Path, *, force: bool = False) -> Path:
@@ -32,6 +36,9 @@ def write_results(result: xr.Dataset, path: str | Path, *, force: bool = False) 
     path = check_file(Path(path), DATA_SUFFIXES, force=force)
     if path.suffix.lower() == ".csv":
         result, _ = one_table(result)
+        if not result.data_vars or not set(result.sizes) - set(COLUMN_DIMENSIONS):
+            action = "Write .mat or .nc, which hold everything."
+            raise refuse("result", "variables without an axis", "a table over at least one axis", action)
     write_dataset(result, path)
     return path
 
@@ -70,15 +77,31 @@ def read_netcdf(path: str | Path) -> xr.Dataset:
 
     Raises
     ------
-    ParameterError : no such file, or no NetCDF 4 file
+    ParameterError : no such file, no NetCDF 4 file, or content that no result has
     """
     path = Path(path)
     if not path.is_file():
-        raise refuse("result", shown(str(path)), "a file that exists", "Check the path.")
+        raise refuse("result", path, "a file that exists", "Check the path.")
     try:
-        # Times are seconds from the start, not dates.
-        with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as opened:
+        # Times are seconds from the start, not dates; nothing is packed or masked.
+        with xr.open_dataset(
+            path, engine="h5netcdf", decode_times=False, mask_and_scale=False, phony_dims="sort"
+        ) as opened:
+            _check_content(opened, path)
             return opened.load()
-    except (OSError, ValueError, KeyError, RuntimeError) as error:
+    except (OSError, ValueError, KeyError, RuntimeError, TypeError) as error:
+        if isinstance(error, ParameterError):
+            raise
         reason = f"It cannot be read ({shown(str(error))})."
-        raise refuse("result", shown(str(path)), "a NetCDF file that spurcheck wrote", reason) from None
+        raise refuse("result", path, _OURS, reason) from None
+
+
+def _check_content(result: xr.Dataset, path: Path) -> None:
+    """Refuse what no result holds before it is loaded: a small file may unfold to terabytes."""
+    points = sum(variable.size for variable in result.variables.values())
+    if points > _MOST_NUMBERS:
+        raise refuse("result", path, _OURS, f"It claims to hold {points:.3g} numbers.")
+    for name, variable in result.variables.items():
+        texts = variable.dtype.kind == "O" and all(isinstance(v, str) for v in variable.to_numpy().ravel())
+        if not texts and variable.dtype.kind not in "biufSU":
+            raise refuse("result", path, _OURS, f"{shown(str(name))} holds no numbers and no text.")

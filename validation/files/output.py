@@ -162,5 +162,8 @@ def _write_csv(result: xr.Dataset, path: Path) -> None:
             known = ready[d].to_numpy() if d in ready.coords else np.arange(ready.sizes[d])
             labels = [f"{label}_{d}{k}" for label in labels for k in known]
         columns += [(f"{name}{label} [{unit}]", row) for label, row in zip(labels, values, strict=True)]
+    # A result file from elsewhere may name a variable like a formula.
+    headings = _inert(np.array([heading for heading, _ in columns], dtype=object))
+    columns = [(heading, v) for heading, (_, v) in zip(headings, columns, strict=True)]
     table = pd.DataFrame({heading: _inert(v) if v.dtype.kind in "OU" else v for heading, v in columns})
     table.to_csv(path, index=False, na_rep="nan", lineterminator="\r\n", encoding="utf-8")

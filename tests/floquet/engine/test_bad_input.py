@@ -31,6 +31,15 @@ def test_coefficients_must_be_square(A) -> None:
         PeriodicSystem(A, 1.0)
 
 
+@pytest.mark.parametrize("entry", [1j, "1", None])
+@pytest.mark.parametrize("vectorized", [False, True])
+def test_coefficients_must_be_real_numbers(entry: object, vectorized: bool) -> None:
+    # numpy drops an imaginary part, and reads numbers in texts.
+    matrix = [[0.0, 1.0], [entry, 0.0]]
+    with pytest.raises(ParameterError, match="real numbers"):
+        PeriodicSystem(lambda t: [matrix] * len(t) if vectorized else matrix, 1.0, vectorized=vectorized)
+
+
 def test_a_matrix_is_not_a_callable() -> None:
     with pytest.raises(ParameterError, match="callable"):
         PeriodicSystem(np.eye(2), 1.0)  # type: ignore[arg-type]

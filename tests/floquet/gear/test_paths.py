@@ -90,3 +90,16 @@ def test_unusable_axes_are_refused(pair: GearPair) -> None:
         multiplier_paths(pair, "moon_phase", [1.0])
     with pytest.raises(ParameterError, match="increasing"):
         multiplier_paths(pair, "speed_rpm", [2000.0, 1000.0])
+
+
+def test_speeds_at_which_the_modes_turn_without_end_are_refused_at_once(pair: GearPair) -> None:
+    # At 1 rpm the fastest mode turns by 1e5 rad in a mesh cycle: following it took hours without a word.
+    with pytest.raises(ParameterError, match=r"speed_rpm = 1 to 50.*higher speed"):
+        multiplier_paths(pair, "speed_rpm", [1.0, 50.0, 100.0])
+
+
+def test_progress_ends_with_the_last_value(pair: GearPair) -> None:
+    told: list[float] = []
+    multiplier_paths(pair, "speed_rpm", [3000.0, 4000.0, 5000.0], progress=lambda f, stage="": told.append(f))
+    assert told == sorted(told)
+    assert told[-1] == 1.0
