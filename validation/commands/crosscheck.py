@@ -14,6 +14,7 @@ from validation.commands.terminal import FAILED, guarded, progress_bar, stderr, 
 
 if TYPE_CHECKING:
     from rich.table import Table
+    from rich.text import Text
 
     from validation.cross_check.agreement import Agreement
     from validation.cross_check.comparison import CrossCheck
@@ -123,6 +124,7 @@ def crosscheck(
 def _tables(check: CrossCheck) -> list[Table]:
     from rich.text import Text
 
+    from validation.cross_check.nature import nature_groups
     from validation.reporting.formatting import number
 
     def verdict(agreement: Agreement) -> Text:
@@ -139,7 +141,24 @@ def _tables(check: CrossCheck) -> list[Table]:
         limit = math.nan if a.raw_limit is None else a.raw_limit.limit
         values = a.relative_l2, limit, a.predicted_l2, a.remainder_l2, a.tolerance.limit
         exact.add_row(a.quantity, *(number(value, 2) for value in values), verdict(a))
-    return [linear, exact]
+    nature = table(f"{name}: laws of nature", "check", ">value", ">limit", "verdict")
+    for group in nature_groups(check.nature):
+        nature.add_row(group.check, number(group.value, 2), number(group.limit, 2), _word(group.within))
+    tables = [linear, exact, nature] if check.nature else [linear, exact]
+    if check.twin is not None:
+        g = check.twin.pair
+        title = f"{name}: unlike twin, {g.pinion.teeth}/{g.gear.teeth} teeth, four unlike bearings"
+        other = table(title, "worst", ">value", ">limit", "verdict")
+        for worst in check.twin.worst_of_each:
+            other.add_row(worst.check, number(worst.value, 2), number(worst.limit, 2), _word(worst.within))
+        tables.append(other)
+    return tables
+
+
+def _word(within: bool) -> Text:
+    from rich.text import Text
+
+    return Text("within", "green") if within else Text("outside", "red")
 
 
 def _write(check: CrossCheck, target: Path) -> None:

@@ -6,7 +6,7 @@ Sources: docs/theory/multibody.md, "The law of torque"; docs/theory/validity.md.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -15,7 +15,7 @@ import lumped
 import multibody
 from lumped import GearPair
 from lumped.arguments import some_of, whole_number
-from lumped.errors import NumericalError, refuse
+from lumped.errors import NumericalError, SpurcheckError, refuse
 from lumped.model.results import VARIABLES
 from lumped.model.steady import UNSTABLE, periodic_cycle
 from lumped.typing import FloatArray, Progress
@@ -34,7 +34,9 @@ from validation.cross_check.finite_motion import FiniteMotion, finite_motion
 from validation.cross_check.first_order import Effects, first_order
 from validation.cross_check.judgement import MEANINGS, Judgement, Verdict, verdict_of
 from validation.cross_check.metrics import MeshOrders
+from validation.cross_check.nature import laws_of_nature
 from validation.cross_check.tolerances import raw_tolerance, tolerance
+from validation.cross_check.twin import unlike_twin
 
 __all__ = [
     "FIDELITIES",
@@ -55,6 +57,8 @@ RTOL: Mapping[str, float] = {"lumped": 1e-10, "linear": 1e-10, "exact": 1e-8}
 #: Cycles at the end of a run over which the exact model is compared where it has no periodic motion.
 COMPARED_CYCLES = 4
 _ORDERS = 10
+#: Cycles of the unlike twin, and samples in each.
+_TWIN_CYCLES, _TWIN_SAMPLES = 6, 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,6 +95,9 @@ class CrossCheck:
     effects : what each finite-motion effect can change and changes; None without "exact"
     unsettled : fidelity -> change of the multibody transmission error over the last two cycles, over its peak
         to peak: what is left of the transient; of a periodic motion, its relative mismatch after a cycle
+    nature : laws of nature, checked on both models; empty unless both fidelities ran
+    powers : model -> power of ``ledger.POWERS`` and "driving" -> mean over the mesh cycle [W]; likewise
+    twin : the same of a variation of the pair in which nothing is symmetric; None where it was not asked for
     """
 
     pair: GearPair
@@ -105,16 +112,21 @@ class CrossCheck:
     finite_motion: FiniteMotion | None
     effects: Effects | None
     unsettled: Mapping[Fidelity, float]
+    nature: tuple[Judgement, ...]
+    powers: Mapping[str, Mapping[str, float]]
+    twin: CrossCheck | None = None
 
     @property
     def judgements(self) -> tuple[Judgement, ...]:
         """Everything that must hold."""
-        found = [j for a in self.agreements for j in a.judgements]
+        found = [*(j for a in self.agreements for j in a.judgements), *self.nature]
         found += [
             Judgement(f"{fidelity}: compared", 1.0, 0.0, "a verdict needs both fidelities")
             for fidelity in FIDELITIES
             if not self.of(fidelity)
         ]
+        if self.twin is not None:
+            found += [replace(j, check=f"twin: {j.check}") for j in self.twin.judgements]
         return tuple(found)
 
     @property
@@ -132,6 +144,14 @@ class CrossCheck:
         """Overall verdict, see ``MEANINGS``."""
         return verdict_of(self.judgements, [j for a in self.agreements for j in a.raw])
 
+    @property
+    def worst_of_each(self) -> tuple[Judgement, ...]:
+        """Of each kind of check (linear, remainder, nature ...) the one that uses most of its limit."""
+        kinds: dict[str, list[Judgement]] = {}
+        for judgement in self.judgements:
+            kinds.setdefault(judgement.check.split(":")[0], []).append(judgement)
+        return tuple(max(found, key=lambda j: j.value / j.limit) for found in kinds.values())
+
     def of(self, fidelity: Fidelity) -> tuple[Agreement, ...]:
         """Agreements at one fidelity."""
         return tuple(a for a in self.agreements if a.fidelity == fidelity)
@@ -148,6 +168,7 @@ def crosscheck(
     samples_per_cycle: int = 256,
     fidelities: Sequence[Fidelity] = FIDELITIES,
     quantities: Sequence[str] = QUANTITIES,
+    twin: bool = True,
     progress: Progress | None = None,
 ) -> CrossCheck:
     """Compare the lumped model with the multibody model of the same pair in periodic motion.
@@ -165,6 +186,7 @@ def crosscheck(
     samples_per_cycle : output times per mesh cycle, at least 32
     fidelities : of the multibody model, out of ``FIDELITIES``
     quantities : out of ``QUANTITIES``
+    twin : whether to check a variation of the pair in which nothing is symmetric too, with few cycles
     progress : called with the finished fraction
 
     Returns
@@ -177,7 +199,8 @@ def crosscheck(
     NumericalError : a model fails; the text says what to try
     """
     _check(cycles, samples_per_cycle, fidelities, quantities)
-    runs = 1 + len(fidelities)
+    other = unlike_twin(pair) if twin and len(fidelities) == len(FIDELITIES) else None
+    runs = 1 + len(fidelities) + (other is not None)
 
     def part(done: int) -> Progress | None:
         return None if progress is None else lambda fraction, stage="": progress((done + fraction) / runs)
@@ -234,6 +257,10 @@ def crosscheck(
                     )
                 )
             orders.append(_orders(quantity, fidelity, result, reference, compared, samples_per_cycle))
+    checks: tuple[Judgement, ...] = ()
+    powers: Mapping[str, Mapping[str, float]] = {}
+    if effects is not None and len(fidelities) == len(FIDELITIES):
+        checks, powers = laws_of_nature(pair, last, one, results, effects.powers, shift)
     unsettled = {f: _unsettled(r, samples_per_cycle) for f, r in results.items()}
     if one is not None:
         unsettled["exact"] = float(one.attrs["closure"])
@@ -250,7 +277,18 @@ def crosscheck(
         finite_motion=predicted,
         effects=effects,
         unsettled=unsettled,
+        nature=checks,
+        powers=powers,
+        twin=None if other is None else _check_twin(other),
     )
+
+
+def _check_twin(pair: GearPair) -> CrossCheck | None:
+    """Cross-check of the twin; None where a model refuses it or cannot compute it."""
+    try:
+        return crosscheck(pair, cycles=_TWIN_CYCLES, samples_per_cycle=_TWIN_SAMPLES, twin=False)
+    except SpurcheckError:
+        return None
 
 
 def _periodic(pair: GearPair, samples: int, passes: bool) -> xr.Dataset | None:

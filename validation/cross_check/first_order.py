@@ -22,9 +22,11 @@ from lumped.errors import NumericalError
 from lumped.model.results import response
 from lumped.model.steady import sample_times
 from lumped.typing import FloatArray
+from multibody.contact.machine import machine
 from validation.cross_check.agreement import relative_size
 from validation.cross_check.finite_motion import PREDICTED, FiniteMotion
-from validation.cross_check.shifted_motion import Motion, ShiftedModel, Shifts
+from validation.cross_check.ledger import LOSSES, losses
+from validation.cross_check.shifted_motion import Motion, Shifts
 from validation.cross_check.tolerances import GROUPS
 
 #: Times per mesh cycle at which the changes are read.
@@ -47,11 +49,13 @@ class Effects:
     size : effect -> its largest displacement, over the base pitch; of the turned line its angle [rad]
     most : effect -> quantity -> largest first-order change
     alone : effect -> quantity -> change predicted where it acts alone; empty where nothing is predicted
+    powers : power of ``ledger.LOSSES`` -> sum of the largest changes over the driving power
     """
 
     size: Mapping[str, float]
     most: Mapping[str, Mapping[str, float]]
     alone: Mapping[str, Mapping[str, float]]
+    powers: Mapping[str, float]
 
     def largest(self, quantity: str) -> float:
         """Sum over the effects of the largest changes of a quantity."""
@@ -83,7 +87,16 @@ def first_order(predicted: FiniteMotion) -> Effects:
     )
     nominal = every.motion(None, line=0.0)
     found = every.shifts_after(nominal)
-    before = _values(every, nominal)
+    numbers, driving = machine(every.pair), every.pair.operating.pinion_torque * cycle.geometry.omega_pinion
+    weights = np.full(_TIMES, 1.0 / _TIMES)
+
+    def values(motion: Motion) -> dict[str, FloatArray]:
+        states = motion.states[np.searchsorted(motion.times, every.times)]
+        taken = losses(motion.system, numbers, every.times, states, weights)
+        shares = {name: np.array(power / driving) for name, power in taken.items()}
+        return response(motion.system, every.times, states) | shares
+
+    before = values(nominal)
     end = max(found.entry, found.exit)
     size = {
         "entry_shift": end,
@@ -102,10 +115,11 @@ def first_order(predicted: FiniteMotion) -> Effects:
             slides_as=shifts.slides_as if effect == "sliding_velocity" else shifts.place,
         )
         try:
-            after = _values(every, alone.motion(own, line=line if effect == "moving_line" else 0.0))
+            after = values(alone.motion(own, line=line if effect == "moving_line" else 0.0))
         except NumericalError:  # displaced so far that no such motion exists
-            return dict.fromkeys(GROUPS, np.inf)
-        return {name: relative_size(after[name] - before[name], name, before) for name in GROUPS}
+            return dict.fromkeys((*GROUPS, *LOSSES), np.inf)
+        changes = {name: relative_size(after[name] - before[name], name, before) for name in GROUPS}
+        return changes | {name: abs(float(after[name] - before[name])) for name in LOSSES}
 
     most: dict[str, dict[str, float]] = {}
     for effect in PREDICTED:
@@ -119,15 +133,11 @@ def first_order(predicted: FiniteMotion) -> Effects:
                 "moving_line",
             ):  # load cannot start early; the other sign does as much
                 break
-        most[effect] = {name: max(one[name] for one in both) for name in GROUPS}
+        most[effect] = {name: max(one[name] for one in both) for name in both[0]}
     shifts, alone = predicted.shifts, {}
     if shifts is not None:
         for effect in sorted(predicted.model.effects):
             alone[effect] = change(effect, shifts, size["moving_line"], predicted.model.friction_velocity)
     relative = {name: s if name == "moving_line" else s / pitch for name, s in size.items()}
-    return Effects(relative, most, alone)
-
-
-def _values(model: ShiftedModel, motion: Motion) -> dict[str, FloatArray]:
-    rows = np.searchsorted(motion.times, model.times)
-    return response(motion.system, model.times, motion.states[rows])
+    powers = {name: sum(changes[name] for changes in most.values()) for name in LOSSES}
+    return Effects(relative, most, alone, powers)

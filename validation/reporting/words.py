@@ -27,8 +27,8 @@ def sentence(results: Results) -> str:
     return (
         (f"Do not rely on this prediction: {'; '.join(wrong)}. " if wrong else "")
         + f"At {results.operating_rpm:.5g} rpm and {results.pair.operating.pinion_torque:.4g} N m the lumped "
-        f"model {'computes' if wrong else 'predicts'} a transmission error of {span(results)} peak to peak "
-        f"and a mesh efficiency of {efficiency(results)}. {_agreement(results.check)} The motion is "
+        f"model {'computes' if wrong else 'predicts'} a transmission error of {span(results)} peak to peak"
+        f"{_efficiency(results)}. {_agreement(results.check)} The motion is "
         f"{_stability(results)} {validity(results)}"
     )
 
@@ -43,6 +43,13 @@ def efficiency(results: Results) -> str:
     return f"{100 * float(results.motion.attrs['mesh_efficiency']):.2f} %"
 
 
+def _efficiency(results: Results) -> str:
+    """Mesh efficiency for the first sentence; left out where a law of nature does not hold."""
+    if any(not j.within for j in results.check.nature):
+        return ", and no mesh efficiency because a law of nature does not hold"
+    return f" and a mesh efficiency of {efficiency(results)}"
+
+
 def objections(results: Results) -> list[str]:
     """Reasons why a gear pair would not show the predicted motion."""
     verdict = results.multipliers.verdict
@@ -53,7 +60,7 @@ def objections(results: Results) -> list[str]:
         if flag.state == "violated" and flag.key != "stability"
     ]
     if results.check.verdict == "not confirmed":
-        found.append("the cross-check does not confirm it")
+        found.insert(0, "the cross-check does not confirm it")
     return found
 
 

@@ -42,7 +42,7 @@ def test_the_exact_model_is_compared_in_a_periodic_motion_of_its_own(check):
 def test_a_pair_that_would_drift_under_the_lumped_torque_is_confirmed_in_its_own_balance():
     # In 24 cycles from the lumped motion this pair slips by half a hundredth of a cycle, over which its
     # ringing after entry changes by a tenth of its span: a difference of phase, not of motion.
-    found = crosscheck(lumped.load_gear_pair("fzg_c"), cycles=24, samples_per_cycle=64)
+    found = crosscheck(lumped.load_gear_pair("fzg_c"), cycles=24, samples_per_cycle=64, twin=False)
     assert found.verdict == "confirmed"
     assert max(a.remainder_l2 for a in found.of("exact")) < 0.2 * found.contact_shift
 
@@ -52,7 +52,7 @@ def test_an_exact_model_without_a_periodic_motion_of_its_own_is_run(pair, monkey
         raise lumped.NumericalError("no motion")
 
     monkeypatch.setattr(multibody, "steady_state", fail)
-    found = crosscheck(pair, cycles=12, samples_per_cycle=32, quantities=("dte",))
+    found = crosscheck(pair, cycles=12, samples_per_cycle=32, quantities=("dte",), twin=False)
     assert not found.periodic
     assert found.compared_cycles == 4
     assert found.multibody["exact"].attrs["brake_torque"] == found.lumped.attrs["brake_torque"]
@@ -60,11 +60,13 @@ def test_an_exact_model_without_a_periodic_motion_of_its_own_is_run(pair, monkey
 
 def test_an_unstable_motion_is_run_because_no_pair_stays_in_it(pair):
     unstable = pair.with_({"operating.pinion_speed": 17000, "mesh.damping_ratio": 0.0})
-    assert not crosscheck(unstable, cycles=6, samples_per_cycle=32, quantities=("dte",)).periodic
+    assert not crosscheck(unstable, cycles=6, samples_per_cycle=32, quantities=("dte",), twin=False).periodic
 
 
 def test_a_model_that_is_not_run_is_not_predicted(pair):
-    found = crosscheck(pair, cycles=6, samples_per_cycle=32, fidelities=("linear",), quantities=("dte",))
+    found = crosscheck(
+        pair, cycles=6, samples_per_cycle=32, fidelities=("linear",), quantities=("dte",), twin=False
+    )
     assert found.finite_motion is None
     assert found.verdict == "not confirmed"
 
@@ -77,7 +79,7 @@ def test_metrics_see_a_wrong_sign_of_the_gear_displacement(pair, check, monkeypa
 
     true_simulate = multibody.simulate
     monkeypatch.setattr(multibody, "simulate", wrong)
-    found = crosscheck(pair, cycles=6, samples_per_cycle=64, quantities=("dte", "x_g"))
+    found = crosscheck(pair, cycles=6, samples_per_cycle=64, quantities=("dte", "x_g"), twin=False)
     assert found.verdict == "not confirmed"
     by_name = {(a.quantity, a.fidelity): a for a in found.agreements}
     assert by_name["dte", "linear"].within
@@ -87,7 +89,7 @@ def test_metrics_see_a_wrong_sign_of_the_gear_displacement(pair, check, monkeypa
 
 
 def test_pairs_without_friction_agree_though_nothing_moves_off_the_line_of_action(pair):
-    found = crosscheck(pair.with_({"friction.law": "none"}), cycles=12, samples_per_cycle=64)
+    found = crosscheck(pair.with_({"friction.law": "none"}), cycles=12, samples_per_cycle=64, twin=False)
     for a in found.agreements:
         if a.quantity in ("y_p", "y_g", "friction_force"):
             assert a.within

@@ -1,0 +1,96 @@
+"""Mean powers of both models over one mesh cycle of their periodic motion, power by power.
+
+The lumped motion is read with the radii, bearings and bodies that the multibody model works out for itself,
+so a wrong lever or constant of the lumped model leaves a residual.
+
+Sources: the power balance of rigid bodies; docs/theory/multibody.md, "Laws of nature".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+import multibody
+from lumped.model.periodic_system import LTVSystem
+from lumped.model.results import response
+from lumped.model.steady import periodic_solution
+from lumped.typing import FloatArray
+from multibody.contact import kernels as kn
+from multibody.contact.machine import Machine
+
+#: Power -> what it is in words. Their sum is the driving power.
+POWERS: Mapping[str, str] = {
+    "braking": "taken by the brake",
+    "friction": "sliding friction of the teeth",
+    "bearings": "damping of the bearings",
+    "mesh_damping": "damping of the teeth",
+    "mesh_stiffness": "work of the change of stiffness and profile along the path",
+}
+#: What a motion loses.
+LOSSES = ("friction", "bearings", "mesh_damping", "mesh_stiffness")
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+#: Panels of the quadrature in a mesh cycle, at least.
+_PANELS = 160
+
+
+def quadrature(system: LTVSystem) -> tuple[FloatArray, FloatArray]:
+    """Times in the mesh cycle and their weights, which sum to one; no panel straddles a jump."""
+    even = np.linspace(0.0, system.period, _PANELS + 1)
+    marks = np.union1d(system.cycle.edges, even)
+    marks = marks[np.diff(marks, prepend=-np.inf) > 1e-9 * system.period]
+    marks[-1] = system.period
+    width = np.diff(marks)[:, None]
+    times = (marks[:-1, None] + 0.5 * width * (1.0 + _NODES)).ravel()
+    return times, (0.5 * width * _WEIGHTS).ravel() / system.period
+
+
+def lumped_powers(system: LTVSystem, machine: Machine) -> dict[str, float]:
+    """Mean powers of the lumped periodic motion, "driving" and those of ``POWERS`` [W]."""
+    times, weights = quadrature(system)
+    motion = periodic_solution(system, times, estimate_error=False)
+    p = machine.parameters
+    found = losses(system, machine, times, motion.states, weights)
+    return found | {
+        "driving": motion.pinion_torque * float(p[kn.OMEGA_P] + weights @ motion.states[:, 6]),
+        "braking": motion.brake_torque * float(p[kn.OMEGA_G] + weights @ motion.states[:, 7]),
+    }
+
+
+def losses(
+    system: LTVSystem, machine: Machine, times: FloatArray, states: FloatArray, weights: FloatArray
+) -> dict[str, float]:
+    """Mean powers of ``LOSSES`` of a lumped motion [W].
+
+    Parameters
+    ----------
+    system : equations of the motion
+    machine : the pair's numbers as the multibody model has them
+    times, states, weights : (k,) times in one cycle, (k, 12) states, (k,) weights that sum to one
+    """
+    p = machine.parameters
+    values, pairs, rates = response(system, times, states), system.cycle.sample(times), states[:, 6:]
+    place = values["position"]
+    sliding = (p[kn.OMEGA_P] + rates[:, 0]) * place
+    sliding -= (p[kn.OMEGA_G] + rates[:, 1]) * (p[kn.L_XY] - place) + rates[:, 4] - rates[:, 5]
+    closing = p[kn.RADIUS_P] * rates[:, 0] - p[kn.RADIUS_G] * rates[:, 1] + rates[:, 2] - rates[:, 3]
+    damping = np.sum(pairs.damping * (closing - pairs.error_rate) ** 2, axis=0)
+    bearings = machine.bearing_damping.T.ravel()  # x_p, x_g, y_p, y_g
+    return {
+        "friction": float(weights @ np.sum(values["friction_force"] * sliding, axis=0)),
+        "bearings": float(weights @ (rates[:, 2:] ** 2 @ bearings)),
+        "mesh_damping": float(weights @ damping),
+        "mesh_stiffness": float(weights @ (values["normal_load"].sum(axis=0) * closing - damping)),
+    }
+
+
+def multibody_powers(balance: multibody.PowerBalance, period: float) -> dict[str, float]:
+    """The same of a multibody run over one mesh cycle; what it stored counts as driving power less [W]."""
+    found = {name: float(getattr(balance, name)) / period for name in POWERS}
+    return found | {"driving": (balance.driving - balance.stored) / period}
+
+
+def residual(powers: Mapping[str, float]) -> float:
+    """Driving power that is not accounted for, over the driving power."""
+    return abs(powers["driving"] - sum(powers[name] for name in POWERS)) / abs(powers["driving"])

@@ -1,0 +1,84 @@
+"""The unlike twin of a gear pair: a variation in which nothing is symmetric.
+
+A pair whose pinion, gear and bearings are alike cannot show swapped bearings, a lever of the wrong gear or a
+mirrored drawing. Its twin has other tooth numbers, profile shifts, densities and roughnesses on both gears
+and four unlike bearings; law, stiffness model, lubricant and torque stay.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from lumped import GearPair
+from lumped.errors import SpurcheckError
+from lumped.model.steady import UNSTABLE, periodic_cycle
+
+#: Factors of the bearings' stiffness and damping, along and off the line of action.
+_BEARINGS = {
+    "pinion.loa": (0.8, 1.2),
+    "pinion.oloa": (1.5, 0.9),
+    "gear.loa": (1.3, 0.8),
+    "gear.oloa": (0.6, 1.4),
+}
+#: Factors of the speed, in the order in which they are tried.
+_SPEEDS = (0.93, 0.77, 1.19, 0.61, 0.43)
+#: Mesh damping ratio of the twin, at least: a quick run must not ring for long.
+_DAMPING = 0.03
+_SAMPLES = 64
+
+
+def unlike_twin(pair: GearPair) -> GearPair | None:
+    """Return the twin, or None where every variation is refused, unstable or lets its teeth separate.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    """
+    for factor in _SPEEDS:
+        for changes in _variations(pair):
+            speed = pair.operating.pinion_speed * factor * 30.0 / np.pi
+            try:
+                twin = pair.with_(changes | {"operating.pinion_speed": speed})
+                motion = periodic_cycle(twin, _SAMPLES)
+            except SpurcheckError:
+                continue
+            if motion.spectral_radius > UNSTABLE or motion.values["normal_load"].min() < 0.0:
+                continue
+            return twin
+    return None
+
+
+def _variations(pair: GearPair) -> Iterator[dict[str, Any]]:
+    """Changes of fields, the boldest first."""
+    own = pair.to_mapping()
+    plain: dict[str, Any] = {"name": f"{pair.name[:70]}, twin", "operating.brake_torque": "balanced"}
+    plain["mesh.damping_ratio"] = max(_DAMPING, pair.mesh.damping_ratio)
+    for place, (stiffness, damping) in _BEARINGS.items():
+        gear, axis = place.split(".")
+        bearing = getattr(pair.bearings, gear)
+        plain[f"bearings.{gear}.{axis}_stiffness"] = getattr(bearing, f"{axis}_stiffness") * stiffness
+        ratio = max(_DAMPING, getattr(bearing, f"{axis}_damping_ratio")) * damping
+        plain[f"bearings.{gear}.{axis}_damping_ratio"] = min(ratio, 2.0)
+    for gear, density, roughness in (("pinion", 0.9, 1.3), ("gear", 1.1, 0.8)):
+        plain[f"{gear}.density"] = own[gear].get("density", 7850.0) * density
+        plain[f"{gear}.roughness"] = getattr(pair, gear).roughness * 1e6 * roughness
+    teeth = {
+        "pinion.teeth": pair.pinion.teeth + 1,
+        "gear.teeth": pair.gear.teeth + 1 + pair.gear.teeth // 8,
+        "pinion.profile_shift": pair.pinion.profile_shift + 0.08,
+        "gear.profile_shift": pair.gear.profile_shift - 0.03,
+        "centre_distance": None,
+    }
+    tips = {f"{gear}.{name}": None for gear in ("pinion", "gear") for name in ("addendum", "tip_diameter")}
+    given = {
+        key: None for key in tips if getattr(getattr(pair, key.split(".")[0]), key.split(".")[1]) is not None
+    }
+    bare = {f"{gear}.{name}": None for gear in ("pinion", "gear") for name in ("tip_relief", "root_relief")}
+    relieved = {k: None for k in bare if getattr(getattr(pair, k.split(".")[0]), k.split(".")[1]) is not None}
+    yield plain | teeth | given
+    if relieved:
+        yield plain | teeth | given | relieved
+    yield plain
