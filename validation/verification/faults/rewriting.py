@@ -1,9 +1,9 @@
 """Change one line of a function in the running process, and take the change out again.
 
-The function's source is read, the line replaced, and the result compiled in the module's own names. Whatever
-holds the original, in any module, class or record of the packages, holds the changed one until the end; results
-kept by the packages are dropped before and after. Functions compiled by numba are compiled again without its disk
-cache, and with them all that call them. No file is written.
+The function's source is read, the text replaced, and the result compiled in the module's own names. Whatever
+holds the original, in any module, class or record of the packages, holds the changed one until the end. Results
+that the packages keep are dropped before and after. Functions compiled by numba are compiled again without its
+disk cache, and with them all that call them. No file is written.
 """
 
 from __future__ import annotations

@@ -1,0 +1,45 @@
+"""Judge the verdicts: ``python -m validation.verification.faults``; see docs/verification/faults.md."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from validation.verification.faults.catalogue import FAULTS
+from validation.verification.faults.judging import judge
+from validation.verification.faults.sound import sound_pairs
+from validation.verification.faults.table import counts, row, sample, save, verdict
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run faults, or sound pairs, and print what the verdicts say; 1 where one is wrong."""
+    parser = argparse.ArgumentParser(prog="python -m validation.verification.faults", description=__doc__)
+    parser.add_argument("keys", nargs="*", metavar="FAULT", help="faults to run; default all")
+    parser.add_argument("--sample", type=int, metavar="N", help="only N faults, chosen by --seed")
+    parser.add_argument("--seed", default="0", help="text that chooses the sample or the sound pairs")
+    parser.add_argument("--sound", type=int, metavar="N", help="cross-check N random sound pairs instead")
+    parser.add_argument("-o", "--output", type=Path, help="table as .json or .md")
+    given = parser.parse_args(arguments)
+    if given.sound is not None:
+        return sound_pairs(given.sound, given.seed, given.output)
+    if unknown := [key for key in given.keys if key not in FAULTS]:
+        parser.error(f"no such fault: {', '.join(unknown)}")
+    chosen = [FAULTS[key] for key in given.keys] or list(FAULTS.values())
+    if given.sample is not None:
+        chosen = list(sample(given.sample, given.seed))
+    rows = []
+    for fault in chosen:
+        outcome = judge(fault)
+        rows.append(row(fault, outcome))
+        said = outcome.first or verdict(fault, outcome)
+        print(f"{fault.key:24} {100.0 * outcome.size:9.3g} % {outcome.quantity:32.32} {said}", flush=True)
+    found = counts(rows)
+    print(", ".join(f"{number} {name}" for name, number in found.items()))
+    if given.output is not None:
+        save(rows, given.output)
+    return int(found.get("missed", 0) > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

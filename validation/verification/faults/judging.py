@@ -1,0 +1,174 @@
+"""What the verdicts say of a program with a fault in it: the parts of ``crosscheck`` and of ``report``."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+from lumped import GearPair, LawRangeWarning, load_gear_pair
+from validation.cross_check.comparison import crosscheck
+from validation.verification.code import code_checks
+from validation.verification.faults.fault import Fault
+from validation.verification.faults.quantities import FELT, change, quantities
+from validation.verification.faults.rewriting import applied
+from validation.verification.solution import refinements
+
+PAIR = "nasa_28_28"
+#: The default pair with nothing alike on both sides, where faults show that symmetry hides.
+TWIN: Mapping[str, object] = {
+    "pinion.teeth": 23,
+    "gear.teeth": 31,
+    "pinion.profile_shift": 0.25,
+    "gear.profile_shift": 0.1,
+    "centre_distance": None,
+    "pinion.face_width": 6.0,
+    "gear.face_width": 7.5,
+    "gear.density": 7600.0,
+    "gear.youngs_modulus": 180.0,
+    "pinion.roughness": 0.09,
+    "gear.roughness": 0.12,
+    "pinion.tip_relief": None,
+    "gear.tip_relief": None,
+    "bearings.pinion.loa_stiffness": 8e7,
+    "bearings.pinion.oloa_stiffness": 1.5e8,
+    "bearings.gear.loa_stiffness": 2e8,
+    "bearings.gear.oloa_stiffness": 5e7,
+    "bearings.gear.oloa_damping_ratio": 0.08,
+    "basic_rack.dedendum_coefficient": 1.3,
+    "operating.pinion_speed": 3700.0,
+}
+_RELIEF = {"shape": "linear", "amount": 15.0, "start_roll_angle": 26.0}
+#: Part of the verdicts -> commands that have it.
+PARTS: Mapping[str, str] = {
+    "cross-check": "crosscheck, report",
+    "code verification": "report",
+    "solution verification": "report",
+}
+_CYCLES, _SAMPLES = 6, 64
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one fault.
+
+    Attributes
+    ----------
+    size, quantity : largest change of a quantity of the report over its largest value, and which; on the
+        default pair or its unlike twin
+    caught : part of the verdicts -> the checks that fail, the first pair's first
+    seconds : time of the parts
+    """
+
+    size: float
+    quantity: str
+    caught: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    seconds: float = 0.0
+
+    @property
+    def felt(self) -> bool:
+        """Whether it changes anything by more than ``FELT``."""
+        return not self.size <= FELT
+
+    @property
+    def first(self) -> str:
+        """The first check that fails; empty where the fault is missed."""
+        return next((f"{part}: {checks[0]}" for part, checks in self.caught.items() if checks), "")
+
+
+def pairs(fault: Fault | None = None, *, wrong: bool = False) -> Iterator[GearPair]:
+    """The default pair and its unlike twin, with what the fault needs.
+
+    Parameters
+    ----------
+    fault : whose fields are set
+    wrong : whether its wrong input is in the file
+    """
+    own = {} if fault is None else dict(fault.on) | (dict(fault.input) if wrong else {})
+    for changes in ({}, TWIN):
+        fields = {**changes, **own}
+        if changes and "mesh.relief" in own:
+            fields |= {"pinion.tip_relief": _RELIEF, "gear.tip_relief": _RELIEF | {"amount": 10.0}}
+        yield load_gear_pair(PAIR).with_(fields)
+
+
+def judge(fault: Fault, *, thorough: bool = True) -> Outcome:
+    """Put a fault in, ask every part of the verdicts, take it out.
+
+    Parameters
+    ----------
+    fault : out of the catalogue
+    thorough : every part; else only until one of them sees the fault
+
+    Raises
+    ------
+    FaultError : the fault does not fit the program
+    """
+    with _quiet():
+        before = [quantities(pair) for pair in pairs(fault)]
+        started = time.perf_counter()
+        size, quantity = 0.0, ""
+        caught: dict[str, tuple[str, ...]] = {}
+        with applied(fault):
+            made = list(_made(fault, caught))
+            for old, pair in zip(before, made, strict=False):
+                size, quantity = max((size, quantity), change(old, quantities(pair)))
+            for part, checks in _CHECKS.items():
+                if made and (thorough or not any(caught.values())):
+                    caught[part] = tuple(dict.fromkeys(name for pair in made for name in _failing(checks, pair)))
+    if not made:
+        size = float("inf")
+    return Outcome(size, quantity, caught, time.perf_counter() - started)
+
+
+def _made(fault: Fault, caught: dict[str, tuple[str, ...]]) -> Iterator[GearPair]:
+    """The pairs of a program with the fault; one that it refuses is caught."""
+    try:
+        yield from pairs(fault, wrong=True)
+    except Exception as error:
+        caught["refused"] = (_line(error),)
+
+
+def _failing(checks: Callable[[GearPair], Iterator[str]], pair: GearPair) -> list[str]:
+    try:
+        return list(checks(pair))
+    except Exception as error:  # whatever stops a command is seen by its user
+        return [_line(error)]
+
+
+def _line(error: Exception) -> str:
+    return f"{type(error).__name__}: {str(error).splitlines()[0][:80] if str(error) else ''}"
+
+
+def _cross_check(pair: GearPair) -> Iterator[str]:
+    for failure in crosscheck(pair, cycles=_CYCLES, samples_per_cycle=_SAMPLES).failures:
+        yield failure.check
+
+
+def _code(pair: GearPair) -> Iterator[str]:
+    for check in code_checks(pair):
+        if not check.passes:
+            yield check.key
+
+
+def _solution(pair: GearPair) -> Iterator[str]:
+    for refinement in refinements(pair, _SAMPLES):
+        if not refinement.passes:
+            yield refinement.key
+
+
+_CHECKS: Mapping[str, Callable[[GearPair], Iterator[str]]] = {
+    "cross-check": _cross_check,
+    "code verification": _code,
+    "solution verification": _solution,
+}
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LawRangeWarning)
+        warnings.simplefilter("ignore", RuntimeWarning)
+        yield

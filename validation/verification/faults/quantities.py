@@ -1,0 +1,146 @@
+"""The quantities of the report as plain arrays, to tell how much a fault changes them."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+import lumped
+import multibody
+from floquet import fast_multipliers, gear_block, gear_pair_multipliers
+from floquet.gear.chart_axes import operating_rpm
+from lumped import GearPair
+from lumped.errors import NumericalError, ParameterError
+from lumped.losses import dynamic_losses, ohlendorf_of, quasi_static_losses
+from lumped.model.averaged import modes
+from lumped.model.mesh_elements import mesh_elements
+from lumped.path_of_contact import friction_profile, iso_comparison
+from lumped.typing import FloatArray
+from validation.cross_check.metrics import mesh_orders
+from validation.reporting.results import QUICK, Results
+
+#: Times per mesh cycle.
+SAMPLES = 64
+#: A change below this share of the largest value is none.
+FELT = 0.01
+
+
+def quantities(pair: GearPair) -> dict[str, FloatArray]:
+    """Every group of numbers by name; a group that cannot be computed is left out.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    """
+    found: dict[str, FloatArray] = {}
+    for compute in (_path, _motion, _report, _stability, partial(_multibody, "linear"), partial(_multibody, "exact")):
+        with np.errstate(all="ignore"):
+            try:
+                found |= compute(pair)
+            except (NumericalError, ParameterError, ArithmeticError, np.linalg.LinAlgError):
+                continue
+    return found
+
+
+def change(before: Mapping[str, FloatArray], after: Mapping[str, FloatArray]) -> tuple[float, str]:
+    """Largest change of a quantity over its largest value, and which; infinite where one is missing."""
+    worst = (0.0, "")
+    for name, old in before.items():
+        new = after.get(name)
+        if new is None or new.shape != old.shape:
+            return float("inf"), name
+        size = float(np.nanmax(np.abs(old), initial=0.0))
+        difference = float(np.nanmax(np.abs(new - old), initial=0.0))
+        lost = np.isnan(new).sum() > np.isnan(old).sum()
+        part = float("inf") if lost else difference / size if size > 0.0 else 0.0
+        worst = max(worst, (part, name))
+    return worst
+
+
+def same(before: Mapping[str, FloatArray], after: Mapping[str, FloatArray]) -> bool:
+    """Whether both are equal to the last bit."""
+    return before.keys() == after.keys() and all(
+        np.array_equal(before[name], after[name], equal_nan=True) for name in before
+    )
+
+
+def _numbers(data: xr.Dataset, prefix: str) -> dict[str, FloatArray]:
+    return {
+        f"{prefix} {name}": values.to_numpy().astype(float)
+        for name, values in data.data_vars.items()
+        if values.dtype.kind in "fib"
+    }
+
+
+def _attributes(data: xr.Dataset, prefix: str, *names: str) -> dict[str, FloatArray]:
+    return {f"{prefix} {name}": np.array([float(data.attrs[name])]) for name in names}
+
+
+def _path(pair: GearPair) -> dict[str, FloatArray]:
+    """Geometry, bodies, element laws, every friction law, film."""
+    found: dict[str, FloatArray] = {}
+    for record in (pair.geometry, lumped.bodies(pair)):
+        found |= {name: np.array([value]) for name, value in dataclasses.asdict(record).items()}
+    elements, g = mesh_elements(pair), pair.geometry
+    places = np.linspace(g.L_XA, g.L_XD, 201)[1:-1]
+    for name in ("stiffness", "damping", "friction", "error"):
+        found[f"tooth pair {name}"] = getattr(elements, name)(places)
+    profile = friction_profile(pair, points=101)
+    grid = np.linspace(0.0, 1.0, 101)
+    low, high = float(profile["xi"][0]), float(profile["xi"][-1])
+    for name, values in profile.data_vars.items():
+        if "xi" in values.dims and values.dtype.kind == "f":
+            rows = np.atleast_2d(values.to_numpy())
+            at = (profile["xi"].to_numpy() - low) / (high - low)
+            found[f"path {name}"] = np.array([np.interp(grid, at, row) for row in rows])
+    found |= _numbers(friction_profile(pair, points=101)[["mean_mu"]], "path")
+    return found | _numbers(iso_comparison(pair), "ISO 6336")
+
+
+def _motion(pair: GearPair) -> dict[str, FloatArray]:
+    """Periodic motion, transient, transmission error at rest."""
+    motion = lumped.steady_state(pair, samples_per_cycle=SAMPLES)
+    found = _numbers(motion, "motion") | _attributes(motion, "motion", "mesh_efficiency", "brake_torque")
+    run = lumped.simulate(pair, 2, samples_per_cycle=SAMPLES, rtol=1e-9)
+    found |= _numbers(run[["dte", "x_p", "theta_g_dot"]], "transient")
+    still = lumped.static_transmission_error(pair, samples_per_cycle=SAMPLES)
+    return found | _numbers(still, "at rest")
+
+
+def _report(pair: GearPair) -> dict[str, FloatArray]:
+    """Arithmetic of the report."""
+    results = Results(pair, QUICK)
+    motion = lumped.steady_state(pair, samples_per_cycle=SAMPLES)
+    static = quasi_static_losses(pair, samples_per_cycle=SAMPLES)
+    losses = dynamic_losses(pair, motion)
+    found = {
+        "speed": np.array([operating_rpm(pair)]),
+        "static load": np.array([results.static_load]),
+        "loss factor": np.array([ohlendorf_of(pair)]),
+        "mesh orders": mesh_orders(motion["dte"].to_numpy(), SAMPLES, 6).amplitude,
+        "natural frequencies": np.array([mode.natural_frequency for mode in modes(pair)]),
+        "resonant speeds": np.array([mode.resonant_speed for mode in modes(pair)]),
+    }
+    found |= _numbers(static, "quasi-static") | _numbers(losses, "losses")
+    found |= _attributes(static, "quasi-static", "mesh_efficiency", "power_loss", "loss_factor", "mean_coefficient")
+    return found | _attributes(losses, "losses", "input_power", "power_loss", "mesh_efficiency")
+
+
+def _stability(pair: GearPair) -> dict[str, FloatArray]:
+    """Multipliers by both routes, and the bound of the compiled one."""
+    general, compiled = gear_pair_multipliers(pair, 1e-9), fast_multipliers(gear_block(pair))
+    return {
+        "multipliers": np.sort(np.abs(general.multipliers)),
+        "compiled multipliers": np.sort(np.abs(compiled.multipliers[0])),
+        "bound of the compiled multipliers": np.asarray(compiled.matrix_errors, dtype=float).ravel()[:1],
+    }
+
+
+def _multibody(fidelity: str, pair: GearPair) -> dict[str, FloatArray]:
+    motion = multibody.steady_state(pair, fidelity=fidelity, samples_per_cycle=SAMPLES, rtol=1e-8)  # type: ignore[arg-type]
+    names = ["dte", "x_p", "y_p", "y_g", "normal_load", "friction_force", "sliding_velocity", "bearing_force_y_g"]
+    return _numbers(motion[names], f"multibody {fidelity}")

@@ -1,0 +1,118 @@
+"""Random sound pairs of the kinds of the presets: none of them may get "not confirmed"."""
+
+from __future__ import annotations
+
+import json
+import random
+import time
+import warnings
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from lumped import GearPair, LawRangeWarning, load_gear_pair, preset_names
+from lumped.errors import NumericalError, ParameterError
+from lumped.friction.registry import LAWS
+from validation.cross_check.comparison import crosscheck
+
+_STIFFNESS = (
+    {"model": "rectangular"},
+    {"model": "parabolic"},
+    {"model": "parabolic", "ramp_length": 0.5},
+    {"model": "energy"},
+    {"model": "energy", "hertz": "linear"},
+)
+
+
+def drawn(count: int, seed: str) -> Iterator[GearPair]:
+    """Random variations of the presets that exist: gears, bearings, teeth, law, relief, speed and load.
+
+    Parameters
+    ----------
+    count : how many
+    seed : text that the numbers come from
+    """
+    rng = random.Random(seed)
+    names, found = sorted(preset_names()), 0
+    while found < count:
+        try:
+            pair = _varied(load_gear_pair(names[found % len(names)]), rng)
+        except ParameterError:
+            continue
+        found += 1
+        yield pair
+
+
+def _varied(base: GearPair, rng: random.Random) -> GearPair:
+    fields: dict[str, Any] = {
+        "mesh.stiffness": rng.choice(_STIFFNESS),
+        "mesh.damping_ratio": rng.uniform(0.02, 0.12),
+        "friction.law": rng.choice(list(LAWS)),
+        "lubricant.viscosity": rng.uniform(5.0, 40.0),
+        "operating.pinion_speed": base.operating.pinion_speed * 9.5493 * rng.uniform(0.4, 1.8),
+        "operating.pinion_torque": base.operating.pinion_torque * rng.uniform(0.3, 1.5),
+    }
+    for gear in ("pinion", "gear"):
+        for way in ("loa", "oloa"):
+            fields[f"bearings.{gear}.{way}_stiffness"] = 1e8 * 10.0 ** rng.uniform(-0.3, 1.0)
+            fields[f"bearings.{gear}.{way}_damping_ratio"] = rng.uniform(0.02, 0.1)
+    if rng.random() < 0.5:  # gears of other sizes, meshing without backlash but for the thinning
+        shifts = {f"{gear}.profile_shift": rng.uniform(0.0, 0.3) for gear in ("pinion", "gear")}
+        teeth = {f"{gear}.teeth": rng.randint(20, 60) for gear in ("pinion", "gear")}
+        lengths = {f"{gear}.{what}": None for gear in ("pinion", "gear") for what in ("tip_diameter", "addendum")}
+        reliefs = {f"{gear}.tip_relief": None for gear in ("pinion", "gear")}
+        fields |= {**shifts, **teeth, **lengths, **reliefs, "centre_distance": None}
+    elif base.pinion.tip_relief is not None and rng.random() < 0.6:
+        fields["mesh.relief"] = "static"
+    return base.with_(fields)
+
+
+def sound_pairs(count: int, seed: str, output: Path | None = None) -> int:
+    """Cross-check random sound pairs and print every one that is not confirmed; 1 where there is any.
+
+    Parameters
+    ----------
+    count, seed : as ``drawn``
+    output : rows as .json, added to those that the file has
+    """
+    rows: list[dict[str, Any]] = []
+    for number, pair in enumerate(drawn(count, seed)):
+        rows.append(_row(pair, f"{seed}/{number}"))
+        if rows[-1]["verdict"] != "confirmed":
+            print(rows[-1], flush=True)
+    verdicts = Counter(row["verdict"] for row in rows)
+    seconds = sum(row["seconds"] for row in rows) / max(len(rows), 1)
+    print(", ".join(f"{n} {name}" for name, n in sorted(verdicts.items())) + f"; {seconds:.2g} s per pair")
+    if output is not None:
+        known = json.loads(output.read_text(encoding="utf-8")) if output.exists() else []
+        output.write_text(json.dumps([*known, *rows], indent=1) + "\n", encoding="utf-8")
+    return int(verdicts["not confirmed"] > 0)
+
+
+def _row(pair: GearPair, name: str) -> dict[str, Any]:
+    started = time.perf_counter()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LawRangeWarning)
+        try:
+            check = crosscheck(pair, cycles=8, samples_per_cycle=128)
+        except (NumericalError, ParameterError) as error:
+            return {
+                "name": name,
+                "verdict": "not computed",
+                "text": str(error)[:200],
+                "seconds": time.perf_counter() - started,
+            }
+    worst = max(check.judgements, key=lambda one: one.value / one.limit if one.limit > 0.0 else 0.0)
+    return {
+        "name": name,
+        "preset": pair.name,
+        "verdict": check.verdict,
+        "failures": [f"{f.check}: {f.value:.3g} > {f.limit:.3g}" for f in check.failures],
+        "worst": worst.check,
+        "use": worst.value / worst.limit if worst.limit > 0.0 else 0.0,
+        "law": pair.friction.law,
+        "stiffness": pair.mesh.stiffness.model,
+        "relief": pair.mesh.relief,
+        "seconds": time.perf_counter() - started,
+    }

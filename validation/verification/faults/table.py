@@ -1,0 +1,99 @@
+"""The table of faults: run, written and read."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import random
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from validation.verification.faults.catalogue import FAULTS, GROUPS
+from validation.verification.faults.fault import Fault
+from validation.verification.faults.judging import Outcome
+
+#: Table that the documentation shows, made by ``python -m validation.verification.faults -o``.
+STORED = Path(__file__).with_name("table.json")
+
+
+def sample(count: int, seed: str) -> tuple[Fault, ...]:
+    """Some of the faults, chosen by a text such as a commit's name.
+
+    Parameters
+    ----------
+    count : how many
+    seed : the text
+    """
+    number = int.from_bytes(hashlib.sha256(seed.encode()).digest()[:8], "big")
+    return tuple(random.Random(number).sample(list(FAULTS.values()), count))
+
+
+def row(fault: Fault, outcome: Outcome) -> dict[str, Any]:
+    """One row as plain data."""
+    group = next(name for name, faults in GROUPS.items() if fault in faults)
+    return {
+        "key": fault.key,
+        "group": group,
+        "words": fault.words,
+        "size": None if math.isinf(outcome.size) else outcome.size,
+        "quantity": outcome.quantity,
+        "caught": {part: list(checks) for part, checks in outcome.caught.items() if checks},
+        "verdict": verdict(fault, outcome),
+        "unseen": fault.unseen,
+    }
+
+
+def verdict(fault: Fault, outcome: Outcome) -> str:
+    """In a word: caught, missed, only measurement can tell, or no fault (changes nothing by 1 %)."""
+    if outcome.first:
+        return "caught"
+    if fault.unseen:
+        return "only measurement can tell"
+    return "missed" if outcome.felt else "no effect"
+
+
+def counts(rows: Iterable[Mapping[str, Any]]) -> dict[str, int]:
+    """How many rows have each verdict."""
+    return dict(Counter(str(one["verdict"]) for one in rows))
+
+
+def markdown(rows: Sequence[Mapping[str, Any]]) -> str:
+    """The table in Markdown, one section per group."""
+    lines = [", ".join(f"{number} {name}" for name, number in sorted(counts(rows).items())) + ".", ""]
+    for group in GROUPS:
+        mine = [one for one in rows if one["group"] == group]
+        if not mine:
+            continue
+        lines += [f"## {group.capitalize()}", "", "| fault | change | of | crosscheck | report | first seen by |"]
+        lines += ["|---|---|---|---|---|---|"]
+        for one in mine:
+            size = "not computed" if one["size"] is None else f"{100.0 * one['size']:.3g} %"
+            caught = one["caught"]
+            seen = _seen(caught) or f"**{one['verdict']}**" + (f": {one['unseen']}" if one["unseen"] else "")
+            by_check = "fails" if {"refused", "cross-check"} & caught.keys() else "passes"
+            by_report = "fails" if caught else "passes"
+            lines.append(f"| {one['words']} | {size} | {one['quantity']} | {by_check} | {by_report} | {seen} |")
+        lines.append("")
+    return "\n".join(lines).replace("|mu|", "mu")
+
+
+def _seen(caught: Mapping[str, Sequence[str]]) -> str:
+    for part, checks in caught.items():
+        more = f" and {len(checks) - 1} more" if len(checks) > 1 else ""
+        return f"{part}: {checks[0]}{more}".replace("|", "/")
+    return ""
+
+
+def save(rows: Sequence[Mapping[str, Any]], target: Path) -> None:
+    """Write rows as .json, or as a Markdown table."""
+    text = markdown(rows) if target.suffix == ".md" else json.dumps(rows, indent=1, ensure_ascii=False) + "\n"
+    target.write_text(text, encoding="utf-8")
+
+
+def stored() -> list[dict[str, Any]]:
+    """The rows of the table in the documentation."""
+    rows: list[dict[str, Any]] = json.loads(STORED.read_text(encoding="utf-8"))
+    return rows
