@@ -17,16 +17,38 @@ if TYPE_CHECKING:
 
 DOCS = Path(__file__).resolve().parents[1]
 GENERATED = DOCS / "_generated"
-_SOURCES = ("lumped", "multibody", "floquet", "validation", "docs/computed")
+_SOURCES = ("lumped", "multibody", "floquet", "validation", "docs/computed", "docs/verification")
 
 
 def writers() -> Mapping[str, Callable[[], str]]:
     """File name -> what writes its text."""
-    from computed import agreement, diagrams, errata, figures, floquet, interface, paper, schema, verification
+    from computed import (
+        agreement,
+        diagrams,
+        errata,
+        faults,
+        figures,
+        floquet,
+        interface,
+        paper,
+        schema,
+        verification,
+    )
 
     return {
         name: function
-        for module in (verification, floquet, agreement, errata, paper, schema, interface, diagrams, figures)
+        for module in (
+            verification,
+            faults,
+            floquet,
+            agreement,
+            errata,
+            paper,
+            schema,
+            interface,
+            diagrams,
+            figures,
+        )
         for name, function in module.FILES.items()
     }
 
@@ -36,7 +58,7 @@ def state() -> str:
     digest = hashlib.sha256(importlib.metadata.version("spurcheck").encode())
     for folder in _SOURCES:
         for path in sorted((DOCS.parent / folder).rglob("*")):
-            if path.suffix in {".py", ".toml", ".csv", ".js", ".html", ".css"}:
+            if path.suffix in {".py", ".toml", ".json", ".csv", ".js", ".html", ".css"}:
                 digest.update(path.name.encode() + path.read_bytes())
     return digest.hexdigest()
 

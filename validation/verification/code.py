@@ -13,10 +13,12 @@ import numpy as np
 import multibody
 from floquet import gear_pair_multipliers, gear_pair_system, monodromy
 from lumped import GearPair, steady_state
-from lumped.friction import benedict_kelley, xu_kahraman
-from lumped.lubrication.film import effective_modulus, film_parameter, film_thickness, hertz_half_width
+from validation.verification.arithmetic import arithmetic
 from validation.verification.checks import Check
 from validation.verification.closed_forms import closed_forms
+from validation.verification.published import published_checks
+from validation.verification.stability_routes import stability_routes
+from validation.verification.written_twice import written_twice
 
 _CYCLES = 3
 
@@ -29,32 +31,15 @@ def code_checks(pair: GearPair) -> tuple[Check, ...]:
     NumericalError : a model fails on this pair
     """
     return (
-        *_published(),
+        *published_checks(pair),
         *closed_forms(),
+        *written_twice(pair),
+        *arithmetic(pair),
         _block_form(pair),
         *_lumped_identities(pair),
         *(_energy(pair, fidelity) for fidelity in ("linear", "exact")),
+        *stability_routes(pair),
     )
-
-
-def _published() -> Iterator[Check]:
-    """Published formulas against values worked out by hand, to the digits stated."""
-    modulus = effective_modulus(206e3, 0.3, 206e3, 0.3)
-    thickness, width = film_thickness(100, 8, 10, 10, modulus), hertz_half_width(100, 8, modulus)
-    film = (thickness, width, film_parameter(thickness, width, 0.5, 0.8))
-    for key, subject, found, wanted in (
-        ("law_ii", "law II, Benedict and Kelley", [benedict_kelley(100, 10, 2, 10, 0.4)], [0.06235267]),
-        ("law_iii", "law III, Xu and Kahraman", [xu_kahraman(1.0, 0.1, 10, 10, 0.3, 0.008)], [0.01039515]),
-        ("film", "film thickness, Hertzian width, film parameter", film, [0.312115, 0.0948642, 1.281808]),
-    ):
-        yield Check(
-            key=key,
-            subject=subject,
-            exact="values worked out twice from the published formula, apart from this code",
-            value=float(np.abs(np.divide(found, wanted) - 1.0).max()),
-            limit=2e-6,
-            reason="the values are stated to six or seven digits",
-        )
 
 
 def _block_form(pair: GearPair) -> Check:

@@ -1,8 +1,9 @@
 """Floquet multipliers by two routes that share no code but the laws of the tooth pairs.
 
-One is the multibody model's flow map: runs over one mesh cycle from perturbed states, with kinematics, damping
-and friction of its own. The other are the engines of ``floquet``. Matrices are compared where both have them, else
-the coefficients of the characteristic polynomial, which unlike multipliers do not spread where two of them meet.
+One is the multibody model's flow map: runs over one mesh cycle from perturbed states, with kinematics,
+damping and friction of its own. The other are the engines of ``floquet``. Matrices are compared where both
+have them, else the coefficients of the characteristic polynomial, which unlike multipliers do not spread
+where two of them meet.
 """
 
 from __future__ import annotations
@@ -54,7 +55,9 @@ def stability_routes(pair: GearPair) -> tuple[Check, Check]:
             key="compiled_multipliers",
             subject="compiled multipliers of this pair, their characteristic polynomial",
             exact=f"that of {exact}; over its largest coefficient",
-            value=float(np.abs(_polynomial(compiled) - _polynomial(own)).max() / np.abs(_polynomial(own)).max()),
+            value=float(
+                np.abs(_polynomial(compiled) - _polynomial(own)).max() / np.abs(_polynomial(own)).max()
+            ),
             limit=LIMIT,
             reason=reason,
         ),

@@ -19,6 +19,9 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--sample", type=int, metavar="N", help="only N faults, chosen by --seed")
     parser.add_argument("--seed", default="0", help="text that chooses the sample or the sound pairs")
     parser.add_argument("--sound", type=int, metavar="N", help="cross-check N random sound pairs instead")
+    parser.add_argument(
+        "--thorough", action="store_true", help="ask every part, also after the first that sees it"
+    )
     parser.add_argument("-o", "--output", type=Path, help="table as .json or .md")
     given = parser.parse_args(arguments)
     if given.sound is not None:
@@ -30,14 +33,14 @@ def main(arguments: list[str] | None = None) -> int:
         chosen = list(sample(given.sample, given.seed))
     rows = []
     for fault in chosen:
-        outcome = judge(fault)
+        outcome = judge(fault, thorough=given.thorough)
         rows.append(row(fault, outcome))
         said = outcome.first or verdict(fault, outcome)
         print(f"{fault.key:24} {100.0 * outcome.size:9.3g} % {outcome.quantity:32.32} {said}", flush=True)
+        if given.output is not None:
+            save(rows, given.output)
     found = counts(rows)
     print(", ".join(f"{number} {name}" for name, number in found.items()))
-    if given.output is not None:
-        save(rows, given.output)
     return int(found.get("missed", 0) > 0)
 
 

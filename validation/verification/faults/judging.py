@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import contextlib
 import time
+import tomllib
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 from lumped import GearPair, LawRangeWarning, load_gear_pair
+from lumped.typing import FloatArray
 from validation.cross_check.comparison import crosscheck
 from validation.verification.code import code_checks
 from validation.verification.faults.fault import Fault
 from validation.verification.faults.quantities import FELT, change, quantities
 from validation.verification.faults.rewriting import applied
-from validation.verification.solution import refinements
+from validation.verification.solution import enough_samples, refinements
 
 PAIR = "nasa_28_28"
 #: The default pair with nothing alike on both sides, where faults show that symmetry hides.
@@ -107,7 +110,7 @@ def judge(fault: Fault, *, thorough: bool = True) -> Outcome:
     FaultError : the fault does not fit the program
     """
     with _quiet():
-        before = [quantities(pair) for pair in pairs(fault)]
+        before = _sound(tuple(_plain(pair) for pair in pairs(fault)))
         started = time.perf_counter()
         size, quantity = 0.0, ""
         caught: dict[str, tuple[str, ...]] = {}
@@ -117,24 +120,36 @@ def judge(fault: Fault, *, thorough: bool = True) -> Outcome:
                 size, quantity = max((size, quantity), change(old, quantities(pair)))
             for part, checks in _CHECKS.items():
                 if made and (thorough or not any(caught.values())):
-                    caught[part] = tuple(dict.fromkeys(name for pair in made for name in _failing(checks, pair)))
+                    caught[part] = tuple(
+                        dict.fromkeys(name for pair in made for name in _failing(checks, pair))
+                    )
     if not made:
         size = float("inf")
     return Outcome(size, quantity, caught, time.perf_counter() - started)
+
+
+@lru_cache(maxsize=64)
+def _sound(texts: tuple[str, ...]) -> tuple[Mapping[str, FloatArray], ...]:
+    """Quantities of the sound program for pairs given as text."""
+    return tuple(quantities(load_gear_pair(tomllib.loads(text))) for text in texts)
+
+
+def _plain(pair: GearPair) -> str:
+    return pair.to_toml()
 
 
 def _made(fault: Fault, caught: dict[str, tuple[str, ...]]) -> Iterator[GearPair]:
     """The pairs of a program with the fault; one that it refuses is caught."""
     try:
         yield from pairs(fault, wrong=True)
-    except Exception as error:
+    except Exception as error:  # noqa: BLE001  (whatever stops a program with a fault is seen)
         caught["refused"] = (_line(error),)
 
 
 def _failing(checks: Callable[[GearPair], Iterator[str]], pair: GearPair) -> list[str]:
     try:
         return list(checks(pair))
-    except Exception as error:  # whatever stops a command is seen by its user
+    except Exception as error:  # noqa: BLE001  (as above)
         return [_line(error)]
 
 
@@ -154,7 +169,7 @@ def _code(pair: GearPair) -> Iterator[str]:
 
 
 def _solution(pair: GearPair) -> Iterator[str]:
-    for refinement in refinements(pair, _SAMPLES):
+    for refinement in refinements(pair, enough_samples(pair, _SAMPLES)):
         if not refinement.passes:
             yield refinement.key
 

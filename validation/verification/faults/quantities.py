@@ -37,7 +37,14 @@ def quantities(pair: GearPair) -> dict[str, FloatArray]:
     pair : a validated gear pair
     """
     found: dict[str, FloatArray] = {}
-    for compute in (_path, _motion, _report, _stability, partial(_multibody, "linear"), partial(_multibody, "exact")):
+    for compute in (
+        _path,
+        _motion,
+        _report,
+        _stability,
+        partial(_multibody, "linear"),
+        partial(_multibody, "exact"),
+    ):
         with np.errstate(all="ignore"):
             try:
                 found |= compute(pair)
@@ -107,7 +114,7 @@ def _motion(pair: GearPair) -> dict[str, FloatArray]:
     found = _numbers(motion, "motion") | _attributes(motion, "motion", "mesh_efficiency", "brake_torque")
     run = lumped.simulate(pair, 2, samples_per_cycle=SAMPLES, rtol=1e-9)
     found |= _numbers(run[["dte", "x_p", "theta_g_dot"]], "transient")
-    still = lumped.static_transmission_error(pair, samples_per_cycle=SAMPLES)
+    still = lumped.static_transmission_error(pair)
     return found | _numbers(still, "at rest")
 
 
@@ -126,7 +133,9 @@ def _report(pair: GearPair) -> dict[str, FloatArray]:
         "resonant speeds": np.array([mode.resonant_speed for mode in modes(pair)]),
     }
     found |= _numbers(static, "quasi-static") | _numbers(losses, "losses")
-    found |= _attributes(static, "quasi-static", "mesh_efficiency", "power_loss", "loss_factor", "mean_coefficient")
+    found |= _attributes(
+        static, "quasi-static", "mesh_efficiency", "power_loss", "loss_factor", "mean_coefficient"
+    )
     return found | _attributes(losses, "losses", "input_power", "power_loss", "mesh_efficiency")
 
 
@@ -134,13 +143,22 @@ def _stability(pair: GearPair) -> dict[str, FloatArray]:
     """Multipliers by both routes, and the bound of the compiled one."""
     general, compiled = gear_pair_multipliers(pair, 1e-9), fast_multipliers(gear_block(pair))
     return {
-        "multipliers": np.sort(np.abs(general.multipliers)),
-        "compiled multipliers": np.sort(np.abs(compiled.multipliers[0])),
+        "decay per cycle": 1.0 - np.sort(np.abs(general.multipliers)),
+        "decay per cycle, compiled": 1.0 - np.sort(np.abs(compiled.multipliers[0])),
         "bound of the compiled multipliers": np.asarray(compiled.matrix_errors, dtype=float).ravel()[:1],
     }
 
 
 def _multibody(fidelity: str, pair: GearPair) -> dict[str, FloatArray]:
     motion = multibody.steady_state(pair, fidelity=fidelity, samples_per_cycle=SAMPLES, rtol=1e-8)  # type: ignore[arg-type]
-    names = ["dte", "x_p", "y_p", "y_g", "normal_load", "friction_force", "sliding_velocity", "bearing_force_y_g"]
+    names = [
+        "dte",
+        "x_p",
+        "y_p",
+        "y_g",
+        "normal_load",
+        "friction_force",
+        "sliding_velocity",
+        "bearing_force_y_g",
+    ]
     return _numbers(motion[names], f"multibody {fidelity}")

@@ -7,7 +7,7 @@ import random
 import time
 import warnings
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -60,7 +60,9 @@ def _varied(base: GearPair, rng: random.Random) -> GearPair:
     if rng.random() < 0.5:  # gears of other sizes, meshing without backlash but for the thinning
         shifts = {f"{gear}.profile_shift": rng.uniform(0.0, 0.3) for gear in ("pinion", "gear")}
         teeth = {f"{gear}.teeth": rng.randint(20, 60) for gear in ("pinion", "gear")}
-        lengths = {f"{gear}.{what}": None for gear in ("pinion", "gear") for what in ("tip_diameter", "addendum")}
+        lengths = {
+            f"{gear}.{what}": None for gear in ("pinion", "gear") for what in ("tip_diameter", "addendum")
+        }
         reliefs = {f"{gear}.tip_relief": None for gear in ("pinion", "gear")}
         fields |= {**shifts, **teeth, **lengths, **reliefs, "centre_distance": None}
     elif base.pinion.tip_relief is not None and rng.random() < 0.6:
@@ -90,6 +92,24 @@ def sound_pairs(count: int, seed: str, output: Path | None = None) -> int:
     return int(verdicts["not confirmed"] > 0)
 
 
+def summary(rows: Sequence[Mapping[str, Any]]) -> str:
+    """What became of sound pairs, in Markdown."""
+    verdicts = Counter(row["verdict"] for row in rows)
+    judged = [row for row in rows if "use" in row]
+    worst = max(judged, key=lambda row: row["use"])
+    seconds = sum(row["seconds"] for row in rows) / len(rows)
+    counted = ", ".join(f"{n} {name}" for name, n in sorted(verdicts.items()))
+    lines = [
+        f"{len(rows)} pairs: {counted}. Largest use of a limit: {worst['use']:.2f} ({worst['check']}). "
+        f"{seconds:.1f} s per pair.",
+        "",
+    ]
+    for row in rows:
+        if row["verdict"] == "not confirmed":
+            lines.append(f"- {row['name']} ({row['preset']}): {'; '.join(row['failures'])}")
+    return "\n".join(lines) + "\n"
+
+
 def _row(pair: GearPair, name: str) -> dict[str, Any]:
     started = time.perf_counter()
     with warnings.catch_warnings():
@@ -109,7 +129,7 @@ def _row(pair: GearPair, name: str) -> dict[str, Any]:
         "preset": pair.name,
         "verdict": check.verdict,
         "failures": [f"{f.check}: {f.value:.3g} > {f.limit:.3g}" for f in check.failures],
-        "worst": worst.check,
+        "check": worst.check,
         "use": worst.value / worst.limit if worst.limit > 0.0 else 0.0,
         "law": pair.friction.law,
         "stiffness": pair.mesh.stiffness.model,

@@ -15,9 +15,6 @@ from validation.verification.faults.catalogue import FAULTS, GROUPS
 from validation.verification.faults.fault import Fault
 from validation.verification.faults.judging import Outcome
 
-#: Table that the documentation shows, made by ``python -m validation.verification.faults -o``.
-STORED = Path(__file__).with_name("table.json")
-
 
 def sample(count: int, seed: str) -> tuple[Fault, ...]:
     """Some of the faults, chosen by a text such as a commit's name.
@@ -67,7 +64,11 @@ def markdown(rows: Sequence[Mapping[str, Any]]) -> str:
         mine = [one for one in rows if one["group"] == group]
         if not mine:
             continue
-        lines += [f"## {group.capitalize()}", "", "| fault | change | of | crosscheck | report | first seen by |"]
+        lines += [
+            f"## {group.capitalize()}",
+            "",
+            "| fault | change | of | crosscheck | report | first seen by |",
+        ]
         lines += ["|---|---|---|---|---|---|"]
         for one in mine:
             size = "not computed" if one["size"] is None else f"{100.0 * one['size']:.3g} %"
@@ -75,7 +76,9 @@ def markdown(rows: Sequence[Mapping[str, Any]]) -> str:
             seen = _seen(caught) or f"**{one['verdict']}**" + (f": {one['unseen']}" if one["unseen"] else "")
             by_check = "fails" if {"refused", "cross-check"} & caught.keys() else "passes"
             by_report = "fails" if caught else "passes"
-            lines.append(f"| {one['words']} | {size} | {one['quantity']} | {by_check} | {by_report} | {seen} |")
+            lines.append(
+                f"| {one['words']} | {size} | {one['quantity']} | {by_check} | {by_report} | {seen} |"
+            )
         lines.append("")
     return "\n".join(lines).replace("|mu|", "mu")
 
@@ -91,9 +94,3 @@ def save(rows: Sequence[Mapping[str, Any]], target: Path) -> None:
     """Write rows as .json, or as a Markdown table."""
     text = markdown(rows) if target.suffix == ".md" else json.dumps(rows, indent=1, ensure_ascii=False) + "\n"
     target.write_text(text, encoding="utf-8")
-
-
-def stored() -> list[dict[str, Any]]:
-    """The rows of the table in the documentation."""
-    rows: list[dict[str, Any]] = json.loads(STORED.read_text(encoding="utf-8"))
-    return rows

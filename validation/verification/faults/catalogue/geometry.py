@@ -199,7 +199,11 @@ TEETH = (
         "c[2] / z_1\n        + c[1] / z_2",
     ),
     Fault(
-        "iso_mean", "ISO 6336: mean stiffness without its 0.25", f"{_ISO}:mean_mesh_stiffness", "return single * (0.75 * contact_ratio + 0.25)", "return single * (0.75 * contact_ratio)"
+        "iso_mean",
+        "ISO 6336: mean stiffness without its 0.25",
+        f"{_ISO}:mean_mesh_stiffness",
+        "return single * (0.75 * contact_ratio + 0.25)",
+        "return single * (0.75 * contact_ratio)",
     ),
     Fault(
         "iso_width",

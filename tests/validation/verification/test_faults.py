@@ -1,0 +1,117 @@
+"""Are the verdicts judged fairly: do faults go in, show, get caught, and come out without a trace?"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import validation
+from lumped.errors import LawRangeWarning
+from validation.verification.code import code_checks
+from validation.verification.faults.catalogue import FAULTS, GROUPS
+from validation.verification.faults.fault import Fault
+from validation.verification.faults.judging import judge, pairs
+from validation.verification.faults.quantities import change, quantities, same
+from validation.verification.faults.rewriting import FaultError, applied
+from validation.verification.faults.sound import drawn
+from validation.verification.faults.table import markdown, row, sample, verdict
+
+pytestmark = pytest.mark.filterwarnings(f"ignore::{LawRangeWarning.__module__}.LawRangeWarning")
+
+
+def source_digest() -> str:
+    """Digest of the source tree: every commit that changes code draws another sample."""
+    root = Path(validation.__file__).parents[1]
+    digest = hashlib.sha256()
+    for package in ("lumped", "multibody", "floquet", "validation"):
+        for path in sorted((root / package).rglob("*.py")):
+            digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def cheap() -> list[Fault]:
+    """Faults that do not need the compiler."""
+    kernels = ("kinematics:", "kernels:", "kernels_linear:", "friction:")
+    return [
+        f
+        for f in FAULTS.values()
+        if not f.target.startswith(tuple(f"multibody.contact.{k}" for k in kernels))
+    ]
+
+
+@pytest.fixture(scope="module")
+def sound():
+    return [quantities(pair) for pair in pairs()]
+
+
+def test_every_fault_fits_the_program():
+    """A line that a fault changes is there, once; 60 faults and more, each with a name of its own."""
+    assert len(FAULTS) == sum(len(faults) for faults in GROUPS.values()) >= 60
+    for fault in cheap():
+        with applied(fault):
+            pass
+
+
+def test_faults_leave_no_trace(sound):
+    for fault in sample(8, "trace"):
+        if fault in cheap():
+            with applied(fault):
+                list(pairs(fault))
+    assert all(same(before, quantities(pair)) for before, pair in zip(sound, pairs(), strict=True))
+
+
+def test_a_fault_acts_wherever_its_function_is_held(sound):
+    """A method, a function imported by name, a function held by a record, a compiled one, a cached one."""
+    for key in ("eq2_arm", "radius", "law_iii_radius", "friction_twice", "mesh_period", "floquet_stiffness"):
+        with applied(FAULTS[key]):
+            changes = [change(old, quantities(pair))[0] for old, pair in zip(sound, pairs(), strict=True)]
+        assert max(changes) > 0.01, key
+
+
+def test_a_fault_whose_line_is_gone_is_told():
+    with (
+        pytest.raises(FaultError, match="0 times 'no such text'"),
+        applied(Fault("gone", "", "lumped.model.bodies:solid_disc", "no such text", "")),
+    ):
+        pass
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fault", sample(3, source_digest()), ids=lambda fault: fault.key)
+def test_faults_drawn_by_the_source_are_caught(fault):
+    """Another three at every change of the code; ``python -m validation.verification.faults`` runs all."""
+    outcome = judge(fault, thorough=False)
+    assert verdict(fault, outcome) in ("caught", "only measurement can tell")
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_the_sound_program_passes_every_check_on_the_pair_and_its_twin(number):
+    pair = list(pairs())[number]
+    assert [check.key for check in code_checks(pair) if not check.passes] == []
+
+
+def test_the_stored_table_is_of_these_faults_and_misses_none():
+    folder = Path(__file__).parents[3] / "docs" / "verification"
+    rows = json.loads((folder / "faults.json").read_text(encoding="utf-8"))
+    assert {one["key"] for one in rows} == set(FAULTS)
+    assert [one["key"] for one in rows if one["verdict"] in ("missed", "no effect")] == []
+    for one in rows:
+        assert bool(one["caught"]) == (one["verdict"] == "caught")
+
+
+def test_the_table_says_which_check_saw_a_fault():
+    fault = FAULTS["speed_unit"]
+    shown = markdown([row(fault, judge(fault, thorough=False))])
+    assert "code verification: frequencies" in shown
+    assert "| passes | fails |" in shown  # the cross-check does not use it
+
+
+def test_sound_pairs_are_drawn_alike_by_one_seed():
+    first, again = ([pair.to_toml() for pair in drawn(5, "7")] for _ in range(2))
+    assert first == again
+    assert len(set(first)) == 5
+    assert np.unique([pair.mesh.stiffness.model for pair in drawn(20, "7")]).size >= 2

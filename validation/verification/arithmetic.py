@@ -1,0 +1,183 @@
+"""What the report works out from a motion, against laws of mechanics and hand calculation on this pair."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from floquet.gear.chart_axes import operating_rpm
+from lumped import GearPair, bodies, steady_state
+from lumped.errors import NumericalError
+from lumped.gear_geometry.geometry import Geometry
+from lumped.losses import dynamic_losses, loss_factor, ohlendorf_of, quasi_static_losses
+from lumped.model.averaged import averaged_matrix, modes
+from lumped.model.periodic_system import periodic_system
+from lumped.quasi_static.load_sharing import share_load
+from validation.cross_check.metrics import mesh_orders
+from validation.verification.checks import Check
+
+_SAMPLES = 512
+
+
+def arithmetic(pair: GearPair) -> tuple[Check, ...]:
+    """Checks of orders, speeds, losses, frequencies and forces as the report shows them.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+
+    Raises
+    ------
+    NumericalError : the pair has no periodic motion
+    """
+    return (_orders(), _speeds(pair), _losses(pair), _forces(pair), _averaged(pair), _sharing())
+
+
+def _worst(
+    key: str, subject: str, exact: str, rows: list[tuple[float, float]], limit: float, reason: str
+) -> Check:
+    value = max(abs(found - wanted) / max(abs(wanted), 1e-300) for found, wanted in rows)
+    return Check(key, subject, exact, value, limit, reason)
+
+
+def _orders() -> Check:
+    phase = 2.0 * np.pi * np.arange(64) / 64
+    found = mesh_orders(3.0 + 2.0 * np.cos(phase + 0.4) + 0.5 * np.sin(3.0 * phase), 64, 4)
+    rows = list(zip(found.amplitude + 1.0, (4.0, 3.0, 1.0, 1.5, 1.0), strict=True))
+    return _worst(
+        "mesh_orders",
+        "amplitudes by mesh order",
+        "amplitudes that a sum of cosines was made with",
+        [*rows, (float(found.phase[1]), 0.4)],
+        1e-12,
+        "rounding",
+    )
+
+
+def _speeds(pair: GearPair) -> Check:
+    """Speed in rpm, natural frequency off the line of action and its speed, from the fields of the schema."""
+    rows = [(operating_rpm(pair), pair.operating.pinion_speed * 60.0 / (2.0 * math.pi))]
+    try:
+        found = modes(pair)
+    except NumericalError:
+        found = ()
+    for mass, bearing in zip(
+        (bodies(pair).mass_pinion, bodies(pair).mass_gear),
+        (pair.bearings.pinion, pair.bearings.gear),
+        strict=True,
+    ):
+        wanted = math.sqrt(bearing.oloa_stiffness / mass) / (2.0 * math.pi)
+        near = min(found, key=lambda mode: abs(mode.natural_frequency - wanted), default=None)
+        if near is not None:
+            rows.append((near.natural_frequency, wanted))
+            rows.append((near.resonant_speed, 60.0 * near.natural_frequency / pair.pinion.teeth))
+    return _worst(
+        "frequencies",
+        "speed, natural frequencies off the line of action and their resonant speeds",
+        "sqrt(K/m)/(2 pi) of each bearing, and 60 f over the teeth of the pinion",
+        rows,
+        1e-6,
+        "an eigenvalue solver finds close frequencies to the root of rounding",
+    )
+
+
+def _losses(pair: GearPair) -> Check:
+    """Losses of the mesh at rest of a pair whose friction is one coefficient, and its loss factor by hand."""
+    mu = 0.05
+    plain = pair.with_({"friction.law": "coulomb", "friction.coefficient": mu})
+    still = quasi_static_losses(plain, sharing="uniform", samples_per_cycle=8).attrs
+    power = pair.operating.pinion_torque * pair.operating.pinion_speed
+    loss = _uniform_loss_factor(pair.geometry)
+    rows = [
+        (still["input_power"], power),
+        (loss_factor(pair, "uniform"), loss),
+        (1.0 - still["mesh_efficiency"], still["power_loss"] / power),
+        (still["power_loss"] / (mu * power), loss),
+    ]
+    motion = steady_state(pair, samples_per_cycle=8)
+    rows.append(
+        (
+            dynamic_losses(pair, motion).attrs["input_power"],
+            motion.attrs["pinion_torque"] * pair.operating.pinion_speed,
+        )
+    )
+    g = pair.geometry
+    arms = ((g.L_XD - g.L_XP) / g.base_pitch, (g.L_XP - g.L_XA) / g.base_pitch)
+    if max(arms) <= 1.0 and min(arms) > 0.0 and 1.0 < g.contact_ratio < 2.0:
+        rows.append((ohlendorf_of(pair), loss))
+    return _worst(
+        "losses",
+        "loss factors, input power and efficiency of this pair at rest, for one friction coefficient",
+        "mean sliding velocity under equally shared load, summed over the cycle here",
+        rows,
+        0.02,
+        "the loss is that factor to first order in mu = 0.05; half a percent of it remains",
+    )
+
+
+def _uniform_loss_factor(g: Geometry) -> float:
+    """Mean over the cycle of the sliding velocities of pairs that share the load equally, over v_t."""
+    phase = (np.arange(20000) + 0.5) / 20000
+    xi = g.L_XA + (phase[:, None] + np.arange(5)) * g.base_pitch
+    touching = xi < g.L_XD
+    arm = np.abs(xi - g.base_radius_pinion * math.tan(g.operating_pressure_angle)) * touching
+    per_pair = arm.sum(axis=1) / touching.sum(axis=1)
+    return float(per_pair.mean()) * (1.0 / g.base_radius_pinion + 1.0 / g.base_radius_gear)
+
+
+def _forces(pair: GearPair) -> Check:
+    """Mean bearing forces and mean friction power of the periodic motion, from other columns of its table."""
+    motion = steady_state(pair, samples_per_cycle=_SAMPLES)
+    b = pair.bearings
+    rows = []
+    for name, k in (
+        ("x_p", b.pinion.loa_stiffness),
+        ("x_g", b.gear.loa_stiffness),
+        ("y_p", b.pinion.oloa_stiffness),
+        ("y_g", b.gear.oloa_stiffness),
+    ):
+        scale = k * max(float(np.abs(motion[name]).max()), 1e-300)
+        mean = float(motion[f"bearing_force_{name}"].mean())
+        rows.append((mean / scale + 1.0, 1.0 - k * float(motion[name].mean()) / scale))
+    static = pair.operating.pinion_torque / (0.5 * pair.basic_rack.module * pair.pinion.teeth)
+    static /= math.cos(pair.basic_rack.pressure_angle)
+    omega_p, teeth = pair.operating.pinion_speed, pair.pinion.teeth / pair.gear.teeth
+    sliding = omega_p * motion["position"] - omega_p * teeth * (pair.geometry.L_XY - motion["position"])
+    wanted = -(motion["friction_force"] * sliding).sum("pair")
+    size = max(float(np.abs(wanted).max()), 1e-300)
+    found = motion["friction_power_nominal"].sum("pair")
+    rows.append((float(np.abs(found - wanted).max()) / size + 1.0, 1.0))
+    return _worst(
+        "forces",
+        "bearing forces and friction power of the periodic motion",
+        "stiffness times displacement in the mean; friction force times nominal sliding velocity",
+        rows,
+        1e-4,
+        "the damping force has no mean over a whole cycle, but for samples beside a jump",
+    )
+
+
+def _averaged(pair: GearPair) -> Check:
+    system = periodic_system(pair, "relative")
+    samples = 4096
+    matrices = system.matrices((np.arange(samples) + 0.5) * (system.period / samples))
+    mean = np.asarray(matrices.mean(axis=0))
+    error = float(np.abs(averaged_matrix(system) - mean).max() / np.abs(mean).max())
+    return Check(
+        key="averaged",
+        subject="averaged system, from which natural frequencies come",
+        exact="mean of A(t) at 4096 times",
+        value=error,
+        limit=2e-3,
+        reason="a sample to either side of each jump",
+    )
+
+
+def _sharing() -> Check:
+    """Three springs of unequal stiffness and error, solved by hand: the third stays apart."""
+    found = share_load([2e8, 1e8, 3e8], [0.0, 2e-6, 1.0], 1000.0)
+    delta = (1000.0 + 1e8 * 2e-6) / 3e8
+    rows = [(float(found.transmission_error), delta), (float(found.load[0]), 2e8 * delta)]
+    rows += [(float(found.load[1]), 1e8 * delta - 200.0)]
+    return _worst("load_sharing", "static load sharing", "a case solved by hand", rows, 1e-12, "rounding")

@@ -1,0 +1,175 @@
+"""What the lumped and the multibody model each work out from the drawing, side by side before any motion.
+
+The cross-check compares motions; here the numbers that enter them are compared, for every friction law and
+whatever this pair uses, so that a difference has a name.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from lumped import GearPair, bodies
+from lumped.errors import ParameterError
+from lumped.friction.registry import FRICTIONAL
+from lumped.model.mesh_elements import mesh_elements
+from lumped.path_of_contact import friction_path_function
+from lumped.quasi_static.tooth_error import relief_error
+from lumped.stiffness import iso6336
+from lumped.typing import FloatArray
+from multibody.contact import kernels as kn
+from multibody.contact.drawing import circles, masses
+from multibody.contact.machine import machine
+from validation.verification.checks import Check
+
+_OWN = "the same from the drawing by the multibody model; relative"
+_PLACES = 101
+#: Laws near the pitch point vary fast, and a place is known to rounding only.
+_LAW_LIMIT = 1e-8
+
+
+def written_twice(pair: GearPair) -> tuple[Check, ...]:
+    """Geometry, bodies, damping, relief and every friction law of a pair, from both models.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    """
+    return (_geometry(pair), _bodies(pair), _damping(pair), _laws(pair), _stiffness(pair), *_relief(pair))
+
+
+def _check(
+    key: str, subject: str, found: FloatArray, wanted: FloatArray, limit: float, exact: str = _OWN
+) -> Check:
+    size = np.maximum(np.abs(wanted), 1e-300)
+    value = float(np.max(np.abs(found - wanted) / size))
+    return Check(
+        key, subject, exact, value, limit, "two formulas for one number: rounding, or the error of a fit"
+    )
+
+
+def _geometry(pair: GearPair) -> Check:
+    g, c = pair.geometry, circles(pair)
+    both = c.base_pinion + c.base_gear
+    omega = pair.operating.pinion_speed
+    start, end = c.tangent - c.reach_gear, c.reach_pinion
+    rows = [
+        (g.base_radius_pinion, c.base_pinion),
+        (g.base_radius_gear, c.base_gear),
+        (g.tip_radius_pinion, c.tip_pinion),
+        (g.tip_radius_gear, c.tip_gear),
+        (g.base_pitch, c.pitch),
+        (g.centre_distance, c.centre_distance),
+        (g.L_XY, c.tangent),
+        (g.L_XA, start),
+        (g.L_XB, end - c.pitch),
+        (g.L_XP, c.tangent * c.base_pinion / both),
+        (g.L_XC, start + c.pitch),
+        (g.L_XD, end),
+        (g.contact_ratio, (end - start) / c.pitch),
+        (g.pairs, math.floor((end - start) / c.pitch) + 1),
+        (g.omega_gear, omega * pair.pinion.teeth / pair.gear.teeth),
+        (g.mesh_period, 2.0 * math.pi / (omega * pair.pinion.teeth)),
+        (g.face_width, min(pair.pinion.face_width, pair.gear.face_width)),
+    ]
+    found, wanted = np.array(rows, dtype=float).T
+    return _check("geometry", "circles, path of contact and speeds of this pair", found, wanted, 1e-9)
+
+
+def _bodies(pair: GearPair) -> Check:
+    b, (mass, inertia) = bodies(pair), masses(pair)
+    c = circles(pair)
+    own = 1.0 / (c.base_pinion**2 / inertia[0] + c.base_gear**2 / inertia[1])
+    found = np.array([b.mass_pinion, b.mass_gear, b.inertia_pinion, b.inertia_gear, b.effective_mass])
+    return _check(
+        "bodies", "masses and inertias of this pair", found, np.array([*mass, *inertia, own]), 1e-12
+    )
+
+
+def _inside(pair: GearPair) -> FloatArray:
+    g = pair.geometry
+    return np.linspace(g.L_XA, g.L_XD, _PLACES + 2)[1:-1]
+
+
+def _damping(pair: GearPair) -> Check:
+    elements, xi, p = mesh_elements(pair), _inside(pair), machine(pair).parameters
+    own = p[kn.DAMPING] * np.sqrt(np.maximum(elements.stiffness(xi), 0.0))
+    scale = max(float(np.abs(own).max()), 1e-300)
+    found = elements.damping(xi)
+    return _check("mesh_damping", "damping of a tooth pair", found / scale + 1.0, own / scale + 1.0, 1e-6)
+
+
+def _laws(pair: GearPair) -> Check:
+    """Largest difference of a friction coefficient, over its largest value."""
+    worst, xi = 0.0, _inside(pair)
+    for name in FRICTIONAL:
+        try:
+            law = friction_path_function(pair, name)
+            p = machine(pair.with_(friction__law=name)).parameters
+        except ParameterError:  # a law that this pair does not allow
+            continue
+        own = np.array([kn.nominal_friction(p, x) for x in xi])
+        away = np.abs(law(xi) - own)
+        # Where a law jumps, rounding of the place decides; such a place is left out.
+        away[np.abs(xi[:, None] - np.append(law.switches, 0.0)).min(axis=1) < 1e-9] = 0.0
+        worst = max(worst, float(away.max() / max(np.abs(own).max(), 1e-300)))
+    return Check(
+        "friction_laws",
+        "every friction law along the path of contact of this pair",
+        "the same law as the multibody model has it, with conversions of its own; over its largest value",
+        worst,
+        _LAW_LIMIT,
+        "polynomials fitted to 1e-10",
+    )
+
+
+def _stiffness(pair: GearPair) -> Check:
+    """The formulas of ISO 6336-1, eqs. (82) to (93), once more; and what the pair's curve makes of them."""
+    gears = sorted((pair.pinion, pair.gear), key=lambda gear: (gear.teeth, -gear.profile_shift))
+    (z1, x1), (z2, x2) = ((gear.teeth, gear.profile_shift) for gear in gears)
+    q = 0.04723 + 0.15551 / z1 + 0.25791 / z2 - 0.00635 * x1 - 0.11654 * x1 / z1 - 0.00193 * x2
+    q += -0.24188 * x2 / z2 + 0.00529 * x1**2 + 0.00182 * x2**2
+    rack = pair.basic_rack
+    factor = 1.0 + 0.5 * (1.2 - rack.dedendum_coefficient)
+    factor *= 1.0 - 0.02 * (20.0 - math.degrees(rack.pressure_angle))
+    e1, e2 = pair.pinion.youngs_modulus, pair.gear.youngs_modulus
+    width = min(pair.pinion.face_width, pair.gear.face_width)
+    single = 0.8 * factor / q * 2.0 * e1 * e2 / (e1 + e2) / 206e9 * 1e9 * width
+    c = circles(pair)
+    ratio = (c.reach_pinion - c.tangent + c.reach_gear) / c.pitch
+    mean = single * (0.75 * ratio + 0.25)
+    rows = [(iso6336.single_of(pair), single), (iso6336.mean_of(pair), mean)]
+    model = pair.mesh.stiffness
+    elements = mesh_elements(pair.with_({"mesh.relief": "ignored"}))
+    if model.model == "rectangular" and model.pair_stiffness is None:
+        rows.append((elements.stiffness.mean(), single))
+    if (
+        model.model == "parabolic"
+        and model.peak is None
+        and model.end_ratio is None
+        and not model.ramp_length
+    ):
+        rows.append((elements.stiffness.mean() * ratio, mean))
+    found, wanted = np.array(rows).T
+    return _check(
+        "iso6336",
+        "stiffness of this pair's teeth by ISO 6336-1, and its curve where that is built on it",
+        found,
+        wanted,
+        1e-9,
+        "the standard's equations (82) to (93), written once more here; relative",
+    )
+
+
+def _relief(pair: GearPair) -> Iterator[Check]:
+    reliefs = [r for gear in (pair.pinion, pair.gear) for r in (gear.tip_relief, gear.root_relief) if r]
+    if not reliefs:
+        return
+    xi, p = _inside(pair), machine(pair.with_({"mesh.relief": "static"})).parameters
+    own = np.array([kn.relief_at(p, x)[0] for x in xi])
+    scale = float(sum(r.amount for r in reliefs))
+    yield _check(
+        "relief", "relief of both flanks", relief_error(pair, xi) / scale + 1.0, own / scale + 1.0, 1e-9
+    )
