@@ -99,11 +99,11 @@ def _path(pair: GearPair) -> dict[str, FloatArray]:
     profile = friction_profile(pair, points=101)
     grid = np.linspace(0.0, 1.0, 101)
     low, high = float(profile["xi"][0]), float(profile["xi"][-1])
-    for name, values in profile.data_vars.items():
+    for quantity, values in profile.data_vars.items():
         if "xi" in values.dims and values.dtype.kind == "f":
             rows = np.atleast_2d(values.to_numpy())
             at = (profile["xi"].to_numpy() - low) / (high - low)
-            found[f"path {name}"] = np.array([np.interp(grid, at, row) for row in rows])
+            found[f"path {quantity}"] = np.array([np.interp(grid, at, row) for row in rows])
     found |= _numbers(friction_profile(pair, points=101)[["mean_mu"]], "path")
     return found | _numbers(iso_comparison(pair), "ISO 6336")
 
@@ -112,6 +112,7 @@ def _motion(pair: GearPair) -> dict[str, FloatArray]:
     """Periodic motion, transient, transmission error at rest."""
     motion = lumped.steady_state(pair, samples_per_cycle=SAMPLES)
     found = _numbers(motion, "motion") | _attributes(motion, "motion", "mesh_efficiency", "brake_torque")
+    found["share of power lost"] = 1.0 - found["motion mesh_efficiency"]
     run = lumped.simulate(pair, 2, samples_per_cycle=SAMPLES, rtol=1e-9)
     found |= _numbers(run[["dte", "x_p", "theta_g_dot"]], "transient")
     still = lumped.static_transmission_error(pair)

@@ -90,7 +90,7 @@ FRICTION = (
         f"{_II}:_cap",
         "min(settings.maximum, float(_level(nearest, path).min()))",
         "float(_level(nearest, path).min())",
-        _ON_II,
+        _ON_II | {"friction.maximum": 0.04},
     ),
     Fault(
         "law_iii_radius",
