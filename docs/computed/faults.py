@@ -1,4 +1,4 @@
-"""The table of faults and the sound pairs, as stored by ``python -m validation.verification.faults``."""
+"""The table of faults and the sound pairs, as stored by ``python -m validation.faults``."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-from validation.verification.faults.sound import summary
-from validation.verification.faults.table import markdown
+from validation.faults.sound import summary
+from validation.faults.table import markdown
 
 FOLDER = Path(__file__).resolve().parents[1] / "verification"
 

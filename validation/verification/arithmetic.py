@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from floquet.gear.chart_axes import operating_rpm
+from floquet.gear.axes import operating_rpm
 from lumped import GearPair, bodies, steady_state
 from lumped.errors import NumericalError
 from lumped.gear_geometry.geometry import Geometry
@@ -140,18 +140,24 @@ def _forces(pair: GearPair) -> Check:
         scale = k * max(float(np.abs(motion[name]).max()), 1e-300)
         mean = float(motion[f"bearing_force_{name}"].mean())
         rows.append((mean / scale + 1.0, 1.0 - k * float(motion[name].mean()) / scale))
-    static = pair.operating.pinion_torque / (0.5 * pair.basic_rack.module * pair.pinion.teeth)
-    static /= math.cos(pair.basic_rack.pressure_angle)
     omega_p, teeth = pair.operating.pinion_speed, pair.pinion.teeth / pair.gear.teeth
     sliding = omega_p * motion["position"] - omega_p * teeth * (pair.geometry.L_XY - motion["position"])
     wanted = -(motion["friction_force"] * sliding).sum("pair")
     size = max(float(np.abs(wanted).max()), 1e-300)
     found = motion["friction_power_nominal"].sum("pair")
     rows.append((float(np.abs(found - wanted).max()) / size + 1.0, 1.0))
+    if pair.operating.brake_torque == "balanced":
+        rows.append((float(motion.attrs["pinion_torque"]), pair.operating.pinion_torque))
+    # A pair is in contact from A to D; samples on either end may round to either side.
+    g, place = pair.geometry, motion["position"].to_numpy()
+    clear = np.minimum(np.abs(place - g.L_XA), np.abs(place - g.L_XD)) > 1e-6 * g.base_pitch
+    wrong = (motion["contact"].to_numpy() > 0.0) != ((place > g.L_XA) & (place < g.L_XD))
+    rows.append((1.0 + float((wrong & clear).sum()), 1.0))
     return _worst(
         "forces",
-        "bearing forces and friction power of the periodic motion",
-        "stiffness times displacement in the mean; friction force times nominal sliding velocity",
+        "bearing forces, friction power, contacts and driving torque of the periodic motion",
+        "stiffness times displacement in the mean; friction force times nominal sliding velocity; contact "
+        "from A to D; the torque of the parameter file",
         rows,
         1e-4,
         "the damping force has no mean over a whole cycle, but for samples beside a jump",

@@ -11,9 +11,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from validation.verification.faults.catalogue import FAULTS, GROUPS
-from validation.verification.faults.fault import Fault
-from validation.verification.faults.judging import Outcome
+from validation.faults.catalogue import FAULTS, GROUPS
+from validation.faults.fault import Fault
+from validation.faults.judging import Outcome
 
 
 def sample(count: int, seed: str) -> tuple[Fault, ...]:

@@ -1,6 +1,6 @@
 """Faults in the arithmetic of the report, and inputs that are wrong in the file."""
 
-from validation.verification.faults.fault import Fault
+from validation.faults.fault import Fault
 
 _ORDERS = "validation.cross_check.metrics:mesh_orders"
 _LOSS = "lumped.losses"
@@ -17,7 +17,7 @@ REPORTING = (
     Fault(
         "speed_unit",
         "speed in rad/s shown as rpm",
-        "floquet.gear.chart_axes:operating_rpm",
+        "floquet.gear.axes:operating_rpm",
         "30.0 / np.pi",
         "1.0",
     ),

@@ -1,6 +1,6 @@
 """Faults in the friction laws, in the film and in the numbers that both read."""
 
-from validation.verification.faults.fault import Fault
+from validation.faults.fault import Fault
 
 _PATH, _BASE = "lumped.path_of_contact.friction", "lumped.friction.base:ContactPath"
 _II, _III = "lumped.friction.benedict_kelley", "lumped.friction.xu_kahraman"

@@ -1,6 +1,6 @@
 """Faults in the multibody model: drawing, kinematics, own laws, own damping, records."""
 
-from validation.verification.faults.fault import Fault
+from validation.faults.fault import Fault
 
 _DRAWING, _MACHINE = "multibody.contact.drawing", "multibody.contact.machine:machine"
 _KINEMATICS, _KERNELS = "multibody.contact.kinematics", "multibody.contact.kernels"

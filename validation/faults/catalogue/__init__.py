@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from validation.verification.faults.catalogue.dynamics import EQUATIONS, INTEGRATION, STABILITY
-from validation.verification.faults.catalogue.friction import FRICTION
-from validation.verification.faults.catalogue.geometry import BODIES, GEOMETRY, TEETH
-from validation.verification.faults.catalogue.multibody import MULTIBODY
-from validation.verification.faults.catalogue.reporting import INPUTS, REPORTING
-from validation.verification.faults.fault import Fault
+from validation.faults.catalogue.dynamics import EQUATIONS, INTEGRATION, STABILITY
+from validation.faults.catalogue.friction import FRICTION
+from validation.faults.catalogue.geometry import BODIES, GEOMETRY, TEETH
+from validation.faults.catalogue.multibody import MULTIBODY
+from validation.faults.catalogue.reporting import INPUTS, REPORTING
+from validation.faults.fault import Fault
 
 #: Group in words -> its faults.
 GROUPS: Mapping[str, tuple[Fault, ...]] = {

@@ -13,10 +13,10 @@ from functools import lru_cache
 from lumped import GearPair, LawRangeWarning, load_gear_pair
 from lumped.typing import FloatArray
 from validation.cross_check.comparison import crosscheck
+from validation.faults.fault import Fault
+from validation.faults.quantities import FELT, change, quantities
+from validation.faults.rewriting import applied
 from validation.verification.code import code_checks
-from validation.verification.faults.fault import Fault
-from validation.verification.faults.quantities import FELT, change, quantities
-from validation.verification.faults.rewriting import applied
 from validation.verification.solution import enough_samples, refinements
 
 PAIR = "nasa_28_28"

@@ -23,7 +23,7 @@ from typing import Any
 import numba
 from numba.core.dispatcher import Dispatcher
 
-from validation.verification.faults.fault import Fault
+from validation.faults.fault import Fault
 
 _PACKAGES = ("lumped", "multibody", "floquet", "validation")
 
@@ -136,11 +136,21 @@ def _with_callers(replaced: dict[int, tuple[Any, Any]]) -> None:
         grown = False
         for key, value in held.items():
             function = value.py_func
-            called = (function.__globals__.get(name) for name in function.__code__.co_names)
+            called = _named(function)
             if key not in replaced and any(id(one) in replaced for one in called):
                 copy = types.FunctionType(function.__code__, function.__globals__, function.__name__)
                 replaced[key] = (value, _compiled(copy, value))
                 grown = True
+
+
+def _named(function: types.FunctionType) -> Iterator[Any]:
+    """Everything that a function calls by a name of its module, or of a module that is named there."""
+    names = function.__code__.co_names
+    for name in names:
+        value = function.__globals__.get(name)
+        yield value
+        if isinstance(value, types.ModuleType):
+            yield from (getattr(value, inner, None) for inner in names)
 
 
 def _exchange(original: Any, changed: Any, owner: Any) -> list[Callable[[], None]]:

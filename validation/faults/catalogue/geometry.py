@@ -1,6 +1,6 @@
 """Faults in the geometry, in bodies and bearings, in stiffness, damping and relief of the teeth."""
 
-from validation.verification.faults.fault import Fault
+from validation.faults.fault import Fault
 
 _GEOMETRY = "lumped.gear_geometry.geometry:_build"
 _BODIES, _ISO = "lumped.model.bodies", "lumped.stiffness.iso6336"
@@ -207,10 +207,10 @@ TEETH = (
     ),
     Fault(
         "iso_width",
-        "ISO 6336: the pinion's face width",
+        "ISO 6336: the gear's face width",
         f"{_ISO}:single_of",
         "pair.geometry.face_width",
-        "pair.pinion.face_width",
+        "pair.gear.face_width",
     ),
     Fault(
         "parabola_ends",

@@ -12,7 +12,7 @@ import xarray as xr
 import lumped
 import multibody
 from floquet import fast_multipliers, gear_block, gear_pair_multipliers
-from floquet.gear.chart_axes import operating_rpm
+from floquet.gear.axes import operating_rpm
 from lumped import GearPair
 from lumped.errors import NumericalError, ParameterError
 from lumped.losses import dynamic_losses, ohlendorf_of, quasi_static_losses
@@ -146,7 +146,7 @@ def _stability(pair: GearPair) -> dict[str, FloatArray]:
     return {
         "decay per cycle": 1.0 - np.sort(np.abs(general.multipliers)),
         "decay per cycle, compiled": 1.0 - np.sort(np.abs(compiled.multipliers[0])),
-        "bound of the compiled multipliers": np.asarray(compiled.matrix_errors, dtype=float).ravel()[:1],
+        "bound of the compiled multipliers": np.array([compiled.errors.max()]),
     }
 
 

@@ -1,6 +1,6 @@
 """Faults in the equations of motion, in their balance, their integration and their stability."""
 
-from validation.verification.faults.fault import Fault
+from validation.faults.fault import Fault
 
 _EQUATIONS, _SYSTEM = "lumped.model.equations:structure", "lumped.model.periodic_system"
 _NORMAL = "np.array([-r_bp, s.gear_mesh * r_bg, -1.0, s.gear_loa, 0.0, 0.0])"
@@ -257,13 +257,6 @@ STABILITY = (
         "floquet.gear.mesh_gains:_Law.of",
         "law.breaks[piece],",
         "law.breaks[0 * piece],",
-    ),
-    Fault(
-        "block_contact",
-        "compiled multipliers: pairs that left contact still count",
-        f"{_GAINS}.__init__",
-        "middle <= g.L_XD",
-        "middle <= g.L_XD + 0.5 * g.base_pitch",
     ),
     Fault(
         "block_period",
