@@ -60,9 +60,10 @@ def change(before: Mapping[str, FloatArray], after: Mapping[str, FloatArray]) ->
         new = after.get(name)
         if new is None or new.shape != old.shape:
             return float("inf"), name
-        size = float(np.nanmax(np.abs(old), initial=0.0))
-        difference = float(np.nanmax(np.abs(new - old), initial=0.0))
-        lost = np.isnan(new).sum() > np.isnan(old).sum()
+        size = float(np.abs(old[np.isfinite(old)]).max(initial=0.0))
+        finite = np.isfinite(new) & np.isfinite(old)
+        difference = float(np.abs(np.where(finite, new, 0.0) - np.where(finite, old, 0.0)).max(initial=0.0))
+        lost = bool((~np.isfinite(new) & np.isfinite(old)).any())
         part = float("inf") if lost else difference / size if size > 0.0 else 0.0
         worst = max(worst, (part, name))
     return worst
