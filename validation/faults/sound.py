@@ -51,7 +51,7 @@ def drawn(count: int, seed: str) -> Iterator[GearPair]:
 
 
 def _prediction_holds(pair: GearPair) -> bool:
-    """Whether the periodic motion is stable and no tooth would have to pull: elsewhere nothing is confirmed."""
+    """Whether the periodic motion is stable and no tooth would have to pull."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)
         motion = periodic_cycle(pair, 256)
