@@ -1,4 +1,7 @@
 from .engine.chart import scan as scan
+from .engine.coefficients import FourierSeries as FourierSeries
+from .engine.coefficients import KnownMatrix as KnownMatrix
+from .engine.coefficients import PiecewisePolynomial as PiecewisePolynomial
 from .engine.forced import PeriodicMotion as PeriodicMotion
 from .engine.forced import periodic_motion as periodic_motion
 from .engine.monodromy import Monodromy as Monodromy

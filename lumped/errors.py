@@ -106,3 +106,7 @@ class StorageError(SpurcheckError, OSError):
 
 class LawRangeWarning(UserWarning):
     """A friction or film law was evaluated outside the range in which it was fitted."""
+
+
+class ResolutionWarning(UserWarning):
+    """A function that can only be sampled has features narrower than the samples that were taken first."""

@@ -136,8 +136,9 @@ class PathFunction:
         edges: list[float] = []
         columns: list[FloatArray] = []
         stack = [(float(a), float(b), 0) for a, b in itertools.pairwise(breaks)][::-1]
+        most = max(_MAX_PIECES, 4 * len(stack))  # a table brings as many pieces as it has points
         while stack:
-            if len(columns) + len(stack) > _MAX_PIECES:
+            if len(columns) + len(stack) > most:
                 raise NumericalError(
                     f"No polynomial fit to {tolerance:.2g} near xi = {stack[-1][0]:.6g} m: the function is "
                     "noisy or has an undeclared kink there; name it as a break or raise the tolerance."

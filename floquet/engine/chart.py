@@ -14,7 +14,7 @@ from floquet.engine.spectrum import Spectrum
 from lumped.arguments import real_numbers, whole_number
 from lumped.errors import NumericalError, refuse, shown
 from lumped.labelling import Variable, labelled_dataset
-from lumped.typing import FloatArray, Progress
+from lumped.typing import BoolArray, FloatArray, Progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -89,7 +89,8 @@ def scan(
     errors = np.array([r.multiplier_errors for r in results])
     radius = np.array([r.spectral_radius for r in results])
     radius_error = np.array([r.error for r in results])
-    return chart_dataset(grid, multipliers, errors, radius, radius_error)
+    proven = np.array([r.certificate == "proven" for r in results])
+    return chart_dataset(grid, multipliers, errors, radius, radius_error, proven)
 
 
 def _at_point(evaluate: Callable[[dict[str, float]], Spectrum], point: dict[str, float]) -> Spectrum:
@@ -106,13 +107,14 @@ def chart_dataset(
     multiplier_errors: FloatArray | None,
     radius: FloatArray,
     radius_error: FloatArray,
+    proven: BoolArray,
 ) -> xr.Dataset:
     """Label flat results (points in C order of the grid) as a chart.
 
     Returns
     -------
     Dataset with spectral_radius, error, verdict (1 stable, 0 undecided, -1 unstable) over the axes, and where
-    given, multipliers, multiplier_errors over the axes and ``multiplier``
+    given, multipliers, multiplier_errors over the axes and ``multiplier``; see `certify` for ``proven``
     """
     shape = tuple(values.size for values in grid.values())
     dims = tuple(grid)
@@ -142,4 +144,20 @@ def chart_dataset(
         )
     dataset = labelled_dataset(variables, {name: (values, "", name) for name, values in grid.items()})
     dataset["verdict"].attrs.update(flag_values=[-1, 0, 1], flag_meanings="unstable undecided stable")
+    return certify(dataset, proven.reshape(shape))
+
+
+def certify(dataset: xr.Dataset, proven: BoolArray) -> xr.Dataset:
+    """Say whether the errors of a chart are proven: attribute ``certificate``, and ``proven`` where mixed."""
+    dataset.attrs["certificate"] = "proven" if proven.all() else "mixed" if proven.any() else "estimate"
+    if dataset.attrs["certificate"] == "mixed":
+        label = {"units": "1", "long_name": "whether the error is a proven bound"}
+        dataset["proven"] = (dataset["spectral_radius"].dims, proven, label)
     return dataset
+
+
+def proven_points(dataset: xr.Dataset) -> BoolArray:
+    """Where the errors of a chart are proven, shape of ``spectral_radius``."""
+    if "proven" in dataset:
+        return np.asarray(dataset["proven"].values, dtype=bool)
+    return np.full(dataset["spectral_radius"].shape, dataset.attrs["certificate"] == "proven")

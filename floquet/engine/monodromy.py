@@ -11,11 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
+from floquet.engine.coefficients import KnownMatrix
 from floquet.engine.multipliers import multipliers_with_bounds
-from floquet.engine.propagation import Propagation, error_of_product, propagate
+from floquet.engine.propagation import LOOKS, Propagation, error_of_product, propagate
 from floquet.engine.propagators.base import Propagator
 from floquet.engine.propagators.registry import propagator
-from floquet.engine.spectrum import Spectrum
+from floquet.engine.proven import proven_propagation
+from floquet.engine.spectrum import Certificate, Spectrum
 from floquet.engine.system import PeriodicSystem
 from lumped.arguments import real_number, whole_number
 from lumped.errors import NumericalError
@@ -32,12 +34,14 @@ class Monodromy(Spectrum):
     Attributes
     ----------
     matrix : (n, n) Phi(T, 0)
-    matrix_error : bound on the 2-norm of the error of D^-1 M D, D = diag(``scaling``): truncation (step
-        against two half steps) and rounding, carried to the end of the period
+    matrix_error : bound on the 2-norm of the error of D^-1 M D, D = diag(``scaling``): truncation and
+        rounding, carried to the end of the period; an estimate, from each step and its two halves, for a
+        callable A
     scaling : (n,) the balancing scales d
     liouville_residual : |sum over substeps of log det - integral of tr A|. Taken per substep it stays
         meaningful when M is so nearly singular that its own determinant carries no information.
     method, rtol, substeps, evaluations : how it was computed
+    resolution : features of A(t) that are narrower than this may have been missed [s]; 0 where A is a formula
     """
 
     matrix: FloatArray
@@ -48,13 +52,14 @@ class Monodromy(Spectrum):
     rtol: float
     substeps: int
     evaluations: int
+    resolution: float
 
 
 def monodromy(
     system: PeriodicSystem,
     rtol: float = 1e-10,
     *,
-    method: str | Propagator = "gauss",
+    method: str | Propagator = "auto",
     max_substeps: int = 200_000,
 ) -> Monodromy:
     """Monodromy matrix of x' = A(t) x over one period, with multipliers and error bounds.
@@ -63,12 +68,19 @@ def monodromy(
     ----------
     system : the periodic system; its forcing, if any, plays no part
     rtol : wanted error of the matrix relative to its norm (in balanced coordinates), 1e-14 to 1e-1
-    method : name in `floquet.PROPAGATORS`, or a propagator
+    method : "auto": where A is a `KnownMatrix`, Taylor steps with a proven bound, else "gauss"; or a name in
+        `floquet.PROPAGATORS`, or a propagator, whose error is an estimate: nothing is known of a callable
+        between the samples
     max_substeps : refuse to work harder than this
 
     Returns
     -------
     Monodromy
+
+    Warns
+    -----
+    ResolutionWarning
+        A second look between the samples found features that they had missed.
 
     Raises
     ------
@@ -79,7 +91,9 @@ def monodromy(
         text says what to try.
     """
     rtol, max_substeps = checked_effort(rtol, max_substeps)
-    step = propagator(method)
+    if method == "auto" and isinstance(system.A, KnownMatrix):
+        return _proven(system, system.A, rtol, max_substeps)
+    step = propagator("gauss" if method == "auto" else method)
     local = rtol
     evaluations = 0
     for _attempt in range(4):
@@ -88,7 +102,7 @@ def monodromy(
         M, delta, rounding = error_of_product(propagation)
         size = max(float(np.linalg.norm(M, 2)), _DEAD)
         if delta <= rtol * size:
-            return _record(system, propagation, M, delta, step.name, rtol, evaluations)
+            return _record(system, propagation, M, delta, step.name, rtol, evaluations, "estimate")
         if rounding > 0.9 * rtol * size:
             break
         # Growth and decay inside the period amplified the local errors: ask for that much more.
@@ -126,6 +140,7 @@ def _record(
     method: str,
     rtol: float,
     evaluations: int,
+    certificate: Certificate,
 ) -> Monodromy:
     d = propagation.scaling
     multipliers, bounds = multipliers_with_bounds(balanced, delta)
@@ -141,7 +156,21 @@ def _record(
         rtol=float(rtol),
         substeps=propagation.steps.shape[0],
         evaluations=evaluations,
+        resolution=0.0 if certificate == "proven" else system.period / LOOKS,
+        certificate=certificate,
     )
+
+
+def _proven(system: PeriodicSystem, known: KnownMatrix, rtol: float, max_substeps: int) -> Monodromy:
+    propagation, M, delta = proven_propagation(system, known, rtol, max_substeps)
+    size = max(float(np.linalg.norm(M, 2)), _DEAD)
+    if not delta <= rtol * size:
+        raise NumericalError(
+            f"rtol = {rtol:g} cannot be proven: the bound on the error of the monodromy matrix is "
+            f"{delta / size:.2g} of its norm, rounding included. Ask for rtol >= {2.0 * delta / size:.1g}, "
+            'or for an estimate: method = "gauss".'
+        )
+    return _record(system, propagation, M, delta, "taylor", rtol, 0, "proven")
 
 
 def liouville_residual(system: PeriodicSystem, propagation: Propagation) -> float:

@@ -12,45 +12,99 @@ from scipy.linalg.lapack import ztrsen
 from lumped.typing import ComplexArray, FloatArray
 
 _EPS = float(np.finfo(np.float64).eps)
+_U = 0.5 * _EPS
+_SLACK = 1.0 + 1e-9  # rounding of a bound itself
 
 
-def _cluster_data(T: ComplexArray, Z: ComplexArray, members: list[int]) -> tuple[float, float, float]:
-    """Norm of the spectral projector, separation from the rest, and departure |T11 - mean I| of a cluster."""
-    n, m = T.shape[0], len(members)
-    select = np.zeros(n, dtype=np.int32)
-    select[members] = 1
-    ordered, _, _, _, s, sep, _ = ztrsen(select, T, Z, lwork=max(1, 2 * m * (n - m)))
-    block = ordered[:m, :m]
-    departure = float(np.linalg.norm(block - np.trace(block) / m * np.eye(m), 2)) if m > 1 else 0.0
-    if m == n:
-        return 1.0, math.inf, departure
-    # LAPACK's sep is an estimate that may be too large by sqrt(m (n - m)); s cannot be too large.
-    return 1.0 / max(s, np.finfo(float).tiny), sep / math.sqrt(m * (n - m)), departure
+def _size(matrix: ComplexArray | FloatArray) -> float:
+    """Bound on the 2-norm: the Frobenius norm, or the root of the largest row and column sums."""
+    absolute = np.abs(matrix)
+    sums = math.sqrt(float(absolute.sum(axis=0).max()) * float(absolute.sum(axis=1).max()))
+    return min(float(np.linalg.norm(absolute)), sums) * _SLACK
 
 
-def _cluster_bound(T: ComplexArray, Z: ComplexArray, members: list[int], delta: float) -> float | None:
-    """Bound on the change of a cluster's eigenvalues when M changes by at most delta; None: not separable.
+def _rounding(n: int, *factors: ComplexArray | FloatArray) -> float:
+    """Bound on the Frobenius norm of the rounding of a product of n x n matrices in a sum."""
+    return 4.0 * (n + 4.0) * _U * len(factors) * math.prod(float(np.linalg.norm(f)) for f in factors) * _SLACK
 
-    Block-diagonalise with orthonormal bases: the diagonal blocks change by at most p delta and the
-    off-diagonal blocks by p^2 delta and delta, p the norm of the projector. If 4 p delta < sep, an invariant
-    subspace persists and the cluster's block changes by at most p delta + 2 (p delta)^2/(sep - 2 p delta)
-    (Stewart and Sun, Matrix Perturbation Theory, chapter V). Within the block Elsner's theorem gives the m-th
-    root law that a defective multiplier obeys: |d lambda| <= (2 |B| + e)^(1 - 1/m) e^(1/m), B taken about its
-    mean.
+
+def _triangular_error(M: FloatArray, T: ComplexArray, Z: ComplexArray, delta: float) -> float:
+    """Bound on the Frobenius norm of Z^-1 (M + E) Z - T for every |E| <= delta, from what is left of both.
+
+    That is Z^-1 (M Z - Z T + E Z), with |Z^-1|^2 <= 1/(1 - q) and |Z|^2 <= 1 + q for q = |Z^H Z - I|.
     """
-    p, sep, departure = _cluster_data(T, Z, members)
-    pd = p * delta
-    if sep <= 4.0 * pd:
+    n = M.shape[0]
+    rest = float(np.linalg.norm(M @ Z - Z @ T)) + _rounding(n, M, Z) + _rounding(n, Z, T)
+    q = float(np.linalg.norm(Z.conj().T @ Z - np.eye(n))) + _rounding(n, Z, Z)
+    if not q < 0.5:
+        return math.inf
+    return (rest + delta * math.sqrt(1.0 + q)) / math.sqrt(1.0 - q) * _SLACK
+
+
+def least_separation(first: ComplexArray, second: ComplexArray) -> tuple[float, ComplexArray]:
+    """Lower bound on the smallest singular value of X -> first X - X second, and an approximate inverse.
+
+    As a matrix K on the columns of X: W being any matrix with q = |I - W K| < 1, |K^-1| <= |W|/(1 - q).
+    """
+    m, k = first.shape[0], second.shape[0]
+    K = np.kron(np.eye(k), first) - np.kron(second.T, np.eye(m))
+    try:
+        W = np.linalg.inv(K)
+    except np.linalg.LinAlgError:
+        return 0.0, K
+    q = float(np.linalg.norm(np.eye(m * k) - W @ K)) + _rounding(m * k, W, K)
+    q += 4.0 * _U * float(np.linalg.norm(W)) * (float(np.linalg.norm(first)) + float(np.linalg.norm(second)))
+    return (1.0 - q) / _size(W) / _SLACK if q < 1.0 else 0.0, W.astype(complex)
+
+
+def _cluster_bound(
+    M: FloatArray, T: ComplexArray, Z: ComplexArray, members: list[int], delta: float
+) -> tuple[ComplexArray, float] | None:
+    """Eigenvalues of a cluster and a bound on their errors when M is wrong by delta; None: not separable.
+
+    With the cluster first, T = [[B, C], [0, D]], and [[I, X], [0, I]] with B X - X D ~ -C makes it block
+    diagonal but for what is left of that equation. The diagonal blocks change by at most p e and the
+    off-diagonal ones by p^2 e and e, p^2 = 1 + |X|^2, e the error of the triangular form (Frobenius). With s
+    = sep - 2 p e, sep the smallest singular value of X -> B X - X D, an invariant subspace persists if 4 e f
+    < s^2, f the change of the upper off-diagonal block, and the cluster's block changes by at most p e + 2 e
+    f/s (Stewart and Sun, Matrix Perturbation Theory, theorem V.2.1). Within the block Elsner's theorem gives
+    the m-th root law that a defective multiplier obeys: |d lambda| <= (2 |B| + e)^(1 - 1/m) e^(1/m), B about
+    its mean.
+    """
+    n, m = T.shape[0], len(members)
+    if m < n:
+        select = np.zeros(n, dtype=np.int32)
+        select[members] = 1
+        # Only the order counts here: the factors are checked anew, and no estimate of LAPACK is used.
+        T, Z = ztrsen(select, T, Z, job="N")[:2]
+        T = np.triu(T)
+    block = T[:m, :m]
+    error = _triangular_error(M, T, Z, delta)
+    if not math.isfinite(error):
         return None
-    change = pd + (0.0 if math.isinf(sep) else 2.0 * pd * pd / (sep - 2.0 * pd))
-    m = len(members)
+    change = error
+    if m < n:
+        corner, rest = T[:m, m:], T[m:, m:]
+        sep, W = least_separation(block, rest)
+        X = -(W @ corner.T.ravel()).reshape(n - m, m).T
+        left = float(np.linalg.norm(block @ X - X @ rest + corner))
+        left += _rounding(n, block, X) + _rounding(n, X, rest) + 4.0 * _U * float(np.linalg.norm(corner))
+        p = math.hypot(1.0, float(np.linalg.norm(X))) * _SLACK
+        upper, room = p * p * error + left, sep - 2.0 * p * error
+        if not (room > 0.5 * sep and 4.0 * error * upper < room * room):
+            return None
+        change = p * error + 2.0 * error * upper / room
     if m == 1:
-        return change
-    return float((2.0 * departure + change) ** (1.0 - 1.0 / m) * change ** (1.0 / m))
+        return np.diagonal(block), change * _SLACK
+    departure = _size(block - np.trace(block) / m * np.eye(m))
+    root_law = (2.0 * departure + change) ** (1.0 - 1.0 / m) * change ** (1.0 / m)
+    return np.diagonal(block), float(root_law) * _SLACK
 
 
 def multipliers_with_bounds(M: FloatArray, delta: float) -> tuple[ComplexArray, FloatArray]:
     """Eigenvalues of M, largest modulus first, each with a bound on its error.
+
+    The bound is a theorem, rounding included: what LAPACK returns is checked by its residuals.
 
     Parameters
     ----------
@@ -62,17 +116,18 @@ def multipliers_with_bounds(M: FloatArray, delta: float) -> tuple[ComplexArray, 
     multipliers : (n,) complex
     bounds : (n,); a simple multiplier's bound grows like delta, that of an m-fold defective one like
         delta^(1/m). Multipliers that delta does not allow to be told apart share one bound.
+
+    Sources: docs/theory/proven_bounds.md, "Multipliers".
     """
     n = M.shape[0]
-    delta = delta + 4.0 * n * _EPS * float(np.linalg.norm(M))  # backward error of the QR algorithm
     T, Z = schur(M, output="complex")
+    T = np.triu(T)
     eigenvalues = np.diagonal(T)
     clusters = [[i] for i in range(n)]
-    bounds: list[float | None] = [None] * n
     while True:
-        bounds = [_cluster_bound(T, Z, members, delta) for members in clusters]
+        bounds = [_cluster_bound(M, T, Z, members, delta) for members in clusters]
         bad = next((i for i, b in enumerate(bounds) if b is None), None)
-        if bad is None:
+        if bad is None or len(clusters) == 1:
             break
         here = eigenvalues[clusters[bad]]
         distance = [
@@ -84,8 +139,7 @@ def multipliers_with_bounds(M: FloatArray, delta: float) -> tuple[ComplexArray, 
         del clusters[nearest]
     values, errors = np.empty(n, dtype=complex), np.empty(n)
     for members, bound in zip(clusters, bounds, strict=True):
-        values[members] = eigenvalues[members]
-        errors[members] = bound
+        values[members], errors[members] = (eigenvalues[members], math.inf) if bound is None else bound
     # Largest modulus first; a conjugate pair (equal modulus up to rounding) with its positive phase first.
     order = sorted(
         range(n), key=lambda i: (-_significant(float(abs(values[i]))), -values[i].imag, -values[i].real)

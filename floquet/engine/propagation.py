@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
+from numpy.polynomial import chebyshev
 
 from floquet.engine.propagators.base import Propagator
 from floquet.engine.system import PeriodicSystem
-from lumped.errors import NumericalError
-from lumped.typing import FloatArray
+from lumped.errors import NumericalError, ResolutionWarning
+from lumped.typing import BoolArray, FloatArray
 
 _EPS = float(np.finfo(np.float64).eps)
 _CHUNK = 4_000_000  # numbers held at once by a batch of steps: about 32 MB per temporary
+LOOKS = 2048
+"""Points per period at which A is looked at besides the nodes of the steps."""
+_LOOK_DEGREE = 11
+_LOOK_FACTOR = 1e4  # what A may differ by there, h |dA| in units of rtol
+_SEED = 20080926
 _MAX_SPLIT = 16  # parts into which a refused step is cut at most
 
 
@@ -129,7 +137,8 @@ def propagate(
     start, end = _initial_grid(system, method, d)
     done: list[tuple[FloatArray, FloatArray, FloatArray, FloatArray]] = []
     evaluations = 5 * (system.edges.size - 1)
-    accepted = 0
+    accepted, warned = 0, False
+    rng = np.random.default_rng(_SEED)
     n = system.dimension
     while start.size:
         if accepted + 2 * start.size > max_substeps:
@@ -154,6 +163,20 @@ def propagate(
             ratio = truncation / np.maximum(rtol * h / system.period * norm, rounding)
         ratio[~np.isfinite(ratio)] = np.inf
         good = ratio <= 1.0
+        missed = np.flatnonzero(good)
+        missed = missed[_unseen(system, method, start[missed], end[missed], d, rtol, rng)]
+        evaluations += LOOKS + 2 * method.nodes.size * int(good.sum())
+        good[missed] = False
+        ratio[missed] = np.inf
+        if missed.size and not warned:
+            warned = True
+            warnings.warn(
+                f"A(t) has a feature near t = {middle[missed[0]]:g} s that the samples of a step "
+                f"had missed; it is now resolved, but others narrower than {system.period / LOOKS:.2g} s may "
+                "not be. Name such times as breakpoints, or give A as a KnownMatrix.",
+                ResolutionWarning,
+                stacklevel=3,
+            )
         if (h[~good] < 1e3 * _EPS * system.period).any():
             t = start[~good][0]
             raise NumericalError(
@@ -176,6 +199,51 @@ def propagate(
         scaling=d,
         evaluations=evaluations,
     )
+
+
+def _unseen(
+    system: PeriodicSystem,
+    method: Propagator,
+    start: FloatArray,
+    end: FloatArray,
+    d: FloatArray,
+    rtol: float,
+    rng: np.random.Generator,
+) -> BoolArray:
+    """Steps (k,) in which A, at random points, is not what the samples at the nodes let expect.
+
+    Each step is cut into equal parts, `LOOKS` to a period, and A looked at once in each; it is compared with
+    the polynomial through its values at the nodes of both halves. What is narrower than a part may still be
+    missed: a callable can hide anything between samples.
+    """
+    if start.size == 0:
+        return np.zeros(0, dtype=bool)
+    x = np.unique(np.concatenate([method.nodes - 1.0, method.nodes]).round(12))
+    degree = min(x.size - 1, _LOOK_DEGREE)
+    onto = np.linalg.pinv(chebyshev.chebvander(x, degree))
+    h = end - start
+    scale = d[None, :] / d[:, None]
+
+    def at(places: FloatArray, owner: npt.NDArray[np.intp]) -> FloatArray:
+        low, high = start[owner], end[owner]
+        times = system.inside(low + (high - low) * 0.5 * (places + 1.0), low, high)
+        return system.evaluate(times) * scale
+
+    every = np.arange(start.size)
+    nodes = at(np.tile(x, start.size), np.repeat(every, x.size))
+    series = np.einsum("dx,kxab->kdab", onto, nodes.reshape(start.size, x.size, *scale.shape))
+    counts = np.maximum(2, np.ceil(h / system.period * LOOKS)).astype(int)
+    owner = np.repeat(every, counts)
+    part = np.arange(owner.size) - np.repeat(np.cumsum(counts) - counts, counts)
+    places = 2.0 * (part + rng.random(owner.size)) / counts[owner] - 1.0
+    worst = np.zeros(start.size)
+    for first in range(0, owner.size, 4096):
+        some = slice(first, first + 4096)
+        expected = np.einsum("qd,qdab->qab", chebyshev.chebvander(places[some], degree), series[owner[some]])
+        gap = np.linalg.norm(at(places[some], owner[some]) - expected, axis=(1, 2))
+        np.maximum.at(worst, owner[some], gap)
+    size = np.linalg.norm(nodes, axis=(1, 2)).reshape(start.size, x.size).max(axis=1)
+    return np.asarray(h * worst > np.maximum(_LOOK_FACTOR * rtol, 1e-8) * (1.0 + h * size))
 
 
 def _cut(start: FloatArray, end: FloatArray, ratio: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:

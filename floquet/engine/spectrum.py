@@ -5,13 +5,17 @@ Sources: docs/theory/floquet.md, "From the equations to a matrix".
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 
 from floquet.engine.multipliers import radius_with_bound, verdict
 from lumped.typing import ComplexArray, FloatArray
+
+Certificate = Literal["proven", "estimate"]
+"""What an error is: a bound by a theorem, rounding included, or an estimate from samples."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,13 +25,16 @@ class Spectrum:
     Attributes
     ----------
     multipliers : (n,) complex, largest modulus first
-    multiplier_errors : (n,) bound on the error of each
+    multiplier_errors : (n,) bound on the error of each, see ``certificate``
     period : T [s]
+    certificate : "proven" where the errors are bounds by a theorem, rounding included; "estimate" where they
+        rest on samples
     """
 
     multipliers: ComplexArray
     multiplier_errors: FloatArray
     period: float
+    certificate: Certificate = field(default="estimate", kw_only=True)
 
     @cached_property
     def _radius(self) -> tuple[float, float]:
@@ -40,7 +47,7 @@ class Spectrum:
 
     @property
     def error(self) -> float:
-        """Bound on the error of ``spectral_radius``."""
+        """Bound on the error of ``spectral_radius``, see ``certificate``."""
         return self._radius[1]
 
     @property

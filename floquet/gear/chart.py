@@ -73,7 +73,9 @@ def stability_chart(
     -------
     xarray.Dataset over the axes: spectral_radius, error, verdict and, with store "all", multipliers and
     multiplier_errors (10 each: the feedback block and the off-line-of-action block; the rigid rotation is no
-    part of them)
+    part of them). Its attribute ``certificate`` is "proven", "estimate" or "mixed", which the variable
+    ``proven`` then tells for every point: estimates are what "chebyshev" interpolates, what "taylor" gives
+    over speeds that share a friction law to a tolerance, and all of the other methods.
 
     Raises
     ------
@@ -172,4 +174,6 @@ def _compiled_chart(
         done += plane.count
         if progress is not None:
             progress(done / math.prod(shape))
-    return chart_dataset(grid, whole.multipliers, whole.errors, whole.radius, whole.radius_error)
+    return chart_dataset(
+        grid, whole.multipliers, whole.errors, whole.radius, whole.radius_error, whole.proven
+    )

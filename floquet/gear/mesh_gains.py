@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from floquet.gear.multipliers import mean_mesh_stiffness
+from floquet.gear.axes import mean_mesh_stiffness
 from floquet.rank_one.piecewise import series_rounding, to_series
 from lumped.errors import NumericalError
 from lumped.model.periodic_system import LTVSystem

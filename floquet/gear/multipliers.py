@@ -13,7 +13,9 @@ from floquet.engine.monodromy import monodromy
 from floquet.engine.propagators.base import Propagator
 from floquet.engine.spectrum import Spectrum
 from floquet.engine.system import PeriodicSystem
-from floquet.gear.axes import GearVariation
+from floquet.gear.axes import GearVariation, mean_mesh_stiffness
+from floquet.gear.block import gear_block
+from floquet.rank_one.batch import fast_multipliers
 from lumped.model.periodic_system import Form, LTVSystem, periodic_system
 from lumped.schema.pair import GearPair
 from lumped.typing import ComplexArray, FloatArray
@@ -31,7 +33,7 @@ class GearPairMultipliers(Spectrum):
     oloa : (4,) of y_p, y_g, two each: driven by friction without acting back, so those of their bearings
     rigid_body : (2,) of the free rotation, a defective double +1 that the relative coordinate q removes; no
         part of ``multipliers``, the radius or the verdict, since it means a free choice of angle and speed
-    liouville_residual : of the feedback block, see `Monodromy`
+    liouville_residual : of the feedback block by the general engine, see `Monodromy`
     """
 
     feedback: ComplexArray
@@ -84,13 +86,6 @@ class _Coefficients:
         return A
 
 
-def mean_mesh_stiffness(system: LTVSystem) -> float:
-    """Mean over the mesh cycle of the total stiffness: integral of k_i over the path, over one base pitch."""
-    k = system.cycle.elements.stiffness
-    low, high = k.interval
-    return k.mean() * (high - low) / system.cycle.geometry.base_pitch
-
-
 @dataclass(frozen=True, eq=False)
 class OffLineOfAction:
     """Exponents of the motions y_p, y_g off the line of action, closed form.
@@ -130,7 +125,7 @@ class OffLineOfAction:
 
 
 def gear_pair_multipliers(
-    source: GearPair | GearVariation, rtol: float = 1e-10, *, method: str | Propagator = "gauss"
+    source: GearPair | GearVariation, rtol: float = 1e-10, *, method: str | Propagator = "taylor"
 ) -> GearPairMultipliers:
     """Floquet multipliers of a gear pair over one mesh cycle.
 
@@ -140,7 +135,9 @@ def gear_pair_multipliers(
     Parameters
     ----------
     source : a gear pair, or a variation from a chart
-    rtol, method : as in `monodromy`
+    rtol : wanted error of the monodromy matrix relative to its norm, 1e-13 to 1e-1
+    method : "taylor", the compiled kernel, whose bound is proven; or a method of `monodromy` on A(t) as a
+        callable, for an independent estimate
 
     Returns
     -------
@@ -151,18 +148,34 @@ def gear_pair_multipliers(
     NumericalError : as in `monodromy`
     """
     variation = GearVariation.of(source)
-    block = monodromy(gear_pair_system(variation, "feedback"), rtol, method=method)
+    own: Spectrum
+    if method == "taylor":
+        block = monodromy(gear_pair_system(variation, "feedback"), rtol)
+        own = _proven(variation, rtol)
+    else:
+        own = block = monodromy(gear_pair_system(variation, "feedback"), rtol, method=method)
     bearings = OffLineOfAction.of(periodic_system(variation.pair, "relative"))
     (oloa,), (oloa_errors,) = bearings.multipliers(np.array([block.period]))
-    values = np.concatenate([block.multipliers, oloa])
-    errors = np.concatenate([block.multiplier_errors, oloa_errors])
+    values = np.concatenate([own.multipliers, oloa])
+    errors = np.concatenate([own.multiplier_errors, oloa_errors])
     order = np.argsort(-np.abs(values), kind="stable")
     return GearPairMultipliers(
         multipliers=values[order],
         multiplier_errors=errors[order],
         period=block.period,
-        feedback=block.multipliers,
+        feedback=own.multipliers,
         oloa=oloa,
         rigid_body=np.ones(2, dtype=complex),
         liouville_residual=block.liouville_residual,
+        certificate=own.certificate,
+    )
+
+
+def _proven(variation: GearVariation, rtol: float) -> Spectrum:
+    """Multipliers of the feedback block by the compiled kernel."""
+    block = gear_block(variation, rtol=max(0.01 * rtol, 1e-13))
+    found = fast_multipliers(block, tolerance=max(1e-4 * rtol, 1e-14))
+    order = np.argsort(-np.abs(found.multipliers[0]), kind="stable")
+    return Spectrum(
+        found.multipliers[0][order], found.errors[0][order], block.period, certificate=found.certificate
     )

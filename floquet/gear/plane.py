@@ -11,7 +11,7 @@ import numpy.typing as npt
 from floquet.engine.multipliers import radii_with_bounds
 from floquet.gear.axes import GearVariation, operating_rpm, vary
 from floquet.gear.block import gear_block
-from floquet.gear.friction_over_speed import FrictionFamily, factors_at, friction_families
+from floquet.gear.friction_over_speed import FrictionFamily, depends_on_speed, factors_at, friction_families
 from floquet.gear.multipliers import OffLineOfAction
 from floquet.rank_one.batch import FastMonodromy, FastMultipliers, fast_monodromies, fast_multipliers
 from floquet.rank_one.coarsening import coarsened
@@ -83,17 +83,19 @@ class Store:
     Attributes
     ----------
     radius, radius_error : (count,)
+    proven : (count,) whether the errors are proven bounds
     multipliers, errors : (count, 10) the largest modulus first, or None
     """
 
     def __init__(self, count: int, multipliers: bool) -> None:
         self.radius, self.radius_error = np.empty(count), np.empty(count)
+        self.proven = np.zeros(count, dtype=bool)
         self.multipliers = np.empty((count, 10), dtype=complex) if multipliers else None
         self.errors = np.empty((count, 10)) if multipliers else None
 
     def arrays(self) -> list[npt.NDArray[np.generic]]:
         """Whatever is kept."""
-        given = (self.radius, self.radius_error, self.multipliers, self.errors)
+        given = (self.radius, self.radius_error, self.proven, self.multipliers, self.errors)
         return [array for array in given if array is not None]
 
     def put(
@@ -102,12 +104,17 @@ class Store:
         found: FastMultipliers,
         bearings: OffLineOfAction,
         periods: FloatArray,
+        exact: bool,
     ) -> None:
-        """Take the multipliers of the feedback block at some points (k,), and add those of the bearings."""
+        """Take the multipliers of the feedback block at some points (k,), and add those of the bearings.
+
+        ``exact``: whether these gains are those of the points, and not like them to a tolerance.
+        """
         oloa, oloa_errors = bearings.multipliers(periods)
         values = np.concatenate([found.multipliers, oloa], axis=1)
         errors = np.concatenate([found.errors, oloa_errors], axis=1)
         self.radius[points], self.radius_error[points] = radii_with_bounds(values, errors)
+        self.proven[points] = exact and found.certificate == "proven"
         if self.multipliers is not None and self.errors is not None:
             ranking = np.argsort(-np.abs(values), axis=1, kind="stable")
             self.multipliers[points] = np.take_along_axis(values, ranking, 1)
@@ -149,6 +156,8 @@ def plane_multipliers(
             friction_level=family.level,
         )
         periods = block.period * variation.pair.operating.pinion_speed * 30.0 / np.pi / speeds[part]
+        # At the other speeds of a family the law is that of one speed times factors found by sampling.
+        exact = family.members.size == 1 or not depends_on_speed(variation.pair)
         bearings = OffLineOfAction.of(periodic_system(variation.pair, "relative"))
 
         def put(
@@ -157,8 +166,9 @@ def plane_multipliers(
             part: npt.NDArray[np.intp] = part,
             periods: FloatArray = periods,
             bearings: OffLineOfAction = bearings,
+            exact: bool = exact,
         ) -> None:
-            store.put(part[index], found, bearings, periods[index])
+            store.put(part[index], found, bearings, periods[index], exact)
 
         done = False
         if several:

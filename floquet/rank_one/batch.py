@@ -16,7 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from floquet.engine.multipliers import multipliers_with_bounds
-from floquet.rank_one.kernels.eigen import spectra
+from floquet.engine.spectrum import Certificate
+from floquet.rank_one.kernels.disks import spectra
 from floquet.rank_one.kernels.gains import Limits, Problem
 from floquet.rank_one.kernels.taylor import propagate_points
 from floquet.rank_one.packing import own, packed
@@ -36,7 +37,7 @@ class FastMonodromy:
     ----------
     matrices : (N, 2m, 2m) in x = (omega eta, eta') of `ModalForm`, dimensionless
     errors : (N,) bound on the Frobenius norm of the error of each: majorant of the truncation, misfit of the
-        polynomials, rounding
+        polynomials, rounding; proven, see docs/theory/proven_bounds.md
     forced : (N, 2m) state at T from rest under the forcing
     """
 
@@ -169,10 +170,12 @@ class FastMultipliers:
     Attributes
     ----------
     multipliers, errors : (N, 2m) with a bound on the error of each, dimensionless, in no particular order
+    certificate : "proven" where the errors are bounds by a theorem, else "estimate"
     """
 
     multipliers: ComplexArray
     errors: FloatArray
+    certificate: Certificate = "proven"
 
 
 def fast_multipliers(
@@ -204,14 +207,16 @@ def fast_multipliers(
     )
 
 
-def multipliers_of(matrices: FloatArray, errors: FloatArray) -> FastMultipliers:
+def multipliers_of(
+    matrices: FloatArray, errors: FloatArray, certificate: Certificate = "proven"
+) -> FastMultipliers:
     """Eigenvalues of monodromy matrices (N, n, n), each with a bound, when these are wrong by errors (N,)."""
     values, radii = np.empty(matrices.shape[:2], dtype=complex), np.empty(matrices.shape[:2])
     safe = np.empty(errors.size, dtype=bool)
     spectra(matrices, errors, values, radii, safe)
     for point in np.flatnonzero(~safe):
         values[point], radii[point] = multipliers_with_bounds(matrices[point], float(errors[point]))
-    return FastMultipliers(values, radii)
+    return FastMultipliers(values, radii, certificate)
 
 
 def _factors(

@@ -33,6 +33,7 @@ from lumped.arguments import real_number, real_numbers
 from lumped.errors import refuse, shown
 from lumped.typing import FloatArray
 
+_U = 0.5 * float(np.finfo(np.float64).eps)
 _DEGREE = 8
 _RHO = np.array([1.3, 1.6, 2.0, 2.5, 3.0, 4.0, 5.5, 8.0, 12.0, 20.0, 40.0])
 _R = 0.5 * (_RHO + 1.0 / _RHO)
@@ -205,7 +206,15 @@ class _Fine(NamedTuple):
             return None
         degree = int(good[0])
         powers = np.einsum("kd,djqm->jqmk", _POWERS[:, : degree + 1], series.reshape(shape)[: degree + 1])
-        return _Piece(stop, powers, np.zeros_like(self.misfits[0]), float(error[degree]))
+        # Rounding of the moments, of the places of the nodes in the piece, and of the change to powers.
+        largest = np.sqrt(
+            (np.square(values).reshape(u.size, *shape[1:]) * self.root**2).sum(axis=3).max(axis=0)
+        )
+        orders = 2.0 * np.arange(degree + 1) + 1.0
+        rounding = _U * orders.sum() * (u.size + 40.0 + 300.0 / length) * largest
+        sizes = np.sqrt(np.square(series.reshape(shape) * self.root).sum(axis=3))[: degree + 1]
+        rounding += 16.0 * _U * np.einsum("d,djq->jq", np.abs(_POWERS).sum(axis=0)[: degree + 1], sizes)
+        return _Piece(stop, powers, rounding, float(error[degree]) * (1.0 + 1e-9))
 
     def _majorant(self, powers: FloatArray) -> FloatArray:
         """Bounds (d+1,) on the coefficients of A in powers of u, times the longest period."""

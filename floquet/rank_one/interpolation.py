@@ -40,7 +40,7 @@ class Interpolant:
     ----------
     coefficients : (K, L, n, n)
     period, parameter : ends of the rectangle
-    error : bound on the Frobenius norm of the error of M, see `interpolant`
+    error : estimate of the Frobenius norm of the error of M, see `interpolant`
     nodes : how many monodromy matrices it took, checks included
     """
 
@@ -176,7 +176,7 @@ def _evaluate(
         for chunk in range(chunks.start, chunks.stop):
             part = rows[chunk * height : (chunk + 1) * height]
             M = series(periods[part], parameters).reshape(part.size * b, n, n)
-            receive(part, multipliers_of(M, delta[: part.size * b]))
+            receive(part, multipliers_of(M, delta[: part.size * b], "estimate"))
 
     in_threads(run, -(-rows.size // height), threads)
 

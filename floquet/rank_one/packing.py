@@ -6,9 +6,10 @@ import numpy as np
 
 from floquet.rank_one.kernels.gains import Problem
 from floquet.rank_one.kernels.lanes import LANES
-from floquet.rank_one.system import RankOneSystem
+from floquet.rank_one.system import ModalForm, RankOneSystem
 from lumped.typing import FloatArray
 
+_U = 0.5 * float(np.finfo(np.float64).eps)
 _PROPORTIONAL = 1e-12  # wd is rho w where it differs from it by no more than this part
 
 
@@ -20,6 +21,9 @@ def packed(system: RankOneSystem) -> Problem:
     centred = form.w[0, :, :, 0] - form.reference
     w_size[0] += np.linalg.norm(centred, axis=1) - np.linalg.norm(form.w[0, :, :, 0], axis=1)
     ratios, unequal = _ratios(form.w, form.wd, wd_size)
+    noise, relative = _rounding(system, form)
+    fit_error = np.stack([part.fit_errors for part in system.parts]) * (1.0 + 1e-9)
+    fit_error += relative * np.stack([_norms(x) for x in (form.w, form.wd, form.f, form.fr)], axis=2)
     degrees = np.stack([_degrees(form.w), _degrees(form.wd)], axis=1)
     flow_error = np.zeros(pieces) if system.coarsening is None else system.coarsening.errors
     return Problem(
@@ -32,15 +36,51 @@ def packed(system: RankOneSystem) -> Problem:
         sizes=own(np.stack([w_size, wd_size], axis=2)),
         ratios=ratios,
         unequal=unequal,
-        fit_error=own(np.stack([part.fit_errors for part in system.parts])),
+        fit_error=own(fit_error),
         flow_error=own(flow_error),
         C=own(form.C),
         drive=max(0.0, -float(np.linalg.eigvalsh(0.5 * (form.C + form.C.T)).min())),
+        noise=noise,
         omega=own(form.omega),
         v=own(form.v),
         input=own(form.input),
         reference=own(form.reference),
     )
+
+
+def _rounding(system: RankOneSystem, form: ModalForm) -> tuple[float, float]:
+    """Bound on the error of A [1/s] by rounding of its constant part, and on the relative one of the gains.
+
+    Phi being taken as exact, its inverse is (I - E)^-1 Phi^T G with E = I - Phi^T G Phi. What that leaves of
+    the constant part is computed, with the rounding of its own computation. The gains are turned by Phi^T G,
+    weighted, added, moved to the middle of a step and scaled: 60 roundings of the sum of the moduli.
+
+    Sources: docs/theory/proven_bounds.md, "The matrix of a step".
+    """
+    Phi, omega = form.shapes, form.omega
+    Y = Phi.T * system.metric
+    absolute, eye = np.abs(Y), np.eye(omega.size)
+    E = float(np.linalg.norm(eye - Y @ Phi) + 8.0 * _U * np.linalg.norm(absolute @ np.abs(Phi)))
+    E /= 1.0 - min(E, 0.5)
+    damping, turned = Y @ (system.damping[:, None] * Phi), Y @ (system.stiffness[:, None] * Phi)
+    noise = E * np.linalg.norm(damping)
+    noise += 12.0 * _U * np.linalg.norm(absolute @ (np.abs(system.damping)[:, None] * np.abs(Phi)))
+    feedback = np.outer(form.reference, form.v)
+    rest = np.abs(turned + feedback - np.diag(omega**2)) + E * np.linalg.norm(turned)
+    rest += 12.0 * _U * absolute @ (np.abs(system.stiffness)[:, None] * np.abs(Phi))
+    rest += 12.0 * _U * (np.abs(feedback) + np.diag(omega**2))
+    noise += np.linalg.norm(rest / omega)
+    # How much the sum of the moduli in v = Phi^T v exceeds what is left of it.
+    summed = np.abs(Phi).T @ np.abs(system.v)
+    excess = max(
+        1.0,
+        float(np.linalg.norm(summed / omega) / np.linalg.norm(form.v / omega)),
+        float(np.linalg.norm(summed) / np.linalg.norm(form.v)),
+    )
+    relative = E + 60.0 * _U * excess
+    calm = float(omega.max()) + np.linalg.norm(form.C)
+    calm += np.linalg.norm(form.reference) * np.linalg.norm(form.v / omega)
+    return float(noise + relative * calm), float(relative)
 
 
 def own(values: object) -> FloatArray:

@@ -131,6 +131,7 @@ def _print_point(pair: GearPair, found: GearPairMultipliers) -> None:
     shown.add_row("verdict", found.verdict)
     shown.add_row("largest multiplier", f"{found.spectral_radius:.8f}")
     shown.add_row("bound on its error", number(found.error, 2))
+    shown.add_row("which is", found.certificate)
     shown.add_row("margin, 1 - largest multiplier", number(1.0 - found.spectral_radius))
     stdout().print(shown)
 

@@ -1,4 +1,4 @@
-"""Eigenvalues and their condition numbers for many small real matrices, compiled.
+"""Eigenvalues of small real matrices, compiled.
 
 LAPACK through numpy takes 20 us for one 6 x 6 matrix, most of it overhead, which is more than propagating the
 system; hence an own Francis iteration. It is checked against LAPACK on random and on defective matrices.
@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
 from floquet.rank_one.kernels.compiled import compiled
 from lumped.typing import ComplexArray, FloatArray
@@ -103,7 +102,7 @@ def _francis(H: FloatArray, lo: int, hi: int, sum_: float, product: float) -> No
 
 
 @compiled()
-def _eigenvalues(A: FloatArray, values: ComplexArray) -> bool:
+def eigenvalues(A: FloatArray, values: ComplexArray) -> bool:
     """Eigenvalues of A (overwritten); conjugate pairs stand side by side. False: no convergence."""
     n = A.shape[0]
     _hessenberg(A)
@@ -150,137 +149,3 @@ def _eigenvalues(A: FloatArray, values: ComplexArray) -> bool:
             sum_, product = 1.5 * size, size * size
         _francis(A, lo, hi, sum_, product)
     return True
-
-
-@compiled()
-def _condition_numbers(
-    A: FloatArray, values: ComplexArray, B: FloatArray, product: FloatArray, kappa: FloatArray
-) -> None:
-    """Condition numbers kappa_i = |adj(lambda_i I - A)|_F / |prod_(j != i) (lambda_i - lambda_j)|.
-
-    They are |x||y|/|y^H x| for a simple eigenvalue, adj(lambda I - A) being the rank-one matrix of its
-    right and left eigenvectors. Its coefficients in powers of
-    lambda come from the recurrence of Faddeev and LeVerrier; B (n, n, n) and product (n, n) are scratch.
-    """
-    n = A.shape[0]
-    for i in range(n):
-        for j in range(n):
-            B[0, i, j] = 1.0 if i == j else 0.0
-    for k in range(1, n):
-        trace = 0.0
-        for i in range(n):
-            for j in range(n):
-                product[i, j] = 0.0
-            for q in range(n):
-                factor = A[i, q]
-                for j in range(n):
-                    product[i, j] += factor * B[k - 1, q, j]
-            trace += product[i, i]
-        c = -trace / k
-        for i in range(n):
-            for j in range(n):
-                B[k, i, j] = product[i, j]
-            B[k, i, i] += c
-    for p in range(n):
-        if p > 0 and values[p] == values[p - 1].conjugate() and values[p].imag != 0.0:
-            kappa[p] = kappa[p - 1]
-            continue
-        re, im = values[p].real, values[p].imag
-        square = 0.0
-        for i in range(n):
-            for j in range(n):
-                x, y = 0.0, 0.0
-                for k in range(n):  # Horner in lambda: B[0] lambda^(n-1) + ... + B[n-1]
-                    x, y = x * re - y * im + B[k, i, j], x * im + y * re
-                square += x * x + y * y
-        gap = 1.0
-        for q in range(n):
-            if q != p:
-                gap *= abs(values[p] - values[q])
-        kappa[p] = math.sqrt(square) / gap if gap > 0.0 else math.inf
-
-
-@compiled()
-def _disks(values: ComplexArray, kappa: FloatArray, size: float, radii: FloatArray) -> None:
-    """Radii by Gershgorin's theorem for diag(values) + F, |F_ij| <= f_ij = size sqrt(kappa_i kappa_j).
-
-    R_i = sum_j f_ij. Where every |lambda_i - lambda_j| is at least 2 (R_i + R_j), scaling the i-th coordinate
-    by tau = max_j 2 f_ij/|lambda_i - lambda_j| leaves disk i apart from the others and shrinks its radius to
-    f_ii + tau (R_i - f_ii): hardly more than the first order, size kappa_i.
-    """
-    n = values.size
-    total = 0.0
-    for i in range(n):
-        total += math.sqrt(kappa[i])
-    for i in range(n):
-        root = math.sqrt(kappa[i])
-        own, full = size * kappa[i], size * root * total
-        tau = 0.0
-        for j in range(n):
-            if j != i:
-                gap = abs(values[i] - values[j])
-                other = math.sqrt(kappa[j])
-                if gap < 2.0 * (full + size * other * total):
-                    tau = 1.0
-                elif gap * tau < 2.0 * size * root * other:
-                    tau = 2.0 * size * root * other / gap
-        radii[i] = own + tau * (full - own)
-
-
-@compiled()
-def _join(values: ComplexArray, radii: FloatArray, scratch: FloatArray, group: npt.NDArray[np.int64]) -> None:
-    """Widen the radii of overlapping disks: a union of k disks apart from the others holds k eigenvalues."""
-    n = values.size
-    for i in range(n):
-        group[i] = i
-        scratch[i] = radii[i]
-    for i in range(n):
-        for j in range(i):
-            if group[i] != group[j] and abs(values[i] - values[j]) <= radii[i] + radii[j]:
-                old, new = group[i], group[j]
-                for k in range(n):
-                    if group[k] == old:
-                        group[k] = new
-    for i in range(n):
-        for j in range(n):
-            if j != i and group[i] == group[j]:
-                radii[i] = max(radii[i], abs(values[i] - values[j]) + scratch[j])
-
-
-@compiled(nogil=True)
-def spectra(
-    M: FloatArray, delta: FloatArray, values: ComplexArray, radii: FloatArray, safe: npt.NDArray[np.bool_]
-) -> None:
-    """Eigenvalues of N matrices, each with a disk that holds as many exact ones, when M is wrong by delta.
-
-    With left and right eigenvectors scaled to |x_i| = |y_i| = sqrt(kappa_i) the entries of Y^H E X are at
-    most delta sqrt(kappa_i kappa_j), from which Gershgorin's theorem gives the radii (`_disks`).
-
-    Parameters
-    ----------
-    M : (N, n, n)
-    delta : (N,) bound on the 2-norm of the error of each
-    values : (N, n), out
-    radii : (N, n), out
-    safe : (N,), out: the condition numbers are well determined, so that each radius is a bound for its own
-        eigenvalue; where disks overlap it reaches around all of those that hang together
-    """
-    n = M.shape[1]
-    A, B, product = np.empty((n, n)), np.empty((n, n, n)), np.empty((n, n))
-    kappa, group = np.empty(n), np.empty(n, dtype=np.int64)
-    for point in range(M.shape[0]):
-        square = 0.0
-        for i in range(n):
-            for j in range(n):
-                A[i, j] = M[point, i, j]
-                square += A[i, j] * A[i, j]
-        ok = _eigenvalues(A, values[point])
-        _condition_numbers(M[point], values[point], B, product, kappa)
-        for i in range(n):
-            # Rounding of the recurrence: a condition number is worthless once it nears 1/sqrt(eps).
-            ok = ok and kappa[i] < 1e6
-        # Backward error of the QR iteration, as for LAPACK's. 1.01: relative error of the condition numbers.
-        size = 1.01 * (delta[point] + 4.0 * n * _EPS * math.sqrt(square))
-        _disks(values[point], kappa, size, radii[point])
-        _join(values[point], radii[point], kappa, group)
-        safe[point] = ok

@@ -31,6 +31,7 @@ class Problem(NamedTuple):
     flow_error : (P,) bound on what the error of the transition matrix over each piece has besides
     C, omega, v : (m, m) [1/s], (m,) [rad/s], (m,)
     drive : bound on the rate [1/s] at which C lets the state grow; 0 where all supports are damped
+    noise : bound on the error of A [1/s] by the change to modal coordinates and the rounding of C and omega
     input : (m,) constant forcing whose motion from rest is carried beside that of f
     reference : (m,) constant part of w that omega^2 already has, so that w - reference acts
     """
@@ -48,6 +49,7 @@ class Problem(NamedTuple):
     flow_error: FloatArray
     C: FloatArray
     drive: float
+    noise: float
     omega: FloatArray
     v: FloatArray
     input: FloatArray
@@ -82,7 +84,7 @@ class Piece(NamedTuple):
     a, powers : majorant, and what ``enough_terms`` needs besides
     Z, s, sd : (terms, 3, LANES), (terms, LANES): coefficients of eta, v . eta and its derivative
     v, hC, h2_omega2, h2_reference : (3,), (3, 3), (3,), (3,)
-    sizes : |v/omega|, |v| and max omega + |C|
+    sizes : |v/omega|, |v|, max omega + |C|, and |reference| |v/omega|
     ends : (4, 2m, LANES) states at the end and at the start of the step, and room to work
     unit : (LANES, LANES) rows of the unit matrix
     """
@@ -124,7 +126,8 @@ def scratch_for(problem: Problem) -> Piece:
         np.zeros((MAX_TERMS + 2, LANES)), np.zeros((MAX_TERMS + 2, LANES)),
         v, np.zeros((3, 3)), np.zeros(3), np.zeros(3),
         np.array([norm(problem.v / problem.omega), norm(problem.v),
-                  problem.omega.max() + norm(problem.C.ravel())]),
+                  problem.omega.max() + norm(problem.C.ravel()),
+                  norm(problem.reference) * norm(problem.v / problem.omega)]),
         np.zeros((4, 2 * m, LANES)), np.eye(LANES),
     )  # fmt: skip
 
@@ -190,7 +193,7 @@ def load_piece(
     _summed(problem.w, i, piece.degrees[0], gains, 1.0, piece.w)
     if math.isnan(rho):
         _summed(problem.wd, i, piece.degrees[1], gains, zeta, piece.wd)
-    rate, error, error_f = calm, 0.0, 0.0
+    rate, error, error_f = calm, problem.noise, 0.0
     for j in range(piece.f.shape[0]):
         store(piece.f, (j,), zero())
     for q in range(gains.size):

@@ -10,7 +10,10 @@ from lumped.typing import FloatArray
 
 FORCED = 6
 """First of the two lanes that carry forced motion: under the forcing, and under the input."""
+BLOCKS = 34
+"""Blocks of steps held at once at most: enough for 2^32 steps."""
 _EPS = 2.220446049250313e-16
+_SLACK = 1.0 + 1e-11  # rounding of a bound itself
 
 
 @compiled(_nrt=False)
@@ -99,6 +102,24 @@ def divide(
 
 
 @compiled(_nrt=False)
+def _gram(A: FloatArray, out: FloatArray) -> None:
+    """Out = A^T A of A[:, 0:n], (n, LANES)."""
+    n = A.shape[0]
+    for i in range(n):
+        total = zero()
+        for q in range(n):
+            total = plus(A[q, i], load(A, (q,)), total)
+        store(out, (i,), total)
+
+
+@compiled(_nrt=False)
+def spectral(A: FloatArray, square: FloatArray, scratch: FloatArray) -> float:
+    """Bound on the 2-norm of A[:, 0:n]: |A|^2 <= |A^T A|_F, too large by at most the fourth root of n."""
+    _gram(A, square)
+    return math.sqrt(frobenius(square, scratch)) * _SLACK
+
+
+@compiled(_nrt=False)
 def carry(
     steps: FloatArray,
     local: FloatArray,
@@ -107,21 +128,25 @@ def carry(
     flow: FloatArray,
     weights: FloatArray,
     work: FloatArray,
+    table: FloatArray,
 ) -> float:
     """Product of the steps, its error bound and the weight with which each step's error reaches the end.
 
-    The first-order error is sum S_j E_j Q_j, S_j the product of the steps after step j and Q_j that of those
-    before it, bounded by sum |S_j| |E_j| |Q_j|. The error of a piece that is no step's has the S of its last
-    and the Q of its first step.
+    With Q_j the computed product of the steps before step j, E_j the error of step j with the rounding of its
+    multiplication, and S_j the *exact* flow from the end of step j to that of the period, the error of the
+    product is sum S_j E_j Q_j, no term left out. S_j is known as a product of at most log2 of as many blocks,
+    each the computed product of 2^k steps (a binary counter, from the last step backwards), so that its own
+    error stays small. The error of a piece that is no step's is one of its block.
 
     Parameters
     ----------
     steps : (count, n, LANES), the columns from FORCED on are states at the end of the step from rest
-    local : (count,) bound on |E_j|
+    local : (count,) bound on |E_j|, 2-norm
     layout : (count, 4) as from ``steps_of_period``
     flow : (n, LANES), out: the product, with the states from rest in the columns from FORCED on
-    weights : (count, 2), out: |S_j|, and |Q_j|
-    work : (3, n, LANES) scratch
+    weights : (count, 2), out: bounds on |S_j|, and |Q_j|
+    work : (2 BLOCKS + 2, n, LANES) scratch
+    table : (5, BLOCKS) scratch: norm, error, rank of the blocks; norm, error of their product
 
     Returns
     -------
@@ -139,20 +164,67 @@ def carry(
             store(flow, (i,), load(product, (i,)))
             for lane in range(FORCED, LANES):
                 flow[i, lane] += steps[k, i, lane]
-    after = work[2]
-    for i in range(n):
-        for lane in range(LANES):
-            after[i, lane] = 1.0 if i == lane and lane < n else 0.0
-    total = 0.0
+    top, total, inner, wrong, norm = 0, 0.0, 1.0, 0.0, 0.0
     for k in range(count - 1, -1, -1):
-        weights[k, 0] = frobenius(after, scratch)
         # n eps |P| is the rounding of multiplying by this step.
-        local[k] += n * _EPS * frobenius(steps[k], scratch)
-        total += weights[k, 0] * local[k] * weights[k, 1]
-        if layout[k, 1] == layout[k, 2] - 1.0:
-            total += weights[k, 0] * layout[k, 3] * weights[k - int(layout[k, 1]), 1]
-        if k > 0:
-            multiply(after, steps[k], product)
+        size = frobenius(steps[k], scratch)
+        own = local[k]
+        local[k] += n * _EPS * size
+        part, parts, extra = int(layout[k, 1]), int(layout[k, 2]), layout[k, 3]
+        after = table[3, top - 1] + table[4, top - 1] if top > 0 else 1.0
+        if extra > 0.0 and parts > 1:
+            # The steps of such a piece make one block, whose norm while it grows is the product of theirs.
+            if part == parts - 1:
+                inner = 1.0
+                block = work[2 + top]
+                for i in range(n):
+                    store(block, (i,), load(steps[k], (i,)))
+                wrong, norm = own, size
+                weights[k, 0] = after
+            else:
+                weights[k, 0] = after * inner
+                multiply(work[2 + top], steps[k], product)
+                for i in range(n):
+                    store(work[2 + top], (i,), load(product, (i,)))
+                wrong = wrong * (size + own) + norm * own + n * _EPS * norm * size
+                norm *= size
+            inner *= size + own
+            total += weights[k, 0] * local[k] * weights[k, 1]
+            if part > 0:
+                continue
+            total += after * extra * weights[k, 1]
+            wrong += extra
+        else:
+            weights[k, 0] = after
+            total += after * (local[k] + extra * (1.0 if part == parts - 1 else 0.0)) * weights[k, 1]
+            block = work[2 + top]
             for i in range(n):
-                store(after, (i,), load(product, (i,)))
-    return total
+                store(block, (i,), load(steps[k], (i,)))
+            wrong = own + extra
+            norm = size
+        rank = 0
+        table[0, top], table[1, top], table[2, top] = norm, wrong, 0.0
+        top += 1
+        while top > 1 and table[2, top - 2] == rank:
+            one, two = top - 2, top - 1
+            a, b, da, db = table[0, one], table[0, two], table[1, one], table[1, two]
+            multiply(work[2 + one], work[2 + two], product)
+            for i in range(n):
+                store(work[2 + one], (i,), load(product, (i,)))
+            rank += 1
+            table[0, one] = frobenius(product, scratch)
+            table[1, one] = a * db + da * b + da * db + n * _EPS * a * b
+            table[2, one] = rank
+            top = one + 1
+        # The product of all blocks, which is the flow from here to the end, and its error.
+        last, base = top - 1, 2 + BLOCKS
+        if last == 0:
+            for i in range(n):
+                store(work[base], (i,), load(work[2], (i,)))
+            table[4, 0] = table[1, 0]
+        else:
+            multiply(work[base + last - 1], work[2 + last], work[base + last])
+            a, da, b, db = table[3, last - 1], table[4, last - 1], table[0, last], table[1, last]
+            table[4, last] = a * db + da * (b + db) + n * n * _EPS * a * b
+        table[3, last] = spectral(work[base + last], product, scratch)
+    return total * _SLACK

@@ -11,7 +11,7 @@ from floquet.rank_one.kernels.compiled import compiled
 from floquet.rank_one.kernels.gains import Limits, Piece, Problem, load_piece, load_step, part_of, scratch_for
 from floquet.rank_one.kernels.lanes import LANES
 from floquet.rank_one.kernels.majorant import enough_terms, norm
-from floquet.rank_one.kernels.product import FORCED, carry, invert
+from floquet.rank_one.kernels.product import BLOCKS, FORCED, carry, invert
 from floquet.rank_one.kernels.taylor import ends_of_step, series, start_from_rest, steps_of_period
 from lumped.typing import FloatArray
 
@@ -68,7 +68,12 @@ def periodic_points(
     piece = scratch_for(problem)
     steps = np.empty((limits.max_steps, n, LANES))
     local, layout = np.empty((limits.max_steps, 3)), np.empty((limits.max_steps, 4))
-    weights, work, flow = np.empty((limits.max_steps, 2)), np.zeros((3, n, LANES)), np.zeros((n, LANES))
+    table = np.zeros((5, BLOCKS))
+    weights, work, flow = (
+        np.empty((limits.max_steps, 2)),
+        np.zeros((2 * BLOCKS + 2, n, LANES)),
+        np.zeros((n, LANES)),
+    )
     closed = np.empty((n, n))
     both, state = np.zeros((n, 2)), np.zeros((n, 2))
     sampled = np.zeros((deflection.shape[1], 2))
@@ -77,7 +82,7 @@ def periodic_points(
         count = steps_of_period(problem, gains[point], zeta, T, limits, piece, steps, local, layout)
         if count < 0:
             return point
-        error = carry(steps, local[:, 0], layout, count, flow, weights, work)
+        error = carry(steps, local[:, 0], layout, count, flow, weights, work, table)
         for i in range(n):
             for j in range(n):
                 closed[i, j] = (1.0 if i == j else 0.0) - flow[i, j]

@@ -38,10 +38,11 @@ from floquet.rank_one.kernels.gains import (
 )
 from floquet.rank_one.kernels.lanes import LANES, load, plus, scaled, store, zero
 from floquet.rank_one.kernels.majorant import enough_terms, norm
-from floquet.rank_one.kernels.product import FORCED, carry, divide
+from floquet.rank_one.kernels.product import BLOCKS, FORCED, carry, divide
 from lumped.typing import FloatArray
 
 _EPS = 2.220446049250313e-16
+_U = 0.5 * _EPS
 
 
 @compiled(fastmath={"contract"}, _nrt=False)
@@ -186,16 +187,21 @@ def steps_of_period(
             end, start, scratch = piece.ends[0], piece.ends[1], piece.ends[2:]
             ends_of_step(problem, piece, terms, h, end, start)
             size_step, residual = divide(end, start, piece.unit, scratch, steps[count])
-            # Every coefficient is a sum of at most 2 d + 2 m + 4 rounded products of size r_k.
-            rounding = _EPS * (2.0 * degree + 2.0 * m + 8.0) * size
             # Neither the skew part of A nor damping lets the energy grow; what is left of a at most does.
-            growth = h * (problem.drive - piece.sizes[2])
+            turned, total = 2.0 * h * piece.sizes[3], 0.0
             for j in range(degree + 1):
-                growth += piece.a[j]
-            back = math.exp(growth)
-            spread = 2.0 * h * back * back
+                total += piece.a[j]
+                turned += piece.a[j] / (j + 1.0)
+            growth = total + h * (problem.drive - piece.sizes[2])
+            # Each coefficient goes through at most this many roundings of the sum of the moduli of its terms,
+            # and errors grow along the recurrence as its solution does; then come the sums at both ends.
+            count_w = piece.degrees[0] + (piece.degrees[1] if math.isnan(ratio) else 0)
+            rounding = _U * math.sqrt(2.0 * m) * size * ((count_w + 20.0) * turned + total + 10.0)
+            back = math.exp(growth) * (1.0 + 1e-12)
+            spread = 2.0 * h * back * back * math.exp(2.0 * h * misfit)
             twice = 1.0 + size_step
-            error = (residual + twice * (limits.tolerance + rounding)) * back
+            # 1 + 1e-6: rounding of the bound itself, of the number of terms above all.
+            error = (residual + twice * (limits.tolerance + rounding)) * back * (1.0 + 1e-6)
             size_f = 0.0
             for j in range(piece.degrees[2] + 1):
                 size_f += row_norm(piece.fs, j, m)
@@ -247,14 +253,19 @@ def propagate_points(
     piece = scratch_for(problem)
     steps = np.empty((limits.max_steps, n, LANES))
     local, layout = np.empty((limits.max_steps, 3)), np.empty((limits.max_steps, 4))
-    weights, work, flow = np.empty((limits.max_steps, 2)), np.zeros((3, n, LANES)), np.zeros((n, LANES))
+    table = np.zeros((5, BLOCKS))
+    weights, work, flow = (
+        np.empty((limits.max_steps, 2)),
+        np.zeros((2 * BLOCKS + 2, n, LANES)),
+        np.zeros((n, LANES)),
+    )
     for point in range(periods.size):
         count = steps_of_period(
             problem, gains[point], damping_factor[point], periods[point], limits, piece, steps, local, layout
         )
         if count < 0:
             return point
-        bound[point] = carry(steps, local[:, 0], layout, count, flow, weights, work)
+        bound[point] = carry(steps, local[:, 0], layout, count, flow, weights, work, table)
         for i in range(n):
             forced[point, i] = flow[i, FORCED]
             for j in range(n):

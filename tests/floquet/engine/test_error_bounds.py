@@ -8,7 +8,7 @@ from scipy.linalg import expm
 
 from floquet import PROPAGATORS, PeriodicSystem, monodromy
 from floquet.engine.multipliers import (
-    _cluster_data,
+    least_separation,
     multipliers_with_bounds,
     radii_with_bounds,
     radius_with_bound,
@@ -145,14 +145,13 @@ def test_rounding_of_the_eigenvalues_themselves_is_in_the_bound() -> None:
 
 
 def test_the_separation_of_a_cluster_is_never_overestimated() -> None:
-    # LAPACK's estimate of 1/|inv(T22 - T11)| may be too large by sqrt(2) here, and is for the first matrix:
-    # of inv(T22) = [[1, 1], [0, e]] the 1-norm is 1 + e, the 2-norm about sqrt(2).
+    # LAPACK's estimate of 1/|inv(T22 - T11)| is too large for the first matrix.
     rng = np.random.default_rng(5)
     random = [np.triu(rng.normal(size=(3, 3))) for _ in range(20)]
     for T in [np.array([[0.0, 0.0, 0.0], [0.0, 1.0, -100.0], [0.0, 0.0, 100.0]]), *random]:
         true = np.linalg.svd(T[1:, 1:] - T[0, 0] * np.eye(2), compute_uv=False)[-1]
-        _, separation, _ = _cluster_data(T.astype(complex), np.eye(3, dtype=complex), [0])
-        assert 0.0 < separation <= true * (1.0 + 1e-12)  # rounding
+        separation, _ = least_separation(T[:1, :1].astype(complex), T[1:, 1:].astype(complex))
+        assert 0.3 * true < separation <= true * (1.0 + 1e-12)  # rounding of the reference
 
 
 def test_a_radius_whose_interval_ends_at_1_is_undecided() -> None:
@@ -167,8 +166,8 @@ def test_a_defective_multiplier_alone_has_elsners_bound(size: int) -> None:
     # Of a Jordan block with g beside the diagonal |B - mean| = g and the projector is 1.
     g, delta = 4.0, 1e-8
     _, bounds = multipliers_with_bounds(0.5 * np.eye(size) + g * np.eye(size, k=1), delta)
-    # Rounding adds 4 n eps |M| < 2e-14 to delta, 2e-6 of it.
-    assert bounds == pytest.approx((2.0 * g + delta) ** (1 - 1 / size) * delta ** (1 / size), rel=2e-6)
+    # Rounding adds some hundred eps |M| to delta, 2e-5 of it.
+    assert bounds == pytest.approx((2.0 * g + delta) ** (1 - 1 / size) * delta ** (1 / size), rel=2e-5)
     assert (g ** (size - 1) * delta) ** (1 / size) <= bounds[0]  # what delta in the corner does
 
 

@@ -10,8 +10,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from floquet import PROPAGATORS, gear_pair_multipliers, gear_pair_system, monodromy, stability_chart
-from floquet.gear.axes import GEAR_AXES, GearVariation, vary
-from floquet.gear.multipliers import mean_mesh_stiffness
+from floquet.gear.axes import GEAR_AXES, GearVariation, mean_mesh_stiffness, vary
 from lumped import geometry, load_gear_pair, periodic_system
 from lumped.errors import ParameterError
 

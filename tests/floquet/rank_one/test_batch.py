@@ -19,7 +19,7 @@ from floquet import (
     stability_chart,
 )
 from floquet.gear.axes import GearVariation
-from floquet.rank_one.kernels.eigen import spectra
+from floquet.rank_one.kernels.disks import spectra
 from floquet.rank_one.system import Gains
 from lumped import load_gear_pair
 from lumped.errors import NumericalError, ParameterError

@@ -9,7 +9,7 @@ import pytest
 from scipy.linalg import expm
 
 from floquet import RankOneSystem, fast_monodromies
-from floquet.rank_one.kernels.eigen import spectra
+from floquet.rank_one.kernels.disks import spectra
 from floquet.rank_one.kernels.lanes import LANES
 from floquet.rank_one.kernels.majorant import MAX_TERMS, enough_terms, powers_of_radii
 from floquet.rank_one.kernels.product import FORCED, divide

@@ -46,7 +46,7 @@ def write(results: Results) -> Content:
         (
             Fact("verdict", "verdict at the operating point", Badge(found.verdict)),
             Fact("spectral_radius", "largest multiplier", found.spectral_radius, "stable below 1"),
-            Fact("error", "bound on its error", found.error),
+            Fact("error", "bound on its error", found.error, found.certificate),
             Fact(
                 "decay",
                 "margin 1 - spectral radius",

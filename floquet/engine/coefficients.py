@@ -1,0 +1,258 @@
+"""Coefficients of A(t) that are known as formulas, so that everything about them can be bounded.
+
+Piecewise polynomials and Fourier series, their sums and products. Each gives its Taylor polynomial on an
+interval with a bound on what that leaves out and on its rounding: what a callable cannot tell.
+
+Sources: docs/theory/proven_bounds.md, "Coefficients given as formulas".
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from lumped.arguments import real_array, real_number, real_numbers
+from lumped.errors import refuse
+from lumped.typing import FloatArray
+
+_U = 0.5 * float(np.finfo(np.float64).eps)
+
+
+class Coefficient(ABC):
+    """A function of time that is analytic between its breaks.
+
+    Attributes
+    ----------
+    breaks : times at which it jumps or has a kink [s]
+    """
+
+    breaks: tuple[float, ...] = ()
+
+    @abstractmethod
+    def __call__(self, times: npt.ArrayLike) -> FloatArray:
+        """Values at times [s], any shape."""
+
+    @abstractmethod
+    def taylor(self, start: FloatArray, length: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
+        """Polynomials on intervals that no break lies inside.
+
+        Parameters
+        ----------
+        start, length : (k,) the intervals start + length s, 0 <= s <= 1 [s]
+        degree : of the polynomials
+
+        Returns
+        -------
+        (k, degree + 1) coefficients of the powers of s, and (k,) bounds on their errors over 0 <= s <= 1
+        """
+
+    def __add__(self, other: Coefficient | float) -> Coefficient:
+        """The sum."""
+        return _Sum(self, _known(other))
+
+    def __mul__(self, other: Coefficient | float) -> Coefficient:
+        """The product."""
+        return _Product(self, _known(other))
+
+    def __neg__(self) -> Coefficient:
+        """The negative."""
+        return self * -1.0
+
+    def __sub__(self, other: Coefficient | float) -> Coefficient:
+        """The difference."""
+        return self + _known(other) * -1.0
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __rsub__(self, other: float) -> Coefficient:
+        """The difference from a number."""
+        return -self + other
+
+
+class PiecewisePolynomial(Coefficient):
+    """One polynomial on each interval between increasing times.
+
+    Parameters
+    ----------
+    breaks : (P+1,) ends of the pieces [s]; beyond them the first and the last piece go on
+    coefficients : (P, d+1) of the powers of the time since the start of the piece, lowest first
+    """
+
+    def __init__(self, breaks: npt.ArrayLike, coefficients: npt.ArrayLike) -> None:
+        self._ends = real_numbers("breaks", breaks, increasing=True, unit="s")
+        self._rows = np.atleast_2d(real_array("coefficients", coefficients))
+        if self._rows.shape[0] != self._ends.size - 1 or not np.isfinite(self._rows).all():
+            allowed = f"({self._ends.size - 1}, degree + 1), finite"
+            raise refuse("coefficients", f"shape {self._rows.shape}", allowed, "Give one row per piece.")
+        self.breaks = tuple(self._ends.tolist())
+
+    def _piece(self, times: FloatArray) -> npt.NDArray[np.intp]:
+        return np.clip(np.searchsorted(self._ends, times, side="right") - 1, 0, self._ends.size - 2)
+
+    def __call__(self, times: npt.ArrayLike) -> FloatArray:
+        """See `Coefficient`."""
+        t = np.asarray(times, dtype=float)
+        piece = self._piece(t)
+        value = np.zeros_like(t)
+        for j in range(self._rows.shape[1] - 1, -1, -1):
+            value = value * (t - self._ends[piece]) + self._rows[piece, j]
+        return value
+
+    def taylor(self, start: FloatArray, length: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
+        """See `Coefficient`; the place since the start of the piece is wrong by 2 u of the times."""
+        piece = self._piece(start + 0.5 * length)
+        x = start - self._ends[piece]
+        rows = self._rows[piece]
+        most = rows.shape[1] - 1
+        reach = np.abs(x) + length
+        sizes = np.abs(rows) * reach[:, None] ** np.arange(most + 1)
+        slope = (sizes * np.arange(most + 1)).sum(axis=1) / reach
+        place = 4.0 * _U * (np.abs(start) + np.abs(self._ends[piece]) + length)
+        moved = rows.copy()
+        for j in range(most):
+            for i in range(most - 1, j - 1, -1):
+                moved[:, i] += x * moved[:, i + 1]
+        moved *= length[:, None] ** np.arange(most + 1)
+        errors = (4.0 * most + 8.0) * _U * sizes.sum(axis=1) + place * slope
+        errors += np.abs(moved[:, degree + 1 :]).sum(axis=1)
+        out = np.zeros((start.size, degree + 1))
+        out[:, : most + 1] = moved[:, : degree + 1]
+        return out, errors
+
+
+class FourierSeries(Coefficient):
+    """Mean + sum of cosines[k-1] cos(k Omega t) + sines[k-1] sin(k Omega t), Omega = 2 pi/period.
+
+    Parameters
+    ----------
+    period : [s]
+    mean : constant term
+    cosines, sines : coefficients of the harmonics 1, 2, ...
+    """
+
+    def __init__(
+        self, period: float, mean: float, cosines: Sequence[float] = (), sines: Sequence[float] = ()
+    ) -> None:
+        count = max(len(cosines), len(sines))
+        self._omega = 2.0 * math.pi / real_number("period", period, 0.0, above=True, unit="s")
+        self._mean = real_number("mean", mean)
+        self._a, self._b = (np.zeros(count) for _ in range(2))
+        self._a[: len(cosines)], self._b[: len(sines)] = cosines, sines
+        self._order = np.arange(1, count + 1)
+
+    def __call__(self, times: npt.ArrayLike) -> FloatArray:
+        """See `Coefficient`."""
+        angle = np.multiply.outer(np.asarray(times, dtype=float) * self._omega, self._order)
+        return np.asarray(self._mean + np.cos(angle) @ self._a + np.sin(angle) @ self._b)
+
+    def taylor(self, start: FloatArray, length: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
+        """See `Coefficient`; cos and sin of the library are taken to be right to 4 u."""
+        angle = start[:, None] * self._omega * self._order
+        turn = length[:, None] * self._omega * self._order
+        cos, sin = np.cos(angle), np.sin(angle)
+        derivatives = [self._a * cos + self._b * sin, self._b * cos - self._a * sin]
+        size = np.abs(self._a) + np.abs(self._b)
+        out = np.zeros((start.size, degree + 1))
+        factor = np.ones_like(turn)
+        for j in range(degree + 1):
+            sign = 1.0 if j % 4 < 2 else -1.0
+            out[:, j] = sign * (derivatives[j % 2] * factor).sum(axis=1)
+            factor = factor * turn / (j + 1)
+        out[:, 0] += self._mean
+        # Lagrange's remainder, and the rounding of the angle, of cos and sin and of the sums. 1e-3: the rest.
+        rounding = (
+            (4.0 * np.abs(angle) + 4.0 * degree + 16.0 + self._order.size)
+            * _U
+            * np.exp(np.minimum(turn, 500.0))
+        )
+        return out, 1.001 * (size * (factor + rounding)).sum(axis=1) + 2.0 * _U * abs(self._mean)
+
+
+class _Sum(Coefficient):
+    def __init__(self, first: Coefficient, second: Coefficient) -> None:
+        self._first, self._second = first, second
+        self.breaks = first.breaks + second.breaks
+
+    def __call__(self, times: npt.ArrayLike) -> FloatArray:
+        return self._first(times) + self._second(times)
+
+    def taylor(self, start: FloatArray, length: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
+        (a, da), (b, db) = (f.taylor(start, length, degree) for f in (self._first, self._second))
+        return a + b, (da + db + 2.0 * _U * (np.abs(a) + np.abs(b)).sum(axis=1)) * (1.0 + 8.0 * _U)
+
+
+class _Product(Coefficient):
+    def __init__(self, first: Coefficient, second: Coefficient) -> None:
+        self._first, self._second = first, second
+        self.breaks = first.breaks + second.breaks
+
+    def __call__(self, times: npt.ArrayLike) -> FloatArray:
+        return self._first(times) * self._second(times)
+
+    def taylor(self, start: FloatArray, length: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
+        (a, da), (b, db) = (f.taylor(start, length, degree) for f in (self._first, self._second))
+        out = np.zeros((start.size, 2 * degree + 1))
+        for j in range(degree + 1):
+            out[:, j : j + degree + 1] += a[:, j, None] * b
+        size_a, size_b = np.abs(a).sum(axis=1), np.abs(b).sum(axis=1)
+        errors = np.abs(out[:, degree + 1 :]).sum(axis=1) + da * size_b + db * size_a + da * db
+        errors += (degree + 8.0) * 2.0 * _U * size_a * size_b
+        return out[:, : degree + 1], errors * (1.0 + 8.0 * _U)
+
+
+def _known(value: Coefficient | float) -> Coefficient:
+    """A coefficient; numbers are constants."""
+    if isinstance(value, Coefficient):
+        return value
+    return FourierSeries(1.0, real_number("coefficient", value))
+
+
+class KnownMatrix:
+    """A(t) whose entries are known as formulas: a `PeriodicSystem` of it has proven bounds.
+
+    Parameters
+    ----------
+    entries : (n, n) nested sequences of `Coefficient` and numbers
+
+    Attributes
+    ----------
+    dimension : n
+    breaks : times at which an entry jumps or has a kink [s]
+    """
+
+    def __init__(self, entries: Sequence[Sequence[Coefficient | float]]) -> None:
+        self.dimension = len(entries)
+        if not entries or any(len(row) != self.dimension for row in entries):
+            raise refuse("entries", f"{self.dimension} rows", "a square matrix", "Give n rows of n entries.")
+        self._entries = [
+            (i, j, _known(value))
+            for i, row in enumerate(entries)
+            for j, value in enumerate(row)
+            if isinstance(value, Coefficient) or value != 0.0
+        ]
+        self.breaks = tuple(sorted({t for _, _, entry in self._entries for t in entry.breaks}))
+
+    def __call__(self, times: FloatArray) -> FloatArray:
+        """A at times (k,) -> (k, n, n)."""
+        out = np.zeros((np.size(times), self.dimension, self.dimension))
+        for i, j, entry in self._entries:
+            out[:, i, j] = entry(times)
+        return out
+
+    def taylor(
+        self, start: FloatArray, length: FloatArray, degree: int, scaling: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Polynomials of A_ij d_j/d_i, (k, degree + 1, n, n), and bounds (k,) on the norm of their errors."""
+        out = np.zeros((start.size, degree + 1, self.dimension, self.dimension))
+        squares = np.zeros(start.size)
+        for i, j, entry in self._entries:
+            factor = float(scaling[j] / scaling[i])  # powers of two: exact
+            series, error = entry.taylor(start, length, degree)
+            out[:, :, i, j] = factor * series
+            with np.errstate(over="ignore"):  # of a step that is much too long
+                squares += (factor * error) ** 2
+        return out, np.sqrt(squares) * (1.0 + 1e-12)

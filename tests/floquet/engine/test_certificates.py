@@ -1,0 +1,76 @@
+"""Is what is proven called proven, and what is sampled an estimate that looks where nobody looked?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from floquet import FourierSeries, KnownMatrix, PeriodicSystem, PiecewisePolynomial, monodromy
+from floquet.engine.proven import proven_product
+from lumped.errors import NumericalError, ParameterError, ResolutionWarning
+
+
+def bumped(width: float) -> PeriodicSystem:
+    """An oscillator with a narrow bump of its stiffness, as a callable."""
+
+    def A(t: float) -> np.ndarray:
+        bump = 2.0 / width * np.exp(-(((t - 0.437) / width) ** 2) / 2.0)
+        return np.array([[0.0, 1.0], [-(30.0 + 5.0 * np.cos(2.0 * np.pi * t) + bump), -0.04]])
+
+    return PeriodicSystem(A, 1.0)
+
+
+def test_a_narrow_feature_of_a_callable_is_found_and_told() -> None:
+    with pytest.warns(ResolutionWarning, match=r"0\.4|0\.5"):
+        found = monodromy(bumped(3e-4))
+    assert found.spectral_radius == pytest.approx(1.3503742883, abs=1e-8)
+    assert found.certificate == "estimate"
+    assert 0.0 < found.resolution < 1e-3
+
+
+def test_a_formula_has_a_proven_bound_that_holds_for_both_routes() -> None:
+    entry = FourierSeries(1.0, -30.0, [-5.0]) - PiecewisePolynomial(
+        [0.0, 0.3, 1.0], [[0.0, 1.0, 2.0], [1.0, 2.0, 3.0]]
+    ) * FourierSeries(1.0, 1.0, [], [0.3, 0.2])
+    system = PeriodicSystem(KnownMatrix([[0.0, 1.0], [entry, -0.04]]), 1.0)
+    proven, sampled = monodromy(system), monodromy(system, method="gauss")
+    assert (proven.certificate, sampled.certificate) == ("proven", "estimate")
+    assert (proven.resolution, proven.method) == (0.0, "taylor")
+    assert system.edges.tolist() == [0.0, 0.3, 1.0]  # the break of the polynomial
+    assert abs(proven.spectral_radius - sampled.spectral_radius) <= proven.error + sampled.error
+    assert 0.0 < proven.matrix_error < 1e-10
+    assert proven.liouville_residual < 1e-11
+
+
+@pytest.mark.parametrize("degree", [2, 6, 14])
+def test_errors_of_the_polynomials_of_a_formula_hold(degree: int) -> None:
+    rng = np.random.default_rng(degree)
+    rows = rng.normal(size=(2, 5))
+    formula = FourierSeries(2.0, 0.3, rng.normal(size=3).tolist(), [1.0]) * PiecewisePolynomial(
+        [0.0, 1.0, 2.0], rows
+    ) + FourierSeries(2.0, 1.0, [0.5])
+    start, length = np.array([0.1, 1.2]), np.array([0.3, 0.15])
+    series, errors = formula.taylor(start, length, degree)
+    s = np.linspace(0.0, 1.0, 50)
+    exact = formula(start[:, None] + length[:, None] * s)
+    error = np.abs((s[:, None] ** np.arange(degree + 1)) @ series.T - exact.T).max(axis=0)
+    assert (error <= errors + 1e-14).all()
+    assert (error > 1e-3 * errors).all() or degree == 14
+
+
+def test_the_product_keeps_terms_of_second_order() -> None:
+    # Errors so large that the first order alone is not enough: (1 + e)^m - 1 > m e.
+    e, m = 0.05, 40
+    exact, bound = proven_product(np.tile(np.eye(2), (m, 1, 1)), np.full(m, e))
+    assert exact == pytest.approx(np.eye(2))
+    assert np.sqrt(2.0) * ((1.0 + e) ** m - 1.0) <= bound
+
+
+def test_what_cannot_be_proven_is_refused() -> None:
+    wave = FourierSeries(1.0, -30.0, [-5.0])
+    with pytest.raises(NumericalError, match="cannot be proven"):
+        monodromy(PeriodicSystem(KnownMatrix([[0.0, 1.0], [wave, -0.04]]), 400.0), 1e-14)
+    with pytest.raises(ParameterError, match="square"):
+        KnownMatrix([[0.0, 1.0]])
+    with pytest.raises(ParameterError, match="coefficients"):
+        PiecewisePolynomial([0.0, 1.0, 2.0], [[1.0]])

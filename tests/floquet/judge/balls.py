@@ -1,0 +1,144 @@
+"""Monodromy matrices and multipliers in ball arithmetic: every number an interval that holds the exact one.
+
+Written without any code of the package under test: Taylor steps whose remainder is enclosed, a product by
+pairs, eigenvalues by Arb (F. Johansson, IEEE Transactions on Computers 66 (2017) 1281-1292).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from flint import acb_mat, arb, arb_mat, arb_poly, ctx
+from scipy.optimize import linear_sum_assignment
+
+BITS = 256
+_SMALL = -130.0 * math.log(2.0)
+_TERMS = 80
+_RHO = (1.2, 1.5, 2.0, 3.0, 4.5, 7.0, 12.0, 25.0, 60.0, 200.0)
+_ANGLE = 1.5
+
+Coefficients = Callable[[arb, arb, int], list[arb]]
+"""(start, length, count) -> Taylor coefficients of an entry over start + length s, 0 <= s <= 1."""
+
+
+class Piece(NamedTuple):
+    """A stretch of time on which every entry of A is analytic.
+
+    Attributes
+    ----------
+    start, length : [s]
+    entries : row, column and Taylor coefficients of every entry that is not zero
+    bound : (start, length) -> (B, R): |entries| <= B for complex |s| <= R, B = 0 for polynomials whose degree
+        is below the number of terms
+    """
+
+    start: arb
+    length: arb
+    entries: Sequence[tuple[int, int, Coefficients]]
+    bound: Callable[[arb, arb], tuple[arb, float]] | None = None
+
+
+def polynomial(poly: arb_poly) -> Coefficients:
+    """An entry that is a polynomial of the time itself."""
+
+    def coefficients(start: arb, length: arb, count: int) -> list[arb]:
+        moved = poly(arb_poly([start, length]))
+        if moved.degree() >= count:
+            raise ValueError("the degree is too high")
+        return [moved[k] for k in range(min(count, moved.degree() + 1))]
+
+    return coefficients
+
+
+def monodromy(pieces: Sequence[Piece], n: int) -> arb_mat:
+    """Enclosure of Phi(T, 0)."""
+    ctx.prec = BITS
+    flows = [flow for piece in pieces for flow in _flows(piece, n)]
+    while len(flows) > 1:
+        flows = [flows[i + 1] * flows[i] if i + 1 < len(flows) else flows[i] for i in range(0, len(flows), 2)]
+    return flows[0]
+
+
+def _flows(piece: Piece, n: int) -> list[arb_mat]:
+    size = _size(piece, n, piece.start, piece.length)
+    parts = max(1, math.ceil(size / _ANGLE))
+    length = piece.length / parts
+    return [_flow(piece, n, piece.start + i * length, length) for i in range(parts)]
+
+
+def _size(piece: Piece, n: int, start: arb, length: arb) -> float:
+    """Rough size of length |A|: any will do."""
+    A = np.zeros((n, n))
+    for i, j, entry in piece.entries:
+        A[i, j] += sum(abs(float(c.mid())) for c in entry(start, length, _TERMS))
+    return float(length.mid()) * float(np.linalg.norm(A, 2))
+
+
+def _flow(piece: Piece, n: int, start: arb, length: arb) -> arb_mat:
+    A: list[arb_mat] = []
+    for i, j, entry in piece.entries:
+        for k, c in enumerate(entry(start, length, _TERMS)):
+            while len(A) <= k:
+                A.append(arb_mat(n, n))
+            A[k][i, j] += c * length
+    norms = [
+        sum((abs(A_k[i, j]).upper() ** 2 for i in range(n) for j in range(n)), arb(0)).sqrt() for A_k in A
+    ]
+    rough = [float(a.upper()) for a in norms]
+    beyond, radius = piece.bound(start, length) if piece.bound else (arb(0), math.inf)
+    best, rho = math.inf, 2.0
+    for R in _RHO:
+        if 0.9 * radius > R:
+            g = sum(a * R ** (k + 1) / (k + 1) for k, a in enumerate(rough))
+            terms = (g - math.log(R - 1.0) - _SMALL) / math.log(R)
+            best, rho = min((best, rho), (terms, R))
+    count = min(max(1, math.ceil(best)), _TERMS - 2)
+    x = [arb_mat([[arb(i == j) for j in range(n)] for i in range(n)])]
+    for k in range(count):
+        total = A[0] * x[k]
+        for j in range(1, min(k, len(A) - 1) + 1):
+            total = total + A[j] * x[k - j]
+        x.append(total * (arb(1) / (k + 1)))
+    total = x[-1]
+    for term in x[-2::-1]:
+        total = total + term
+    R = arb(rho)
+    g = sum((a * R ** (k + 1) / (k + 1) for k, a in enumerate(norms)), arb(0))
+    if radius < math.inf:  # coefficients beyond those at hand: |A_j| <= n B radius^-j
+        g += n * beyond * length * R * (R / radius) ** len(A) / (1 - R / radius)
+    tail = (g.exp() * R ** (-count) / (R - 1)).upper()
+    ball = arb(0, tail)
+    return arb_mat([[total[i, j] + ball for j in range(n)] for i in range(n)])
+
+
+def multipliers(M: arb_mat) -> list[tuple[complex, float]]:
+    """Midpoint and radius of a disk about each eigenvalue.
+
+    Raises
+    ------
+    ValueError : they are too close together for the number of bits
+    """
+    found = acb_mat(M).eig(multiple=True)
+    disks = []
+    for value in found:
+        middle = complex(value.mid())
+        disks.append((middle, float((value - type(value)(middle)).abs_upper())))
+    return disks
+
+
+def worst_ratio(
+    values: np.ndarray, bounds: np.ndarray, exact: Sequence[tuple[complex, float]]
+) -> tuple[float, float]:
+    """Largest error over its bound, computed and exact multipliers being matched best; largest error."""
+    centre, radius = np.array([e[0] for e in exact]), np.array([e[1] for e in exact])
+    # What the disks of the reference leave open counts for the package, and so do the last digits of complex.
+    error = np.maximum(np.abs(values[:, None] - centre) - radius - 4e-16 * np.abs(centre), 0.0)
+    ratio = error / np.maximum(bounds[:, None], 1e-300)
+    for level in np.unique(ratio):
+        rows, columns = linear_sum_assignment(ratio > level)
+        if (ratio[rows, columns] <= level).all():
+            return float(level), float(error[rows, columns].max())
+    return math.inf, math.inf
