@@ -114,7 +114,8 @@ def chart_dataset(
     Returns
     -------
     Dataset with spectral_radius, error, verdict (1 stable, 0 undecided, -1 unstable) over the axes, and where
-    given, multipliers, multiplier_errors over the axes and ``multiplier``; see `certify` for ``proven``
+    given, multipliers, multiplier_errors over the axes and ``multiplier``. Its attribute
+    ``certificate`` is "proven", "estimate" or "mixed", which a variable ``proven`` then details.
     """
     shape = tuple(values.size for values in grid.values())
     dims = tuple(grid)
@@ -144,20 +145,8 @@ def chart_dataset(
         )
     dataset = labelled_dataset(variables, {name: (values, "", name) for name, values in grid.items()})
     dataset["verdict"].attrs.update(flag_values=[-1, 0, 1], flag_meanings="unstable undecided stable")
-    return certify(dataset, proven.reshape(shape))
-
-
-def certify(dataset: xr.Dataset, proven: BoolArray) -> xr.Dataset:
-    """Say whether the errors of a chart are proven: attribute ``certificate``, and ``proven`` where mixed."""
     dataset.attrs["certificate"] = "proven" if proven.all() else "mixed" if proven.any() else "estimate"
     if dataset.attrs["certificate"] == "mixed":
         label = {"units": "1", "long_name": "whether the error is a proven bound"}
-        dataset["proven"] = (dataset["spectral_radius"].dims, proven, label)
+        dataset["proven"] = (dims, proven.reshape(shape), label)
     return dataset
-
-
-def proven_points(dataset: xr.Dataset) -> BoolArray:
-    """Where the errors of a chart are proven, shape of ``spectral_radius``."""
-    if "proven" in dataset:
-        return np.asarray(dataset["proven"].values, dtype=bool)
-    return np.full(dataset["spectral_radius"].shape, dataset.attrs["certificate"] == "proven")

@@ -97,7 +97,8 @@ def write(results: Results) -> Content:
         Picture(
             "stability_chart",
             "Spectral radius over pinion speed and mesh damping ratio, all else as given. Orange with a "
-            "black edge: unstable, named by mode pair and order. Every node carries an error bound.",
+            "black edge: unstable, named by mode pair and order. Every node carries an error bound "
+            f"({chart.attrs['certificate']}).",
             lambda: tongue_chart_figure(
                 chart, "damping_ratio", m.tongues, point=(m.rpm, pair.mesh.damping_ratio)
             ),
