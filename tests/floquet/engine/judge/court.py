@@ -1,8 +1,8 @@
 """Every bound and verdict against ball arithmetic.
 
-    python tests/floquet/judge/court.py [--count 40] [--seed 1] [--jobs 2]     prints the table
+    python tests/floquet/engine/judge/court.py [--count 40] [--seed 1] [--jobs 2]     prints the table
 
-`tests/floquet/judge/test_judge.py` runs a sample of it with the suite.
+`tests/floquet/engine/judge/test_judge.py` runs a sample of it with the suite.
 """
 
 from __future__ import annotations
