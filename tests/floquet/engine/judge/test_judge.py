@@ -1,4 +1,4 @@
-"""A sample of the judge, and faults that it must find. In full: python tests/floquet/engine/judge/court.py."""
+"""A sample of the judge, and faults that it must find. In full: see court.py."""
 
 from __future__ import annotations
 
