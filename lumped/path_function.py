@@ -12,14 +12,17 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PPoly
 
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
+
+Array = TypeVar("Array", NDArray[np.float64], NDArray[np.longdouble])
 
 #: Degree of the fitted pieces. Converting a Chebyshev to a monomial basis costs about (1 + sqrt 2)^degree
 #: rounding errors, 2.5e-13 at degree 8, so the fit stays below its tolerances.
@@ -95,10 +98,7 @@ class PathFunction:
         new = np.ravel(np.asarray(positions, dtype=float))
         breaks = np.unique(np.concatenate([self.breaks, new[(new > low) & (new < high)]]))
         piece = np.searchsorted(self.breaks, breaks[:-1], side="right") - 1
-        by, moved = breaks[:-1] - self.breaks[piece], self.coefficients[:, piece]
-        for last in range(moved.shape[0] - 1, 0, -1):  # Taylor shift by synthetic division
-            for i in range(1, last + 1):
-                moved[i] += by * moved[i - 1]
+        moved = shifted(self.coefficients[:, piece], breaks[:-1] - self.breaks[piece])
         return PathFunction(breaks, moved, self.switches)
 
     @classmethod
@@ -162,6 +162,15 @@ class PathFunction:
             edges.append(low)
             columns.append(_local_monomials(series, half))
         return cls(np.array([*edges, float(breaks[-1])]), np.stack(columns, axis=1), np.asarray(switches))
+
+
+def shifted(coefficients: Array, by: ArrayLike) -> Array:
+    """Coefficients (order, ...), highest power first, about points that lie further on by ``by``, (...)."""
+    moved = coefficients.copy()
+    for last in range(len(moved) - 1, 0, -1):  # synthetic division
+        for i in range(1, last + 1):
+            moved[i] += by * moved[i - 1]
+    return moved
 
 
 def _local_monomials(series: FloatArray, half: float) -> FloatArray:

@@ -35,8 +35,6 @@ class PeriodicMotion:
     initial_error : bound on the 2-norm of the error of x(0) in the coordinates x_i / scaling_i
     scaling : (n,) scales of the states, such that the forcing over one period is of order one
     closure : |x(T) - x(0)| in the same coordinates, x(T) by marching through the period
-    condition : condition number of I - M in the same coordinates; large near a multiplier +1
-    substeps : steps of the propagation
     spectrum : multipliers of the system: where its ``verdict`` is "unstable" the motion exists, but nothing
         that starts beside it stays there
     """
@@ -47,8 +45,6 @@ class PeriodicMotion:
     initial_error: float
     scaling: FloatArray
     closure: float
-    condition: float
-    substeps: int
     spectrum: Spectrum
 
 
@@ -107,8 +103,6 @@ def periodic_motion(
         initial_error=error,
         scaling=scale,
         closure=closure,
-        condition=float(singular[0] / singular[-1]),
-        substeps=flow.steps.shape[0],
         spectrum=Spectrum(*multipliers_with_bounds(M, delta), system.period),
     )
 

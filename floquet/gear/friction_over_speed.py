@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -143,15 +144,10 @@ class _Law:
 def _positions(path: ContactPath) -> FloatArray:
     """Positions on either side of P, from where laws are held constant to the ends of the path."""
     sides = []
-    for side, reach in ((-1.0, path.L_XP - path.L_XA), (1.0, path.L_XD - path.L_XP)):
-        distances = np.concatenate(
-            [
-                np.geomspace(0.5 * PITCH_RESOLUTION, 0.1 * reach, _POSITIONS),
-                np.linspace(0.1 * reach, reach, _POSITIONS + 2)[1:-1],
-            ]
-        )
-        sides.append(path.L_XP + side * distances)
-    return np.concatenate(sides)
+    for reach in (path.L_XA - path.L_XP, path.L_XD - path.L_XP):
+        near = np.geomspace(math.copysign(0.5 * PITCH_RESOLUTION, reach), 0.1 * reach, _POSITIONS)
+        sides += [near, np.linspace(0.1 * reach, reach, _POSITIONS + 2)[1:-1]]
+    return path.L_XP + np.concatenate(sides)
 
 
 def _alike(one: list[float], other: list[float], path: ContactPath) -> bool:

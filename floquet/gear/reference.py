@@ -26,7 +26,7 @@ from lumped.errors import LawRangeWarning
 from lumped.friction import LAWS
 from lumped.labelling import labelled_dataset
 from lumped.model.periodic_system import LTVSystem, periodic_system
-from lumped.path_function import PathFunction
+from lumped.path_function import PathFunction, shifted
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -115,25 +115,19 @@ def _steps(system: LTVSystem) -> tuple[LongArray, LongArray, LongArray]:
     degree = 1 + max(
         int(np.flatnonzero(np.abs(x).max(axis=1)).max(initial=0)) for pair in gains for x in pair
     )
-    w, wd = (np.stack([pair[j][:degree] for pair in gains]) for j in range(2))
-    by = np.array(offsets)
-    return np.array(lengths), _shifted(w, by), _shifted(wd, by)
+    per_segment: list[LongArray] = [
+        np.stack([pair[j][degree - 1 :: -1] for pair in gains], axis=1) for j in range(2)
+    ]
+    w, wd = (
+        shifted(poly, np.array(offsets, dtype=_LD)[:, None])[::-1].swapaxes(0, 1) for poly in per_segment
+    )
+    return np.array(lengths), w, wd
 
 
 def _about(function: PathFunction, start: float, middle: float) -> LongArray:
     """Coefficients in powers of (xi - start), lowest first, of the piece that holds ``middle``."""
     j = int(np.clip(np.searchsorted(function.breaks, middle) - 1, 0, function.breaks.size - 2))
-    poly = function.coefficients[::-1, j].astype(_LD)[None, :, None]
-    return np.asarray(_shifted(poly, np.array([_LD(start) - _LD(function.breaks[j])]))[0, :, 0])
-
-
-def _shifted(poly: LongArray, by: LongArray) -> LongArray:
-    """Coefficients (S, d+1, m) about points that lie further on by (S,), by synthetic division."""
-    out = poly.copy()
-    for k in range(out.shape[1] - 1):
-        for i in range(out.shape[1] - 2, k - 1, -1):
-            out[:, i] += by[:, None] * out[:, i + 1]
-    return out
+    return shifted(function.coefficients[:, j].astype(_LD), _LD(start) - _LD(function.breaks[j]))[::-1]
 
 
 def _transitions(

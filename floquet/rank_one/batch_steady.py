@@ -14,7 +14,7 @@ from floquet.engine.multipliers import radii_with_bounds, verdicts
 from floquet.rank_one.batch import Points, in_threads, multipliers_of
 from floquet.rank_one.kernels.steady import Balance as KernelBalance
 from floquet.rank_one.kernels.steady import periodic_points
-from floquet.rank_one.system import RankOneSystem
+from floquet.rank_one.system import RankOneSystem, padded
 from lumped.arguments import whole_number
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
@@ -116,9 +116,6 @@ def _kernel_balance(system: RankOneSystem) -> KernelBalance:
     if balance is None:
         return KernelBalance(np.zeros((len(system.parts), system.phases.size - 1, 4, 1)), 0.0, 0.0)
     rows = [[part.w, part.wd, part.f, part.fr] for part in balance.gains]
-    degree = max(poly.shape[2] for row in rows for poly in row)
-    psi = np.zeros((len(rows), system.phases.size - 1, 4, degree))
-    for q, row in enumerate(rows):
-        for j, poly in enumerate(row):
-            psi[q, :, j, : poly.shape[2]] = poly[:, 0]
+    count = max(poly.shape[2] for row in rows for poly in row)
+    psi = np.stack([np.stack([padded(poly[:, 0], count) for poly in row], axis=1) for row in rows])
     return KernelBalance(psi, float(balance.known), float(balance.own))

@@ -28,7 +28,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import legendre
 
-from floquet.rank_one.system import Coarsening, Gains, RankOneSystem
+from floquet.rank_one.system import Coarsening, Gains, RankOneSystem, padded, trimmed
 from lumped.arguments import real_number, real_numbers
 from lumped.errors import refuse, shown
 from lumped.typing import FloatArray
@@ -83,7 +83,7 @@ def coarsened(
     parts = []
     none = np.zeros((len(pieces), m, 1))
     for q in range(Q):
-        w, wd = (_trimmed(powers[:, j, q]) for j in (0, 1))
+        w, wd = (trimmed(powers[:, j, q]) for j in (0, 1))
         parts.append(Gains(w, wd, none, none, np.pad(misfits[:, :, q], ((0, 0), (0, 2)))))
     return RankOneSystem(
         stiffness=system.stiffness,
@@ -133,7 +133,10 @@ class _Fine(NamedTuple):
     def of(cls, system: RankOneSystem, longest: float, damping: float, most: FloatArray) -> _Fine:
         form = system.modal()
         powers = np.stack(
-            [np.stack([_padded(getattr(part, key)) for part in system.parts], axis=1) for key in ("w", "wd")],
+            [
+                np.stack([padded(getattr(part, key), _DEGREE + 1) for part in system.parts], axis=1)
+                for key in ("w", "wd")
+            ],
             axis=1,
         )
         rows = np.array([np.linalg.norm(form.v / form.omega), damping * np.linalg.norm(form.v)])
@@ -236,12 +239,3 @@ def _power_matrix() -> FloatArray:
 
 
 _POWERS = _power_matrix()
-
-
-def _padded(poly: FloatArray) -> FloatArray:
-    return np.pad(poly, ((0, 0), (0, 0), (0, _DEGREE + 1 - poly.shape[2])))
-
-
-def _trimmed(poly: FloatArray) -> FloatArray:
-    used = np.flatnonzero(np.abs(poly).max(axis=(0, 1)))
-    return np.ascontiguousarray(poly[:, :, : 1 + (int(used[-1]) if used.size else 0)])

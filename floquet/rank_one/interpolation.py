@@ -41,14 +41,12 @@ class Interpolant:
     coefficients : (K, L, n, n)
     period, parameter : ends of the rectangle
     error : estimate of the Frobenius norm of the error of M, see `interpolant`
-    nodes : how many monodromy matrices it took, checks included
     """
 
     coefficients: FloatArray
     period: tuple[float, float]
     parameter: tuple[float, float]
     error: float
-    nodes: int
 
     def __call__(self, periods: FloatArray, parameters: FloatArray) -> FloatArray:
         """M on the product grid, (a,), (b,) -> (a, b, n, n)."""
@@ -81,7 +79,6 @@ def interpolant(
     """
     K = math.ceil(0.5 * turns) + 24
     L = 1 if parameter[0] == parameter[1] else 12
-    used = 0
     while True:
         if K * L > _LARGEST:
             raise NumericalError(
@@ -90,7 +87,6 @@ def interpolant(
             )
         x, y = _nodes(K, period), _nodes(L, parameter)
         matrices = flow(np.repeat(x, L), np.tile(y, K))
-        used += K * L
         n = matrices.matrices.shape[1]
         values = matrices.matrices.reshape(K, L, n, n)
         coefficients = np.einsum("ak,bl,klij->abij", _to_series(K), _to_series(L), values, optimize=True)
@@ -109,12 +105,12 @@ def interpolant(
     T = period[0] + spread[:, 0] * (period[1] - period[0])
     p = parameter[0] + spread[:, 1] * (parameter[1] - parameter[0])
     direct = flow(T, p)
-    trial = Interpolant(coefficients, period, parameter, 0.0, used)
+    trial = Interpolant(coefficients, period, parameter, 0.0)
     found = np.array([trial(T[i : i + 1], p[i : i + 1])[0, 0] for i in range(_CHECKS)])
     difference = np.linalg.norm(found - direct.matrices, axis=(1, 2)).max()
     at_nodes = float(matrices.errors.max()) * _lebesgue(K) * _lebesgue(L)
     error = at_nodes + _SAFETY * max(float(difference), tail_x, tail_y)
-    return Interpolant(coefficients, period, parameter, error, used + _CHECKS)
+    return Interpolant(coefficients, period, parameter, error)
 
 
 def interpolated_multipliers(
@@ -125,7 +121,7 @@ def interpolated_multipliers(
     tolerance: float,
     receive: Receive,
     threads: int | None = None,
-) -> int:
+) -> None:
     """Multipliers over a product grid of periods and parameters, handed on in parts as they come.
 
     Parameters
@@ -136,16 +132,12 @@ def interpolated_multipliers(
     tolerance : of the interpolation, relative to |M|
     receive : called for every part of the grid, from several threads at a time
     threads : default one per core
-
-    Returns
-    -------
-    number of monodromy matrices computed
     """
     order = np.argsort(periods)
     sorted_periods = periods[order]
     a = periods.size
     ends = (float(parameters.min()), float(parameters.max()))
-    used, first = 0, 0
+    first = 0
     while first < a:
         last = int(np.searchsorted(sorted_periods, _BAND * sorted_periods[first], side="right"))
         rows = order[first:last]
@@ -153,10 +145,8 @@ def interpolated_multipliers(
         if low == high:
             high = low * (1.0 + 1e-9)  # one speed alone: any width will do
         series = interpolant(flow, (low, high), ends, rate * (high - low), tolerance)
-        used += series.nodes
         _evaluate(series, periods, parameters, rows, receive, threads)
         first = last
-    return used
 
 
 def _evaluate(

@@ -6,7 +6,7 @@ import numpy as np
 
 from floquet.rank_one.kernels.gains import Problem
 from floquet.rank_one.kernels.lanes import LANES
-from floquet.rank_one.system import ModalForm, RankOneSystem
+from floquet.rank_one.system import ModalForm, RankOneSystem, padded
 from lumped.typing import FloatArray
 
 _U = 0.5 * float(np.finfo(np.float64).eps)
@@ -101,8 +101,7 @@ def _degrees(poly: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
 
 def _ratios(w: FloatArray, wd: FloatArray, wd_size: FloatArray) -> tuple[FloatArray, FloatArray]:
     """The ratio rho (P,) of wd to w, nan where there is none; norms (Q, P) of wd - rho w."""
-    degree = max(w.shape[3], wd.shape[3])
-    w, wd = (np.pad(poly, ((0, 0), (0, 0), (0, 0), (0, degree - poly.shape[3]))) for poly in (w, wd))
+    w, wd = (padded(poly, max(w.shape[3], wd.shape[3])) for poly in (w, wd))
     above, below = (w * wd).sum(axis=(0, 2, 3)), (w * w).sum(axis=(0, 2, 3))
     rho = np.divide(above, below, out=np.zeros_like(above), where=below > 0.0)
     unequal = _norms(wd - rho[:, None, None] * w)

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
+from floquet.rank_one.system import trimmed
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 
@@ -149,7 +150,7 @@ def fit_pieces(
     phases = np.append(start[order], edges[-1])
     phases[_nearest(phases, edges)] = edges
     power = np.concatenate(fits, axis=1)[:, order]
-    polynomials = [_trimmed(p) / root[:, None] for p in power]
+    polynomials = [trimmed(p) / root[:, None] for p in power]
     # 1 + 1e-12: rounding of the sums that make the bounds.
     return phases, polynomials, np.ascontiguousarray(np.concatenate(misfits)[order]) * (1.0 + 1e-12)
 
@@ -182,9 +183,3 @@ def _to_powers(series: FloatArray, errors: FloatArray) -> FloatArray:
     size = np.sqrt(np.square(series).sum(axis=3))
     errors += 2.0 * count * _U * (size @ np.abs(conversion).sum(axis=0))
     return np.asarray(np.einsum("kd,gpdm->gpmk", conversion, series))
-
-
-def _trimmed(power: FloatArray) -> FloatArray:
-    """Drop the highest powers that are zero on all pieces."""
-    used = np.flatnonzero(np.abs(power).max(axis=(0, 1)))
-    return np.ascontiguousarray(power[:, :, : 1 + (int(used[-1]) if used.size else 0)])

@@ -229,10 +229,21 @@ class ModalForm:
         return out
 
 
+def padded(poly: FloatArray, count: int) -> FloatArray:
+    """Polynomials (..., d+1), lowest power first, with zeros up to ``count`` coefficients."""
+    return np.pad(poly, [(0, 0)] * (poly.ndim - 1) + [(0, count - poly.shape[-1])])
+
+
+def trimmed(poly: FloatArray) -> FloatArray:
+    """Polynomials (P, m, d+1) without the highest powers that are zero on all pieces."""
+    used = np.flatnonzero(np.abs(poly).max(axis=(0, 1)))
+    return np.ascontiguousarray(poly[:, :, : 1 + (int(used[-1]) if used.size else 0)])
+
+
 def _stacked(polys: list[FloatArray]) -> FloatArray:
     """Polynomials (P, m, d+1) of several degrees as one array (Q, P, m, d+1)."""
-    degree = max(poly.shape[2] for poly in polys)
-    return np.stack([np.pad(poly, ((0, 0), (0, 0), (0, degree - poly.shape[2]))) for poly in polys])
+    count = max(poly.shape[2] for poly in polys)
+    return np.stack([padded(poly, count) for poly in polys])
 
 
 def _added(polys: list[FloatArray]) -> FloatArray:

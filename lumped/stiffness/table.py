@@ -5,7 +5,6 @@ Sources: monotone piecewise cubics, Fritsch and Carlson, SIAM Journal on Numeric
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -15,7 +14,7 @@ from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 from lumped.errors import NumericalError, refuse
 from lumped.fields.units import Quantity
 from lumped.gear_geometry.geometry import Geometry
-from lumped.path_function import PathFunction
+from lumped.path_function import PathFunction, shifted
 from lumped.stiffness.base import MeshingPair, StiffnessModel
 from lumped.stiffness.energy import energy_curve
 from lumped.stiffness.neighbours import neighbour_breaks
@@ -119,11 +118,7 @@ def _pair_curve(x: FloatArray, y: FloatArray, model: TableStiffness, geometry: G
     inner = x[(x > low) & (x < high)]
     breaks = np.array([low, *inner, high])
     left = np.clip(np.searchsorted(poly.x, breaks[:-1], side="right") - 1, 0, poly.c.shape[1] - 1)
-    shift = breaks[:-1] - poly.x[left]
-    taylor = [
-        poly.derivative(k)(poly.x[left] + shift, extrapolate=True) / math.factorial(k) for k in (3, 2, 1, 0)
-    ]
-    return _positive(PathFunction(breaks, np.array(taylor), np.empty(0)))
+    return _positive(PathFunction(breaks, shifted(poly.c[:, left], breaks[:-1] - poly.x[left]), np.empty(0)))
 
 
 def _total_curve(x: FloatArray, y: FloatArray, model: TableStiffness, geometry: Geometry) -> PPoly:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from lumped.path_function import PathFunction
+from lumped.path_function import PathFunction, shifted
 from lumped.typing import FloatArray
 
 #: Places on the path closer than this are one [m].
@@ -128,8 +128,4 @@ def _through(
 def _from(law: PathFunction, place: float) -> FloatArray:
     """Coefficients in powers of (xi - place), highest first, of the piece that holds ``place``."""
     piece = int(np.clip(np.searchsorted(law.breaks, place + _SAME) - 1, 0, law.breaks.size - 2))
-    old = np.polynomial.Polynomial(law.coefficients[::-1, piece])
-    new = old(np.polynomial.Polynomial([place - law.breaks[piece], 1.0])).coef
-    padded = np.zeros(law.coefficients.shape[0])
-    padded[: new.size] = new
-    return padded[::-1]
+    return shifted(law.coefficients[:, piece], place - law.breaks[piece])
