@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lumped.losses.cycle import CyclePositions, quadrature
+from lumped.losses.cycle import quadrature
 from lumped.losses.loss_factor import sliding_velocity
 from lumped.losses.sharing import springs
 from lumped.path_function import PathFunction
@@ -70,22 +70,13 @@ def anderson_loewenthal_sliding_loss(pair: GearPair) -> float:
     """
     g, path = pair.geometry, contact_path(pair)
     at = quadrature(g, [_graded(g.L_XA, g.L_XP, g.L_XD)])
+    touching, xi = at.contact, at.position[at.contact]
     share = springs(pair, "uniform").share(at)
-    return _mean_loss(at, share, np.abs(sliding_velocity(g, at.position)), pair, path.unit_load)
-
-
-def _mean_loss(
-    at: CyclePositions, share: FloatArray, slide: FloatArray, pair: GearPair, unit_load: float
-) -> float:
-    path = contact_path(pair)
-    touching = at.contact
-    loads = share[touching] * unit_load  # N/m
-    f = anderson_loewenthal_coefficient(
-        loads * 1e-3, path.viscosity, slide[touching], path.entraining_velocity(at.position[touching])
-    )
+    loads, slide = share[touching] * path.unit_load, np.abs(sliding_velocity(g, xi))  # N/m, m/s
+    f = anderson_loewenthal_coefficient(loads * 1e-3, path.viscosity, slide, path.entraining_velocity(xi))
     power = np.zeros_like(share)
-    power[touching] = f * loads * slide[touching]
-    return at.mean(power.sum(axis=0)) * pair.geometry.face_width
+    power[touching] = f * loads * slide
+    return at.mean(power.sum(axis=0)) * g.face_width
 
 
 def _graded(low: float, pitch: float, high: float) -> PathFunction:

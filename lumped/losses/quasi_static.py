@@ -82,7 +82,8 @@ def quasi_static_losses(
     at = samples(g, samples_per_cycle)
     loads = _loads(g, torque, mu, teeth, at)
     touching = at.contact
-    result = labelled(
+    efficiency = 1.0 + loads.power.sum(axis=0) / power_in
+    return labelled(
         time,
         {
             "position": at.position,
@@ -103,15 +104,12 @@ def quasi_static_losses(
             "loss_factor": factor,
             "mean_coefficient": loss / (factor * power_in),
         },
+        {
+            "load_share": (("pair", "time"), loads.share, "1", "share of the load"),
+            "brake_torque": ("time", loads.brake, "N*m", "torque on the gear"),
+            "instantaneous_efficiency": ("time", efficiency, "1", "instantaneous mesh efficiency"),
+        },
     )
-    result["load_share"] = (("pair", "time"), loads.share, {"units": "1", "long_name": "share of the load"})
-    result["brake_torque"] = ("time", loads.brake, {"units": "N*m", "long_name": "torque on the gear"})
-    result["instantaneous_efficiency"] = (
-        "time",
-        1.0 + loads.power.sum(axis=0) / power_in,
-        {"units": "1", "long_name": "instantaneous mesh efficiency"},
-    )
-    return result
 
 
 def _loads(g: Geometry, torque: float, mu: PathFunction, teeth: Springs, at: CyclePositions) -> _Loads:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lumped.labelling import labelled_dataset
+from lumped.labelling import Variable, labelled_dataset
 from lumped.model.equations import COORDINATES
 from lumped.model.periodic_system import LTVSystem
 from lumped.schema.pair import GearPair
@@ -80,7 +80,12 @@ def _sha256(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def labelled(time: FloatArray, values: Mapping[str, FloatArray], attributes: Mapping[str, Any]) -> xr.Dataset:
+def labelled(
+    time: FloatArray,
+    values: Mapping[str, FloatArray],
+    attributes: Mapping[str, Any],
+    further: Mapping[str, Variable] | None = None,
+) -> xr.Dataset:
     """Put arrays under their names, units and dimensions.
 
     Parameters
@@ -88,15 +93,16 @@ def labelled(time: FloatArray, values: Mapping[str, FloatArray], attributes: Map
     time : (k,) [s]
     values : variable name -> array of the dimensions in ``VARIABLES``; pair 0 is the one ahead
     attributes : of the dataset
+    further : variables that only this result has
     """
-    variables = {
+    variables: dict[str, Variable] = {
         name: (dims, values[name], unit, text)
         for name, (dims, unit, text) in VARIABLES.items()
         if name in values
     }
     pairs = next((v.shape[0] for n, v in values.items() if VARIABLES[n][0][0] == "pair"), 0)
     coordinates = {"time": (time, "s", "time"), "pair": (np.arange(pairs), "1", "tooth pair, 0 is ahead")}
-    return labelled_dataset(variables, coordinates, attributes)
+    return labelled_dataset(variables | dict(further or {}), coordinates, attributes)
 
 
 def dataset(

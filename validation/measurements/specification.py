@@ -34,7 +34,6 @@ QUANTITIES: dict[str, tuple[str, bool]] = {
     "bearing_force_y_p": ("N", False),
     "bearing_force_y_g": ("N", False),
 }
-QuantityName = Annotated[str, OneOf(tuple(QUANTITIES))]
 PAIR_LABELS = "ABCDEFGH"
 #: Largest description read: a bound against a wrong path.
 MAX_FILE_BYTES = 1_000_000
@@ -74,9 +73,7 @@ class Channel(Section):
 
     name: str = Field(min_length=1, max_length=60, pattern=r"^\w+$", description="name in results")
     column: str = Field(min_length=1, description="heading of the column, without its unit")
-    quantity: Annotated[str, OneOf(tuple(QUANTITIES))] = Field(
-        description="what is measured, by the models' name"
-    )
+    quantity: Annotated[str, OneOf(tuple(QUANTITIES))] = Field(description="measured quantity")
     unit: str | None = Field(None, description="unit of the cells; default the unit in the column's heading")
     pair: str | None = Field(
         None, pattern="^[A-H]$", description="tooth pair: A, or B that follows it one pitch later, ..."

@@ -85,12 +85,9 @@ def with_sources(pair: GearPair, said: Said) -> GearPair:
     pair : validated
     said : what the file says, with its sources
     """
-    known = {p: s for p, s in said.sources.items() if p in leaf_paths(pair)}
-    rest = {
-        p: _BECAUSE.get(p, ASSUMED)
-        for p in leaf_paths(pair)
-        if p not in known and p not in ("name", "description")
+    sources = {
+        path: said.sources.get(path) or _BECAUSE.get(path, ASSUMED)
+        for path in sorted(leaf_paths(pair))
+        if path not in ("name", "description")
     }
-    data = pair.to_mapping()
-    data["sources"] = dict(sorted((known | rest).items()))
-    return load_gear_pair(data)
+    return load_gear_pair(pair.to_mapping() | {"sources": sources})

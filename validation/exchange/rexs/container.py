@@ -20,6 +20,7 @@ MAX_BYTES = 32_000_000
 _MAX_MEMBERS = 10_000
 _MODELS = (".rexs", ".rexsj", ".rexs.xml", ".rexs.json")
 _PLAIN = (".xml", ".json")
+_DAMAGED = (zipfile.BadZipFile, zlib.error, struct.error, OSError, EOFError, ValueError, RuntimeError)
 #: Suffix of a file to write -> its form; ".rexsz" and ".rexs.zip" hold the XML form.
 FORMS = {
     ".rexs": "xml",
@@ -74,15 +75,7 @@ def _unzipped(data: bytes, file: str) -> bytes:
                 content = stream.read(MAX_BYTES + 1)  # the size that the archive states may be a lie
     except ParameterError:
         raise
-    except (
-        zipfile.BadZipFile,
-        zlib.error,
-        struct.error,
-        OSError,
-        EOFError,
-        ValueError,
-        RuntimeError,
-    ) as error:
+    except _DAMAGED as error:
         # zipfile trusts the offsets of a damaged directory, so a bad seek is among what it raises.
         raise broken(file, f"the archive cannot be read: {error}") from None
     if len(content) > MAX_BYTES:
@@ -132,7 +125,7 @@ def form_of(path: Path) -> str:
     ------
     ParameterError : a suffix that the specification does not have
     """
-    for suffix, form in sorted(FORMS.items(), key=lambda item: -len(item[0])):
+    for suffix, form in FORMS.items():
         if path.name.lower().endswith(suffix):
             return form
     raise refuse("output", path, "a name ending in " + ", ".join(FORMS), "The suffix chooses the form.")

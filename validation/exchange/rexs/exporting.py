@@ -85,7 +85,7 @@ class _Builder:
             if not known.of(self.version):
                 raise KeyError(f"{kind}/{key} is not in REXS {self.version}")
             if isinstance(value, float):
-                value = _printed(rexs_from_si(value, known.unit))
+                value = _printed(value, known.unit)
             assert isinstance(value, (str, int, float, bool, tuple))
             attributes[key] = Attribute(value, known.unit)
         self.components[number] = Component(number, kind, name, attributes)
@@ -119,10 +119,7 @@ def rexs_model(pair: GearPair, version: str = LATEST, *, record: bool = True, fi
     build.relate("assembly", assembly=unit, part=stage)
     if record:
         build.components[stage].attributes[ATTRIBUTE] = Attribute(record_text(pair), "none")
-    gears = [
-        _add_gear(build, pair, g, unit, "pinion", pair.pinion),
-        _add_gear(build, pair, g, unit, "gear", pair.gear),
-    ]
+    gears = [_add_gear(build, pair, g, unit, which) for which in ("pinion", "gear")]
     build.relate("stage", stage=stage, gear_1=gears[0], gear_2=gears[1])
     for gear, drives in zip(gears, (True, False), strict=True):
         data = build.add("cylindrical_stage_gear_data", "", is_driving_gear=drives)
@@ -132,23 +129,24 @@ def rexs_model(pair: GearPair, version: str = LATEST, *, record: bool = True, fi
     return RexsModel(file, version, application, build.components, tuple(build.relations))
 
 
-def _printed(value: float) -> float:
-    """Round to the fifteen significant digits that REXS allows, so that every form has the same number."""
-    return float(f"{value:.15g}")
+def _printed(si: float, unit: str) -> float:
+    """An SI number in a REXS unit, with the fifteen digits that REXS allows, so that all forms agree."""
+    return float(f"{rexs_from_si(si, unit):.15g}")
 
 
 def _place(reference: int, offset: float) -> dict[str, object]:
     """Position in the gear unit: shafts are parallel to its u axis, the gear's beside the pinion's."""
     return {
         "reference_component_for_position": reference,
-        "support_vector": (0.0, _printed(rexs_from_si(offset, "mm")), 0.0),
+        "support_vector": (0.0, _printed(offset, "mm"), 0.0),
         "u_axis_vector": (1.0, 0.0, 0.0),
         "w_axis_vector": (0.0, 0.0, 1.0),
     }
 
 
-def _add_gear(build: _Builder, pair: GearPair, g: Geometry, unit: int, which: str, gear: Gear) -> int:
+def _add_gear(build: _Builder, pair: GearPair, g: Geometry, unit: int, which: str) -> int:
     driving = which == "pinion"
+    gear = pair.pinion if driving else pair.gear
     place = _place(unit, 0.0 if driving else g.centre_distance)
     speed = g.omega_pinion if driving else -g.omega_gear
     shaft = build.add("shaft", f"{which} shaft", **place, rotational_speed=speed, defines_speed=driving)

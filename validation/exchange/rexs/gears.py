@@ -8,6 +8,14 @@ from lumped.errors import FieldProblem
 from validation.exchange.rexs.model import Component
 from validation.exchange.rexs.said import Reading, Said
 
+#: Field -> attribute of the gear, and of its material.
+_BLANK = {
+    "face_width": "face_width",
+    "tip_diameter": "tip_diameter",
+    "bore": "inner_diameter",
+    "mass": "mass_of_component",
+}
+_MATERIAL = {"youngs_modulus": "elastic_modulus", "poisson_ratio": "poisson_ratio", "density": "density"}
 #: Ra and Rz of the flank: names up to 1.7, and of 2.0.0.
 _RA = ("arithmetic_average_roughness_flank", "arithmetic_mean_roughness_flank_iso_4287_1997")
 _RZ = ("averaged_peak_to_valley_height_flank", "mean_peak_to_valley_roughness_flank_iso_4287_1997")
@@ -25,7 +33,8 @@ def read_gears(said: Said, pinion: Component, gear: Component) -> None:
     """
     for which, component in (("pinion", pinion), ("gear", gear)):
         _read_blank(said, which, component)
-        _read_material(said, which, component)
+        for material in said.model.related(component, "reference", "origin", "referenced", "material"):
+            said.take_all(which, material, _MATERIAL)
         _read_shift(said, which, component)
     _read_rack(said, pinion, gear)
 
@@ -52,13 +61,7 @@ def _read_blank(said: Said, which: str, gear: Component) -> None:
         _missing(said, gear, "face_width")
     if said.raw(gear, "helix_angle_reference_diameter") is None:
         said.note(f"{gear.label} has no helix angle: taken as a spur gear (assumed)")
-    for field, attribute in (
-        ("face_width", "face_width"),
-        ("tip_diameter", "tip_diameter"),
-        ("bore", "inner_diameter"),
-        ("mass", "mass_of_component"),
-    ):
-        said.take(f"{which}.{field}", said.number(gear, attribute))
+    said.take_all(which, gear, _BLANK)
     _read_roughness(said, which, gear)
 
 
@@ -69,24 +72,11 @@ def _missing(said: Said, component: Component, attribute: str) -> None:
 
 
 def _read_roughness(said: Said, which: str, gear: Component) -> None:
-    for attribute in _RA:
-        if (ra := said.number(gear, attribute)) is not None:
-            return said.take(f"{which}.roughness", ra)
-    for attribute in _RZ:
-        if (rz := said.number(gear, attribute)) is not None:
-            reading = Reading(rz.si / _RZ_OVER_RA, rz.where)
-            return said.take(f"{which}.roughness", reading, ", Ra = Rz/6 (ISO 6336-2)")
+    for names, factor, remark in ((_RA, 1.0, ""), (_RZ, _RZ_OVER_RA, ", Ra = Rz/6 (ISO 6336-2)")):
+        for attribute in names:
+            if (found := said.number(gear, attribute)) is not None:
+                return said.take(f"{which}.roughness", Reading(found.si / factor, found.where), remark)
     return None
-
-
-def _read_material(said: Said, which: str, gear: Component) -> None:
-    for material in said.model.related(gear, "reference", "origin", "referenced", "material"):
-        for field, attribute in (
-            ("youngs_modulus", "elastic_modulus"),
-            ("poisson_ratio", "poisson_ratio"),
-            ("density", "density"),
-        ):
-            said.take(f"{which}.{field}", said.number(material, attribute))
 
 
 def _read_shift(said: Said, which: str, gear: Component) -> None:
@@ -161,10 +151,7 @@ def _dedendum(said: Said, gear: Component, module: Reading | None) -> Reading | 
 
 def gear_data_of(said: Said, stage: Component, gear: Component) -> list[Component]:
     """Return the components that hold what a gear does in a stage."""
-    data = said.model.related(
-        gear, "stage_gear_data", "gear", "stage_gear_data", "cylindrical_stage_gear_data"
-    )
-    of_stage = said.model.related(
-        stage, "stage_gear_data", "stage", "stage_gear_data", "cylindrical_stage_gear_data"
-    )
+    kind = "stage_gear_data"
+    of_stage = said.model.related(stage, kind, "stage", kind, "cylindrical_stage_gear_data")
+    data = said.model.related(gear, kind, "gear", kind, "cylindrical_stage_gear_data")
     return [d for d in data if d in of_stage]

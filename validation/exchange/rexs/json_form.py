@@ -50,7 +50,10 @@ def parse_json(data: bytes, file: str) -> RexsModel:
         model = document["model"]
         components = [_component(c) for c in model["components"]]
         relations = [_relation(r) for r in model["relations"]]
-        load_cases = [case for s in _listed(model.get("load_spectrum")) for case in _load_cases(s)]
+        spectra = model.get("load_spectrum") or []
+        spectra = spectra if isinstance(spectra, list) else [spectra]
+        cases = [case for spectrum in spectra for case in spectrum.get("load_cases") or ()]
+        load_cases = [LoadCase(_id(c["id"]), tuple(map(_component, c["components"]))) for c in cases]
         head = {key: value for key, value in model.items() if isinstance(value, str)}
     except RecursionError:
         raise broken(file, "the JSON is nested too deeply") from None
@@ -79,17 +82,6 @@ def _relation(node: dict[str, Any]) -> Relation:
     refs = tuple((_string(r["role"]), _id(r["id"])) for r in node["refs"])
     order = node.get("order")
     return Relation(_string(node["type"]), refs, None if order is None else _id(order))
-
-
-def _load_cases(node: dict[str, Any]) -> list[LoadCase]:
-    return [
-        LoadCase(_id(case["id"]), tuple(_component(c) for c in case["components"]))
-        for case in node.get("load_cases") or ()
-    ]
-
-
-def _listed(node: Any) -> list[Any]:
-    return [] if node is None else node if isinstance(node, list) else [node]
 
 
 def _id(value: object) -> int:

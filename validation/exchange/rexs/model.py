@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from lumped.errors import ParameterError, refuse, shown
@@ -124,19 +123,13 @@ def assembled(
         if component.id in table:
             raise broken(file, f"two components have the id {component.id}")
         table[component.id] = component
-    for number in _references(relations, load_cases):
+    of_relations = [number for relation in relations for _, number in relation.refs]
+    for number in [*of_relations, *(component.id for case in load_cases for component in case.components)]:
         if number not in table:
             raise broken(file, f"component {number} is referred to but does not exist")
     version = head.get("version", "")
     application = f"{head.get('applicationId', '')} {head.get('applicationVersion', '')}".strip()
     return RexsModel(file, version, application, table, tuple(relations), tuple(load_cases))
-
-
-def _references(relations: list[Relation], load_cases: list[LoadCase]) -> Iterator[int]:
-    for relation in relations:
-        yield from (component for _, component in relation.refs)
-    for case in load_cases:
-        yield from (component.id for component in case.components)
 
 
 def broken(file: str, reason: str) -> ParameterError:

@@ -12,6 +12,12 @@ from validation.exchange.rexs.model import Component
 from validation.exchange.rexs.said import Reading, Said
 from validation.exchange.rexs.vocabulary import derived_number
 
+#: Field of the viscosity law -> attribute of the oil.
+_VISCOSITY_LAW = {
+    "kinematic_viscosity_40": "viscosity_at_40_degree_celsius",
+    "kinematic_viscosity_100": "viscosity_at_100_degree_celsius",
+    "density": "density_at_15_degree_celsius",
+}
 _PRESSURE_ANGLE = to_si(20.0, "deg")
 
 
@@ -95,14 +101,11 @@ def _read_lubricant(said: Said, stage: Component) -> None:
     if not oils:
         return
     oil = oils[0]
-    v40 = said.number(oil, "viscosity_at_40_degree_celsius")
-    v100 = said.number(oil, "viscosity_at_100_degree_celsius")
-    density = said.number(oil, "density_at_15_degree_celsius")
+    v40, v100, density = (said.number(oil, attribute) for attribute in _VISCOSITY_LAW.values())
     if v40 is not None and v100 is not None:
         law = "lubricant.viscosity_law"
-        said.take(f"{law}.kinematic_viscosity_40", v40)
-        said.take(f"{law}.kinematic_viscosity_100", v100)
-        said.take(f"{law}.density", density)
+        for key, reading in zip(_VISCOSITY_LAW, (v40, v100, density), strict=True):
+            said.take(f"{law}.{key}", reading)
         said.take(f"{law}.temperature", _first(said, (stage, *casings), "temperature_lubricant"))
         return
     viscosity = _first(said, (stage, *casings), "operating_viscosity")

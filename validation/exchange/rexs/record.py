@@ -67,13 +67,14 @@ def restored(said: Said, pair: GearPair, reference: GearPair, record: GearPair) 
     changed = _changes(said, pair, reference)
     result = record.with_(changed) if changed else record
     first = dict(record.sources)
-    place = said.where(said.model.components[_stage_id(said)], ATTRIBUTE)
+    stage = next(c for c in said.model.components.values() if ATTRIBUTE in c.attributes)
+    place = said.where(stage, ATTRIBUTE)
     sources = {}
     for path in leaf_paths(result):
         if path in ("name", "description"):
             continue
         origin = first.get(path) or _section_source(first, path)
-        if _within(path, changed):
+        if any(path == p or path.startswith(f"{p}.") for p in changed):
             sources[path] = said.sources.get(path, ASSUMED)
         elif origin is not None and origin.startswith(ASSUMED):
             sources[path] = origin  # an assumption stays one, however often it is passed on
@@ -102,14 +103,6 @@ def _changes(said: Said, pair: GearPair, reference: GearPair) -> dict[str, Any]:
             if gone and getattr(getattr(pair, which), kind) is None:
                 changed[f"{which}.{kind}"] = None  # a relief taken off is a change of the design
     return changed
-
-
-def _within(path: str, changed: dict[str, Any]) -> bool:
-    return any(path == p or path.startswith(f"{p}.") for p in changed)
-
-
-def _stage_id(said: Said) -> int:
-    return next(c.id for c in said.model.components.values() if ATTRIBUTE in c.attributes)
 
 
 def _section_source(sources: dict[str, str], path: str) -> str | None:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 
+from lumped.fields.units import to_file
 from lumped.gear_geometry.geometry import Geometry
 from validation.exchange.rexs.gears import flanks_of, gear_data_of
 from validation.exchange.rexs.model import Component
 from validation.exchange.rexs.said import Said
-from validation.exchange.rexs.vocabulary import NOT_TAKEN, derived_number, file_number
+from validation.exchange.rexs.vocabulary import NOT_TAKEN, derived_number
 
 KINDS = ("tip_relief", "root_relief")
 _REFERENCE = ("reference", "origin", "referenced")
@@ -102,7 +103,7 @@ def _take(said: Said, which: str, relief: Component, geometry: Geometry) -> None
             remark = f", carried from {kind}_evaluation_reference to the end of the flank"
     path = f"{which}.{kind}"
     said.put(f"{path}.shape", shape, said.where(relief, "shape_of_relief"))
-    number = derived_number(amount, "um") if remark else file_number(amount, "um")
+    number = derived_number(amount, "um") if remark else to_file(amount, "um")
     said.put(f"{path}.amount", number, depth.where + remark)
     said.put(f"{path}.start_roll_angle", derived_number(begin, "deg"), f"{start.where}, as roll angle")
 

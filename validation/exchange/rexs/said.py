@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from lumped.errors import FieldProblem, shown
+from lumped.fields.units import to_file
 from lumped.schema.pair import stated_unit
 from validation.exchange.rexs.model import Attribute, Component, RexsModel
-from validation.exchange.rexs.vocabulary import ATTRIBUTES, file_number, si_from_rexs
+from validation.exchange.rexs.vocabulary import ATTRIBUTES, si_from_rexs
 
 #: Numbers beyond these are no measure of a gear in any unit, and products of them would overflow.
 _SMALLEST, _LARGEST = 1e-30, 1e30
@@ -92,7 +94,12 @@ class Said:
         """Make a number the value of a field."""
         if reading is not None:
             unit = stated_unit(path)
-            self.put(path, file_number(reading.si, unit or "1"), reading.where + remark)
+            self.put(path, to_file(reading.si, unit or "1"), reading.where + remark)
+
+    def take_all(self, section: str, component: Component, attributes: Mapping[str, str]) -> None:
+        """Make attributes of a component the values of fields of a section: field -> attribute."""
+        for key, attribute in attributes.items():
+            self.take(f"{section}.{key}", self.number(component, attribute))
 
     def put(self, path: str, value: Any, where: str) -> None:
         """Make anything the value of a field."""

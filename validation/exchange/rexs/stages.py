@@ -70,9 +70,8 @@ def stages_of(model: RexsModel) -> list[Stage]:
     found = []
     for number, component in enumerate(model.of_type(*_STAGES), 1):
         gears = gears_of(model, component)
-        teeth = [_teeth(said, gear) for gear in gears]
         reason = _reason(said, component, gears)
-        known = tuple(z for z in teeth if z is not None)
+        known = tuple(z for gear in gears if (z := _teeth(gear)) is not None)
         found.append(Stage(number, component.id, component.name, component.type, known, reason))
     return found
 
@@ -113,15 +112,11 @@ def chosen(model: RexsModel, number: int | None) -> tuple[Stage, list[str]]:
 
 
 def _unusable(model: RexsModel, number: str, reason: str) -> ParameterError:
-    return refuse(
-        "stage",
-        number,
-        "a cylindrical stage of two external spur gears",
-        f"{model.file}: {reason}.",
-    )
+    wanted = "a cylindrical stage of two external spur gears"
+    return refuse("stage", number, wanted, f"{model.file}: {reason}.")
 
 
-def _teeth(said: Said, gear: Component) -> int | None:
+def _teeth(gear: Component) -> int | None:
     text = gear.attributes.get("number_of_teeth")
     try:
         return None if text is None or text.value is None else int(str(text.value))
@@ -135,7 +130,7 @@ def _reason(said: Said, stage: Component, gears: list[Component]) -> str:
         return f"a {stage.type.replace('_', ' ')}; only cylindrical spur stages can be modelled"
     if said.model.related(stage, "assembly", "part", "assembly", "planetary_stage"):
         return "part of a planetary stage, whose planets share the load; one pair alone cannot stand for it"
-    if any(gear.type == "ring_gear" or (_teeth(said, gear) or 0) < 0 for gear in gears):
+    if any(gear.type == "ring_gear" or (_teeth(gear) or 0) < 0 for gear in gears):
         return "an internal gear; the model is of two external gears"
     if len(gears) != 2 or any(gear.type != "cylindrical_gear" for gear in gears):
         return f"{len(gears)} gears in its 'stage' relation instead of two cylindrical gears"

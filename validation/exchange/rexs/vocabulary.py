@@ -11,7 +11,7 @@ from decimal import Decimal
 from typing import Literal
 
 from lumped.errors import refuse, shown
-from lumped.fields.units import to_file, to_si, to_stated
+from lumped.fields.units import to_si, to_stated
 
 Kind = Literal[
     "floating_point", "integer", "boolean", "enum", "string", "reference_component", "floating_point_array"
@@ -188,11 +188,6 @@ def si_from_rexs(value: float, unit: str, expected: str, where: str) -> float:
         except ValueError:
             pass
     raise refuse(where, f"{value!r} {shown(unit)}", f"a number in {expected}", "Export the file again.")
-
-
-def file_number(si: float, stated: str) -> float | str:
-    """Write an SI number as a parameter file does: a bare number in the field's unit where that is exact."""
-    return to_file(si, stated)
 
 
 def derived_number(si: float, stated: str) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable
 from typing import NoReturn
 from xml.parsers import expat
 
@@ -163,18 +162,14 @@ def to_xml(model: RexsModel, head: dict[str, str]) -> bytes:
         for key, attribute in part.attributes.items():
             entry = ET.SubElement(node, "attribute", {"id": key, "unit": attribute.unit})
             if isinstance(attribute.value, tuple):
-                _array(entry, attribute.value)
+                array = ET.SubElement(entry, "array")
+                for value in attribute.value:
+                    ET.SubElement(array, "c").text = _text(value)
             else:
                 entry.text = _text(attribute.value)
     ET.indent(root)
     text: str = ET.tostring(root, encoding="unicode")
     return b"\xef\xbb\xbf" + f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()
-
-
-def _array(node: ET.Element, values: Iterable[float]) -> None:
-    array = ET.SubElement(node, "array")
-    for value in values:
-        ET.SubElement(array, "c").text = _text(value)
 
 
 def _text(value: object) -> str:
