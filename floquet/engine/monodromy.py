@@ -91,9 +91,10 @@ def monodromy(
         text says what to try.
     """
     rtol, max_substeps = checked_effort(rtol, max_substeps)
-    if method == "auto" and isinstance(system.A, KnownMatrix):
+    automatic = isinstance(method, str) and method == "auto"
+    if automatic and isinstance(system.A, KnownMatrix):
         return _proven(system, system.A, rtol, max_substeps)
-    step = propagator("gauss" if method == "auto" else method)
+    step = propagator("gauss" if automatic else method)
     local = rtol
     evaluations = 0
     for _attempt in range(4):

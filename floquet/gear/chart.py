@@ -95,7 +95,8 @@ def stability_chart(
     if friction_law is not None:
         pair = pair.with_({"friction.law": friction_law})
     if isinstance(method, str):
-        method = chart_method(grid) if method == "auto" else one_of("method", method, METHODS)
+        method = one_of("method", method, METHODS)
+        method = chart_method(grid) if method == "auto" else method
     if isinstance(method, str) and method in ("taylor", "chebyshev"):
         rtol = real_number("rtol", rtol, 1e-13, 1e-3, action="Use 1e-8 for charts, 1e-10 for verdicts.")
         if method == "chebyshev" and "speed_rpm" not in grid:

@@ -149,7 +149,7 @@ def gear_pair_multipliers(
     """
     variation = GearVariation.of(source)
     own: Spectrum
-    if method == "taylor":
+    if isinstance(method, str) and method == "taylor":
         block = monodromy(gear_pair_system(variation, "feedback"), rtol)
         own = _proven(variation, rtol)
     else:

@@ -113,12 +113,22 @@ def smoothed_coulomb(f: FloatArray, distance: float) -> float:
 
 
 @compiled
+def reduced_radius(rho_p: float, rho_g: float) -> float:
+    """Reduced radius of curvature [m], equation (15).
+
+    Vibration may carry a contact past a base circle, where there is no involute: the radius is held above 0.
+    """
+    least = 1e-6 * (rho_p + rho_g)
+    return max(rho_p, least) * max(rho_g, least) / (rho_p + rho_g)
+
+
+@compiled
 def branch(f: FloatArray, sliding: float, rolling: float, rho_p: float, rho_g: float, w: float) -> int:
     """Which formula is in force: a number that changes where the coefficient jumps or has a kink."""
     law = int(f[LAW])
     rolling = max(rolling, sliding, f[SLOWEST_ROLLING])
     if law == _V:
-        film = film_parameter(f, rolling, rho_p * rho_g / (rho_p + rho_g), w)
+        film = film_parameter(f, rolling, reduced_radius(rho_p, rho_g), w)
         law = _IV if film < f[BOUNDARY] else _II if film < f[MIXED] else _III
     if law == _II:
         mu = benedict_kelley(f, sliding, rolling, w)
@@ -151,7 +161,7 @@ def magnitude(
     # The laws know surfaces that roll, and the same way, so v_e >= v_s; beyond, they are held. Teeth that
     # vibration brings to rest would have any slide-to-roll ratio.
     rolling = max(rolling, sliding, f[SLOWEST_ROLLING])
-    radius = rho_p * rho_g / (rho_p + rho_g)
+    radius = reduced_radius(rho_p, rho_g)
     if law == _V:
         film = film_parameter(f, rolling, radius, w)
         law = _IV if film < f[BOUNDARY] else _II if film < f[MIXED] else _III

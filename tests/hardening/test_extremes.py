@@ -59,18 +59,18 @@ VARIATIONS = {
     "bearings 1e12": bearings("stiffness", 1e12),
     "bearings 1e30": bearings("stiffness", 1e30),
     "inertia 1e-15": both("inertia", 1e-15),
-    "inertia 1e12": both("inertia", 1e12),
+    "inertia 1e9": both("inertia", 1e9),
     "mass 1e-15": both("mass", 1e-15),
-    "mass 1e12": both("mass", 1e12),
-    "torque 1e-12": {"operating.pinion_torque": 1e-12},
+    "mass 1e7": both("mass", 1e7),
+    "torque 1e-9": {"operating.pinion_torque": 1e-9},
     "torque 1e6": {"operating.pinion_torque": 1e6},
-    "torque 1e30": {"operating.pinion_torque": 1e30},
+    "torque 1e9": {"operating.pinion_torque": 1e9},
     "brake 1e-9": {"operating.brake_torque": 1e-9},
     "brake 1e9": {"operating.brake_torque": 1e9},
     "width 1e-9": both("face_width", 1e-9),
     "width 2000": both("face_width", 2000),
-    "modulus 1e-9": both("youngs_modulus", 1e-9),
-    "modulus 3e5": both("youngs_modulus", 3e5),
+    "modulus 1e-6": both("youngs_modulus", 1e-6),
+    "modulus 2000": both("youngs_modulus", 2000),
     "relief 1 mm": {"pinion.tip_relief": {"amount": 1000, "start_roll_angle": 24}},
     "backlash 10 mm": {"mesh.backlash": 10},
 }
@@ -140,10 +140,10 @@ BODIES = (multibody_transient,)
 #: Analyses that may refuse a variation, by the reason why; everything else has to be answered.
 MAY_REFUSE = {
     # More oscillations in a mesh cycle than can be followed to the tolerance.
-    **dict.fromkeys(("1e-6 rpm", "bearings 1e30", "inertia 1e-15", "inertia 1e12", "mass 1e-15"), ANALYSES),
+    **dict.fromkeys(("1e-6 rpm", "bearings 1e30", "inertia 1e-15", "inertia 1e9", "mass 1e-15"), ANALYSES),
     "width 1e-9": ANALYSES,
     "pair stiffness 1e11": (floquet_multipliers,),
-    "modulus 3e5": (multibody_transient, floquet_multipliers),
+    "modulus 2000": (multibody_transient, floquet_multipliers),
     "10 rpm": BODIES,
     "1 rpm": (lumped_transient, multibody_transient, floquet_multipliers),
     # The coefficient of friction that the law gives is beyond 1.
@@ -151,8 +151,8 @@ MAY_REFUSE = {
     # Gears that nothing holds have no periodic motion to start from.
     "bearings 1e-6": ANALYSES[:3],
     # The static load turns the gears by more than a tooth, or less than the rounding of their positions.
-    **dict.fromkeys(("pair stiffness 1e-6", "pair stiffness 1", "modulus 1e-9"), BODIES),
-    **dict.fromkeys(("torque 1e6", "torque 1e30", "brake 1e9", "torque 1e-12", "brake 1e-9"), BODIES),
+    **dict.fromkeys(("pair stiffness 1e-6", "pair stiffness 1", "modulus 1e-6"), BODIES),
+    **dict.fromkeys(("torque 1e6", "torque 1e9", "brake 1e9", "torque 1e-9", "brake 1e-9"), BODIES),
 }
 
 

@@ -76,7 +76,7 @@ def test_schema_is_json_schema(tmp_path):
         (("--speed", "0"), "operating.pinion_speed = 0 rpm: allowed > 0 rpm"),
         (("--speed", "-100"), "operating.pinion_speed = -100 rpm: allowed > 0 rpm"),
         (("--speed", "3 kg"), "is not a rotational speed"),
-        (("--torque", "-5"), "operating.pinion_torque = -5 N*m: allowed > 0 N*m"),
+        (("--torque", "-5"), "operating.pinion_torque = -5 N*m: allowed >= 1e-09 N*m"),
         (("--law", "sandpaper"), "friction.law"),
         (("--set", "pinion.tip_diameter=90", "--set", "gear.tip_diameter=90"), "contact_ratio = 0.3"),
         (("--set", "mesh.damping=3"), "Did you mean 'damping_ratio'?"),

@@ -68,7 +68,7 @@ def test_faults_leave_no_trace(sound):
 
 def test_a_fault_acts_wherever_its_function_is_held(sound):
     """A method, a function imported by name, a function held by a record, a compiled one, a cached one."""
-    for key in ("eq2_arm", "radius", "law_iii_radius", "friction_twice", "mesh_period", "floquet_stiffness"):
+    for key in ("eq2_arm", "radius", "law_iii_radius", "friction_twice", "mesh_period", "block_friction"):
         with applied(FAULTS[key]):
             changes = [change(old, quantities(pair))[0] for old, pair in zip(sound, pairs(), strict=True)]
         assert max(changes) > 0.01, key

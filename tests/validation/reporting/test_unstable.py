@@ -1,5 +1,7 @@
 """Does a report of an unstable motion say so wherever it shows that motion?"""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -22,11 +24,13 @@ def test_the_verdicts_that_fail_are_named(data):
 
 
 def test_every_chapter_on_the_motion_warns(data):
-    assert data["verdict"].startswith("Do not rely on this prediction: the periodic motion is unstable")
+    first = data["verdict"].split(". ")[0]
+    assert first.startswith("Do not rely on this prediction: ")
+    assert "the periodic motion is unstable" in first
     assert "the lumped model predicts" not in data["verdict"]
     prediction = data["answers"][0]
     assert prediction["verdict"] == {"state": "violated", "text": "not reliable"}
-    assert prediction["text"].startswith("Not to be relied on: the periodic motion is unstable")
+    assert re.match("Not to be relied on: .*the periodic motion is unstable", prediction["text"])
     for key in ("steady_state", "losses", "cross_check"):
         assert data["chapters"][key]["text"][0][0].startswith("Warning: the periodic motion"), key
     motion = data["chapters"]["steady_state"]["key_results"]["stability"]
