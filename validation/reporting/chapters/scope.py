@@ -16,8 +16,8 @@ def write(results: Results) -> Content:
         "the tooth pair ahead; time zero is when the newest pair enters contact at A."
     )
     models = Text(
-        "Three models share one set of parameters and the laws for stiffness, damping and friction along "
-        "the path of contact:",
+        "Three models share one set of parameters and the stiffness of the teeth along the path of contact; "
+        "the multibody model evaluates friction, damping and relief by itself:",
         (
             "Lumped: six coordinates (two rotations, and the centres of both gears along and off the line "
             "of action), linear, with coefficients that repeat every mesh cycle; stiffness and friction "
