@@ -20,7 +20,7 @@ from scipy.optimize import linear_sum_assignment
 from floquet.gear.block import gear_block
 from floquet.rank_one.batch import fast_multipliers
 from floquet.rank_one.coarsening import coarsened
-from lumped import load_gear_pair
+from lumped import load_gear_pair, preset_names
 from lumped.arguments import whole_number
 from lumped.errors import LawRangeWarning
 from lumped.friction import LAWS
@@ -34,7 +34,6 @@ LongArray = npt.NDArray[np.longdouble]
 
 RATE = 1e4
 """Rates are in units of this [1/s], so that positions and rates are of like size."""
-PRESETS = ("nasa_28_28", "nasa_art_25_31", "kahraman_blankenship_50_50", "fzg_c")
 _TERMS = 30  # of steps that turn by 1 rad at most: 1/30! is far below the precision
 _LD = np.longdouble
 _LAPACK = 1e-13
@@ -69,7 +68,7 @@ def random_pair(rng: np.random.Generator) -> GearPair:
     for gear in ("pinion", "gear"):
         changes[f"bearings.{gear}.loa_stiffness"] = float(10 ** rng.uniform(7.3, 9))
         changes[f"bearings.{gear}.loa_damping_ratio"] = float(rng.uniform(0, 0.1))
-    return load_gear_pair(str(rng.choice(PRESETS))).with_(changes)
+    return load_gear_pair(str(rng.choice(preset_names()))).with_(changes)
 
 
 def _steps(system: LTVSystem) -> tuple[LongArray, LongArray, LongArray]:

@@ -12,6 +12,12 @@ def pair():
 
 
 @pytest.fixture(scope="session")
-def check(pair):
+def told():
+    """Fractions that the shared cross-check told."""
+    return []
+
+
+@pytest.fixture(scope="session")
+def check(pair, told):
     """Cross-check of the default pair, shared because it is only read."""
-    return crosscheck(pair, cycles=24, samples_per_cycle=128)
+    return crosscheck(pair, cycles=24, samples_per_cycle=128, progress=lambda f, _="", /: told.append(f))

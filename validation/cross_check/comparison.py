@@ -202,8 +202,12 @@ def crosscheck(
     other = unlike_twin(pair) if twin and len(fidelities) == len(FIDELITIES) else None
     runs = 1 + len(fidelities) + (other is not None)
 
-    def part(done: int) -> Progress | None:
-        return None if progress is None else lambda fraction, stage="": progress((done + fraction) / runs)
+    def part(done: int) -> Progress:
+        def tell(fraction: float, stage: str = "", /) -> None:
+            if progress is not None:
+                progress((done + fraction) / runs)
+
+        return tell
 
     options = {"cycles": cycles, "samples_per_cycle": samples_per_cycle, "initial": "periodic"}
     reference = lumped.simulate(pair, **options, rtol=RTOL["lumped"], progress=part(0))  # type: ignore[arg-type]
@@ -223,6 +227,7 @@ def crosscheck(
         if fidelity == "exact" and one is not None:
             places = np.arange(reference.sizes["time"]) % samples_per_cycle
             results[fidelity] = one.isel(time=places).assign_coords(time=reference["time"])
+            part(done)(1.0)
             continue
         results[fidelity] = multibody.simulate(
             pair,
@@ -279,14 +284,15 @@ def crosscheck(
         unsettled=unsettled,
         nature=checks,
         powers=powers,
-        twin=None if other is None else _check_twin(other),
+        twin=None if other is None else _check_twin(other, part(runs - 1)),
     )
 
 
-def _check_twin(pair: GearPair) -> CrossCheck | None:
+def _check_twin(pair: GearPair, progress: Progress) -> CrossCheck | None:
     """Cross-check of the twin; None where a model refuses it or cannot compute it."""
+    options = {"cycles": _TWIN_CYCLES, "samples_per_cycle": _TWIN_SAMPLES}
     try:
-        return crosscheck(pair, cycles=_TWIN_CYCLES, samples_per_cycle=_TWIN_SAMPLES, twin=False)
+        return crosscheck(pair, **options, twin=False, progress=progress)  # type: ignore[arg-type]
     except SpurcheckError:
         return None
 

@@ -12,7 +12,7 @@ from floquet.engine.intervals import seeded_nodes, unstable_intervals
 from floquet.engine.tongues import Tongue
 from floquet.gear.axes import vary
 from floquet.gear.boundaries import label_variation, search_grid
-from lumped import load_gear_pair
+from lumped import load_gear_pair, preset_names
 from lumped.errors import ParameterError
 
 
@@ -24,9 +24,6 @@ def nodes_beside(found: xr.Dataset, chart: xr.Dataset) -> tuple[int, int, int]:
     counts = (verdict == -1, (verdict == -1) & ~inside, (verdict == 1) & inside)
     unstable, missed, excess = (int(count.sum()) for count in counts)
     return unstable, missed, excess
-
-
-PRESETS = ["nasa_28_28", "nasa_art_25_31", "kahraman_blankenship_50_50", "fzg_c"]
 
 
 @pytest.fixture(scope="module")
@@ -110,7 +107,7 @@ def test_radius_is_one_on_every_boundary(pair) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("preset", PRESETS)
+@pytest.mark.parametrize("preset", preset_names())
 def test_no_unstable_node_of_a_dense_chart_is_missed(preset: str) -> None:
     pair = load_gear_pair(preset).with_(friction__law="coulomb", friction__coefficient=0.05)
     axes = {"damping_ratio": [0.002, 0.006, 0.02]}

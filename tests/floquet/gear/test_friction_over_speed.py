@@ -8,11 +8,10 @@ import pytest
 from floquet import gear_block, gear_pair_multipliers, stability_chart
 from floquet.gear.axes import GearVariation, vary
 from floquet.gear.friction_over_speed import friction_families
-from lumped import load_gear_pair
+from lumped import load_gear_pair, preset_names
 from lumped.errors import ParameterError
 from lumped.path_of_contact.friction import friction_path_function
 
-PRESETS = ["nasa_28_28", "nasa_art_25_31", "kahraman_blankenship_50_50", "fzg_c"]
 SPEEDS = np.array([500.0, 1300.0, 2000.0, 2030.0, 6000.0, 9000.0, 20000.0])
 
 
@@ -21,7 +20,7 @@ def with_law(law: str, preset: str = "nasa_28_28", **changes: object) -> GearVar
 
 
 @pytest.mark.filterwarnings("ignore::lumped.errors.LawRangeWarning")  # law II at 20000 rpm
-@pytest.mark.parametrize("preset", PRESETS)
+@pytest.mark.parametrize("preset", preset_names())
 @pytest.mark.parametrize(
     "law", ["coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"]
 )

@@ -21,11 +21,10 @@ from floquet import (
 from floquet.gear.axes import GearVariation
 from floquet.rank_one.kernels.disks import spectra
 from floquet.rank_one.system import Gains
-from lumped import load_gear_pair
+from lumped import load_gear_pair, preset_names
 from lumped.errors import NumericalError, ParameterError
 
 LAWS = ["none", "coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"]
-PRESETS = ["nasa_28_28", "nasa_art_25_31", "kahraman_blankenship_50_50", "fzg_c"]
 
 
 def random_system(rng: np.random.Generator) -> RankOneSystem:
@@ -63,7 +62,7 @@ def in_energy_coordinates(system: RankOneSystem, matrix: np.ndarray) -> np.ndarr
 
 def random_pair(rng: np.random.Generator) -> GearVariation:
     """A random gear pair: preset, law, speed, torque, damping, bearings, stiffness and its variation."""
-    pair = load_gear_pair(str(rng.choice(PRESETS)))
+    pair = load_gear_pair(str(rng.choice(preset_names())))
     changes = {
         "operating.pinion_speed": float(np.exp(rng.uniform(np.log(500), np.log(20000)))),
         "operating.pinion_torque": float(rng.uniform(20, 200)),

@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from lumped import ParameterError, geometry, load_gear_pair
+from lumped import ParameterError, geometry, load_gear_pair, preset_names
 from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.path_of_contact import pair_stiffness
 from lumped.stiffness import iso6336
@@ -23,8 +23,6 @@ from lumped.stiffness.foundation import (
 )
 from lumped.stiffness.pair_compliance import pair_compliance, tooth_profile
 from lumped.stiffness.tooth_beam import beam_compliance
-
-PRESETS = ["nasa_28_28", "nasa_art_25_31", "kahraman_blankenship_50_50", "fzg_c"]
 
 
 def energy_pair(name="nasa_28_28", hertz="linear", **changes):
@@ -77,7 +75,7 @@ def test_gauss_integration_converges_exponentially():
     assert np.abs(flexibility(24) / exact - 1).max() < 1e-12
 
 
-@pytest.mark.parametrize("name", PRESETS)
+@pytest.mark.parametrize("name", preset_names())
 def test_quadrature_error_of_the_presets(name):
     pair = energy_pair(name)
     g = geometry(pair)
@@ -85,7 +83,7 @@ def test_quadrature_error_of_the_presets(name):
     finest = pair_compliance(pair, np.linspace(g.L_XA, g.L_XD, 41), nodes=64)
     true = np.abs(compliance.stiffness / finest.stiffness - 1).max()
     estimate = max(compliance.pinion.quadrature_error, compliance.gear.quadrature_error)
-    assert estimate < 1e-9
+    assert estimate < 1e-8  # the slender teeth of the high contact ratio need the most nodes
     assert true <= estimate + 1e-13  # the estimate bounds the true error, down to rounding
 
 
@@ -185,7 +183,8 @@ def test_fit_matches_direct_evaluation():
     assert pair_stiffness(pair)(xi) == pytest.approx(direct, rel=1e-9)  # fit tolerance 1e-10 of the peak
 
 
-@pytest.mark.parametrize("name", PRESETS)
+# Slender teeth for two pairs in contact at least are none of those that the standard measured.
+@pytest.mark.parametrize("name", [name for name in preset_names() if energy_pair(name).geometry.pairs == 2])
 def test_mean_mesh_stiffness_against_iso(name):
     # ISO 6336-1, eq. (93), is a fit of measurements that states deviations of +5 to -8 %. The foundation
     # formula and the beam model add theirs (finite elements: up to 10 %): 12 %. The linearised contact lies

@@ -25,6 +25,13 @@ def test_linear_fidelity_solves_the_same_equations(check):
     assert all(a.within for a in check.of("linear"))
 
 
+def test_progress_goes_on_while_the_twin_is_checked(check, told):
+    assert told == sorted(told)
+    assert told[-1] == 1.0
+    # Four runs, the last of them the twin, which tells its own three and some cycles of these.
+    assert len({fraction for fraction in told if fraction > 0.75}) >= 6
+
+
 def test_every_quantity_is_judged_at_both_fidelities(check):
     assert [(a.fidelity, a.quantity) for a in check.agreements] == [
         (fidelity, quantity) for fidelity in ("linear", "exact") for quantity in QUANTITIES

@@ -13,7 +13,6 @@ import pytest
 import lumped
 import multibody
 
-PRESETS = ["nasa_28_28", "nasa_art_25_31", "kahraman_blankenship_50_50", "fzg_c"]
 LAWS = ["coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"]
 STIFFNESS = {
     "rectangular": {"model": "rectangular"},
@@ -33,7 +32,7 @@ def difference(run, reference, name):
 
 
 @pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("preset", PRESETS)
+@pytest.mark.parametrize("preset", lumped.preset_names())
 def test_linear_level(preset, law):
     pair = lumped.load_gear_pair(preset).with_(friction__law=law)
     run, reference = runs(pair, fidelity="linear")
@@ -50,7 +49,7 @@ def steady_difference(pair):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("stiffness", STIFFNESS)
-@pytest.mark.parametrize("preset", PRESETS)
+@pytest.mark.parametrize("preset", lumped.preset_names())
 def test_exact_level_scales_with_torque(preset, stiffness):
     """Coulomb friction (a coefficient free of torque) at full and at a quarter of the preset's torque."""
     pair = lumped.load_gear_pair(preset).with_(

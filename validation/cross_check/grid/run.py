@@ -80,12 +80,7 @@ class Grid:
     samples : output times per mesh cycle
     """
 
-    presets: tuple[str, ...] = (
-        "nasa_28_28",
-        "nasa_art_25_31",
-        "kahraman_blankenship_50_50",
-        "fzg_c",
-    )
+    presets: tuple[str, ...] = lumped.preset_names()
     laws: tuple[str, ...] = FRICTIONAL
     stiffness: tuple[str, ...] = tuple(STIFFNESS)
     speeds: tuple[float, ...] = (0.3, 1.0, 1.7)
