@@ -13,7 +13,7 @@ from validation.commands import options as opt
 from validation.commands.terminal import guarded, progress_bar, stdout, table
 
 if TYPE_CHECKING:
-    from validation.paper import PaperFigure
+    from validation.paper import FigureRecord
 
 
 @guarded
@@ -54,7 +54,7 @@ def figures(
     """
     from validation.files.folder import FIGURES, check_target, whole_folder
     from validation.measurements import load_measurement
-    from validation.paper import DRAW, paper_figures
+    from validation.paper import DRAW, figure_records
 
     check_target(output, force=force, kind=FIGURES)
     chosen = _chosen(only, tuple(DRAW))
@@ -64,29 +64,24 @@ def figures(
         progress_bar("figures") as tell,
         whole_folder(output, force=force, kind=FIGURES) as folder,
     ):
-        made = paper_figures(
-            folder,
-            gear_pair,
-            chosen,
-            measurements=measurements,
-            with_multibody=multibody,
-            progress=tell,
+        made = figure_records(
+            gear_pair, chosen, measurements=measurements, with_multibody=multibody, progress=tell
         )
         data = {
             "format": FIGURES.format,
             "gear_pair": gear_pair.name,
             "multibody": multibody,
-            "figures": [_entry(one) for one in made],
+            "figures": [_written(one, folder) for one in made],
             "parameters": gear_pair.to_mapping(),
         }
         text = json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False)
         (folder / FIGURES.file).write_text(text + "\n", encoding="utf-8")
     console = stdout()
     for one in made:
-        shown = table(f"figure {one.record.number}: {one.record.title}", "number", ">value")
+        shown = table(f"figure {one.number}: {one.title}", "number", ">value")
         shown.columns[0].no_wrap = False
         shown.columns[1].no_wrap = False
-        for name, value in one.record.numbers.items():
+        for name, value in one.numbers.items():
             shown.add_row(name, str(value))
         console.print(shown)
     console.print(f"figures: {output}")
@@ -107,8 +102,15 @@ def _chosen(text: str | None, known: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(name for name in known if name in wanted)
 
 
-def _entry(one: PaperFigure) -> dict[str, object]:
-    record = one.record
+def _written(record: FigureRecord, folder: Path) -> dict[str, object]:
+    """Write a figure and its data; return what figures.json says of it."""
+    from validation.paper import DRAW
+    from validation.plots.style import save
+
+    drawn = DRAW[record.number](record)
+    pictures = [folder / f"figure{record.number}.{form}" for form in ("svg", "png")]
+    for path in pictures:
+        save(drawn, path)
     return {
         "figure": record.number,
         "title": record.title,
@@ -117,6 +119,6 @@ def _entry(one: PaperFigure) -> dict[str, object]:
             name: {"value": one.value if math.isfinite(one.value) else None, "unit": one.unit}
             for name, one in record.numbers.items()
         },
-        "pictures": [path.name for path in one.pictures],
-        "data": [path.name for path in one.data],
+        "pictures": [path.name for path in pictures],
+        "data": [path.name for path in record.write(folder)],
     }

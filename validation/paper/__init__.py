@@ -5,7 +5,7 @@ from validation.paper.errata.catalogue import errata_chapter
 from validation.paper.figures.law_figures import law_runs
 from validation.paper.plots import draw_errata
 from validation.paper.records import PAPER, Claim, ClaimsTable, ErrataChapter, Erratum, Evidence, FigureRecord
-from validation.paper.reproduction import DRAW, PaperFigure, figure_records, paper_figures
+from validation.paper.reproduction import DRAW, figure_records
 
 __all__ = [
     "DRAW",
@@ -16,11 +16,9 @@ __all__ = [
     "Erratum",
     "Evidence",
     "FigureRecord",
-    "PaperFigure",
     "claims",
     "draw_errata",
     "errata_chapter",
     "figure_records",
     "law_runs",
-    "paper_figures",
 ]

@@ -20,23 +20,27 @@ from validation.plots.style import (
     DASHES,
     GREEN,
     GREY,
+    IN_X,
     ORANGE,
     PURPLE,
     RED,
     legend,
+    legend_outside,
     mark_switches,
     new_figure,
     scaled,
+    write_beside,
 )
 
 #: Law -> colour and dash of its lumped curve.
-LAW_LOOK: dict[str, tuple[str, Any]] = {
-    law: (colour, dash) for law, colour, dash in zip(LAWS, (BLUE, RED, GREEN, BLACK), DASHES, strict=False)
-}
+LAW_LOOK: dict[str, tuple[str, Any]] = dict(
+    zip(LAWS, zip((BLUE, RED, GREEN, BLACK), DASHES, strict=False), strict=True)
+)
 #: Points of the multibody twin: hollow, so that the curve below stays visible.
 TWIN: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 3.2, "markerfacecolor": "none"}
 _TWIN_POINTS = 32
 _FORCES = (("normal_load", "normal load"), ("friction_force", "friction force"))
+_TWO_DASHES: tuple[Any, ...] = ("-", (0, (4, 1.5)))
 #: Colours of tooth pairs A, B, ...
 _LABELS = (BLUE, RED, GREEN, PURPLE)
 
@@ -62,26 +66,12 @@ def twin_lines(ax: Axes, x: NDArray[np.float64], values: xr.DataArray, colour: s
 
 def line_handles() -> list[Line2D]:
     """Legend entries of ``twin_lines``."""
-    return [
-        Line2D([], [], color=GREY, linewidth=3.0, alpha=0.35, label="lumped"),
-        Line2D([], [], color=GREY, linewidth=0.9, label="multibody"),
-    ]
+    return [handle("lumped", linewidth=3.0, alpha=0.35), handle("multibody", linewidth=0.9)]
 
 
-def model_handles() -> list[Line2D]:
-    """Legend entries that tell the models apart."""
-    return [
-        Line2D([], [], color=GREY, label="lumped"),
-        Line2D([], [], color=GREY, label="multibody", **TWIN),
-    ]
-
-
-def law_handles() -> list[Line2D]:
-    """Legend entries of the four laws."""
-    return [
-        Line2D([], [], color=LAW_LOOK[law][0], linestyle=LAW_LOOK[law][1], label=title)
-        for law, title in LAWS.items()
-    ]
+def handle(label: str, **look: Any) -> Line2D:
+    """Legend entry of a line, grey unless its look says otherwise."""
+    return Line2D([], [], label=label, **({"color": GREY} | look))
 
 
 def histories(ax: Axes, values: xr.DataArray, unit: str) -> str:
@@ -124,34 +114,25 @@ def draw_figure2(record: FigureRecord) -> Figure:
 
 def _friction(ax: Axes, record: FigureRecord) -> None:
     data = record.data["friction_in_time"]
-    for gears, dash in zip(data["gears"].to_numpy(), ("-", (0, (4, 1.5))), strict=True):
+    for gears, dash in zip(data["gears"].to_numpy(), _TWO_DASHES, strict=True):
         one = data.sel(gears=gears)
         for law, colour in (("II", RED), ("III", GREEN)):
             ax.plot(
                 one["cycles"], one["mu"].sel(law=law), color=colour, linestyle=dash, label=f"{law}, {gears}"
             )
         ax.axvline(float(one["pitch"]), color=GREY, linewidth=0.6, linestyle=dash, zorder=0.5)
-        ax.annotate(
-            f"P, {gears}",
-            (float(one["pitch"]), 0.0),
-            xycoords=("data", "axes fraction"),
-            xytext=(-3 if dash != "-" else 3, 3),
-            textcoords="offset points",
-            ha="right" if dash != "-" else "left",
-            fontsize=7.5,
-            color=GREY,
-        )
+        shift, side = (3, "left") if dash == "-" else (-3, "right")
+        place = (float(one["pitch"]), 0.0)
+        write_beside(ax, f"P, {gears}", place, (shift, 3), IN_X, ha=side, fontsize=7.5, color=GREY)
     ax.axhline(0.0, color=GREY, linewidth=0.6)
-    ax.set_xlim(0.0, float(data["contact_ratio"].max()))
-    ax.set_xlabel("(a) time since A [mesh cycles]")
-    ax.set_ylabel("friction coefficient [-]")
+    ax.set(xlim=(0.0, float(data["contact_ratio"].max())))
+    ax.set(xlabel="(a) time since A [mesh cycles]", ylabel="friction coefficient [-]")
     legend(ax, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2)
 
 
 def _means(ax: Axes, record: FigureRecord) -> None:
     data = record.data["mean_over_speed"]
-    looks = zip(data["calibration"].to_numpy(), ("-", (0, (4, 1.5))), strict=True)
-    for calibration, dash in looks:
+    for calibration, dash in zip(data["calibration"].to_numpy(), _TWO_DASHES, strict=True):
         one = data.sel(calibration=calibration)["mean_mu"]
         for law, colour, width in (("II", RED, 0.8), ("III", GREEN, 0.8), ("V", BLACK, 1.8)):
             label = f"{law}, {calibration}" if law == "V" else None
@@ -161,14 +142,10 @@ def _means(ax: Axes, record: FigureRecord) -> None:
     last = data.isel(calibration=0, speed=-1)["mean_mu"]
     for law, colour in (("II", RED), ("III", GREEN)):
         place = (float(data["speed"][-1]), float(last.sel(law=law)))
-        ax.annotate(
-            law, place, xytext=(-4, 5), textcoords="offset points", ha="right", color=colour, fontsize=8.5
-        )
+        write_beside(ax, law, place, (-4, 5), ha="right", color=colour, fontsize=8.5)
     ax.axvline(SWITCH_SPEED, color=BLUE, linewidth=0.8, linestyle=":", label="paper's switch (calibrated)")
-    ax.set_xlim(0.0, float(data["speed"][-1]))
-    ax.set_ylim(bottom=0.0)
-    ax.set_xlabel("(b) pinion speed [rpm]")
-    ax.set_ylabel("mean of |µ| over the path [-]")
+    ax.set(xlim=(0.0, float(data["speed"][-1])), ylim=(0.0, None))
+    ax.set(xlabel="(b) pinion speed [rpm]", ylabel="mean of |µ| over the path [-]")
     legend(ax, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=1)
 
 
@@ -179,24 +156,16 @@ def draw_figure3(record: FigureRecord) -> Figure:
     figure, axes = new_figure(1, 2, height=3.0, width_ratios=(1.7, 1.0))
     for ax in axes[0]:
         for law, (colour, dash) in LAW_LOOK.items():
-            ax.plot(
-                data["cycles"],
-                data["normalised_mu"].sel(law=law),
-                color=colour,
-                linestyle=dash,
-                label=LAWS[law],
-            )
+            mu = data["normalised_mu"].sel(law=law)
+            ax.plot(data["cycles"], mu, color=colour, linestyle=dash, label=LAWS[law])
         ax.axhline(0.0, color=GREY, linewidth=0.6)
         ax.axvline(pitch, color=GREY, linewidth=0.6, linestyle=(0, (2, 2)), zorder=0.5)
+        ax.set_ylabel("µ / mean of |µ| [-]")
     whole, close = axes[0]
     mark_switches(whole, {"A": 0.0, "B": end - 1.0, "P": pitch, "C": 1.0, "D": end})
-    whole.set_xlim(0.0, end)
-    whole.set_xlabel("$t/t_c$ [mesh cycles since A]")
-    whole.set_ylabel("µ / mean of |µ| [-]")
+    whole.set(xlim=(0.0, end), xlabel="$t/t_c$ [mesh cycles since A]")
     legend(whole, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=1.7)
-    close.set_xlim(pitch - 0.03, pitch + 0.03)
-    close.set_xlabel("close-up of P [mesh cycles since A]")
-    close.set_ylabel("µ / mean of |µ| [-]")
+    close.set(xlim=(pitch - 0.03, pitch + 0.03), xlabel="close-up of P [mesh cycles since A]")
     return figure
 
 
@@ -216,39 +185,29 @@ def draw_figure4(record: FigureRecord) -> Figure:
         axes[-1, column].set_xlabel("time [mesh cycles]")
     axes[0, 0].set_xlim(0.0, 1.0)
     if "multibody" in data["model"]:
-        figure.legend(
-            handles=line_handles(), loc="outside upper center", ncols=2, frameon=False, fontsize=8.5
-        )
+        legend_outside(figure, line_handles(), 2)
     return figure
 
 
-def draw_figure5(record: FigureRecord) -> Figure:
-    """Draw figure 5 from its data: LOA above, OLOA below; time left, mesh orders right."""
-    rows = (("x_p", "LOA displacement $x_p$"), ("y_p", "OLOA displacement $y_p$"))
-    return draw_motions(record, "motions", rows, height=5.2)
+_MOTIONS = {"x_p": "LOA displacement $x_p$", "y_p": "OLOA displacement $y_p$", "dte": "DTE"}
 
 
-def draw_motions(
-    record: FigureRecord, part: str, rows: tuple[tuple[str, str], ...], *, height: float
-) -> Figure:
-    """Draw histories and amplitudes by mesh order, one row per variable."""
-    data = record.data[part]
-    figure, axes = new_figure(len(rows), 2, height=height, width_ratios=(1.25, 1.0))
-    for (time, order), (name, label) in zip(axes, rows, strict=True):
+def draw_motions(record: FigureRecord) -> Figure:
+    """Draw figure 5 or 6 from its data: a row per variable; time left, mesh orders right."""
+    (data,) = record.data.values()
+    rows = [name for name in _MOTIONS if name in data]
+    figure, axes = new_figure(len(rows), 2, height=1.0 + 2.1 * len(rows), width_ratios=(1.25, 1.0))
+    for (time, order), name in zip(axes, rows, strict=True):
         unit = histories(time, data[name], "m")
-        time.set_ylabel(f"{label} [{unit}]")
+        time.set_ylabel(f"{_MOTIONS[name]} [{unit}]")
         unit = amplitudes(order, data[f"{name}_amplitude"], "m")
         order.set_ylabel(f"amplitude [{unit}]")
     axes[-1, 0].set_xlabel("time [mesh cycles]")
     axes[-1, 1].set_xlabel("mesh order [-]")
-    handles = law_handles() + (model_handles() if "multibody" in data["model"] else [])
-    figure.legend(handles=handles, loc="outside upper center", ncols=3, frameon=False, fontsize=8.5)
+    models = [handle("lumped"), handle("multibody", **TWIN)] if "multibody" in data["model"] else []
+    laws = [handle(title, color=LAW_LOOK[law][0], linestyle=LAW_LOOK[law][1]) for law, title in LAWS.items()]
+    legend_outside(figure, laws + models, 3)
     return figure
-
-
-def draw_figure6(record: FigureRecord) -> Figure:
-    """Draw figure 6 from its data: time left, mesh orders right."""
-    return draw_motions(record, "transmission_error", (("dte", "DTE"),), height=3.1)
 
 
 def draw_figure7(record: FigureRecord) -> Figure:
@@ -258,26 +217,24 @@ def draw_figure7(record: FigureRecord) -> Figure:
     figure, axes = new_figure(2, len(curves), height=5.2, sharex=True, sharey="row")
     for row, (name, label) in enumerate(_FORCES):
         factor, unit = scaled(*(data[name].to_numpy() for data in curves), unit="N")
-        for column, data in enumerate(curves):
-            ax = axes[row, column]
-            _curves(ax, data, name, factor)
+        for ax, data in zip(axes[row], curves, strict=True):
+            for pair, colour in zip(data["label"].to_numpy(), _LABELS, strict=False):
+                twin_lines(ax, data["cycles"].to_numpy(), data[name].sel(label=pair) / factor, colour)
+            ax.axhline(0.0, color=GREY, linewidth=0.6)
             for measured in points:
                 if abs(measured.attrs["speed_rpm"] / data.attrs["speed_rpm"] - 1.0) < 0.05:
                     _points(ax, measured, name, factor)
         axes[row, 0].set_ylabel(f"{label} per pair [{unit}]")
-    for ax, data in zip(axes[0], curves, strict=True):
-        _roll_angle_axis(ax, data)
-    for ax, data in zip(axes[-1], curves, strict=True):
-        ax.set_xlabel(f"{data.attrs['speed_rpm']:g} rpm: time since pair A was at A [mesh cycles]")
-        ax.set_xlim(0.0, 3.0)
+    for (top, bottom), data in zip(axes.T, curves, strict=True):
+        _roll_angle_axis(top, data)
+        speed = data.attrs["speed_rpm"]
+        bottom.set(xlabel=f"{speed:g} rpm: time since pair A was at A [mesh cycles]", xlim=(0.0, 3.0))
     labels = curves[0]["label"].to_numpy()
-    handles = [Line2D([], [], color=c, label=f"pair {n}") for n, c in zip(labels, _LABELS, strict=False)]
+    handles = [handle(f"pair {n}", color=colour) for n, colour in zip(labels, _LABELS, strict=False)]
     handles += line_handles() if "multibody" in curves[0]["model"] else []
     if points:
-        handles.append(
-            Line2D([], [], color=ORANGE, marker="s", markersize=3.0, linestyle="none", label="measured")
-        )
-    figure.legend(handles=handles, loc="outside upper center", ncols=5, frameon=False, fontsize=8.5)
+        handles.append(handle("measured", color=ORANGE, marker="s", markersize=3.0, linestyle="none"))
+    legend_outside(figure, handles, 5)
     return figure
 
 
@@ -298,29 +255,15 @@ def _roll_angle_axis(ax: Axes, data: xr.Dataset) -> None:
     top.tick_params(labelsize=8.5, width=0.6, length=3)
 
 
-def _curves(ax: Axes, data: xr.Dataset, name: str, factor: float) -> None:
-    x = data["cycles"].to_numpy()
-    for label, colour in zip(data["label"].to_numpy(), _LABELS, strict=False):
-        twin_lines(ax, x, data[name].sel(label=label) / factor, colour)
-    ax.axhline(0.0, color=GREY, linewidth=0.6)
-
-
 def _points(ax: Axes, measured: xr.Dataset, name: str, factor: float) -> None:
+    look: dict[str, Any] = {"color": ORANGE, "marker": "s", "markersize": 2.5, "linestyle": "none"}
     for channel in measured["channel"].to_numpy():
         one = measured.sel(channel=channel)
-        if str(one["quantity"].item()) != name:
-            continue
-        ax.errorbar(
-            one["cycles"],
-            one["measured"] / factor,
-            yerr=one["scatter"] / factor,
-            color=ORANGE,
-            marker="s",
-            markersize=2.5,
-            linestyle="none",
-            elinewidth=0.6,
-            zorder=4,
-        )
+        if str(one["quantity"].item()) == name:
+            scatter = one["scatter"] / factor
+            ax.errorbar(
+                one["cycles"], one["measured"] / factor, yerr=scatter, elinewidth=0.6, zorder=4, **look
+            )
 
 
 _LOOKS: dict[str, tuple[str, Any, float, float]] = {
@@ -344,9 +287,6 @@ def draw_errata(chapter: ErrataChapter) -> Figure:
             y = data[name].sel(variant=variant).to_numpy() / factor
             text = variant if variant == "repaired" else f"{variant} as printed"
             ax.plot(x, y, color=colour, linestyle=dash, linewidth=width, alpha=alpha, label=text)
-        ax.set_xlim(0.0, 1.0)
-        ax.set_xlabel("time [mesh cycles]")
-        ax.set_ylabel(f"{label} [{unit}]")
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=3, frameon=False, fontsize=8.5)
+        ax.set(xlim=(0.0, 1.0), xlabel="time [mesh cycles]", ylabel=f"{label} [{unit}]")
+    legend_outside(figure, axes[0, 0].lines, 3)
     return figure

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from validation.plots.style import BLUE, GREY, RED, new_figure, scaled
+from validation.plots.style import BLUE, GREY, RED, legend_outside, new_figure, scaled
 
 
 def overlay_figure(points: xr.Dataset) -> Figure:
@@ -40,6 +40,5 @@ def overlay_figure(points: xr.Dataset) -> Figure:
         ax.set(xlabel="mesh cycles since the pair was at A", ylabel=f"{name} [{unit}]")
     for ax in panels[len(names) :]:
         ax.set_visible(False)
-    handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=2, frameon=False, fontsize=8.5)
+    legend_outside(figure, panels[0].get_legend_handles_labels()[0], 2)
     return figure

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -95,6 +96,11 @@ def legend(ax: Axes, **options: Any) -> None:
 def legend_above(ax: Axes, columns: int) -> None:
     """Add a legend in one row above the axes, where no curve can be."""
     legend(ax, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, columnspacing=1.6)
+
+
+def legend_outside(figure: Figure, handles: Sequence[Artist], columns: int) -> None:
+    """Add one legend for all panels, above them."""
+    figure.legend(handles=handles, loc="outside upper center", ncols=columns, frameon=False, fontsize=8.5)
 
 
 def look(index: int) -> dict[str, Any]:

@@ -54,12 +54,12 @@ def test_unknown_figures_are_refused_before_work(tmp_path, wanted):
 
 
 def test_a_failure_midway_leaves_no_figures_behind(tmp_path, monkeypatch):
-    def fail(folder, *_, **__):
-        (folder / "figure2.svg").write_text("half")
+    def fail(_, path):
+        path.write_text("half")
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("validation.paper.paper_figures", fail)
-    assert run("figures", "-o", tmp_path / "deep" / "figures").exit_code == 130
+    monkeypatch.setattr("validation.plots.style.save", fail)
+    assert run("figures", "--figures", "3", "-o", tmp_path / "deep" / "figures").exit_code == 130
     assert list(tmp_path.iterdir()) == []
 
 

@@ -108,5 +108,5 @@ STATED = {
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_a_claim_states_the_numbers_that_its_words_name(rule):
-    found = [rule.value(DIFFERENT), *(function(DIFFERENT) for function, _ in rule.details.values())]
+    found = [rule.value(DIFFERENT), *(one.value for one in rule.further(DIFFERENT).values())]
     assert found == pytest.approx(STATED[rule.name], rel=1e-6)

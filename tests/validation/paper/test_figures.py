@@ -9,7 +9,7 @@ from lumped.errors import ParameterError
 from lumped.friction import xu_kahraman
 from lumped.path_of_contact import contact_path
 from validation.measurements import predict, synthetic_measurement
-from validation.paper import DRAW, figure_records, law_runs, paper_figures
+from validation.paper import DRAW, figure_records, law_runs
 from validation.paper.figures.figure2 import regime_switch
 from validation.paper.figures.figure7 import measured_points
 from validation.paper.operating_points import FIGURE_4, FIGURE_7, second_pair
@@ -211,17 +211,13 @@ def test_measured_points_land_on_their_speed_and_pair(pair):
     assert drawn == [0, 2, 0, 2]  # error bars of A and B in the 4000 rpm column only
 
 
-def test_figures_are_written_with_their_data(pair, tmp_path):
-    (written,) = paper_figures(tmp_path, pair, ("3",), formats=("svg", "png"))
-    assert [p.name for p in written.pictures] == ["figure3.svg", "figure3.png"]
+def test_data_are_written_as_netcdf_and_csv(records, tmp_path):
+    records["3"].write(tmp_path)
     again = xr.load_dataset(tmp_path / "figure3_normalised_laws.nc", engine="h5netcdf")
-    xr.testing.assert_allclose(again, written.record.data["normalised_laws"])
+    xr.testing.assert_allclose(again, records["3"].data["normalised_laws"])
     table = (tmp_path / "figure3_normalised_laws_by_law_cycles.csv").read_text().splitlines()
     assert table[0] == "law,cycles,normalised_mu"
     assert len(table) == 1 + 4 * again.sizes["cycles"]
-    first = written.pictures[0].read_bytes()
-    paper_figures(tmp_path, pair, ("3",), formats=("svg",))
-    assert written.pictures[0].read_bytes() == first
 
 
 def test_every_figure_can_be_drawn_and_says_what_it_shows(records):
@@ -235,8 +231,6 @@ def test_every_figure_can_be_drawn_and_says_what_it_shows(records):
             assert any("[" in text for text in labels), number  # with a unit
 
 
-def test_unknown_figures_and_formats_are_refused(tmp_path):
+def test_unknown_figures_are_refused():
     with pytest.raises(ParameterError, match="figures"):
         figure_records(figures=("8",))
-    with pytest.raises(ParameterError, match="formats"):
-        paper_figures(tmp_path, figures=("3",), formats=("gif",))

@@ -100,14 +100,12 @@ def judged(
             # The one claim on an accuracy is met where the number stays within it.
             met = np.abs(values / value - 1.0) <= 0.03 if rule.name == ACCURACY else map(rule.holds, rows)
             share = float(np.mean(list(met)))
-    details = {name: Number(function(stated), unit) for name, (function, unit) in rule.details.items()}
-    details |= twin.get(rule.name, {})
     return Claim(
         **{field.name: getattr(rule, field.name) for field in fields(Statement)},
         value=value,
         verdict=verdict,
         reason=reason,
-        details=details,
+        details=rule.further(stated) | twin.get(rule.name, {}),
         share=share,
         usable=usable,
         low=low,

@@ -49,28 +49,56 @@ def figure4(runs: xr.Dataset) -> FigureRecord:
     )
 
 
-def histories_and_orders(runs: xr.Dataset, names: tuple[str, ...]) -> xr.Dataset:
-    """Variables (law, model, phase) [m] and ``<name>_amplitude`` (law, model, order) [m]."""
-    found: dict[str, xr.DataArray] = {name: runs[name] for name in names}
-    found |= {f"{name}_amplitude": mesh_orders(runs[name]) for name in names}
-    return xr.Dataset(found)
+#: Figures of motions: number -> title, what is shown, name of its data, variables.
+_MOTIONS = {
+    "5": (
+        "Displacements along and off the line of action",
+        "Pinion displacements over one mesh cycle and their",
+        "motions",
+        ("x_p", "y_p"),
+    ),
+    "6": (
+        "Dynamic transmission error",
+        "DTE over one mesh cycle and its",
+        "transmission_error",
+        ("dte",),
+    ),
+}
 
 
-def motion_numbers(runs: xr.Dataset, data: xr.Dataset, names: tuple[str, ...]) -> dict[str, Number]:
-    """Peak to peak of each law, spread of the laws by mesh order, agreement of the twins."""
+def figure_of_motions(number: str, runs: xr.Dataset) -> FigureRecord:
+    """Figure 5 or 6 with its data and numbers; ``runs`` of ``law_runs``.
+
+    Its data are the variables (law, model, phase) [m] and ``<name>_amplitude`` (law, model, order) [m]; its
+    numbers the peak to peak of each law, the spread of the laws by mesh order, the agreement of the twins.
+    """
+    title, what, part, names = _MOTIONS[number]
+    data = xr.Dataset(
+        {name: runs[name] for name in names}
+        | {f"{name}_amplitude": mesh_orders(runs[name]) for name in names}
+    )
+    lumped = data.sel(model="lumped")
     numbers: dict[str, Number] = {}
     for name in names:
-        lumped = data.sel(model="lumped")
-        for law, title in LAWS.items():
+        for law, law_title in LAWS.items():
             span = float(np.ptp(lumped[name].sel(law=law).to_numpy()))
-            numbers[f"{title}: {name}, peak to peak"] = Number(1e6 * span, "µm")
+            numbers[f"{law_title}: {name}, peak to peak"] = Number(1e6 * span, "µm")
         amplitude = lumped[f"{name}_amplitude"]
         spread = amplitude.max("law") - amplitude.min("law")
         for order in (1, 2, 3):
             numbers[f"spread of the laws in {name} at mesh order {order}"] = Number(
                 1e9 * float(spread.sel(order=order)), "nm"
             )
-    return numbers | _twin_numbers(runs, names)
+    return FigureRecord(
+        number=number,
+        title=title,
+        text=(
+            f"{what} amplitudes by mesh order at {FIGURE_4.torque:g} N m and {FIGURE_4.speed:g} rpm, laws I "
+            f"to IV, lumped model and its multibody twin.{quality(runs)[1]}"
+        ),
+        numbers=numbers | _twin_numbers(runs, names),
+        data={part: data},
+    )
 
 
 def _twin_numbers(runs: xr.Dataset, names: tuple[str, ...]) -> dict[str, Number]:
@@ -78,43 +106,8 @@ def _twin_numbers(runs: xr.Dataset, names: tuple[str, ...]) -> dict[str, Number]
     if "multibody" not in runs["model"]:
         return {}
     found = agreement(runs.rename(law="variant"), names)
+    words = {"normal_load": "normal load", "friction_force": "friction force"}
     return {
-        f"multibody twin, {_words(name)}: rms difference, worst law": Number(100 * value, SPAN)
+        f"multibody twin, {words.get(name, name)}: rms difference, worst law": Number(100 * value, SPAN)
         for name, value in found.items()
     }
-
-
-def _words(name: str) -> str:
-    return name.replace("_", " ") if name in ("normal_load", "friction_force") else name
-
-
-def figure5(runs: xr.Dataset) -> FigureRecord:
-    """Figure 5 with its data and numbers; ``runs`` of ``law_runs``."""
-    names = ("x_p", "y_p")
-    data = histories_and_orders(runs, names)
-    return FigureRecord(
-        number="5",
-        title="Displacements along and off the line of action",
-        text=(
-            "Pinion displacements over one mesh cycle and their amplitudes by mesh order at "
-            f"{FIGURE_4.torque:g} N m and {FIGURE_4.speed:g} rpm, laws I to IV, lumped model and its "
-            f"multibody twin.{quality(runs)[1]}"
-        ),
-        numbers=motion_numbers(runs, data, names),
-        data={"motions": data},
-    )
-
-
-def figure6(runs: xr.Dataset) -> FigureRecord:
-    """Figure 6 with its data and numbers; ``runs`` of ``law_runs``."""
-    data = histories_and_orders(runs, ("dte",))
-    return FigureRecord(
-        number="6",
-        title="Dynamic transmission error",
-        text=(
-            f"DTE over one mesh cycle and its amplitudes by mesh order at {FIGURE_4.torque:g} N m and "
-            f"{FIGURE_4.speed:g} rpm, laws I to IV, lumped model and its multibody twin.{quality(runs)[1]}"
-        ),
-        numbers=motion_numbers(runs, data, ("dte",)),
-        data={"transmission_error": data},
-    )
