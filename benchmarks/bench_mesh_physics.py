@@ -18,7 +18,7 @@ from lumped.losses import losses_of_laws, quasi_static_losses
 from lumped.path_of_contact import pair_stiffness
 from lumped.quasi_static import mesh_positions, optimal_relief, static_transmission_error
 from lumped.stiffness.contact import linear_hertz_compliance
-from lumped.stiffness.pair_compliance import pair_compliance, tooth_profile
+from lumped.stiffness.pair_compliance import pair_compliance
 
 POSITIONS = 65
 CURVES = 100
@@ -37,7 +37,7 @@ def plain_compliance(pair, g, xi):
     """Bending, shear and compression of both teeth at one position, each by adaptive quadrature [m/N]."""
     total = 0.0
     for which, gear, length in (("pinion", pair.pinion, xi), ("gear", pair.gear, g.L_XY - xi)):
-        profile = tooth_profile(pair, which)
+        profile = pair.wheels[0 if which == "pinion" else 1].tooth
         u_c, h_c, _, a = (float(v[0]) for v in profile.involute_points(np.array([length])))
         modulus, cosine, sine = gear.youngs_modulus, np.cos(a), np.sin(a)
         shear_modulus = modulus / (2.0 * (1.0 + gear.poisson_ratio))

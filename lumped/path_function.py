@@ -9,13 +9,12 @@ Approximation Practice, 2013.
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
-from numpy.polynomial import chebyshev
+from numpy.polynomial import chebyshev, polynomial
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PPoly
 
@@ -27,9 +26,23 @@ Array = TypeVar("Array", NDArray[np.float64], NDArray[np.longdouble])
 #: Degree of the fitted pieces. Converting a Chebyshev to a monomial basis costs about (1 + sqrt 2)^degree
 #: rounding errors, 2.5e-13 at degree 8, so the fit stays below its tolerances.
 FIT_DEGREE = 8
-_MAX_HALVINGS = 40
-#: Halving without end means rounding noise or an undeclared kink; a table of 1000 rows has 1000 pieces.
+_MAX_CUTS = 44
+#: Cutting without end means rounding noise or an undeclared kink; a table of 1000 rows has 1000 pieces.
 _MAX_PIECES = 4000
+
+_NODES = np.asarray(chebyshev.chebpts1(FIT_DEGREE + 1), dtype=np.float64)
+# Twice as dense as the nodes and all but at the ends, where a jump hides and a root's error is largest.
+_PROBES = np.asarray((1.0 - 1e-6) * chebyshev.chebpts2(2 * FIT_DEGREE + 5), dtype=np.float64)
+_AT_PROBES = np.asarray(chebyshev.chebvander(_PROBES, FIT_DEGREE).T, dtype=np.float64)
+# Chebyshev coefficients from values at the nodes: discrete orthogonality, (2 - [k = 0])/n T_k(x_j)
+_TO_SERIES = np.asarray(chebyshev.chebvander(_NODES, FIT_DEGREE) * (2.0 / _NODES.size), dtype=np.float64)
+_TO_SERIES[:, 0] *= 0.5
+# Row k: coefficients of T_k(t - 1) in powers of t, lowest first.
+_TO_POWERS = np.zeros((FIT_DEGREE + 1, FIT_DEGREE + 1))
+for _k in range(FIT_DEGREE + 1):
+    _TO_POWERS[_k, : _k + 1] = polynomial.Polynomial(chebyshev.cheb2poly([0.0] * _k + [1.0]))(
+        polynomial.Polynomial([-1.0, 1.0])
+    ).coef
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,54 +127,50 @@ class PathFunction:
         switches: Sequence[float] | FloatArray = (),
         *,
         tolerance: float,
+        cut: Callable[[FloatArray, FloatArray], FloatArray] = lambda low, high: 0.5 * (low + high),
     ) -> PathFunction:
-        """Fit a vectorised callable by polynomials, halving pieces until the error is below ``tolerance``.
+        """Fit a vectorised callable by polynomials, cutting pieces in two until the error is small enough.
 
         The callable is sampled strictly inside each piece (Chebyshev points of the first kind), so one-sided
-        limits at a break are taken from the right piece.
+        limits at a break are taken from the right piece. All pieces of a round are sampled in one call.
 
         Parameters
         ----------
         function : callable (k,) -> (k,), smooth inside every piece
         breaks : end points and inner breaks [m]
         switches : the breaks that are jumps or kinks [m]
-        tolerance : largest absolute error, in the function's own unit
+        tolerance : largest absolute error at the probes between the nodes, in the function's own unit
+        cut : ends of pieces -> where to cut them [m]; by default in the middle
 
         Raises
         ------
-        NumericalError : a piece does not converge, as when a kink is missing from ``breaks``
+        NumericalError : a value is not finite, or a piece does not converge, as when a kink is missing from
+            ``breaks``
         """
-        nodes = chebyshev.chebpts1(FIT_DEGREE + 1)
-        probes = np.linspace(-0.99, 0.99, 2 * FIT_DEGREE + 5)
-        edges: list[float] = []
-        columns: list[FloatArray] = []
-        stack = [(float(a), float(b), 0) for a, b in itertools.pairwise(breaks)][::-1]
-        most = max(_MAX_PIECES, 4 * len(stack))  # a table brings as many pieces as it has points
-        while stack:
-            if len(columns) + len(stack) > most:
+        low, high = np.array(breaks[:-1], dtype=float), np.array(breaks[1:], dtype=float)
+        most = max(_MAX_PIECES, 4 * low.size)  # a table brings as many pieces as it has points
+        found: list[tuple[FloatArray, FloatArray, FloatArray]] = []
+        for last in [False] * _MAX_CUTS + [True]:
+            half = 0.5 * (high - low)
+            series = _values(function, low, half, _NODES) @ _TO_SERIES
+            error = np.abs(series @ _AT_PROBES - _values(function, low, half, _PROBES)).max(axis=1)
+            # A piece at the resolution of positions cannot be cut further.
+            good = error <= (1e3 * tolerance if last else tolerance)
+            found.append((low[good], half[good], series[good]))
+            if good.all():
+                break
+            low, high = low[~good], high[~good]
+            if last or low.size + sum(start.size for start, *_ in found) > most:
                 raise NumericalError(
-                    f"No polynomial fit to {tolerance:.2g} near xi = {stack[-1][0]:.6g} m: the function is "
-                    "noisy or has an undeclared kink there; name it as a break or raise the tolerance."
+                    f"No polynomial fit to {tolerance:.2g} near xi = {low[0]:.6g} m: the function is noisy "
+                    "there, or has a jump or kink that is no break; name it, or raise the tolerance."
                 )
-            low, high, depth = stack.pop()
-            centre, half = 0.5 * (low + high), 0.5 * (high - low)
-            series = np.asarray(
-                chebyshev.chebfit(nodes, function(centre + half * nodes), FIT_DEGREE), dtype=np.float64
-            )
-            error = np.abs(chebyshev.chebval(probes, series) - function(centre + half * probes)).max()
-            if not np.isfinite(error):
-                raise NumericalError(f"The function is not finite between xi = {low:.6g} and {high:.6g} m.")
-            if error > tolerance and depth < _MAX_HALVINGS:
-                stack += [(centre, high, depth + 1), (low, centre, depth + 1)]
-                continue
-            if error > 1e3 * tolerance:
-                raise NumericalError(
-                    f"No polynomial fit near xi = {centre:.6g} m (error {error:.2g}): "
-                    "name the jump or kink there as a break."
-                )
-            edges.append(low)
-            columns.append(_local_monomials(series, half))
-        return cls(np.array([*edges, float(breaks[-1])]), np.stack(columns, axis=1), np.asarray(switches))
+            middle = cut(low, high)
+            low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+        start, half, series = (np.concatenate(part) for part in zip(*found, strict=True))
+        order = np.argsort(start)
+        powers = series[order] @ _TO_POWERS / half[order, None] ** np.arange(FIT_DEGREE + 1)
+        return cls(np.append(start[order], breaks[-1]), powers.T[::-1], np.asarray(switches))
 
 
 def shifted(coefficients: Array, by: ArrayLike) -> Array:
@@ -173,10 +182,13 @@ def shifted(coefficients: Array, by: ArrayLike) -> Array:
     return moved
 
 
-def _local_monomials(series: FloatArray, half: float) -> FloatArray:
-    """Coefficients in powers of (xi - low), highest first, of a Chebyshev series on [low, low + 2 half]."""
-    in_s = chebyshev.cheb2poly(series)  # powers of s = (xi - low)/half - 1
-    shifted = np.polynomial.Polynomial(in_s)(np.polynomial.Polynomial([-1.0, 1.0])).coef
-    padded = np.zeros(FIT_DEGREE + 1)
-    padded[: shifted.size] = shifted
-    return np.asarray((padded / half ** np.arange(FIT_DEGREE + 1))[::-1], dtype=np.float64)
+def _values(
+    function: Callable[[FloatArray], FloatArray], low: FloatArray, half: FloatArray, at: FloatArray
+) -> FloatArray:
+    """Values (pieces, points) at points of [-1, 1] on every piece."""
+    xi = low[:, None] + half[:, None] * (1.0 + at)
+    values = function(xi.ravel()).reshape(xi.shape)
+    if not np.isfinite(values).all():
+        worst = xi[~np.isfinite(values)][0]
+        raise NumericalError(f"The function is not finite at xi = {worst:.6g} m; check its parameters.")
+    return values

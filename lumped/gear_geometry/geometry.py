@@ -9,8 +9,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from lumped.errors import FieldProblem, ParameterError
+from lumped.errors import refuse
 from lumped.gear_geometry.involute import RackTooth, inverse_involute, involute, tooth_half_angle
+from lumped.gear_geometry.tooth_profile import ToothProfile
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,7 @@ class Wheel:
     bore : diameter [m], 0 for a solid gear
     """
 
-    tooth: RackTooth
+    tooth: ToothProfile
     tip_radius: float
     face_width: float
     bore: float
@@ -125,8 +126,7 @@ def build_geometry(
         return _build(pinion, gear, centre_distance, backlash, pinion_speed)
     except (OverflowError, ZeroDivisionError):
         text = "module, tip diameters and centre_distance so far apart that their squares are no numbers"
-        problem = FieldProblem("basic_rack.module", text, "lengths of one gear pair", "Check their units.")
-        raise ParameterError([problem]) from None
+        raise refuse("basic_rack.module", text, "lengths of one gear pair", "Check their units.") from None
 
 
 def theoretical_backlash(pinion: Wheel, gear: Wheel, pressure_angle: float) -> float:
@@ -156,9 +156,8 @@ def _build(
     centre, alpha_w = _centre_distance(pinion.tooth, gear.tooth, centre_distance)
     for name, tip, base in (("pinion", r_ap, r_bp), ("gear", r_ag, r_bg)):
         if tip <= base:
-            raise _refused(
-                f"{name}.tip_diameter", 2 * tip, f"> {2e3 * base:.4f} mm", "Raise the tip diameter."
-            )
+            allowed = f"> {2e3 * base:.4f} mm"
+            raise refuse(f"{name}.tip_diameter", f"{2e3 * tip:.6g} mm", allowed, "Raise the tip diameter.")
     base_pitch = math.pi * m * math.cos(alpha)
     l_xy = centre * math.sin(alpha_w)
     l_xa = l_xy - math.sqrt(r_ag**2 - r_bg**2)
@@ -174,8 +173,8 @@ def _build(
         operating_radius_gear=r_bg / math.cos(alpha_w),
         tip_radius_pinion=r_ap,
         tip_radius_gear=r_ag,
-        root_radius_pinion=_root_radius(pinion.tooth),
-        root_radius_gear=_root_radius(gear.tooth),
+        root_radius_pinion=pinion.tooth.root_radius,
+        root_radius_gear=gear.tooth.root_radius,
         form_radius_pinion=math.hypot(r_bp, pinion.tooth.form_length),
         form_radius_gear=math.hypot(r_bg, gear.tooth.form_length),
         centre_distance=centre,
@@ -194,10 +193,6 @@ def _build(
     )
 
 
-def _root_radius(tooth: RackTooth) -> float:
-    return tooth.reference_radius - tooth.module * (tooth.dedendum - tooth.profile_shift)
-
-
 def _centre_distance(pinion: RackTooth, gear: RackTooth, given: float | None) -> tuple[float, float]:
     """Centre distance [m] and operating pressure angle [rad]."""
     teeth, alpha = pinion.teeth + gear.teeth, pinion.pressure_angle
@@ -205,21 +200,13 @@ def _centre_distance(pinion: RackTooth, gear: RackTooth, given: float | None) ->
     if given is not None:
         if given <= base:
             allowed = f"> {base * 1e3:.4f} mm, the sum of the base radii"
-            raise _refused("centre_distance", given, allowed, "Raise the centre distance.")
+            raise refuse("centre_distance", f"{given * 1e3:.6g} mm", allowed, "Raise the centre distance.")
         return given, math.acos(base / given)
     shift = pinion.profile_shift + gear.profile_shift
     value = involute(alpha) + 2.0 * shift / teeth * math.tan(alpha)
     if value < 0.0:
-        problem = FieldProblem(
-            "pinion.profile_shift",
-            f"sum {shift:g}",
-            f"sum > {-0.5 * teeth * involute(alpha) / math.tan(alpha):.4g}",
-            "Raise the profile shifts or give centre_distance.",
-        )
-        raise ParameterError([problem])
+        allowed = f"sum > {-0.5 * teeth * involute(alpha) / math.tan(alpha):.4g}"
+        action = "Raise the profile shifts or give centre_distance."
+        raise refuse("pinion.profile_shift", f"sum {shift:g}", allowed, action)
     alpha_w = inverse_involute(value)
     return base / math.cos(alpha_w), alpha_w
-
-
-def _refused(field: str, value: float, allowed: str, action: str) -> ParameterError:
-    return ParameterError([FieldProblem(field, f"{value * 1e3:.6g} mm", allowed, action)])

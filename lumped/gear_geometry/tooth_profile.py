@@ -15,7 +15,6 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import brentq
 
-from lumped.errors import refuse
 from lumped.gear_geometry.involute import RackTooth, tooth_half_angle
 from lumped.typing import FloatArray
 
@@ -41,20 +40,8 @@ class ToothProfile(RackTooth):
 
     @cached_property
     def fillet_range(self) -> tuple[float, float]:
-        """Generating roll angles at the root circle and at the start of the involute [rad].
-
-        Raises
-        ------
-        ParameterError : the rack's tip radius leaves no room for its tip
-        """
+        """Generating roll angles at the root circle and at the start of the involute [rad]."""
         bottom, joint = self.fillet_rolls
-        if bottom < 0.0:
-            raise refuse(
-                "basic_rack.fillet_radius_coefficient",
-                f"{self.fillet:g}",
-                f"<= {self._largest_fillet():.4f} for this rack (full radius)",
-                "Lower the fillet radius or the dedendum of the rack.",
-            )
         form = math.hypot(self.base_radius, self.form_length)
 
         def excess(roll: float) -> float:
@@ -106,7 +93,3 @@ class ToothProfile(RackTooth):
         cosine, sine = np.cos(turn), np.sin(turn)
         u, h = y * cosine - x * sine, -(x * cosine + y * sine)
         return u, h, y_rate * cosine - x_rate * sine - y * sine - x * cosine
-
-    def _largest_fillet(self) -> float:
-        tangent, cosine = math.tan(self.pressure_angle), math.cos(self.pressure_angle)
-        return (0.25 * math.pi - self.dedendum * tangent) / (1.0 / cosine - tangent)

@@ -5,17 +5,14 @@ Sources: power balance of docs/theory/equations.md, "Periodic motion and the bra
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.arguments import some_of
 from lumped.errors import ParameterError, refuse
 from lumped.friction import FRICTIONAL, LAWS
 from lumped.labelling import labelled_dataset
 from lumped.losses.quasi_static import quasi_static_losses
-from lumped.losses.sharing import Sharing
 from lumped.model.solution import steady_state
 from lumped.schema.pair import GearPair
 
@@ -104,20 +101,12 @@ def sliding_power_along_path(solution: xr.Dataset) -> xr.Dataset:
     )
 
 
-def losses_of_laws(
-    pair: GearPair,
-    laws: Sequence[str] | None = None,
-    sharing: Sharing = "elements",
-    *,
-    dynamic: bool = True,
-) -> xr.Dataset:
-    """Mesh efficiency of every friction law at the operating point.
+def losses_of_laws(pair: GearPair, *, dynamic: bool = True) -> xr.Dataset:
+    """Mesh efficiency of every law with friction at the operating point.
 
     Parameters
     ----------
     pair : the gear pair
-    laws : names of the laws; default every law with friction that the pair allows
-    sharing : load sharing of the quasi-static result
     dynamic : whether to add the efficiency of the periodic motion
 
     Returns
@@ -125,19 +114,16 @@ def losses_of_laws(
     xarray.Dataset over ``law``: mesh_efficiency, power_loss [W], mean_coefficient (quasi-static), and
     mesh_efficiency_dynamic; attribute ``left_out``, laws that the pair does not allow and why
     """
-    names = FRICTIONAL if laws is None else some_of("laws", laws, LAWS)
     rows: dict[str, dict[str, float]] = {}
     left_out: list[str] = []
-    for name in names:
+    for name in FRICTIONAL:
         try:
-            static = quasi_static_losses(pair, name, sharing, samples_per_cycle=8).attrs
+            static = quasi_static_losses(pair, name, samples_per_cycle=8).attrs
             rows[name] = {key: static[key] for key in ("mesh_efficiency", "power_loss", "mean_coefficient")}
             if dynamic:
                 run = steady_state(pair.with_(friction__law=name), samples_per_cycle=8)
                 rows[name]["mesh_efficiency_dynamic"] = run.attrs["mesh_efficiency"]
         except ParameterError as error:
-            if laws is not None:
-                raise
             left_out.append(f"{LAWS[name].title}: {error}")
     units = {"power_loss": "W"}
     texts = {

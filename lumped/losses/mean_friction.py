@@ -8,19 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lumped.arguments import real_number
 from lumped.losses.loss_factor import loss_factor
 from lumped.path_of_contact import contact_path
-from lumped.ranges import NOT_STATED, ValidityRange, checked
+from lumped.ranges import checked
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     from lumped.schema.pair import GearPair
-
-RANGES = (
-    ValidityRange("unit_load", "N/mm", None, None, NOT_STATED),
-    ValidityRange("sum_velocity", "m/s", None, None, NOT_STATED),
-)
 
 
 def iso_14179_mean_coefficient(
@@ -66,14 +60,8 @@ def iso_14179_mean_coefficient(
     return np.asarray(0.048 * (w / (v * rho)) ** 0.2 * eta**-0.05 * ra**0.25 * factor, dtype=np.float64)
 
 
-def iso_14179_of(pair: GearPair, oil_factor: float = 1.0) -> float:
-    """Mean friction coefficient of a pair at its operating point [-], see ``iso_14179_mean_coefficient``.
-
-    Parameters
-    ----------
-    pair : the gear pair
-    oil_factor : X_L of the standard [-]
-    """
+def iso_14179_of(pair: GearPair) -> float:
+    """``iso_14179_mean_coefficient`` of a pair at its operating point, with mineral oil [-]."""
     g, path = pair.geometry, contact_path(pair)
     return float(
         iso_14179_mean_coefficient(
@@ -82,21 +70,14 @@ def iso_14179_of(pair: GearPair, oil_factor: float = 1.0) -> float:
             path.radius(np.array(g.L_XP)) * 1e3,
             path.viscosity * 1e3,
             path.roughness * 1e6,
-            oil_factor,
         )
     )
 
 
-def iso_14179_mesh_loss(pair: GearPair, oil_factor: float = 1.0) -> float:
-    """Load-dependent loss of the mesh after ISO/TR 14179-2, P_VZP = P mu_mz H_v [W].
+def iso_14179_mesh_loss(pair: GearPair) -> float:
+    """Load-dependent loss of the mesh with mineral oil after ISO/TR 14179-2, P_VZP = P mu_mz H_v [W].
 
     With the exact loss factor of equal load sharing, which is Ohlendorf's wherever his closed form holds.
-
-    Parameters
-    ----------
-    pair : the gear pair
-    oil_factor : X_L of the standard [-]
     """
-    oil_factor = real_number("oil_factor", oil_factor, 0.0, above=True)
     power = pair.operating.pinion_torque * pair.operating.pinion_speed
-    return power * iso_14179_of(pair, oil_factor) * loss_factor(pair, "uniform")
+    return power * iso_14179_of(pair) * loss_factor(pair, "uniform")

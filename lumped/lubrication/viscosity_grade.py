@@ -70,7 +70,7 @@ def iso_vg(grade: int) -> ValidityRange:
     ------
     ParameterError : not a grade of ISO 3448
     """
-    middle = _midpoint(grade)
+    middle = midpoint(grade)
     return ValidityRange("kinematic_viscosity_40", "mm^2/s", 0.9 * middle, 1.1 * middle, "ISO 3448")
 
 
@@ -163,12 +163,18 @@ def grade_viscosity(grade: int, temperature: ArrayLike, index: float = DEFAULT_V
     >>> round(float(grade_viscosity(100, 60)), 1)
     39.6
     """
-    middle = _midpoint(grade)
+    middle = midpoint(grade)
     constants = walther_constants(middle, 40.0, viscosity_at_100(middle, index), 100.0)
     return np.asarray(kinematic_viscosity(temperature, constants), dtype=np.float64)
 
 
-def _midpoint(grade: int) -> float:
+def midpoint(grade: int) -> float:
+    """Kinematic viscosity at 40 degC in the middle of a grade [mm^2/s].
+
+    Raises
+    ------
+    ParameterError : not a grade of ISO 3448
+    """
     if grade not in ISO_VG_MIDPOINT:
         raise refuse("iso_vg", grade, ", ".join(map(str, ISO_VG_MIDPOINT)), "Pick a grade of ISO 3448.")
     return ISO_VG_MIDPOINT[grade]

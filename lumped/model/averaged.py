@@ -1,24 +1,21 @@
-"""The time-averaged gear pair as a state space of python-control: modes, damping, frequency response."""
+"""The time-averaged gear pair as a state space of python-control; its modes and their damping."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.arguments import one_of, real_numbers
+from lumped.arguments import one_of
 from lumped.errors import NumericalError
-from lumped.labelling import labelled_dataset
 from lumped.model.periodic_system import Form, LTVSystem, periodic_system
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     import control
-    import xarray as xr
 
 #: Gauss-Legendre rule per polynomial piece of the average, exact to degree 47.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
@@ -121,30 +118,3 @@ def modes(pair: GearPair) -> tuple[Mode, ...]:
     if len(found) != m:
         raise NumericalError("A mode of the averaged pair is overdamped: lower the damping ratios.")
     return tuple(sorted(found, key=lambda mode: mode.natural_frequency))
-
-
-def frequency_response(pair: GearPair, frequencies: Sequence[float] | FloatArray) -> xr.Dataset:
-    """Response of transmission error and LOA motions to a fluctuating pinion torque.
-
-    Parameters
-    ----------
-    pair : a validated gear pair
-    frequencies : (k,) [Hz], positive
-
-    Returns
-    -------
-    xarray.Dataset over ``frequency`` [Hz]: complex receptances ``dte``, ``x_p``, ``x_g`` [m/(N m)]
-    """
-    import control
-
-    f = real_numbers("frequencies", frequencies, 0.0, above=True, unit="Hz")
-    plant = averaged_state_space(pair, "feedback")
-    response = control.frequency_response(plant, 2.0 * np.pi * f, squeeze=False).complex
-    return labelled_dataset(
-        {
-            name: ("frequency", response[j, 0], "m/(N m)", f"receptance of {name} to the pinion torque")
-            for j, name in enumerate(OUTPUTS)
-        },
-        {"frequency": (f, "Hz", "frequency")},
-        {"gear_pair": pair.name},
-    )

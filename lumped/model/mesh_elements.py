@@ -54,12 +54,12 @@ def mesh_elements(pair: GearPair) -> MeshElements:
     ParameterError : a law refuses its parameters
     NumericalError : a law is not finite on the path of contact
     """
-    g = pair.geometry
-    stiffness = pair_stiffness(pair)
-    error = PathFunction.constant(0.0, g.L_XA, g.L_XD)
     if pair.mesh.relief == "static":
-        loaded = loaded_mesh(pair, stiffness=stiffness)
+        loaded = loaded_mesh(pair)
         stiffness, error = loaded.stiffness, loaded.error
+    else:
+        stiffness = pair_stiffness(pair)
+        error = PathFunction.constant(0.0, *stiffness.interval)
     return MeshElements(
         stiffness=stiffness,
         damping=_damping(stiffness, pair.mesh.damping_ratio, bodies(pair).effective_mass),

@@ -106,18 +106,18 @@ class LTVSystem:
         error = pairs.stiffness * pairs.error + pairs.damping * pairs.error_rate
         return MeshGain(acceleration(pairs.stiffness), acceleration(pairs.damping), -acceleration(error))
 
-    def matrices(self, time: ArrayLike, segment: int | None = None) -> FloatArray:
+    def matrices(self, time: ArrayLike) -> FloatArray:
         """A at times (k,) [s] -> (k, 2m, 2m)."""
-        gain = self.gain(time, segment)
+        gain = self.gain(time)
         m = len(self.coordinates)
         a = np.repeat(self.constant[None], gain.stiffness.shape[0], axis=0)
         a[:, m:, :m] += gain.stiffness[:, :, None] * self.deflection
         a[:, m:, m:] += gain.damping[:, :, None] * self.deflection
         return a
 
-    def forcing(self, time: ArrayLike, segment: int | None = None) -> FloatArray:
+    def forcing(self, time: ArrayLike) -> FloatArray:
         """The part of b without the brake torque, at times (k,) [s] -> (k, 2m)."""
-        gain = self.gain(time, segment)
+        gain = self.gain(time)
         b = np.zeros((gain.error.shape[0], self.size))
         b[:, len(self.coordinates) :] = gain.error
         return np.asarray(b + self.torque_pinion * self.pinion_torque, dtype=np.float64)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.integrate import DOP853
 
-from lumped.arguments import real_number, whole_number
+from lumped.arguments import real_array, real_number, whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.model import kernels
 from lumped.model.equations import COORDINATES
@@ -120,18 +120,11 @@ def initial_state(system: LTVSystem, initial: Initial | ArrayLike, balance: Peri
         if initial == "periodic":
             return np.array(balance.states[0])
         raise refuse("initial", initial, "'static', 'periodic' or 12 states", "Choose one of them.")
-    try:
-        state = np.array(initial, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        state = np.empty(0)
-    if state.shape != (12,) or not np.isfinite(state).all():
-        raise refuse(
-            "initial",
-            f"shape {state.shape}",
-            "12 finite states " + ", ".join(COORDINATES) + " and rates",
-            "Fix it.",
-        )
-    return state
+    state = real_array("initial", initial)
+    if state.shape != (12,):
+        allowed = f"12 states: {', '.join(COORDINATES)} and their rates"
+        raise refuse("initial", f"shape {state.shape}", allowed, "Give them in SI.")
+    return np.array(state)
 
 
 def static_deflection(system: LTVSystem, pinion_torque: float | None = None) -> FloatArray:

@@ -5,12 +5,11 @@ Sources: each law names its own (Abbas Al-Zubaidi 2008, eqs. 10 to 21).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.arguments import some_of, whole_number
+from lumped.arguments import whole_number
 from lumped.errors import ParameterError
 from lumped.friction.fitted import mean_coefficient
 from lumped.friction.registry import FRICTIONAL, LAWS
@@ -24,13 +23,12 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def friction_profile(pair: GearPair, laws: Sequence[str] | None = None, points: int = 401) -> xr.Dataset:
-    """Compare the friction laws over the path of contact, with the contact conditions they see.
+def friction_profile(pair: GearPair, points: int = 401) -> xr.Dataset:
+    """Compare all laws with friction over the path of contact, with the contact conditions they see.
 
     Parameters
     ----------
     pair : the gear pair
-    laws : names of the laws; default every law with friction
     points : number of equally spaced positions; the switches of every law are added to them
 
     Returns
@@ -43,13 +41,10 @@ def friction_profile(pair: GearPair, laws: Sequence[str] | None = None, points: 
     path, settings = contact_path(pair), pair.friction
     functions: dict[str, PathFunction] = {}
     left_out: list[str] = []
-    names = FRICTIONAL if laws is None else some_of("laws", laws, LAWS)
-    for name in names:
+    for name in FRICTIONAL:
         try:
             functions[name] = fit_law(path, settings, name)
         except ParameterError as error:
-            if laws is not None:
-                raise
             left_out.append(f"{LAWS[name].title}: {error}")
     grid = np.linspace(path.L_XA, path.L_XD, whole_number("points", points, 2, 1_000_000))
     # Just below the end: a path function is right-continuous and zero beyond it.

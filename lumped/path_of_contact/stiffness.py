@@ -14,7 +14,7 @@ from lumped.labelling import labelled_dataset
 from lumped.path_function import PathFunction
 from lumped.schema.pair import GearPair
 from lumped.stiffness import iso6336
-from lumped.stiffness.pair_compliance import Contact, pair_compliance
+from lumped.stiffness.pair_compliance import pair_compliance
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,14 +30,13 @@ def pair_stiffness(pair: GearPair) -> PathFunction:
     return pair.mesh.stiffness.curve(pair)
 
 
-def stiffness_components(pair: GearPair, points: int = 201, hertz: Contact = "weber_banaschek") -> xr.Dataset:
-    """Components of the potential-energy stiffness over the path of contact.
+def stiffness_components(pair: GearPair, points: int = 201) -> xr.Dataset:
+    """Components of the potential-energy stiffness over the path of contact, contact by Weber and Banaschek.
 
     Parameters
     ----------
     pair : a validated gear pair, whatever its own stiffness model
     points : positions from A to D
-    hertz : contact compliance, as in ``pair_compliance``
 
     Returns
     -------
@@ -48,7 +47,7 @@ def stiffness_components(pair: GearPair, points: int = 201, hertz: Contact = "we
     """
     g = pair.geometry
     xi = np.linspace(g.L_XA, g.L_XD, whole_number("points", points, 2, 100_000))
-    found = pair_compliance(pair, xi, hertz=hertz)
+    found = pair_compliance(pair, xi)
     parts = ("bending", "shear", "axial", "foundation")
     names = ["contact"] + [f"{part} {which}" for which in ("pinion", "gear") for part in parts]
     values = [found.hertz, *(getattr(tooth, part) for tooth in (found.pinion, found.gear) for part in parts)]
@@ -68,7 +67,6 @@ def stiffness_components(pair: GearPair, points: int = 201, hertz: Contact = "we
         },
         {
             "pair": pair.name,
-            "hertz": hertz,
             "iso_single_stiffness": iso6336.single_of(pair),
             "quadrature_error": max(found.pinion.quadrature_error, found.gear.quadrature_error),
         },

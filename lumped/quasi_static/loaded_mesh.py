@@ -46,28 +46,20 @@ class LoadedMesh:
     contact: FloatArray
 
 
-def loaded_mesh(
-    pair: GearPair, torque: float | None = None, stiffness: PathFunction | None = None
-) -> LoadedMesh:
-    """Stiffness and unloaded error of a tooth pair for the linear model at a mean torque.
+def loaded_mesh(pair: GearPair) -> LoadedMesh:
+    """Stiffness and unloaded error of a tooth pair for the linear model at the operating torque.
 
     Parameters
     ----------
     pair : a validated gear pair
-    torque : mean pinion torque > 0 [N m]; default the operating torque
-    stiffness : k_i(xi) [N/m]; default the pair's stiffness model at that torque
 
     Raises
     ------
-    ParameterError : a relief starts outside the active flank, or the torque is not positive
+    ParameterError : a relief starts outside the active flank
     NumericalError : at this torque no pair touches at some position
     """
-    if torque is not None:
-        pair = pair.with_(operating__pinion_torque=torque)
-    torque = pair.operating.pinion_torque
-    g = pair.geometry
-    k = pair_stiffness(pair) if stiffness is None else stiffness
-    error = error_function(pair)
+    g, torque = pair.geometry, pair.operating.pinion_torque
+    k, error = pair_stiffness(pair), error_function(pair)
     if not error.coefficients.any():
         return LoadedMesh(k, error, np.array([[g.L_XA, g.L_XD]]))
     force = torque / g.base_radius_pinion

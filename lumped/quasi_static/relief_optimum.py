@@ -12,13 +12,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize
 
-from lumped.arguments import one_of, real_number, real_numbers
+from lumped.arguments import real_number, real_numbers
 from lumped.errors import refuse
 from lumped.gear_geometry.geometry import Geometry
 from lumped.labelling import labelled_dataset
@@ -30,15 +30,13 @@ from lumped.typing import FloatArray
 if TYPE_CHECKING:
     import xarray as xr
 
-Shape = Literal["linear", "parabolic"]
-
 #: Weight of the amount against the transmission error: breaks ties, leaves the bottom of a V-shaped valley.
 _LEAST_MATERIAL = 1e-2
 
 
 @dataclass(frozen=True)
 class OptimalRelief:
-    """Tip relief of both gears with the least peak to peak static transmission error.
+    """Linear tip relief of both gears with the least peak to peak static transmission error.
 
     Attributes
     ----------
@@ -48,7 +46,6 @@ class OptimalRelief:
     peak_to_peak : of the static transmission error with it [m]
     unmodified : the same without relief [m]
     torque : design torque on the pinion [N m]
-    shape : "linear" or "parabolic"
     """
 
     amount: float
@@ -58,28 +55,20 @@ class OptimalRelief:
     peak_to_peak: float
     unmodified: float
     torque: float
-    shape: Shape
 
 
 def relief_map(
     pair: GearPair,
     amounts: ArrayLike,
     lengths: ArrayLike,
-    *,
-    torque: float | None = None,
-    shape: Shape = "linear",
-    phases: int = 256,
 ) -> xr.Dataset:
-    """Peak to peak static transmission error over amount and length of tip relief on both gears.
+    """Peak to peak static transmission error over amount and length of linear tip relief on both gears.
 
     Parameters
     ----------
     pair : a validated gear pair; its own tip relief is replaced, root relief kept
     amounts : (a,) [m], >= 0
     lengths : (l,) along the line of action, 0 < length < path of contact [m]
-    torque : design torque [N m]; default the operating torque
-    shape : of the relief
-    phases : positions per mesh cycle
 
     Returns
     -------
@@ -87,22 +76,20 @@ def relief_map(
     """
     amount = real_numbers("amounts", amounts, 0.0, unit="m", action="Give the material removed at the tip.")
     length = real_numbers("lengths", lengths, 0.0, above=True, unit="m")
-    g, bare, force = _prepared(pair, torque, shape, phases)
+    g, bare, force = _prepared(pair, None)
     path = g.L_XD - g.L_XA
     if not (length < path).all():
         raise refuse("lengths", length, f"> 0 and < {path:.6g} m, the path of contact", "Shorten the relief.")
-    values = np.stack([_peak_to_peak(bare, g, force, amount, float(one), shape) for one in length], axis=1)
+    values = np.stack([_peak_to_peak(bare, g, force, amount, float(one)) for one in length], axis=1)
     return labelled_dataset(
         {"peak_to_peak": (("amount", "length"), values, "m", "peak to peak static transmission error")},
         {"amount": (amount, "m", "amount of tip relief"), "length": (length, "m", "length of tip relief")},
-        {"pair": pair.name, "torque": force * g.base_radius_pinion, "shape": shape},
+        {"pair": pair.name, "torque": force * g.base_radius_pinion},
     )
 
 
-def optimal_relief(
-    pair: GearPair, *, torque: float | None = None, shape: Shape = "linear", phases: int = 256
-) -> OptimalRelief:
-    """Amount and length of tip relief on both gears for the least peak to peak static transmission error.
+def optimal_relief(pair: GearPair, *, torque: float | None = None) -> OptimalRelief:
+    """Linear tip relief of both gears for the least peak to peak static transmission error.
 
     A map over amounts up to twice the largest deflection and over lengths finds the valley, a simplex search
     its bottom (the objective has kinks). More relief over less length can be as good, as it only takes the
@@ -112,25 +99,23 @@ def optimal_relief(
     ----------
     pair : a validated gear pair; its own tip relief is replaced, root relief kept
     torque : design torque > 0 [N m]; default the operating torque
-    shape : of the relief
-    phases : positions per mesh cycle
 
     Raises
     ------
     ParameterError : the design torque is not positive
     """
-    g, bare, force = _prepared(pair, torque, shape, phases)
+    g, bare, force = _prepared(pair, torque)
     plain = share_load(bare.stiffness, bare.error, force).transmission_error
     scale, path = float(plain.max() - min(bare.error.min(), 0.0)), g.L_XD - g.L_XA
     amounts, lengths = np.linspace(0.0, 2.0 * scale, 41), np.linspace(0.02, 0.6, 40) * path
-    grid = np.stack([_peak_to_peak(bare, g, force, amounts, float(one), shape) for one in lengths], axis=1)
+    grid = np.stack([_peak_to_peak(bare, g, force, amounts, float(one)) for one in lengths], axis=1)
     preferred = grid / scale + _LEAST_MATERIAL * amounts[:, None] / scale
     i, j = np.unravel_index(int(np.argmin(preferred)), grid.shape)
 
     def objective(x: FloatArray) -> float:
         if not (0.0 <= x[0] <= 3.0 and 0.01 < x[1] < 0.95):
             return 10.0
-        found = _peak_to_peak(bare, g, force, np.array([x[0] * scale]), x[1] * path, shape)
+        found = _peak_to_peak(bare, g, force, np.array([x[0] * scale]), x[1] * path)
         return float(found[0] / scale + _LEAST_MATERIAL * x[0])
 
     start = np.array([amounts[i] / scale, lengths[j] / path])
@@ -147,10 +132,9 @@ def optimal_relief(
         length=length,
         start_roll_angle_pinion=(g.L_XD - length) / g.base_radius_pinion,
         start_roll_angle_gear=(g.L_XY - g.L_XA - length) / g.base_radius_gear,
-        peak_to_peak=float(_peak_to_peak(bare, g, force, np.array([amount]), length, shape)[0]),
+        peak_to_peak=float(_peak_to_peak(bare, g, force, np.array([amount]), length)[0]),
         unmodified=float(np.ptp(plain)),
         torque=force * g.base_radius_pinion,
-        shape=shape,
     )
 
 
@@ -164,11 +148,7 @@ def with_tip_relief(pair: GearPair, optimum: OptimalRelief) -> GearPair:
     """
 
     def section(start: float) -> dict[str, object]:
-        return {
-            "shape": optimum.shape,
-            "amount": optimum.amount * 1e6,
-            "start_roll_angle": math.degrees(start),
-        }
+        return {"amount": optimum.amount * 1e6, "start_roll_angle": math.degrees(start)}
 
     return pair.with_(
         pinion__tip_relief=section(optimum.start_roll_angle_pinion),
@@ -176,23 +156,19 @@ def with_tip_relief(pair: GearPair, optimum: OptimalRelief) -> GearPair:
     )
 
 
-def _prepared(
-    pair: GearPair, torque: float | None, shape: Shape, phases: int
-) -> tuple[Geometry, MeshPositions, float]:
-    one_of("shape", shape, get_args(Shape))
+def _prepared(pair: GearPair, torque: float | None) -> tuple[Geometry, MeshPositions, float]:
     given = pair.operating.pinion_torque if torque is None else torque
     moment = real_number("torque", given, 0.0, above=True, unit="N m", action="Give the design torque.")
     bare = pair.with_(pinion__tip_relief=None, gear__tip_relief=None, operating__pinion_torque=moment)
     g = bare.geometry
-    return g, mesh_positions(bare, phases=phases), moment / g.base_radius_pinion
+    return g, mesh_positions(bare), moment / g.base_radius_pinion
 
 
 def _peak_to_peak(
-    mesh: MeshPositions, g: Geometry, force: float, amounts: FloatArray, length: float, shape: Shape
+    mesh: MeshPositions, g: Geometry, force: float, amounts: FloatArray, length: float
 ) -> FloatArray:
     """Peak to peak transmission error for several amounts at one length; (a,) [m]."""
     xi = np.clip(mesh.xi, g.L_XA, g.L_XD)
-    s = np.maximum((xi - g.L_XD) / length + 1.0, 0.0), np.maximum((g.L_XA - xi) / length + 1.0, 0.0)
-    form = s[0] + s[1] if shape == "linear" else s[0] ** 2 + s[1] ** 2
+    form = np.maximum((xi - g.L_XD) / length + 1.0, 0.0) + np.maximum((g.L_XA - xi) / length + 1.0, 0.0)
     error = mesh.error + amounts[:, None, None] * form
     return np.asarray(np.ptp(share_load(mesh.stiffness, error, force).transmission_error, axis=1))

@@ -8,12 +8,12 @@ from typing import Annotated, Self
 from pydantic import BeforeValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from lumped.errors import FieldProblem, ParameterError, shown
+from lumped.errors import refuse, shown
 from lumped.fields.section import OneOf, Section
 from lumped.fields.units import Quantity
 from lumped.friction.registry import LAWS
 from lumped.lubrication.viscosity import ZERO_CELSIUS, kinematic_viscosity, oil_density, walther_constants
-from lumped.lubrication.viscosity_grade import ISO_VG_MIDPOINT, grade_viscosity
+from lumped.lubrication.viscosity_grade import grade_viscosity, midpoint
 
 
 class ViscosityLaw(Section):
@@ -44,14 +44,9 @@ class ViscosityLaw(Section):
         given = [v is not None for v in points]
         if not (all(given) if self.iso_vg is None else not any(given)):
             allowed = "iso_vg, or kinematic_viscosity_40 and kinematic_viscosity_100"
-            raise ParameterError(
-                [FieldProblem("iso_vg", shown(self.iso_vg), allowed, "Give one of the two descriptions.")]
-            )
-        if self.iso_vg is not None and self.iso_vg not in ISO_VG_MIDPOINT:
-            grades = ", ".join(str(grade) for grade in ISO_VG_MIDPOINT)
-            raise ParameterError(
-                [FieldProblem("iso_vg", str(self.iso_vg), f"a grade of ISO 3448: {grades}", "Take a grade.")]
-            )
+            raise refuse("iso_vg", self.iso_vg, allowed, "Give one of the two descriptions.")
+        if self.iso_vg is not None:
+            midpoint(self.iso_vg)
         return self
 
     @property
@@ -88,10 +83,7 @@ class Lubricant(Section):
     def _one_viscosity(self) -> Self:
         if (self.viscosity is None) == (self.viscosity_law is None):
             given = "both" if self.viscosity is not None else "neither"
-            problem = FieldProblem(
-                "viscosity", given, "viscosity or viscosity_law", "Give exactly one of them."
-            )
-            raise ParameterError([problem])
+            raise refuse("viscosity", given, "viscosity or viscosity_law", "Give exactly one of them.")
         return self
 
     @property

@@ -8,7 +8,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from lumped.errors import FieldProblem, ParameterError, shown
+from lumped.errors import refuse, shown
 from lumped.fields.refusals import nearest
 from lumped.fields.text_file import parse_toml, read_text
 from lumped.fields.units import to_stated
@@ -33,16 +33,9 @@ def preset_text(name: str) -> str:
     ParameterError : unknown name; the nearest one is suggested
     """
     if name not in preset_names():
-        raise ParameterError(
-            [
-                FieldProblem(
-                    "preset",
-                    shown(repr(name)),
-                    "a file that exists or one of " + ", ".join(preset_names()),
-                    nearest(name, preset_names()) or "Check the path, or see 'spurcheck presets'.",
-                )
-            ]
-        )
+        allowed = "a file that exists or one of " + ", ".join(preset_names())
+        action = nearest(name, preset_names()) or "Check the path, or see 'spurcheck presets'."
+        raise refuse("preset", shown(repr(name)), allowed, action)
     return (resources.files("lumped") / "presets" / f"{name}.toml").read_text(encoding="utf-8")
 
 
@@ -63,7 +56,7 @@ def load_gear_pair(source: str | Path | Mapping[str, Any] | GearPair) -> GearPai
         return validated(dict(source), "mapping")
     if not isinstance(source, (str, Path)):
         allowed = "a preset name, a TOML file, a mapping or a GearPair"
-        raise ParameterError([FieldProblem("pair", shown(source), allowed, "Give one of these.")])
+        raise refuse("pair", shown(source), allowed, "Give one of these.")
     path = Path(source)
     if isinstance(source, str) and source in preset_names():
         return validated(parse_toml(preset_text(source), f"preset {source}"), f"preset {source}")

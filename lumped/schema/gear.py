@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from lumped.errors import FieldProblem, ParameterError, refuse
+from lumped.errors import refuse
 from lumped.fields.section import Section
 from lumped.fields.units import Quantity, to_stated
 
@@ -67,19 +67,13 @@ class BasicRack(Section):
         rest = dict(data)
         given = rest.pop("diametral_pitch")
         if "module" in rest:
-            problem = FieldProblem(
-                "basic_rack.diametral_pitch",
-                str(given),
-                "either module or diametral_pitch",
-                "Remove one of the two.",
-            )
-            raise ParameterError([problem])
+            allowed = "either module or diametral_pitch"
+            raise refuse("basic_rack.diametral_pitch", given, allowed, "Remove one of the two.")
         try:
             pitch = _PITCH.parse(given)
         except PydanticCustomError as error:
             reason = error.context or {}
-            problem = FieldProblem("diametral_pitch", reason["value"], reason["allowed"], reason["action"])
-            raise ParameterError([problem]) from None
+            raise refuse("diametral_pitch", reason["value"], reason["allowed"], reason["action"]) from None
         assert pitch is not None  # only optional quantities are None
         return {**rest, "module": 25.4 / to_stated(pitch, "1/inch")}
 
@@ -148,11 +142,6 @@ class Gear(Section):
     @model_validator(mode="after")
     def _one_tip(self) -> Self:
         if self.addendum is not None and self.tip_diameter is not None:
-            problem = FieldProblem(
-                "tip_diameter",
-                f"{self.tip_diameter * 1e3:g} mm",
-                "either addendum or tip_diameter",
-                "Remove one.",
-            )
-            raise ParameterError([problem])
+            given = f"{self.tip_diameter * 1e3:g} mm"
+            raise refuse("tip_diameter", given, "either addendum or tip_diameter", "Remove one.")
         return self

@@ -24,7 +24,7 @@ from lumped.fields.section import Section, Text
 from lumped.fields.units import Quantity
 from lumped.gear_geometry.existence import existence_problems
 from lumped.gear_geometry.geometry import Geometry, Wheel, build_geometry
-from lumped.gear_geometry.involute import RackTooth
+from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.schema.contact import Friction, Lubricant
 from lumped.schema.gear import BasicRack, Gear
 from lumped.schema.mesh import Mesh
@@ -142,7 +142,7 @@ class GearPair(Section):
 
     @model_validator(mode="after")
     def _must_exist(self) -> GearPair:
-        problems = existence_problems(*self._wheels(), self.geometry, self.mesh.backlash)
+        problems = existence_problems(*self.wheels, self.geometry, self.mesh.backlash)
         problems += [*self._too_light("pinion"), *self._too_light("gear")]
         if problems:
             raise ParameterError(problems, self.name)
@@ -156,17 +156,18 @@ class GearPair(Section):
         """Circles, line of action, contact ratio and mesh period, SI; built once."""
         speed = self.operating.pinion_speed
         try:
-            return build_geometry(*self._wheels(), self.centre_distance, self.mesh.backlash, speed)
+            return build_geometry(*self.wheels, self.centre_distance, self.mesh.backlash, speed)
         except ParameterError as error:
             raise ParameterError(list(error.problems), self.name) from None
 
-    def _wheels(self) -> tuple[Wheel, Wheel]:
-        """Pinion and gear as the basic rack cuts them."""
+    @cached_property
+    def wheels(self) -> tuple[Wheel, Wheel]:
+        """Pinion and gear as the basic rack cuts them, SI."""
         return self._wheel(self.pinion), self._wheel(self.gear)
 
     def _wheel(self, gear: Gear) -> Wheel:
         rack = self.basic_rack
-        tooth = RackTooth(
+        tooth = ToothProfile(
             gear.teeth,
             rack.module,
             rack.pressure_angle,

@@ -9,43 +9,21 @@ from abc import abstractmethod
 from typing import Protocol
 
 from lumped.fields.section import Section
-from lumped.gear_geometry.geometry import Geometry
+from lumped.gear_geometry.geometry import Geometry, Wheel
 from lumped.path_function import PathFunction
 from lumped.ranges import RangeViolation
 
 
-class MeshingGear(Protocol):
-    """One gear, the fields of ``pinion`` and ``gear`` in a parameter file.
+class Material(Protocol):
+    """Material of one gear, fields of ``pinion`` and ``gear`` in a parameter file.
 
     Attributes
     ----------
-    teeth : number of teeth
-    profile_shift : profile shift coefficient [-]
-    bore : bore diameter, 0 where there is none [m]
     youngs_modulus, poisson_ratio : E [Pa], nu [-]
     """
 
-    teeth: int
-    profile_shift: float
-    bore: float
     youngs_modulus: float
     poisson_ratio: float
-
-
-class Rack(Protocol):
-    """Basic rack of both gears, the fields of ``basic_rack``; lengths over the module.
-
-    Attributes
-    ----------
-    module : normal module [m]
-    pressure_angle : [rad]
-    dedendum_coefficient, fillet_radius_coefficient : dedendum and root fillet radius [-]
-    """
-
-    module: float
-    pressure_angle: float
-    dedendum_coefficient: float
-    fillet_radius_coefficient: float
 
 
 class Operation(Protocol):
@@ -63,16 +41,16 @@ class MeshingPair(Protocol):
     """What stiffness models read of a gear pair; a ``GearPair`` has it all."""
 
     @property
-    def pinion(self) -> MeshingGear:
-        """The driving gear."""
+    def pinion(self) -> Material:
+        """Material of the driving gear."""
 
     @property
-    def gear(self) -> MeshingGear:
-        """The driven gear."""
+    def gear(self) -> Material:
+        """Material of the driven gear."""
 
     @property
-    def basic_rack(self) -> Rack:
-        """Basic rack of both."""
+    def wheels(self) -> tuple[Wheel, Wheel]:
+        """Pinion and gear as the basic rack cuts them."""
 
     @property
     def operating(self) -> Operation:

@@ -30,16 +30,12 @@ def twist_compliance(pair: MeshingPair) -> float:
     ----------
     pair : the gear pair
     """
-    g = pair.geometry
-    sides = (
-        (pair.pinion, g.base_radius_pinion, g.root_radius_pinion),
-        (pair.gear, g.base_radius_gear, g.root_radius_gear),
-    )
     total = 0.0
-    for gear, base, root in sides:
-        if gear.bore > 0.0:
-            total += ring_twist(base, root, 0.5 * gear.bore, gear.youngs_modulus, gear.poisson_ratio)
-    return total / g.face_width
+    for wheel, body in zip(pair.wheels, (pair.pinion, pair.gear), strict=True):
+        radii = (wheel.tooth.base_radius, wheel.tooth.root_radius, 0.5 * wheel.bore)
+        if wheel.bore > 0.0:
+            total += ring_twist(*radii, body.youngs_modulus, body.poisson_ratio)
+    return total / pair.geometry.face_width
 
 
 def coupled(k: PathFunction, twist: float, geometry: Geometry) -> PathFunction:

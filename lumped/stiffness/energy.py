@@ -16,7 +16,7 @@ import math
 from typing import Annotated, Literal
 
 import numpy as np
-from numpy.polynomial import chebyshev
+from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike
 from pydantic import Field
 
@@ -27,7 +27,7 @@ from lumped.stiffness import iso6336
 from lumped.stiffness.base import MeshingPair, StiffnessModel
 from lumped.stiffness.coupling import coupled, twist_compliance
 from lumped.stiffness.foundation import BODY_RATIO, HALF_ANGLE
-from lumped.stiffness.pair_compliance import Contact, pair_compliance, tooth_profile
+from lumped.stiffness.pair_compliance import Contact, pair_compliance
 from lumped.stiffness.ramp import ramped
 from lumped.typing import FloatArray
 
@@ -52,21 +52,11 @@ def energy_curve(pair: MeshingPair, hertz: Contact = "weber_banaschek") -> PathF
 
     # Stiffness is analytic over the path, so its Chebyshev series from a few dozen evaluations stands for it.
     for terms in _SERIES:
-        nodes = chebyshev.chebpts1(terms)
-        sample = stiffness(low + 0.5 * (high - low) * (1.0 + nodes))
-        scale = float(np.abs(sample).max())
-        series = chebyshev.chebvander(nodes, terms - 1).T @ sample * (2.0 / terms)
-        series[0] *= 0.5
-        if np.abs(series[-terms // 8 :]).max() <= 0.1 * _FIT_TOLERANCE * scale:
-            return _fit_series(series, low, high, _FIT_TOLERANCE * scale)
-    return PathFunction.fit(stiffness, (low, high), tolerance=_FIT_TOLERANCE * scale)
-
-
-def _fit_series(series: FloatArray, low: float, high: float, tolerance: float) -> PathFunction:
-    def value(xi: FloatArray) -> FloatArray:
-        return np.asarray(chebyshev.chebval(2.0 * (xi - low) / (high - low) - 1.0, series), dtype=np.float64)
-
-    return PathFunction.fit(value, (low, high), tolerance=tolerance)
+        series = Chebyshev.interpolate(stiffness, terms - 1, (low, high))
+        tolerance = _FIT_TOLERANCE * float(np.abs(series.linspace(terms)[1]).max())
+        if np.abs(series.coef[-terms // 8 :]).max() <= 0.1 * tolerance:
+            return PathFunction.fit(series, (low, high), tolerance=tolerance)
+    return PathFunction.fit(stiffness, (low, high), tolerance=tolerance)
 
 
 def foundation_violations(pair: MeshingPair) -> tuple[RangeViolation, ...]:
@@ -77,11 +67,10 @@ def foundation_violations(pair: MeshingPair) -> tuple[RangeViolation, ...]:
     pair : the gear pair
     """
     found: list[RangeViolation] = []
-    for name, gear in (("pinion", pair.pinion), ("gear", pair.gear)):
-        profile = tooth_profile(pair, name)
-        values: dict[str, ArrayLike] = {HALF_ANGLE.quantity: profile.root_half_angle}
-        if gear.bore > 0.0:
-            values[BODY_RATIO.quantity] = profile.root_radius / (0.5 * gear.bore)
+    for name, wheel in zip(("pinion", "gear"), pair.wheels, strict=True):
+        values: dict[str, ArrayLike] = {HALF_ANGLE.quantity: wheel.tooth.root_half_angle}
+        if wheel.bore > 0.0:
+            values[BODY_RATIO.quantity] = wheel.tooth.root_radius / (0.5 * wheel.bore)
         found += range_violations(f"fillet foundation of the {name}", (BODY_RATIO, HALF_ANGLE), values)
     return tuple(found)
 

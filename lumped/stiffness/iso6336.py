@@ -100,16 +100,15 @@ def single_stiffness(
     theoretical: float,
     *,
     basic_rack: float = 1.0,
-    blank: float = 1.0,
     material: float = 1.0,
     helix: float = 0.0,
 ) -> float:
-    """Single stiffness c', the largest stiffness of one tooth pair [N/(mm um)], eq. (82).
+    """Single stiffness c' of solid discs, the largest of one tooth pair [N/(mm um)], eq. (82) with C_R = 1.
 
     Parameters
     ----------
     theoretical : c'_th [N/(mm um)]
-    basic_rack, blank, material : factors C_B, C_R (1 for solid discs) and E/E_St [-]
+    basic_rack, material : factors C_B and E/E_St [-]
     helix : helix angle [deg]
 
     Examples
@@ -117,7 +116,7 @@ def single_stiffness(
     >>> round(single_stiffness(16.1303, basic_rack=0.975), 4)
     12.5816
     """
-    return theoretical * CORRECTION * blank * basic_rack * material * math.cos(math.radians(helix))
+    return theoretical * CORRECTION * basic_rack * material * math.cos(math.radians(helix))
 
 
 def mean_mesh_stiffness(single: float, contact_ratio: float) -> float:
@@ -148,10 +147,10 @@ def pair_single_stiffness(pair: MeshingPair) -> float:
     pair : a validated gear pair
     """
     small, large = _ordered(pair)
-    rack = pair.basic_rack
+    rack = pair.wheels[0].tooth
     return single_stiffness(
         theoretical_single_stiffness(small[0], large[0], small[1], large[1]),
-        basic_rack=basic_rack_factor(rack.dedendum_coefficient, math.degrees(rack.pressure_angle)),
+        basic_rack=basic_rack_factor(rack.dedendum, math.degrees(rack.pressure_angle)),
         material=material_factor(pair.pinion.youngs_modulus * 1e-9, pair.gear.youngs_modulus * 1e-9),
     )
 
@@ -186,6 +185,6 @@ def violations(pair: MeshingPair) -> tuple[RangeViolation, ...]:
 
 def _ordered(pair: MeshingPair) -> tuple[tuple[int, float], tuple[int, float]]:
     """(teeth, profile shift) of the standard's gears 1 and 2."""
-    gears = ((g.teeth, g.profile_shift) for g in (pair.pinion, pair.gear))
+    gears = ((w.tooth.teeth, w.tooth.profile_shift) for w in pair.wheels)
     small, large = sorted(gears, key=lambda gear: (gear[0], -gear[1]))
     return small, large

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import one_of
-from lumped.gear_geometry.tooth_profile import ToothProfile
-from lumped.stiffness.base import MeshingPair
+from lumped.gear_geometry.geometry import Wheel
+from lumped.stiffness.base import Material, MeshingPair
 from lumped.stiffness.contact import contact_half_width, linear_hertz_compliance, local_compliance
 from lumped.stiffness.foundation import foundation_compliance
-from lumped.stiffness.tooth_beam import NODES, beam_compliance
+from lumped.stiffness.tooth_beam import beam_compliance
 from lumped.typing import FloatArray
 
 Contact = Literal["linear", "weber_banaschek"]
@@ -64,25 +63,8 @@ class PairCompliance:
         return 1.0 / (self.hertz + self.pinion.total + self.gear.total)
 
 
-def tooth_profile(pair: MeshingPair, which: str) -> ToothProfile:
-    """Profile of a tooth of the ``"pinion"`` or the ``"gear"``."""
-    gear, rack = (pair.pinion if which == "pinion" else pair.gear), pair.basic_rack
-    return _profile(
-        gear.teeth,
-        rack.module,
-        rack.pressure_angle,
-        gear.profile_shift,
-        rack.dedendum_coefficient,
-        rack.fillet_radius_coefficient,
-    )
-
-
-#: One object per tooth form, as it keeps the ends of its fillet once they are found.
-_profile = lru_cache(maxsize=256)(ToothProfile)
-
-
 def pair_compliance(
-    pair: MeshingPair, xi: ArrayLike, *, hertz: Contact = "weber_banaschek", nodes: int = NODES
+    pair: MeshingPair, xi: ArrayLike, *, hertz: Contact = "weber_banaschek"
 ) -> PairCompliance:
     """Compliances of a tooth pair in contact at positions xi.
 
@@ -91,11 +73,9 @@ def pair_compliance(
     pair : the gear pair
     xi : (n,) positions from X in [L_XA, L_XD] [m]
     hertz : "weber_banaschek" at the load of a single pair under the operating torque, or "linear"
-    nodes : Gauss points on the fillet and on the involute of each tooth
 
     Raises
     ------
-    ParameterError : the rack cannot cut these teeth
     NumericalError : the Gauss integration did not converge
     """
     position = np.atleast_1d(np.asarray(xi, dtype=float))
@@ -103,8 +83,8 @@ def pair_compliance(
     return PairCompliance(
         position=position,
         hertz=_contact(pair, position, hertz),
-        pinion=_tooth(pair, "pinion", position, g.face_width, nodes),
-        gear=_tooth(pair, "gear", g.L_XY - position, g.face_width, nodes),
+        pinion=_tooth(pair.wheels[0], pair.pinion, position, g.face_width),
+        gear=_tooth(pair.wheels[1], pair.gear, g.L_XY - position, g.face_width),
     )
 
 
@@ -120,25 +100,24 @@ def _contact(pair: MeshingPair, xi: FloatArray, hertz: Contact) -> FloatArray:
     half_width = contact_half_width(load, radius, moduli, ratios)
     total = np.zeros(xi.shape)
     lengths = (xi, g.L_XY - xi)
-    for which, length, modulus, ratio in zip(("pinion", "gear"), lengths, moduli, ratios, strict=True):
-        _, h, _, angle = tooth_profile(pair, which).involute_points(length)
+    for wheel, length, modulus, ratio in zip(pair.wheels, lengths, moduli, ratios, strict=True):
+        _, h, _, angle = wheel.tooth.involute_points(length)
         total = total + local_compliance(half_width, h / np.cos(angle), modulus, ratio) / width
     return total
 
 
-def _tooth(pair: MeshingPair, which: str, length: FloatArray, width: float, nodes: int) -> ToothCompliance:
-    gear = pair.pinion if which == "pinion" else pair.gear
-    profile = tooth_profile(pair, which)
-    beam = beam_compliance(profile, length, gear.youngs_modulus, gear.poisson_ratio, nodes)
+def _tooth(wheel: Wheel, material: Material, length: FloatArray, width: float) -> ToothCompliance:
+    profile, modulus, ratio = wheel.tooth, material.youngs_modulus, material.poisson_ratio
+    beam = beam_compliance(profile, length, modulus, ratio)
     *_, angle = profile.involute_points(length)
     foundation = foundation_compliance(
         profile.base_radius,
         profile.root_radius,
-        0.5 * gear.bore,
+        0.5 * wheel.bore,
         profile.root_half_angle,
         angle,
-        gear.youngs_modulus,
-        gear.poisson_ratio,
+        modulus,
+        ratio,
     )
     return ToothCompliance(
         bending=beam.bending / width,

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.schema.gear import Gear
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -85,15 +84,7 @@ def half_tooth(pair: GearPair, gear: Gear, base: float, tip: float, points: int)
     base, tip : base and tip radius [m]
     points : on each part: tip circle, flank, fillet, root circle
     """
-    rack = pair.basic_rack
-    profile = ToothProfile(
-        gear.teeth,
-        rack.module,
-        rack.pressure_angle,
-        gear.profile_shift,
-        rack.dedendum_coefficient,
-        rack.fillet_radius_coefficient,
-    )
+    profile = pair.wheels[0 if gear is pair.pinion else 1].tooth
     half = 0.5 * base_tooth_angle(pair, gear, base)
     thinned = profile.base_half_angle - half
     length = np.linspace(math.sqrt(tip**2 - base**2), profile.form_length, points)

@@ -15,7 +15,7 @@ from floquet.engine.sensitivity import multiplier_derivatives
 from lumped import friction, losses, quasi_static
 from lumped.errors import ParameterError, SpurcheckError
 from lumped.lubrication import film
-from lumped.model.averaged import averaged_state_space, frequency_response
+from lumped.model.averaged import averaged_state_space
 from lumped.path_of_contact.friction_profile import friction_profile
 from validation import crosscheck
 from validation.measurements import predict
@@ -45,20 +45,14 @@ CALLS = {
     lumped.speed_sweep: ({"pair": PAIR, "speeds_rpm": [4000.0]}, "speeds_rpm samples_per_cycle"),
     lumped.periodic_system: ({"pair": PAIR}, "form as_printed"),
     averaged_state_space: ({"pair": PAIR}, "form"),
-    frequency_response: ({"pair": PAIR}, "frequencies"),
     lumped.mesh_stiffness: ({"pair": PAIR}, "samples"),
-    lumped.stiffness_components: ({"pair": PAIR}, "points hertz"),
+    lumped.stiffness_components: ({"pair": PAIR}, "points"),
     lumped.static_transmission_error: ({"pair": PAIR}, "torques phases pitch_errors"),
-    lumped.optimal_relief: ({"pair": PAIR}, "torque shape phases"),
-    quasi_static.relief_map: (
-        {"pair": PAIR, "amounts": 1e-5, "lengths": 1e-3},
-        "amounts lengths torque shape phases",
-    ),
-    friction_profile: ({"pair": PAIR}, "laws points"),
+    lumped.optimal_relief: ({"pair": PAIR}, "torque"),
+    quasi_static.relief_map: ({"pair": PAIR, "amounts": 1e-5, "lengths": 1e-3}, "amounts lengths"),
+    friction_profile: ({"pair": PAIR}, "points"),
     losses.quasi_static_losses: ({"pair": PAIR}, "law sharing samples_per_cycle"),
-    losses.losses_of_laws: ({"pair": PAIR}, "laws"),
     losses.loss_factor: ({"pair": PAIR}, "sharing"),
-    losses.iso_14179_mesh_loss: ({"pair": PAIR}, "oil_factor"),
     multibody.simulate: ({"pair": PAIR}, _RUN),
     multibody.power_balance: ({"pair": PAIR}, "cycles initial effects fidelity rtol friction_velocity"),
     multibody.steady_state: (

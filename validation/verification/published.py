@@ -125,28 +125,19 @@ def _compliances(pair: GearPair) -> Check:
     xi = np.linspace(g.L_XA, g.L_XD, 9)
     found = pair_compliance(pair, xi).stiffness
     load = pair.operating.pinion_torque / (g.base_radius_pinion * g.face_width)
-    gears, rack = (pair.pinion, pair.gear), pair.basic_rack
     moduli = (pair.pinion.youngs_modulus, pair.gear.youngs_modulus)
     ratios = (pair.pinion.poisson_ratio, pair.gear.poisson_ratio)
     half_width = contact_half_width(load, xi * (g.L_XY - xi) / g.L_XY, moduli, ratios)
     total = np.zeros(xi.size)
-    for gear, length in zip(gears, (xi, g.L_XY - xi), strict=True):
-        e, nu = gear.youngs_modulus, gear.poisson_ratio
-        profile = ToothProfile(
-            gear.teeth,
-            rack.module,
-            rack.pressure_angle,
-            gear.profile_shift,
-            rack.dedendum_coefficient,
-            rack.fillet_radius_coefficient,
-        )
+    for wheel, e, nu, length in zip(pair.wheels, moduli, ratios, (xi, g.L_XY - xi), strict=True):
+        profile = wheel.tooth
         _, h, _, angle = profile.involute_points(length)
         beam = beam_compliance(profile, length, e, nu)
         total += (
             beam.bending + beam.shear + beam.axial + local_compliance(half_width, h / np.cos(angle), e, nu)
         )
         root, half = profile.root_radius, profile.root_half_angle
-        total += foundation_compliance(profile.base_radius, root, 0.5 * gear.bore, half, angle, e, nu)
+        total += foundation_compliance(profile.base_radius, root, 0.5 * wheel.bore, half, angle, e, nu)
     return Check(
         key="compliances",
         subject="stiffness of this pair's teeth by the energy method",

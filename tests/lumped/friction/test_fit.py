@@ -1,12 +1,16 @@
-"""Does the graded fit reach its tolerance on the singularities of the friction laws, and refuse the rest?"""
+"""Does a fit whose pieces shrink towards P reach its tolerance on the singularities of the friction laws?"""
 
 import numpy as np
 import pytest
 
-from lumped.errors import NumericalError
-from lumped.friction.graded_fit import graded_fit
+from lumped.friction.fitted import towards
+from lumped.path_function import PathFunction
 
 PITCH, LOW, HIGH = 0.0152, 0.0075, 0.0229
+
+
+def graded(law, breaks, tolerance):
+    return PathFunction.fit(law, breaks, tolerance=tolerance, cut=towards(PITCH))
 
 
 def logarithm(xi):
@@ -26,7 +30,7 @@ def ramp(xi):
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
 def test_tolerance_is_met_at_every_distance(law, knots, tolerance):
     breaks = [LOW, *(PITCH + k for k in knots), HIGH]
-    fit = graded_fit(law, PITCH, breaks, [], tolerance=tolerance)
+    fit = graded(law, breaks, tolerance)
     d = np.geomspace(1.1e-8, 0.99 * (PITCH - LOW), 4000)
     for side in (-1.0, 1.0):
         error = np.abs(fit(PITCH + side * d) - law(PITCH + side * d)).max()
@@ -38,41 +42,9 @@ def test_tolerance_is_met_at_every_distance(law, knots, tolerance):
 def test_pieces_grow_like_the_logarithm_of_the_resolution():
     # graded pieces: each decade of a smaller inner scale adds some pieces, it does not multiply them
     def ramps(scale):
-        return graded_fit(
-            lambda xi: np.arctan((xi - PITCH) / scale), PITCH, [LOW, PITCH, HIGH], [], tolerance=1e-9
-        ).breaks.size
+        return graded(lambda xi: np.arctan((xi - PITCH) / scale), [LOW, PITCH, HIGH], 1e-9).breaks.size
 
     sizes = [ramps(1e-4), ramps(1e-5), ramps(1e-6)]
     # a piece spans a ratio of 1.6 or so in distance: ln 10/ln 1.6 = 5 a decade and side, and slack
     assert max(np.diff(sizes)) <= 14
     assert sizes[2] < 80
-
-
-def test_polynomials_are_exact_in_one_piece():
-    def cubic(xi):
-        return 1e6 * (xi - 0.01) ** 3 - 3.0 * xi + 0.2
-
-    fit = graded_fit(cubic, PITCH, [LOW, HIGH], [], tolerance=1e-12)
-    assert fit.breaks.size == 2
-    xi = np.linspace(LOW, HIGH, 50)[:-1]
-    np.testing.assert_allclose(fit(xi), cubic(xi), atol=1e-14)  # rounding of the two basis changes
-
-
-def test_undeclared_jump_is_refused():
-    with pytest.raises(NumericalError, match="name the jump or kink"):
-        graded_fit(lambda xi: np.where(xi > 0.02, 1.0, 0.0), PITCH, [LOW, PITCH, HIGH], [], tolerance=1e-10)
-
-
-def test_noise_is_refused():
-    rng = np.random.default_rng(1)
-    with pytest.raises(NumericalError, match="does not converge"):
-        graded_fit(lambda xi: rng.normal(size=xi.size), PITCH, [LOW, PITCH, HIGH], [], tolerance=1e-10)
-
-
-def test_infinite_law_is_refused():
-    def pole(xi):
-        with np.errstate(divide="ignore"):
-            return np.where(xi > 0.02, np.inf, 0.0)
-
-    with pytest.raises(NumericalError, match="not finite"):
-        graded_fit(pole, PITCH, [LOW, PITCH, HIGH], [], tolerance=1e-10)

@@ -176,11 +176,11 @@ def test_benedict_kelley_switches_where_its_logarithm_turns_negative(pair):
 def test_composite_answers_for_the_laws_in_force_only(pair):
     # At 30000 rpm the film is thick: law V is III everywhere, and II's negative logarithm does not matter.
     fast = pair.with_(operating__pinion_speed=30000, operating__pinion_torque=10)
-    assert (friction_profile(fast, ["xu_kahraman"]).film_parameter > 4).all()
+    assert (friction_profile(fast).film_parameter > 4).all()
     assert law_range_violations(fast, "composite") == ()
     # Rough flanks at the same speed bring law II back, on part of the path or all of it.
     mixed = fast.with_(friction__composite_roughness=1.5)
-    assert (friction_profile(mixed, ["xu_kahraman"]).regime == 1).all()
+    assert (friction_profile(mixed).regime == 1).all()
     (violation,) = law_range_violations(mixed, "composite")
     assert violation.law == "V composite (II Benedict-Kelley)"
     assert violation.share == law_range_violations(fast, "benedict_kelley")[0].share
@@ -262,8 +262,6 @@ def test_a_law_that_cannot_take_the_roughness_is_left_out_with_its_reason(pair):
     assert "1.13 um" in reason
     with pytest.raises(ParameterError, match="roughness"):
         friction_path_function(rough, law="benedict_kelley")
-    with pytest.raises(ParameterError, match="roughness"):
-        friction_profile(rough, laws=["benedict_kelley"])
 
 
 def test_unknown_law_is_refused_by_name(pair):

@@ -126,18 +126,12 @@ def test_relief_optimum_of_constant_stiffness_is_the_closed_form():
     assert float(data.peak_to_peak[0]) == pytest.approx(found.peak_to_peak, abs=1e-6 * found.unmodified)
 
 
-@pytest.mark.parametrize("shape", ["linear", "parabolic"])
-def test_relief_optimum_of_real_stiffness(shape):
-    pair = plain(model="energy")
-    found = optimal_relief(pair, torque=56.5, shape=shape)
+def test_relief_optimum_of_real_stiffness():
+    pair = plain(model="energy").with_(operating__pinion_torque=56.5)
+    found = optimal_relief(pair)
     assert found.peak_to_peak < 0.25 * found.unmodified
-    around = relief_map(
-        pair,
-        found.amount * np.array([0.9, 1.0, 1.1]),
-        found.length * np.array([0.95, 1.0, 1.05]),
-        torque=56.5,
-        shape=shape,
-    ).peak_to_peak
+    amounts, lengths = found.amount * np.array([0.9, 1.0, 1.1]), found.length * np.array([0.95, 1.0, 1.05])
+    around = relief_map(pair, amounts, lengths).peak_to_peak
     # A minimum up to the preference for little material, 1e-2 of the amount's change.
     assert float(around.min()) > found.peak_to_peak - 2e-3 * found.amount
     assert float(around.sel(amount=found.amount).sel(length=found.length)) == pytest.approx(
@@ -186,7 +180,7 @@ def test_a_late_pair_shows_in_its_own_cycles_only():
 def test_loaded_mesh_of_perfect_flanks_is_the_pair_stiffness():
     pair = plain(model="energy")
     g = geometry(pair)
-    mesh = loaded_mesh(pair, 56.5)
+    mesh = loaded_mesh(pair)
     assert mesh.contact.tolist() == [[g.L_XA, g.L_XD]]
     assert mesh.stiffness.coefficients == pytest.approx(pair_stiffness(pair).coefficients)
     assert not mesh.error.coefficients.any()
@@ -196,10 +190,11 @@ def test_loaded_mesh_of_perfect_flanks_is_the_pair_stiffness():
 @pytest.mark.parametrize("torque", [15.0, 56.5, 150.0])
 def test_loaded_mesh_reproduces_the_static_transmission_error(model, torque):
     # The linear model's static answer, (F + sum k_i e_i)/sum k_i with k_i(xi; T), is the nonlinear solution.
-    pair = load_gear_pair("nasa_28_28").with_(mesh__stiffness={"model": model})
+    changes = {"mesh.stiffness": {"model": model}, "operating.pinion_torque": torque}
+    pair = load_gear_pair("nasa_28_28").with_(changes)
     g = geometry(pair)
-    mesh = loaded_mesh(pair, torque)
-    data = static_transmission_error(pair, [torque], extended=False)
+    mesh = loaded_mesh(pair)
+    data = static_transmission_error(pair, extended=False)
     xi = data.position.values
     k = np.where((xi > g.L_XA) & (xi < g.L_XD), mesh.stiffness(xi), 0.0)
     e = mesh.error(xi)
@@ -212,7 +207,7 @@ def test_loaded_mesh_reproduces_the_static_transmission_error(model, torque):
 def test_light_load_leaves_the_relieved_tips_apart():
     pair = load_gear_pair("nasa_28_28").with_(mesh__stiffness={"model": "energy"})
     g = geometry(pair)
-    light, heavy = (loaded_mesh(pair, torque) for torque in (10.0, 200.0))
+    light, heavy = (loaded_mesh(pair.with_(operating__pinion_torque=torque)) for torque in (10.0, 200.0))
     assert light.contact[0, 0] > g.L_XA
     assert light.contact[-1, 1] < g.L_XD
     assert heavy.contact.tolist() == [[g.L_XA, g.L_XD]]

@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from lumped import ParameterError
 from lumped.gear_geometry.involute import tooth_half_angle
 from lumped.gear_geometry.tooth_profile import ToothProfile
 
@@ -62,12 +61,3 @@ def test_fillet_is_the_rack_tips_envelope_and_meets_both_neighbours(profile):
     step = 1e-6
     difference = (profile.fillet_points(roll + step)[0] - profile.fillet_points(roll - step)[0]) / (2 * step)
     assert difference == pytest.approx(slope, rel=1e-7)  # second-order difference of step 1e-6
-
-
-def test_a_rack_tip_without_room_is_refused():
-    # 25 deg, dedendum 1.25: full radius at (pi/4 - 1.25 tan 25)/(1/cos 25 - tan 25) = 0.3179 modules.
-    blunt = ToothProfile(25, MODULE, math.radians(25.0), 0.0, 1.25, 0.38)
-    with pytest.raises(ParameterError, match=r"0\.3179"):
-        _ = blunt.fillet_range
-    fits = ToothProfile(25, MODULE, math.radians(25.0), 0.0, 1.25, 0.3178)
-    assert fits.fillet_range[0] > 0.0

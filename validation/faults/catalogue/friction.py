@@ -31,8 +31,8 @@ FRICTION = (
         "law_i_mean",
         "law I: the mean of |mu| over the whole tangent",
         "lumped.friction.fitted:mean_coefficient",
-        "/ float(b - a)",
-        "/ float(b)",
+        "function.switches).mean()",
+        "function.switches).mean() * (1.0 - breaks[0] / breaks[-1])",
         _ON_I,
     ),
     Fault(
