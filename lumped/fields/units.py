@@ -38,6 +38,11 @@ UNITS: dict[str, tuple[str, Decimal, str, str]] = {
     "mm**2/s": ("m**2/s", Decimal("1e-6"), "a kinematic viscosity", "32 cSt"),
     "degC": ("K", Decimal(1), "a temperature", "140 degF"),
     "mm/s": ("m/s", Decimal("1e-3"), "a velocity", "0.1 inch/s"),
+    "N": ("N", Decimal(1), "a force", "5 lbf"),
+    "m": ("m", Decimal(1), "a length", "3 um"),
+    "s": ("s", Decimal(1), "a time", "2 ms"),
+    "rad": ("rad", Decimal(1), "an angle", "20 deg"),
+    "Hz": ("Hz", Decimal(1), "a frequency", "50 kHz"),
 }
 _ZERO_CELSIUS = Decimal("273.15")
 _NOT_IN_QUANTITY = re.compile(r"[^\w\s.+\-*/^()°²³·]")

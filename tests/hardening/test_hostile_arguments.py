@@ -93,7 +93,7 @@ CALLS = {
     floquet.gear_block: ({"source": PAIR}, "rtol friction_level"),
     floquet.stress_test: ({"count": 1, "seed": 1}, "count seed"),
     crosscheck: ({"pair": PAIR}, "cycles samples_per_cycle fidelities quantities"),
-    predict: ({"pair": PAIR}, "speed torque recurrence samples_per_cycle"),
+    predict: ({"pair": PAIR}, "speed torque recurrence"),
     refinements: ({"pair": PAIR}, "samples"),
 }
 #: Names that a refusal gives where a pair's own field takes the argument in.

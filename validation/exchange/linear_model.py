@@ -12,8 +12,7 @@ from lumped.errors import refuse
 from lumped.model.averaged import averaged_state_space
 from lumped.model.periodic_system import Form
 from lumped.schema.pair import GearPair
-from validation.files.matlab import save_mat
-from validation.files.output import check_file, whole_file
+from validation.files.output import check_file, save_mat, whole_file
 
 STATE_SPACE_SUFFIXES = (".mat", ".npz")
 

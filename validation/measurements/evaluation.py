@@ -53,7 +53,6 @@ def evaluate(
     normal: NormalSource = "measured",
     zero: bool = False,
     shift: float | None = None,
-    bins: int = 64,
 ) -> Evaluation:
     """Align a record, compare it with its prediction, and identify friction from it.
 
@@ -64,7 +63,6 @@ def evaluate(
     identify : "mu" for a constant coefficient, or the name of a friction law for a scale on it
     normal, zero : see ``identify_friction``
     shift : known mesh phase, see ``align``
-    bins : phase bins of the overlay
 
     Raises
     ------
@@ -80,7 +78,7 @@ def evaluate(
         measurement=measurement,
         prediction=prediction,
         alignment=phase,
-        points=overlay(measurement, prediction, phase, bins=bins),
+        points=overlay(measurement, prediction, phase),
         metrics=overlay_metrics(measurement, prediction, phase),
         found=tuple(
             identify_friction(measurement, prediction, phase, law=law, normal=normal, zero=zero)

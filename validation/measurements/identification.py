@@ -37,6 +37,8 @@ from validation.measurements.specification import PAIR_LABELS
 
 NormalSource = Literal["measured", "predicted"]
 
+#: Level of the confidence interval.
+LEVEL = 0.95
 _FEWEST = 20
 
 
@@ -49,8 +51,7 @@ class Identification:
     parameter : "mu" (constant coefficient) or "scale on <law>"
     law : name of the friction law that is scaled; None for a constant
     estimate, standard_error : [-]
-    low, high : ends of the confidence interval [-]
-    level : its level, e.g. 0.95
+    low, high : ends of the 95 % confidence interval [-]
     zero : identified zero error of each friction channel [N]; empty where it was not asked for
     mean_mu : mean of |mu| over the path of contact that the estimate means [-]
     samples : number of samples used
@@ -65,7 +66,6 @@ class Identification:
     standard_error: float
     low: float
     high: float
-    level: float
     zero: tuple[float, ...]
     mean_mu: float
     samples: int
@@ -77,7 +77,7 @@ class Identification:
     def text(self) -> str:
         """One sentence for a report."""
         return (
-            f"{self.parameter} = {self.estimate:.4g}, {100 * self.level:.3g} % interval {self.low:.4g} to "
+            f"{self.parameter} = {self.estimate:.4g}, {100 * LEVEL:.3g} % interval {self.low:.4g} to "
             f"{self.high:.4g} (standard error {self.standard_error:.2g}, {self.samples} samples, "
             f"noise correlated over {self.lags} lags, normal load {self.normal})"
         )
@@ -92,7 +92,6 @@ def identify_friction(
     normal: NormalSource = "measured",
     zero: bool = False,
     guard: float | None = None,
-    level: float = 0.95,
 ) -> Identification:
     """Identify the friction coefficient, constant or as a scale on a law, by least squares.
 
@@ -107,14 +106,12 @@ def identify_friction(
     zero : also identify a zero error of each friction channel
     guard : samples closer to the pitch point than this are left out [m]; default three standard errors of the
         alignment and one sample, because their sign is not certain. 0 for laws that vanish there is harmless.
-    level : of the confidence interval
 
     Raises
     ------
     ParameterError : channels are missing, or arguments out of range
     NumericalError : too few samples in contact, or samples that carry no friction
     """
-    level = real_number("level", level, 0.5, 1.0 - 1e-12, action="Use 0.95.")
     one_of("normal", normal, get_args(NormalSource))
     if guard is None:
         guard = (3.0 * alignment.standard_error + alignment.sample_spacing) * prediction.geometry.base_pitch
@@ -124,7 +121,7 @@ def identify_friction(
     estimate = estimate_parameters(samples, count)
     covariance, lags = sandwich(samples, estimate)
     error = float(np.sqrt(covariance[0, 0]))
-    reach = float(student.ppf(0.5 + 0.5 * level, samples.friction.size - count)) * error
+    reach = float(student.ppf(0.5 + 0.5 * LEVEL, samples.friction.size - count)) * error
     beta = float(estimate[0])
     mean = 1.0 if law is None else mean_coefficient(friction_path_function(prediction.pair, law=law))
     return Identification(
@@ -134,7 +131,6 @@ def identify_friction(
         standard_error=error,
         low=beta - reach,
         high=beta + reach,
-        level=level,
         zero=tuple(float(b) for b in estimate[1:]),
         mean_mu=abs(beta) * mean,
         samples=samples.friction.size,

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from lumped.arguments import real_number, whole_number
+from lumped.arguments import whole_number
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset
 from lumped.typing import FloatArray
@@ -29,6 +29,7 @@ METRICS = {
     "relative_mean_absolute": "mean of |measured - predicted| over the prediction's peak to peak",
     "correlation": "Pearson correlation of measured and predicted",
 }
+_RESAMPLES = 999
 
 
 def overlay(
@@ -49,32 +50,25 @@ def overlay(
     """
     bins = whole_number("bins", bins, 4, 4096)
     names = list(measurement.channels)
-    table = {n: np.full((len(names), bins), np.nan) for n in ("measured", "predicted", "scatter")}
-    phase, count = np.zeros((len(names), bins)), np.zeros((len(names), bins), dtype=np.int64)
+    rows = []
     for j, channel in enumerate(measurement.spec.channel):
         age, y, p, _ = _samples(measurement, prediction, alignment, j)
         reach = prediction.geometry.contact_ratio if channel.pair else 1.0
-        phase[j] = (np.arange(bins) + 0.5) * reach / bins
         place = np.minimum((age / reach * bins).astype(np.int64), bins - 1)
-        count[j] = np.bincount(place, minlength=bins)
-        full = count[j] > 0
-
-        def mean(values: FloatArray, place: NDArray[np.int64] = place, j: int = j) -> FloatArray:
-            sums = np.bincount(place, weights=values, minlength=bins)
-            return np.asarray(np.where(count[j] > 0, sums / np.maximum(count[j], 1), np.nan))
-
-        table["measured"][j], table["predicted"][j] = mean(y), mean(p)
-        error = y - p
-        variance = mean(error**2) - mean(error) ** 2
-        correction = count[j][full] / np.maximum(count[j][full] - 1, 1)
-        table["scatter"][j, full] = np.sqrt(np.maximum(variance[full] * correction, 0.0))
+        count = np.bincount(place, minlength=bins)
+        sums = np.stack([np.bincount(place, weights=v, minlength=bins) for v in (y, p, y - p, (y - p) ** 2)])
+        with np.errstate(invalid="ignore"):  # an empty bin has no mean
+            measured, predicted, error, square = sums / count
+        scatter = np.sqrt(np.maximum((square - error**2) * count / np.maximum(count - 1, 1), 0.0))
+        rows.append((measured, predicted, scatter, (np.arange(bins) + 0.5) * reach / bins, count))
+    measured, predicted, scatter, phase, count = (np.stack(column) for column in zip(*rows, strict=True))
     dims, own = ("channel", "bin"), "SI, by channel"
     units = [QUANTITIES[c.quantity][0] for c in measurement.spec.channel]
     result = labelled_dataset(
         {
-            "measured": (dims, table["measured"], own, "mean of the measured values"),
-            "predicted": (dims, table["predicted"], own, "mean of the predicted values"),
-            "scatter": (dims, table["scatter"], own, "standard deviation of measured - predicted"),
+            "measured": (dims, measured, own, "mean of the measured values"),
+            "predicted": (dims, predicted, own, "mean of the predicted values"),
+            "scatter": (dims, scatter, own, "standard deviation of measured - predicted"),
             "phase": (dims, phase, "1", "mesh cycles since A"),
             "count": (dims, count, "1", "samples in the bin"),
             "units": ("channel", units, "1", "SI unit of the channel"),
@@ -86,16 +80,8 @@ def overlay(
     return result
 
 
-def overlay_metrics(
-    measurement: Measurement,
-    prediction: Prediction,
-    alignment: Alignment,
-    *,
-    resamples: int = 999,
-    level: float = 0.95,
-    seed: int = 0,
-) -> xr.Dataset:
-    """How far a record is from its prediction, with bootstrap intervals.
+def overlay_metrics(measurement: Measurement, prediction: Prediction, alignment: Alignment) -> xr.Dataset:
+    """How far a record is from its prediction, with 95 % percentile intervals of a bootstrap.
 
     Whole blocks are resampled with replacement (one engagement of a labelled pair or one mesh cycle each; a
     record with fewer than eight is cut into eight runs of samples), because neighbouring samples are not
@@ -104,9 +90,6 @@ def overlay_metrics(
     Parameters
     ----------
     measurement, prediction, alignment : the record, its prediction, its phase
-    resamples : bootstrap samples
-    level : of the percentile interval
-    seed : of the resampling
 
     Returns
     -------
@@ -118,12 +101,9 @@ def overlay_metrics(
     ------
     NumericalError : no sample of a channel is in contact
     """
-    resamples = whole_number("resamples", resamples, 99, 1_000_000, "Use 999.")
-    level = real_number("level", level, 0.5, 1.0 - 1e-12, action="Use 0.95.")
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     names = list(measurement.channels)
     one_turn = np.linspace(0.0, prediction.geometry.pairs, 2048, endpoint=False)
-    tails = [50.0 * (1.0 - level), 50.0 * (1.0 + level)]
     columns: dict[str, list[float]] = {}
     for j, channel in enumerate(measurement.spec.channel):
         _, y, p, block = _samples(measurement, prediction, alignment, j)
@@ -135,11 +115,11 @@ def overlay_metrics(
         terms = (np.ones(y.size), e, e**2, np.abs(e), y, p, y * p, y**2, p**2)
         sums = np.stack([np.bincount(number, weights=term, minlength=blocks) for term in terms])
         span = float(np.ptp(prediction.value(channel.quantity, one_turn, channel.pair)))
-        draws = rng.integers(0, blocks, (resamples, blocks))
+        draws = rng.integers(0, blocks, (_RESAMPLES, blocks))
         whole = _metrics(sums.sum(axis=1), span)
         spread = _metrics(sums[:, draws].sum(axis=2), span)
         for name, value in whole.items():
-            low, high = np.percentile(spread[name], tails)
+            low, high = np.percentile(spread[name], [2.5, 97.5])
             for key, number_ in ((name, value), (f"{name}_low", low), (f"{name}_high", high)):
                 columns.setdefault(key, []).append(float(number_))
         columns.setdefault("largest", []).append(float(np.abs(e).max()))
@@ -147,7 +127,7 @@ def overlay_metrics(
     return xr.Dataset(
         {name: ("channel", values) for name, values in columns.items()},
         coords={"channel": names},
-        attrs={"level": level, "resamples": resamples, "seed": seed, "definitions": str(METRICS)},
+        attrs={"level": 0.95, "resamples": _RESAMPLES, "definitions": str(METRICS)},
     )
 
 

@@ -19,6 +19,8 @@ from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
 from validation.measurements.specification import PAIR_LABELS, QUANTITIES
 
+_SAMPLES = 1024  # per mesh cycle
+
 
 @dataclass(frozen=True, eq=False)
 class Prediction:
@@ -94,9 +96,8 @@ def predict(
     torque: float | None = None,
     *,
     recurrence: int | None = None,
-    samples_per_cycle: int = 1024,
 ) -> Prediction:
-    """Predict the periodic motion at an operating point.
+    """Predict the periodic motion at an operating point; between samples it is interpolated linearly.
 
     Parameters
     ----------
@@ -104,7 +105,6 @@ def predict(
     speed : pinion speed [rad/s]; default the pair's
     torque : pinion torque [N m]; default the pair's
     recurrence : see ``Prediction``; default the pinion's number of teeth
-    samples_per_cycle : resolution; between samples the results are interpolated linearly
     """
     at = pair
     if speed is not None:
@@ -122,6 +122,6 @@ def predict(
         pair=at,
         geometry=g,
         friction=mesh_elements(at).friction,
-        cycle=steady_state(at, samples_per_cycle=samples_per_cycle),
+        cycle=steady_state(at, samples_per_cycle=_SAMPLES),
         recurrence=again,
     )

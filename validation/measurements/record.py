@@ -19,7 +19,6 @@ from validation.measurements.specification import (
     QUANTITIES,
     MeasurementSpec,
     read_specification,
-    sampling_rate,
     si_factor,
 )
 
@@ -55,26 +54,21 @@ class Measurement:
         return [(c.name, c.pair) for c in self.spec.channel if c.quantity == quantity]
 
 
-def load_measurement(source: str | Path | Mapping[str, Any], data: str | Path | None = None) -> Measurement:
+def load_measurement(source: str | Path | Mapping[str, Any]) -> Measurement:
     """Read a measured record.
 
     Parameters
     ----------
-    source : the TOML description (see ``MeasurementSpec``), as a file or as a mapping
-    data : the CSV file; default the one that the description names, relative to it
-
-    Returns
-    -------
-    Measurement
+    source : the TOML description (see ``MeasurementSpec``), as a file or as a mapping; it names the CSV file
 
     Raises
     ------
     ParameterError : the description or the data file cannot be used; the text names field, row or column
     """
     spec, folder = read_specification(source)
-    if data is None and not spec.data:
+    if not spec.data:
         raise refuse("data", "", "the CSV file of the record", "Name it in the description.")
-    path = Path(data) if data is not None else folder / spec.data
+    path = folder / spec.data
     text = read_text(path, _MAX_BYTES, field="data", kind="CSV file")
     try:
         return parse_measurement(spec, text)
@@ -102,7 +96,7 @@ def parse_measurement(spec: MeasurementSpec, text: str) -> Measurement:
         table = table[:, 1:]
     else:
         assert spec.abscissa.sampling_rate is not None  # the description asks for it
-        abscissa = np.arange(table.shape[0]) / sampling_rate(spec.abscissa.sampling_rate)
+        abscissa = np.arange(table.shape[0]) / spec.abscissa.sampling_rate
     channels: dict[str, FloatArray] = {}
     noise: dict[str, float | None] = {}
     for j, channel in enumerate(spec.channel):

@@ -30,9 +30,6 @@ def synthetic_measurement(
     noise_friction: float = 0.02,
     correlation: float = 0.0,
     start: float = 0.0,
-    scale: float = 1.0,
-    zero: float = 0.0,
-    stated_noise: bool = True,
 ) -> Measurement:
     """Sample a prediction as an instrumented tooth pair would, and add sensor noise.
 
@@ -46,9 +43,6 @@ def synthetic_measurement(
         friction force
     correlation : of neighbouring noise samples (first-order autoregression), as an anti-aliasing filter makes
     start : mesh cycles since pair A was at A when the record starts; unknown to whoever aligns it
-    scale : factor on the friction force
-    zero : zero error of the friction channels [N]
-    stated_noise : whether the description states the noise
 
     Returns
     -------
@@ -59,8 +53,7 @@ def synthetic_measurement(
     real_number("samples_per_cycle", samples_per_cycle, 4.0, 65536.0, above=True)
     for name, value in (("noise_normal", noise_normal), ("noise_friction", noise_friction)):
         real_number(name, value, 0.0)
-    for name, value in (("start", start), ("scale", scale), ("zero", zero)):
-        real_number(name, value)
+    real_number("start", start)
     rng = np.random.default_rng(whole_number("seed", seed, 0, 2**63 - 1))
     g = truth.geometry
     count = int(engagements * truth.recurrence * samples_per_cycle)
@@ -71,17 +64,16 @@ def synthetic_measurement(
     entries: list[dict[str, Any]] = []
     for label in PAIR_LABELS[: g.pairs]:
         clean = {q: truth.value(q, u, label) for q in ("normal_load", "friction_force")}
-        clean["friction_force"] = scale * clean["friction_force"] + zero
         sizes = {
             "normal_load": noise_normal * load,
-            "friction_force": noise_friction * float(np.abs(clean["friction_force"] - zero).max()),
+            "friction_force": noise_friction * float(np.abs(clean["friction_force"]).max()),
         }
         for quantity, values in clean.items():
             name = f"{quantity.split('_')[0]}_{label}"
             channels[name] = np.asarray(values + sizes[quantity] * _noise(rng, count, correlation))
             entry: dict[str, Any] = {"name": name, "column": name, "quantity": quantity, "unit": "N"}
             entry["pair"] = label
-            if stated_noise and sizes[quantity] > 0.0:
+            if sizes[quantity] > 0.0:
                 entry["noise"] = sizes[quantity]
             entries.append(entry)
     spec, _ = read_specification(

@@ -11,10 +11,10 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from lumped.lubrication.film import REGIMES
 from lumped.model.steady import UNSTABLE
 from validation.plots.style import BLACK, new_figure
 from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
-from validation.validity.map import REGIMES
 
 #: Good, near a limit, beyond it, nothing there: told apart by lightness too, and hatched where bad.
 _STATES = ("#d5ecdf", "#f5d58a", "#c65d2e", "#b8b8b8")

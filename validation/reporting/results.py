@@ -18,8 +18,7 @@ from lumped.path_of_contact import friction_profile
 from lumped.typing import Progress
 from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.reporting.paper_results import PaperResults, paper_results
-from validation.validity.flag import Flag
-from validation.validity.flags import LOAD_NOISE, speed_drift, validity_flags
+from validation.validity.flags import LOAD_NOISE, Flag, speed_drift, validity_flags
 from validation.verification import enough_samples
 
 

@@ -12,7 +12,7 @@ import lumped
 from lumped import GearPair, LawRangeWarning
 from lumped.arguments import real_numbers
 from lumped.labelling import labelled_dataset
-from lumped.lubrication.film import regime
+from lumped.lubrication.film import REGIMES, regime
 from lumped.model.results import provenance
 from lumped.model.steady import UNSTABLE
 from lumped.path_of_contact import contact_path
@@ -21,17 +21,11 @@ from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
 
 #: Values of ``state``: the worst of contact, sliding and stability.
 STATES = ("valid", "warning", "violated", "no periodic motion")
-#: Names of ``regime``.
-REGIMES = ("boundary", "mixed", "elastohydrodynamic", "full film")
+_SAMPLES = 96  # per mesh cycle
 
 
 def validity_map(
-    pair: GearPair,
-    speeds_rpm: ArrayLike,
-    torques: ArrayLike,
-    *,
-    samples: int = 96,
-    progress: Progress | None = None,
+    pair: GearPair, speeds_rpm: ArrayLike, torques: ArrayLike, *, progress: Progress | None = None
 ) -> xr.Dataset:
     """Check the assumptions of the lumped model on its periodic motion over speed and torque.
 
@@ -40,7 +34,6 @@ def validity_map(
     pair : the gear pair
     speeds_rpm : pinion speeds [rpm], increasing
     torques : pinion torques [N m], increasing
-    samples : per mesh cycle
     progress : called with the finished fraction
 
     Returns
@@ -48,8 +41,8 @@ def validity_map(
     Dataset over ``torque`` and ``speed``: lowest_load, smallest normal load of a pair in contact over the
     static load; reversal, largest distance from the pitch point at which sliding is reversed, over the base
     pitch; spectral_radius, largest Floquet multiplier; film_parameter, its smallest value over the path of
-    contact; regime, index into ``REGIMES``; state, index into ``STATES``. Points without a periodic motion
-    are NaN with state 3
+    contact; regime, index into ``REGIMES`` of ``lumped.lubrication.film``; state, index
+    into ``STATES``. Points without a periodic motion are NaN with state 3
 
     Raises
     ------
@@ -66,7 +59,7 @@ def validity_map(
         warnings.simplefilter("ignore", LawRangeWarning)
         for row, value in enumerate(torque):
             at = pair.with_({"operating.pinion_torque": float(value), "operating.brake_torque": "balanced"})
-            sweep = lumped.speed_sweep(at, speed, samples_per_cycle=samples)
+            sweep = lumped.speed_sweep(at, speed, samples_per_cycle=_SAMPLES)
             static = float(value) / g.base_radius_pinion
             found["lowest_load"][row] = sweep["normal_load_min"].to_numpy() / static
             found["reversal"][row] = sweep["sliding_reversal"].to_numpy() / g.base_pitch

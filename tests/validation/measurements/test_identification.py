@@ -32,16 +32,21 @@ def truth(pair):
     return predict(pair.with_(friction__law="coulomb", friction__coefficient=MU), recurrence=3)
 
 
-def record(truth, **changes):
+def record(truth, scale=1.0, zero=0.0, stated_noise=True, **changes):
+    """A synthetic record, with a factor on the friction and a zero error of its channels."""
     settings = {"seed": 5, "engagements": 4, "noise_normal": 0.0, "noise_friction": 0.0} | changes
-    return synthetic_measurement(truth, **settings)
+    made = synthetic_measurement(truth, **settings)
+    friction = {name: scale * made.channels[name] + zero for name, _ in made.named("friction_force")}
+    noise = {n: scale * v if v and n in friction else v for n, v in made.noise.items()}
+    noise = noise if stated_noise else dict.fromkeys(noise)
+    return dataclasses.replace(made, channels=made.channels | friction, noise=noise)
 
 
 def test_prediction_follows_a_tooth_pair_through_a_transient(pair):
     # Independent of the labelling code: a settled transient, in which the pair that enters in cycle j is
     # slot n # during cycle j and slot n - 1 during cycle j + 1.
-    prediction = predict(pair, recurrence=2, samples_per_cycle=256)
-    run = simulate(pair, 2, samples_per_cycle=256, initial="periodic")
+    prediction = predict(pair, recurrence=2)
+    run = simulate(pair, 2, samples_per_cycle=1024, initial="periodic")
     u = run["time"].to_numpy()[:-1] / prediction.geometry.mesh_period
     first = np.where(u < 1.0, run["normal_load"].to_numpy()[1, :-1], run["normal_load"].to_numpy()[0, :-1])
     # 1e-6: the transient's tolerance is 1e-10, the periodic start is good to better than 1e-8
@@ -76,7 +81,6 @@ def test_alignment_finds_an_unknown_start(truth, start):
     away = (found.shift - start + 1.5) % 3.0 - 1.5
     # The sampled jumps fix the phase to a fraction of the sample spacing, 1/100 cycle.
     assert abs(away) < 2e-3
-    assert found.gain[0] == pytest.approx(1.0, abs=0.01)  # 1900 samples with 2 % noise: 0.01 is many sigma
 
 
 def test_the_standard_error_of_the_phase_is_the_spread_of_the_phases(truth):
@@ -93,7 +97,7 @@ def test_alignment_does_not_take_a_calibration_error_for_a_phase(truth):
     wrong = dataclasses.replace(clean, channels={k: 1.2 * v + 30.0 for k, v in clean.channels.items()})
     found = align(wrong, truth)
     assert found.shift == pytest.approx(0.6, abs=2e-3)
-    np.testing.assert_allclose(found.gain, 1.2, rtol=1e-2)
+    assert found.share_explained > 0.999
 
 
 def test_alignment_refuses_a_record_that_does_not_fit(truth):
@@ -104,9 +108,12 @@ def test_alignment_refuses_a_record_that_does_not_fit(truth):
         with pytest.raises(NumericalError, match="explains only"):
             align(dataclasses.replace(record(truth), channels=noise), truth)
     # The other sign of the friction, which jumps at the pitch point: at no phase is it the prediction.
-    turned = {k: -v for k, v in clean.items()}
+    made = record(truth)
+    spec = made.spec.model_copy(update={"channel": made.spec.channel[1:2]})
+    assert spec.channel[0].name == "friction_A"
+    turned = dataclasses.replace(made, spec=spec, channels={"friction_A": -clean["friction_A"]})
     with pytest.raises(NumericalError, match="explains only"):
-        align(dataclasses.replace(record(truth), channels=turned), truth, channels=["friction_A"])
+        align(turned, truth)
 
 
 @pytest.mark.parametrize("normal", ["measured", "predicted"])
@@ -144,14 +151,11 @@ def test_samples_whose_sign_is_not_certain_are_left_out(truth):
         assert identify_friction(noisy, truth, unsure, guard=guard).samples == kept.samples
 
 
-def test_the_interval_is_that_of_its_level(truth):
+def test_the_interval_holds_95_percent_of_a_normal_distribution(truth):
     noisy = record(truth, noise_friction=0.02)
-    for level, quantile in ((0.95, 1.960), (0.6827, 1.0)):  # of the normal distribution: 600 samples
-        found = identify_friction(noisy, truth, align(noisy, truth, shift=0.0), level=level)
-        reach = quantile * found.standard_error
-        np.testing.assert_allclose(
-            [found.estimate - found.low, found.high - found.estimate], reach, rtol=5e-3
-        )
+    found = identify_friction(noisy, truth, align(noisy, truth, shift=0.0))
+    reach = 1.960 * found.standard_error  # of the normal distribution: 600 samples
+    np.testing.assert_allclose([found.estimate - found.low, found.high - found.estimate], reach, rtol=5e-3)
 
 
 def test_noise_weighs_only_where_every_channel_states_it_and_only_what_is_used(truth):
@@ -187,6 +191,9 @@ def test_noise_on_the_load_biases_plain_least_squares_but_not_the_weighted_one(t
     assert found[True].standard_error < 0.005 * MU
 
 
+TWO_PERCENT = {"noise_normal": 0.02, "noise_friction": 0.02}
+
+
 def coverage(pair, law, noise, how, seeds, scale=1.3):
     """Estimates and standard errors over the truth for many noise seeds, and which intervals hold it.
 
@@ -200,7 +207,7 @@ def coverage(pair, law, noise, how, seeds, scale=1.3):
     found = []
     for seed in range(seeds):
         start = float(np.random.default_rng([seed, 1]).uniform(0.0, 4.0))
-        made = synthetic_measurement(truth, seed=seed, engagements=4, start=start, scale=factor, **noise)
+        made = record(truth, **({"seed": seed, "start": start, "scale": factor} | TWO_PERCENT | noise))
         found.append(identify_friction(made, guess, align(made, guess), **how))
     estimates = np.array([one.estimate for one in found]) / value
     errors = np.array([one.standard_error for one in found]) / value
@@ -222,14 +229,14 @@ TEN_PERCENT = {"noise_normal": 0.1, "noise_friction": 0.1}
     ids=["white noise 2 %", "correlated noise", "noise 10 %", "scale on law III"],
 )
 def test_interval_covers_the_truth(pair, law, noise, how):
-    estimates, errors, holds = coverage(pair, law, noise, how, seeds=80)
-    # A correct 95 % interval covers 70 to 80 times out of 80 with probability 0.99.
-    assert holds.sum() >= 70
+    estimates, errors, holds = coverage(pair, law, noise, how, seeds=40)
+    # A correct 95 % interval covers 34 to 40 times out of 40 with probability 0.99.
+    assert holds.sum() >= 34
     # Bias: three standard errors of the mean, and half a percent at most whatever the noise.
     spread = estimates.std(ddof=1)
-    assert abs(estimates.mean() - 1.0) < min(3.5 * spread / np.sqrt(80), 5e-3)
-    # 80 estimates know their own spread to 8 %; 25 % is three of those.
-    assert errors.mean() == pytest.approx(spread, rel=0.25)
+    assert abs(estimates.mean() - 1.0) < min(3.5 * spread / np.sqrt(40), 5e-3)
+    # 40 estimates know their own spread to 11 %; 35 % is three of those.
+    assert errors.mean() == pytest.approx(spread, rel=0.35)
 
 
 def test_noise_that_is_not_stated_spoils_the_interval(pair):
@@ -255,7 +262,7 @@ def test_a_written_record_is_read_back(truth, tmp_path):
 def test_overlay_metrics_know_a_constant_offset(truth):
     clean = record(truth)
     shifted = dataclasses.replace(clean, channels={k: v + 12.0 for k, v in clean.channels.items()})
-    metrics = overlay_metrics(shifted, truth, align(shifted, truth, shift=0.0), resamples=99)
+    metrics = overlay_metrics(shifted, truth, align(shifted, truth, shift=0.0))
     for name in ("bias", "rms", "mean_absolute", "largest", "bias_low", "bias_high"):
         np.testing.assert_allclose(metrics[name], 12.0, rtol=1e-9)
     np.testing.assert_allclose(metrics["correlation"], 1.0, atol=1e-12)
@@ -266,7 +273,7 @@ def test_overlay_metrics_know_a_constant_offset(truth):
 
 def test_a_prediction_without_friction_has_no_scale_for_a_relative_metric(pair, truth):
     smooth = predict(pair.with_(friction__law="none"), recurrence=3)
-    metrics = overlay_metrics(record(truth), smooth, align(record(truth), smooth), resamples=99)
+    metrics = overlay_metrics(record(truth), smooth, align(record(truth), smooth))
     friction = metrics.sel(channel="friction_A")
     assert friction["rms"] > 10.0
     for name in ("relative_rms", "relative_rms_low", "relative_mean_absolute_high"):
@@ -276,7 +283,7 @@ def test_a_prediction_without_friction_has_no_scale_for_a_relative_metric(pair, 
 
 def test_overlay_interval_has_the_width_of_the_noise(truth):
     noisy = record(truth, engagements=100, noise_normal=0.05, seed=17)
-    metrics = overlay_metrics(noisy, truth, align(noisy, truth, shift=0.0), level=0.95)
+    metrics = overlay_metrics(noisy, truth, align(noisy, truth, shift=0.0))
     load = truth.pair.operating.pinion_torque / truth.geometry.base_radius_pinion
     in_contact = int(truth.contact(align(noisy, truth, shift=0.0).cycles, "A").sum())
     half = 0.5 * (metrics["bias_high"] - metrics["bias_low"]).sel(channel="normal_A").item()
@@ -288,11 +295,9 @@ def test_overlay_interval_has_the_width_of_the_noise(truth):
 def test_arguments_that_cannot_be_used_are_refused(truth):
     clean = record(truth)
     phase = align(clean, truth, shift=0.0)
-    for how in ({"level": 1.0}, {"normal": "guessed"}, {"guard": -1.0}, {"law": "unknown"}):
+    for how in ({"normal": "guessed"}, {"guard": -1.0}, {"law": "unknown"}):
         with pytest.raises(ParameterError):
             identify_friction(clean, truth, phase, **how)
-    with pytest.raises(ParameterError):
-        align(clean, truth, channels=["nothing"])
     for shift in (np.nan, np.inf, 1e300):
         with pytest.raises(ParameterError, match="shift"):
             align(clean, truth, shift=shift)

@@ -19,9 +19,10 @@ roll [deg];N A [N];F A (kN)
 """
 
 
-def description(**changes):
+def description(data, **changes):
     return {
         "name": "record",
+        "data": str(data),
         "source": "made up for a test",
         "delimiter": ";",
         "decimal": ",",
@@ -51,7 +52,7 @@ def csv(tmp_path):
 
 
 def test_units_gain_and_zero_reach_si(csv):
-    record = load_measurement(description(), csv)
+    record = load_measurement(description(csv))
     assert record.spec.pinion_speed == pytest.approx(800 * np.pi / 30, rel=1e-15)
     np.testing.assert_allclose(record.abscissa, np.radians(np.arange(10, 14, 0.5)), rtol=1e-14)
     np.testing.assert_allclose(record.channels["normal"], np.arange(1500, 1580, 10), rtol=1e-14)
@@ -61,12 +62,12 @@ def test_units_gain_and_zero_reach_si(csv):
 
 
 def test_sampling_rate_stands_for_a_time_column(csv):
-    sampled = description(abscissa={"kind": "sampled", "sampling_rate": "20 kHz"})
-    np.testing.assert_allclose(load_measurement(sampled, csv).abscissa, np.arange(8) / 20e3, rtol=1e-15)
+    sampled = description(csv, abscissa={"kind": "sampled", "sampling_rate": "20 kHz"})
+    np.testing.assert_allclose(load_measurement(sampled).abscissa, np.arange(8) / 20e3, rtol=1e-15)
 
 
 def changed_channel(place, **changes):
-    channels = [dict(c) for c in description()["channel"]]
+    channels = [dict(c) for c in description("")["channel"]]
     channels[place] |= changes
     return {"channel": channels}
 
@@ -94,7 +95,7 @@ def changed_channel(place, **changes):
 )
 def test_a_wrong_description_is_refused_by_field(csv, changes, named):
     with pytest.raises(ParameterError, match=named):
-        load_measurement(description(**changes), csv)
+        load_measurement(description(csv, **changes))
 
 
 @pytest.mark.parametrize(
@@ -109,14 +110,14 @@ def test_a_wrong_description_is_refused_by_field(csv, changes, named):
 def test_a_bad_cell_is_refused_with_its_row(csv, old, new, named):
     csv.write_text(TEXT.replace(old, new))
     with pytest.raises(ParameterError, match=named):
-        load_measurement(description(), csv)
+        load_measurement(description(csv))
 
 
 def test_missing_files_are_refused(tmp_path):
     with pytest.raises(ParameterError, match=r"nowhere\.toml"):
         load_measurement(tmp_path / "nowhere.toml")
     with pytest.raises(ParameterError, match=r"record\.csv"):
-        load_measurement(description(), tmp_path / "record.csv")
+        load_measurement(description(tmp_path / "record.csv"))
 
 
 @pytest.mark.parametrize("cell", ["abc", "True", "0x10"])
@@ -124,8 +125,8 @@ def test_a_cell_that_is_no_number_is_named_by_value_row_and_column(tmp_path, cel
     path = tmp_path / "record.csv"
     path.write_text(TEXT.replace("1530,0", cell))
     with pytest.raises(ParameterError, match=rf"data = {cell} in row 4 after the headings, column N A"):
-        load_measurement(description(), path)
+        load_measurement(description(path))
     lines = TEXT.splitlines()
     path.write_text("\n".join([*lines[:2], *(f"{line[:4]};True;0,05" for line in lines[2:])]))
     with pytest.raises(ParameterError, match="data = True in row 1"):
-        load_measurement(description(), path)
+        load_measurement(description(path))

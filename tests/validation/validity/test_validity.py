@@ -6,7 +6,7 @@ import pytest
 import lumped
 from floquet.gear.multipliers import gear_pair_multipliers
 from validation.validity import flags as validity
-from validation.validity.flag import worst_state
+from validation.validity.flags import worst_state
 
 
 @pytest.fixture(scope="module")
@@ -110,7 +110,7 @@ def test_the_worst_state_wins(pair):
 def test_a_stiffness_model_outside_its_fit_is_said():
     # 16 teeth: half a tooth on the root circle spans 0.188 rad, fitted up to 0.12 rad (Sainsot et al. 2004).
     wide = lumped.load_gear_pair("fzg_c").with_(mesh__stiffness={"model": "energy"})
-    flag = validity.stiffness_ranges(wide, lumped.geometry(wide))
+    flag = validity.stiffness_ranges(wide)
     assert (flag.state, flag.value) == ("warning", 2.0)
     assert "fillet foundation of the pinion" in flag.detail
     assert flag.action

@@ -9,7 +9,7 @@ from validation.reporting.chapter import Chapter
 from validation.reporting.formatting import number
 from validation.reporting.results import Results
 from validation.reporting.sources import is_assumed, sources
-from validation.validity.flag import Flag
+from validation.validity.flags import Flag
 
 
 def write(results: Results) -> Content:

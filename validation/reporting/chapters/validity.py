@@ -6,7 +6,7 @@ from validation.reporting.blocks import Answer, Badge, Content, Quantity, Text, 
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 from validation.reporting.words import validity as words
-from validation.validity.flag import worst_state
+from validation.validity.flags import worst_state
 
 _WORDS = {
     "ok": "the model's assumptions hold",

@@ -9,6 +9,7 @@ import xarray as xr
 
 from floquet.gear.axes import operating_rpm, with_point
 from lumped import GearPair
+from lumped.lubrication.film import REGIMES
 from lumped.model.steady import UNSTABLE
 from lumped.typing import BoolArray, FloatArray
 from validation.plots.validity_map import validity_map_figure
@@ -16,7 +17,7 @@ from validation.reporting.blocks import Content, Picture, Quantity, Text, facts,
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Effort, Results
 from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
-from validation.validity.map import REGIMES, STATES, speed_spans
+from validation.validity.map import STATES, speed_spans
 from validation.validity.map import validity_map as compute_map
 
 
