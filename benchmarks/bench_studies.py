@@ -96,7 +96,6 @@ def store(count):
         def write(block):
             Path(folder, STORE).unlink(missing_ok=True)
             with Store(Path(folder), cases) as opened:
-                opened.begin_run()
                 for start in range(0, count, block):
                     numbers = range(start, min(start + block, count))
                     values = np.outer(numbers, [1.5, 0.25])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections import Counter, deque
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -21,8 +21,6 @@ BATCH_SECONDS = 0.5
 #: Batches a second that a scheduler is asked for at most: with many workers the batches last longer.
 BATCHES_PER_SECOND = 500.0
 MAX_BATCH = 10_000
-#: How often a case may kill its worker, alone on it, before it counts as failed.
-MAX_DEATHS = 2
 _CHECK_SECONDS = 1.0
 #: How often all workers may die, before any batch ends, until the sweep stops.
 _MAX_BROKEN = 3
@@ -32,8 +30,9 @@ Values = Callable[[Sequence[int]], Sequence[tuple[Any, ...]]]
 class Dispatcher:
     """Evaluates cases on a pool.
 
-    A batch on which a worker died, or which took longer than a case may, is divided into single cases, which
-    find out the one to blame.
+    A batch on which a worker died, or which took longer than a case may, is divided into single cases. A
+    single case on which a worker died runs once more at the end, with nothing else in the pool: only then it
+    is certain that no other case, queued at the same worker of a cluster, is to blame.
 
     Parameters
     ----------
@@ -58,7 +57,8 @@ class Dispatcher:
         self._left = 0
         self._checked = time.monotonic()
         self._singles: deque[int] = deque()
-        self._deaths: Counter[int] = Counter()
+        self._suspects: deque[int] = deque()
+        self._suspected: set[int] = set()
         self._broken = 0
         self._running: dict[Future[Batch], list[int]] = {}
 
@@ -74,15 +74,19 @@ class Dispatcher:
             while len(self._running) < 2 * self._pool.slots:
                 cases = [self._singles.popleft()] if self._singles else list(islice(numbers, self._size()))
                 if not cases:
-                    break
+                    if self._running or not self._suspects:
+                        break
+                    cases = [self._suspects.popleft()]
                 future = self._pool.submit(self._evaluator, cases, self._values(cases), self._limit)
                 self._running[future] = cases
             if not self._running:
                 return
             for future in self._finished():
-                batch = self._result(future, self._running.pop(future))
-                if batch is not None:
-                    self._count(batch)
+                if (batch := self._result(future, self._running.pop(future))) is not None:
+                    self._left -= len(batch.cases)
+                    self._broken = 0
+                    mean = batch.seconds / len(batch.cases)
+                    self._seconds = mean if self._seconds is None else 0.8 * self._seconds + 0.2 * mean
                     yield batch
 
     def done(self) -> Iterator[Batch]:
@@ -110,10 +114,10 @@ class Dispatcher:
         try:
             batch = future.result()
         except (pebble.ProcessExpired, TimeoutError) as error:
-            if len(cases) > 1:
-                self._singles += cases
-                return None
-            return self._blamed(cases[0], died=isinstance(error, pebble.ProcessExpired))
+            if len(cases) == 1:
+                return self._blamed(cases[0], died=isinstance(error, pebble.ProcessExpired))
+            self._singles += cases
+            return None
         except BrokenProcessPool as error:
             self._singles += cases
             self._broken += 1
@@ -132,8 +136,8 @@ class Dispatcher:
                 f"The workers cannot run cases ({type(error).__name__}: {error}): install this version of "
                 "spurcheck on them, then run the same command with --resume."
             ) from error
-        if batch.provenance != provenance():
-            theirs, ours = batch.provenance, provenance()
+        theirs, ours = batch.provenance, provenance()
+        if not theirs.same_code(ours):
             raise SweepStopped(
                 f"A worker runs {theirs.versions}, code {theirs.code[:12]}, but this process {ours.versions}"
                 f", code {ours.code[:12]}: install the same code and the same versions, or results depend on "
@@ -147,18 +151,12 @@ class Dispatcher:
         if not died and self._limit is not None:
             status, _, text = late(self._limit)
             return Batch.failure(case, outputs, status, text)
-        self._deaths[case] += 1
-        if self._deaths[case] < MAX_DEATHS:
-            self._singles.append(case)
+        if case not in self._suspected:
+            self._suspected.add(case)
+            self._suspects.append(case)
             return None
-        text = "the worker process died on this case, alone on it, every time"
+        text = "the worker process died on this case twice, the second time with no other case in the pool"
         return Batch.failure(case, outputs, Status.WORKER_DIED, text)
-
-    def _count(self, batch: Batch) -> None:
-        self._left -= len(batch.cases)
-        self._broken = 0
-        mean = batch.seconds / len(batch.cases)
-        self._seconds = mean if self._seconds is None else 0.8 * self._seconds + 0.2 * mean
 
     def _size(self) -> int:
         """Cases of the next batch: by time, and small at the end so that all workers stay busy."""

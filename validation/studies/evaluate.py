@@ -58,12 +58,10 @@ MEANINGS = {
 
 
 class Evaluator(Protocol):
-    """What computes one case; it travels with every batch, so it is small and can be pickled.
+    """What computes one case: its values to its outputs.
 
-    Attributes
-    ----------
-    outputs : names of the numbers that a case gives
-    nan_allowed : whether NaN is a result; else a number that is not finite is a failure
+    It travels with every batch, so it is small and can be pickled. ``nan_allowed`` says whether NaN is a
+    result; else a number that is not finite is a failure.
     """
 
     @property
@@ -76,9 +74,7 @@ class Evaluator(Protocol):
         """Load what is needed, so that the first case takes no longer than the others."""
         ...
 
-    def __call__(self, values: tuple[Any, ...]) -> tuple[float, ...]:
-        """Return the outputs of one case."""
-        ...
+    def __call__(self, values: tuple[Any, ...]) -> tuple[float, ...]: ...
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import platform
 from functools import cache
 from importlib import metadata
@@ -12,6 +13,9 @@ from typing import NamedTuple
 import lumped
 
 _PACKAGES = ("lumped", "multibody", "floquet", "validation")
+_LIBRARIES = ("spurcheck", "numpy", "scipy", "numba", "llvmlite", "exudyn")
+#: Settings of numba that change what it makes of the same source.
+_COMPILER = ("NUMBA_DISABLE_JIT", "NUMBA_OPT", "NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES")
 
 
 class Provenance(NamedTuple):
@@ -19,29 +23,34 @@ class Provenance(NamedTuple):
 
     Attributes
     ----------
-    versions : of Python and the libraries, and the machine type
-    code : hash of the source files of the four packages
+    versions : of Python and the libraries, the machine type, and settings of the compiler where set
+    code : hash of the source files of the four packages, which are the compiled kernels' source too
+    processor : its name; processors of different types may differ in the last digits
     """
 
     versions: str
     code: str
+    processor: str
+
+    def same_code(self, other: Provenance) -> bool:
+        """Tell whether the results of both may stand in one table."""
+        return self[:2] == other[:2]
 
 
 @cache
 def provenance() -> Provenance:
     """Return the provenance of what this process computes."""
-    names = ("spurcheck", "numpy", "scipy", "numba", "exudyn")
-    parts = [f"{name} {metadata.version(name)}" for name in names]
+    parts = [f"python {platform.python_version()}"]
+    parts += [f"{name} {metadata.version(name)}" for name in _LIBRARIES]
+    parts += [platform.machine()] + [f"{name}={os.environ[name]}" for name in _COMPILER if name in os.environ]
     digest = hashlib.sha256()
     root = Path(lumped.__file__).parent.parent
     for path in sorted(file for name in _PACKAGES for file in (root / name).rglob("*.py")):
         digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes())
-    versions = ", ".join([f"python {platform.python_version()}", *parts, platform.machine()])
-    return Provenance(versions, digest.hexdigest())
+    return Provenance(", ".join(parts), digest.hexdigest(), _processor())
 
 
-def processor() -> str:
-    """Return the name of the processor; processors of different types may differ in the last digits."""
+def _processor() -> str:
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
         return next(line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))

@@ -131,4 +131,5 @@ def _attributes(cases: CaseList, table: Table) -> dict[str, Any]:
         # Runs with the same versions and code count once, so a resumed sweep gives the same file.
         "versions": "; ".join(dict.fromkeys(run.versions for run in table.runs)),
         "code_sha256": "; ".join(dict.fromkeys(run.code for run in table.runs)),
+        "processors": "; ".join(sorted({run.processor for run in table.runs})),
     }

@@ -6,37 +6,28 @@ import contextlib
 import os
 import shutil
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from lumped.errors import refuse
 from validation.stop_signals import stopping_as_interrupt, undisturbed
-from validation.studies import store as stores
 from validation.studies.cases import CaseList, StudyEvaluator, case_list
+from validation.studies.cluster import pool_of
 from validation.studies.dispatch import Dispatcher
 from validation.studies.evaluate import Evaluator, Status
-from validation.studies.pools import pool_of
 from validation.studies.results import RESULTS, results_dataset, write_results
 from validation.studies.schema import Study
-from validation.studies.storage import STORE, StoreError, check_version
-from validation.studies.store import Store, Table
+from validation.studies.storage import STORE, StoreError
+from validation.studies.store import Cases, Store, Table, read_table
 
 #: Called after every batch with (cases computed in this run, cases to compute, failed so far).
 Progress = Callable[[int, int, int], None]
 _SHOWN_FAILURES = 20
 _BLOCK = 65_536
-
-
-class ComputedCases(stores.Cases, Protocol):
-    """Cases whose parameters are known by number."""
-
-    def values(self, cases: Sequence[int]) -> Sequence[tuple[Any, ...]]:
-        """Return the parameters of the cases of given numbers."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -142,7 +133,7 @@ def run_sweep(
             tell=tell,
         )
         store.sync()
-        table = store.table()
+        table = read_table(root, cases) if number else store.table()  # from the disk: it may be damaged since
         write_results(root, results_dataset(cases, table))
     return Summary(
         cases=cases.count,
@@ -165,7 +156,7 @@ def wanted(table: Table, retry_failed: bool = False) -> np.ndarray[Any, np.dtype
 
 
 def compute(
-    cases: ComputedCases,
+    cases: Cases,
     evaluator: Evaluator,
     store: Store,
     todo: np.ndarray[Any, np.dtype[np.bool_]],
@@ -194,7 +185,6 @@ def compute(
     with contextlib.closing(pool_of(workers, scheduler, limit is not None, number)) as pool:
         if not number:
             return
-        store.begin_run()
         dispatcher = Dispatcher(pool, evaluator, cases.values, limit, tell or (lambda text: None))
         try:
             for batch in dispatcher.batches(_numbers(todo), number):
@@ -231,22 +221,13 @@ def _prepare(root: Path, resume: bool) -> None:
     except OSError as error:
         reason = f"It cannot be used: {error.strerror}."
         raise refuse("output", root, "a folder that can be made and read", reason) from error
-    check_version(root)
-    store = root / STORE
-    begun = store.is_symlink() or (STORE in names and (not store.is_file() or store.stat().st_size > 0))
-    if begun and not resume:
-        raise refuse(
-            "output",
-            root,
-            "a new folder",
-            "It holds a sweep: go on with --resume, or choose another --output.",
-        )
-    # The store is the first file of a sweep, so without one all others are the user's.
+    if STORE in names and not resume and (root / STORE).lstat().st_size > 0:
+        action = "It holds a sweep: go on with --resume, or choose another --output."
+        raise refuse("output", root, "a new folder", action)
     foreign = sorted(name for name in names if not name.startswith("."))
-    if foreign and STORE not in names:
-        raise refuse(
-            "output", root, "a new or empty folder", f"It holds {foreign[0]}: choose another --output."
-        )
+    if foreign and STORE not in names:  # the first file of a sweep, so all others are the user's
+        action = f"It holds {foreign[0]}: choose another --output."
+        raise refuse("output", root, "a new or empty folder", action)
 
 
 def _check_memory(cases: CaseList) -> None:

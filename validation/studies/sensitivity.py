@@ -66,17 +66,20 @@ def indices(values: FloatArray, axes: int, seed: int) -> dict[str, FloatArray]:
     axes : number of axes
     seed : of the bootstrap
     """
-    blocks = values.reshape(values.shape[0], axes + 2, -1).transpose(1, 0, 2)
-    varies = np.ptp(values, axis=1) > 0.0
-    shape = (values.shape[0], axes)
     names = ("sobol_first", "sobol_total")
-    found = {f"{n}{end}": np.full(shape, np.nan) for n in names for end in ("", "_ci_low", "_ci_high")}
+    found = {
+        f"{name}{end}": np.full((len(values), axes), np.nan)
+        for name in names
+        for end in ("", "_ci_low", "_ci_high")
+    }
+    varies = np.ptp(values, axis=1) > 0.0
     if not varies.any():
         return found
-    blocks = blocks[:, varies]
     # The estimators are invariant under shift and scale. About a zero mean they lose fewer digits, and their
     # squares of numbers of order 1 neither vanish nor overflow.
-    blocks = (blocks - blocks.mean(axis=(0, 2))[:, None]) / np.ptp(values[varies], axis=1)[:, None]
+    values = values[varies]
+    values = (values - values.mean(axis=1, keepdims=True)) / np.ptp(values, axis=1)[:, None]
+    blocks = values.reshape(len(values), axes + 2, -1).transpose(1, 0, 2)
     n = blocks.shape[-1]
 
     def both(which: Any) -> FloatArray:
@@ -85,12 +88,13 @@ def indices(values: FloatArray, axes: int, seed: int) -> dict[str, FloatArray]:
             found: Any = stats.sobol_indices(func=func, n=n)
         return np.stack([found.first_order, found.total_order])
 
-    rng = np.random.default_rng(seed)
-    best = both(slice(None))
-    resampled = np.stack([both(rng.integers(0, n, n)) for _ in range(RESAMPLES)])
-    tail = 50.0 * (1.0 - CONFIDENCE)
-    low, high = np.nanpercentile(resampled, [tail, 100.0 - tail], axis=0)
+    # ``SobolResult.bootstrap`` takes no seed, and its BCa intervals n more evaluations.
+    best = both(np.arange(n))
+    options: Any = {"n_resamples": RESAMPLES, "confidence_level": CONFIDENCE, "batch": 1}
+    interval: Any = stats.bootstrap(
+        (np.arange(n),), both, vectorized=False, method="percentile", rng=seed, **options
+    ).confidence_interval
     for j, name in enumerate(names):
         found[name][varies] = best[j]
-        found[f"{name}_ci_low"][varies], found[f"{name}_ci_high"][varies] = low[j], high[j]
+        found[f"{name}_ci_low"][varies], found[f"{name}_ci_high"][varies] = interval.low[j], interval.high[j]
     return found

@@ -9,14 +9,14 @@ import stat
 from collections.abc import Iterator
 from pathlib import Path
 
-from lumped.errors import SpurcheckError, refuse
+from lumped.errors import SpurcheckError
 
 try:
     import fcntl
 except ImportError:  # pragma: no cover  (no advisory locks on this system)
     fcntl = None  # type: ignore[assignment]
 
-STORE, OLD_STORE, _LOCK = "store.sqlite", "journal.bin", ".lock"
+STORE = "store.sqlite"
 
 
 class StoreError(SpurcheckError, OSError):
@@ -32,35 +32,19 @@ def storage_failure(path: Path, doing: str, error: Exception) -> StoreError:
     )
 
 
-def check_version(folder: Path) -> None:
-    """Refuse a folder with the store of an earlier version.
-
-    Raises
-    ------
-    ParameterError : it holds one
-    """
-    if (folder / OLD_STORE).is_symlink() or (folder / OLD_STORE).exists():
-        raise refuse(
-            "output",
-            folder / OLD_STORE,
-            f"a folder whose store is {STORE}",
-            "An earlier version of spurcheck wrote this one: finish it with that version, or choose another "
-            "--output. It stays as it is.",
-        )
-
-
 @contextlib.contextmanager
 def translated(path: Path, doing: str) -> Iterator[None]:
     """Give the errors of SQLite in the user's words."""
     try:
         yield
-    except sqlite3.OperationalError as error:
-        raise storage_failure(path, doing, error) from error
     except sqlite3.Error as error:
+        if isinstance(error, sqlite3.OperationalError) and not str(error).startswith("no such"):
+            raise storage_failure(path, doing, error) from error
         raise damaged(path, str(error)) from error
 
 
 def damaged(path: Path, why: str) -> StoreError:
+    """Return the error for a file that is no store that can be read."""
     reason = " ".join(why.split())
     return StoreError(
         f"{path} is damaged or no store: {reason}. It stays as it is. Put a copy back, rescue its cases with "
@@ -68,24 +52,29 @@ def damaged(path: Path, why: str) -> StoreError:
     )
 
 
-def locked(folder: Path) -> int:
-    """Open the lock file of a folder; no other process can until it is closed or this one ends."""
-    path = folder / _LOCK
+@contextlib.contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Keep other processes from writing to a folder; the lock ends with this process at the latest.
+
+    Raises
+    ------
+    StoreError : another process has it, or the folder cannot be written
+    """
+    path = folder / ".lock"
+    check_plain(path)
     try:
         lock = os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o644)
     except OSError as error:
-        check_plain(path)
         raise storage_failure(path, "open it", error) from error
     try:
         if fcntl is not None:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as error:
+        yield
+    except BlockingIOError:
+        text = "another run is writing to this folder. Wait for it, or choose another --output."
+        raise StoreError(f"{folder}: {text}") from None
+    finally:
         os.close(lock)
-        if isinstance(error, BlockingIOError):
-            text = "another run is writing to this folder. Wait for it, or choose another --output."
-            raise StoreError(f"{folder}: {text}") from None
-        raise storage_failure(path, "lock it", error) from error
-    return lock
 
 
 def check_plain(path: Path) -> None:

@@ -7,7 +7,8 @@ thousands of workers would feel. The labelled NetCDF file is compiled from the s
 with the same bytes each time.
 
 The outcomes of a run of consecutive cases are one row: a byte of status a case, then the outputs as
-little-endian doubles, with a CRC-32. That takes 1 + 8 outputs bytes a case.
+little-endian doubles, with a CRC-32 that begins at the first case's number, for SQLite notices damage to its
+own structure only. That takes 1 + 8 outputs bytes a case, and what the pages leave empty.
 """
 
 from __future__ import annotations
@@ -19,9 +20,8 @@ import sqlite3
 import time
 import zlib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Protocol, Self
 
@@ -31,34 +31,28 @@ from lumped.errors import refuse
 from lumped.typing import FloatArray
 from validation.stop_signals import undisturbed
 from validation.studies.evaluate import Batch, Status
-from validation.studies.provenance import Provenance, processor, provenance
-from validation.studies.storage import (
-    STORE,
-    StoreError,
-    check_plain,
-    check_version,
-    damaged,
-    locked,
-    translated,
-)
+from validation.studies.provenance import Provenance, provenance
+from validation.studies.storage import STORE, StoreError, check_plain, damaged, locked, translated
 
 #: What is written reaches the disk itself at most this much later [s].
 SYNC_SECONDS = 1.0
 #: Error texts kept: those of the failed cases with the lowest numbers.
 MAX_FAILURES = 10_000
 _APPLICATION, _FORMAT = 0x53505243, 1
-_TABLES = """
+_BEGIN = f"""
 CREATE TABLE about (key TEXT PRIMARY KEY, value);
-CREATE TABLE run (versions TEXT, code TEXT, processor TEXT, began TEXT);
+CREATE TABLE run (versions TEXT, code TEXT, processor TEXT);
 CREATE TABLE batch (id INTEGER PRIMARY KEY, first INTEGER, count INTEGER, crc INTEGER, data BLOB);
-CREATE TABLE failure (number INTEGER PRIMARY KEY, message TEXT);
+CREATE TABLE failure (number INTEGER PRIMARY KEY, crc INTEGER, message BLOB);
+PRAGMA application_id={_APPLICATION};
+PRAGMA user_version={_FORMAT};
 """
 _KEEP_FIRST = """DELETE FROM failure WHERE number >=
 (SELECT number FROM failure ORDER BY number LIMIT 1 OFFSET ?)"""
 
 
 class Cases(Protocol):
-    """A list of cases that a store can belong to.
+    """A numbered list of cases that a store can belong to.
 
     Attributes
     ----------
@@ -80,6 +74,10 @@ class Cases(Protocol):
     @property
     def outputs(self) -> tuple[str, ...]: ...
 
+    def values(self, cases: Sequence[int]) -> Sequence[tuple[Any, ...]]:
+        """Return the parameters of the cases of given numbers."""
+        ...
+
 
 @dataclass
 class Table:
@@ -90,8 +88,8 @@ class Table:
     status : (cases,) ``Status`` codes
     values : (cases, outputs), NaN where there is no result; None when not wanted
     messages : case -> error text of failed ones, at most ``MAX_FAILURES``
-    damaged : batches whose checksum is wrong; their cases count as not computed
-    runs : provenance of every run that computed cases, in order, each once
+    damaged : batches and texts whose checksum is wrong; their cases count as not computed
+    runs : what computed cases, in order, each once
     """
 
     status: np.ndarray[Any, np.dtype[np.int8]]
@@ -127,41 +125,36 @@ class Store:
     ) -> None:
         self._cases = cases
         self._path = Path(":memory:") if folder is None else folder / STORE
-        self._lock = None if folder is None else locked(folder)
-        self._in_memory = folder is None
-        try:
+        self._file: os.stat_result | None = None
+        self._begun = False  # to write
+        self._synced = time.monotonic()
+        with contextlib.ExitStack() as stack:
             if folder is not None:
+                stack.enter_context(locked(folder))
                 check_plain(self._path)
             with translated(self._path, "write it"):
-                self._db = sqlite3.connect(self._path, isolation_level=None)
-                try:
-                    self._open(other_code, new)
-                except BaseException:
-                    self._db.close()
-                    raise
-        except BaseException:
-            self._unlock()
-            raise
-        self._synced = time.monotonic()
-
-    def _open(self, other_code: bool, must_be_new: bool) -> None:
-        self._new = _is_new(self._db, self._path)
-        if not self._new:
-            if must_be_new:  # since this run looked at the folder
-                raise StoreError(
-                    f"{self._path}: another run wrote to it just now. Run the same command with --resume."
+                self._db = stack.enter_context(
+                    contextlib.closing(sqlite3.connect(self._path, isolation_level=None))
                 )
-            for (found,) in self._db.execute("PRAGMA quick_check(1)"):
-                if found != "ok":
-                    raise damaged(self._path, found)
-            _check_same(self._db, self._path, self._cases)
-            if not other_code:
-                self._check_code()
-        self._file = None if self._in_memory else os.lstat(self._path)
+                self._new = folder is None or _is_new(self._db, self._path)
+                self._runs: set[Provenance] = set()
+                if not self._new:
+                    self._go_on(other_code, new)
+            if folder is not None:
+                self._file = os.lstat(self._path)
+            self._open = stack.pop_all()
 
-    def _check_code(self) -> None:
-        codes = {code for (code,) in self._db.execute("SELECT code FROM run")}
-        if codes - {provenance().code}:
+    def _go_on(self, other_code: bool, new: bool) -> None:
+        if new:  # since this run looked at the folder
+            raise StoreError(
+                f"{self._path}: another run wrote to it just now. Run the same command with --resume."
+            )
+        for (found,) in self._db.execute("PRAGMA quick_check(1)"):
+            if found != "ok":
+                raise damaged(self._path, found)
+        _check_same(self._db, self._path, self._cases)
+        self._runs.update(_runs(self._db))
+        if not other_code and {run.code for run in self._runs} - {provenance().code}:
             raise refuse(
                 "output",
                 self._path,
@@ -172,7 +165,7 @@ class Store:
 
     @contextlib.contextmanager
     def _transaction(self) -> Iterator[None]:
-        with undisturbed():
+        with undisturbed(), translated(self._path, "write to it"):
             self._db.execute("BEGIN IMMEDIATE")
             try:
                 yield
@@ -182,26 +175,17 @@ class Store:
                     self._db.execute("ROLLBACK")
                 raise
 
-    def begin_run(self) -> None:
-        """Note that this process computes cases from now on.
-
-        Raises
-        ------
-        StoreError : it cannot be written
-        """
-        now = datetime.now(UTC).isoformat(timespec="seconds")
+    def _begin(self) -> None:
+        """Make the tables where there are none, without a log yet: a file is empty or has them all."""
+        if self._new:
+            with self._transaction():
+                for statement in _BEGIN.strip().splitlines():
+                    self._db.execute(statement)
+                self._db.executemany("INSERT INTO about VALUES (?, ?)", _about(self._cases).items())
         with translated(self._path, "write to it"):
             self._db.execute("PRAGMA journal_mode=WAL")
             self._db.execute("PRAGMA synchronous=NORMAL")
-            with self._transaction():
-                if self._new:
-                    for statement in _TABLES.strip().splitlines():
-                        self._db.execute(statement)
-                    self._db.executemany("INSERT INTO about VALUES (?, ?)", _about(self._cases).items())
-                    self._db.execute(f"PRAGMA application_id={_APPLICATION}")
-                    self._db.execute(f"PRAGMA user_version={_FORMAT}")
-                self._db.execute("INSERT INTO run VALUES (?, ?, ?, ?)", (*provenance(), processor(), now))
-        self._new = False
+        self._new, self._begun = False, True
 
     def add(self, batch: Batch) -> None:
         """Write the outcomes of a batch; once this returns they survive the end of this process.
@@ -210,20 +194,24 @@ class Store:
         ------
         StoreError : they cannot be written; the store then is as before
         """
+        if not self._begun:
+            self._begin()
         cases = np.asarray(batch.cases, np.int64)
-        rows = []
-        for run in np.split(np.arange(cases.size), np.flatnonzero(np.diff(cases) != 1) + 1):
-            data = batch.status[run].tobytes() + batch.values[run].astype("<f8").tobytes()
-            rows.append((int(cases[run[0]]), run.size, zlib.crc32(data), data))
-        with translated(self._path, "write to it"), self._transaction():
-            self._db.executemany("INSERT INTO batch (first, count, crc, data) VALUES (?, ?, ?, ?)", rows)
-            for first, count, *_ in rows:
-                self._db.execute(
-                    "DELETE FROM failure WHERE number BETWEEN ? AND ?", (first, first + count - 1)
-                )
+        with self._transaction():
+            if batch.provenance not in self._runs:
+                self._db.execute("INSERT INTO run VALUES (?, ?, ?)", batch.provenance)
+            for run in np.split(np.arange(cases.size), np.flatnonzero(np.diff(cases) != 1) + 1):
+                first, last = int(cases[run[0]]), int(cases[run[-1]])
+                data = batch.status[run].tobytes() + batch.values[run].astype("<f8").tobytes()
+                row = first, run.size, zlib.crc32(data, first), data
+                self._db.execute("INSERT INTO batch (first, count, crc, data) VALUES (?, ?, ?, ?)", row)
+                self._db.execute("DELETE FROM failure WHERE number BETWEEN ? AND ?", (first, last))
             if batch.messages:
-                self._db.executemany("INSERT INTO failure VALUES (?, ?)", batch.messages.items())
+                texts = ((case, text.encode()) for case, text in batch.messages.items())
+                rows = ((case, zlib.crc32(text, case), text) for case, text in texts)
+                self._db.executemany("INSERT INTO failure VALUES (?, ?, ?)", rows)
                 self._db.execute(_KEEP_FIRST, (MAX_FAILURES,))
+        self._runs.add(batch.provenance)
         if time.monotonic() - self._synced > SYNC_SECONDS:
             self.sync()
 
@@ -254,25 +242,13 @@ class Store:
         with translated(self._path, "read it"):
             return _table(None if self._new else self._db, self._cases, with_values)
 
-    def close(self) -> None:
-        """Put the log into the file, so that it is one file again, and unlock."""
-        try:
-            with contextlib.suppress(sqlite3.Error):  # a reader may have it open; a full disk keeps the log
-                self._db.execute("PRAGMA journal_mode=DELETE")
-            self._db.close()
-        finally:
-            self._unlock()
-
-    def _unlock(self) -> None:
-        if self._lock is not None:
-            os.close(self._lock)
-            self._lock = None
-
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.close()
+        """Put the log into the file, so that it is one file again, and unlock."""
+        with self._open, contextlib.suppress(sqlite3.Error):  # a reader may have it open, or the disk is full
+            self._db.execute("PRAGMA journal_mode=DELETE")
 
 
 def read_definition(folder: Path) -> str:
@@ -283,8 +259,7 @@ def read_definition(folder: Path) -> str:
     StoreError : no store, a damaged one or one of an earlier version
     """
     with _reader(folder) as db:
-        (text,) = db.execute("SELECT value FROM about WHERE key = 'definition'").fetchone()
-        return str(text)
+        return str(dict(db.execute("SELECT key, value FROM about"))["definition"])
 
 
 def read_table(folder: Path, cases: Cases) -> Table:
@@ -301,7 +276,6 @@ def read_table(folder: Path, cases: Cases) -> Table:
 
 @contextlib.contextmanager
 def _reader(folder: Path) -> Iterator[sqlite3.Connection]:
-    check_version(folder)
     path = folder / STORE
     check_plain(path)
     with translated(path, "read it"):
@@ -315,12 +289,13 @@ def _reader(folder: Path) -> Iterator[sqlite3.Connection]:
 
 
 def _is_new(db: sqlite3.Connection, path: Path) -> bool:
-    """Tell whether a file holds nothing yet, as after a kill before the first transaction."""
-    (application,), (version,) = (
-        db.execute(f"PRAGMA {n}").fetchone() for n in ("application_id", "user_version")
-    )
-    (tables,) = db.execute("SELECT count(*) FROM sqlite_master").fetchone()
-    if application == 0 and tables == 0:
+    """Tell whether a file holds nothing yet, as after a kill before the first transaction.
+
+    A file with anything in it is never new, whatever its header says.
+    """
+    (application,) = db.execute("PRAGMA application_id").fetchone()
+    (version,) = db.execute("PRAGMA user_version").fetchone()
+    if path.stat().st_size == 0:
         return True
     if application != _APPLICATION:
         raise damaged(path, "it belongs to another program")
@@ -357,6 +332,12 @@ def _check_same(db: sqlite3.Connection, path: Path, cases: Cases) -> None:
     raise refuse("output", path, allowed, action)
 
 
+def _runs(db: sqlite3.Connection) -> list[Provenance]:
+    return [
+        Provenance(*row) for row in db.execute("SELECT versions, code, processor FROM run ORDER BY rowid")
+    ]
+
+
 def _table(db: sqlite3.Connection | None, cases: Cases, with_values: bool) -> Table:
     outputs = len(cases.outputs)
     values = np.full((cases.count, outputs), np.nan) if with_values else None
@@ -364,16 +345,19 @@ def _table(db: sqlite3.Connection | None, cases: Cases, with_values: bool) -> Ta
     if db is None:
         return table
     for first, count, crc, data in db.execute("SELECT first, count, crc, data FROM batch ORDER BY id"):
-        if zlib.crc32(data) != crc or len(data) != count * (1 + 8 * outputs) or first + count > cases.count:
+        size = count * (1 + 8 * outputs)
+        if not isinstance(data, bytes) or len(data) != size or zlib.crc32(data, first) != crc:
             table.damaged += 1
             continue
         table.status[first : first + count] = np.frombuffer(data, np.int8, count)
         if table.values is not None:
             found = np.frombuffer(data, "<f8", count * outputs, offset=count)
             table.values[first : first + count] = found.reshape(count, outputs)
-    failed = table.status >= Status.REFUSED
-    messages = db.execute("SELECT number, message FROM failure ORDER BY number")
-    table.messages = {case: text for case, text in messages if failed[case]}
-    runs = db.execute("SELECT versions, code FROM run ORDER BY rowid")
-    table.runs = tuple(dict.fromkeys(Provenance(*run) for run in runs))
+    for case, crc, text in db.execute("SELECT number, crc, message FROM failure ORDER BY number"):
+        if not isinstance(text, bytes) or zlib.crc32(text, case) != crc:
+            table.damaged += 1
+            table.status[case : case + 1] = Status.MISSING
+        elif table.status[case] >= Status.REFUSED:
+            table.messages[case] = text.decode()
+    table.runs = tuple(dict.fromkeys(_runs(db)))
     return table

@@ -15,7 +15,8 @@ import pytest
 
 from lumped.errors import ParameterError
 from validation.studies import Status, SweepStopped, dispatch, pools, run_sweep
-from validation.studies.provenance import Provenance
+from validation.studies import cluster as cluster_pool
+from validation.studies.provenance import provenance
 
 distributed = pytest.importorskip("distributed")
 pytestmark = [
@@ -26,7 +27,7 @@ pytestmark = [
 ]
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def cluster():
     """Three worker processes behind a scheduler on TCP."""
     with distributed.LocalCluster(
@@ -85,8 +86,8 @@ def test_a_result_lost_before_it_is_fetched_ends_its_future(tmp_path, cluster, m
         second.touch()
         return os.getpid()
 
-    monkeypatch.setattr(pools, "evaluate_on_cluster", work)
-    pool = pools.DaskPool(cluster.scheduler_address)
+    monkeypatch.setattr(cluster_pool, "evaluate_on_cluster", work)
+    pool = cluster_pool.DaskPool(cluster.scheduler_address)
     pool._client.run_on_scheduler(lambda dask_scheduler: setattr(dask_scheduler, "allowed_failures", 0))
     fetch, killed = pool._client._gather, []
 
@@ -128,7 +129,7 @@ def test_a_lost_scheduler_stops_the_sweep_and_nothing_is_lost(study, tmp_path, u
 
 @pytest.fixture
 def scheduler(tmp_path):
-    """Process of a scheduler with one worker, and its address."""
+    """Process of a scheduler, its address, and the process of its one worker."""
     known = tmp_path / "scheduler.json"
     options = ["--port", "0", "--dashboard-address", ":0", "--scheduler-file", str(known)]
     worker_options = ["--nthreads", "1", "--no-nanny"]
@@ -140,14 +141,14 @@ def scheduler(tmp_path):
         time.sleep(0.1)
     address = json.loads(known.read_text())["address"]
     worker = subprocess.Popen([*run, "distributed.cli.dask_worker", address, *worker_options], **quiet)
-    yield process, address
+    yield process, address, worker
     for each in (process, worker):
         each.kill()
         each.wait()
 
 
 def test_a_scheduler_that_stands_still_stops_the_sweep(study, tmp_path, scheduler, monkeypatch, undisturbed):
-    process, address = scheduler
+    process, address, _ = scheduler
 
     def freeze(done, total, failed):
         if thaw.ident is None:
@@ -164,14 +165,34 @@ def test_a_scheduler_that_stands_still_stops_the_sweep(study, tmp_path, schedule
     assert summary.results.read_bytes() == undisturbed
 
 
+def test_a_worker_that_stands_still_is_named(study, tmp_path, scheduler, monkeypatch, undisturbed):
+    monkeypatch.setattr(pools, "TOLD_SECONDS", 2.0)
+    _, address, worker = scheduler
+    frozen, told = [], []
+
+    def freeze(done, total, failed):
+        if not frozen:
+            worker.send_signal(signal.SIGSTOP)
+            frozen.append(done)
+
+    def thaw(text):
+        told.append(text)
+        if "Worker" in text:
+            worker.send_signal(signal.SIGCONT)
+
+    summary = run_sweep(study, tmp_path / "out", scheduler=address, progress=freeze, tell=thaw)
+    assert any("Worker tcp://" in text and "worker-ttl" in text for text in told)
+    assert summary.results.read_bytes() == undisturbed
+
+
 def test_a_cluster_with_other_code_is_refused(study, tmp_path, scheduler, monkeypatch):
-    monkeypatch.setattr(dispatch, "provenance", lambda: Provenance("python 3", "0" * 64))
+    monkeypatch.setattr(dispatch, "provenance", lambda: provenance()._replace(code="0" * 64))
     with pytest.raises(SweepStopped, match="same code"):
         run_sweep(study, tmp_path / "out", scheduler=scheduler[1])
 
 
 def test_ctrl_c_is_answered_at_once_also_by_a_scheduler_that_stands_still(study, tmp_path, scheduler):
-    process, address = scheduler
+    process, address, _ = scheduler
     asked = []
 
     def freeze(done, total, failed):
@@ -183,13 +204,13 @@ def test_ctrl_c_is_answered_at_once_also_by_a_scheduler_that_stands_still(study,
     try:
         with pytest.raises(KeyboardInterrupt):
             run_sweep(study, tmp_path / "out", scheduler=address, progress=freeze)
-        assert time.monotonic() - asked[0] < 1.0 + 4.0  # 2 s by the rule, and room for a loaded machine
+        assert time.monotonic() - asked[0] < 1.0 + 2.0
     finally:
         process.send_signal(signal.SIGCONT)
 
 
 def test_the_command_says_in_one_line_that_the_scheduler_died(make_study, tmp_path, scheduler):
-    process, address = scheduler
+    process, address, _ = scheduler
     long = make_study(
         analysis="multibody",
         outputs=["dte_rms"],
@@ -201,11 +222,10 @@ def test_the_command_says_in_one_line_that_the_scheduler_died(make_study, tmp_pa
     sweep = subprocess.Popen(
         command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     )
-    store = tmp_path / "long-sweep" / "store.sqlite"
-    while not (store.exists() and store.stat().st_size):
-        assert sweep.poll() is None
-        time.sleep(0.1)
-    time.sleep(1.0)  # the cases are on their way
+    with distributed.Client(address, set_as_default=False) as client:
+        while not any(client.processing().values()):
+            assert sweep.poll() is None
+            time.sleep(0.1)
     process.kill()
     text, _ = sweep.communicate(timeout=60)
     assert sweep.returncode == 3
@@ -214,7 +234,7 @@ def test_the_command_says_in_one_line_that_the_scheduler_died(make_study, tmp_pa
 
 
 def test_no_scheduler_is_refused(study, tmp_path, monkeypatch):
-    monkeypatch.setattr(pools, "_CONNECT_SECONDS", 0.5)
+    monkeypatch.setattr(cluster_pool, "_CONNECT_SECONDS", 0.5)
     with pytest.raises(ParameterError, match="running scheduler"):
         run_sweep(study, tmp_path / "out", scheduler="tcp://127.0.0.1:9")
     # Without certificates, and no address at all.

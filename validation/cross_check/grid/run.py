@@ -42,7 +42,6 @@ from validation.cross_check.grid.point import (
 from validation.stop_signals import stopping_as_interrupt
 from validation.studies.evaluate import Status
 from validation.studies.runner import compute, wanted
-from validation.studies.storage import check_version
 from validation.studies.store import Store
 
 __all__ = ["AXES", "COMPARED", "SEPARATED", "STICKING", "STIFFNESS", "Grid", "crosscheck_grid"]
@@ -168,7 +167,6 @@ def crosscheck_grid(
         except OSError as error:
             reason = error.strerror or type(error).__name__
             raise refuse("checkpoint", checkpoint, "a folder that can be written", f"{reason}.") from None
-        check_version(checkpoint)
     cases = _GridCases(g)
     with stopping_as_interrupt(), Store(checkpoint, cases) as store:
         todo = wanted(store.table(with_values=False))
