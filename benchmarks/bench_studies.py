@@ -89,7 +89,7 @@ def overhead(count):
 
 
 def store(count):
-    """Cost of the store and of compiling the result."""
+    """Cost of the store and of compiling the result; returns seconds a case, and its size over theirs."""
     cases = case_list(study_of(count))
     with tempfile.TemporaryDirectory() as folder:
 
@@ -106,13 +106,13 @@ def store(count):
             took, _ = seconds_of(write, block)
             size = Path(folder, STORE).stat().st_size / count
             print(f"store, {block:3d} a batch      {1e6 * took / count:10.2f} us, {size:.1f} bytes a case")
-        record_seconds = took / count
+        record_seconds, share = took / count, size / (1 + 8 * len(cases.outputs))
         took, table = seconds_of(read_table, Path(folder), cases)
         print(f"read on resume          {1e6 * took / count:10.2f} us a case")
         took, written = seconds_of(lambda: write_results(Path(folder), results_dataset(cases, table)))
         print(f"compile to NetCDF       {1e6 * took / count:10.2f} us a case")
         print(f"result                  {written.stat().st_size / count:10.1f} bytes a case")
-    return record_seconds
+    return record_seconds, share
 
 
 def scaling(count):
@@ -182,7 +182,7 @@ def cluster(tasks):
     return took / tasks
 
 
-def project(overhead_seconds, record_seconds, task_seconds, case_seconds=20e-3, cases=1e8, outputs=4):
+def project(overhead_seconds, record, task_seconds, case_seconds=20e-3, cases=1e8, outputs=4):
     """Print what 1e8 cases would take on N nodes, from the figures above.
 
     Assumptions: nodes of 64 cores as fast as one of this machine's; cases of ``case_seconds``; batches of
@@ -190,7 +190,8 @@ def project(overhead_seconds, record_seconds, task_seconds, case_seconds=20e-3, 
     core and do nothing in parallel; the network carries 1 kB a batch and 100 bytes a case, far below its
     limits.
     """
-    size = (2 + 8 * outputs) * cases
+    record_seconds, share = record
+    size = share * (1 + 8 * outputs) * cases
     held = 8 * outputs * cases
     print(f"1e8 cases of {1e3 * case_seconds:g} ms, {outputs} outputs: store {size / 1e9:.1f} GB, ", end="")
     print(f"result {held / 1e9:.1f} GB, {(held + 11 * cases) / 1e9:.1f} GB of memory to compile it")

@@ -13,7 +13,7 @@ from pydantic import BeforeValidator, Field, StrictFloat, StrictInt, model_valid
 from pydantic_core import PydanticCustomError
 
 from floquet.gear.axes import GEAR_AXES
-from lumped.errors import FieldProblem, ParameterError, refuse, shown
+from lumped.errors import ParameterError, refuse, shown
 from lumped.fields.section import Section
 from lumped.fields.units import Quantity, to_si, to_stated
 from lumped.schema.pair import field_at
@@ -70,12 +70,9 @@ def _plain_values(values: object) -> object:
     for value in values if isinstance(values, (list, tuple)) else ():
         number = isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < 2.0**63
         if not number and not isinstance(value, str):
-            context = {"value": shown(value), "allowed": "finite numbers or text with a unit"}
-            raise PydanticCustomError(
-                "quantity",
-                "{value}: allowed {allowed}. {action}",
-                {**context, "action": "Correct the value."},
-            )
+            problem = {"value": shown(value), "allowed": "finite numbers or text with a unit"}
+            problem["action"] = "Correct the value."
+            raise PydanticCustomError("quantity", "{value}: allowed {allowed}. {action}", problem)
     return values
 
 
@@ -103,27 +100,25 @@ class Axis(Section):
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
-        def stop(field: str, value: object, allowed: str, action: str) -> ParameterError:
-            return ParameterError([FieldProblem(field, str(value), allowed, action)])
-
         for path in self.field:
             try:
                 target_of(path)
             except ParameterError as error:
                 (problem, *_) = error.problems
-                raise stop("field", shown(repr(path)), problem.allowed, problem.action) from None
+                raise refuse("field", shown(repr(path)), problem.allowed, problem.action) from None
         if self.values is not None:
             if self.low is not None or self.high is not None or self.count is not None:
-                raise stop("values", "with low, high or count", "one of the two ways", "Remove one.")
+                raise refuse("values", "with low, high or count", "one of the two ways", "Remove one.")
             return self
         if self.low is None or self.high is None:
-            raise stop("low", self.low, "values, or low and high", "Give the range or the list of the axis.")
+            action = "Give the range or the list of the axis."
+            raise refuse("low", str(self.low), "values, or low and high", action)
         if not self.low < self.high:
-            raise stop("high", f"{self.high:g}", f"> low = {self.low:g}", "Swap or correct the two.")
+            raise refuse("high", f"{self.high:g}", f"> low = {self.low:g}", "Swap or correct the two.")
         if not math.isfinite(self.high - self.low):
-            raise stop("high", f"{self.high:g}", "a finite distance from low", "Narrow the range.")
+            raise refuse("high", f"{self.high:g}", "a finite distance from low", "Narrow the range.")
         if self.spacing == "log" and self.low <= 0.0:
-            raise stop("low", f"{self.low:g}", "> 0 with spacing 'log'", "Use spacing = 'linear'.")
+            raise refuse("low", f"{self.low:g}", "> 0 with spacing 'log'", "Use spacing = 'linear'.")
         return self
 
     @property
@@ -141,21 +136,16 @@ class Axis(Section):
         target = target_of(self.field[0])
         units = {target_of(path).unit for path in self.field}
         if len(units) > 1:
-            raise refuse(
-                "field", " and ".join(sorted(units)), "fields of the same unit", "Use separate axes."
-            )
+            given = " and ".join(sorted(units))
+            raise refuse("field", given, "fields of the same unit", "Use separate axes.")
         if self.values is None:
             if target.kind == "other":
                 raise refuse("field", repr(self.field[0]), "a number for a range", "List its values.")
             assert self.low is not None
             assert self.high is not None
             if target.kind == "int" and not -_EXACT < math.ceil(self.low) <= math.floor(self.high) < _EXACT:
-                raise refuse(
-                    "low",
-                    f"{self.low:g} to {self.high:g}",
-                    "a range with integers in it",
-                    "Correct the range.",
-                )
+                given = f"{self.low:g} to {self.high:g}"
+                raise refuse("low", given, "a range with integers in it", "Correct the range.")
             return () if self.count is None else self.spaced(np.linspace(0.0, 1.0, self.count))
         values = tuple(_read(value, target) for value in self.values)
         if len(set(values)) < len(values):

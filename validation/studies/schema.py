@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+import math
+from dataclasses import replace
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, PlainSerializer, model_validator
@@ -41,27 +42,24 @@ class Design(Section):
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
-        problems = []
-        if self.method == "grid" and self.samples is not None:
-            problems.append(
-                FieldProblem("samples", str(self.samples), "none for a grid", "Remove it, or sample.")
-            )
-        if self.method != "grid" and self.samples is None:
-            problems.append(FieldProblem("samples", "missing", "number of samples", "Give it."))
-        if self.method == "sobol" and self.samples is not None and self.samples & (self.samples - 1):
-            near = 1 << (self.samples.bit_length() - 1)
-            problems.append(
-                FieldProblem(
-                    "samples",
-                    str(self.samples),
-                    "a power of two (the balance of a Sobol sequence)",
-                    f"Take {near} or {2 * near}.",
-                )
-            )
-        if self.sensitivity and self.method != "sobol":
-            problems.append(
-                FieldProblem("sensitivity", "true", "method = 'sobol'", "Change the method or leave it out.")
-            )
+        grid, samples = self.method == "grid", self.samples
+        problems: list[FieldProblem] = []
+
+        def refused(wrong: bool, *problem: str) -> None:
+            problems.extend([FieldProblem(*problem)] if wrong else [])
+
+        refused(
+            grid and samples is not None, "samples", str(samples), "none for a grid", "Remove it, or sample."
+        )
+        refused(not grid and samples is None, "samples", "missing", "number of samples", "Give it.")
+        if self.method == "sobol" and samples is not None:
+            near = 1 << (samples.bit_length() - 1)
+            allowed = "a power of two (the balance of a Sobol sequence)"
+            refused(near != samples, "samples", str(samples), allowed, f"Take {near} or {2 * near}.")
+        refused(
+            self.sensitivity and self.method != "sobol",
+            *("sensitivity", "true", "method = 'sobol'", "Change the method or leave it out."),
+        )
         if problems:
             raise ParameterError(problems)
         return self
@@ -71,16 +69,12 @@ def _pair_in(value: object) -> object:
     return value.to_mapping() if isinstance(value, GearPair) else value
 
 
-def _pair_out(pair: GearPair) -> dict[str, Any]:
-    return pair.to_mapping()
-
-
 class Study(Section):
     """A study: everything that decides the results, nothing about where and how it runs."""
 
     name: Text = Field(min_length=1, max_length=80, description="short name")
     description: Text = Field("", max_length=2000, description="what the study is for")
-    gear_pair: Annotated[GearPair, BeforeValidator(_pair_in), PlainSerializer(_pair_out)] = Field(
+    gear_pair: Annotated[GearPair, BeforeValidator(_pair_in), PlainSerializer(GearPair.to_mapping)] = Field(
         description="preset name, TOML path beside the study file, or the gear pair's sections"
     )
     analysis: AnalysisName = Field(description="what is computed for every case")
@@ -103,8 +97,7 @@ class Study(Section):
 
     def to_mapping(self) -> dict[str, Any]:
         """Return the study as plain data for TOML, with the gear pair written out: nothing else is read."""
-        data = self.model_dump(exclude_none=True, exclude_defaults=True, mode="python")
-        return {key: _lists(value) for key, value in data.items()}
+        return self.model_dump(exclude_none=True, exclude_defaults=True, mode="json")
 
     def to_toml(self) -> str:
         """Return the study as TOML text; reading it back gives an equal study."""
@@ -118,14 +111,6 @@ class Study(Section):
         return hashlib.sha256(self.to_toml().encode()).hexdigest()
 
 
-def _lists(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {key: _lists(inner) for key, inner in value.items()}
-    if isinstance(value, (tuple, list)):
-        return [_lists(inner) for inner in value]
-    return value
-
-
 def _output_problems(study: Study) -> list[FieldProblem]:
     known = ANALYSES[study.analysis].outputs
     problems = [
@@ -134,57 +119,51 @@ def _output_problems(study: Study) -> list[FieldProblem]:
         if name not in known
     ]
     if len(set(study.outputs)) < len(study.outputs):
-        problems.append(
-            FieldProblem("outputs", "a name twice", "names that all differ", "Remove the repetition.")
-        )
+        allowed = "names that all differ"
+        problems.append(FieldProblem("outputs", "a name twice", allowed, "Remove the repetition."))
     return problems
 
 
 def _axis_problems(study: Study) -> list[FieldProblem]:
     """Reasons why the axes do not fit each other, the design or the analysis."""
-    problems: list[FieldProblem] = []
-
-    def add(field: str, value: str, allowed: str, action: str) -> None:
-        problems.append(FieldProblem(field, value, allowed, action))
-
     labels = [axis.label for axis in study.axes]
     paths = [path for axis in study.axes for path in axis.field]
-    reserved = {*study.outputs, *NAMES}
-    cases = 1
+    taken = {*study.outputs, *NAMES}
+    grid = study.design.method == "grid"
+    problems: list[FieldProblem] = []
     for j, axis in enumerate(study.axes):
-        at = f"axes.{j}"
-        if labels.count(axis.label) > 1 or axis.label in reserved:
-            add(
-                f"{at}.name",
-                repr(axis.label),
-                "a name that no other axis or result has",
-                "Give the axis a name.",
-            )
+        found: list[FieldProblem] = []
+        if labels.count(axis.label) > 1 or axis.label in taken:
+            allowed = "a name that no other axis or result has"
+            found.append(FieldProblem("name", repr(axis.label), allowed, "Give the axis a name."))
         for path in axis.field:
             if paths.count(path) > 1:
-                add(f"{at}.field", repr(path), "a field that no other axis changes", "Remove one.")
-            if target_of(path).floquet_only and study.analysis != "floquet":
-                add(
-                    f"{at}.field",
-                    repr(path),
-                    "an axis of analysis = 'floquet'",
-                    "Vary friction.coefficient (law coulomb) or the stiffness model's fields instead.",
+                found.append(
+                    FieldProblem("field", repr(path), "a field that no other axis changes", "Remove one.")
                 )
-        if study.design.method == "grid":
-            if axis.values is None and axis.count is None:
-                add(f"{at}.count", "missing", "values, or low, high and count, for a grid", "Add it.")
-            cases *= len(axis.values) if axis.values is not None else axis.count or 1
-        elif axis.values is not None or axis.count is not None:
-            add(f"{at}.values", "given", "low and high, for samples", "Give the range only, or use a grid.")
+            if target_of(path).floquet_only and study.analysis != "floquet":
+                action = "Vary friction.coefficient (law coulomb) or the stiffness model's fields instead."
+                found.append(FieldProblem("field", repr(path), "an axis of analysis = 'floquet'", action))
+        listed = axis.values is not None or axis.count is not None
+        if grid and not listed:
+            found.append(
+                FieldProblem("count", "missing", "values, or low, high and count, for a grid", "Add it.")
+            )
+        if listed and not grid:
+            action = "Give the range only, or use a grid."
+            found.append(FieldProblem("values", "given", "low and high, for samples", action))
         try:
-            if not any(problem.field.startswith(f"{at}.") for problem in problems):
+            if not found:
                 axis.listed()
         except ParameterError as error:
-            problems += [
-                FieldProblem(f"{at}.{p.field}", p.value, p.allowed, p.action) for p in error.problems
-            ]
-    if study.design.method != "grid":
-        cases = (study.design.samples or 0) * (len(study.axes) + 2 if study.design.sensitivity else 1)
+            found += error.problems
+        problems += [replace(problem, field=f"axes.{j}.{problem.field}") for problem in found]
+    design = study.design
+    if grid:
+        cases = math.prod(len(axis.values or ()) or axis.count or 1 for axis in study.axes)
+    else:
+        cases = (design.samples or 0) * (len(study.axes) + 2 if design.sensitivity else 1)
     if cases > MAX_CASES:
-        add("design", f"{cases} cases", f"<= {MAX_CASES} cases", "Take fewer values, or split the study.")
+        action = "Take fewer values, or split the study."
+        problems.append(FieldProblem("design", f"{cases} cases", f"<= {MAX_CASES} cases", action))
     return problems
