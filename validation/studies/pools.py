@@ -165,7 +165,7 @@ class ProcessPool:
                 same, calls = before.get(pid, (-1, 0))
                 self._still[pid] = used, calls + 1 if used == same else 0
         silent = {pid: calls for pid, (_, calls) in self._still.items() if calls >= TOLD_SECONDS}
-        if len(silent) <= self.slots - len(self._futures):  # these have nothing to do
+        if len(silent) <= max(self.slots - len(self._futures), 0):  # these have nothing to do
             return ""
         late = [pid for pid, calls in silent.items() if calls >= GIVEN_UP_SECONDS]
         if late and not any(future.running() for future in self._futures):

@@ -201,14 +201,18 @@ def test_a_worker_that_stands_still_is_told_and_given_up(sweep, odd, monkeypatch
 
 
 def test_ctrl_c_is_answered_at_once_by_workers_that_stand_still(sweep):
-    run = sweep.start(sweep.SLOW, workers=2)
-    sweep.wait_for(lambda: len(sweep.finished()) >= 5, "cases")
-    for pid in workers_of(run.pid):
-        os.kill(pid, signal.SIGSTOP)
-    asked = time.monotonic()
-    run.send_signal(signal.SIGINT)
-    run.communicate(timeout=30)
-    assert time.monotonic() - asked < 2.0
+    asked = []
+
+    def freeze(done, total, failed):
+        if not asked:
+            for pid in workers_of(os.getpid()):
+                os.kill(pid, signal.SIGSTOP)
+            asked.append(time.monotonic())
+            signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        run_sweep(sweep.study, sweep.out, workers=2, progress=freeze)
+    assert time.monotonic() - asked[0] < 2.0
     sweep.check_resume(sweep.finished())
 
 
