@@ -8,7 +8,7 @@ import logging
 import multiprocessing
 import time
 from concurrent.futures import Future
-from contextlib import closing, suppress
+from contextlib import suppress
 from typing import Any
 
 import pebble
@@ -16,7 +16,7 @@ import pebble
 from lumped.errors import refuse
 from validation.studies import pools
 from validation.studies.evaluate import Batch, evaluate_batch
-from validation.studies.pools import Pool, ProcessPool, SerialPool, SweepStopped
+from validation.studies.pools import Pool, ProcessPool, SerialPool, SweepStopped, Worker
 
 _CONNECT_SECONDS = 20.0
 # Without a limit a scheduler that stands still, its connection alive, would be waited for for ever.
@@ -30,8 +30,11 @@ def evaluate_on_cluster(*work: Any) -> Batch:
     if work[-1] is None:
         return evaluate_batch(*work)
     multiprocessing.current_process().daemon = False  # which may not have processes of its own
-    with closing(ProcessPool(1)) as pool:
-        return pool.submit(*work).result()
+    worker = Worker()
+    try:
+        return worker.run(*work)
+    finally:
+        worker.end()
 
 
 def _nothing(record: logging.LogRecord) -> bool:

@@ -7,10 +7,11 @@ import os
 import signal
 import sys
 import threading
-from concurrent.futures import Future
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import connection, forkserver, resource_tracker
 from pathlib import Path
+from queue import SimpleQueue
 from typing import Any, Protocol
 
 import pebble
@@ -122,87 +123,138 @@ def _context() -> Any:
     return context
 
 
+class Worker:
+    """A worker process with a pebble pool of its own: what it holds when it dies, nobody else waits for.
+
+    It starts with its first batch, and again with the one after a batch that did not end well.
+    """
+
+    def __init__(self) -> None:
+        self.closed = False
+        self.still = 0
+        self._busy = False
+        self._used: int | None = None
+        self._pool: Any = None
+        self._processes: list[Any] = []
+        self._ending = threading.Lock()
+
+    def run(self, *work: Any) -> Batch:
+        """Evaluate a batch; what is raised is said at ``Pool.submit``."""
+        self.still, self._busy = 0, True
+        try:
+            if self._pool is None:
+                pool = pebble.ProcessPool(1, initializer=_worker_start, context=_context())
+                pool.schedule(abs, (0,))  # starts the process
+                # pebble has no public name for it
+                self._processes = list(pool._pool_manager.worker_manager.workers.values())
+                self._pool = pool
+            if self.closed:
+                raise BrokenProcessPool("the sweep ends")
+            try:
+                future = self._pool.schedule(evaluate_guarded, work, timeout=work[-1])
+            except RuntimeError as error:
+                raise BrokenProcessPool("the process died while it had nothing to do") from error
+            while not wait([future], 1.0).done:
+                if not self._pool.active:  # it died just before, and pebble forgot the batch
+                    raise BrokenProcessPool("the process died before it had the batch")
+            batch: Batch = future.result()
+            return batch
+        except BaseException:
+            self.end()
+            raise
+        finally:
+            self._busy = False
+
+    def look(self) -> int:
+        """Return how many calls ago the process last used processor time, 0 where nobody can say."""
+        used = _processor_time(self._processes) if self._busy else None
+        self.still = self.still + 1 if used is not None and used == self._used else 0
+        self._used = used
+        return self.still
+
+    @property
+    def name(self) -> str:
+        """Number of the process."""
+        return " ".join(str(process.pid) for process in self._processes)
+
+    def kill(self) -> None:
+        """End the process; its batch is one on which a worker died."""
+        for process in self._processes:
+            process.kill()
+
+    def end(self) -> None:
+        """End the process, also one that stands still, which pebble would give 3 s."""
+        with self._ending:
+            pool, self._pool = self._pool, None
+            if pool is not None:
+                pool.stop()
+                self.kill()
+                pool.join()
+
+
 class ProcessPool:
-    """Worker processes of this machine, by pebble: it ends those that are late and replaces those that died.
+    """Worker processes of this machine.
 
     A worker that has work and uses no processor time, for it was stopped or waits for a disk that is gone, is
-    named after ``TOLD_SECONDS`` and killed after ``GIVEN_UP_SECONDS``: its batch is one on which a worker
-    died. Where no worker has begun a batch in that time, all are replaced: one died with the lock of the
-    channel that they share.
+    named after ``TOLD_SECONDS`` and killed after ``GIVEN_UP_SECONDS``.
     """
 
     def __init__(self, workers: int) -> None:
         self.slots = workers
-        self._futures: list[Future[Batch]] = []
-        self._start()
-
-    def _start(self) -> None:
-        self._still: dict[int, tuple[int, int]] = {}  # process -> ticks used, calls of ``check`` since
         resource_tracker.ensure_running()  # which lets Ctrl-C through to what is started with it
         with undisturbed():
-            self._pool = pebble.ProcessPool(self.slots, initializer=_worker_start, context=_context())
-            self._pool.schedule(abs, (0,))  # starts the workers
+            _context()
+        self._threads = pebble.ThreadPool(workers)
+        self._workers = [Worker() for _ in range(workers)]
+        self._idle: SimpleQueue[Worker] = SimpleQueue()
+        for worker in self._workers:
+            self._idle.put(worker)
 
     def submit(self, *work: Any) -> Future[Batch]:
         """Queue a batch."""
-        if not self._pool.active:  # all workers died while they had nothing to do
-            self._restart()
-        future: Future[Batch] = self._pool.schedule(evaluate_guarded, work, timeout=work[-1])
-        self._futures.append(future)
+        future: Future[Batch] = self._threads.schedule(self._run, work)
         return future
+
+    def _run(self, *work: Any) -> Batch:
+        worker = self._idle.get()
+        try:
+            return worker.run(*work)
+        finally:
+            self._idle.put(worker)
 
     def check(self) -> str:
         """Kill workers that stand still.
 
         Time is counted in calls: while this process stands still too, nobody is blamed.
         """
-        self._futures = [future for future in self._futures if not future.done()]
-        if not self._pool.active:  # a batch that came when all workers had just died would never end
-            self._restart()
-        before, self._still = self._still, {}
-        for pid in self._workers():
-            if (used := _processor_time(pid)) is not None:
-                same, calls = before.get(pid, (-1, 0))
-                self._still[pid] = used, calls + 1 if used == same else 0
-        silent = {pid: calls for pid, (_, calls) in self._still.items() if calls >= TOLD_SECONDS}
-        if len(silent) <= max(self.slots - len(self._futures), 0):  # these have nothing to do
-            return ""
-        late = [pid for pid, calls in silent.items() if calls >= GIVEN_UP_SECONDS]
-        if late and not any(future.running() for future in self._futures):
-            self._restart()
-        else:
-            for pid in late:
-                os.kill(pid, signal.SIGKILL)
-        return (
-            f"Worker process {', '.join(map(str, silent))} uses no processor time; it is killed after "
-            f"{GIVEN_UP_SECONDS:g} s and its cases run again."
+        silent = [worker for worker in self._workers if worker.look() >= TOLD_SECONDS]
+        for worker in silent:
+            if worker.still >= GIVEN_UP_SECONDS:
+                worker.kill()
+        names = ", ".join(worker.name for worker in silent)
+        return names and (
+            f"Worker process {names} uses no processor time; it is killed after {GIVEN_UP_SECONDS:g} s and "
+            "its cases run again."
         )
 
-    def _workers(self) -> dict[int, Any]:
-        """Processes of this pool; pebble has no public name for them."""
-        return dict(self._pool._pool_manager.worker_manager.workers)
-
-    def _restart(self) -> None:
-        self.close()
-        for future in self._futures:
-            if not future.done():
-                future.set_exception(BrokenProcessPool("all workers were replaced"))
-        self._start()
-
     def close(self) -> None:
-        """End the workers, also those that stand still, which pebble would give 3 s each."""
+        """End the workers."""
         with undisturbed():
-            self._pool.stop()
-            for worker in self._workers().values():
-                worker.kill()
-            self._pool.join()
+            self._threads.stop()
+            for worker in self._workers:
+                worker.closed = True  # should it start just now, it ends itself
+            with ThreadPoolExecutor(self.slots) as each:
+                each.map(Worker.end, self._workers)
+        ending = threading.Thread(target=self._threads.join, daemon=True)
+        ending.start()
+        ending.join(1.0)  # longer only where a process cannot start
 
 
-def _processor_time(pid: int) -> int | None:
-    """Clock ticks that a process has used; None where the system does not say."""
+def _processor_time(processes: list[Any]) -> int | None:
+    """Clock ticks that processes have used; None where the system does not say."""
     try:
-        text = Path(f"/proc/{pid}/stat").read_text(encoding="ascii", errors="replace")
+        stats = [Path(f"/proc/{process.pid}/stat").read_text("ascii", "replace") for process in processes]
     except OSError:
         return None
-    user, system = text.rpartition(")")[2].split()[11:13]
-    return int(user) + int(system)
+    fields = (text.rpartition(")")[2].split()[11:13] for text in stats)
+    return sum(int(user) + int(system) for user, system in fields)
