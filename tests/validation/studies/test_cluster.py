@@ -224,7 +224,7 @@ def test_the_command_says_in_one_line_that_the_scheduler_died(make_study, tmp_pa
     )
     with distributed.Client(address, set_as_default=False) as client:
         while not any(client.processing().values()):
-            assert sweep.poll() is None
+            assert sweep.poll() is None, sweep.communicate()[0]
             time.sleep(0.1)
     process.kill()
     text, _ = sweep.communicate(timeout=60)
