@@ -204,5 +204,5 @@ def test_16_the_cluster_gives_the_file_of_one_process(example, tmp_path):
     module = example(16)
     result = module.compute()
     labelled(module.draw(result))
-    run_sweep(load_study(module.STUDY), tmp_path / "alone")
+    run_sweep(load_study(module.STUDY), tmp_path / "alone", workers=0)
     xr.testing.assert_identical(result, read_results(tmp_path / "alone").load())

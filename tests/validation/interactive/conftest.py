@@ -76,9 +76,11 @@ class Browser:
     def __init__(self, driver):
         self.driver = driver
         self.run = driver.execute_script
+        self.shown = None
 
     def open(self, path, size=WIDE, *, dark=False, scripts=True):
         """Open a page in a window of this size, and wait until its charts are drawn."""
+        self.shown = None
         command = self.driver.execute_cdp_cmd
         command("Emulation.setScriptExecutionDisabled", {"value": not scripts})
         narrow = size[0] < 600
@@ -90,6 +92,13 @@ class Browser:
         self.driver.get(Path(path).as_uri())
         if scripts:
             self.wait("document.documentElement.dataset.ready === 'yes'")
+        return self
+
+    def keep(self, path):
+        """Open a page unless the last test kept it; for tests that set what they look at and do not zoom."""
+        if self.shown != path:
+            self.open(path)
+            self.shown = path
         return self
 
     def wait(self, condition, seconds=60):

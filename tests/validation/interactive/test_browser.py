@@ -13,7 +13,8 @@ AXES = ["bearing_factor", "friction_coefficient"]
 
 @pytest.fixture
 def page(browser, written):
-    return browser.open(written)
+    """Every test chooses what it looks at, so the page is loaded once."""
+    return browser.keep(written)
 
 
 def chart(data, key):
@@ -80,6 +81,9 @@ def test_hover_over_the_cut_shows_the_data_file(page, data):
     own = int(np.argmin(np.abs(data["bearing_factor"].to_numpy() - 1.0)))
     i, j = int(np.argmin(np.abs(data["damping_ratio"].to_numpy() - 0.016))), 17
     value = chart(data, "bearing_factor")[own, i, j]
+    for name, chosen in (("axis", AXES.index("bearing_factor")), ("slice", own), ("damping", i)):
+        page.choose(name, chosen)
+    page.drawn("stability-plot", "1")
     lines = page.hover("stability-plot", float(data["speed_rpm"][j]), float(value), "yaxis2")
     assert lines == [f"{float(data['speed_rpm'][j]):.6g} rpm", f"largest multiplier {value:.6f}"]
 
@@ -159,6 +163,7 @@ def test_flags_of_the_strip_are_those_of_the_data_file(page, data):
 def test_the_multibody_point_is_where_the_data_file_has_it(page, data):
     """The stand-in is the lumped motion itself, so the point must lie on the curve of the pair's law."""
     own = data.sel(law="xu_kahraman")
+    page.choose("law", list(data["law"].to_numpy()).index("xu_kahraman"))
     j = int(np.argmin(np.abs(data["speed"].to_numpy() - 4875.0)))
     for axis, variable in (("y", "dte_peak_to_peak"), ("y2", "y_p_peak_to_peak")):
         marks = page.drawn(

@@ -20,6 +20,12 @@ def page(browser, written):
     return browser.open(written)
 
 
+@pytest.fixture
+def kept(browser, written):
+    """For tests that set what they look at: loaded once."""
+    return browser.keep(written)
+
+
 def six_digits(values):
     return [float(f"{float(v):.6g}") for v in values]
 
@@ -60,14 +66,14 @@ def test_arrows_move_the_cursor_and_the_text_says_its_value(page, data):
     assert page.text("stability-text") == sentence(data, k, 0, 0)
 
 
-def test_the_cursor_meets_an_unstable_node(page, data):
+def test_the_cursor_meets_an_unstable_node(kept, data):
     unstable = np.argwhere(data["verdict_over_bearing_factor"].to_numpy() == -1)
     k, i, j = map(int, unstable[len(unstable) // 2])
-    for name, value in (("slice", k), ("damping", i), ("speed", j)):
-        page.choose(name, value)
-    assert page.text("stability-text") == sentence(data, k, i, j)
-    assert page.text("stability-text").endswith("unstable.")
-    lines = page.drawn("stability-plot", "plot.layout.shapes.map(s => [s.yref, s.x0, s.y0])")
+    for name, value in (("axis", 0), ("slice", k), ("damping", i), ("speed", j)):
+        kept.choose(name, value)
+    assert kept.text("stability-text") == sentence(data, k, i, j)
+    assert kept.text("stability-text").endswith("unstable.")
+    lines = kept.drawn("stability-plot", "plot.layout.shapes.map(s => [s.yref, s.x0, s.y0])")
     assert ["y domain", float(f"{data['speed_rpm'].values[j]:.6g}"), 0] in lines
     assert ["y", 0, float(f"{data['damping_ratio'].values[i]:.6g}")] in lines
 
@@ -120,12 +126,15 @@ def test_keys_and_buttons_zoom_and_the_window_follows_the_cursor(page, data):
     assert window()[1] - window()[0] == pytest.approx(0.5 * (whole[1] - whole[0]))
 
 
-def test_a_click_moves_the_cursor(page, data):
+def test_a_click_moves_the_cursor(kept, data):
     k, _, _ = start(data)
     i, j = 4, 9
-    page.hover("stability-plot", float(data["speed_rpm"][j]), float(data["damping_ratio"][i]))
-    page.click()
-    assert page.text("stability-text") == sentence(data, k, i, j)
+    for name, value in (("axis", 0), ("slice", k)):
+        kept.choose(name, value)
+    kept.drawn("stability-plot", "1")
+    kept.hover("stability-plot", float(data["speed_rpm"][j]), float(data["damping_ratio"][i]))
+    kept.click()
+    assert kept.text("stability-text") == sentence(data, k, i, j)
 
 
 def test_the_response_chart_answers_to_keys(page, data):
@@ -194,9 +203,9 @@ def contrast(one, other):
     return (high + 0.05) / (low + 0.05)
 
 
-def test_the_colours_rise_in_lightness_and_step_at_the_limit(page):
+def test_the_colours_rise_in_lightness_and_step_at_the_limit(kept):
     """In grey, and with any colour vision, lighter is larger; unstable is apart from all that is stable."""
-    chart = page.run(
+    chart = kept.run(
         "const t = document.getElementById('stability-plot').data[0]; return [t.colorscale, t.zmin, t.zmax]"
     )
     (scale, low, high) = chart
