@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
-import subprocess
 import sys
 from pathlib import Path
 
@@ -34,7 +33,9 @@ def f(x):
 """
 
 
-def test_the_cache_notices_edits_of_called_files(tmp_path: Path) -> None:
+def test_the_cache_notices_edits_of_called_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)  # it knows an edit by the second and the size
+    monkeypatch.syspath_prepend(tmp_path)
     package = tmp_path / "pkg"
     package.mkdir()
     for name, text in (("__init__", ""), ("jit", JIT), ("called", CALLED), ("caller", CALLER)):
@@ -42,11 +43,10 @@ def test_the_cache_notices_edits_of_called_files(tmp_path: Path) -> None:
 
     def run() -> tuple[float, ...]:
         """Value, and the number of functions taken from the cache."""
-        code = "from pkg.caller import f; print(f(1.0), sum(f.stats.cache_hits.values()))"
-        shown = subprocess.run(
-            [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
-        )
-        return tuple(float(part) for part in shown.stdout.split())
+        for name in [name for name in sys.modules if name.partition(".")[0] == "pkg"]:
+            monkeypatch.delitem(sys.modules, name)
+        f = importlib.import_module("pkg.caller").f
+        return f(1.0), sum(f.stats.cache_hits.values())
 
     assert run() == (2.0, 0)
     assert run() == (2.0, 1)  # there is a cache to go stale

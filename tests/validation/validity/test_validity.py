@@ -116,5 +116,5 @@ def test_a_stiffness_model_outside_its_fit_is_said():
     assert flag.action
     # A constant given by the user stands on no fit.
     own = wide.with_(mesh__stiffness={"model": "rectangular", "pair_stiffness": 3e8})
-    flag = validity.stiffness_ranges(own, lumped.geometry(own))
+    flag = validity.stiffness_ranges(own)
     assert (flag.state, flag.value, flag.action) == ("ok", 0.0, "")
