@@ -2,7 +2,9 @@ r"""The published friction laws I to V, evaluated at the multibody model's own c
 
 Written from the printed laws (docs/theory/friction.md), with conversions of its own from SI to the units in
 which each law was fitted, and without a line or a table of ``lumped.friction``: a wrong unit or factor on
-either side shows as a difference between the two models.
+either side shows as a difference between the two models. A law that is not written here has the code
+``TABLE``: the contact reads the lumped model's mu(xi) (``kernels.friction_size``), and
+``multibody.study.shared`` says so.
 
 A contact is described by what the law reads: sliding velocity :math:`v_s`, sum of the rolling velocities
 :math:`v_e`, radii of curvature :math:`\rho_p, \rho_g` and the load per face width w.
@@ -32,8 +34,9 @@ from multibody.contact.compiled import compiled
     FILM_LENGTH,  # L_x [m]
     SLOWEST,  # sliding velocity below which law II is held constant [m/s]
     SLOWEST_ROLLING,  # sum of the rolling velocities below which the laws are held [m/s]
+    COLUMNS,  # of the lumped model's table, with the code TABLE
     N_FRICTION,
-) = range(18)  # fmt: skip
+) = range(19)  # fmt: skip
 
 #: Codes of the laws, by their names in parameter files.
 LAWS = {
@@ -44,6 +47,8 @@ LAWS = {
     "smoothed_coulomb": 4.0,
     "composite": 5.0,
 }
+#: Code of every other law.
+TABLE = 6.0
 _NONE, _I, _II, _III, _IV, _V = range(6)
 
 #: Branches of law II, as ``branch`` tells them beside the codes of the laws: at its two bounds.

@@ -67,7 +67,7 @@ def fill_friction(pair: GearPair, p: FloatArray) -> None:
         f[fr.MEAN] = law.coefficient
     elif name in ("coulomb", "smoothed_coulomb", "composite"):
         f[fr.MEAN] = _mean_of_law_two(p)
-    f[fr.LAW] = fr.LAWS[name]
+    f[fr.LAW] = fr.LAWS.get(name, fr.TABLE)
 
 
 def viscosity(lubricant: Lubricant) -> float:

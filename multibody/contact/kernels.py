@@ -50,6 +50,7 @@ FRICTION_LOAD = 128
 RELIEF_COLUMNS, MOST_RELIEFS = 5, 4
 #: Where the parameters of the friction laws start, see ``multibody.contact.friction``.
 FRICTION = FIRST_RELIEF + RELIEF_COLUMNS * MOST_RELIEFS
+#: The rows of ``friction_size``'s table, if there is one, stand behind all others.
 N_PARAMETERS = FRICTION + fr.N_FRICTION
 
 # Columns of a contact record.
@@ -61,7 +62,7 @@ N_RECORD = 11
 
 @compiled
 def stiffness_at(table: FloatArray, xi: float) -> float:
-    """Stiffness of one tooth pair at xi [N/m], clamped to the ends of its path.
+    """Stiffness of one tooth pair at xi [N/m], or another tabulated law, clamped to the ends of its path.
 
     ``table`` has one row per polynomial piece: its left end, its right end, then coefficients, highest
     power of (xi - left) first.
@@ -104,6 +105,22 @@ def relief_at(p: FloatArray, xi: float) -> tuple[float, float]:
 
 
 @compiled
+def friction_size(
+    p: FloatArray, slide: float, rolling: float, rho_p: float, rho_g: float, distance: float, load: float
+) -> float:
+    """Size of the friction coefficient at one contact, see ``friction.magnitude``.
+
+    A law without a formula there is read from the lumped model's table, where the nominal motion slides as
+    fast.
+    """
+    f = p[FRICTION:]
+    if f[fr.LAW] == fr.TABLE:
+        table = p[N_PARAMETERS:].reshape((-1, int(f[fr.COLUMNS])))
+        return abs(stiffness_at(table, p[L_XP] + distance))
+    return float(fr.magnitude(f, slide, rolling, rho_p, rho_g, distance, load))
+
+
+@compiled
 def nominal_friction(p: FloatArray, xi: float) -> float:
     """Signed friction coefficient of the nominal motion at xi, under the full static load w_n."""
     f = p[FRICTION:]
@@ -111,7 +128,7 @@ def nominal_friction(p: FloatArray, xi: float) -> float:
     sliding = (p[OMEGA_P] + p[OMEGA_G]) * abs(distance)
     rho_g = p[L_XY] - xi
     rolling = p[OMEGA_P] * xi + p[OMEGA_G] * rho_g
-    mu = fr.magnitude(f, sliding, rolling, xi, rho_g, distance, f[fr.NOMINAL_LOAD])
+    mu = friction_size(p, sliding, rolling, xi, rho_g, distance, f[fr.NOMINAL_LOAD])
     return math.copysign(mu, distance) if distance != 0.0 else 0.0
 
 
@@ -149,7 +166,7 @@ def signed_friction(
         rolling = p[OMEGA_P] * rho_p + p[OMEGA_G] * rho_g
     if slide == 0.0:
         return 0.0
-    mu = fr.magnitude(f, abs(slide), rolling, rho_p, rho_g, slide / speeds, load)
+    mu = friction_size(p, abs(slide), rolling, rho_p, rho_g, slide / speeds, load)
     if flags & SLIDING and p[V_REG] > 0.0:
         return mu * math.tanh(slide / p[V_REG])
     return math.copysign(mu, slide)

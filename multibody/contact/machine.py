@@ -1,6 +1,7 @@
 """A gear pair turned into the plain numbers that a multibody model needs.
 
-Only the stiffness of a tooth pair is taken from ``lumped``. Circles, path of contact, tooth thickness,
+Only the stiffness of a tooth pair is taken from ``lumped``, and the coefficient of a friction law that
+``multibody.contact.friction`` does not have. Circles, path of contact, tooth thickness,
 bodies, bearings, damping, relief and friction are derived here again from the fields of the schema, so that
 agreement of the two models is evidence for both (``multibody.SHARED`` lists what is not).
 """
@@ -16,11 +17,13 @@ import numpy as np
 
 from lumped.model.mesh_elements import mesh_elements
 from lumped.path_function import PathFunction
+from lumped.path_of_contact import friction_path_function
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
+from multibody.contact import friction as fr
 from multibody.contact import kernels as kn
 from multibody.contact.drawing import base_tooth_angle, bearing_constants, circles, masses, reliefs
-from multibody.contact.events import event_table
+from multibody.contact.events import SLIDING, event_table
 from multibody.contact.friction_parameters import fill_friction, friction_switches
 from multibody.contact.kinematics import DRIVE, add_wrench, line_of_action, mesh_phase, wrap
 
@@ -31,7 +34,8 @@ class Machine:
 
     Attributes
     ----------
-    parameters : (kernels.N_PARAMETERS,) geometry and nominal motion, in the order of ``kernels``
+    parameters : geometry, nominal motion and friction, in the order of ``kernels``; behind these the lumped
+        model's friction coefficient as rows like ``table``, where the multibody model has no law of its own
     table : stiffness of a tooth pair as ``kernels.stiffness_at`` reads it
     mass, inertia : (2,) pinion, gear [kg], [kg m^2]
     bearing_stiffness, bearing_damping : (2, 2) rows pinion, gear; columns x, y [N/m], [N s/m]
@@ -112,12 +116,17 @@ def machine(pair: GearPair) -> Machine:
     p[kn.T_LOW], p[kn.T_HIGH] = -math.inf, math.inf
     mass, inertia = masses(pair)
     p[kn.DAMPING] = 2.0 * pair.mesh.damping_ratio * math.sqrt(mesh_mass(p, inertia))
-    rows = reliefs(pair, drawn)
-    p[kn.RELIEFS] = len(rows)
-    p[kn.FIRST_RELIEF : kn.FIRST_RELIEF + kn.RELIEF_COLUMNS * len(rows)] = np.ravel(rows)
+    relieved = reliefs(pair, drawn)
+    p[kn.RELIEFS] = len(relieved)
+    p[kn.FIRST_RELIEF : kn.FIRST_RELIEF + kn.RELIEF_COLUMNS * len(relieved)] = np.ravel(relieved)
     fill_friction(pair, p)
-    starts = [at * r_p if which == 0.0 else l_xy - at * r_g for which, at, *_ in rows]
     friction = friction_switches(p)
+    if p[kn.FRICTION + fr.LAW] == fr.TABLE:
+        law = friction_path_function(pair)
+        p[kn.FRICTION + fr.COLUMNS] = law.coefficients.shape[0] + 2
+        p = np.append(p, pack(law))
+        friction = [(SLIDING, place) for place in law.switches.tolist()]
+    starts = [at * r_p if which == 0.0 else l_xy - at * r_g for which, at, *_ in relieved]
     places = [place for _, place in friction]
     bearing_stiffness, bearing_damping = bearing_constants(pair, mass)
     return Machine(
