@@ -49,9 +49,9 @@ SHARED: tuple[Shared, ...] = (
     Shared(
         "printed formulas of the friction laws, the film and Walther's law, with their constants",
         "they are what the prediction is about; each is written twice",
-        "published values of each law, reproduced by both",
+        "values that are published or worked out by hand, computed by both models on every installation",
         (
-            "tests/multibody/contact/test_friction.py",
+            "validation/verification/published.py",
             "tests/lumped/friction",
             "docs/theory/friction.md",
         ),

@@ -10,7 +10,6 @@ Sources: docs/theory/multibody.md, "Three builds of one machine".
 
 from __future__ import annotations
 
-import time as clock
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
@@ -45,8 +44,7 @@ class TurningBuild:
     turned : angle of the pinion at the end [rad]
     difference : largest difference of the transmission error [m]
     span : peak to peak of the transmission error [m]
-    evaluations : force evaluations per mesh cycle: turning, usual
-    seconds : computing time per mesh cycle: turning, usual
+    evaluations : what it costs, force evaluations per mesh cycle: turning, usual
     """
 
     cycles: int
@@ -54,7 +52,6 @@ class TurningBuild:
     difference: float
     span: float
     evaluations: tuple[float, float]
-    seconds: tuple[float, float]
 
 
 def turning_build(
@@ -84,12 +81,8 @@ def turning_build(
     atol = real_number("atol", atol, 1e-12, 1e-3)
     setup = prepare(pair, initial="periodic", effects=effects, rtol=_REFERENCE)
     p = setup.machine.parameters
-    start = clock.process_time()
     usual, _, _ = record(setup, cycles, _SAMPLES)
-    usual_seconds = clock.process_time() - start
-    start = clock.process_time()
     states, calls = _run(setup, cycles, usual["time"].to_numpy(), atol)
-    seconds = clock.process_time() - start
     dte = usual["dte"].to_numpy()
     read = np.array([1.0, 0.0, -p[kn.RADIUS_P], -1.0, 0.0, -p[kn.RADIUS_G]])
     return TurningBuild(
@@ -98,7 +91,6 @@ def turning_build(
         difference=float(np.abs(states @ read - dte).max()),
         span=float(np.ptp(dte)),
         evaluations=(calls / cycles, setup.model.budget.calls / cycles),
-        seconds=(seconds / cycles, usual_seconds / cycles),
     )
 
 

@@ -16,6 +16,7 @@ from validation.cross_check.comparison import crosscheck
 from validation.faults.fault import Fault
 from validation.faults.quantities import FELT, change, quantities
 from validation.faults.rewriting import applied
+from validation.reporting.results import QUICK, Results
 from validation.verification.code import code_checks
 from validation.verification.solution import enough_samples, refinements
 
@@ -49,6 +50,7 @@ PARTS: Mapping[str, str] = {
     "cross-check": "crosscheck, report",
     "code verification": "report",
     "solution verification": "report",
+    "models": "report",
 }
 _CYCLES, _SAMPLES = 6, 64
 
@@ -174,10 +176,18 @@ def _solution(pair: GearPair) -> Iterator[str]:
             yield refinement.key
 
 
+def _models(pair: GearPair) -> Iterator[str]:
+    """The multibody model by itself, and the multipliers by two routes."""
+    for check in Results(pair, QUICK).checks:
+        if not check.passes:
+            yield check.key
+
+
 _CHECKS: Mapping[str, Callable[[GearPair], Iterator[str]]] = {
     "cross-check": _cross_check,
     "code verification": _code,
     "solution verification": _solution,
+    "models": _models,
 }
 
 

@@ -20,7 +20,14 @@ _ERRORS = frozenset(
     {"error", "error_estimate", "liouville_residual", "unsettled", "law_difference", "bound", "closure"}
 )
 _ERROR_ROWS = ("change over one more cycle",)
-_ERROR_TABLES = frozenset({"code_verification/closed_forms", "solution_verification/refinement"})
+_ERROR_TABLES = frozenset(
+    {
+        "code_verification/closed_forms",
+        "solution_verification/refinement",
+        "reference_model/checks",
+        "stability/routes",
+    }
+)
 #: A number counts as zero below this share of the largest of its unit in its table, or of its column.
 _SMALL = 1e-4
 _LARGEST_TEXT = 60

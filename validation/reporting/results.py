@@ -19,7 +19,9 @@ from lumped.typing import Progress
 from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.reporting.paper_results import PaperResults, paper_results
 from validation.validity.flags import LOAD_NOISE, Flag, speed_drift, validity_flags
-from validation.verification import enough_samples
+from validation.verification import Check, enough_samples
+from validation.verification.reference_model import ReferenceModel, reference_model
+from validation.verification.stability_routes import StabilityRoutes, stability_routes
 
 
 @dataclass(frozen=True)
@@ -152,6 +154,27 @@ class Results:
     def multipliers(self) -> GearPairMultipliers:
         """Floquet multipliers at the operating point."""
         return gear_pair_multipliers(self.pair)
+
+    @cached_property
+    def routes(self) -> StabilityRoutes | str:
+        """Floquet multipliers by two routes; why the second one cannot be computed."""
+        self.stage("multipliers by the multibody model")
+        try:
+            return stability_routes(self.pair)
+        except NumericalError as error:
+            return str(error)
+
+    @cached_property
+    def reference(self) -> ReferenceModel:
+        """Checks of the multibody model."""
+        self.stage("checks of the multibody model")
+        return reference_model(self.pair, self.static_load)
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """Checks of the multibody model and of the multipliers, which every report has."""
+        routes = self.routes
+        return (*self.reference.checks, *(() if isinstance(routes, str) else routes.checks))
 
     @cached_property
     def margins(self) -> StabilityMargins:

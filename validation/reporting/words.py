@@ -28,7 +28,7 @@ def sentence(results: Results) -> str:
         (f"Do not rely on this prediction: {'; '.join(wrong)}. " if wrong else "")
         + f"At {results.operating_rpm:.5g} rpm and {results.pair.operating.pinion_torque:.4g} N m the lumped "
         f"model {'computes' if wrong else 'predicts'} a transmission error of {span(results)} peak to peak"
-        f"{_efficiency(results)}. {_agreement(results.check)} The motion is "
+        f" and {efficiency(results)}. {_agreement(results.check)} The motion is "
         f"{_stability(results)} {validity(results)}"
     )
 
@@ -39,15 +39,15 @@ def span(results: Results) -> str:
 
 
 def efficiency(results: Results) -> str:
-    """Mesh efficiency in percent."""
-    return f"{100 * float(results.motion.attrs['mesh_efficiency']):.2f} %"
+    """Mesh efficiency in percent; none where a law of nature does not hold."""
+    if not lawful(results):
+        return "no mesh efficiency, because a law of nature does not hold"
+    return f"a mesh efficiency of {100 * float(results.motion.attrs['mesh_efficiency']):.2f} %"
 
 
-def _efficiency(results: Results) -> str:
-    """Mesh efficiency for the first sentence; left out where a law of nature does not hold."""
-    if any(not j.within for j in results.check.nature):
-        return ", and no mesh efficiency because a law of nature does not hold"
-    return f" and a mesh efficiency of {efficiency(results)}"
+def lawful(results: Results) -> bool:
+    """Whether the laws of nature hold in both models."""
+    return all(j.within for j in results.check.nature)
 
 
 def objections(results: Results) -> list[str]:
@@ -59,29 +59,37 @@ def objections(results: Results) -> list[str]:
         for flag in results.flags
         if flag.state == "violated" and flag.key != "stability"
     ]
+    failed = [check.key for check in results.checks if not check.passes]
+    if failed:
+        found.insert(0, f"checks of the models fail ({', '.join(failed)})")
     if results.check.verdict == "not confirmed":
         found.insert(0, "the cross-check does not confirm it")
     return found
 
 
-def unstable_warning(results: Results) -> tuple[Text, ...]:
-    """What a chapter on the periodic motion says first where that motion is not stable."""
-    found = results.multipliers
-    if found.verdict == "stable":
-        return ()
-    return (
-        Text(
-            f"Warning: the periodic motion at the operating point is {found.verdict} (largest multiplier "
-            f"{found.spectral_radius:.4g}). What follows is a solution of the equations that a gear pair "
+def cautions(results: Results) -> tuple[Text, ...]:
+    """What a chapter on the periodic motion says first where that motion is not to be relied on."""
+    stability, check, found = results.multipliers, results.check, []
+    if check.verdict == "not confirmed":
+        found.append(
+            "Warning: do not rely on the numbers of this chapter. The cross-check does not confirm the "
+            f"model: {failed_checks(check)}."
+        )
+    if stability.verdict != "stable":
+        found.append(
+            f"Warning: the periodic motion at the operating point is {stability.verdict} (largest multiplier "
+            f"{stability.spectral_radius:.4g}). What follows is a solution of the equations that a gear pair "
             "leaves at the smallest disturbance: not a prediction of what it does."
-        ),
-    )
+        )
+    return tuple(map(Text, found))
 
 
 def _stability(results: Results) -> str:
     verdict = results.multipliers.verdict
     here = "stable here and" if verdict == "stable" else f"{verdict} here and stable"
-    return f"{here} {stable_speeds(results)}."
+    routes = results.routes
+    doubt = "" if isinstance(routes, str) or routes.agree else ", which a second route does not confirm"
+    return f"{here} {stable_speeds(results)}{doubt}."
 
 
 def stable_speeds(results: Results) -> str:

@@ -17,7 +17,7 @@ from validation.verification.arithmetic import arithmetic
 from validation.verification.checks import Check
 from validation.verification.closed_forms import closed_forms
 from validation.verification.published import published_checks
-from validation.verification.stability_routes import stability_routes
+from validation.verification.stability_routes import fit_bound
 from validation.verification.written_twice import written_twice
 
 _CYCLES = 3
@@ -38,7 +38,7 @@ def code_checks(pair: GearPair) -> tuple[Check, ...]:
         _block_form(pair),
         *_lumped_identities(pair),
         *(_energy(pair, fidelity) for fidelity in ("linear", "exact")),
-        *stability_routes(pair),
+        fit_bound(pair),
     )
 
 

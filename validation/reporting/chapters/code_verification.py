@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from validation.reporting.blocks import Badge, Content, Text, table_of
 from validation.reporting.chapter import Chapter
+from validation.reporting.checks import check_table
 from validation.reporting.results import Results
 from validation.verification import Check, OrderCheck, code_checks, order_checks
 
@@ -25,19 +26,8 @@ def content(checks: tuple[Check, ...], orders: tuple[OrderCheck, ...]) -> Conten
         "report, with this installation: a formula against its published or closed-form value, a model "
         "against a law of mechanics, a method against its order of convergence."
     )
-    table = table_of(
-        "closed_forms",
-        "Errors against exact values; relative where not said otherwise.",
-        checks,
-        {
-            "key": ("check", lambda c: c.key),
-            "subject": ("what is checked", lambda c: c.subject),
-            "exact": ("what it must equal", lambda c: c.exact),
-            "value": ("error", lambda c: c.value),
-            "limit": ("limit", lambda c: c.limit),
-            "verdict": ("verdict", lambda c: Badge("within" if c.passes else "outside")),
-        },
-        note="Why these limits: " + "; ".join(f"{c.key}: {c.reason}" for c in checks) + ".",
+    table = check_table(
+        "closed_forms", "Errors against exact values; relative where not said otherwise.", checks
     )
     order_table = table_of(
         "orders",

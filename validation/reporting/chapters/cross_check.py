@@ -30,7 +30,7 @@ from validation.reporting.blocks import (
 from validation.reporting.causes import attribution, causes, meshing_teeth
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
-from validation.reporting.words import NAMES, failed_checks, finite_motions, same_equations, unstable_warning
+from validation.reporting.words import NAMES, cautions, failed_checks, finite_motions, same_equations
 
 _SHOWN = ("dte", "x_p", "y_p", "normal_load", "friction_force")
 _CAPTIONS = {
@@ -49,7 +49,7 @@ def write(results: Results) -> Content:
     keep = off_switch_samples(results.pair, check.lumped["time"].to_numpy())
     models = {str(fidelity): result for fidelity, result in check.multibody.items()}
     blocks: list[Block] = [
-        *unstable_warning(results),
+        *cautions(results),
         Text(
             f"The verdict is “{check.verdict}”: {MEANINGS[check.verdict]}. The linear model starts from the "
             f"lumped periodic motion and is compared over {check.cycles} mesh cycles. {_exact_motion(check)}"

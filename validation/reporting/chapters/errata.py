@@ -9,7 +9,7 @@ from validation.reporting.blocks import Badge, Block, Content, Fact, Facts, Pict
 from validation.reporting.chapter import Chapter
 from validation.reporting.paper_results import PaperResults
 from validation.reporting.results import Results
-from validation.reporting.words import unstable_warning
+from validation.reporting.words import cautions
 
 
 def write(results: Results) -> Content | None:
@@ -18,7 +18,7 @@ def write(results: Results) -> Content | None:
         return None
     chapter = results.paper.errata
     blocks: list[Block] = [
-        *unstable_warning(results),
+        *cautions(results),
         Text(chapter.text),
         Facts("conditions", tuple(Fact(name, name, value) for name, value in chapter.conditions.items())),
         table_of(

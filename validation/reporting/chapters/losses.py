@@ -23,10 +23,21 @@ from lumped.losses import (
 from lumped.lubrication.viscosity import ZERO_CELSIUS
 from lumped.path_of_contact import contact_path
 from validation.plots.efficiency import efficiency_figure, film_figure, sliding_power_figure
-from validation.reporting.blocks import Block, Content, Fact, Facts, Picture, Quantity, Table, Text, table_of
+from validation.reporting.blocks import (
+    Badge,
+    Block,
+    Content,
+    Fact,
+    Facts,
+    Picture,
+    Quantity,
+    Table,
+    Text,
+    table_of,
+)
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
-from validation.reporting.words import unstable_warning
+from validation.reporting.words import cautions, objections
 
 
 def write(results: Results) -> Content:
@@ -36,8 +47,9 @@ def write(results: Results) -> Content:
         # The chapter compares laws outside their ranges too, and says which.
         warnings.simplefilter("ignore", LawRangeWarning)
         by_law = losses_by_law(results.pair, results.motion, results.profile, quick=not results.effort.full)
-        blocks = (*unstable_warning(results), *_losses(results, by_law), *_film(results))
-    return Content(blocks, data={"losses_by_law": by_law})
+        blocks = (*cautions(results), *_losses(results, by_law), *_film(results))
+    badge = Badge("violated", "not reliable") if objections(results) else None
+    return Content(blocks, badge, {"losses_by_law": by_law})
 
 
 def _losses(results: Results, by_law: xr.Dataset) -> list[Block]:

@@ -33,7 +33,7 @@ from validation.reporting.blocks import (
 from validation.reporting.chapter import Chapter
 from validation.reporting.formatting import number
 from validation.reporting.results import Results
-from validation.reporting.words import efficiency, objections, span, unstable_warning
+from validation.reporting.words import cautions, efficiency, lawful, objections, span
 
 _ORDERS = 10
 
@@ -51,7 +51,13 @@ def write(results: Results) -> Content:
         ("dte_mean", "transmission error, mean", float(dte.mean()), "m"),
         ("largest_load", "largest load of a tooth pair", largest, "N"),
         ("dynamic_factor", "that load over the static load", largest / results.static_load),
-        ("mesh_efficiency", "mesh efficiency", float(attrs["mesh_efficiency"]), "", "friction losses only"),
+        (
+            "mesh_efficiency",
+            "mesh efficiency",
+            float(attrs["mesh_efficiency"]),
+            "",
+            "friction losses only" if lawful(results) else "do not rely on it: a law of nature does not hold",
+        ),
         ("brake_torque", "brake torque that holds the speed", attrs["brake_torque"], "N m"),
         ("friction_power", "mean friction power", friction, "W", "negative: it is lost"),
         ("error_estimate", "estimated relative error of the motion", float(attrs["error_estimate"])),
@@ -68,7 +74,7 @@ def write(results: Results) -> Content:
         ),
     )
     blocks: list[Block] = [
-        *unstable_warning(results),
+        *cautions(results),
         key_results,
         Picture(
             "transmission_error",
@@ -191,7 +197,7 @@ def answer(results: Results) -> Answer:
     """What the model predicts, after the reasons not to rely on it."""
     text = (
         f"Transmission error {span(results)} peak to peak, tooth loads up to "
-        f"{number(_largest_load(results) / results.static_load, 3)} times the static load, mesh efficiency "
+        f"{number(_largest_load(results) / results.static_load, 3)} times the static load, "
         f"{efficiency(results)}."
     )
     badge = Badge("prediction")
