@@ -67,6 +67,9 @@ USE = """
 import json, lumped, floquet
 from typer.testing import CliRunner
 from validation.cli import app
+from validation.cross_check.comparison import crosscheck
+from validation.reporting.chapters import reference_model
+from validation.reporting.results import QUICK, Results
 
 pair = lumped.load_gear_pair("nasa_28_28").with_(
     {"friction.law": "rising", "mesh.stiffness": {"model": "triangular", "peak": "500 N/um"}}
@@ -77,6 +80,12 @@ motion = lumped.steady_state(pair, samples_per_cycle=64)
 assert abs(motion.mesh_stiffness.max() / 5e8 - 1.4) < 0.3
 assert 0.98 < motion.attrs["mesh_efficiency"] < 1.0
 assert floquet.gear_pair_multipliers(pair).spectral_radius < 1.0
+alone = lumped.load_gear_pair("nasa_28_28").with_(friction__law="rising")
+check = crosscheck(alone, cycles=6, samples_per_cycle=32, twin=False)
+assert check.verdict == "confirmed", check.failures
+chapter = reference_model.CHAPTER.write(Results(alone, QUICK))
+shared = next(block for block in chapter.blocks if getattr(block, "key", "") == "shared")
+assert shared.rows[0][0].startswith("friction coefficient of the law rising"), shared.rows[0]
 wrong = CliRunner().invoke(app, ["simulate", "nasa_28_28", "--law", "risin"])
 assert wrong.exit_code == 2 and "Did you mean 'rising'?" in wrong.output, wrong.output
 print("used")

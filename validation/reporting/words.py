@@ -70,16 +70,16 @@ def objections(results: Results) -> list[str]:
 def cautions(results: Results) -> tuple[Text, ...]:
     """What a chapter on the periodic motion says first where that motion is not to be relied on."""
     stability, check, found = results.multipliers, results.check, []
-    if check.verdict == "not confirmed":
-        found.append(
-            "Warning: do not rely on the numbers of this chapter. The cross-check does not confirm the "
-            f"model: {failed_checks(check)}."
-        )
     if stability.verdict != "stable":
         found.append(
             f"Warning: the periodic motion at the operating point is {stability.verdict} (largest multiplier "
             f"{stability.spectral_radius:.4g}). What follows is a solution of the equations that a gear pair "
             "leaves at the smallest disturbance: not a prediction of what it does."
+        )
+    if check.verdict == "not confirmed":
+        found.append(
+            "Warning: do not rely on the numbers of this chapter. The cross-check does not confirm the "
+            f"model: {failed_checks(check)}."
         )
     return tuple(map(Text, found))
 

@@ -15,32 +15,6 @@ from multibody.contact.machine import machine
 FIT = 1e-10
 
 
-def parameters(**values):
-    f = np.zeros(fr.N_FRICTION)
-    for name, value in values.items():
-        f[getattr(fr, name)] = value
-    return f
-
-
-def test_published_check_values():
-    """Laws II and III and the film at the values worked out twice by hand (docs/theory/friction.md)."""
-    f = parameters(VISCOSITY=0.010, ROUGHNESS=0.4e-6, MAXIMUM=0.2)
-    assert fr.benedict_kelley(f, 2.0, 10.0, 100e3) == pytest.approx(0.06235267, abs=5e-9)
-    radius = 0.008
-    f = parameters(VISCOSITY=0.010, ROUGHNESS=0.3e-6, MODULUS=2.0 * np.pi * radius * 1e18 / 100e3)
-    assert fr.hertz_pressure(f, radius, 100e3) == pytest.approx(1e9)
-    assert fr.xu_kahraman(f, 1.0, 20.0, radius, 100e3) == pytest.approx(0.01039515, abs=5e-9)
-    f = parameters(
-        VISCOSITY=0.010,
-        MODULUS=206e9 / (1.0 - 0.3**2),
-        PRESSURE_K=0.010471,
-        PRESSURE_S=0.1348,
-        COMPOSITE_ROUGHNESS=0.5e-6,
-        FILM_LENGTH=0.8e-3,
-    )
-    assert fr.film_parameter(f, 10.0, radius, 100e3) == pytest.approx(1.281808, abs=5e-7)
-
-
 @pytest.mark.parametrize("name", lumped.preset_names())
 @pytest.mark.parametrize("law", [name for name in fr.LAWS if name != "none"])
 @pytest.mark.parametrize("rpm", [800.0, None], ids=["800 rpm", "own speed"])

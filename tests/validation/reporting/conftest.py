@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 
-from validation.reporting import build
+from validation.reporting import build, results
 from validation.reporting.results import QUICK, Results
 
 TINY = dataclasses.replace(
@@ -17,7 +17,7 @@ def tiny():
     """A quick report on even fewer points."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(build, "QUICK", TINY)
-        yield
+        yield TINY
 
 
 @pytest.fixture(scope="package")
@@ -33,17 +33,28 @@ def chapters(computed):
 
 
 @pytest.fixture(scope="package")
-def quick(computed):
-    """Results of a quick report, as far as they differ from those of a full one."""
-    shared = ("check", "motion", "sweep", "margins")
-    made = Results(computed.pair, TINY)
-    for name in shared:
-        setattr(made, name, getattr(computed, name))
-    return made
+def check(computed):
+    """Cross-check of the default pair, that of the report."""
+    return computed.check
 
 
 @pytest.fixture(scope="package")
-def unstable(pair):
-    """Results in the widest tongue of the default pair: largest multiplier 1.29 without mesh damping."""
-    changed = pair.with_({"operating.pinion_speed": "17000 rpm", "mesh.damping_ratio": 0.0})
-    return Results(changed, TINY)
+def sharing(computed):
+    """Makes results of a quick report that take the long ones of ``computed``."""
+
+    def make(pair, names=("check", "sweep", "margins", "routes", "reference")):
+        made = Results(pair, TINY)
+        for name in names:
+            setattr(made, name, getattr(computed, name))
+        return made
+
+    return make
+
+
+@pytest.fixture(scope="module")
+def no_twin():
+    """The cross-check of a report without its unlike twin."""
+    true = results.crosscheck
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(results, "crosscheck", lambda *a, **k: true(*a, **k, twin=False))
+        yield

@@ -11,13 +11,21 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import multibody
 from lumped import NumericalError
 from multibody.contact.effects import CAUSES
 from validation.reporting import causes
 from validation.reporting.blocks import Fact, Table, plain
 from validation.reporting.build import document as document_of
 from validation.reporting.build import written
-from validation.reporting.chapters import CHAPTERS, code_verification, paper, solution_verification
+from validation.reporting.chapters import (
+    CHAPTERS,
+    code_verification,
+    paper,
+    reference_model,
+    solution_verification,
+    stability,
+)
 from validation.reporting.compare import compare
 from validation.reporting.results import FULL, QUICK
 from validation.reporting.words import finite_motions, sentence
@@ -32,6 +40,7 @@ ASKED = [
     "losses",
     "code_verification",
     "solution_verification",
+    "reference_model",
     "cross_check",
     "stability",
     "stability_margins",
@@ -55,7 +64,8 @@ def test_a_chapter_imports_no_other_chapter():
         assert not [name for name in modules if name.startswith("validation.reporting.chapters")], chapter.key
 
 
-def test_a_quick_report_says_nothing_of_paper_and_verification(pair, quick):
+def test_a_quick_report_says_nothing_of_paper_and_verification(pair, sharing):
+    quick = sharing(pair)
     keys = {chapter.key for chapter, _ in written(quick, CHAPTERS)}
     assert set(ASKED) - keys == {"paper", "errata", "code_verification", "solution_verification"}
     assert sentence(quick)
@@ -138,10 +148,14 @@ def test_every_number_of_the_page_is_in_the_data(document, chapters):
                 assert json.dumps(text, ensure_ascii=False)[1:-1] in told
 
 
+def failing(check):
+    return dataclasses.replace(check, value=2.0 * check.limit + 1.0)
+
+
 def test_one_failing_check_turns_the_chapter(pair):
-    checks, orders, studies = code_checks(pair), order_checks(), refinements(pair, 64)
+    checks, orders, studies = code_checks(pair)[:3], order_checks()[:2], refinements(pair, 64)
     wrong_order = dataclasses.replace(orders[0], observed=orders[0].theory - 1.0)
-    wrong_check = dataclasses.replace(checks[0], value=2 * checks[0].limit)
+    wrong_check = failing(checks[0])
     levels = tuple(dataclasses.replace(level, error=2 * studies[0].limit) for level in studies[0].levels)
     wrong_study = dataclasses.replace(studies[0], levels=levels)
     assert code_verification.content(checks, orders).badge.state == "confirmed"
@@ -151,6 +165,43 @@ def test_one_failing_check_turns_the_chapter(pair):
         solution_verification.content((wrong_study, *studies[1:])),
     ):
         assert made.badge.state == "not confirmed"
+
+
+def test_a_failing_check_of_the_models_turns_its_chapter_and_the_headline(sharing, pair):
+    """The multibody model's damping; the second route to the multipliers."""
+    wrong = sharing(pair)
+    *others, damping = sorted(wrong.reference.checks, key=lambda check: check.key == "damping")
+    wrong.reference = dataclasses.replace(wrong.reference, checks=(*others, failing(damping)))
+    assert reference_model.CHAPTER.write(wrong).badge.state == "not confirmed"
+    assert stability.answer(wrong).badge.state == "stable"
+    assert sentence(wrong).startswith("Do not rely on this prediction: checks of the models fail (damping)")
+    wrong = sharing(pair)
+    wrong.routes = dataclasses.replace(wrong.routes, checks=tuple(map(failing, wrong.routes.checks)))
+    assert stability.CHAPTER.write(wrong).badge.state == "not confirmed"
+    assert stability.answer(wrong).badge.state == "not confirmed"
+    assert "flow_map" in sentence(wrong).partition(". ")[0]
+    assert "which a second route does not confirm" in sentence(wrong)
+
+
+def test_a_second_route_that_cannot_be_computed_is_said(sharing, pair):
+    without = sharing(pair)
+    without.routes = "No periodic motion."
+    content = stability.CHAPTER.write(without)
+    assert content.badge.state == "stable"
+    assert any("No periodic motion." in getattr(block, "text", "") for block in content.blocks)
+
+
+def test_the_chapter_on_the_multibody_model_shows_both_values_of_every_law(chapters):
+    rows = table_of(chapters["reference_model"], "published").rows
+    laws = {"coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "film_parameter"}
+    both = {row[0].partition("(")[0]: row[1:4] for row in rows if row[3] is not None}
+    assert laws <= set(both)
+    assert all(len({*map(float, values)}) == 1 for values in both.values())
+    shared = table_of(chapters["reference_model"], "shared").rows
+    assert len(shared) == len(multibody.SHARED)
+    modes = table_of(chapters["reference_model"], "frozen_modes")
+    assert len(modes.rows) == 5
+    assert len(modes.columns) == 11
 
 
 def test_the_headline_states_the_largest_difference_also_when_it_is_within_its_tolerance(check):

@@ -12,6 +12,13 @@ from validation.reporting.build import document, written
 from validation.reporting.chapters import CHAPTERS
 from validation.reporting.chapters.steady_state import off_line_modes
 from validation.reporting.judged import failures
+from validation.reporting.results import Results
+
+
+@pytest.fixture(scope="module")
+def unstable(pair, no_twin, tiny):
+    """Results in the widest tongue of the default pair: largest multiplier 1.29 without mesh damping."""
+    return Results(pair.with_({"operating.pinion_speed": "17000 rpm", "mesh.damping_ratio": 0.0}), tiny)
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,60 @@
+"""Does a report of a program with a fault say in every place that its numbers are not to be relied on?"""
+
+import re
+
+import pytest
+
+from validation.faults.catalogue import FAULTS
+from validation.faults.rewriting import applied
+from validation.reporting.build import answers, document, written
+from validation.reporting.chapters import CHAPTERS
+from validation.reporting.judged import failures
+from validation.reporting.page import render
+
+
+@pytest.fixture(scope="module", params=["friction_reversed", "pitch_point"])
+def report(request, pair, sharing, no_twin):
+    """Data and page of a report, computed with the fault but for the response over speed and the tongues.
+
+    The gears have another pressure angle in operation than the rack has, so that the pitch point moves.
+    """
+    with applied(FAULTS[request.param]):
+        wide = pair.with_({"centre_distance": None, "pinion.profile_shift": 0.2})
+        results = sharing(wide, names=("sweep", "margins"))
+        chapters = written(results, CHAPTERS)
+        data = document(results, chapters, quick=True)
+    figures = {key: "" for chapter in data["chapters"].values() for key in chapter.get("figures", [])}
+    stamped = data | {"interactive_page": None, "timestamps": {"created": "", "seconds": {"all": 0.0}}}
+    page = render(wide, answers(results, chapters), chapters, figures, stamped)
+    return data, re.sub(r"\s+", " ", re.sub(r"<[^>]+>", " ", page))
+
+
+def test_the_headline_says_do_not_rely_and_states_no_efficiency(report):
+    data, _ = report
+    assert data["verdict"].startswith("Do not rely on this prediction: the cross-check does not confirm it")
+    assert "no mesh efficiency, because a law of nature does not hold" in data["verdict"]
+    assert "the lumped model predicts" not in data["verdict"]
+    assert "a second route does not confirm" in data["verdict"]
+
+
+def test_nothing_on_the_page_says_that_a_model_confirms(report):
+    _, text = report
+    assert "confirms it" not in text
+    assert "● confirmed" not in text
+
+
+def test_every_chapter_on_the_motion_warns_and_every_verdict_on_it_is_bad(report):
+    data, _ = report
+    for key in ("steady_state", "losses"):
+        assert data["chapters"][key]["text"][0][0].startswith("Warning: do not rely on"), key
+    states = {key: chapter.get("verdict", {}).get("state") for key, chapter in data["chapters"].items()}
+    assert states["losses"] == "violated"
+    assert states["cross_check"] == states["stability"] == states["reference_model"] == "not confirmed"
+    note = data["chapters"]["steady_state"]["key_results"]["mesh_efficiency"]["note"]
+    assert "do not rely on it" in note
+    named = {case.name for case in failures(data)}
+    assert {
+        "What does the model predict?",
+        "Does the independent model agree?",
+        "Is the motion stable?",
+    } <= named
