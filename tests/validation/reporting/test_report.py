@@ -133,6 +133,7 @@ def again(written, hostile, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(build, "save", _save)
         patch.setattr(build, "_draw", some)  # every kind of figure is drawn by the same style
+        patch.setattr(build, "write_interactive", lambda *_: "interactive.html")
         made = reporting.report(
             hostile,
             folder / "report",
