@@ -82,7 +82,7 @@ assert 0.98 < motion.attrs["mesh_efficiency"] < 1.0
 assert floquet.gear_pair_multipliers(pair).spectral_radius < 1.0
 alone = lumped.load_gear_pair("nasa_28_28").with_(friction__law="rising")
 check = crosscheck(alone, cycles=6, samples_per_cycle=32, twin=False)
-assert check.verdict == "confirmed", check.failures
+assert not check.failures, check.failures
 chapter = reference_model.CHAPTER.write(Results(alone, QUICK))
 shared = next(block for block in chapter.blocks if getattr(block, "key", "") == "shared")
 assert shared.rows[0][0].startswith("friction coefficient of the law rising"), shared.rows[0]
