@@ -81,9 +81,7 @@ def simulate(
     states = np.empty((time.size, 12))
     states[0] = state
     rate = rate_function(system, balance)
-    scale = np.abs(static_deflection(system))[:6]
-    length = max(float(scale.max()), 1e-12)
-    atol = rtol * length * np.concatenate([np.ones(6), np.full(6, 1.0 / system.period)])
+    atol = rtol * _sizes(system)
     outputs = np.append(grid[1:], system.period)  # t = T_m is the next cycle's first output
     row = 1
     for cycle in range(cycles):
@@ -148,6 +146,21 @@ def static_deflection(system: LTVSystem, pinion_torque: float | None = None) -> 
     state = np.zeros(12)
     state[:4] = share_p * wind_up / r_bp, -(1.0 - share_p) * wind_up / r_bg, x_p, x_g
     return state
+
+
+def _sizes(system: LTVSystem) -> FloatArray:
+    """Size of each of the 12 states, (12,), by which absolute tolerances are scaled.
+
+    Each displacement has the size of its own deflection at rest; y that of the largest friction of the mean
+    load, which may be a thousandth of the others. A rate has this size for every mesh cycle.
+    """
+    size = np.abs(static_deflection(system))[:6]
+    load = system.pinion_torque / system.pair.geometry.base_radius_pinion
+    law = system.cycle.elements.friction
+    largest = float(np.abs(law(np.append(law.breaks, 0.5 * (law.breaks[1:] + law.breaks[:-1])))).max())
+    size[4:] = largest * load / system.structure.stiffness[4:]
+    size = np.maximum(size, 1e-6 * max(float(size.max()), 1e-12))
+    return np.concatenate([size, size / system.period])
 
 
 def rate_function(

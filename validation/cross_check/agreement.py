@@ -124,13 +124,19 @@ def contact_shift(pair: GearPair, motion: xr.Dataset) -> float:
     return float(np.mean(np.abs(motion["theta_p"].to_numpy()))) * g.base_radius_pinion / g.base_pitch
 
 
-def off_switch_samples(pair: GearPair, time: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Which times [s] (k,) lie clear of every switch of the nominal mesh cycle, starts of cycles included."""
+def off_switch_samples(
+    pair: GearPair, time: FloatArray, beyond: float = 0.0
+) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """Which times [s] (k,) lie clear of every switch of the nominal mesh cycle, starts of cycles included.
+
+    ``beyond`` is the part of a cycle by which contact may go on beyond the nominal path, which is not
+    predicted: a sample so close to an end may lie on either side of the jump there.
+    """
     cycle = lumped.mesh_cycle(pair)
     phase = np.mod(time / cycle.period, 1.0)
-    switches = np.concatenate([cycle.edges / cycle.period])
+    switches = cycle.edges / cycle.period
     nearest = np.abs(phase[:, None] - switches).min(axis=1)
-    return np.asarray(nearest > _SWITCH_MARGIN, dtype=np.bool_)
+    return np.asarray(nearest > _SWITCH_MARGIN + beyond, dtype=np.bool_)
 
 
 def agreement(

@@ -99,6 +99,20 @@ def shortened(law: PathFunction, first: float, last: float) -> PathFunction:
     return PathFunction(edges, columns, np.array(switches))
 
 
+def reversed_within(law: PathFunction, first: float, last: float) -> PathFunction:
+    """The law with the other sign from ``first`` to ``last`` [m], first < last; clipped to the law's path."""
+    low, high = law.interval
+    ends = np.clip([first, last], low, high)
+    edges = np.union1d(law.breaks, ends)
+    edges = edges[np.diff(edges, prepend=-np.inf) > _SAME]
+    edges[-1] = high
+    columns = np.column_stack([_from(law, edge) for edge in edges[:-1]])
+    middles = 0.5 * (edges[:-1] + edges[1:])
+    sign = np.where((middles > ends[0]) & (middles < ends[1]), -1.0, 1.0)
+    switches = np.union1d(law.switches, ends[(ends > low) & (ends < high)])
+    return PathFunction(edges, sign * columns, switches)
+
+
 def _through(
     value: Callable[[FloatArray, FloatArray], FloatArray],
     law: PathFunction,

@@ -38,7 +38,8 @@ friction there can stop the sliding faster than the motion drives it through zer
 force, where :math:`|\dot v_s + \mu N/m_s| < \mu_0 N/m_s` just before. Then sign() has no motion: the
 iteration does not settle, or it finds a motion that could not pass zero.
 
-Not predicted: teeth that let go; quadratic terms of the overlap in the displacements of the centres; the
+Not predicted: teeth that let go; contact beyond the nominal path, where the bearings bring the centres so
+close that s is negative; quadratic terms of the overlap in the displacements of the centres; the
 levers of friction about moved centres. They are of first order as well, but with lengths of the machine in
 place of the mesh deflection's, so smaller by far.
 """
@@ -134,15 +135,17 @@ def finite_motion(
     if settled:
         model = replace(model, times=fine)
         shifts, settled = model.settle(shifts)
-    if settled and "sliding_velocity" in effects:
-        settled = not model.held(model.motion(shifts))
-    if not settled:
+    found = model.motion(shifts) if settled else None
+    if found is not None and "sliding_velocity" in effects and model.held(found):
+        found = None
+    settled = found is not None
+    if found is None:
         model = replace(model, times=fine, effects=model.effects - {"sliding_velocity"})
         shifts, without = model.settle(None)
         if not without:
             still = {name: np.zeros(cycle[name].shape) for name in _CHANGED}
             return FiniteMotion(still, 0.0, 0.0, False, model, None)
-    found = model.motion(shifts)
+        found = model.motion(shifts)
     states = found.states[np.searchsorted(found.times, fine)]
     motion = dataset(found.system, fine, states, {})
     changes = {name: motion[name].to_numpy()[..., ::every] - cycle[name].to_numpy() for name in _CHANGED}

@@ -5,32 +5,51 @@ friction law by d, each a function of time; the line of action turns by psi. A d
 the mesh cycle does at each place what a constant one of that size does there, and the largest of the cycle
 bounds it. So the *raw limit* of a quantity is the sum over the effects of the change that a constant
 displacement of the largest size makes, the larger one of both signs, plus the shift of the contact over the
-base pitch for what is left out: levers, second order, and displacements that vibrate.
+base pitch for what is left out: levers, second order, and displacements that vibrate. What a constant
+displacement of the friction law takes before the pitch point it gives back behind it. So the sliding is also
+displaced with unlike signs on both sides: faster on both, and slower on both. Likewise a late entry may take
+what an early exit gives, so the changes of both are added.
 
 The *share* of an effect is the change when it alone acts as predicted, with the shifts that
 ``validation.cross_check.finite_motion`` found.
+
+Where friction may hold the teeth, it has any value between both signs of the law, in any order, wherever the
+sliding may vanish: within the largest displacement d of the sliding about the pitch point. To first order its
+changes add, so by the triangle inequality no quantity changes by more than
+
+    held_q = sum_j || q(friction reversed in piece j alone) - q || / || q ||
+
+over the pieces of the zone from P - d to P + d. A piece is a sixteenth of the zone: friction that changes its
+sign more often than that in the zone moves less, because its pushes cancel. The friction force itself changes
+in its piece alone, by at most twice its size, and with the normal load.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import itertools
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from lumped.errors import NumericalError
+from lumped.model.mesh_cycle import MeshCycle
+from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.results import response
-from lumped.model.steady import sample_times
+from lumped.model.steady import periodic_solution, sample_times
 from lumped.typing import FloatArray
-from multibody.contact.machine import machine
+from multibody.contact.machine import Machine, machine
 from validation.cross_check.agreement import relative_size
+from validation.cross_check.effective_elements import reversed_within
 from validation.cross_check.finite_motion import PREDICTED, FiniteMotion
 from validation.cross_check.ledger import LOSSES, losses
-from validation.cross_check.shifted_motion import Motion, Shifts
+from validation.cross_check.shifted_motion import Motion, ShiftedModel, Shifts
 from validation.cross_check.tolerances import GROUPS
 
 #: Times per mesh cycle at which the changes are read.
 _TIMES = 1024
+#: Pieces of the zone in which friction may hold the teeth, and times per mesh cycle to read their changes.
+_PIECES, _HELD_TIMES = 16, 256
 #: Effect -> what it is in words.
 EFFECT_WORDS: Mapping[str, str] = {
     "entry_shift": "late entry and early exit",
@@ -50,12 +69,16 @@ class Effects:
     most : effect -> quantity -> largest first-order change
     alone : effect -> quantity -> change predicted where it acts alone; empty where nothing is predicted
     powers : power of ``ledger.LOSSES`` -> sum of the largest changes over the driving power
+    beyond : part of the change by late entry that contact beyond the nominal path makes; it is not predicted
+    held : quantity -> largest first-order change by friction that holds the teeth; empty where it does not
     """
 
     size: Mapping[str, float]
     most: Mapping[str, Mapping[str, float]]
     alone: Mapping[str, Mapping[str, float]]
     powers: Mapping[str, float]
+    beyond: float
+    held: Mapping[str, float]
 
     def largest(self, quantity: str) -> float:
         """Sum over the effects of the largest changes of a quantity."""
@@ -63,7 +86,10 @@ class Effects:
 
     def unpredicted(self, quantity: str) -> float:
         """The same over the effects of which no prediction was found."""
-        return sum(changes[quantity] for name, changes in self.most.items() if name not in self.alone)
+        most = sum(changes[quantity] for name, changes in self.most.items() if name not in self.alone)
+        if "entry_shift" in self.alone:
+            most += self.beyond * self.most["entry_shift"][quantity]
+        return most + self.held.get(quantity, 0.0)
 
 
 def first_order(predicted: FiniteMotion) -> Effects:
@@ -88,16 +114,14 @@ def first_order(predicted: FiniteMotion) -> Effects:
     nominal = every.motion(None, line=0.0)
     found = every.shifts_after(nominal)
     numbers, driving = machine(every.pair), every.pair.operating.pinion_torque * cycle.geometry.omega_pinion
-    weights = np.full(_TIMES, 1.0 / _TIMES)
 
     def values(motion: Motion) -> dict[str, FloatArray]:
         states = motion.states[np.searchsorted(motion.times, every.times)]
-        taken = losses(motion.system, numbers, every.times, states, weights)
-        shares = {name: np.array(power / driving) for name, power in taken.items()}
-        return response(motion.system, every.times, states) | shares
+        return _values(motion.system, numbers, driving, every.times, states)
 
     before = values(nominal)
-    end = max(found.entry, found.exit)
+    shifts = predicted.shifts
+    end = max(max(one.entry, one.exit, one.beyond) for one in (found, shifts or found))
     size = {
         "entry_shift": end,
         "rotation_phase": float(np.abs(found.stands_at - found.place).max()),
@@ -118,26 +142,70 @@ def first_order(predicted: FiniteMotion) -> Effects:
             after = values(alone.motion(own, line=line if effect == "moving_line" else 0.0))
         except NumericalError:  # displaced so far that no such motion exists
             return dict.fromkeys((*GROUPS, *LOSSES), np.inf)
-        changes = {name: relative_size(after[name] - before[name], name, before) for name in GROUPS}
-        return changes | {name: abs(float(after[name] - before[name])) for name in LOSSES}
+        return _changes(before, after)
 
+    def displaced(effect: str, pattern: FloatArray | float, entry: float, exit: float) -> dict[str, float]:
+        moved = found.place + pattern * size[effect]
+        shifted = replace(found, entry=entry, exit=exit, stands_at=moved, slides_as=moved)
+        return change(effect, shifted, size["moving_line"])
+
+    after_pitch = np.where(found.place < cycle.geometry.L_XP, -1.0, 1.0)
+    patterns: Mapping[str, Sequence[FloatArray | float]] = {
+        "rotation_phase": (1.0, -1.0),
+        "sliding_velocity": (1.0, -1.0, after_pitch, -after_pitch),
+        "moving_line": (1.0,),  # the other sign does as much
+    }
     most: dict[str, dict[str, float]] = {}
     for effect in PREDICTED:
-        both = []
-        for sign in (1.0, -1.0):
-            moved = found.place + sign * size[effect]
-            displaced = replace(found, entry=end, exit=end, stands_at=moved, slides_as=moved)
-            both.append(change(effect, displaced, size["moving_line"]))
-            if effect in (
-                "entry_shift",
-                "moving_line",
-            ):  # load cannot start early; the other sign does as much
-                break
-        most[effect] = {name: max(one[name] for one in both) for name in both[0]}
-    shifts, alone = predicted.shifts, {}
+        if effect == "entry_shift":
+            late, early = displaced(effect, 0.0, end, 0.0), displaced(effect, 0.0, 0.0, end)
+            most[effect] = {name: late[name] + early[name] for name in late}
+            continue
+        each = [displaced(effect, pattern, 0.0, 0.0) for pattern in patterns[effect]]
+        most[effect] = {name: max(one[name] for one in each) for name in each[0]}
+    alone = {}
     if shifts is not None:
+        thinned = shifts.thinned(predicted.model.times.size // _TIMES)
         for effect in sorted(predicted.model.effects):
-            alone[effect] = change(effect, shifts, size["moving_line"], predicted.model.friction_velocity)
+            alone[effect] = change(effect, thinned, size["moving_line"], predicted.model.friction_velocity)
     relative = {name: s if name == "moving_line" else s / pitch for name, s in size.items()}
-    powers = {name: sum(changes[name] for changes in most.values()) for name in LOSSES}
-    return Effects(relative, most, alone, powers)
+    held = {} if predicted.settled else _held(every, size["sliding_velocity"], numbers, driving)
+    powers = {name: sum(changes[name] for changes in most.values()) + held.get(name, 0.0) for name in LOSSES}
+    beyond = 0.0 if shifts is None or end == 0.0 else shifts.beyond / end
+    return Effects(relative, most, alone, powers, beyond, held)
+
+
+def _values(
+    system: LTVSystem, numbers: Machine, driving: float, times: FloatArray, states: FloatArray
+) -> dict[str, FloatArray]:
+    """Quantities over the cycle, and powers over the driving one."""
+    taken = losses(system, numbers, times, states, np.full(times.size, 1.0 / times.size))
+    return response(system, times, states) | {name: np.array(p / driving) for name, p in taken.items()}
+
+
+def _changes(before: Mapping[str, FloatArray], after: Mapping[str, FloatArray]) -> dict[str, float]:
+    changes = {name: relative_size(after[name] - before[name], name, before) for name in GROUPS}
+    return changes | {name: abs(float(after[name] - before[name])) for name in LOSSES}
+
+
+def _held(every: ShiftedModel, reach: float, numbers: Machine, driving: float) -> dict[str, float]:
+    """Largest changes by friction that holds the teeth within ``reach`` [m] of the pitch point."""
+    cycle, g = every.cycle, every.cycle.geometry
+    times = sample_times(cycle.period, _HELD_TIMES)
+
+    def values(system: LTVSystem) -> dict[str, FloatArray]:
+        states = periodic_solution(system, times, estimate_error=False).states
+        return _values(system, numbers, driving, times, states)
+
+    before, low, high = values(every.nominal), max(g.L_XA, g.L_XP - reach), min(g.L_XD, g.L_XP + reach)
+    ends = np.linspace(low, high, _PIECES + 1)
+    found = dict.fromkeys((*GROUPS, *LOSSES), 0.0)
+    for first, last in itertools.pairwise(ends.tolist()):
+        friction = reversed_within(cycle.elements.friction, first, last)
+        turned = MeshCycle(g, replace(cycle.elements, friction=friction))
+        changes = _changes(before, values(periodic_system(every.pair, "absolute", cycle=turned)))
+        found = {name: found[name] + change for name, change in changes.items()}
+    place, force = before["position"], before["friction_force"]
+    turned_over = np.where((place > low) & (place < high), 2.0 * force, 0.0)
+    found["friction_force"] = found["normal_load"] + relative_size(turned_over, "friction_force", before)
+    return found

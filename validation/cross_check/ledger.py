@@ -14,8 +14,9 @@ import numpy as np
 
 import multibody
 from lumped.model.periodic_system import LTVSystem
+from lumped.model.propagation import fastest_frequency
 from lumped.model.results import response
-from lumped.model.steady import periodic_solution
+from lumped.model.steady import PeriodicSolution
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.machine import Machine
@@ -31,14 +32,16 @@ POWERS: Mapping[str, str] = {
 #: What a motion loses.
 LOSSES = ("friction", "bearings", "mesh_damping", "mesh_stiffness")
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
-#: Panels of the quadrature in a mesh cycle, at least.
-_PANELS = 160
+#: Panels of the quadrature in a mesh cycle, at least, and largest angle of the fastest vibration in a panel
+#: [rad]: Gauss's rule with four nodes then leaves some 1e-12 of a power, which swings twice as fast.
+_PANELS, _PANEL_ANGLE = 160, 0.7
 
 
 def quadrature(system: LTVSystem) -> tuple[FloatArray, FloatArray]:
-    """Times in the mesh cycle and their weights, which sum to one; no panel straddles a jump."""
-    even = np.linspace(0.0, system.period, _PANELS + 1)
-    marks = np.union1d(system.cycle.edges, even)
+    """Times in the mesh cycle and their weights, which sum to one; in no panel a law is two polynomials."""
+    angle = fastest_frequency(system) * system.period
+    even = np.linspace(0.0, system.period, max(_PANELS, int(np.ceil(angle / _PANEL_ANGLE))) + 1)
+    marks = np.union1d(system.cycle.breaks, even)
     marks = marks[np.diff(marks, prepend=-np.inf) > 1e-9 * system.period]
     marks[-1] = system.period
     width = np.diff(marks)[:, None]
@@ -46,12 +49,17 @@ def quadrature(system: LTVSystem) -> tuple[FloatArray, FloatArray]:
     return times, (0.5 * width * _WEIGHTS).ravel() / system.period
 
 
-def lumped_powers(system: LTVSystem, machine: Machine) -> dict[str, float]:
-    """Mean powers of the lumped periodic motion, "driving" and those of ``POWERS`` [W]."""
-    times, weights = quadrature(system)
-    motion = periodic_solution(system, times, estimate_error=False)
+def lumped_powers(motion: PeriodicSolution, machine: Machine, weights: FloatArray) -> dict[str, float]:
+    """Mean powers of the lumped periodic motion, "driving" and those of ``POWERS`` [W].
+
+    Parameters
+    ----------
+    motion : at the times of ``quadrature``
+    machine : the pair's numbers as the multibody model has them
+    weights : of these times
+    """
     p = machine.parameters
-    found = losses(system, machine, times, motion.states, weights)
+    found = losses(motion.system, machine, motion.time, motion.states, weights)
     return found | {
         "driving": motion.pinion_torque * float(p[kn.OMEGA_P] + weights @ motion.states[:, 6]),
         "braking": motion.brake_torque * float(p[kn.OMEGA_G] + weights @ motion.states[:, 7]),

@@ -16,6 +16,7 @@ import xarray as xr
 import multibody
 from lumped import GearPair
 from lumped.model.periodic_system import LTVSystem, periodic_system
+from lumped.model.steady import PeriodicSolution, periodic_solution
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.machine import Machine, machine
@@ -26,6 +27,7 @@ from validation.cross_check.ledger import (
     POWERS,
     lumped_powers,
     multibody_powers,
+    quadrature,
     residual,
 )
 
@@ -62,7 +64,10 @@ def laws_of_nature(
     the checks, and model -> power -> mean over the mesh cycle [W]
     """
     m, system = machine(pair), periodic_system(pair, "absolute")
-    powers = {"lumped": lumped_powers(system, m)}
+    times, weights = quadrature(system)
+    own = periodic_solution(system, times, estimate_error=False)
+    powers = {"lumped": lumped_powers(own, m, weights)}
+    variation = _variation(own)
     balance = multibody.power_balance(pair, 1, fidelity="linear", initial="periodic", rtol=1e-10)
     powers["linear"] = multibody_powers(balance, m.period)
     motions = {"lumped": reference}
@@ -76,7 +81,7 @@ def laws_of_nature(
     for name, motion in motions.items():
         allowed = shift if name == "exact" else 0.0
         found += _action_and_reaction(m, name, motion)
-        found += _statics(m, name, motion, pair.operating.pinion_torque, allowed)
+        found += _statics(m, name, motion, pair.operating.pinion_torque, allowed, variation)
     for name, one in powers.items():
         found += _first_law(name, one)
     found += _power_by_power(powers, most, shift)
@@ -174,7 +179,14 @@ def _integral(time: FloatArray, x: FloatArray, v: FloatArray, every: int = 1) ->
     return np.repeat(sums, every)[: time.size]
 
 
-def _statics(m: Machine, name: str, motion: xr.Dataset, torque: float, allowed: float) -> list[Judgement]:
+def _statics(
+    m: Machine,
+    name: str,
+    motion: xr.Dataset,
+    torque: float,
+    allowed: float,
+    variation: Mapping[str, float],
+) -> list[Judgement]:
     """Mean moments of the pinion, and mean forces of each gear off the line of action."""
     p, (k_p, k_g) = m.parameters, m.bearing_stiffness
     force = motion["friction_force"].to_numpy()
@@ -187,9 +199,10 @@ def _statics(m: Machine, name: str, motion: xr.Dataset, torque: float, allowed: 
         "y_g": -k_g[1] * _mean(motion, "y_g") - total.mean(),
     }
     stiffness = {"x_p": k_p[0], "x_g": k_g[0], "y_p": k_p[1], "y_g": k_g[1]}
+    samples = force.shape[1]
     sampled = {
-        "x": _sampling(moment) / p[kn.RADIUS_P] / load,
-        "y": _sampling(total) / load,
+        "x": variation["moment"] / samples / p[kn.RADIUS_P] / load,
+        "y": variation["force"] / samples / load,
     }
     return [
         Judgement(
@@ -197,8 +210,8 @@ def _statics(m: Machine, name: str, motion: xr.Dataset, torque: float, allowed: 
             abs(float(value)) / load,
             sampled[axis[0]] + _uneven(motion[axis].to_numpy()) * stiffness[axis] / load + allowed + 1e-6,
             "T_p/r_bp less the mean moment of friction, or the mean friction; limit: what even times can "
-            "miss of a history that jumps, its total variation over their number, and of the displacement"
-            + (", and the shift of the contact, by which the levers move" if allowed else ""),
+            "miss of a history that jumps, its variation in the lumped model over their number, and of the "
+            "displacement" + (", and the shift of the contact, by which the levers move" if allowed else ""),
         )
         for axis, value in values.items()
     ]
@@ -213,9 +226,16 @@ def _uneven(values: FloatArray) -> float:
     return abs(float(values[::2].mean() - values.mean()))
 
 
-def _sampling(values: FloatArray) -> float:
-    """Most that the mean of even samples of a periodic history can be off."""
-    return float(np.abs(np.diff(values, append=values[:1])).sum()) / values.size
+def _variation(motion: PeriodicSolution) -> dict[str, float]:
+    """Total variation over the cycle of the moment of friction about the pinion and of its sum.
+
+    The mean of N even samples of a periodic history is off by no more than its variation over N. The motion
+    is given on both sides of every jump, also of those that lie between two samples.
+    """
+    values = motion.values
+    force = values["friction_force"]
+    histories = {"moment": (force * values["position"]).sum(axis=0), "force": force.sum(axis=0)}
+    return {name: float(np.abs(np.diff(one, append=one[:1])).sum()) for name, one in histories.items()}
 
 
 def _first_law(name: str, powers: Mapping[str, float]) -> list[Judgement]:

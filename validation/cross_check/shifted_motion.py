@@ -1,4 +1,4 @@
-r"""The lumped motion with element laws shifted as finite motions shift them, and what it shifts in turn.
+r"""The lumped motion with element laws shifted as finite motions shift them, and the shifts that it makes.
 
 The derivations are in ``validation.cross_check.finite_motion``.
 """
@@ -41,7 +41,8 @@ class Shifts:
 
     Attributes
     ----------
-    entry, exit : how far into the path the load starts, and how far before its end it stops
+    entry, exit : how far into the path the load starts, and how far before its end it stops; not negative
+    beyond : how far the load starts before the path, or stops after it, whichever is more: not predicted
     place : (k,) nominal places
     stands_at : (k,) where the contact stands there
     slides_as : (k,) where the nominal motion slides as fast as the teeth do there
@@ -51,12 +52,18 @@ class Shifts:
 
     entry: float
     exit: float
+    beyond: float
     place: FloatArray
     stands_at: FloatArray
     slides_as: FloatArray
     rolling: FloatArray
     arm_pinion: FloatArray
     arm_gear: FloatArray
+
+    def thinned(self, every: int) -> Shifts:
+        """The same at every so-many-th place."""
+        arrays = ("place", "stands_at", "slides_as", "rolling", "arm_pinion", "arm_gear")
+        return replace(self, **{name: getattr(self, name)[:: max(every, 1)] for name in arrays})
 
     def judged(self, place: FloatArray) -> FloatArray:
         """What must settle: the two ends, and the sliding at some places, (2 + k,)."""
@@ -193,9 +200,12 @@ class ShiftedModel:
         rolling = (g.omega_pinion + rates[0] + turning) * arm_p
         rolling += (g.omega_gear + rates[1] - turning) * arm_g
         way = motion.times * (g.base_pitch / self.cycle.period)
+        entry = self._met(way, reach - further, 0.0, 1.0)
+        last = self._met(way, reach + further, g.L_XD - g.L_XA, -1.0)
         return Shifts(
-            entry=self._met(way, reach - further, 0.0, 1.0),
-            exit=self._met(way, reach + further, g.L_XD - g.L_XA, -1.0),
+            entry=max(entry, 0.0),
+            exit=max(last, 0.0),
+            beyond=max(-entry, -last, 0.0),
             place=place,
             stands_at=stands_at,
             slides_as=slides_as,
@@ -240,6 +250,7 @@ class ShiftedModel:
             stiffness=shortened(moved(e.stiffness, shifts.place, shifts.stands_at), *ends),
             damping=shortened(moved(e.damping, shifts.place, shifts.stands_at), *ends),
             friction=friction,
+            error=moved(e.error, shifts.place, shifts.stands_at) if e.error.coefficients.any() else e.error,
         )
         return periodic_system(self.pair, "absolute", cycle=MeshCycle(g, elements))
 
@@ -270,8 +281,8 @@ class ShiftedModel:
         return np.union1d(self.times, jumps[np.diff(jumps, prepend=-np.inf) > _APART * cycle.period])
 
     def _met(self, way: FloatArray, distance: FloatArray, end: float, direction: float) -> float:
-        """The distance when it equals the way from an end of the path; never outside the path [m]."""
+        """The distance when it equals the way from an end of the path; negative outside the path [m]."""
         pitch, found = self.cycle.geometry.base_pitch, 0.0
         for _ in range(20):  # the distance changes by far less than the way does
-            found = max(float(np.interp(end + direction * found, way, distance, period=pitch)), 0.0)
+            found = float(np.interp(end + direction * found, way, distance, period=pitch))
         return found

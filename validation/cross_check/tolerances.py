@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
 
+import numpy as np
+
 Metric = Literal["maximum_over_span", "remainder_l2", "relative_l2"]
 Group = Literal["dte", "x", "y", "normal_load", "friction_force"]
 
@@ -62,13 +64,17 @@ LOST_REASON = (
 )
 
 
-def tolerance(quantity: str, fidelity: str, shift: float, unpredicted: float = 0.0) -> Tolerance:
+def tolerance(
+    quantity: str, fidelity: str, shift: float, largest: float = 0.0, unpredicted: float = 0.0
+) -> Tolerance:
     """Limit for one quantity.
 
     At fidelity "exact" what finite motions change first of all is predicted
     (``validation.cross_check.finite_motion``) and taken off. What is left has the shift as a factor too,
-    times displacements over lengths of the machine, or is of second order. So it must be smaller than the
-    shift itself, whatever the quantity, the pair and its stiffness.
+    times displacements over lengths of the machine, or is of second order: the shift times what the effects
+    change to first order, because one effect acts on what another has changed. So it must be smaller than
+    the shift times one and the first-order change, whatever the quantity, the pair and its stiffness.
+    The second part is small but where forces that cancel in the nominal motion do not in the actual one.
 
     Parameters
     ----------
@@ -76,6 +82,8 @@ def tolerance(quantity: str, fidelity: str, shift: float, unpredicted: float = 0
     fidelity : "linear" or "exact"
     shift : mean distance by which wind-up and bearing deflection move the contact along the line of action,
         over the base pitch; the small parameter of every finite-motion effect
+    largest : sum over the effects of the largest first-order change (``first_order.Effects.largest``); not
+        counted where it is infinite, because no displaced motion exists
     unpredicted : largest first-order change by the effects that could not be predicted
     """
     group = GROUPS[quantity]
@@ -83,14 +91,16 @@ def tolerance(quantity: str, fidelity: str, shift: float, unpredicted: float = 0
         return LINEAR[group]
     reason = (
         f"finite motions shift the contact by {shift:.2e} of a base pitch; what they change first "
-        "of all is predicted and taken off, and the rest must be smaller than the shift itself"
+        f"of all, at most {largest:.2e}, is predicted and taken off, and the rest must be smaller than the "
+        "shift times one and this change"
     )
     if unpredicted:
         reason += (
             f"; no motion of its own was found for all effects, so the most that the others change to first "
             f"order, {unpredicted:.2e}, is allowed too"
         )
-    return Tolerance("remainder_l2", shift + unpredicted, reason)
+    second = largest if np.isfinite(largest) else 0.0
+    return Tolerance("remainder_l2", shift * (1.0 + second) + unpredicted, reason)
 
 
 def raw_tolerance(largest: float, shift: float) -> Tolerance:

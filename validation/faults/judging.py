@@ -105,7 +105,7 @@ def judge(fault: Fault, *, thorough: bool = True) -> Outcome:
     Parameters
     ----------
     fault : out of the catalogue
-    thorough : every part; else only until one of them sees the fault
+    thorough : every part on both pairs; else only until one of them sees the fault
 
     Raises
     ------
@@ -121,10 +121,13 @@ def judge(fault: Fault, *, thorough: bool = True) -> Outcome:
             for old, pair in zip(before, made, strict=False):
                 size, quantity = max((size, quantity), change(old, quantities(pair)))
             for part, checks in _CHECKS.items():
-                if made and (thorough or not any(caught.values())):
-                    caught[part] = tuple(
-                        dict.fromkeys(name for pair in made for name in _failing(checks, pair))
-                    )
+                if not thorough and any(caught.values()):
+                    break
+                names: list[str] = []
+                for pair in made:
+                    if thorough or not names:
+                        names += _failing(checks, pair)
+                caught[part] = tuple(dict.fromkeys(names))
     if not made:
         size = float("inf")
     return Outcome(size, quantity, caught, time.perf_counter() - started)

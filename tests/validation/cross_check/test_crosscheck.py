@@ -146,7 +146,7 @@ def test_a_failure_names_check_value_and_limit(check):
     wrong = dataclasses.replace(check, agreements=_with(check.agreements, "exact", "y_p", remainder_l2=1.0))
     [failure] = wrong.failures
     assert (failure.check, failure.value) == ("remainder: y_p", 1.0)
-    assert failure.limit == check.contact_shift
+    assert failure.limit == check.contact_shift * (1.0 + check.effects.largest("y_p"))
     assert "base pitch" in failure.reason
 
 

@@ -162,7 +162,6 @@ def test_a_fault_in_the_lumped_model_is_seen(name, monkeypatch):
         assert worst.judged > 100.0 * worst.tolerance.limit
 
 
-@pytest.mark.parametrize("name", ["friction reversed", "law III: radius in mm", "masses over pi"])
-def test_a_fault_is_not_confirmed(name, monkeypatch):
-    found = check_with(name, monkeypatch, 136.0)
+def test_a_fault_is_not_confirmed(monkeypatch):
+    found = check_with("law III: radius in mm", monkeypatch, 136.0, twin=False)
     assert found is None or found.verdict == "not confirmed"

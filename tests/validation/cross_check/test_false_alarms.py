@@ -1,0 +1,104 @@
+"""Sound pairs that an earlier limit, or an earlier prediction, refused: none of them is refused again."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import pytest
+
+import lumped
+from validation.cross_check.comparison import crosscheck
+
+
+def bearings(*stiffness):
+    """Stiffness of pinion and gear, along and off the line of action, [1e8 N/m]."""
+    places = ("pinion.loa", "pinion.oloa", "gear.loa", "gear.oloa")
+    return {f"bearings.{p}_stiffness": 1e8 * k for p, k in zip(places, stiffness, strict=True)}
+
+
+def gears(pinion, gear, *shifts):
+    named = {"pinion.teeth": pinion, "gear.teeth": gear, "centre_distance": None}
+    for name in ("pinion", "gear"):
+        named |= {f"{name}.{what}": None for what in ("tip_diameter", "addendum", "tip_relief")}
+    return named | {f"{g}.profile_shift": s for g, s in zip(("pinion", "gear"), shifts, strict=True)}
+
+
+def running(speed, torque, law, **more):
+    return {"operating.pinion_speed": speed, "operating.pinion_torque": torque, "friction.law": law} | more
+
+
+RECTANGULAR, ENERGY = {"mesh.stiffness": {"model": "rectangular"}}, {"mesh.stiffness": {"model": "energy"}}
+#: What was wrong -> preset and changes.
+PAIRS = {
+    "y a ten thousandth of x: its error of integration was judged by the size of x": (
+        "nasa_28_28",
+        gears(50, 41, 0.2448, 0.2364)
+        | bearings(2.63, 4.36, 0.51, 5.57)
+        | ENERGY
+        | running(8396, 77.7, "composite", **{"lubricant.viscosity": 14.26}),
+    ),
+    "contact ratio 1.996: friction forces cancel but between two samples": (
+        "high_contact_ratio_29_47",
+        gears(25, 22, 0.07968, 0.1009)
+        | bearings(1.187, 0.589, 0.5595, 3.763)
+        | RECTANGULAR
+        | running(4500, 62.92, "coulomb"),
+    ),
+    "law III: friction power that a constant displacement of the law does not change": (
+        "nasa_28_28",
+        bearings(4.12, 0.632, 6.27, 2.236)
+        | {"mesh.stiffness": {"model": "parabolic", "ramp_length": 0.5}}
+        | running(6002, 33.87, "xu_kahraman", **{"lubricant.viscosity": 33.5}),
+    ),
+    "the bearings carry a contact beyond the end of its nominal path": (
+        "kahraman_blankenship_50_50",
+        gears(50, 22, 0.08574, 0.2813)
+        | bearings(9.81, 0.912, 2.115, 7.394)
+        | RECTANGULAR
+        | running(1165.6, 171.4, "composite", **{"lubricant.viscosity": 20.84}),
+    ),
+    "friction holds the teeth": (
+        "fzg_c",
+        bearings(0.632, 0.627, 5.0, 9.14)
+        | ENERGY
+        | running(3618.6, 159.6, "benedict_kelley", **{"lubricant.viscosity": 24.12}),
+    ),
+}
+
+
+@lru_cache(maxsize=8)
+def checked(name):
+    preset, changes = PAIRS[name]
+    pair = lumped.load_gear_pair(preset).with_(changes)
+    return crosscheck(pair, cycles=6, samples_per_cycle=128, twin=False)
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_a_sound_pair_is_not_refused(name):
+    assert checked(name).failures == ()
+
+
+def test_friction_that_may_hold_the_teeth_allows_more_than_its_displacement_changes(check):
+    """The sum over the pieces of the zone bounds what signs in any order can do there."""
+    found = checked("friction holds the teeth")
+    assert not found.finite_motion.settled
+    effects = found.effects
+    assert all(effects.held[name] > effects.most["sliding_velocity"][name] for name in ("dte", "y_p"))
+    assert effects.unpredicted("dte") > effects.held["dte"]
+    assert check.effects.held == {}
+    assert check.effects.unpredicted("dte") == 0.0
+
+
+def test_relief_acts_where_the_contact_stands():
+    """With the relief left at the nominal place the remainder of x_g is 100 times as large."""
+    relief = {"shape": "linear", "amount": 23.0, "start_roll_angle": 24.0}
+    pair = lumped.load_gear_pair("nasa_28_28").with_(
+        gears(29, 32, 0.08, -0.03)
+        | bearings(1.47, 8.09, 10.5, 0.308)
+        | ENERGY
+        | {"pinion.tip_relief": relief, "gear.tip_relief": relief, "mesh.relief": "static"}
+        | running(2381, 21.6, "benedict_kelley")
+    )
+    found = crosscheck(pair, cycles=6, samples_per_cycle=64, twin=False)
+    [x_g] = [a for a in found.of("exact") if a.quantity == "x_g"]
+    assert x_g.remainder_l2 < 0.05 * x_g.effects["rotation_phase"]
