@@ -71,7 +71,7 @@ class Dispatcher:
         """
         self._left = count
         while True:
-            while len(self._running) < 2 * self._pool.slots:
+            while len(self._running) < 2 * self._slots:
                 cases = [self._singles.popleft()] if self._singles else list(islice(numbers, self._size()))
                 if not cases:
                     if self._running or not self._suspects:
@@ -94,6 +94,11 @@ class Dispatcher:
         for future in self._running:
             if future.done() and not future.cancelled() and future.exception() is None:
                 yield future.result()
+
+    @property
+    def _slots(self) -> int:
+        """At least 1: what a cluster without workers is sent waits there for one."""
+        return max(self._pool.slots, 1)
 
     def _finished(self) -> set[Future[Batch]]:
         while True:
@@ -121,7 +126,7 @@ class Dispatcher:
         except BrokenProcessPool as error:
             self._singles += cases
             self._broken += 1
-            if self._broken > _MAX_BROKEN * self._pool.slots:
+            if self._broken > _MAX_BROKEN * self._slots:
                 raise SweepStopped(
                     "The worker processes end as soon as they start: check the memory of this machine; in a "
                     "script, call run_sweep under `if __name__ == '__main__':`. Then go on with --resume."
@@ -162,9 +167,8 @@ class Dispatcher:
         """Cases of the next batch: by time, and small at the end so that all workers stay busy."""
         if self._seconds is None:
             return 1
-        slots = max(self._pool.slots, 1)
-        seconds = max(BATCH_SECONDS, slots / BATCHES_PER_SECOND)
+        seconds = max(BATCH_SECONDS, self._slots / BATCHES_PER_SECOND)
         if self._limit is not None:
             seconds = min(seconds, self._limit / 4.0)
         by_time = int(seconds / max(self._seconds, 1e-6))
-        return max(1, min(by_time, self._left // (4 * slots), MAX_BATCH))
+        return max(1, min(by_time, self._left // (4 * self._slots), MAX_BATCH))

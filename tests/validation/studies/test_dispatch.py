@@ -178,3 +178,14 @@ def test_workers_that_join_are_used_while_batches_end_all_the_time(statuses):
     pool = Growing({}, slots=1)
     statuses(pool)
     assert pool.slots == 30
+
+
+def test_a_cluster_that_loses_its_last_worker_is_waited_for(statuses):
+    class Empty(ScriptedPool):
+        def check(self):
+            self.slots = 0
+            return super().check()
+
+    pool = Empty({5: 1})
+    statuses(pool)
+    assert pool.slots == 0
