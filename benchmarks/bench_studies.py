@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 
 from validation.studies import load_study, run_sweep
-from validation.studies.cases import StudyEvaluator, case_list
+from validation.studies.cases import CaseList, StudyEvaluator
 from validation.studies.cli_sweep import cores
 from validation.studies.evaluate import Batch
 from validation.studies.provenance import provenance
@@ -68,7 +68,7 @@ def overhead(count):
 
     def times(number):
         study = study_of(number)
-        evaluate, values = StudyEvaluator.of(study), case_list(study).values(range(number))
+        evaluate, values = StudyEvaluator.of(study), CaseList(study).values(range(number))
         plain, swept = [], []
         for _ in range(RUNS):
             plain.append(seconds_of(lambda: [evaluate(v) for v in values])[0])
@@ -90,7 +90,7 @@ def overhead(count):
 
 def store(count):
     """Cost of the store and of compiling the result; returns seconds a case, and its size over theirs."""
-    cases = case_list(study_of(count))
+    cases = CaseList(study_of(count))
     with tempfile.TemporaryDirectory() as folder:
 
         def write(block):

@@ -68,7 +68,6 @@ def sweep(
     """
     from lumped.errors import ParameterError, SpurcheckError
     from validation.studies import load_study, run_sweep
-    from validation.studies.cases import case_list
     from validation.studies.cli_sweep import SweepProgress, cores, print_summary
 
     console = stderr()
@@ -77,7 +76,7 @@ def sweep(
     wanted = load_study(study)
     processes = cores() if workers is None else workers
     where = f"on {scheduler}" if scheduler is not None else f"on {processes} worker(s)"
-    text = f"{wanted.name}: {case_list(wanted).count} cases, {wanted.analysis}, {where} -> {folder}"
+    text = f"{wanted.name}: {wanted.count} cases, {wanted.analysis}, {where} -> {folder}"
     console.print(text, soft_wrap=True)
     if dry_run:
         return

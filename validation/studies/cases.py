@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
@@ -31,11 +30,14 @@ class CaseList:
     Attributes
     ----------
     study : the study
-    count : number of cases
     """
 
     study: Study
-    count: int
+
+    @property
+    def count(self) -> int:
+        """Number of cases."""
+        return self.study.count
 
     @cached_property
     def grid(self) -> tuple[tuple[AxisValue, ...], ...] | None:
@@ -86,7 +88,7 @@ class CaseList:
     @cached_property
     def shape(self) -> tuple[int, ...]:
         """Shape of the grid, or (count,)."""
-        return (self.count,) if self.grid is None else tuple(len(axis) for axis in self.grid)
+        return (self.count,) if self.grid is None else tuple(map(len, self.grid))
 
     @property
     def dims(self) -> tuple[str, ...]:
@@ -110,15 +112,6 @@ class CaseList:
     def outputs(self) -> tuple[str, ...]:
         """Names of the numbers that are kept of a case."""
         return self.study.outputs
-
-
-def case_list(study: Study) -> CaseList:
-    """Return the cases of a study."""
-    design = study.design
-    if design.method == "grid":
-        return CaseList(study, math.prod(len(axis.listed()) for axis in study.axes))
-    assert design.samples is not None
-    return CaseList(study, design.samples * (len(study.axes) + 2 if design.sensitivity else 1))
 
 
 @dataclass(frozen=True)

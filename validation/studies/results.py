@@ -12,7 +12,7 @@ from lumped.model.results import parameters_hash
 from validation.files.output import whole_file
 from validation.studies.analyses import ANALYSES
 from validation.studies.axes import target_of
-from validation.studies.cases import CaseList, case_list
+from validation.studies.cases import CaseList
 from validation.studies.evaluate import Status
 from validation.studies.load import load_study
 from validation.studies.sensitivity import add_sensitivity
@@ -38,7 +38,7 @@ def read_results(folder: str | Path) -> xr.Dataset:
     StoreError, ParameterError : no store, or not one of its own study
     """
     root = Path(folder)
-    cases = case_list(load_study(read_definition(root), name=str(root / STORE)))
+    cases = CaseList(load_study(read_definition(root), name=str(root / STORE)))
     return results_dataset(cases, read_table(root, cases))
 
 

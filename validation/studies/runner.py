@@ -15,7 +15,7 @@ import numpy as np
 
 from lumped.errors import refuse
 from validation.stop_signals import stopping_as_interrupt, undisturbed
-from validation.studies.cases import CaseList, StudyEvaluator, case_list
+from validation.studies.cases import CaseList, StudyEvaluator
 from validation.studies.cluster import pool_of
 from validation.studies.dispatch import Dispatcher
 from validation.studies.evaluate import Evaluator, Status
@@ -113,7 +113,7 @@ def run_sweep(
             "case_seconds", f"{case_seconds:g} s", "0.001 s to 1e6 s", "Give the longest time of a case."
         )
     root = Path(folder)
-    cases = case_list(study)
+    cases = CaseList(study)
     _check_memory(cases)
     _prepare(root, resume)
     with stopping_as_interrupt(), Store(root, cases, other_code=other_code, new=not resume) as store:

@@ -95,6 +95,14 @@ class Study(Section):
             raise ParameterError(problems)
         return self
 
+    @property
+    def count(self) -> int:
+        """Number of cases; sensitivity indices take a block of samples an axis and two more."""
+        design = self.design
+        if design.method == "grid":
+            return math.prod(len(axis.values or ()) or axis.count or 1 for axis in self.axes)
+        return (design.samples or 0) * (len(self.axes) + 2 if design.sensitivity else 1)
+
     def to_mapping(self) -> dict[str, Any]:
         """Return the study as plain data for TOML, with the gear pair written out: nothing else is read."""
         return self.model_dump(exclude_none=True, exclude_defaults=True, mode="json")
@@ -158,12 +166,7 @@ def _axis_problems(study: Study) -> list[FieldProblem]:
         except ParameterError as error:
             found += error.problems
         problems += [replace(problem, field=f"axes.{j}.{problem.field}") for problem in found]
-    design = study.design
-    if grid:
-        cases = math.prod(len(axis.values or ()) or axis.count or 1 for axis in study.axes)
-    else:
-        cases = (design.samples or 0) * (len(study.axes) + 2 if design.sensitivity else 1)
-    if cases > MAX_CASES:
+    if study.count > MAX_CASES:
         action = "Take fewer values, or split the study."
-        problems.append(FieldProblem("design", f"{cases} cases", f"<= {MAX_CASES} cases", action))
+        problems.append(FieldProblem("design", f"{study.count} cases", f"<= {MAX_CASES} cases", action))
     return problems

@@ -15,7 +15,7 @@ import pytest
 
 from validation.studies import Study, Summary, load_study, run_sweep, runner
 from validation.studies.analyses import ANALYSES
-from validation.studies.cases import StudyEvaluator, case_list
+from validation.studies.cases import CaseList, StudyEvaluator
 from validation.studies.evaluate import Status
 from validation.studies.storage import StoreError
 from validation.studies.store import read_table
@@ -109,7 +109,7 @@ analyses.ANALYSES["geometry"] = dataclasses.replace(fast, compute=slow)
     def finished(self) -> list[int]:
         """Numbers of the cases that the store holds."""
         try:
-            status = read_table(self.out, case_list(self.study)).status
+            status = read_table(self.out, CaseList(self.study)).status
         except StoreError:  # none yet
             return []
         return [case for case, code in enumerate(status) if code != Status.MISSING]
@@ -148,7 +148,7 @@ def odd(study: Study, monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
 
     def put(what: str, case: int, note: str = "") -> None:
         evaluator = StudyEvaluator.of(study)
-        (values,) = case_list(study).values([case])
+        (values,) = CaseList(study).values([case])
         changed = SimpleNamespace(of=lambda study: Odd(evaluator, what, values, note))
         monkeypatch.setattr(runner, "StudyEvaluator", changed)
 

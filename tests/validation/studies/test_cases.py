@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from validation.studies.cases import CaseList, case_list
+from validation.studies.cases import CaseList
 
 SAMPLED = [
     {"field": "operating.pinion_torque", "low": 10.0, "high": 90.0},
@@ -17,11 +17,11 @@ SAMPLED = [
 
 
 def sampled(make_study, **design) -> CaseList:
-    return case_list(make_study(design=design, axes=SAMPLED))
+    return CaseList(make_study(design=design, axes=SAMPLED))
 
 
 def test_grid_is_the_product_with_the_last_axis_fastest(make_study):
-    cases = case_list(make_study())
+    cases = CaseList(make_study())
     speeds = np.linspace(500.0, 9000.0, 8).tolist()
     expected = list(itertools.product(speeds, [5.0, 6.0, 8.0], [88.5, 88.9, 89.0, 89.2, 89.4]))
     assert cases.count == 120
@@ -66,7 +66,7 @@ def test_a_logarithmic_range_may_span_all_numbers(make_study):
         "count": 3,
         "spacing": "log",
     }
-    (values,) = case_list(make_study(axes=[axis])).grid
+    (values,) = CaseList(make_study(axes=[axis])).grid
     # exp(690) magnifies the rounding of its argument 690 times.
     assert values == pytest.approx((1e-300, 1.0, 1e300), rel=1e-12)
 
@@ -74,7 +74,7 @@ def test_a_logarithmic_range_may_span_all_numbers(make_study):
 def test_ranges_are_linear_or_logarithmic_and_hold_their_ends(make_study):
     linear = {"field": "operating.pinion_torque", "low": 1.0, "high": 4.0, "count": 4}
     log = {"field": "mesh.damping_ratio", "low": 0.001, "high": 0.1, "count": 3, "spacing": "log"}
-    torque, damping = case_list(make_study(axes=[linear, log])).grid
+    torque, damping = CaseList(make_study(axes=[linear, log])).grid
     assert torque == (1.0, 2.0, 3.0, 4.0)
     # exp(log x) rounds within a few units of the last place.
     assert damping == pytest.approx((0.001, 0.01, 0.1), rel=1e-14)
@@ -83,7 +83,7 @@ def test_ranges_are_linear_or_logarithmic_and_hold_their_ends(make_study):
 
 def test_samples_of_a_whole_number_give_every_value_the_same_share(make_study):
     axes = [{"field": "pinion.teeth", "low": 24.5, "high": 28.9}]  # whole numbers inside: 25 to 28
-    cases = case_list(make_study(axes=axes, design={"method": "sobol", "samples": 256}))
+    cases = CaseList(make_study(axes=axes, design={"method": "sobol", "samples": 256}))
     teeth = [values[0] for values in cases.values(range(256))]
     # 256 balanced points over 4 values; exact, because each value owns a dyadic quarter of the range.
     assert [teeth.count(z) for z in (25, 26, 27, 28)] == [64] * 4

@@ -127,10 +127,10 @@ def test_a_lost_scheduler_stops_the_sweep_and_nothing_is_lost(study, tmp_path, u
     assert summary.results.read_bytes() == undisturbed
 
 
-@pytest.fixture
-def scheduler(tmp_path):
-    """Process of a scheduler, its address, and the process of its one worker."""
-    known = tmp_path / "scheduler.json"
+@pytest.fixture(scope="module")
+def scheduler(tmp_path_factory):
+    """Process of a scheduler, its address, and the process of its one worker; a test leaves them running."""
+    known = tmp_path_factory.mktemp("scheduler") / "scheduler.json"
     options = ["--port", "0", "--dashboard-address", ":0", "--scheduler-file", str(known)]
     worker_options = ["--nthreads", "1", "--no-nanny"]
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
@@ -160,6 +160,7 @@ def test_a_scheduler_that_stands_still_stops_the_sweep(study, tmp_path, schedule
     with pytest.raises(SweepStopped, match="--resume"):
         run_sweep(study, tmp_path / "out", scheduler=address, progress=freeze)
     thaw.cancel()
+    process.send_signal(signal.SIGCONT)
     summary = run_sweep(study, tmp_path / "out", resume=True)
     assert summary.before > 0
     assert summary.results.read_bytes() == undisturbed
@@ -209,30 +210,6 @@ def test_ctrl_c_is_answered_at_once_also_by_a_scheduler_that_stands_still(study,
         process.send_signal(signal.SIGCONT)
 
 
-def test_the_command_says_in_one_line_that_the_scheduler_died(make_study, tmp_path, scheduler):
-    process, address, _ = scheduler
-    long = make_study(
-        analysis="multibody",
-        outputs=["dte_rms"],
-        settings={"cycles": 100_000},
-        axes=[{"field": "operating.pinion_speed", "values": [2000, 3000]}],
-    )
-    (tmp_path / "long.toml").write_text(long.to_toml())
-    command = [sys.executable, "-m", "validation.cli", "sweep", "long.toml", "--scheduler", address]
-    sweep = subprocess.Popen(
-        command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
-    )
-    with distributed.Client(address, set_as_default=False) as client:
-        while not any(client.processing().values()):
-            assert sweep.poll() is None, sweep.communicate()[0]
-            time.sleep(0.1)
-    process.kill()
-    text, _ = sweep.communicate(timeout=60)
-    assert sweep.returncode == 3
-    assert "--resume" in text
-    assert "Traceback" not in text
-
-
 def test_no_scheduler_is_refused(study, tmp_path, monkeypatch):
     monkeypatch.setattr(cluster_pool, "_CONNECT_SECONDS", 0.5)
     with pytest.raises(ParameterError, match="running scheduler"):
@@ -261,3 +238,30 @@ def test_the_time_limit_holds_on_threads_of_a_worker(study, make_study, tmp_path
         assert dict(summary.statuses) == {Status.TIME_LIMIT: 2}
         plain = run_sweep(study, tmp_path / "plain", scheduler=address, case_seconds=60.0)
     assert plain.results.read_bytes() == undisturbed
+
+
+# The last test of the module, for the scheduler is gone then.
+def test_the_command_says_in_one_line_that_the_scheduler_died(
+    make_study, tmp_path, scheduler
+):  # the last one
+    process, address, _ = scheduler
+    long = make_study(
+        analysis="multibody",
+        outputs=["dte_rms"],
+        settings={"cycles": 100_000},
+        axes=[{"field": "operating.pinion_speed", "values": [2000, 3000]}],
+    )
+    (tmp_path / "long.toml").write_text(long.to_toml())
+    command = [sys.executable, "-m", "validation.cli", "sweep", "long.toml", "--scheduler", address]
+    sweep = subprocess.Popen(
+        command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
+    with distributed.Client(address, set_as_default=False) as client:
+        while not any(client.processing().values()):
+            assert sweep.poll() is None, sweep.communicate()[0]
+            time.sleep(0.1)
+    process.kill()
+    text, _ = sweep.communicate(timeout=60)
+    assert sweep.returncode == 3
+    assert "--resume" in text
+    assert "Traceback" not in text

@@ -10,7 +10,7 @@ import numpy as np
 import pebble
 import pytest
 
-from validation.studies.cases import StudyEvaluator, case_list
+from validation.studies.cases import CaseList, StudyEvaluator
 from validation.studies.dispatch import Dispatcher
 from validation.studies.evaluate import Batch, Status
 from validation.studies.pools import SweepStopped
@@ -64,7 +64,7 @@ class ScriptedPool:
 
 
 def dispatcher(pool, study, limit=None):
-    cases = case_list(study)
+    cases = CaseList(study)
     return Dispatcher(pool, StudyEvaluator.of(study), cases.values, limit)
 
 

@@ -14,7 +14,7 @@ import pytest
 from lumped.errors import ParameterError
 from validation.studies import StoreError, read_results, run_sweep
 from validation.studies import store as stores
-from validation.studies.cases import case_list
+from validation.studies.cases import CaseList
 from validation.studies.evaluate import MAX_MESSAGE, Batch, Status, evaluate_batch
 from validation.studies.provenance import provenance
 from validation.studies.storage import STORE
@@ -32,7 +32,7 @@ def batch_of(cases, status=Status.OK, message=""):
 
 @pytest.fixture
 def cases(study):
-    return case_list(study)
+    return CaseList(study)
 
 
 @pytest.fixture
@@ -56,7 +56,7 @@ def test_what_was_added_comes_back_bit_for_bit_and_the_last_outcome_counts(store
 
 def test_a_case_takes_its_outputs_and_a_byte(make_study, tmp_path):
     axis = {"field": "operating.pinion_speed", "low": 500, "high": 9000, "count": 20_000}
-    cases = case_list(make_study(axes=[axis]))
+    cases = CaseList(make_study(axes=[axis]))
     with Store(tmp_path, cases) as store:
         for start in range(0, cases.count, 1000):
             store.add(batch_of(range(start, start + 1000)))
@@ -118,7 +118,7 @@ def test_the_store_of_other_samples_of_the_study_is_refused(make_study, tmp_path
     # As another version of scipy would draw them; the study itself is the same.
     axes = [{"field": "operating.pinion_speed", "low": 500, "high": 9000}]
     study = make_study(design={"method": "sobol", "samples": 8}, axes=axes)
-    other = case_list(study)
+    other = CaseList(study)
     other.__dict__["sha256"] = hashlib.sha256(b"other samples").hexdigest()
     with Store(tmp_path, other) as store:
         store.add(batch_of([0]))

@@ -62,14 +62,14 @@ import sys; sys.path.insert(0, {os.path.dirname(__file__)!r})
 from types import SimpleNamespace
 from odd_evaluators import Odd
 from validation.studies import runner
-from validation.studies.cases import StudyEvaluator, case_list
+from validation.studies.cases import CaseList, StudyEvaluator
 def odd(study):
-    (values,) = case_list(study).values([3])
+    (values,) = CaseList(study).values([3])
     return Odd(StudyEvaluator.of(study), "compiled_loop", values, {str(note)!r})
 limited = run = runner.run_sweep
 runner.StudyEvaluator = SimpleNamespace(of=odd)
 import validation.studies
-validation.studies.run_sweep = lambda *a, **o: run(*a, **o, case_seconds=3.0)
+validation.studies.run_sweep = lambda *a, **o: run(*a, **o, case_seconds=1.0)
 """
     run = sweep.start(patch)
     sweep.wait_for(lambda: note.exists() and note.read_text().endswith(" "), "the case")
