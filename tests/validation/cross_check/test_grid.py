@@ -256,15 +256,6 @@ def test_a_checkpoint_of_another_grid_is_refused(monkeypatch, tmp_path):
         crosscheck_grid(one, workers=0, checkpoint=tmp_path / "store.sqlite")
 
 
-def test_a_point_survives_its_store():
-    tables = [np.arange(14.0).reshape(2, 7) * s for s in (1.0, 2.0, 3.0, 4.0)]
-    point = GridPoint(STICKING, -0.25, 1.5, 0.125, *tables)
-    again = GridPoint.from_numbers(np.array(point.numbers()))
-    assert (again.status, again.load_min, again.seconds, again.expected) == (STICKING, -0.25, 1.5, 0.125)
-    for name in ("judged", "limit", "total", "largest"):
-        np.testing.assert_array_equal(getattr(again, name), getattr(point, name))
-
-
 def _run(*arguments):
     return CliRunner().invoke(app, list(map(str, arguments)), env={"COLUMNS": "200", "NO_COLOR": "1"})
 

@@ -23,7 +23,7 @@ from validation.cross_check.metrics import maximum_over_span
 from validation.cross_check.tolerances import tolerance
 from validation.validity.flags import LOAD_NOISE
 
-#: What can come of a point, beside the text of an error.
+#: What can come of a point.
 COMPARED, SEPARATED, STICKING = STATES = ("compared", "teeth separate", "sliding may stick")
 #: Names of ``GridPoint.numbers``.
 NUMBERS = (
@@ -48,7 +48,7 @@ class GridPoint:
 
     Attributes
     ----------
-    status : ``COMPARED``, ``SEPARATED``, ``STICKING`` or the text of an error (then nothing else is known)
+    status : ``COMPARED``, ``SEPARATED`` or ``STICKING``
     load_min : smallest normal load of the lumped model over the static load
     seconds : processor time
     expected : largest change of the transmission error that finite motions must make, over its peak to peak
@@ -67,18 +67,11 @@ class GridPoint:
     largest: FloatArray = field(default_factory=_missing)
 
     def numbers(self) -> tuple[float, ...]:
-        """The point as numbers, for a store; see ``from_numbers``. The status must not be an error."""
+        """The numbers that ``NUMBERS`` names; the status is its place in ``STATES``."""
         tables = np.concatenate(
             [table.ravel() for table in (self.judged, self.limit, self.total, self.largest)]
         )
         return (STATES.index(self.status), self.load_min, self.seconds, self.expected, *tables.tolist())
-
-    @classmethod
-    def from_numbers(cls, numbers: FloatArray) -> GridPoint:
-        """The point that ``numbers`` gave."""
-        state, load_min, seconds, expected = numbers[:4].tolist()
-        tables = numbers[4:].reshape(4, len(FIDELITIES), len(QUANTITIES))
-        return cls(STATES[int(state)], load_min, seconds, expected, *tables)
 
 
 def compare_point(pair: GearPair, samples: int) -> GridPoint:

@@ -35,14 +35,13 @@ from validation.cross_check.grid.point import (
     COMPARED,
     NUMBERS,
     SEPARATED,
+    STATES,
     STICKING,
-    GridPoint,
     compare_point,
 )
 from validation.stop_signals import stopping_as_interrupt
-from validation.studies.evaluate import Status
 from validation.studies.runner import compute, wanted
-from validation.studies.store import Store
+from validation.studies.store import Store, Table
 
 __all__ = ["AXES", "COMPARED", "SEPARATED", "STICKING", "STIFFNESS", "Grid", "crosscheck_grid"]
 
@@ -87,8 +86,7 @@ class Grid:
     samples: int = 128
 
     def __post_init__(self) -> None:
-        for name in AXES:
-            values = getattr(self, name if name in ("stiffness",) else f"{name}s")
+        for name, values in zip(AXES, self.axes, strict=True):
             if not values or len(set(values)) != len(values):
                 raise refuse(f"grid.{name}", values, "at least one, each once", "Correct the list.")
         for name in set(self.stiffness) - set(STIFFNESS):
@@ -97,9 +95,14 @@ class Grid:
             raise refuse("grid.torques", self.torques, "falling", "Sort them from high to low.")
 
     @property
+    def axes(self) -> tuple[tuple[Any, ...], ...]:
+        """Values of every axis, in the order preset, law, stiffness, speed, torque."""
+        return self.presets, self.laws, self.stiffness, self.speeds, self.torques
+
+    @property
     def shape(self) -> tuple[int, ...]:
-        """Points along every axis, in the order preset, law, stiffness, speed, torque."""
-        return tuple(len(v) for v in (self.presets, self.laws, self.stiffness, self.speeds, self.torques))
+        """Points along every axis."""
+        return tuple(map(len, self.axes))
 
     def pair(self, preset: str, law: str, stiffness: str, speed: float, torque: float) -> GearPair:
         """Gear pair of one point."""
@@ -177,13 +180,8 @@ def crosscheck_grid(
 
         compute(cases, _GridEvaluator(g), store, todo, workers=workers, progress=told)
         table = store.table()
-    assert table.values is not None
-    points = [
-        GridPoint(table.messages[case]) if status >= Status.REFUSED else GridPoint.from_numbers(numbers)
-        for case, (status, numbers) in enumerate(zip(table.status, table.values, strict=True))
-    ]
     resumed = cases.count - int(np.count_nonzero(todo))
-    result = _dataset(g, points)
+    result = _dataset(g, table)
     seconds = time.perf_counter() - started
     result.attrs |= {"seconds": seconds, "workers": workers, "resumed": resumed}
     return result
@@ -195,17 +193,16 @@ class _GridCases:
     outputs = NUMBERS
 
     def __init__(self, grid: Grid) -> None:
-        self.axes = (grid.presets, grid.laws, grid.stiffness, grid.speeds, grid.torques)
+        self.grid = grid
         self.definition = "cross-check grid\n" + json.dumps(asdict(grid))
         self.sha256 = sha256(self.definition.encode()).hexdigest()
         self.count = math.prod(grid.shape)
 
     def values(self, cases: Sequence[int]) -> list[tuple[Any, ...]]:
         """Preset, law, stiffness, speed and torque of points."""
-        places = np.unravel_index(np.asarray(cases), tuple(map(len, self.axes)))
-        return [
-            tuple(axis[i] for axis, i in zip(self.axes, at, strict=True)) for at in zip(*places, strict=True)
-        ]
+        places = np.unravel_index(np.asarray(cases), self.grid.shape)
+        columns = ([axis[i] for i in at] for axis, at in zip(self.grid.axes, places, strict=True))
+        return list(zip(*columns, strict=True))
 
 
 @dataclass(frozen=True)
@@ -223,13 +220,20 @@ class _GridEvaluator:
         return compare_point(self.grid.pair(*values), self.grid.samples).numbers()
 
 
-def _dataset(g: Grid, points: list[GridPoint]) -> xr.Dataset:
-    def each(name: str) -> Any:
-        return np.array([getattr(p, name) for p in points]).reshape(g.shape)
+def _dataset(g: Grid, table: Table) -> xr.Dataset:
+    assert table.values is not None
+    numbers: dict[str, FloatArray] = dict(zip(NUMBERS, table.values.T, strict=True))
+    status = [
+        STATES[int(state)] if np.isfinite(state) else table.messages[case]
+        for case, state in enumerate(numbers["status"])
+    ]
+
+    def each(name: str) -> FloatArray:
+        return numbers[name].reshape(g.shape)
 
     def every(name: str) -> FloatArray:
-        shape = (*g.shape, len(FIDELITIES), len(QUANTITIES))
-        return np.stack([getattr(p, name) for p in points]).reshape(shape)
+        columns = [numbers[f"{name}_{fidelity}_{q}"] for fidelity in FIDELITIES for q in QUANTITIES]
+        return np.stack(columns, axis=-1).reshape(*g.shape, len(FIDELITIES), len(QUANTITIES))
 
     inner = (*AXES, "fidelity", "quantity")
     largest, expected = every("largest"), each("expected")
@@ -239,7 +243,7 @@ def _dataset(g: Grid, points: list[GridPoint]) -> xr.Dataset:
         "limit": (inner, every("limit"), "1", "tolerance of the judged metric"),
         "total": (inner, every("total"), "1", "relative L2 of the whole difference"),
         "largest": (inner, largest, "1", "largest difference over peak to peak"),
-        "status": (AXES, each("status"), "1", "what came of the point"),
+        "status": (AXES, np.array(status).reshape(g.shape), "1", "what came of the point"),
         "load_min": (AXES, each("load_min"), "1", "smallest normal load over static load, lumped"),
         "expected": (AXES, expected, "1", "largest expected DTE difference over peak to peak"),
         "ratio": (AXES, _ratios(g, dte), "1", "fall of the DTE difference, over that of the torque"),
