@@ -74,16 +74,18 @@ def overhead(count):
             plain.append(seconds_of(lambda: [evaluate(v) for v in values])[0])
             with tempfile.TemporaryDirectory() as folder:
                 swept.append(seconds_of(run_sweep, study, Path(folder, "out"))[0])
-        return min(plain), min(swept)
+                size = Path(folder, "out", STORE).stat().st_size / number
+        return min(plain), min(swept), size
 
     times(10)
     few, many = count // 5, count
-    (plain_few, swept_few), (plain_many, swept_many) = times(few), times(many)
+    (plain_few, swept_few, _), (plain_many, swept_many, size) = times(few), times(many)
     plain = (plain_many - plain_few) / (many - few)
     swept = (swept_many - swept_few) / (many - few)
     print(f"plain call              {1e6 * plain:10.1f} us a case")
     print(f"sweep, 0 workers        {1e6 * swept:10.1f} us a case")
     print(f"overhead                {1e6 * (swept - plain):10.1f} us a case  ({few} and {many} cases)")
+    print(f"store of that sweep     {size:10.1f} bytes a case, 2 outputs")
     print(f"run by itself           {1e3 * (swept_few - few * swept):10.1f} ms")
     return max(swept - plain, 0.0)
 
@@ -116,28 +118,27 @@ def store(count):
 
 
 def scaling(count):
-    """Strong scaling on the cores of this machine: the same cases with 1 to all workers, in turn."""
+    """Strong scaling on the cores of this machine: the same cases with 1 to all workers."""
     outputs = ("dte_peak_to_peak", "mesh_efficiency", "error_estimate")
     study = study_of(count, "lumped", outputs, 300.0, 1200.0)
-    best = dict.fromkeys(range(1, cores() + 1), float("inf"))
+    best = dict.fromkeys(range(1, cores() + 1), 0.0)
     whole = dict(best)
     results = set()
-    for _ in range(RUNS):
-        for workers in best:
-            first = []
+    for workers in best:
+        first = []
 
-            def progress(done, total, failed, first=first):
-                if not first:
-                    first.append((time.perf_counter(), done))
+        def progress(done, total, failed, first=first):
+            if not first:
+                first.append((time.perf_counter(), done))
 
-            with tempfile.TemporaryDirectory() as folder:
-                start = time.perf_counter()
-                summary = run_sweep(study, Path(folder, "out"), workers=workers, progress=progress)
-                # From the first result on: starting workers (imports, compiled code) is a cost of its own.
-                end, (begun, done) = time.perf_counter(), first[0]
-                best[workers] = min(best[workers], (end - begun) * count / (count - done))
-                whole[workers] = min(whole[workers], end - start)
-                results.add(summary.results.read_bytes())
+        with tempfile.TemporaryDirectory() as folder:
+            start = time.perf_counter()
+            summary = run_sweep(study, Path(folder, "out"), workers=workers, progress=progress)
+            # From the first result on: starting workers (imports, compiled code) is a cost of its own.
+            end, (begun, done) = time.perf_counter(), first[0]
+            best[workers] = (end - begun) * count / (count - done)
+            whole[workers] = end - start
+            results.add(summary.results.read_bytes())
     for workers, took in best.items():
         print(
             f"lumped, {workers} worker(s)     {took:10.2f} s, speed-up {best[1] / took:.2f} ({count} cases); "
@@ -210,12 +211,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="a tenth of the cases")
     share = 10 if parser.parse_args().quick else 1
-    case = overhead(3000 // share)
+    case = overhead(10_000 // share)
     record = store(100_000 // share)
     task = cluster(2000 // share)
     project(case, record, task)
     memory(10_000 // share)
-    scaling(1000 // share)
+    scaling(10_000 // share)
 
 
 if __name__ == "__main__":

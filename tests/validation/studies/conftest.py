@@ -114,8 +114,8 @@ analyses.ANALYSES["geometry"] = dataclasses.replace(fast, compute=slow)
             return []
         return [case for case, code in enumerate(status) if code != Status.MISSING]
 
-    def wait_for(self, condition: Callable[[], bool], what: str, seconds: float = 60.0) -> None:
-        """Wait until a condition holds."""
+    def wait_for(self, condition: Callable[[], bool], what: str, seconds: float = 400.0) -> None:
+        """Wait until a condition holds; a process takes 5 s of processor time to start."""
         end = time.monotonic() + seconds
         while not condition():
             assert time.monotonic() < end, f"waited {seconds} s for {what}"

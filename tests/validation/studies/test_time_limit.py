@@ -77,4 +77,4 @@ validation.studies.run_sweep = lambda *a, **o: run(*a, **o, case_seconds=1.0)
     run.communicate()
     pid = int(note.read_text())
     # This case never lets go of the interpreter, so a watchdog outside of it is what ends it.
-    sweep.wait_for(lambda: not os.path.exists(f"/proc/{pid}"), "the process to end", 60.0)
+    sweep.wait_for(lambda: not os.path.exists(f"/proc/{pid}"), "the process to end")
