@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.arguments import whole_number
 from lumped.errors import NumericalError
 from lumped.model.propagation import step_maps
 from lumped.schema.pair import GearPair
@@ -40,8 +39,8 @@ _STEP = {"linear": 1.0, "exact": 1e-3}
 _CLOSED = 10.0
 #: ... and accepts this much where it stops falling before.
 _ACCEPTED = 1e-5
-#: Steps without a smaller mismatch before the iteration is given up.
-_PATIENCE = 8
+#: Steps without a smaller mismatch before the iteration is given up, and most steps.
+_PATIENCE, _ITERATIONS = 8, 40
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +85,6 @@ def monodromy(
     effects: Collection[str] | Mapping[str, bool] | None = None,
     rtol: float = 1e-10,
     friction_velocity: float | None = None,
-    iterations: int = 40,
 ) -> FlowMap:
     """Monodromy matrix by perturbed runs over one mesh cycle, about the model's own periodic motion.
 
@@ -94,16 +92,13 @@ def monodromy(
     ----------
     pair : a validated gear pair
     fidelity, effects, rtol, friction_velocity : as ``multibody.simulate``
-    iterations : most Newton steps from the lumped periodic motion to the multibody one, with the brake
-        torque as unknown; 0 takes the map about the lumped motion
 
     Raises
     ------
     NumericalError : no periodic motion is found near the lumped one
     """
-    iterations = whole_number("iterations", iterations, 0, 1000)
     setup = prepare(pair, fidelity, "periodic", effects, rtol, friction_velocity)
-    orbit = find_orbit(setup, iterations)
+    orbit = find_orbit(setup)
     full = _differences(orbit.flow, orbit.state, _scale(setup) * _STEP[fidelity])
     read, lift = _relative(orbit.machine)
     torque = orbit.machine.torque_gear
@@ -128,7 +123,7 @@ class Orbit:
     closure: float
 
 
-def find_orbit(setup: Setup, iterations: int = 40) -> Orbit:
+def find_orbit(setup: Setup) -> Orbit:
     """Periodic motion near the initial state of ``setup``, with the brake torque as unknown.
 
     Broyden's method starts from the monodromy matrix of the lumped model. That differs from the multibody
@@ -152,7 +147,7 @@ def find_orbit(setup: Setup, iterations: int = 40) -> Orbit:
     matrix = _bordered(transition, forced[:, 2], machine, scale)
     best, age = Orbit(state, machine, Flow(setup, machine), np.inf), 0
     change = np.zeros(13)
-    for step in range(iterations + 1):
+    for step in range(_ITERATIONS + 1):
         flow = Flow(setup, machine)
         mismatch = np.append((flow(state) - state) / scale, 0.0)
         closure = float(np.abs(mismatch).max())
@@ -165,7 +160,7 @@ def find_orbit(setup: Setup, iterations: int = 40) -> Orbit:
         change = np.linalg.solve(matrix, mismatch)
         state = state + change[:12] * scale
         machine = replace(machine, torque_gear=machine.torque_gear * (1.0 + float(change[12])))
-    if iterations > 0 and not best.closure < _ACCEPTED:
+    if not best.closure < _ACCEPTED:
         raise NumericalError(
             f"No periodic multibody motion near the lumped one (mismatch {best.closure:.1e}): the pair may "
             "separate or sit on a stability boundary. Change the speed or the torque, or run "

@@ -152,7 +152,7 @@ def run(line: str, root: Path, done: set[str]) -> None:
         for path in (a.split("::")[0] for a in arguments if a.endswith(".py") or a.startswith("tests/")):
             assert (root / path).exists(), line
     else:
-        known = (".", "git", "pip", "ruff", "mypy", ".ci/run")
+        known = (".", "export", "git", "pip", "ruff", "mypy", ".ci/run")
         assert program in known or program.startswith("REXS_PUBLISHED="), f"nobody checks {line!r}"
 
 

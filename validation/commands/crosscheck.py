@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import FAILED, guarded, progress_bar, stderr, stdout, table
+from validation.commands.terminal import conclude, guarded, progress_bar, stdout, table
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -27,11 +27,9 @@ def crosscheck(
     pair: opt.PairArgument = opt.DEFAULT_PAIR,
     output: Annotated[
         Path | None,
-        typer.Option(
-            "--output",
-            "-o",
-            help="All metrics as .json, or the transmission errors as .png or .svg; with --grid the dataset "
-            "as .nc or .csv, or the heat map as .png or .svg.",
+        opt.output(
+            "All metrics as .json, or the transmission errors as .png or .svg; with --grid the dataset as "
+            ".nc or .csv, or the heat map as .png or .svg."
         ),
     ] = None,
     grid: Annotated[
@@ -85,7 +83,6 @@ def crosscheck(
         return
     from lumped.errors import refuse
     from validation.cross_check.comparison import crosscheck as run
-    from validation.cross_check.judgement import MEANINGS
     from validation.files.output import check_file
     from validation.reporting.formatting import number
 
@@ -113,12 +110,9 @@ def crosscheck(
     for failure in check.failures:
         text = f"fails: {failure.check} {number(failure.value, 3)}, limit {number(failure.limit, 3)}"
         console.print(f"{text} ({failure.reason})", soft_wrap=True, markup=False)
-    console.print(f"[bold]{check.verdict}[/bold]: {MEANINGS[check.verdict]}", markup=True, soft_wrap=True)
     if target is not None:
         _write(check, target)
-        stderr().print(f"wrote {target}", soft_wrap=True)
-    if check.verdict == "not confirmed" or (strict and check.verdict != "confirmed"):
-        raise typer.Exit(FAILED)
+    conclude(check.verdict, target, strict=strict)
 
 
 def _tables(check: CrossCheck) -> list[Table]:
@@ -171,7 +165,7 @@ def _write(check: CrossCheck, target: Path) -> None:
         data = {
             "verdict": check.verdict,
             "failures": [asdict(failure) for failure in check.failures],
-            "agreements": [_data(a) for a in check.agreements],
+            "agreements": [asdict(a) | {"judged": a.judged, "within": a.within} for a in check.agreements],
         }
         write_text(target, json.dumps(data, indent=1, allow_nan=False) + "\n")
         return
@@ -181,9 +175,3 @@ def _write(check: CrossCheck, target: Path) -> None:
     keep = off_switch_samples(check.pair, check.lumped["time"].to_numpy())
     models = {str(fidelity): result for fidelity, result in check.multibody.items()}
     save(cross_check_figure(check.pair.geometry, "dte", "m", check.lumped, models, keep), target)
-
-
-def _data(agreement: Agreement) -> dict[str, Any]:
-    from dataclasses import asdict
-
-    return asdict(agreement) | {"judged": agreement.judged, "within": agreement.within}

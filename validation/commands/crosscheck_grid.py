@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import typer
-
-from validation.commands.terminal import FAILED, progress_bar, stderr, stdout, table
+from validation.commands import options as opt
+from validation.commands.terminal import conclude, progress_bar, stdout, table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -33,12 +32,11 @@ def crosscheck_grid(
     from validation.cross_check.grid.run import Grid
     from validation.cross_check.grid.run import crosscheck_grid as run
     from validation.cross_check.grid.summary import explain, failures, outside_tolerance, summarise_grid
-    from validation.cross_check.judgement import MEANINGS
-    from validation.files.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
+    from validation.plots.grid import grid_figure
 
     if given:
         raise refuse("--grid", " ".join(given), "no options of a single pair", "The grid covers all presets.")
-    target = None if output is None else check_file(output, DATA_SUFFIXES + FIGURE_SUFFIXES, force=force)
+    target = opt.figure_or_data(output, force=force)
     with progress_bar("grid") as tell:
         result = run(checkpoint=checkpoint, progress=lambda f, _="": tell(0.95 * f))
         found = summarise_grid(result)
@@ -46,7 +44,7 @@ def crosscheck_grid(
         if found.worst:
             causes = explain(Grid(), found.worst, lambda f, _="": tell(0.95 + 0.05 * f, "worst point"))
     if target is not None:
-        _write(result, target)
+        opt.write_result(target, result, lambda: grid_figure(result))
     console = stdout()
     console.print(_tables(result))
     for line in _sentences(found, result):
@@ -58,11 +56,7 @@ def crosscheck_grid(
         console.print(f"failed at {_named(point)}: {reason}", soft_wrap=True, markup=False)
     if causes is not None:
         _explain(found, causes)
-    console.print(f"[bold]{found.verdict}[/bold]: {MEANINGS[found.verdict]}", markup=True, soft_wrap=True)
-    if target is not None:
-        stderr().print(f"wrote {target}", soft_wrap=True)
-    if found.verdict == "not confirmed" or (strict and found.verdict != "confirmed"):
-        raise typer.Exit(FAILED)
+    conclude(found.verdict, target, strict=strict)
 
 
 def _tables(result: xr.Dataset) -> object:
@@ -147,15 +141,3 @@ def _explain(found: GridSummary, causes: xr.Dataset) -> None:
 
 def _named(point: Mapping[str, str | float]) -> str:
     return ", ".join(f"{axis} {value}" for axis, value in point.items())
-
-
-def _write(result: xr.Dataset, target: Path) -> None:
-    from validation.files.output import DATA_SUFFIXES, write_dataset
-
-    if target.suffix.lower() in DATA_SUFFIXES:
-        write_dataset(result, target)
-        return
-    from validation.plots.grid import grid_figure
-    from validation.plots.style import save
-
-    save(grid_figure(result), target)

@@ -24,11 +24,9 @@ def export(
     ],
     output: Annotated[
         Path,
-        typer.Option(
-            "--output",
-            "-o",
-            help="Of a pair: .rexs, .rexsj or .rexsz (REXS as XML, JSON, zipped), .mat or .npz (linear "
-            "model). Of a result: .csv, .mat or .nc. The suffix chooses.",
+        opt.output(
+            "Of a pair: .rexs, .rexsj or .rexsz (REXS as XML, JSON, zipped), .mat or .npz (linear "
+            "model). Of a result: .csv, .mat or .nc. The suffix chooses."
         ),
     ],
     rexs_version: Annotated[

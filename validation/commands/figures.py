@@ -19,9 +19,7 @@ if TYPE_CHECKING:
 @guarded
 def figures(
     pair: opt.PairArgument = opt.DEFAULT_PAIR,
-    output: Annotated[Path, typer.Option("--output", "-o", help="Folder to write, new or empty.")] = Path(
-        "spurcheck-figures"
-    ),
+    output: Annotated[Path, opt.output("Folder to write, new or empty.")] = Path("spurcheck-figures"),
     only: Annotated[
         str | None,
         typer.Option("--figures", metavar="N,N", help="Only these figures, for example 2,4. Default: all."),

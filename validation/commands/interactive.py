@@ -5,8 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from validation.commands import options as opt
 from validation.commands.terminal import guarded, progress_bar, stderr
 
@@ -14,9 +12,9 @@ from validation.commands.terminal import guarded, progress_bar, stderr
 @guarded
 def interactive(
     pair: opt.PairArgument = opt.DEFAULT_PAIR,
-    output: Annotated[
-        Path, typer.Option("--output", "-o", help="Page to write, .html; its numbers go beside it as .nc.")
-    ] = Path("interactive.html"),
+    output: Annotated[Path, opt.output("Page to write, .html; its numbers go beside it as .nc.")] = Path(
+        "interactive.html"
+    ),
     speed: opt.Speed = None,
     torque: opt.Torque = None,
     law: opt.Law = None,

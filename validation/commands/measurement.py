@@ -29,8 +29,7 @@ def measurement(
     record: Annotated[Path, typer.Argument(metavar="RECORD", help="Description of the record (TOML).")],
     pair: opt.PairArgument = opt.DEFAULT_PAIR,
     output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", help="Folder for overlay, metrics and figure, new or empty."),
+        Path | None, opt.output("Folder for overlay, metrics and figure, new or empty.")
     ] = None,
     identify: Annotated[
         list[str] | None,

@@ -9,6 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import xarray as xr
+    from matplotlib.figure import Figure
+
     from lumped import GearPair
 
 DEFAULT_PAIR = "nasa_28_28"
@@ -45,11 +50,14 @@ Settings = Annotated[
     ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite what is there already.")]
-
-
 ForceFolder = Annotated[
     bool, typer.Option("--force", help="Replace what this command wrote into that folder earlier.")
 ]
+
+
+def output(help: str) -> Any:
+    """Return the option that names the file or folder to write; ``help`` says what can be written."""
+    return typer.Option("--output", "-o", help=help)
 
 
 def gear_pair(
@@ -94,3 +102,15 @@ def figure_or_data(output: Path | None, *, force: bool) -> Path | None:
     from validation.files.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
 
     return None if output is None else check_file(output, DATA_SUFFIXES + FIGURE_SUFFIXES, force=force)
+
+
+def write_result(target: Path, data: xr.Dataset, draw: Callable[[], Figure]) -> None:
+    """Write data or the figure of it, as the suffix of the target says."""
+    from validation.files.output import DATA_SUFFIXES, write_dataset
+
+    if target.suffix.lower() in DATA_SUFFIXES:
+        write_dataset(data, target)
+    else:
+        from validation.plots.style import save
+
+        save(draw(), target)

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from validation.commands.options import DEFAULT_PAIR, Force
+from validation.commands import options as opt
 from validation.commands.terminal import guarded, note, stderr, stdout, table
 
 
@@ -41,12 +41,9 @@ def presets(
 
 @guarded
 def init(
-    preset: Annotated[str, typer.Argument(help="Preset to start from.")] = DEFAULT_PAIR,
+    preset: Annotated[str, typer.Argument(help="Preset to start from.")] = opt.DEFAULT_PAIR,
     output: Annotated[
-        Path | None,
-        typer.Option(
-            "--output", "-o", help="File to write; default PRESET.toml (or FILE.toml) here. '-' prints it."
-        ),
+        Path | None, opt.output("File to write; default PRESET.toml (or FILE.toml) here. '-' prints it.")
     ] = None,
     from_rexs: Annotated[
         Path | None,
@@ -55,7 +52,7 @@ def init(
     stage: Annotated[
         int | None, typer.Option("--stage", metavar="N", help="Stage of the REXS file: 1 is the first.")
     ] = None,
-    force: Force = False,
+    force: opt.Force = False,
 ) -> None:
     """Write a commented parameter file to edit.
 
@@ -102,10 +99,8 @@ def _text_from_rexs(path: Path | None, stage: int | None) -> tuple[str, str]:
 
 @guarded
 def schema(
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="File to write (.json); default: print it.")
-    ] = None,
-    force: Force = False,
+    output: Annotated[Path | None, opt.output("File to write (.json); default: print it.")] = None,
+    force: opt.Force = False,
 ) -> None:
     """Print the JSON Schema of parameter files: every field with its unit, range and meaning.
 

@@ -22,9 +22,7 @@ _INPUTS = 5
 @guarded
 def report(
     pair: opt.PairArgument = opt.DEFAULT_PAIR,
-    output: Annotated[Path, typer.Option("--output", "-o", help="Folder to write, new or empty.")] = Path(
-        "spurcheck-report"
-    ),
+    output: Annotated[Path, opt.output("Folder to write, new or empty.")] = Path("spurcheck-report"),
     quick: Annotated[
         bool, typer.Option("--quick", help="Coarser sampling and no verification, for a first look.")
     ] = False,

@@ -20,11 +20,7 @@ def simulate(
     pair: opt.PairArgument = opt.DEFAULT_PAIR,
     output: Annotated[
         Path | None,
-        typer.Option(
-            "--output",
-            "-o",
-            help="Result file: .nc (NetCDF), .csv, .mat (MATLAB), .png or .svg; the suffix chooses.",
-        ),
+        opt.output("Result file: .nc (NetCDF), .csv, .mat (MATLAB), .png or .svg; the suffix chooses."),
     ] = None,
     model: Annotated[Model, typer.Option(help="Which model to run.")] = "lumped",
     fidelity: Annotated[Fidelity, typer.Option(help="Of the multibody model.")] = "exact",
@@ -56,7 +52,6 @@ def simulate(
     """
     import lumped
     from lumped.errors import refuse
-    from validation.files.output import FIGURE_SUFFIXES, write_dataset
 
     target = opt.figure_or_data(output, force=force)
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
@@ -67,11 +62,7 @@ def simulate(
             result = lumped.steady_state(gear_pair, samples_per_cycle=samples)
         elif model == "lumped":
             result = lumped.simulate(
-                gear_pair,
-                cycles,
-                samples_per_cycle=samples,
-                initial=initial,
-                progress=tell,
+                gear_pair, cycles, samples_per_cycle=samples, initial=initial, progress=tell
             )
         else:
             import multibody
@@ -92,16 +83,17 @@ def simulate(
     load = last["normal_load"].to_numpy()[last["contact"].to_numpy() > 0]
     shown = table(f"{gear_pair.name}, last mesh cycle", "quantity", ">value")
     dte = last["dte"].to_numpy()
-    shown.add_row("transmission error, peak to peak", quantity(float(dte.max() - dte.min()), "m"))
-    shown.add_row("transmission error, mean", quantity(float(dte.mean()), "m"))
-    shown.add_row("largest load of a tooth pair", quantity(float(load.max()), "N"))
-    shown.add_row("smallest load of a tooth pair", quantity(float(load.min()), "N"))
     static = gear_pair.operating.pinion_torque / g.base_radius_pinion
-    shown.add_row("largest load over static load", number(float(load.max()) / static))
-    shown.add_row("mesh efficiency", f"{number(100.0 * float(result.attrs['mesh_efficiency']))} %")
-    shown.add_row(
-        "brake torque that holds the speed", quantity(float(result.attrs["brake_torque"]), "N m", 6)
-    )
+    for name, value in {
+        "transmission error, peak to peak": quantity(float(dte.max() - dte.min()), "m"),
+        "transmission error, mean": quantity(float(dte.mean()), "m"),
+        "largest load of a tooth pair": quantity(float(load.max()), "N"),
+        "smallest load of a tooth pair": quantity(float(load.min()), "N"),
+        "largest load over static load": number(float(load.max()) / static),
+        "mesh efficiency": f"{number(100.0 * float(result.attrs['mesh_efficiency']))} %",
+        "brake torque that holds the speed": quantity(float(result.attrs["brake_torque"]), "N m", 6),
+    }.items():
+        shown.add_row(name, value)
     stdout().print(shown)
     separation = contact_loss(gear_pair, g, last)
     if separation.state != "ok" and (model == "lumped" or fidelity == "linear"):
@@ -116,13 +108,8 @@ def simulate(
             f"this periodic motion is unstable: a disturbance grows {number(radius)} times in a mesh cycle, "
             "so a pair does not stay in it. See 'spurcheck stability', or raise the damping."
         )
-    if target is None:
-        return
-    if target.suffix.lower() in FIGURE_SUFFIXES:
+    if target is not None:
         from validation.plots.motion import history_figure
-        from validation.plots.style import save
 
-        save(history_figure(g, result), target)
-    else:
-        write_dataset(result, target)
-    stderr().print(f"wrote {target}")
+        opt.write_result(target, result, lambda: history_figure(g, result))
+        stderr().print(f"wrote {target}")

@@ -26,11 +26,9 @@ def stability(
     pair: opt.PairArgument = opt.DEFAULT_PAIR,
     output: Annotated[
         list[Path] | None,
-        typer.Option(
-            "--output",
-            "-o",
-            help="Result file, as often as needed: .nc, .csv or .mat for data, .png, .svg or .pdf for the "
-            "figure; the suffix chooses.",
+        opt.output(
+            "Result file, as often as needed: .nc, .csv or .mat for data, .png, .svg or .pdf for the "
+            "figure; the suffix chooses."
         ),
     ] = None,
     view: Annotated[

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -23,13 +24,17 @@ from lumped import GearPair
 from lumped.errors import refuse
 from lumped.friction import LAWS
 from lumped.typing import FloatArray
+from validation.commands.options import write_result
 from validation.commands.terminal import progress_bar, stdout, table
-from validation.files.output import DATA_SUFFIXES, write_dataset
+from validation.files.output import DATA_SUFFIXES
 from validation.plots.campbell import campbell_figure
-from validation.plots.friction_effect import friction_effect_figure
 from validation.plots.multipliers import multiplier_paths_figure
-from validation.plots.stability import mark_operating_range, stability_figure, stability_line_figure
-from validation.plots.style import save
+from validation.plots.stability import (
+    friction_effect_figure,
+    mark_operating_range,
+    stability_figure,
+    stability_line_figure,
+)
 from validation.plots.tongues import (
     boundaries_figure,
     tongue_chart_figure,
@@ -103,13 +108,9 @@ class Request:
 def show(view: str, request: Request) -> None:
     """Compute a view, print what it says in numbers, and write it to every target."""
     data, draw = VIEWS[view][0](request)
-    figure: Figure | None = None
+    draw_once = cache(draw)
     for target in request.targets:
-        if target.suffix.lower() in DATA_SUFFIXES:
-            write_dataset(data, target)
-            continue
-        figure = figure or draw()
-        save(figure, target)
+        write_result(target, data, draw_once)
 
 
 def _chart(request: Request) -> View:

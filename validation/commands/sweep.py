@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from validation.commands import options as opt
 from validation.commands.terminal import INTERRUPTED, NUMERICAL, fail, guarded, stderr, stdout
 
 
@@ -16,8 +17,7 @@ from validation.commands.terminal import INTERRUPTED, NUMERICAL, fail, guarded, 
 def sweep(
     study: Annotated[Path, typer.Argument(metavar="STUDY", help="Study file (TOML).")],
     output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", help="Output folder; default: the study file's name + '-sweep'."),
+        Path | None, opt.output("Output folder; default: the study file's name + '-sweep'.")
     ] = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on where an earlier run in that folder ended.")

@@ -108,6 +108,24 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
     return run
 
 
+def conclude(verdict: str, target: Path | None, *, strict: bool) -> None:
+    """End a cross-check: its verdict in words, the file that was written, and the exit code.
+
+    Parameters
+    ----------
+    verdict : a key of ``validation.cross_check.judgement.MEANINGS``
+    target : the file
+    strict : fail on "explained" too
+    """
+    from validation.cross_check.judgement import MEANINGS
+
+    stdout().print(f"[bold]{verdict}[/bold]: {MEANINGS[verdict]}", markup=True, soft_wrap=True)
+    if target is not None:
+        stderr().print(f"wrote {target}", soft_wrap=True)
+    if verdict == "not confirmed" or (strict and verdict != "confirmed"):
+        raise typer.Exit(FAILED)
+
+
 def fail(text: str, code: int) -> NoReturn:
     """End the command with one message and an exit code."""
     stderr().print(f"[bold red]error:[/bold red] {escape(text)}", markup=True, soft_wrap=True)

@@ -130,10 +130,10 @@ def unstable_speeds(chart: xr.Dataset, key: str, index: int, damping: float) -> 
     return ", ".join(speed_spans(row["speed_rpm"].to_numpy(), row["verdict"].to_numpy() != 1)) or "none"
 
 
-def _response_rows(results: PageResults, most: int = 16) -> list[list[str]]:
+def _response_rows(results: PageResults) -> list[list[str]]:
     """Rows of the response of the pair's law, at a few speeds, for readers without scripts."""
     sweep = results.sweep.isel(law=results.own_law)
-    step = -(-sweep.sizes["speed"] // most)
+    step = -(-sweep.sizes["speed"] // 16)
     few = sweep.isel(speed=slice(None, None, step))
     columns = (
         (few["speed"], 1.0, 5),

@@ -30,10 +30,7 @@ def payload(results: PageResults) -> dict[str, Any]:
     """
     pair = results.pair
     return {
-        "point": {
-            "speed": operating_rpm(pair),
-            "damping": pair.mesh.damping_ratio,
-        },
+        "point": {"speed": operating_rpm(pair), "damping": pair.mesh.damping_ratio},
         "stability": [_slices(slices) for slices in results.stability.values()],
         "sweep": _sweep(results),
         "limits": {"load": LOAD_NOISE, "reversal": list(REVERSAL_LIMITS)},

@@ -166,14 +166,8 @@ def _sweep(pair: GearPair, speeds: FloatArray) -> xr.Dataset:
     static = pair.operating.pinion_torque / g.base_radius_pinion
     lowest, reversal = found["normal_load_min"].to_numpy(), found["sliding_reversal"].to_numpy()
     lowest, reversal = lowest / static, reversal / g.base_pitch
-    values = {
-        "dte_peak_to_peak": found["dte_peak_to_peak"].to_numpy(),
-        "y_p_peak_to_peak": found["y_p_peak_to_peak"].to_numpy(),
-        "lowest_load": lowest,
-        "reversal": reversal,
-        "validity": validity_state(lowest, reversal),
-        "spectral_radius": found["spectral_radius"].to_numpy(),
-    }
+    own = {"lowest_load": lowest, "reversal": reversal, "validity": validity_state(lowest, reversal)}
+    values = {name: own[name] if name in own else found[name].to_numpy() for name in _LABELS}
     return labelled_dataset(
         {name: ("speed", array, *_LABELS[name]) for name, array in values.items()},
         {"speed": (speeds, "rpm", "pinion speed")},

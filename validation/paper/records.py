@@ -112,15 +112,6 @@ class Erratum:
     text: str
     evidence: tuple[Evidence, ...]
 
-    def value(self, quantity: str) -> Evidence:
-        """The evidence on one quantity.
-
-        Raises
-        ------
-        KeyError : there is none of that name
-        """
-        return {row.quantity: row for row in self.evidence}[quantity]
-
 
 @dataclass(frozen=True)
 class ErrataChapter:
@@ -139,10 +130,6 @@ class ErrataChapter:
     conditions: Mapping[str, str]
     errata: tuple[Erratum, ...]
     histories: xr.Dataset
-
-    def equation(self, number: str) -> Erratum:
-        """The erratum of an equation number as it stands in the table, e.g. "7" or "13b, 14"."""
-        return {erratum.equation: erratum for erratum in self.errata}[number]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -214,12 +201,3 @@ class ClaimsTable:
     failed: int
     seed: int
     claims: tuple[Claim, ...]
-
-    def claim(self, name: str) -> Claim:
-        """The claim of a name.
-
-        Raises
-        ------
-        KeyError : there is none of that name
-        """
-        return {claim.name: claim for claim in self.claims}[name]

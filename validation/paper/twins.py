@@ -27,7 +27,6 @@ def twins(
     variants: Mapping[str, GearPair],
     *,
     samples: int = 256,
-    cycles: int = 20,
     with_multibody: bool = True,
 ) -> xr.Dataset:
     """Periodic motion of several variants in both models, each with the brake torque that balances it.
@@ -40,7 +39,6 @@ def twins(
     ----------
     variants : name -> pair, all of the same geometry and speed
     samples : per mesh cycle
-    cycles : mesh cycles of a free run
     with_multibody : without it only the lumped model is computed
 
     Returns
@@ -58,7 +56,7 @@ def twins(
         radii.append(float(lumped.attrs["spectral_radius"]))
         both = [_cycle(lumped, samples)]
         if with_multibody:
-            run, change = _twin(pair, samples, cycles)
+            run, change = _twin(pair, samples)
             both.append(_cycle(run, samples))
             unsettled.append(change)
         rows.append(xr.concat(both, dim=xr.DataArray(list(models), dims="model", name="model")))
@@ -72,13 +70,13 @@ def twins(
     return result
 
 
-def _twin(pair: GearPair, samples: int, cycles: int) -> tuple[xr.Dataset, float]:
+def _twin(pair: GearPair, samples: int) -> tuple[xr.Dataset, float]:
     """One mesh cycle of the multibody model, and the change over one more, see ``twins``."""
     try:
         run = multibody.steady_state(pair, samples_per_cycle=samples)
         return run, float(run.attrs["closure"])
     except NumericalError:
-        run = multibody.simulate(pair, cycles, samples_per_cycle=samples, initial="periodic")
+        run = multibody.simulate(pair, samples_per_cycle=samples, initial="periodic")
         dte = run["dte"].to_numpy()
         last, before = dte[-samples - 1 : -1], dte[-2 * samples - 1 : -samples - 1]
         return run.isel(time=slice(-samples - 1, -1)), float(np.abs(last - before).max() / np.ptp(last))

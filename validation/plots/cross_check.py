@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -57,36 +58,24 @@ def cross_check_figure(
     base = history(reference)
     factor, label = scaled(base, unit=unit)
     top.plot(x, base / factor, color=BLACK, linewidth=2.6, alpha=0.35, label="lumped")
-    styles = {"linear": (BLUE, DASHES[2]), "exact": (RED, DASHES[0])}
-    differences = {name: history(result) - base for name, result in others.items()}
+    styles: dict[str, Any] = {
+        "linear": {"color": BLUE, "linestyle": DASHES[2]},
+        "exact": {"color": RED, "linestyle": DASHES[0]},
+    }
+    differences = {}
+    for name, result in others.items():
+        differences[name] = history(result) - base
+        top.plot(x, history(result) / factor, **styles[name], linewidth=1.2, label=f"multibody {name}")
     # The linear difference is integration error, nine decades down: it is a number in the table, not a curve.
     drawn = [name for name in differences if name != "linear"] or list(differences)
-    difference_factor, difference_label = scaled(
-        *(differences[name][keep[shown]] for name in drawn), unit=unit
-    )
-    for name, result in others.items():
-        colour, dash = styles[name]
-        top.plot(
-            x,
-            history(result) / factor,
-            color=colour,
-            linestyle=dash,
-            linewidth=1.2,
-            label=f"multibody {name}",
-        )
-    for name in drawn:
-        colour, dash = styles[name]
-        bottom.plot(
-            x,
-            np.where(keep[shown], differences[name], np.nan) / difference_factor,
-            color=colour,
-            linewidth=1.0,
-        )
+    shares = [np.where(keep[shown], differences[name], np.nan) for name in drawn]
+    difference_factor, difference_label = scaled(*shares, unit=unit)
+    for name, difference in zip(drawn, shares, strict=True):
+        bottom.plot(x, difference / difference_factor, color=styles[name]["color"], linewidth=1.0)
     bottom.axhline(0.0, color=BLACK, linewidth=0.5)
     top.set_ylabel(f"{_LABELS.get(quantity, quantity)} [{label}]")
     bottom.set_ylabel(f"{' and '.join(drawn)} -\nlumped [{difference_label}]")
-    bottom.set_xlabel("time, last cycles of the run [mesh cycles]")
-    bottom.set_xlim(0.0, _SHOWN_CYCLES)
+    bottom.set(xlabel="time, last cycles of the run [mesh cycles]", xlim=(0.0, _SHOWN_CYCLES))
     legend_above(top, 1 + len(others))
     figure.align_ylabels()
     return figure

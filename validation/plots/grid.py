@@ -16,31 +16,31 @@ from validation.plots.style import BLACK, GREY, IN_X, new_figure, write_beside
 _MARKS = {SEPARATED: ("s", "teeth separate"), STICKING: ("o", "friction may hold the teeth")}
 
 
-def grid_figure(result: xr.Dataset, quantity: str = "dte", fidelity: str = "exact") -> Figure:
-    """How much the models differ at every point, and how much of its tolerance what is left uses.
+def grid_figure(result: xr.Dataset) -> Figure:
+    """How much the exact model differs at every point, and how much of its tolerance what is left uses.
 
     Rows are gear pairs and stiffness models; columns friction laws, within them speeds, within them torques
-    from high to low. Above, the largest difference over the peak to peak; below, the largest share of a
-    tolerance over all quantities, after the predicted part is taken off. Marks tell why a point is not
-    judged; a cross, that a model failed.
+    from high to low. Above, the largest difference of the transmission error over its peak to peak; below,
+    the largest share of a tolerance over all quantities, after the predicted part is taken off. Marks tell
+    why a point is not judged; a cross, that a model failed.
 
     Parameters
     ----------
     result : dataset of ``validation.cross_check.grid.run.crosscheck_grid``
-    quantity, fidelity : what to show above
     """
     rows, columns = ("preset", "stiffness"), ("law", "speed", "torque")
     status = result["status"].transpose(*rows, *columns).to_numpy()
     shape = (int(np.prod(status.shape[:2])), int(np.prod(status.shape[2:])))
     status = status.reshape(shape)
     judged = result["status"] == COMPARED
-    usage = (result["difference"] / result["limit"]).sel(fidelity=fidelity).where(judged).max("quantity")
+    exact = result.sel(fidelity="exact")
+    usage = (exact["difference"] / exact["limit"]).where(judged).max("quantity")
     figure, axes = new_figure(2, 1, height=2.6 + 0.44 * shape[0], sharex=True)
     for ax, values, label in (
         (
             axes[0, 0],
-            result["largest"].sel(fidelity=fidelity, quantity=quantity),
-            f"{quantity}, {fidelity}: largest\ndifference / peak to peak [-]",
+            exact["largest"].sel(quantity="dte"),
+            "dte, exact: largest\ndifference / peak to peak [-]",
         ),
         (axes[1, 0], usage, "largest share of\na tolerance, all quantities [-]"),
     ):

@@ -1,8 +1,9 @@
-"""Stability chart: spectral radius over two parameters, with its boundary and the operating point."""
+"""Stability charts: spectral radius, or what a friction law changes in growth, over two parameters."""
 
 from __future__ import annotations
 
 import textwrap
+from typing import Any, Literal
 
 import matplotlib as mpl
 import numpy as np
@@ -12,10 +13,11 @@ from matplotlib.collections import QuadMesh
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
+from matplotlib.lines import Line2D
 
 from lumped.typing import FloatArray
 from validation.plots.labels import WHITE_BOX
-from validation.plots.style import BLACK, IN_X, RED, one_panel, write_beside
+from validation.plots.style import BLACK, IN_X, RED, legend, one_panel, write_beside
 
 #: Blue for fast decay to white at the boundary.
 _STABLE = LinearSegmentedColormap.from_list("decay", ["#08519c", "#6baed6", "#f7fbff"])
@@ -32,19 +34,77 @@ def stability_figure(chart: xr.Dataset, x: str, y: str, point: tuple[float, floa
     x, y : names of its axes
     point : operating point (x, y); None: not marked
     """
-    figure, ax = one_panel(3.4)
     radius = chart["spectral_radius"].transpose(y, x).sortby([x, y])
-    xs, ys, values = radius[x].to_numpy(), radius[y].to_numpy(), radius.to_numpy()
-    low = float(np.nanmin(values))
-    drawn = field(ax, xs, ys, np.minimum(values, 1.0), Normalize(min(low, 0.999), 1.0), _STABLE)
-    ax.set(xlim=(xs[0], xs[-1]), ylim=(ys[0], ys[-1]))
-    mark_unstable(ax, xs, ys, values)
+    norm = Normalize(min(float(radius.min()), 0.999), 1.0)
+    words = "spectral radius [-]; unstable above 1 (hatched)"
+    figure, ax = field_figure(radius.clip(max=1.0), chart, norm, _STABLE, words)
+    mark_unstable(ax, radius[x].to_numpy(), radius[y].to_numpy(), radius.to_numpy())
     mark_operating_point(ax, point)
-    bar = figure.colorbar(drawn, ax=ax, pad=0.01)
-    bar.set_label("spectral radius [-]; unstable above 1 (hatched)", fontsize=8.5)
+    return figure
+
+
+def field_figure(
+    values: xr.DataArray,
+    chart: xr.Dataset,
+    norm: Normalize,
+    colours: mpl.colors.Colormap | str,
+    words: str,
+    extend: Literal["neither", "both"] = "neither",
+) -> tuple[Figure, Axes]:
+    """Return a figure of values over two axes of a chart, with its colour bar, and its axes.
+
+    Parameters
+    ----------
+    values : over the vertical and the horizontal axis, rising
+    chart : has the names of the axes
+    norm, colours : of the values
+    words : beside the colour bar
+    extend : ends of the colour bar beyond which there are values
+    """
+    figure, ax = one_panel(3.4)
+    y, x = map(str, values.dims)
+    xs, ys = values[x].to_numpy(), values[y].to_numpy()
+    drawn = field(ax, xs, ys, values.to_numpy(), norm, colours)
+    ax.set(xlim=(xs[0], xs[-1]), ylim=(ys[0], ys[-1]))
+    bar = figure.colorbar(drawn, ax=ax, pad=0.01, extend=extend)
+    bar.set_label(words, fontsize=8.5)
     bar.outline.set_linewidth(0.5)
     ax.set(xlabel=axis_label(chart, x), ylabel=axis_label(chart, y))
     ax.grid(False)
+    return figure, ax
+
+
+def friction_effect_figure(
+    effect: xr.Dataset, law: str, x: str, y: str, point: tuple[float, float] | None = None
+) -> Figure:
+    """Change of growth per mesh cycle by a friction law over two axes, with the boundaries under both laws.
+
+    Parameters
+    ----------
+    effect : dataset of ``floquet.gear.friction_effect.friction_effect`` over exactly the axes ``x``, ``y``
+    law : which of its laws
+    x, y : names of the axes
+    point : operating point (x, y); None: not marked
+    """
+    one = effect.sel(law=law).transpose(y, x).sortby([x, y])
+    # Changes peak sharply at the edges of tongues; the scale serves the rest.
+    reach = float(np.nanpercentile(np.abs(one["growth_change"]), 98.0)) or 1e-12
+    words = "change of growth per mesh cycle [-]\n(purple: damps, orange: drives)"
+    norm = Normalize(-reach, reach)
+    figure, ax = field_figure(one["growth_change"], effect, norm, "PuOr_r", words, "both")
+    shown = []
+    growths: dict[str, tuple[xr.DataArray, Any]] = {
+        law: (one["growth"], "-"),
+        str(effect.attrs["reference"]): (one["reference_growth"], "--"),
+    }
+    for name, (growth, dash) in growths.items():
+        style: dict[str, Any] = {"linewidths": 1.1, "linestyles": [dash], "colors": [BLACK]}
+        if min(growth.shape) > 1 and float(growth.min()) < 0.0 < float(growth.max()):
+            ax.contour(one[x], one[y], growth, levels=[0.0], **style)
+        label = f"boundary, {name.replace('_', ' ')}"
+        shown.append(Line2D([], [], color=BLACK, linewidth=1.1, linestyle=dash, label=label))
+    legend(ax, handles=shown, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2)
+    mark_operating_point(ax, point)
     return figure
 
 

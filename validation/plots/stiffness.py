@@ -28,21 +28,21 @@ from validation.plots.style import (
     without_jumps,
 )
 
+_POINTS = 801  # of a mesh cycle
 
-def stiffness_figure(cycle: MeshCycle, points: int = 801) -> Figure:
+
+def stiffness_figure(cycle: MeshCycle) -> Figure:
     """Stiffness of every tooth pair and of the mesh over one mesh cycle, exact at its jumps.
 
     Parameters
     ----------
     cycle : mesh cycle of the pair
-    points : per smooth segment, in proportion to its length
     """
     figure, ax = one_panel(2.8)
     period = cycle.period
     times, values = [], []
     for segment, (low, high) in enumerate(zip(cycle.edges[:-1], cycle.edges[1:], strict=True)):
-        count = max(2, round(points * (high - low) / period))
-        t = np.linspace(low, high, count)
+        t = np.linspace(low, high, max(2, round(_POINTS * (high - low) / period)))
         times.append(t / period)
         values.append(cycle.sample(t, segment).stiffness)
     x, k = np.concatenate(times), np.concatenate(values, axis=1)

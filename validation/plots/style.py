@@ -38,8 +38,9 @@ GREY = "#6b6b6b"
 IN_X, IN_Y = ("data", "axes fraction"), ("axes fraction", "data")
 WIDTH = 7.2
 Point = tuple[float, float]
-_PREFIXES = ((1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p"))
-_LARGE = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
+_PREFIXES = (
+    (1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p"),
+)  # fmt: skip
 _PNG_DPI = 150
 _RC: Any = {
     "font.family": ["DejaVu Sans"],
@@ -110,13 +111,8 @@ def look(index: int) -> dict[str, Any]:
 
 def prefix(largest: float) -> tuple[float, str]:
     """Factor and SI prefix that bring a number of this size between 1 and 1000."""
-    for factor, name in _LARGE:
-        if largest >= factor:
-            return factor, name
-    for factor, name in _PREFIXES:
-        if largest >= factor:
-            return factor, name
-    return (1.0, "") if largest == 0.0 else _PREFIXES[-1]
+    smallest = (1.0, "") if largest == 0.0 else _PREFIXES[-1]
+    return next((one for one in _PREFIXES if largest >= one[0]), smallest)
 
 
 def scaled(*values: Any, unit: str) -> tuple[float, str]:

@@ -36,19 +36,10 @@ def validity_map_figure(data: xr.Dataset, point: tuple[float, float] | None = No
     unstable = data["spectral_radius"].to_numpy() > UNSTABLE
     contact = np.where(nothing, 3, np.where(lowest < -LOAD_NOISE, 2, 0))
     sliding = np.select([nothing, reversal > REVERSAL_LIMITS[1], reversal > REVERSAL_LIMITS[0]], [3, 2, 1], 0)
+    near = f"reversed up to {100 * REVERSAL_LIMITS[1]:g} % of a base pitch"
     panels = (
         ("contact", contact, _STATES, ("kept", "", "lost", "no periodic motion")),
-        (
-            "direction of sliding",
-            sliding,
-            _STATES,
-            (
-                "kept",
-                f"reversed up to {100 * REVERSAL_LIMITS[1]:g} % of a base pitch",
-                "reversed farther",
-                "no periodic motion",
-            ),
-        ),
+        ("direction of sliding", sliding, _STATES, ("kept", near, "reversed farther", "no periodic motion")),
         ("film, thinnest place", data["regime"].to_numpy(), _REGIMES, REGIMES),
     )
     for ax, (title, values, colours, names) in zip(axes[0], panels, strict=True):
@@ -63,13 +54,8 @@ def validity_map_figure(data: xr.Dataset, point: tuple[float, float] | None = No
         ]
         if ax is axes[0, 0] and unstable.any():
             row, column = np.nonzero(unstable)
-            look: Any = {
-                "color": BLACK,
-                "markersize": 3.5,
-                "markeredgewidth": 0.7,
-                "label": "unstable motion",
-            }
-            handles += ax.plot(speed[column], torque[row], "x", **look)
+            look: Any = {"color": BLACK, "markersize": 3.5, "markeredgewidth": 0.7}
+            handles += ax.plot(speed[column], torque[row], "x", **look, label="unstable motion")
         ax.legend(
             handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.2), frameon=False, fontsize=8.0
         )

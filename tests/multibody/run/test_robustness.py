@@ -167,13 +167,11 @@ def test_arguments_without_sense_are_refused(options, field):
         (lambda: multibody.speed_sweep(PAIR, []), "speeds_rpm"),
         (lambda: multibody.speed_sweep(PAIR, [3000], cycles=0), "cycles"),
         (lambda: multibody.speed_sweep(PAIR, [3000], settle=-5), "settle"),
-        (lambda: multibody.monodromy(PAIR, iterations=-1), "iterations"),
         (lambda: multibody.simulate(PAIR.with_(operating__pinion_torque=1e7), 1), "pinion_torque"),
     ],
 )
 def test_calls_without_sense_are_refused(call, field):
-    """A ledger over no cycle balances, a flow map without iterations looks like any other, and so does a run
-    in which flanks are paired with those of the next tooth."""
+    """A ledger over no cycle balances; a run in which flanks meet the next tooth looks like any other."""
     with pytest.raises(lumped.ParameterError, match=field):
         call()
 

@@ -32,6 +32,11 @@ def table(pair):
     return claims(pair, samples=8)
 
 
+@pytest.fixture(scope="module")
+def by_name(table):
+    return {claim.name: claim for claim in table.claims}
+
+
 def cycles(**histories):
     """Made-up cycles of the four laws: name -> (law, phase) or (law, pair, phase)."""
     phase = np.arange(64) / 64
@@ -130,9 +135,9 @@ def test_every_claim_has_a_number_a_criterion_and_a_verdict(table):
         assert claim.low <= claim.high
 
 
-def test_verdicts_follow_from_the_criteria(table, stated):
+def test_verdicts_follow_from_the_criteria(by_name, stated):
     for rule in RULES:
-        claim = table.claim(rule.name)
+        claim = by_name[rule.name]
         assert claim.value == pytest.approx(rule.value(stated), rel=1e-12)
         expected = "reproduced" if rule.holds(stated) else "not reproduced"
         assert claim.verdict == ("cannot be judged" if rule.unpublished else expected)
@@ -199,18 +204,18 @@ def test_samples_that_prove_nothing_are_left_out_of_the_share(stated):
     assert judged(rule, stated, none, {}).share is None
 
 
-def test_what_physics_decides_comes_out_so(table):
+def test_what_physics_decides_comes_out_so(by_name):
     # Laws' form, whatever the assumptions: jumps of I and II at P, III zero there.
     for name in ("jumps", "pitch point"):
-        assert table.claim(name).verdict == "reproduced"
-        assert table.claim(name).share >= 0.8
+        assert by_name[name].verdict == "reproduced"
+        assert by_name[name].share >= 0.8
     # Off the line of action friction is the only excitation, so a law with a third of the coefficient cannot
     # give a similar motion.
-    assert table.claim("OLOA motion").verdict == "not reproduced"
-    assert table.claim("OLOA motion").share == 0.0
+    assert by_name["OLOA motion"].verdict == "not reproduced"
+    assert by_name["OLOA motion"].share == 0.0
     # Neither measured numbers nor roughness and oil were published.
     for name in ("identified mu", "3 % error", "8 % discrepancy", "speed of the regime change"):
-        assert table.claim(name).verdict == "cannot be judged"
+        assert by_name[name].verdict == "cannot be judged"
 
 
 def test_without_samples_there_is_no_share(pair):

@@ -39,6 +39,13 @@ def chapter():
     return errata_chapter(load_gear_pair("nasa_28_28"))
 
 
+def evidence(chapter, equation, quantity):
+    """The evidence of an erratum on one quantity."""
+    (erratum,) = (e for e in chapter.errata if e.equation == equation)
+    (row,) = (row for row in erratum.evidence if row.quantity == quantity)
+    return row
+
+
 def losses(pair, r):
     """Mean friction, mesh damping and bearing damping power of a response, from its own histories [W]."""
     d, s = r.cycle, periodic_system(pair, "absolute").structure
@@ -191,7 +198,7 @@ def test_the_chapter_has_every_row_with_numbers_and_text(chapter):
 
 def test_dimension_checks_say_which_equations_they_can_judge(chapter):
     def check(number, name):
-        row = chapter.equation(number).value(name)
+        row = evidence(chapter, number, name)
         return row.printed, row.repaired
 
     for number, name in (("16", "dimension check of the left side"), ("19", "dimension check of the sum")):
@@ -200,9 +207,10 @@ def test_dimension_checks_say_which_equations_they_can_judge(chapter):
         assert repaired == "passes"
     # x and y are both lengths, and the constant of law II carries units: dimensions pass either way
     assert check("8", "dimension check") == ("passes", "passes")
-    film = chapter.equation("21a, d")
-    assert film.value("power of ten of U").repaired == pytest.approx(-6.0, abs=1e-12)
-    assert film.value("power of ten of the film in µm").repaired == pytest.approx(3.0, abs=1e-12)
+    assert evidence(chapter, "21a, d", "power of ten of U").repaired == pytest.approx(-6.0, abs=1e-12)
+    assert evidence(chapter, "21a, d", "power of ten of the film in µm").repaired == pytest.approx(
+        3.0, abs=1e-12
+    )
 
 
 def test_chapter_states_effects_on_multipliers_from_floquet(chapter, pair):
@@ -212,13 +220,13 @@ def test_chapter_states_effects_on_multipliers_from_floquet(chapter, pair):
         method="magnus6",
         rtol=1e-8,
     )
-    found = chapter.equation("7").value("largest modulus of the Floquet multipliers").printed
+    found = evidence(chapter, "7", "largest modulus of the Floquet multipliers").printed
     # The printed system has a nearly defective pair: its bound is larger than the matrix error.
     assert found == pytest.approx(reference.spectral_radius, abs=2.0 * reference.error)
 
 
 def test_printed_laws_leave_the_mean_where_they_should(chapter, pair):
-    row = chapter.equation("18").value("mean of |mu| over the path of contact")
+    row = evidence(chapter, "18", "mean of |mu| over the path of contact")
     own = load_gear_pair("nasa_28_28")
     assert row.repaired == pytest.approx(
         mean_coefficient(friction_path_function(own, law="xu_kahraman")), rel=1e-9
@@ -230,10 +238,10 @@ def test_the_printed_film_puts_law_v_into_boundary_lubrication(chapter):
     # Lambda is 4.4 to 4.6 at the preset's point, and 10^(5 - 6.9) times that as printed: below 1, so
     # law V is law IV instead of law III.
     own = load_gear_pair("nasa_28_28")
-    row = chapter.equation("21a, d").value("law V: mean of |mu| over the path of contact")
+    row = evidence(chapter, "21a, d", "law V: mean of |mu| over the path of contact")
     for value, law in ((row.printed, "smoothed_coulomb"), (row.repaired, "xu_kahraman")):
         assert value == pytest.approx(mean_coefficient(friction_path_function(own, law=law)), rel=1e-9)
-    y = chapter.equation("21a, d").value("law V: peak to peak of y_g")
+    y = evidence(chapter, "21a, d", "law V: peak to peak of y_g")
     assert y.printed > 2.0 * y.repaired  # y goes with the coefficient
 
 

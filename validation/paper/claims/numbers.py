@@ -34,6 +34,7 @@ _ONE_SIDED = 1e-9
 #: Power with which the film parameter grows with speed, equation 21.
 _FILM_POWER = 0.69
 _ORDERS = 10
+_SAMPLES = 128  # of a mesh cycle
 
 
 def measure(pair: GearPair) -> dict[str, float]:
@@ -100,7 +101,7 @@ def pitch_jumps(pair: GearPair) -> dict[str, float]:
     return found
 
 
-def law_cycles(pair: GearPair, samples: int = 128) -> xr.Dataset:
+def law_cycles(pair: GearPair) -> xr.Dataset:
     """Lumped periodic motion under laws I to IV, lighter than ``law_runs``.
 
     Returns
@@ -108,14 +109,14 @@ def law_cycles(pair: GearPair, samples: int = 128) -> xr.Dataset:
     Dataset over law, [pair,] phase (mesh cycles): dte, x_p, y_p, normal_load, friction_force, contact; over
     law: spectral_radius
     """
-    runs = [periodic_cycle(pair.with_({"friction.law": law}), samples) for law in LAWS]
+    runs = [periodic_cycle(pair.with_({"friction.law": law}), _SAMPLES) for law in LAWS]
     dims = {1: ("law", "phase"), 2: ("law", "pair", "phase")}
     found = {}
     for name in ("dte", "x_p", "y_p", "normal_load", "friction_force", "contact"):
         values = np.array([run.values[name] for run in runs])
         found[name] = (dims[values.ndim - 1], values)
     found["spectral_radius"] = (("law",), np.array([run.spectral_radius for run in runs]))
-    return xr.Dataset(found, coords={"law": list(LAWS), "phase": np.arange(samples) / samples})
+    return xr.Dataset(found, coords={"law": list(LAWS), "phase": np.arange(_SAMPLES) / _SAMPLES})
 
 
 def load_spread(cycles: xr.Dataset) -> tuple[float, float]:
@@ -182,7 +183,7 @@ def fig7_motion(pair: GearPair) -> dict[str, float]:
     """
     slow, fast = (mean_of_law(point.of(pair), "xu_kahraman") for point in FIGURE_7)
     at = FIGURE_7[1].of(pair).with_({"friction.law": "xu_kahraman"})
-    run = periodic_cycle(at, 128)
+    run = periodic_cycle(at, _SAMPLES)
     normal, friction = run.values["normal_load"], run.values["friction_force"]
     static = at.operating.pinion_torque / at.geometry.base_radius_pinion
     return {
