@@ -81,12 +81,8 @@ def real_numbers(
 
     Parameters
     ----------
-    field : name of the argument
-    value : what was given
-    low, high : allowed range
-    above : whether ``low`` itself is refused
+    field, value, low, high, above, unit : as in ``real_number``
     increasing : whether each must be larger than the one before
-    unit : of the numbers
 
     Raises
     ------

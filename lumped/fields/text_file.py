@@ -39,25 +39,19 @@ def parse_toml(text: str, source: str) -> dict[str, Any]:
 
 
 def read_text(
-    path: str | Path,
-    limit: int,
-    *,
-    field: str = "file",
-    kind: str = "text file",
-    instead: str = "",
-    action: str = "Check the path.",
+    path: str | Path, limit: int, *, field: str = "file", kind: str = "text file", **words: str
 ) -> str:
     """Return the text of an ordinary file in UTF-8, with or without the mark that Windows puts in front.
 
     Parameters
     ----------
-    path, limit, field, kind, instead, action : as ``read_bytes``
+    path, limit, field, kind, **words : as ``read_bytes``
 
     Raises
     ------
     ParameterError : as ``read_bytes``, or not UTF-8
     """
-    data = read_bytes(path, limit, field=field, kind=kind, instead=instead, action=action)
+    data = read_bytes(path, limit, field=field, kind=kind, **words)
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -116,9 +116,7 @@ def hertz_pressure(unit_load: ArrayLike, radius: ArrayLike, effective_modulus: A
 
     Parameters
     ----------
-    unit_load : w, load per face width [N/mm]
-    radius : rho, reduced radius of curvature [mm]
-    effective_modulus : E' [N/mm^2]
+    unit_load, radius, effective_modulus : as in ``hertz_half_width``
 
     Returns
     -------

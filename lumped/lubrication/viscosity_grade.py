@@ -10,31 +10,13 @@ from scipy.optimize import brentq
 
 from lumped.errors import refuse
 from lumped.lubrication.viscosity import kinematic_viscosity, walther_constants
-from lumped.ranges import ValidityRange
 from lumped.typing import FloatArray
 
 #: ISO 3448 grade -> mid-point kinematic viscosity at 40 degC [mm^2/s]; limits are 10 per cent either side.
 ISO_VG_MIDPOINT = {
-    2: 2.2,
-    3: 3.2,
-    5: 4.6,
-    7: 6.8,
-    10: 10.0,
-    15: 15.0,
-    22: 22.0,
-    32: 32.0,
-    46: 46.0,
-    68: 68.0,
-    100: 100.0,
-    150: 150.0,
-    220: 220.0,
-    320: 320.0,
-    460: 460.0,
-    680: 680.0,
-    1000: 1000.0,
-    1500: 1500.0,
-    2200: 2200.0,
-    3200: 3200.0,
+    **{2: 2.2, 3: 3.2, 5: 4.6, 7: 6.8},
+    **{step * decade: float(step * decade) for decade in (1, 10) for step in (10, 15, 22, 32, 46, 68)},
+    **{grade: float(grade) for grade in (1000, 1500, 2200, 3200)},
 }
 
 #: Viscosity index of a plain mineral gear oil, where a data sheet does not give one.
@@ -61,17 +43,6 @@ _INDEX_TABLE = (
     (math.inf, 0.83531, 14.6731, -216.246, 0.16841, 11.8493, -96.947),
 )
 _LOWEST_Y = 2.0
-
-
-def iso_vg(grade: int) -> ValidityRange:
-    """Kinematic viscosity at 40 degC that ISO 3448 allows for a grade [mm^2/s].
-
-    Raises
-    ------
-    ParameterError : not a grade of ISO 3448
-    """
-    middle = midpoint(grade)
-    return ValidityRange("kinematic_viscosity_40", "mm^2/s", 0.9 * middle, 1.1 * middle, "ISO 3448")
 
 
 def viscosity_index(viscosity_40: float, viscosity_100: float) -> float:
@@ -106,7 +77,7 @@ def viscosity_index(viscosity_40: float, viscosity_100: float) -> float:
             f"from {_LOWEST_Y:g} mm^2/s to the viscosity at 40 degC",
             "Check the oil's data sheet.",
         )
-    low, high = _reference_oils(y)
+    low, high = reference_oils(y)
     if u >= high:
         return 100.0 * (low - u) / (low - high)
     exponent = math.log10(high / u) / math.log10(y)
@@ -180,7 +151,7 @@ def midpoint(grade: int) -> float:
     return ISO_VG_MIDPOINT[grade]
 
 
-def _reference_oils(y: float) -> tuple[float, float]:
+def reference_oils(y: float) -> tuple[float, float]:
     """L and H: viscosities at 40 degC of the oils with index 0 and 100 [mm^2/s]."""
     _, a, b, c, d, e, f = next(row for row in _INDEX_TABLE if y <= row[0])
     return (a * y + b) * y + c, (d * y + e) * y + f

@@ -92,30 +92,20 @@ def _positive_intervals(
     inside = 1e-12 * g.base_pitch
     jumps = np.add.outer(np.array([g.L_XA, g.L_XD, *kinks]), np.arange(-g.pairs, g.pairs + 1) * g.base_pitch)
     marks = np.unique(jumps[(jumps > g.L_XA + inside) & (jumps < g.L_XD - inside)])
-    found: list[list[float]] = []
+    ends: list[float] = []
     for low, high in itertools.pairwise([g.L_XA, *marks, g.L_XD]):
         if high - low <= 4 * inside:
             continue
         count = max(3, int(_SAMPLES * (high - low) / (g.L_XD - g.L_XA)))
         xi = np.linspace(low + inside, high - inside, count)
-        value = function(xi)
-        for a, b, f_a, f_b in zip(xi[:-1], xi[1:], value[:-1], value[1:], strict=True):
-            if f_a <= 0.0 and f_b <= 0.0:
-                continue
-            start, end = a, b
-            if f_a <= 0.0 or f_b <= 0.0:
-                root = float(brentq(lambda x: float(function(np.array([x]))[0]), a, b, xtol=1e-16))
-                start, end = (root, b) if f_a <= 0.0 else (a, root)
-            if found and start - found[-1][1] <= 4 * inside:
-                found[-1][1] = end
-            else:
-                found.append([start, end])
-    if not found:
-        return np.empty((0, 2))
-    intervals = np.array(found)
-    intervals[np.abs(intervals - g.L_XA) <= 4 * inside] = g.L_XA
-    intervals[np.abs(intervals - g.L_XD) <= 4 * inside] = g.L_XD
-    return intervals
+        positive = function(xi) > 0.0
+        roots = [
+            float(brentq(lambda x: float(function(np.array([x]))[0]), xi[j], xi[j + 1], xtol=1e-16))
+            for j in np.flatnonzero(np.diff(positive))
+        ]
+        ends += [*([low] if positive[0] else []), *roots, *([high] if positive[-1] else [])]
+    meet = 2 * np.flatnonzero(np.diff(ends)[1::2] <= 4 * inside)  # intervals that meet at a mark are one
+    return np.delete(ends, [*(meet + 1), *(meet + 2)]).reshape(-1, 2)
 
 
 def _restricted(k: PathFunction, contact: FloatArray) -> PathFunction:

@@ -77,14 +77,9 @@ def error_function(pair: GearPair) -> PathFunction:
     switches = np.unique(starts[(starts > low) & (starts < high)])
     breaks = np.array([low, *switches, high])
     # Each piece is a parabola: three values fix it.
-    left, width = breaks[:-1], np.diff(breaks)
-    inside = left + width * np.array([[1e-9], [0.5], [1.0 - 1e-9]])
-    a, b, c = relief_error(pair, inside)
-    s = (inside - left) / width
-    second = ((c - b) / (s[2] - s[1]) - (b - a) / (s[1] - s[0])) / (s[2] - s[0])
-    first = (b - a) / (s[1] - s[0]) - second * (s[0] + s[1])
-    constant = a - s[0] * (first + second * s[0])
-    return PathFunction(breaks, np.stack([second / width**2, first / width, constant]), switches)
+    s, width = np.array([1e-9, 0.5, 1.0 - 1e-9]), np.diff(breaks)
+    values = relief_error(pair, breaks[:-1] + np.multiply.outer(s, width))
+    return PathFunction(breaks, np.linalg.solve(np.vander(s), values) / width ** [[2], [1], [0]], switches)
 
 
 def corner_gap(geometry: Geometry, xi: FloatArray) -> FloatArray:

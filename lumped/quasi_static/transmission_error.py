@@ -7,7 +7,6 @@ static transmission error for a family of loads.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -36,13 +35,12 @@ _LEAST_TORQUE = 1e-6
 
 @dataclass(frozen=True)
 class MeshPositions:
-    """Tooth pairs over a whole number of mesh cycles, those near the path of contact included.
+    """Tooth pairs over one mesh cycle, those near the path of contact included.
 
     Attributes
     ----------
     phase : (k,) mesh cycles since a pair was at A
-    ahead : (pairs,) whole pitches by which a pair is ahead of the one that was at A when its cycle began
-    tooth : (k, pairs) number of the tooth pair; later pairs have larger numbers
+    ahead : (pairs,) whole pitches by which a pair is ahead of the one that was at A
     xi : (k, pairs) positions from X [m]
     stiffness : (k, pairs) k_i, that of the nearest end of the path for a pair outside [N/m]
     error : (k, pairs) e_i, infinite where a pair cannot touch [m]
@@ -50,23 +48,18 @@ class MeshPositions:
 
     phase: FloatArray
     ahead: NDArray[np.int64]
-    tooth: NDArray[np.int64]
     xi: FloatArray
     stiffness: FloatArray
     error: FloatArray
 
 
-def mesh_positions(
-    pair: GearPair, *, phases: int = 256, pitch_errors: Sequence[float] = (0.0,), extended: bool = True
-) -> MeshPositions:
-    """Stiffness and unloaded error of the tooth pairs over mesh cycles.
+def mesh_positions(pair: GearPair, *, phases: int = 256, extended: bool = True) -> MeshPositions:
+    """Stiffness and unloaded error of the tooth pairs over one mesh cycle.
 
     Parameters
     ----------
     pair : a validated gear pair
     phases : positions per mesh cycle, evenly spaced from a pair at A
-    pitch_errors : errors of successive tooth pairs, repeated for ever, positive for a pair that comes late
-        [m]; as many mesh cycles are returned
     extended : whether deflection lets pairs touch before A and behind D
 
     Raises
@@ -74,21 +67,17 @@ def mesh_positions(
     ParameterError : a relief starts outside the active flank, or too few phases
     """
     phases = whole_number("phases", phases, 2, 65536, "Give the number of positions per mesh cycle.")
-    errors = real_numbers("pitch_errors", pitch_errors, unit="m")
     g = pair.geometry
     reach = REACH if extended else 0.0
     ahead = np.arange(math.floor(-reach), math.ceil(g.contact_ratio + reach) + 1)
-    phase = np.arange(phases * errors.size) / phases
-    cycle = np.floor(phase).astype(np.int64)[:, None]
-    tooth = cycle - ahead
-    xi = g.L_XA + (phase[:, None] - cycle + ahead) * g.base_pitch
+    phase = np.arange(phases) / phases
+    xi = g.L_XA + (phase[:, None] + ahead) * g.base_pitch
     inside = _INSIDE * g.base_pitch
     k = pair_stiffness(pair)(np.clip(xi, g.L_XA + inside, g.L_XD - inside))
     e = corner_gap(g, xi) + relief_error(pair, np.clip(xi, g.L_XA, g.L_XD))
-    e = e + errors[tooth % errors.size]
     margin = reach * g.base_pitch + inside
     apart = (xi < g.L_XA - margin) | (xi > g.L_XD + margin)
-    return MeshPositions(phase, ahead, tooth, xi, np.where(apart, 0.0, k), np.where(apart, np.inf, e))
+    return MeshPositions(phase, ahead, xi, np.where(apart, 0.0, k), np.where(apart, np.inf, e))
 
 
 def static_transmission_error(
@@ -96,7 +85,6 @@ def static_transmission_error(
     torques: ArrayLike | None = None,
     *,
     phases: int = 256,
-    pitch_errors: Sequence[float] = (0.0,),
     extended: bool = True,
 ) -> xr.Dataset:
     """Quasi-static meshing of a gear pair: a Harris map and the load of every tooth pair.
@@ -109,7 +97,7 @@ def static_transmission_error(
     ----------
     pair : a validated gear pair
     torques : (n,) pinion torques >= 0 [N m]; default the operating torque
-    phases, pitch_errors, extended : as in ``mesh_positions``
+    phases, extended : as in ``mesh_positions``
 
     Returns
     -------
@@ -125,7 +113,7 @@ def static_transmission_error(
     given = pair.operating.pinion_torque if torques is None else torques
     torque = real_numbers("torques", given, 0.0, unit="N m", action="Give driving torques.")
     g = pair.geometry
-    mesh = mesh_positions(pair, phases=phases, pitch_errors=pitch_errors, extended=extended)
+    mesh = mesh_positions(pair, phases=phases, extended=extended)
     force = torque / g.base_radius_pinion
     stiffness = _at_torques(mesh.stiffness, torque, pair)
     result = share_load(stiffness, mesh.error, force[:, None])

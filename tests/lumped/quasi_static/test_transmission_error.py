@@ -159,24 +159,6 @@ def test_published_relief_of_the_nasa_rig_suits_its_torque():
     assert 55.5 < torques[np.argmin(error)] < 80.1
 
 
-def test_a_late_pair_shows_in_its_own_cycles_only():
-    pair = plain()
-    late = 3e-6
-    errors = [0.0, 0.0, late, 0.0]
-    data = static_transmission_error(pair, [56.5], pitch_errors=errors, extended=False)
-    clean = static_transmission_error(pair, [56.5], extended=False).transmission_error.values[0]
-    extra = data.transmission_error.values[0].reshape(4, -1) - clean
-    g = geometry(pair)
-    phase = np.arange(256) / 256
-    double = phase < g.contact_ratio - 1
-    assert extra[:2] == pytest.approx(0.0, abs=1e-18)
-    # Pair 2 enters at cycle 2: half of its error in double contact, all of it alone, half while it leaves.
-    assert extra[2][double] == pytest.approx(late / 2, rel=1e-9)
-    assert extra[2][~double] == pytest.approx(late, rel=1e-9)
-    assert extra[3][double] == pytest.approx(late / 2, rel=1e-9)
-    assert extra[3][~double] == pytest.approx(0.0, abs=1e-18)
-
-
 def test_loaded_mesh_of_perfect_flanks_is_the_pair_stiffness():
     pair = plain(model="energy")
     g = geometry(pair)

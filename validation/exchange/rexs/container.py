@@ -6,7 +6,7 @@ import io
 import struct
 import zipfile
 import zlib
-from pathlib import Path, PurePosixPath, PureWindowsPath
+from pathlib import Path, PurePosixPath
 
 from lumped.errors import ParameterError, refuse, shown
 from lumped.fields.text_file import read_bytes
@@ -48,18 +48,15 @@ def read_rexs(path: str | Path) -> RexsModel:
     data = read_bytes(path, MAX_BYTES, field="REXS file")
     if data[:2] == b"PK":
         data = _unzipped(data, path.name)
-    model = _parsed(data, path.name)
-    _check_version(model)
-    return model
-
-
-def _parsed(data: bytes, file: str) -> RexsModel:
     start = data.removeprefix(b"\xef\xbb\xbf").lstrip()[:1]
     if start == b"{":
-        return parse_json(data, file)
-    if start == b"<" or data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        return parse_xml(data, file)
-    raise broken(file, "it is neither XML nor JSON nor a ZIP archive")
+        model = parse_json(data, path.name)
+    elif start == b"<" or data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        model = parse_xml(data, path.name)
+    else:
+        raise broken(path.name, "it is neither XML nor JSON nor a ZIP archive")
+    _check_version(model)
+    return model
 
 
 def _unzipped(data: bytes, file: str) -> bytes:
@@ -69,9 +66,10 @@ def _unzipped(data: bytes, file: str) -> bytes:
             members = archive.infolist()
             if len(members) > _MAX_MEMBERS:
                 raise broken(file, f"the archive has more than {_MAX_MEMBERS} members")
-            for member in members:
-                _check_member(member, file)
-            with archive.open(_model_in(members, file)) as stream:
+            member = _model_in(members, file)
+            if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+                raise broken(file, f"the member {shown(member.filename)!r} is not compressed by 'deflate'")
+            with archive.open(member) as stream:
                 content = stream.read(MAX_BYTES + 1)  # the size that the archive states may be a lie
     except ParameterError:
         raise
@@ -81,17 +79,6 @@ def _unzipped(data: bytes, file: str) -> bytes:
     if len(content) > MAX_BYTES:
         raise broken(file, f"the model in the archive has more than {MAX_BYTES} bytes")
     return content
-
-
-def _check_member(member: zipfile.ZipInfo, file: str) -> None:
-    name = member.filename
-    posix, windows = PurePosixPath(name), PureWindowsPath(name)
-    if posix.is_absolute() or windows.drive or windows.root or ".." in windows.parts:
-        raise broken(file, f"the archive has the member {shown(name)!r}, which leaves its folder")
-    if member.flag_bits & 0x1:
-        raise broken(file, f"the member {shown(name)!r} of the archive is encrypted")
-    if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-        raise broken(file, f"the member {shown(name)!r} of the archive is not compressed by 'deflate'")
 
 
 def _model_in(members: list[zipfile.ZipInfo], file: str) -> zipfile.ZipInfo:

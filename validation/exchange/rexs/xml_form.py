@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from typing import NoReturn
-from xml.parsers import expat
 
+from lumped.errors import ParameterError
 from validation.exchange.rexs.model import (
     Attribute,
     Component,
@@ -18,15 +17,16 @@ from validation.exchange.rexs.model import (
 
 #: The schema nests ten elements; more is no REXS.
 _MAX_DEPTH = 32
-_MAX_COMPONENTS = 200_000
+_MAX_ELEMENTS = 1_000_000
+_BLOCK = 65536
 
 
 def parse_xml(data: bytes, file: str) -> RexsModel:
     """Read the XML form.
 
-    The parser is expat with handlers. A document type declaration, which every entity needs, is refused
-    before anything in it is read, so nothing is fetched and nothing expands; arrays and matrices are skipped,
-    so memory is bounded by the scalar attributes.
+    A document type declaration, which every entity needs, is refused before anything in it is read, so
+    nothing is fetched and nothing expands; arrays and matrices are skipped, so memory is bounded by the
+    scalar attributes.
 
     Parameters
     ----------
@@ -37,104 +37,83 @@ def parse_xml(data: bytes, file: str) -> RexsModel:
     ------
     ParameterError : not well-formed, a document type declaration, or not a REXS model
     """
-    reader = _Reader(file)
+    parser = ET.XMLParser(target=_Tree(file))
     try:
-        reader.parser.Parse(data, True)
-    except expat.ExpatError as error:
+        for start in range(0, len(data), _BLOCK):  # in one piece expat would keep a copy of it
+            parser.feed(data[start : start + _BLOCK])
+        root: ET.Element = parser.close()
+    except ParameterError:
+        raise
+    except ET.ParseError as error:
         raise broken(file, f"the XML is malformed: {error}") from None
     except (ValueError, LookupError) as error:  # an encoding that expat or Python does not know
         raise broken(file, str(error)) from None
-    return assembled(file, reader.head, reader.components, reader.relations, reader.load_cases)
+    if root.tag != "model":
+        raise broken(file, f"its root element is {root.tag[:40]!r} instead of 'model'")
 
-
-class _Reader:
-    """Handlers of one document."""
-
-    def __init__(self, file: str) -> None:
-        self.file = file
-        self.head: dict[str, str] = {}
-        self.components: list[Component] = []
-        self.relations: list[Relation] = []
-        self.load_cases: list[LoadCase] = []
-        self._path: list[str] = []
-        self._text: list[str] = []
-        self._given: dict[str, str] = {}
-        self._refs: list[tuple[str, int]] = []
-        self._case: list[Component] = []
-        self._count = 0
-        self.parser = expat.ParserCreate(namespace_separator=" ")
-        self.parser.buffer_text = True
-        self.parser.StartDoctypeDeclHandler = self._doctype
-        self.parser.StartElementHandler = self._start
-        self.parser.EndElementHandler = self._end
-        self.parser.CharacterDataHandler = self._characters
-
-    def _doctype(self, *_: object) -> NoReturn:
-        raise broken(self.file, "it has a document type declaration, which REXS does not use")
-
-    def _start(self, tag: str, given: dict[str, str]) -> None:
-        name = tag.rpartition(" ")[2]
-        self._path.append(name)
-        if len(self._path) > _MAX_DEPTH:
-            raise broken(self.file, f"elements are nested deeper than {_MAX_DEPTH}")
-        if len(self._path) == 1:
-            if name != "model":
-                raise broken(self.file, f"its root element is {name[:40]!r} instead of 'model'")
-            self.head = given
-        elif name == "relation":
-            self._given, self._refs = given, []
-        elif name == "ref":
-            self._refs.append((given.get("role", ""), self._id(given)))
-        elif name == "component":
-            self._begin_component(given)
-        elif name == "attribute":
-            self._given, self._text = given, []
-        elif name == "load_case":
-            self._given, self._case = given, []
-            self.load_cases.append(LoadCase(self._id(given), ()))
-
-    def _begin_component(self, given: dict[str, str]) -> None:
-        self._count += 1
-        if self._count > _MAX_COMPONENTS:
-            raise broken(self.file, f"it has more than {_MAX_COMPONENTS} components")
-        component = Component(self._id(given), given.get("type", ""), given.get("name", ""), {})
-        if "load_case" in self._path:
-            self._case.append(component)
-        elif "load_spectrum" not in self._path:  # what is left is the accumulation: results
-            self.components.append(component)
-
-    def _end(self, tag: str) -> None:
-        name = self._path.pop()
-        if name == "relation":
-            order = self._given.get("order")
-            number = int(order) if order is not None and order.isdecimal() else None
-            self.relations.append(Relation(self._given.get("type", ""), tuple(self._refs), number))
-        elif name == "attribute":
-            self._end_attribute()
-        elif name == "load_case":
-            self.load_cases[-1] = LoadCase(self.load_cases[-1].id, tuple(self._case))
-
-    def _end_attribute(self) -> None:
-        in_case, in_spectrum = "load_case" in self._path, "load_spectrum" in self._path
-        owners = self._case if in_case else self.components
-        if "component" not in self._path or (in_spectrum and not in_case):
-            return
-        text = "".join(self._text).strip()
-        attribute = Attribute(text or None, self._given.get("unit", ""))
-        owners[-1].attributes[self._given.get("id", "")] = attribute
-
-    def _characters(self, text: str) -> None:
-        # Text of an array or a matrix has another element as its parent.
-        if self._path[-1] == "attribute":
-            self._text.append(text)
-
-    def _id(self, given: dict[str, str]) -> int:
-        text = given.get("id", "").strip()
+    def number(node: ET.Element) -> int:
+        text = node.get("id", "").strip()
         try:
             return int(text)
         except ValueError:
             reason = f"a component or relation has the id {text[:40]!r} instead of a number"
-            raise broken(self.file, reason) from None
+            raise broken(file, reason) from None
+
+    def component(node: ET.Element) -> Component:
+        attributes = {
+            a.get("id", ""): Attribute((a.text or "").strip() or None, a.get("unit", ""))
+            for a in node.iter("attribute")
+        }
+        return Component(number(node), node.get("type", ""), node.get("name", ""), attributes)
+
+    def relation(node: ET.Element) -> Relation:
+        refs = tuple((ref.get("role", ""), number(ref)) for ref in node.iter("ref"))
+        order = node.get("order", "")
+        return Relation(node.get("type", ""), refs, int(order) if order.isdecimal() else None)
+
+    return assembled(
+        file,
+        dict(root.attrib),
+        [component(node) for node in root.iterfind("components/component")],
+        [relation(node) for node in root.iterfind("relations/relation")],
+        [LoadCase(number(c), tuple(map(component, c.iter("component")))) for c in root.iter("load_case")],
+    )
+
+
+class _Tree:
+    """Target of the parser: a tree without namespaces and without what stands inside attributes."""
+
+    def __init__(self, file: str) -> None:
+        self.file = file
+        self.builder = ET.TreeBuilder()
+        self.path: list[str] = []
+        self.count = 0
+
+    def doctype(self, *_: object) -> None:
+        raise broken(self.file, "it has a document type declaration, which REXS does not use")
+
+    def start(self, tag: str, given: dict[str, str]) -> None:
+        inside = "attribute" in self.path
+        self.path.append(tag.rpartition("}")[2])
+        if len(self.path) > _MAX_DEPTH:
+            raise broken(self.file, f"elements are nested deeper than {_MAX_DEPTH}")
+        if not inside:
+            self.count += 1
+            if self.count > _MAX_ELEMENTS:
+                raise broken(self.file, f"it has more than {_MAX_ELEMENTS} elements")
+            self.builder.start(self.path[-1], given)
+
+    def end(self, _: str) -> None:
+        name = self.path.pop()
+        if "attribute" not in self.path:
+            self.builder.end(name)
+
+    def data(self, text: str) -> None:
+        if self.path[-1] == "attribute":
+            self.builder.data(text)
+
+    def close(self) -> ET.Element:
+        return self.builder.close()
 
 
 def to_xml(model: RexsModel, head: dict[str, str]) -> bytes:
