@@ -137,11 +137,6 @@ class CrossCheck:
         return tuple(j for j in self.judgements if not j.within)
 
     @property
-    def explained(self) -> tuple[Agreement, ...]:
-        """Quantities whose whole difference is above its limit."""
-        return tuple(a for a in self.agreements if not all(j.within for j in a.raw))
-
-    @property
     def verdict(self) -> Verdict:
         """Overall verdict, see ``MEANINGS``."""
         return verdict_of(self.judgements, [j for a in self.agreements for j in a.raw])

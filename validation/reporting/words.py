@@ -42,7 +42,7 @@ def efficiency(results: Results) -> str:
     """Mesh efficiency in percent; none where a law of nature does not hold."""
     if not lawful(results):
         return "no mesh efficiency, because a law of nature does not hold"
-    return f"a mesh efficiency of {100 * float(results.motion.attrs['mesh_efficiency']):.2f} %"
+    return f"a mesh efficiency of {100 * float(results.motion.attrs['mesh_efficiency']):.2f}\u00a0%"
 
 
 def lawful(results: Results) -> bool:

@@ -6,6 +6,7 @@ any number that the multibody model works out for itself must differ beyond the 
 
 from __future__ import annotations
 
+import contextlib
 import sys
 from dataclasses import replace
 
@@ -98,10 +99,7 @@ def tips(more):
 
 
 FAULTS = {
-    "friction doubled": (LAWS["xu_kahraman"], element("friction", 2.0)),
     "friction 1 % high": (LAWS["coulomb"], element("friction", 1.01)),
-    "friction reversed": (LAWS["coulomb"], element("friction", -1.0)),
-    "damping doubled": (LAWS["coulomb"], element("damping", 2.0)),
     "damping 1 % high": (LAWS["coulomb"], element("damping", 1.01)),
     "law II: Pa s for mPa s": (LAWS["benedict_kelley"], contact(viscosity=lambda x: 1e-3 * x)),
     "law II: sliding in mm/s": (LAWS["benedict_kelley"], kinematics("sliding_velocity", 1e3)),
@@ -115,15 +113,7 @@ FAULTS = {
         ("lumped.friction.fitted", "mean_coefficient", lambda *a: 0.07),
     ),
     "law V: film velocity halved": (THRESHOLD, kinematics("film_thickness", 0.5**0.69)),
-    "masses over pi": (LAWS["coulomb"], disc(1.0 / np.pi)),
     "masses 1 % high": (LAWS["coulomb"], disc(1.01)),
-    "bearings swapped": (
-        LAWS["coulomb"],
-        equations(
-            stiffness=lambda k: k[[0, 1, 3, 2, 5, 4]],
-            damping=lambda d: d[[0, 1, 3, 2, 5, 4]],
-        ),
-    ),
     "bearing directions swapped": (LAWS["coulomb"], equations(damping=lambda d: d[[0, 1, 4, 5, 2, 3]])),
     "lever of friction": (
         LAWS["coulomb"],
@@ -142,26 +132,13 @@ def test_without_a_fault_every_quantity_agrees(name):
     assert all(a.within for a in found.agreements), found.worst("linear")
 
 
-def check_with(name, monkeypatch, torque, **options):
-    """Cross-check of the faulty model; None where it has no motion, which is no confirmation either."""
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_fault_in_the_lumped_model_is_seen(name, monkeypatch):
+    """A model without a motion is no confirmation either."""
     pair, (place, attribute, wrong) = FAULTS[name]
     monkeypatch.setattr(sys.modules[place] if isinstance(place, str) else place, attribute, wrong)
     # No function keeps what it found for the sound model: the pair is one of its own.
-    pair = pair.with_(operating__pinion_torque=torque + 1e-3 * (1 + list(FAULTS).index(name)))
-    try:
-        return crosscheck(pair, cycles=6, samples_per_cycle=32, **options)
-    except lumped.NumericalError:
-        return None
-
-
-@pytest.mark.parametrize("name", FAULTS)
-def test_a_fault_in_the_lumped_model_is_seen(name, monkeypatch):
-    found = check_with(name, monkeypatch, 135.0, fidelities=("linear",))
-    if found is not None:
-        worst = found.worst("linear")
+    pair = pair.with_(operating__pinion_torque=135.0 + 1e-3 * (1 + list(FAULTS).index(name)))
+    with contextlib.suppress(lumped.NumericalError):
+        worst = crosscheck(pair, cycles=6, samples_per_cycle=32, fidelities=("linear",)).worst("linear")
         assert worst.judged > 100.0 * worst.tolerance.limit
-
-
-def test_a_fault_is_not_confirmed(monkeypatch):
-    found = check_with("law III: radius in mm", monkeypatch, 136.0, twin=False)
-    assert found is None or found.verdict == "not confirmed"

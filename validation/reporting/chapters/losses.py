@@ -27,12 +27,12 @@ from validation.reporting.blocks import (
     Badge,
     Block,
     Content,
-    Fact,
-    Facts,
+    FactRow,
     Picture,
     Quantity,
     Table,
     Text,
+    facts,
     table_of,
 )
 from validation.reporting.chapter import Chapter
@@ -82,7 +82,7 @@ def _losses(results: Results, by_law: xr.Dataset) -> list[Block]:
                 (still, dynamic_losses(pair, motion)),
             ),
         ),
-        Facts("losses", _numbers(pair)),
+        facts("losses", *_numbers(pair)),
     ]
     return blocks
 
@@ -109,7 +109,7 @@ def _known(value: xr.DataArray) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def _numbers(pair: GearPair) -> tuple[Fact, ...]:
+def _numbers(pair: GearPair) -> tuple[FactRow, ...]:
     try:
         loaded = loss_factor(pair, "loaded")
     except (ParameterError, NumericalError):  # the chapter on mesh physics says why
@@ -117,14 +117,14 @@ def _numbers(pair: GearPair) -> tuple[Fact, ...]:
     power = pair.operating.pinion_torque * pair.operating.pinion_speed
     anderson = anderson_loewenthal_sliding_loss(pair)
     return (
-        Fact("input_power", "input power", Quantity(power, "W")),
-        Fact("ohlendorf", "loss factor, Ohlendorf's closed form", ohlendorf_of(pair)),
-        Fact("uniform", "loss factor, integrated, equal load sharing", loss_factor(pair, "uniform")),
-        Fact("stiffness", "loss factor, load shared by stiffness", loss_factor(pair, "stiffness")),
-        Fact("loaded", "loss factor, with the flanks' relief under load", loaded),
-        Fact("iso_coefficient", "mean µ of ISO/TR 14179-2", iso_14179_of(pair)),
-        Fact("iso_loss", "mesh loss of ISO/TR 14179-2", Quantity(iso_14179_mesh_loss(pair), "W")),
-        Fact("anderson_loewenthal", "sliding loss of Anderson and Loewenthal", Quantity(anderson, "W")),
+        ("input_power", "input power", power, "W"),
+        ("ohlendorf", "loss factor, Ohlendorf's closed form", ohlendorf_of(pair)),
+        ("uniform", "loss factor, integrated, equal load sharing", loss_factor(pair, "uniform")),
+        ("stiffness", "loss factor, load shared by stiffness", loss_factor(pair, "stiffness")),
+        ("loaded", "loss factor, with the flanks' relief under load", loaded),
+        ("iso_coefficient", "mean µ of ISO/TR 14179-2", iso_14179_of(pair)),
+        ("iso_loss", "mesh loss of ISO/TR 14179-2", iso_14179_mesh_loss(pair), "W"),
+        ("anderson_loewenthal", "sliding loss of Anderson and Loewenthal", anderson, "W"),
     )
 
 
@@ -142,7 +142,7 @@ def _film(results: Results) -> list[Block]:
             "pair's thresholds.",
             lambda: film_figure(g, profile, tuple(pair.friction.thresholds)),
         ),
-        Facts("lubricant", _lubricant(pair)),
+        facts("lubricant", *_lubricant(pair)),
         Table(
             "film_regimes",
             "Lubrication regimes along the path of contact.",
@@ -152,13 +152,13 @@ def _film(results: Results) -> list[Block]:
     ]
 
 
-def _lubricant(pair: GearPair) -> tuple[Fact, ...]:
+def _lubricant(pair: GearPair) -> tuple[FactRow, ...]:
     path, law = contact_path(pair), pair.lubricant.viscosity_law
     note = "given" if law is None else f"at {law.temperature - ZERO_CELSIUS:.4g} °C, by its viscosity law"
     return (
-        Fact("viscosity", "dynamic viscosity", Quantity(pair.lubricant.dynamic_viscosity, "Pa s"), note),
-        Fact("mean_roughness", "mean roughness Ra", Quantity(path.roughness, "m")),
-        Fact("composite_roughness", "composite roughness", Quantity(path.composite_roughness, "m")),
+        ("viscosity", "dynamic viscosity", pair.lubricant.dynamic_viscosity, "Pa s", note),
+        ("mean_roughness", "mean roughness Ra", path.roughness, "m"),
+        ("composite_roughness", "composite roughness", path.composite_roughness, "m"),
     )
 
 

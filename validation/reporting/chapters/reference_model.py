@@ -103,8 +103,8 @@ def _bodies(found: ReferenceModel) -> Block:
             "outline_mass": ("mass, outline", lambda one: Quantity(one[1].mass, "kg")),
             "mass": ("mass taken", lambda one: Quantity(one[1].taken_mass, "kg")),
             "mass_difference": ("difference", lambda one: Quantity(100 * one[1].mass_difference, "%")),
-            "outline_inertia": ("inertia, outline", lambda one: Quantity(one[1].inertia, "kg m^2")),
-            "inertia": ("inertia taken", lambda one: Quantity(one[1].taken_inertia, "kg m^2")),
+            "outline_inertia": ("inertia, outline", lambda one: Quantity(one[1].inertia, "kg m²")),
+            "inertia": ("inertia taken", lambda one: Quantity(one[1].taken_inertia, "kg m²")),
             "inertia_difference": ("difference", lambda one: Quantity(100 * one[1].inertia_difference, "%")),
         },
         note="The difference is what the choice of a disc costs. Where it matters, state mass and inertia in "
@@ -175,10 +175,10 @@ def _modes(found: ReferenceModel) -> tuple[Block, ...]:
                     for source, words in _SOURCES.items()
                 },
             },
-            note="exudyn linearises its own assembled machine. In the exact model the line of action turns "
-            f"with the gear centres, so the normal load of {load:.4g} N acts as a spring −N/L_XY off the "
-            "line of action; lumped, turned line: the lumped A(t) with this spring. The mean of A(t) by "
-            "python-control is another machine, with the mean stiffness of the mesh cycle: the natural "
+            note="The program exudyn linearises its own assembled machine. In the exact model the line of "
+            f"action turns with the gear centres, so the normal load of {load:.4g} N acts as a spring "
+            "−N/L_XY off the line of action; lumped, turned line: the lumped A(t) with it. The mean of A(t) "
+            "by python-control is another machine, with the mean stiffness of the mesh cycle: the natural "
             "frequencies of this report.",
         ),
     )

@@ -12,7 +12,8 @@ def write(results: Results) -> Content:
     text = Text(
         "This report predicts the motion of one spur gear pair with a lumped model, checks the prediction "
         "with an independent multibody model, decides the stability of the motion, and lists where the "
-        "lumped model stops being valid. The frame: x runs along the line of action, y off it; pair 0 is "
+        "lumped model stops being valid. What no model of this report covers stands in its chapter on "
+        "assumptions and limitations. The frame: x runs along the line of action, y off it; pair 0 is "
         "the tooth pair ahead; time zero is when the newest pair enters contact at A."
     )
     models = Text(
@@ -31,18 +32,7 @@ def write(results: Results) -> Content:
             "bounds.",
         ),
     )
-    limits = Text(
-        "What this report does not cover:",
-        (
-            "Three-dimensional effects: shaft tilt, crowning, load distribution across the face width.",
-            "Elastic gear blanks, shafts and housing beyond the bearing stiffness given.",
-            "Tooth errors that differ from tooth to tooth; every tooth pair is alike.",
-            "Temperature, wear and strength.",
-            "Agreement of models with each other is verification. Whether the parameters describe a real "
-            "gearbox is for measurements to say; values marked “assumed” carry that question.",
-        ),
-    )
-    return Content((text, models, limits))
+    return Content((text, models))
 
 
 CHAPTER = Chapter("scope", "Scope", write)

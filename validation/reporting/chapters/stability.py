@@ -14,13 +14,12 @@ from validation.reporting.blocks import (
     Badge,
     Block,
     Content,
-    Fact,
-    Facts,
     Picture,
     Quantity,
     Rows,
     Table,
     Text,
+    facts,
 )
 from validation.reporting.chapter import Chapter
 from validation.reporting.checks import check_table
@@ -43,53 +42,56 @@ def write(results: Results) -> Content:
     here = chart.sel(damping_ratio=pair.mesh.damping_ratio, method="nearest")
     speeds, dampings = chart["speed_rpm"].to_numpy(), chart["damping_ratio"].to_numpy()
     radii = here["spectral_radius"].to_numpy()
-    facts = Facts(
+    margins = facts(
         "margins",
+        ("verdict", "verdict at the operating point", Badge(found.verdict)),
+        ("spectral_radius", "largest multiplier", found.spectral_radius, "", "stable below 1"),
+        ("error", "bound on its error", found.error, "", found.certificate),
         (
-            Fact("verdict", "verdict at the operating point", Badge(found.verdict)),
-            Fact("spectral_radius", "largest multiplier", found.spectral_radius, "stable below 1"),
-            Fact("error", "bound on its error", found.error, found.certificate),
-            Fact(
-                "decay",
-                "margin 1 - spectral radius",
-                1.0 - found.spectral_radius,
-                "share of a disturbance that dies per mesh cycle",
-            ),
-            Fact(
-                "liouville_residual",
-                "Liouville residual",
-                found.liouville_residual,
-                "det M = exp ∫ tr A dt holds to this",
-            ),
-            Fact(
-                "stable_speeds",
-                "stable speeds at this damping",
-                int((here["verdict"].to_numpy() == 1).sum()),
-                f"of {speeds.size} in the chart",
-            ),
-            Fact(
-                "largest_radius",
-                "largest multiplier over speed",
-                float(radii.max()),
-                f"at {speeds[np.argmax(radii)]:.5g} rpm",
-            ),
-            Fact(
-                "nearest_unstable_speed",
-                "nearest unstable speed at this damping",
-                "none in the range" if m.nearest_unstable is None else Quantity(m.nearest_unstable, "rpm"),
-            ),
-            Fact(
-                "critical_damping",
-                "mesh damping ratio that makes every speed stable",
-                m.critical_damping if m.tongues else "none needed",
-                f"this pair has {pair.mesh.damping_ratio:g}",
-            ),
-            Fact("step_speed", "chart step, speed", Quantity(float(np.diff(speeds).max()), "rpm")),
-            Fact("step_damping", "chart step, damping ratio", float(np.diff(dampings).max())),
+            "decay",
+            "margin 1 - spectral radius",
+            1.0 - found.spectral_radius,
+            "",
+            "share of a disturbance that dies per mesh cycle",
         ),
+        (
+            "liouville_residual",
+            "Liouville residual",
+            found.liouville_residual,
+            "",
+            "det M = exp ∫ tr A dt holds to this",
+        ),
+        (
+            "stable_speeds",
+            "stable speeds at this damping",
+            int((here["verdict"].to_numpy() == 1).sum()),
+            "",
+            f"of {speeds.size} in the chart",
+        ),
+        (
+            "largest_radius",
+            "largest multiplier over speed",
+            float(radii.max()),
+            "",
+            f"at {speeds[np.argmax(radii)]:.5g} rpm",
+        ),
+        (
+            "nearest_unstable_speed",
+            "nearest unstable speed at this damping",
+            "none in the range" if m.nearest_unstable is None else Quantity(m.nearest_unstable, "rpm"),
+        ),
+        (
+            "critical_damping",
+            "mesh damping ratio that makes every speed stable",
+            m.critical_damping if m.tongues else "none needed",
+            "",
+            f"this pair has {pair.mesh.damping_ratio:g}",
+        ),
+        ("step_speed", "chart step, speed", float(np.diff(speeds).max()), "rpm"),
+        ("step_damping", "chart step, damping ratio", float(np.diff(dampings).max())),
     )
     blocks: list[Block] = [
-        facts,
+        margins,
         Picture(
             "stability_chart",
             "Spectral radius over pinion speed and mesh damping ratio, all else as given. Orange with a "
