@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import partial
 
 import numpy as np
@@ -10,6 +11,7 @@ import xarray as xr
 from lumped.model.results import VARIABLES
 from validation.cross_check.comparison import MEANINGS, RTOL, Agreement, CrossCheck, off_switch_samples
 from validation.cross_check.first_order import EFFECT_WORDS, Effects
+from validation.cross_check.judgement import Judgement
 from validation.cross_check.ledger import POWERS
 from validation.cross_check.nature import fed_back
 from validation.plots.cross_check import cross_check_figure
@@ -29,6 +31,7 @@ from validation.reporting.blocks import (
 )
 from validation.reporting.causes import attribution, causes, meshing_teeth
 from validation.reporting.chapter import Chapter
+from validation.reporting.formatting import number
 from validation.reporting.results import Results
 from validation.reporting.words import NAMES, cautions, failed_checks, finite_motions, same_equations
 
@@ -56,7 +59,10 @@ def write(results: Results) -> Content:
         ),
         meshing_teeth(results),
         *_judged(check),
-        _reasons(check),
+        Text(
+            "Why these tolerances:",
+            _reasons((f"{a.fidelity} {NAMES[a.quantity]}", a.tolerance.reason) for a in check.agreements),
+        ),
         *(causes(attribution(results.pair)) if results.effort.full else ()),
     ]
     for name in _SHOWN:
@@ -152,36 +158,45 @@ def _judged(check: CrossCheck) -> list[Block]:
         ),
     ]
     if check.effects is not None:
-        tables.append(_effects(check, check.effects))
+        tables.append(_effects(check.effects))
     if check.nature:
-        tables += [_nature(check), _powers(check)]
+        tables += [*_nature(check), _powers(check)]
         share = fed_back(check.lumped)
         tables.append(
             Text(
                 "Vibration never reverses sliding in the lumped motion."
                 if share == 0.0
-                else "In the lumped motion vibration reverses sliding near the pitch point. Friction, whose "
-                f"sign is that of the nominal sliding, feeds {100 * share:.2g} % of its power back: a limit "
-                "of validity, not a wrong sign. The exact model's friction follows the actual sliding."
+                else "In the lumped motion vibration reverses sliding near the pitch point. Friction keeps "
+                f"the sign of the nominal sliding and feeds {number(100 * share, 2)} % of its power back. "
+                "This is a limit of validity, not a wrong sign. The friction of the exact model follows the "
+                "actual sliding."
             )
         )
     tables += _twin(check)
     return tables
 
 
-def _nature(check: CrossCheck) -> Table:
-    return table_of(
-        "nature",
-        "Laws of nature, on both models.",
-        check.nature,
-        {
-            "check": ("check", lambda j: j.check.removeprefix("nature: ")),
-            "value": ("value", lambda j: j.value),
-            "limit": ("limit", lambda j: j.limit),
-            "reason": ("what is measured, and why this limit", lambda j: j.reason),
-            "verdict": ("verdict", lambda j: Badge("within" if j.within else "outside")),
-        },
-    )
+def _nature(check: CrossCheck) -> list[Block]:
+    def name(judgement: Judgement) -> str:
+        return judgement.check.removeprefix("nature: ")
+
+    return [
+        table_of(
+            "nature",
+            "Laws of nature, on both models.",
+            check.nature,
+            {
+                "check": ("check", name),
+                "value": ("value", lambda j: j.value),
+                "limit": ("limit", lambda j: j.limit),
+                "verdict": ("verdict", lambda j: Badge("within" if j.within else "outside")),
+            },
+        ),
+        Text(
+            "What is measured, and why these limits:",
+            _reasons((name(j), j.reason) for j in check.nature),
+        ),
+    ]
 
 
 def _powers(check: CrossCheck) -> Table:
@@ -211,7 +226,7 @@ def _twin(check: CrossCheck) -> list[Block]:
         Text(
             f"Unlike twin: the same checks, with fewer cycles, on a variation in which nothing is symmetric "
             f"({twin.pair.pinion.teeth}/{twin.pair.gear.teeth} teeth, four unlike bearings, unlike densities "
-            f"and roughnesses): {twin.verdict}. It shows what symmetry can hide, as swapped bearings."
+            f"and roughnesses): {twin.verdict}. It shows what symmetry can hide, such as swapped bearings."
         ),
         table_of(
             "twin",
@@ -237,42 +252,30 @@ def _verdict(agreement: Agreement) -> str:
     return "within" if all(j.within for j in agreement.raw) else "explained"
 
 
-def _effects(check: CrossCheck, effects: Effects) -> Table:
-    rows: Rows = []
-    for name, most in effects.most.items():
-        alone = effects.alone.get(name)
-        cells: list[float | None] = []
-        for quantity in _SHOWN:
-            cells += [None if alone is None else alone[quantity], most[quantity]]
-        rows.append((EFFECT_WORDS[name], effects.size[name], *cells))
-    return Table(
+def _effects(effects: Effects) -> Table:
+    return table_of(
         "effects",
         "Finite-motion effects by the lumped model: what each changes alone, and the most that it can change "
-        "to first order; the raw limit is the sum of the latter and the shift of the contact.",
+        "to first order. The limit of a whole difference is the sum of these and the shift of the contact.",
+        [(name, quantity) for name in effects.most for quantity in _SHOWN],
         {
-            "effect": "effect",
-            "size": "displacement / base pitch",
-            **{
-                f"{quantity}_{key}": f"{NAMES[quantity]}, {word}"
-                for quantity in _SHOWN
-                for key, word in (("alone", "alone"), ("most", "most"))
-            },
+            "effect": ("effect", lambda at: EFFECT_WORDS[at[0]]),
+            "quantity": ("quantity", lambda at: NAMES[at[1]]),
+            "size": ("displacement / base pitch", lambda at: effects.size[at[0]]),
+            "alone": ("change alone", lambda at: effects.alone.get(at[0], {}).get(at[1])),
+            "most": ("most", lambda at: effects.most[at[0]][at[1]]),
         },
-        tuple(rows),
         note="Of the turned line of action the displacement is its angle [rad]. An empty cell: no motion was "
         "found with this effect, so friction may hold the teeth, and its most is allowed in what is left.",
     )
 
 
-def _reasons(check: CrossCheck) -> Text:
-    """Every tolerance's reason once, with what it is for."""
-    told: dict[tuple[str, str], list[str]] = {}
-    for a in check.agreements:
-        told.setdefault((a.fidelity, a.tolerance.reason), []).append(NAMES[a.quantity])
-    return Text(
-        "Why these tolerances:",
-        tuple(f"{fidelity}; {', '.join(names)}: {reason}." for (fidelity, reason), names in told.items()),
-    )
+def _reasons(told: Iterable[tuple[str, str]]) -> tuple[str, ...]:
+    """Every reason once, after the names of what it is for."""
+    names: dict[str, list[str]] = {}
+    for name, reason in told:
+        names.setdefault(reason, []).append(name)
+    return tuple(f"{'; '.join(of)}: {reason}." for reason, of in names.items())
 
 
 def _metrics(check: CrossCheck) -> Table:
