@@ -17,7 +17,7 @@ import numpy as np
 
 import multibody
 from lumped import GearPair
-from lumped.errors import NumericalError
+from lumped.errors import NumericalError, ParameterError
 from multibody.contact.drawing import circles
 from multibody.study.shared import Shared, shared_of
 from validation.verification.checks import Check
@@ -43,16 +43,16 @@ class ReferenceModel:
     published : every published formula at published numbers
     decays : free vibrations of the frozen mesh and of each body on its bearings
     blanks : bodies of pinion and gear by their outlines
-    build : the machine built once more with bodies that turn; None where that cannot be run
-    modes : of the machine with frozen mesh, see ``multibody.frozen_modes``; None where there are none
-    refused : why something cannot be computed for this pair
+    build : the machine built once more with bodies that turn
+    modes : of the machine with frozen mesh, see ``multibody.frozen_modes``
+    refused : why one of these is None, because it cannot be computed for this pair
     checks : what must hold
     """
 
     shared: tuple[Shared, ...]
     published: tuple[PublishedValue, ...]
-    decays: tuple[multibody.Decay, ...]
-    blanks: tuple[multibody.Blank, multibody.Blank]
+    decays: tuple[multibody.Decay, ...] | None
+    blanks: tuple[multibody.Blank, multibody.Blank] | None
     build: multibody.TurningBuild | None
     modes: xr.Dataset | None
     refused: tuple[str, ...]
@@ -77,14 +77,18 @@ def reference_model(pair: GearPair, static_load: float) -> ReferenceModel:
     def tried(what: str, compute: Callable[[], T]) -> T | None:
         try:
             return compute()
-        except NumericalError as error:
+        except (NumericalError, ParameterError) as error:
             refused.append(f"{what}: {error}")
             return None
 
-    published, decays = published_values(), multibody.damping_check(pair)
+    published = published_values()
+    decays = tried("free vibration", lambda: multibody.damping_check(pair))
+    blanks = tried("outlines of the gears", lambda: multibody.blanks(pair))
     build = tried("third build", lambda: multibody.turning_build(pair, _CYCLES))
     modes = tried("natural frequencies with frozen mesh", lambda: multibody.frozen_modes(pair))
-    checks = [shown(published), _static_load(pair, static_load), _damping(decays)]
+    checks = [shown(published), _static_load(pair, static_load)]
+    if decays is not None:
+        checks.append(_damping(decays))
     if build is not None:
         checks.append(_third_build(build))
     if modes is not None:
@@ -93,7 +97,7 @@ def reference_model(pair: GearPair, static_load: float) -> ReferenceModel:
         shared=shared_of(pair),
         published=published,
         decays=decays,
-        blanks=multibody.blanks(pair),
+        blanks=blanks,
         build=build,
         modes=modes,
         refused=tuple(refused),

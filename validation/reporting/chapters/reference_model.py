@@ -25,8 +25,8 @@ def write(results: Results) -> Content:
         *(Text("Not computed for this pair:", found.refused) for _ in found.refused[:1]),
         _shared(found),
         _published(found),
-        _decays(found),
-        _bodies(found),
+        *_decays(found),
+        *_bodies(found),
         *_build(found),
         *_modes(found),
     ]
@@ -65,8 +65,10 @@ def _published(found: ReferenceModel) -> Block:
     )
 
 
-def _decays(found: ReferenceModel) -> Block:
-    return table_of(
+def _decays(found: ReferenceModel) -> tuple[Block, ...]:
+    if found.decays is None:
+        return ()
+    table = table_of(
         "decays",
         "Free vibration of the multibody model without friction and torque.",
         found.decays,
@@ -82,6 +84,7 @@ def _decays(found: ReferenceModel) -> Block:
         "held. Where several pairs touch, the ratio given is that of their sum. From critical damping on "
         "there is no decrement.",
     )
+    return (table,)
 
 
 def _decrement(ratio: float) -> float:
@@ -92,8 +95,10 @@ def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _bodies(found: ReferenceModel) -> Block:
-    return table_of(
+def _bodies(found: ReferenceModel) -> tuple[Block, ...]:
+    if found.blanks is None:
+        return ()
+    table = table_of(
         "bodies",
         "Mass and polar inertia of the gears by integrating their outlines, and as both models take them: "
         "given in the parameter file, or of a disc of the reference diameter.",
@@ -110,6 +115,7 @@ def _bodies(found: ReferenceModel) -> Block:
         note="The difference is what the choice of a disc costs. Where it matters, state mass and inertia in "
         "the parameter file.",
     )
+    return (table,)
 
 
 def _build(found: ReferenceModel) -> tuple[Facts, ...]:
