@@ -167,7 +167,7 @@ class Worker:
 
     def look(self) -> int:
         """Return how many calls ago the process last used processor time, 0 where nobody can say."""
-        used = _processor_time(self._processes) if self._busy else None
+        used = _processor_time(self._processes) if self._busy and self._pool else None  # not while it starts
         self.still = self.still + 1 if used is not None and used == self._used else 0
         self._used = used
         return self.still

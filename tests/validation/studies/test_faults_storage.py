@@ -32,7 +32,7 @@ def small_disk(tmp_path):
 
 def fill(folder):
     """Write to the disk until nothing more fits."""
-    with (folder / "filler").open("wb", buffering=0) as file:
+    with (folder / "filler").open("ab", buffering=0) as file:
         try:
             while True:
                 file.write(b"x" * 512)
@@ -51,6 +51,7 @@ def test_full_disk(small_disk, sweep_in, when):
 
     with pytest.raises(StoreError, match=r"disk.*--resume"):
         run_sweep(sweep.study, sweep.out, progress=fill_at)
+    fill(disk)  # what the log had taken is free again where it was in the store already
     with pytest.raises(StoreError, match=r"Free space|disk|unable to open|No space"):
         run_sweep(sweep.study, sweep.out, resume=True)
     (disk / "filler").unlink()
