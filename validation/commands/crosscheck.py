@@ -116,15 +116,12 @@ def crosscheck(
 
 
 def _tables(check: CrossCheck) -> list[Table]:
-    from rich.text import Text
-
     from validation.cross_check.nature import nature_groups
     from validation.reporting.formatting import number
 
     def verdict(agreement: Agreement) -> Text:
-        if not all(j.within for j in agreement.judgements):
-            return Text("outside", "red")
-        return Text("within" if all(j.within for j in agreement.raw) else "explained", "green")
+        kept = "within" if all(j.within for j in agreement.raw) else "explained"
+        return _word(all(j.within for j in agreement.judgements), kept)
 
     name = check.pair.name
     linear = table(f"{name}: linear", "quantity", ">difference", ">limit", "verdict")
@@ -149,10 +146,10 @@ def _tables(check: CrossCheck) -> list[Table]:
     return tables
 
 
-def _word(within: bool) -> Text:
+def _word(within: bool, kept: str = "within") -> Text:
     from rich.text import Text
 
-    return Text("within", "green") if within else Text("outside", "red")
+    return Text(kept, "green") if within else Text("outside", "red")
 
 
 def _write(check: CrossCheck, target: Path) -> None:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -17,11 +16,7 @@ if TYPE_CHECKING:
     from validation.measurements import Evaluation
 
 
-class NormalLoad(StrEnum):
-    """Where identification takes the normal load from."""
-
-    measured = "measured"
-    predicted = "predicted"
+NormalLoad = Literal["measured", "predicted"]
 
 
 @guarded
@@ -40,9 +35,7 @@ def measurement(
             "as needed.",
         ),
     ] = None,
-    normal: Annotated[
-        NormalLoad, typer.Option(help="Normal load used by the identification.")
-    ] = NormalLoad.measured,
+    normal: Annotated[NormalLoad, typer.Option(help="Normal load used by the identification.")] = "measured",
     zero: Annotated[
         bool, typer.Option("--zero", help="Also identify a zero error of each friction channel.")
     ] = False,
@@ -83,9 +76,7 @@ def measurement(
         _write_example(gear_pair, record, force=force)
         return
     measured = load_measurement(record)
-    found = evaluate(
-        measured, gear_pair, identify=identify or (), normal=normal.value, zero=zero, shift=shift
-    )
+    found = evaluate(measured, gear_pair, identify=identify or (), normal=normal, zero=zero, shift=shift)
     _show(found)
     if output is not None:
         with whole_folder(output, force=force, kind=MEASUREMENT) as folder:

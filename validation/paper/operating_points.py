@@ -1,4 +1,4 @@
-"""The paper's operating points and gear pairs, and what had to be assumed."""
+"""The paper's operating points and gear pairs."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from lumped import GearPair, load_gear_pair
 from lumped.friction import LAWS as ALL_LAWS
 from lumped.friction import mean_coefficient
-from lumped.path_of_contact import contact_path, friction_path_function
+from lumped.path_of_contact import friction_path_function
 
 #: Friction laws that the paper compares: name in parameter files -> its number and name there.
 LAWS = {name: law.title for name, law in ALL_LAWS.items() if law.in_paper}
@@ -52,24 +52,6 @@ def second_pair(pair: GearPair) -> GearPair:
             "gear.roughness": f"{pair.gear.roughness!r} m",
         }
     )
-
-
-def conditions(pair: GearPair) -> dict[str, str]:
-    """What the paper does not give and this reproduction assumes, name -> value with unit."""
-    path = contact_path(pair)
-    b = pair.bearings.pinion
-    return {
-        "gear pair": pair.name,
-        "bearing stiffness (LOA, OLOA)": f"{b.loa_stiffness:.4g}, {b.oloa_stiffness:.4g} N/m",
-        "bearing damping ratio": f"{b.loa_damping_ratio:.4g}",
-        "mesh damping ratio": f"{pair.mesh.damping_ratio:.4g}",
-        "tooth-pair stiffness": pair.mesh.stiffness.model,
-        "viscosity": f"{1e3 * path.viscosity:.4g} mPa s",
-        "average roughness S": f"{1e6 * path.roughness:.4g} µm",
-        "composite roughness": f"{1e6 * path.composite_roughness:.4g} µm",
-        "upper bound of law II": f"{pair.friction.maximum:.4g}",
-        "sharpness of law IV": f"{1e-3 * pair.friction.sharpness:.4g} 1/mm",
-    }
 
 
 def mean_of_law(pair: GearPair, law: str) -> float:

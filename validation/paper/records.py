@@ -119,13 +119,12 @@ class ErrataChapter:
 
     Attributes
     ----------
-    title, text : heading and introduction
+    text : introduction
     conditions : operating point and assumptions of the computations, name -> value with unit
     errata : one per row of the table
     histories : dte, x_g and y_g over one mesh cycle, (variant, phase), "repaired" and each printed sign alone
     """
 
-    title: str
     text: str
     conditions: Mapping[str, str]
     errata: tuple[Erratum, ...]
@@ -184,8 +183,7 @@ class ClaimsTable:
 
     Attributes
     ----------
-    title, text : heading and introduction
-    conditions : stated assumptions at which the values hold
+    text : introduction
     ranges : assumption -> range of the Latin hypercube, as text with unit
     samples : number of samples of the hypercube; 0 without it
     failed : samples in which a law or a periodic motion did not exist
@@ -193,9 +191,7 @@ class ClaimsTable:
     claims : the rows
     """
 
-    title: str
     text: str
-    conditions: Mapping[str, str]
     ranges: Mapping[str, str]
     samples: int
     failed: int

@@ -12,7 +12,6 @@ from lumped.typing import Progress
 from validation.paper.claims import numbers as claim_numbers
 from validation.paper.claims.rules import RULES, ClaimRule, Numbers
 from validation.paper.claims.sensitivity import ASSUMPTIONS, Sensitivity, sample_assumptions
-from validation.paper.operating_points import conditions
 from validation.paper.records import Claim, ClaimsTable, ClaimVerdict, Number, Statement
 
 ACCURACY = "3 % error"
@@ -57,9 +56,7 @@ def claims(
     varied = sample_assumptions(pair, samples, seed=seed, progress=progress) if samples else None
     twin = {} if runs is None else twin_numbers(runs)
     return ClaimsTable(
-        title="Claims of the paper",
         text=_TEXT,
-        conditions=conditions(pair),
         ranges={a.name: str(a) for a in ASSUMPTIONS} if varied else {},
         samples=samples,
         failed=0 if varied is None else varied.failed,

@@ -47,7 +47,6 @@ def errata_chapter(pair: GearPair) -> ErrataChapter:
     shown = pair.with_({"friction.law": "coulomb", "friction.coefficient": SHOWN_COEFFICIENT})
     (*first, ninth), histories = sign_errata(shown)
     return ErrataChapter(
-        title="Errata of the paper, shown by computation",
         text=_TEXT,
         conditions={
             "gear pair": pair.name,

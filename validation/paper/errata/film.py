@@ -8,7 +8,6 @@ import numpy as np
 from scipy.optimize import brentq
 
 from lumped import GearPair
-from lumped.friction import ContactPath
 from lumped.lubrication.film import film_parameter, regime
 from lumped.path_of_contact import contact_path, friction_path_function
 from validation.paper.errata import dimensions
@@ -48,7 +47,9 @@ def _erratum_20(pair: GearPair) -> Erratum:
     thresholds = pair.friction.thresholds
     onset = speed_of_film_parameter(light, thresholds[2], light.geometry.L_XP)
     fast = light.with_(operating__pinion_speed=1.2 * onset)
-    share = _undefined_share(contact_path(fast), thresholds)
+    path = contact_path(fast)
+    xi = np.linspace(path.L_XA, path.L_XD, 2001)
+    share = float(np.mean(regime(path.film_parameter(xi), thresholds) == 3))
     return Erratum(
         "20",
         "no case for Lambda >= 10",
@@ -75,11 +76,6 @@ def _erratum_20(pair: GearPair) -> Erratum:
             ),
         ),
     )
-
-
-def _undefined_share(path: ContactPath, thresholds: tuple[float, float, float]) -> float:
-    xi = np.linspace(path.L_XA, path.L_XD, 2001)
-    return float(np.mean(regime(path.film_parameter(xi), thresholds) == 3))
 
 
 def _erratum_21(pair: GearPair) -> Erratum:
