@@ -123,9 +123,7 @@ class ContactPath:
 
             for j in np.flatnonzero(np.signbit(values[:-1]) != np.signbit(values[1:])):
                 low, high = float(distances[j]), float(distances[j + 1])
-                if (
-                    at(low) * at(high) > 0.0
-                ):  # equal signs after all: a root on the grid, taken by its neighbour
+                if at(low) * at(high) > 0.0:  # a root on the grid, taken by its neighbour
                     continue
                 root = brentq(at, low, high, xtol=1e-9 * PITCH_RESOLUTION, rtol=_ROOT_TOLERANCE)
                 found.append(self.L_XP + side * float(root))

@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 
 from lumped.errors import refuse
-from lumped.gear_geometry.involute import RackTooth, inverse_involute, involute, tooth_half_angle
+from lumped.gear_geometry.involute import inverse_involute, involute, tooth_half_angle
 from lumped.gear_geometry.tooth_profile import ToothProfile
 
 
@@ -193,7 +193,7 @@ def _build(
     )
 
 
-def _centre_distance(pinion: RackTooth, gear: RackTooth, given: float | None) -> tuple[float, float]:
+def _centre_distance(pinion: ToothProfile, gear: ToothProfile, given: float | None) -> tuple[float, float]:
     """Centre distance [m] and operating pressure angle [rad]."""
     teeth, alpha = pinion.teeth + gear.teeth, pinion.pressure_angle
     base = 0.5 * pinion.module * teeth * math.cos(alpha)

@@ -1,15 +1,10 @@
-"""Involute and rack-generation formulas of spur gears (SI, rad)."""
+"""The involute function and the thickness of an involute tooth (rad)."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from functools import cached_property
 
-import numpy as np
 from scipy.optimize import brentq
-
-from lumped.typing import FloatArray
 
 
 def involute(angle: float) -> float:
@@ -45,113 +40,3 @@ def tooth_half_angle(teeth: int, profile_shift: float, pressure_angle: float, ra
     """
     reference = (0.5 * math.pi + 2.0 * profile_shift * math.tan(pressure_angle)) / teeth
     return reference + involute(pressure_angle) - involute(radius_angle)
-
-
-@dataclass(frozen=True)
-class RackTooth:
-    """A tooth as its basic rack cuts it.
-
-    Attributes
-    ----------
-    teeth : number of teeth
-    module : [m]
-    pressure_angle : of the basic rack [rad]
-    profile_shift : x [-]
-    dedendum, fillet : dedendum and tip radius of the rack over module [-]
-    """
-
-    teeth: int
-    module: float
-    pressure_angle: float
-    profile_shift: float
-    dedendum: float
-    fillet: float
-
-    @property
-    def reference_radius(self) -> float:
-        """Radius of the circle on which the rack's pitch line rolls [m]."""
-        return 0.5 * self.module * self.teeth
-
-    @property
-    def base_radius(self) -> float:
-        """Radius of the base circle [m]."""
-        return self.reference_radius * math.cos(self.pressure_angle)
-
-    @property
-    def rack_tip(self) -> tuple[float, float, float]:
-        """Tip radius, half distance of the tip circles' centres, their depth below the pitch line [m]."""
-        radius = self.fillet * self.module
-        flat = self.dedendum - self.fillet
-        half_width = self.module * (0.25 * math.pi - flat * math.tan(self.pressure_angle))
-        half_width -= radius / math.cos(self.pressure_angle)
-        return radius, half_width, self.module * (self.dedendum - self.profile_shift) - radius
-
-    @property
-    def fillet_rolls(self) -> tuple[float, float]:
-        """Generating roll angles of the fillet at the root circle and at the rack's straight flank [rad]."""
-        _, half_width, down = self.rack_tip
-        bottom = half_width / self.reference_radius
-        return bottom, bottom - down / (self.reference_radius * math.tan(self.pressure_angle))
-
-    def trochoid(self, roll: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Fillet cut by the rack's rounded tip, in axes that have turned with the roll.
-
-        The rack's pitch line rolls on the reference circle. The envelope of the tip circle has its normal
-        through the pitch point, so the cut point lies on the line from the pitch point through the tip
-        circle's centre.
-
-        Parameters
-        ----------
-        roll : generating roll angles, 0 where the rack tooth is centred in the space [rad]
-
-        Returns
-        -------
-        x, y : across and along the line from the gear's centre to the pitch point [m]; the angle from the
-            centre line of the space is arctan2(x, y) + roll
-        """
-        radius, half_width, down = self.rack_tip
-        along = half_width - self.reference_radius * roll
-        stretch = 1.0 + radius / np.hypot(along, down)
-        return along * stretch, self.reference_radius - down * stretch
-
-    @cached_property
-    def form_length(self) -> float:
-        """Length along the base tangent at which the involute begins [m].
-
-        The involute is usable for distances from the base circle's tangent point at or beyond this length;
-        the form radius is sqrt(r_b^2 + length^2). Where the rack undercuts the flank, it is the crossing of
-        the involute and the fillet's trochoid, found numerically.
-        """
-        sine = math.sin(self.pressure_angle)
-        flank_depth = self.dedendum - self.fillet * (1.0 - sine)
-        length = self.reference_radius * sine - (flank_depth - self.profile_shift) * self.module / sine
-        if length >= -1e-4 * self.module:  # no longer than that: it moves the form radius by 1e-9 modules
-            return max(length, 0.0)
-        return self._undercut_length()
-
-    def _undercut_length(self) -> float:
-        """Length at which the fillet's trochoid crosses the involute, where the rack undercuts.
-
-        The trochoid climbs from the root circle to its joint with the rack's straight flank, which lies
-        beyond the tangent point here. Where it passes the base circle it is inside the tooth, at the joint
-        outside: it crosses the involute once in between.
-        """
-        r_base = self.base_radius
-        bottom, joint = self.fillet_rolls
-
-        def radius(roll: float) -> float:
-            return float(np.hypot(*self.trochoid(np.array(roll))))
-
-        def depth(roll: float) -> float:
-            """Angle by which the trochoid is inside the tooth."""
-            x, y = self.trochoid(np.array(roll))
-            profile = math.acos(min(1.0, r_base / radius(roll)))
-            half = tooth_half_angle(self.teeth, self.profile_shift, self.pressure_angle, profile)
-            return float(np.arctan2(x, y)) + roll - (math.pi / self.teeth - half)
-
-        base = brentq(lambda roll: radius(roll) - r_base, bottom, joint, xtol=1e-15)
-        if depth(base) <= 0.0:
-            return 0.0
-        # By rounding the depth may vanish at a joint that is all but on the base circle; so is the crossing.
-        crossing = joint if depth(joint) >= 0.0 else brentq(depth, base, joint, xtol=1e-15)
-        return math.sqrt(max(radius(crossing) ** 2 - r_base**2, 0.0))

@@ -90,10 +90,6 @@ class Mode:
 def modes(pair: GearPair) -> tuple[Mode, ...]:
     """Natural frequencies, damping and shapes of the averaged pair, by increasing frequency.
 
-    Parameters
-    ----------
-    pair : a validated gear pair
-
     Raises
     ------
     NumericalError : a mode of the averaged system is overdamped, so it has no natural frequency

@@ -45,10 +45,6 @@ class MeshElements:
 def mesh_elements(pair: GearPair) -> MeshElements:
     """Return the element laws of a gear pair.
 
-    Parameters
-    ----------
-    pair : a validated gear pair
-
     Raises
     ------
     ParameterError : a law refuses its parameters

@@ -31,10 +31,6 @@ def contact_path(pair: GearPair) -> ContactPath:
     S is the mean of both Ra; R_comp is their root sum of squares unless ``friction.composite_roughness`` is
     given. The full static load w_n = T_p/(Z r_bp) is used at every position, as in the paper, also where two
     pairs share it.
-
-    Parameters
-    ----------
-    pair : the gear pair
     """
     g, lubricant, friction = pair.geometry, pair.lubricant, pair.friction
     pinion, gear = pair.pinion, pair.gear

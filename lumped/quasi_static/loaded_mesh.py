@@ -49,10 +49,6 @@ class LoadedMesh:
 def loaded_mesh(pair: GearPair) -> LoadedMesh:
     """Stiffness and unloaded error of a tooth pair for the linear model at the operating torque.
 
-    Parameters
-    ----------
-    pair : a validated gear pair
-
     Raises
     ------
     ParameterError : a relief starts outside the active flank

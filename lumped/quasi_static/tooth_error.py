@@ -64,10 +64,6 @@ def relief_error(pair: GearPair, xi: FloatArray) -> FloatArray:
 def error_function(pair: GearPair) -> PathFunction:
     """Unloaded error e(xi) of a tooth pair from A to D [m], exactly, with switches where a relief starts.
 
-    Parameters
-    ----------
-    pair : the gear pair
-
     Raises
     ------
     ParameterError : a relief starts outside the active flank

@@ -225,12 +225,7 @@ class GearPair(Section):
 
 
 def geometry(pair: GearPair) -> Geometry:
-    """Return the geometry of a gear pair, as ``pair.geometry``.
-
-    Parameters
-    ----------
-    pair : a validated gear pair
-    """
+    """Return the geometry of a gear pair, as ``pair.geometry``."""
     return pair.geometry
 
 

@@ -12,24 +12,21 @@ tooth's load does to the fillet of its neighbour otherwise (local coupling) is l
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from lumped.gear_geometry.geometry import Geometry
 from lumped.path_function import PathFunction
 from lumped.stiffness.base import MeshingPair
 from lumped.stiffness.foundation import ring_twist
-from lumped.stiffness.neighbours import neighbour_breaks
 from lumped.typing import FloatArray
 
 _FIT_TOLERANCE = 1e-10
+#: Positions closer than this fraction of a base pitch are one.
+_SAME = 1e-9
 
 
 def twist_compliance(pair: MeshingPair) -> float:
-    """Compliance of both rings in twist along the line of action [m/N]; a gear without a bore has none.
-
-    Parameters
-    ----------
-    pair : the gear pair
-    """
+    """Compliance of both rings in twist along the line of action [m/N]; a gear without a bore has none."""
     total = 0.0
     for wheel, body in zip(pair.wheels, (pair.pinion, pair.gear), strict=True):
         radii = (wheel.tooth.base_radius, wheel.tooth.root_radius, 0.5 * wheel.bore)
@@ -69,3 +66,32 @@ def coupled(k: PathFunction, twist: float, geometry: Geometry) -> PathFunction:
     breaks, switches = neighbour_breaks([low, high], k.breaks[1:-1], geometry)
     scale = float(k(np.linspace(low, high, 65)[1:-1]).max())
     return PathFunction.fit(stiffness, breaks, switches, tolerance=_FIT_TOLERANCE * scale)
+
+
+def neighbour_breaks(
+    switches: ArrayLike, knots: ArrayLike, geometry: Geometry
+) -> tuple[FloatArray, FloatArray]:
+    """Breaks and switches of a function of a pair and its neighbours over the path of contact.
+
+    Parameters
+    ----------
+    switches : (m,) positions at which one pair alone jumps or has a kink, A and D among them [m]
+    knots : (n,) positions at which one pair alone passes from one polynomial piece to the next [m]
+    geometry : of the pair
+
+    Returns
+    -------
+    breaks : from A to D, increasing, none within rounding of another [m]
+    switches : those inside that are jumps or kinks [m]
+    """
+    g, same = geometry, _SAME * geometry.base_pitch
+    shifts = np.arange(1 - g.pairs, g.pairs) * g.base_pitch
+
+    def within(positions: ArrayLike) -> FloatArray:
+        moved = np.unique(np.add.outer(np.asarray(positions), shifts))
+        moved = moved[(moved > g.L_XA + same) & (moved < g.L_XD - same)]
+        return moved[np.diff(moved, prepend=-np.inf) > same]
+
+    jumps, joints = within(switches), within(knots)
+    apart = np.abs(np.subtract.outer(joints, jumps)).min(axis=1, initial=np.inf) > same
+    return np.unique(np.concatenate([[g.L_XA, g.L_XD], jumps, joints[apart]])), jumps

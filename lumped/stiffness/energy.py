@@ -13,14 +13,13 @@ that they share the two bodies (structural coupling) and is an upper estimate in
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike
 from pydantic import Field
 
-from lumped.fields.units import Quantity
 from lumped.path_function import PathFunction
 from lumped.ranges import RangeViolation, range_violations
 from lumped.stiffness import iso6336
@@ -28,7 +27,7 @@ from lumped.stiffness.base import MeshingPair, StiffnessModel
 from lumped.stiffness.coupling import coupled, twist_compliance
 from lumped.stiffness.foundation import BODY_RATIO, HALF_ANGLE
 from lumped.stiffness.pair_compliance import Contact, pair_compliance
-from lumped.stiffness.ramp import ramped
+from lumped.stiffness.ramp import RampLength, ramped
 from lumped.typing import FloatArray
 
 #: Fit error of k over its largest value.
@@ -60,12 +59,7 @@ def energy_curve(pair: MeshingPair, hertz: Contact = "weber_banaschek") -> PathF
 
 
 def foundation_violations(pair: MeshingPair) -> tuple[RangeViolation, ...]:
-    """Fitted ranges of the foundation formula that the two gears leave.
-
-    Parameters
-    ----------
-    pair : the gear pair
-    """
+    """Fitted ranges of the foundation formula that the two gears leave."""
     found: list[RangeViolation] = []
     for name, wheel in zip(("pinion", "gear"), pair.wheels, strict=True):
         values: dict[str, ArrayLike] = {HALF_ANGLE.quantity: wheel.tooth.root_half_angle}
@@ -90,9 +84,7 @@ class EnergyStiffness(StiffnessModel):
     scale: Literal["none", "iso6336"] = Field(
         "none", description="'iso6336' scales the curve to the mean mesh stiffness of ISO 6336-1 method B"
     )
-    ramp_length: Annotated[float, Quantity("mm", at_least=0)] = Field(
-        0.0, description="length along the path over which a pair takes up its stiffness; 0 is a jump"
-    )
+    ramp_length: RampLength = 0.0
 
     def curve(self, pair: MeshingPair) -> PathFunction:
         """Stiffness of a tooth pair from A to D by the potential-energy method [N/m]."""

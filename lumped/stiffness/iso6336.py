@@ -141,10 +141,6 @@ def pair_single_stiffness(pair: MeshingPair) -> float:
     Without the low-load reduction, as the linear model has one stiffness per position at every torque.
     The standard's gear 1 is the one with fewer teeth, whichever drives; at equal tooth numbers the one with
     the larger profile shift.
-
-    Parameters
-    ----------
-    pair : a validated gear pair
     """
     small, large = _ordered(pair)
     rack = pair.wheels[0].tooth
@@ -167,12 +163,7 @@ def mean_of(pair: MeshingPair) -> float:
 
 
 def violations(pair: MeshingPair) -> tuple[RangeViolation, ...]:
-    """Validity ranges of the standard that a pair at its operating point leaves.
-
-    Parameters
-    ----------
-    pair : a gear pair
-    """
+    """Validity ranges of the standard that a pair at its operating point leaves."""
     small, large = _ordered(pair)
     force = pair.operating.pinion_torque / pair.geometry.reference_radius_pinion
     values = {

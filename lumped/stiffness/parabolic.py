@@ -18,7 +18,7 @@ from lumped.path_function import PathFunction
 from lumped.ranges import RangeViolation
 from lumped.stiffness import iso6336
 from lumped.stiffness.base import MeshingPair, StiffnessModel
-from lumped.stiffness.ramp import RAMP, check_ramp_length
+from lumped.stiffness.ramp import RAMP, RampLength, check_ramp_length
 
 
 def iso_end_ratio(contact_ratio: float) -> float:
@@ -90,9 +90,7 @@ class ParabolicStiffness(StiffnessModel):
         description="stiffness at the ends of the path of contact over the peak; default gives the mean mesh "
         "stiffness of ISO 6336-1",
     )
-    ramp_length: Annotated[float, Quantity("mm", at_least=0)] = Field(
-        0.0, description="length along the path over which a pair takes up its stiffness; 0 is a jump"
-    )
+    ramp_length: RampLength = 0.0
 
     def curve(self, pair: MeshingPair) -> PathFunction:
         """Stiffness of a tooth pair [N/m]: a parabola from A to D with its peak in the middle.

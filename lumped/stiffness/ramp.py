@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 from numpy.polynomial import Polynomial
+from pydantic import Field
 
 from lumped.errors import refuse
+from lumped.fields.units import Quantity
 from lumped.path_function import PathFunction
 from lumped.typing import FloatArray
 
+#: The field ``ramp_length`` of the stiffness models.
+RampLength = Annotated[
+    float,
+    Quantity("mm", at_least=0),
+    Field(description="length along the path over which a pair takes up its stiffness; 0 is a jump"),
+]
 #: Ramp in s from 0 to 1. The square of the cubic smoothstep, so that sqrt(k), and with it the damping
 #: 2 zeta sqrt(k m_e), is analytic on the ramp too; it starts like s^4 and ends with zero slope.
 RAMP = Polynomial([0.0, 0.0, 3.0, -2.0]) ** 2

@@ -5,20 +5,19 @@ Sources: monotone piecewise cubics, Fritsch and Carlson, SIAM Journal on Numeric
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, Self
+from typing import Any, Literal, Self
 
 import numpy as np
 from pydantic import Field, ValidationInfo, model_validator
 from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
 from lumped.errors import NumericalError, refuse
-from lumped.fields.units import Quantity
 from lumped.gear_geometry.geometry import Geometry
 from lumped.path_function import PathFunction, shifted
 from lumped.stiffness.base import MeshingPair, StiffnessModel
+from lumped.stiffness.coupling import neighbour_breaks
 from lumped.stiffness.energy import energy_curve
-from lumped.stiffness.neighbours import neighbour_breaks
-from lumped.stiffness.ramp import check_ramp_length, ramped
+from lumped.stiffness.ramp import RampLength, check_ramp_length, ramped
 from lumped.stiffness.table_file import check_stiffness_table, read_stiffness_table
 from lumped.typing import FloatArray
 
@@ -50,9 +49,7 @@ class TableStiffness(StiffnessModel):
         "monotone",
         description="monotone (no overshoot, continuous slope) or cubic spline (continuous curvature)",
     )
-    ramp_length: Annotated[float, Quantity("mm", at_least=0)] = Field(
-        0.0, description="length along the path over which a pair takes up its stiffness; 0 is a jump"
-    )
+    ramp_length: RampLength = 0.0
 
     @model_validator(mode="before")
     @classmethod

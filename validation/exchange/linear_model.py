@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import scipy.signal
 
-from lumped.errors import refuse
 from lumped.model.averaged import averaged_state_space
 from lumped.model.periodic_system import Form
 from lumped.schema.pair import GearPair
@@ -64,8 +63,6 @@ def write_state_space(
     ------
     ParameterError : form "absolute", an unknown suffix, or an existing file without ``force``
     """
-    if form not in ("relative", "feedback"):
-        raise refuse("form", form, "relative or feedback", "The rigid rotation has no steady response.")
     path = check_file(Path(path), STATE_SPACE_SUFFIXES, force=force)
     plant = averaged_state_space(pair, form)
     matlab = path.suffix.lower() == ".mat"

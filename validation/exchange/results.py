@@ -48,10 +48,6 @@ def one_table(result: xr.Dataset) -> tuple[xr.Dataset, tuple[str, ...]]:
 
     A sweep, for example, has outputs over its axes, and beside them error texts over its failures.
 
-    Parameters
-    ----------
-    result : any labelled dataset
-
     Returns
     -------
     the dataset of the table, with the coordinates that are no axes as columns; names of what was left out

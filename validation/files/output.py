@@ -174,10 +174,6 @@ def _write_csv(result: xr.Dataset, path: Path) -> None:
 def mat_contents(result: xr.Dataset) -> dict[str, Any]:
     """Return the variables of the MATLAB file of a dataset.
 
-    Parameters
-    ----------
-    result : any labelled dataset
-
     Returns
     -------
     one array per variable and axis, and the structs ``units``, ``long_names``, ``dimensions`` and

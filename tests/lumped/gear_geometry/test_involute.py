@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from lumped.gear_geometry.involute import RackTooth, inverse_involute, involute, tooth_half_angle
+from lumped.gear_geometry.involute import inverse_involute, involute, tooth_half_angle
+from lumped.gear_geometry.tooth_profile import ToothProfile
 
 
 @given(angle=st.floats(1e-3, 1.4))
@@ -91,7 +92,7 @@ RACKS = [
 def test_form_circle_against_cutting(z, degrees, shift, dedendum, fillet, undercut):
     alpha = math.radians(degrees)
     r, r_b = 0.5 * z, 0.5 * z * math.cos(alpha)
-    length = RackTooth(z, 1.0, alpha, shift, dedendum, fillet).form_length
+    length = ToothProfile(z, 1.0, alpha, shift, dedendum, fillet).form_length
     form = math.hypot(r_b, length)
     closed = r * math.sin(alpha) - (dedendum - fillet * (1 - math.sin(alpha)) - shift) / math.sin(alpha)
     assert (closed < 0) == undercut
@@ -123,7 +124,7 @@ def test_trochoid_is_the_boundary_of_the_cut(z, degrees, shift, dedendum, fillet
     """Each trochoid point touches the rack at its own roll, and its lowest point is the root circle."""
     alpha = math.radians(degrees)
     roll = np.linspace(-0.2, 0.2, 9)
-    tooth = RackTooth(z, 1.0, alpha, shift, dedendum, fillet)
+    tooth = ToothProfile(z, 1.0, alpha, shift, dedendum, fillet)
     r = 0.5 * z
     # The rack frame slides along by r * roll while the gear turns by roll.
     x, along = tooth.trochoid(roll)
@@ -160,7 +161,7 @@ def test_undercut_grows_from_nothing():
     limit = 1.0 - 8.5 * math.sin(alpha) ** 2
     lacking = np.logspace(-18, -2, 120)
     fillet = 0.25 / (1 - math.sin(alpha))
-    lengths = [RackTooth(17, 1.0, alpha, limit - e, 1.25, fillet).form_length for e in lacking]
+    lengths = [ToothProfile(17, 1.0, alpha, limit - e, 1.25, fillet).form_length for e in lacking]
     # The crossing is at most as far beyond X as the flank's end falls short of it, e/sin(a). Lengths below
     # 1e-4 of a module, a form radius 1e-9 of a module beyond the base circle, do not count.
     assert np.all(np.diff(lengths) >= -1e-4)
@@ -180,5 +181,5 @@ def test_an_undercut_within_rounding_has_a_crossing_too(z, alpha, shift, dedendu
     sine = math.sin(alpha)
     lacking = dedendum - fillet * (1 - sine) - shift - 0.5 * z * sine**2
     assert lacking > 1e-4 * sine  # so that it counts as undercut
-    length = RackTooth(z, 1.0, alpha, shift, dedendum, fillet).form_length
+    length = ToothProfile(z, 1.0, alpha, shift, dedendum, fillet).form_length
     assert 0.0 <= length <= lacking / sine + 1e-4
