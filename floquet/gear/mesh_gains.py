@@ -128,15 +128,15 @@ class MeshGains:
         self.pitch, self.offsets = g.base_pitch, cycle.offsets
         self.edges = cycle.breaks / cycle.period
         middle = cycle.offsets[:, None] + g.base_pitch * 0.5 * (self.edges[:-1] + self.edges[1:])
-        self.touch = middle <= g.L_XD
+        self.touch = (middle >= cycle.start) & (middle <= cycle.end)
         self.side = np.sign(middle - g.L_XP)
         e = cycle.elements
         self.has_error = bool(np.any(e.error.coefficients))
-        laws = (e.stiffness, e.damping, e.friction, e.error, e.error.derivative())
+        laws = (e.stiffness, e.damping, e.friction, e.error, e.error_slope)
         self.k, self.c, self.mu, self.e, self.rate = (
             _Law.of(law, middle, self.touch, g.base_pitch) for law in laws
         )
-        self.place = _PLACE * (g.L_XD + g.base_pitch)
+        self.place = _PLACE * (cycle.end + g.base_pitch)
         degree = max(self.k.degree, self.c.degree)
         if self.has_error:
             degree += self.e.degree

@@ -89,7 +89,7 @@ def _steps(system: LTVSystem) -> tuple[LongArray, LongArray, LongArray]:
         both = [np.zeros((30, 3), dtype=_LD) for _ in range(2)]
         for offset in cycle.offsets:
             start, middle = offset + float(speed) * low, offset + float(speed) * 0.5 * (low + high)
-            if middle > g.L_XD:
+            if not cycle.start <= middle <= cycle.end:
                 continue
             mu = _about(e.friction, start, middle)
             moved = np.append(mu, _LD(0)) * _LD(start)

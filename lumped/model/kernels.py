@@ -36,6 +36,7 @@ def state_rate(
     end: float,
     offsets: FloatArray,
     speed: float,
+    start_of_contact: float,
     end_of_contact: float,
     k_breaks: FloatArray,
     k_coefficients: FloatArray,
@@ -64,7 +65,7 @@ def state_rate(
     start, end : distance moved along the line of action at the segment's ends [m]
     offsets : (pairs,) xi_i at the start of the cycle [m]
     speed : Omega_p r_bp [m/s]
-    end_of_contact : L_XD [m]
+    start_of_contact, end_of_contact : where a pair can touch [m]
     external : (6,) torques T_p and -T_g, zero for the translations [N m]
     """
     rate = np.empty(12)
@@ -78,7 +79,7 @@ def state_rate(
     moved = min(max(speed * time, start), end)
     middle = 0.5 * (start + end)
     for i in range(offsets.size):
-        if offsets[i] + middle > end_of_contact:
+        if not start_of_contact <= offsets[i] + middle <= end_of_contact:
             continue
         xi = offsets[i] + moved
         error = evaluate_path(e_breaks, e_coefficients, xi)

@@ -5,6 +5,7 @@ Sources: Abbas Al-Zubaidi 2008, eqs. 5a and 5b; docs/theory/equations.md, "Frame
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -31,7 +32,7 @@ class PairState:
     Attributes
     ----------
     position : xi_i, also for a pair out of contact [m]
-    contact : whether the pair is within [L_XA, L_XD]
+    contact : whether the pair is where it can touch
     stiffness, damping, friction, error, error_rate : k_i [N/m], c_i [N s/m], mu_i [-], e_i [m], de_i/dt [m/s]
     """
 
@@ -65,24 +66,35 @@ class MeshCycle:
     @property
     def mean_stiffness(self) -> float:
         """Mean over the mesh cycle of the stiffness of all pairs [N/m]."""
-        return self.elements.stiffness.mean() * self.geometry.contact_ratio
+        return self.elements.stiffness.mean() * (self.end - self.start) / self.geometry.base_pitch
+
+    @property
+    def start(self) -> float:
+        """Where a pair can first touch: A, or before it in the loaded form [m]."""
+        return self.elements.stiffness.interval[0]
+
+    @property
+    def end(self) -> float:
+        """Where a pair can last touch: D, or behind it in the loaded form [m]."""
+        return self.elements.stiffness.interval[1]
 
     @cached_property
     def offsets(self) -> FloatArray:
-        """xi_i at t = 0, L_XA + (n - i) lambda for i = 0..n; (pairs,) [m]."""
+        """xi_i at t = 0, whole pitches from A, of all pairs that can touch in the cycle; ahead first [m]."""
         g = self.geometry
-        return np.asarray(g.L_XA + np.arange(g.pairs - 1, -1, -1) * g.base_pitch, dtype=np.float64)
+        ahead = math.floor((self.end - g.L_XA) / g.base_pitch)
+        behind = math.ceil((g.L_XA - self.start) / g.base_pitch)
+        return np.asarray(g.L_XA + np.arange(ahead, -behind - 1, -1) * g.base_pitch, dtype=np.float64)
 
     @cached_property
     def switch_times(self) -> FloatArray:
         """Times strictly inside (0, T_m) at which a coefficient jumps or has a kink; increasing [s].
 
-        A pair leaves contact at D, passes P, and crosses the switches of its k, c, mu and e. Entry at A is
-        t = 0.
+        A pair enters and leaves contact, passes P and the switches of its k, c, mu and e; A is t = 0.
         """
         g, e = self.geometry, self.elements
         functions = (e.stiffness, e.damping, e.friction, e.error)
-        return self._times([np.array([g.L_XP, g.L_XD]), *(f.switches for f in functions)])
+        return self._times([np.array([g.L_XP, self.start, self.end]), *(f.switches for f in functions)])
 
     def _times(self, positions: list[FloatArray]) -> FloatArray:
         """Increasing times strictly inside (0, T_m) at which any pair is at any of the positions [s]."""
@@ -157,7 +169,7 @@ class MeshCycle:
         xi = self.offsets[:, None] + shift
         # Which pairs touch is decided in the middle of the segment: it cannot change inside.
         middle = self.offsets[:, None] + 0.5 * (low + high)
-        contact = middle <= g.L_XD
+        contact = (middle >= self.start) & (middle <= self.end)
         e = self.elements
 
         def of(values: FloatArray) -> FloatArray:
@@ -170,7 +182,7 @@ class MeshCycle:
             damping=of(e.damping(xi)),
             friction=of(e.friction(xi)),
             error=of(e.error(xi)),
-            error_rate=of(e.error.derivative()(xi) * speed),
+            error_rate=of(e.error_slope(xi) * speed),
         )
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from lumped.model.bodies import bodies
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
+from lumped.quasi_static.loaded_contact import loaded_contact
 from lumped.quasi_static.loaded_mesh import loaded_mesh
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -24,7 +25,9 @@ _DAMPING_TOLERANCE_FROM_ZERO = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class MeshElements:
-    """Element laws of one tooth pair over xi in [L_XA, L_XD]; zero outside.
+    """Element laws of one tooth pair over the interval of xi in which it can touch; zero outside.
+
+    That is [L_XA, L_XD] in the paper's form, and reaches beyond in the loaded form.
 
     N = k (delta - e) + c (delta' - e'), F = mu N (docs/theory/equations.md, eqs. 3 and 4).
 
@@ -34,12 +37,19 @@ class MeshElements:
     damping : c = 2 zeta sqrt(k m_e) [N s/m]
     friction : mu at nominal speed [-], signed by s = sgn(xi - L_XP)
     error : e, unloaded tooth error, positive where the teeth come too late to touch [m]
+    gap : the gap that closes at the first touch, where e is not that gap (loaded form, Hertz's contact) [m]
     """
 
     stiffness: PathFunction
     damping: PathFunction
     friction: PathFunction
     error: PathFunction
+    gap: PathFunction | None = None
+
+    @property
+    def error_slope(self) -> PathFunction:
+        """E' over xi, that the damper sees: of the gap itself where e is the tangent's [-]."""
+        return (self.error if self.gap is None else self.gap).derivative()
 
 
 def mesh_elements(pair: GearPair) -> MeshElements:
@@ -50,6 +60,9 @@ def mesh_elements(pair: GearPair) -> MeshElements:
     ParameterError : a law refuses its parameters
     NumericalError : a law is not finite on the path of contact
     """
+    mass = bodies(pair).effective_mass
+    if pair.mesh.contact == "loaded":
+        return _loaded_elements(pair, mass)
     if pair.mesh.relief == "static":
         loaded = loaded_mesh(pair)
         stiffness, error = loaded.stiffness, loaded.error
@@ -58,9 +71,33 @@ def mesh_elements(pair: GearPair) -> MeshElements:
         error = PathFunction.constant(0.0, *stiffness.interval)
     return MeshElements(
         stiffness=stiffness,
-        damping=_damping(stiffness, pair.mesh.damping_ratio, bodies(pair).effective_mass),
+        damping=_damping(stiffness, pair.mesh.damping_ratio, mass),
         friction=friction_path_function(pair),
         error=error,
+    )
+
+
+def _loaded_elements(pair: GearPair, mass: float) -> MeshElements:
+    """The laws about the static loaded motion; the damper takes hold as the load does."""
+    contact = loaded_contact(pair)
+    low, high = contact.stiffness.interval
+    scale = 2.0 * pair.mesh.damping_ratio * np.sqrt(mass)
+
+    def damping(xi: FloatArray) -> FloatArray:
+        root = np.sqrt(np.maximum(contact.secant(xi), 0.0))
+        return np.asarray(scale * root * contact.engagement(xi), dtype=np.float64)
+
+    engaged = contact.engagement
+    breaks = np.union1d(engaged.breaks, contact.secant.breaks)
+    largest = float(np.abs(damping(np.linspace(low, high, 401))).max())
+    return MeshElements(
+        stiffness=contact.stiffness,
+        damping=PathFunction.constant(0.0, low, high)
+        if largest == 0.0
+        else PathFunction.fit(damping, breaks, engaged.switches, tolerance=_DAMPING_TOLERANCE * largest),
+        friction=friction_path_function(pair, interval=(low, high)),
+        error=contact.error,
+        gap=contact.gap,
     )
 
 

@@ -15,7 +15,7 @@ from scipy.integrate import DOP853
 
 from lumped.arguments import real_array, real_number, whole_number
 from lumped.errors import NumericalError, refuse
-from lumped.model import kernels
+from lumped.model import kernels, powers
 from lumped.model.equations import COORDINATES
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.results import dataset, provenance
@@ -101,7 +101,7 @@ def simulate(
         rtol=rtol,
         as_printed=tuple(as_printed),
     )
-    attributes |= balance.balance | {"model": "lumped"}
+    attributes |= powers.balance(balance) | {"model": "lumped"}
     return dataset(system, time, states, attributes)
 
 
@@ -170,7 +170,7 @@ def rate_function(
     g, s, cycle = system.pair.geometry, system.structure, system.cycle
     e = cycle.elements
     speed = g.omega_pinion * g.base_radius_pinion
-    functions: list[PathFunction] = [e.stiffness, e.damping, e.friction, e.error, e.error.derivative()]
+    functions: list[PathFunction] = [e.stiffness, e.damping, e.friction, e.error, e.error_slope]
     tables = [array for f in functions for array in (f.breaks, f.coefficients)]
     external = np.array([balance.pinion_torque, -balance.brake_torque, 0.0, 0.0, 0.0, 0.0])
     constants = (s.mass, s.damping, s.stiffness, s.deflection, s.normal, s.friction_arm, external)
@@ -182,7 +182,7 @@ def rate_function(
 
         def rate(time: float, state: FloatArray) -> FloatArray:
             values: FloatArray = kernels.state_rate(
-                time, state, start, end, cycle.offsets, speed, g.L_XD, *tables, *constants
+                time, state, start, end, cycle.offsets, speed, cycle.start, cycle.end, *tables, *constants
             )
             return values
 
@@ -247,7 +247,7 @@ def steady_state(
     times = sample_times(system.period, samples_per_cycle)
     solution = periodic_solution(system, times)
     attributes = provenance(pair, samples_per_cycle=samples_per_cycle, as_printed=tuple(as_printed))
-    attributes |= solution.balance | {
+    attributes |= powers.balance(solution) | {
         "model": "lumped",
         "closure": solution.closure,
         "error_estimate": solution.error,

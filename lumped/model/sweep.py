@@ -17,6 +17,7 @@ from lumped.labelling import labelled_dataset
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.mesh_elements import MeshElements, mesh_elements
 from lumped.model.periodic_system import LTVSystem, periodic_system
+from lumped.model.powers import balance
 from lumped.model.results import provenance
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.path_of_contact import friction_path_function
@@ -87,7 +88,7 @@ def speed_sweep(
         loads = run["normal_load"][run["contact"] > 0]
         table["normal_load_max"][j], table["normal_load_min"][j] = loads.max(), loads.min()
         table["sliding_reversal"][j] = _reversal(run, pair.geometry.L_XP)
-        table["mesh_efficiency"][j] = solution.balance["mesh_efficiency"]
+        table["mesh_efficiency"][j] = balance(solution)["mesh_efficiency"]
         table["spectral_radius"][j] = solution.spectral_radius
     variables = {name: ("speed", values, *_label(name)) for name, values in table.items()}
     return labelled_dataset(
@@ -112,7 +113,9 @@ def _systems(pairs: Iterable[GearPair]) -> Iterator[LTVSystem]:
         if elements is None:
             elements = mesh_elements(at)
         else:
-            elements = replace(elements, friction=friction_path_function(at))
+            elements = replace(
+                elements, friction=friction_path_function(at, interval=elements.stiffness.interval)
+            )
         yield periodic_system(at, "absolute", cycle=MeshCycle(g, elements))
 
 

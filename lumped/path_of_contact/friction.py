@@ -6,6 +6,7 @@ friction".
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -13,7 +14,7 @@ import numpy as np
 from lumped.errors import refuse
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.benedict_kelley import friction_number
-from lumped.friction.fitted import fit_signed
+from lumped.friction.fitted import average_coefficient, fit_signed
 from lumped.friction.registry import law_named
 from lumped.lubrication import film
 from lumped.lubrication.roughness import composite_roughness, mean_roughness
@@ -59,17 +60,20 @@ def contact_path(pair: GearPair) -> ContactPath:
     )
 
 
-def friction_path_function(pair: GearPair, law: str | None = None) -> PathFunction:
+def friction_path_function(
+    pair: GearPair, law: str | None = None, interval: tuple[float, float] | None = None
+) -> PathFunction:
     """Signed friction coefficient mu_i(xi) of one tooth pair at nominal speed and load.
 
     Parameters
     ----------
     pair : the gear pair
     law : name of a friction law; default ``pair.friction.law``
+    interval : first and last position [m]; default A and D
 
     Returns
     -------
-    mu(xi) on [L_XA, L_XD], within 1e-10 of the law wherever it is smooth; negative in approach, positive in
+    mu(xi) on the interval, within 1e-10 of the law wherever it is smooth; negative in approach, positive in
     recess. Its switches are the pitch point where the law changes sign there, the ends of the stretches where
     law II meets a bound, and the changes of regime of law V.
 
@@ -82,7 +86,12 @@ def friction_path_function(pair: GearPair, law: str | None = None) -> PathFuncti
     LawRangeWarning : the contact leaves a validity range of the law, see ``law_range_violations``
     """
     path, name = contact_path(pair), _name(pair, law)
-    function = fit_law(path, pair.friction, name)
+    settings: FrictionSettings = pair.friction
+    if interval not in (None, (path.L_XA, path.L_XD)):
+        if law_named(name).coefficient:  # mu_avg stays the mean from A to D
+            settings = pair.friction.model_copy(update={"coefficient": average_coefficient(path, settings)})
+        path = replace(path, L_XA=interval[0], L_XD=interval[1])
+    function = fit_law(path, settings, name)
     warn_violations(violations_of(path, pair.friction, name))
     return function
 

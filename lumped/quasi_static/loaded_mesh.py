@@ -10,24 +10,19 @@ Sources: docs/theory/mesh_physics.md, "Load sharing and static transmission erro
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from lumped.errors import NumericalError
 from lumped.gear_geometry.geometry import Geometry
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import pair_stiffness
+from lumped.quasi_static.intervals import positive_intervals, restricted
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.tooth_error import error_function
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
-
-#: Samples over the path of contact between which contact begins or ends at most once.
-_SAMPLES = 2000
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,12 +58,14 @@ def loaded_mesh(pair: GearPair) -> LoadedMesh:
     def clearance(xi: FloatArray) -> FloatArray:
         return _clearance(xi, k, error, force, g)
 
-    contact = _positive_intervals(clearance, g, np.concatenate([k.switches, error.switches]))
+    kinks = np.concatenate([[g.L_XA, g.L_XD], k.switches, error.switches])
+    kinks = np.add.outer(kinks, np.arange(-g.pairs, g.pairs + 1) * g.base_pitch)
+    contact = positive_intervals(clearance, g.L_XA, g.L_XD, kinks, g.base_pitch)
     if contact.size == 0:
         raise NumericalError(
             f"At {torque:g} N m no tooth pair carries load: raise the torque or lower the relief."
         )
-    return LoadedMesh(_restricted(k, contact), error, contact)
+    return LoadedMesh(restricted(k, contact), error, contact)
 
 
 def _clearance(xi: FloatArray, k: PathFunction, error: PathFunction, force: float, g: Geometry) -> FloatArray:
@@ -79,36 +76,3 @@ def _clearance(xi: FloatArray, k: PathFunction, error: PathFunction, force: floa
     e = np.where(outside, np.inf, error(place))
     delta = share_load(np.where(outside, 0.0, k(place)), e, force).transmission_error
     return np.asarray(delta - e[:, g.pairs - 1], dtype=np.float64)
-
-
-def _positive_intervals(
-    function: Callable[[FloatArray], FloatArray], g: Geometry, kinks: FloatArray
-) -> FloatArray:
-    """Intervals of [L_XA, L_XD] in which a piecewise smooth function is positive; (n, 2)."""
-    inside = 1e-12 * g.base_pitch
-    jumps = np.add.outer(np.array([g.L_XA, g.L_XD, *kinks]), np.arange(-g.pairs, g.pairs + 1) * g.base_pitch)
-    marks = np.unique(jumps[(jumps > g.L_XA + inside) & (jumps < g.L_XD - inside)])
-    ends: list[float] = []
-    for low, high in itertools.pairwise([g.L_XA, *marks, g.L_XD]):
-        if high - low <= 4 * inside:
-            continue
-        count = max(3, int(_SAMPLES * (high - low) / (g.L_XD - g.L_XA)))
-        xi = np.linspace(low + inside, high - inside, count)
-        positive = function(xi) > 0.0
-        roots = [
-            float(brentq(lambda x: float(function(np.array([x]))[0]), xi[j], xi[j + 1], xtol=1e-16))
-            for j in np.flatnonzero(np.diff(positive))
-        ]
-        ends += [*([low] if positive[0] else []), *roots, *([high] if positive[-1] else [])]
-    meet = 2 * np.flatnonzero(np.diff(ends)[1::2] <= 4 * inside)  # intervals that meet at a mark are one
-    return np.delete(ends, [*(meet + 1), *(meet + 2)]).reshape(-1, 2)
-
-
-def _restricted(k: PathFunction, contact: FloatArray) -> PathFunction:
-    """The function on the intervals, zero between them; jumps are switches."""
-    low, high = k.interval
-    k, ends = k.split(contact), contact.ravel()
-    middle = 0.5 * (k.breaks[:-1] + k.breaks[1:])
-    loaded = ((middle[:, None] > contact[:, 0]) & (middle[:, None] < contact[:, 1])).any(axis=1)
-    jumps = ends[(ends > low) & (ends < high)]
-    return PathFunction(k.breaks, np.where(loaded, k.coefficients, 0.0), np.union1d(k.switches, jumps))

@@ -17,6 +17,7 @@ import numpy as np
 
 from lumped.errors import refuse
 from lumped.path_function import PathFunction
+from lumped.quasi_static.kernels import gaps_at
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
@@ -69,13 +70,19 @@ def error_function(pair: GearPair) -> PathFunction:
     ParameterError : a relief starts outside the active flank
     """
     low, high = pair.geometry.L_XA, pair.geometry.L_XD
-    starts = np.array([relief.start for relief in _reliefs(pair)])
-    switches = np.unique(starts[(starts > low) & (starts < high)])
+    switches = relief_starts(pair)
     breaks = np.array([low, *switches, high])
     # Each piece is a parabola: three values fix it.
     s, width = np.array([1e-9, 0.5, 1.0 - 1e-9]), np.diff(breaks)
     values = relief_error(pair, breaks[:-1] + np.multiply.outer(s, width))
     return PathFunction(breaks, np.linalg.solve(np.vander(s), values) / width ** [[2], [1], [0]], switches)
+
+
+def relief_starts(pair: GearPair) -> FloatArray:
+    """Positions strictly between A and D where a relief starts, increasing [m]."""
+    low, high = pair.geometry.L_XA, pair.geometry.L_XD
+    starts = np.array([relief.start for relief in _reliefs(pair)])
+    return np.asarray(np.unique(starts[(starts > low) & (starts < high)]), dtype=np.float64)
 
 
 def corner_gap(geometry: Geometry, xi: FloatArray) -> FloatArray:
@@ -90,28 +97,10 @@ def corner_gap(geometry: Geometry, xi: FloatArray) -> FloatArray:
     geometry : the pair's geometry
     xi : positions from X, any shape; those outside [L_XA, L_XD] are where longer teeth would touch [m]
     """
-    g = geometry
-    early = np.maximum(g.L_XA - xi, 0.0)
-    late = np.maximum(xi - g.L_XD, 0.0)
-    before = _gap(early, g.L_XA, g.L_XY, g.base_radius_pinion, g.base_radius_gear)
-    behind = _gap(late, g.L_XY - g.L_XD, g.L_XY, g.base_radius_gear, g.base_radius_pinion)
-    return np.asarray(before + behind, dtype=np.float64)
-
-
-def _gap(
-    beyond: FloatArray, start: float, tangent: float, flank_radius: float, tip_radius: float
-) -> FloatArray:
-    """Gap of a tip corner from the mate's flank, ``beyond`` before the flank's first contact at ``start``.
-
-    Axes with the flank's tangent point as origin, t along the line of action, n away from the flank's centre.
-    """
-    corner = tangent - start  # length on the tip's base tangent of its corner
-    turn = beyond / tip_radius
-    t = tangent - (tip_radius * np.sin(turn) + corner * np.cos(turn))
-    n = tip_radius - tip_radius * np.cos(turn) + corner * np.sin(turn)
-    length = np.sqrt(np.maximum(t**2 + (n + flank_radius) ** 2 - flank_radius**2, 0.0))
-    angle = np.arctan2(t, n + flank_radius) - np.arctan2(length, flank_radius)
-    return np.asarray(length + flank_radius * angle - (start - beyond), dtype=np.float64)
+    g, place = geometry, np.asarray(xi, dtype=float)
+    ends = np.array([g.L_XA, g.L_XD, g.L_XY, g.base_radius_pinion, g.base_radius_gear])
+    none = np.zeros(place.size)
+    return np.asarray(gaps_at(place.ravel(), none, none, ends).reshape(place.shape), dtype=np.float64)
 
 
 @dataclass(frozen=True)

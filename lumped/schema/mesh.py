@@ -25,6 +25,11 @@ class Mesh(Section):
         description="'static': tip and root relief enter as unloaded error, and a pair touches where it "
         "carries load at the mean torque; 'ignored': perfect involutes from A to D",
     )
+    contact: Literal["paper", "loaded"] = Field(
+        "paper",
+        description="'paper': a pair touches from A to D; 'loaded': it touches where its gap closes under "
+        "the mean load, with its tangent stiffness there, and the shafts pay for all losses",
+    )
     backlash: Annotated[float, Quantity("mm", at_least=0)] = Field(
         0.0, description="normal backlash by tooth thinning, beyond that of the centre distance"
     )

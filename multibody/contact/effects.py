@@ -31,11 +31,13 @@ class Effect:
     bits : its switches in ``kernels``
     meaning : what it changes
     cause : the cause of differences that it belongs to, a key of ``CAUSES``
+    default : whether it acts where no effects are named
     """
 
     bits: int
     meaning: str
     cause: str
+    default: bool = True
 
 
 EFFECTS: dict[str, Effect] = {
@@ -68,6 +70,25 @@ EFFECTS: dict[str, Effect] = {
         kn.FRICTION_LOAD,
         "the friction law reads the momentary load of each tooth pair, not the full static load",
         "friction_load",
+        default=False,
+    ),
+    "path_work": Effect(
+        kn.PATH_WORK,
+        "bent teeth turn the contact normal: the shafts pay for what the teeth store",
+        "contact_energy",
+        default=False,
+    ),
+    "tip_contact": Effect(
+        kn.TIP_CONTACT,
+        "teeth touch where the gap of flanks and tip corners closes, also before A and behind D",
+        "contact_energy",
+        default=False,
+    ),
+    "contact_law": Effect(
+        kn.CONTACT_LAW,
+        "the contact of a tooth pair grows stiffer with its own momentary load, by Weber and Banaschek",
+        "contact_energy",
+        default=False,
     ),
 }
 #: Why the models may differ, in words. Rotations and centres together place the contact; one without the
@@ -78,31 +99,46 @@ CAUSES: dict[str, str] = {
     "entry_shift": "teeth enter and leave where the deflected flanks cross the tip circles",
     "contact_loss": "teeth push but never pull",
     "friction_load": "friction law at the momentary load of each pair (no finite motion, not part of all)",
+    "contact_energy": "contact that follows from an elastic energy and from clearance (not part of all)",
 }
 #: Effects that act where none are named: all finite motions.
-DEFAULT_EFFECTS: tuple[str, ...] = tuple(name for name in EFFECTS if name != "friction_load")
+DEFAULT_EFFECTS: tuple[str, ...] = tuple(name for name, effect in EFFECTS.items() if effect.default)
 
 
-def effect_flags(effects: Collection[str] | Mapping[str, bool] | None) -> int:
+def default_effects(contact: str) -> tuple[str, ...]:
+    """Names of the effects that act where none are named.
+
+    Parameters
+    ----------
+    contact : ``mesh.contact`` of the pair: "paper", or "loaded" whose contact has an energy
+    """
+    energy = contact == "loaded"
+    return tuple(name for name, e in EFFECTS.items() if e.default or (energy and e.cause == "contact_energy"))
+
+
+def effect_flags(effects: Collection[str] | Mapping[str, bool] | None, contact: str = "paper") -> int:
     """Return the kernel's switch bits.
 
     Parameters
     ----------
     effects : names of the effects that act, or a mapping name -> bool; names that a mapping
-        leaves out, or all of them with None, act if they are ``DEFAULT_EFFECTS``
+        leaves out, or all of them with None, act if they are ``DEFAULT_EFFECTS``, in the loaded form of the
+        model those of the contact's energy too
+    contact : ``mesh.contact`` of the pair
 
     Raises
     ------
     ParameterError : unknown effect
     """
+    default = default_effects(contact)
     if effects is None:
-        names = set(DEFAULT_EFFECTS)
+        names = set(default)
     elif isinstance(effects, Mapping):
         some_of("effects", list(effects), EFFECTS)
         for name, acts in effects.items():
             if not isinstance(acts, bool | np.bool_):
                 raise refuse(f"effects.{name}", acts, "True or False", "Say whether the effect acts.")
-        names = {name for name in EFFECTS if effects.get(name, name in DEFAULT_EFFECTS)}
+        names = {name for name in EFFECTS if effects.get(name, name in default)}
     else:
         names = set(some_of("effects", effects, EFFECTS, "Name the effects to keep."))
     return sum(EFFECTS[name].bits for name in names)

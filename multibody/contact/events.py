@@ -17,11 +17,13 @@ from lumped.path_function import PathFunction
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.compiled import compiled
-from multibody.contact.kernels import mesh_position
-from multibody.contact.kinematics import DRIVE, sliding_velocity, wrap
+from multibody.contact.kernels import mesh_position, relief_at
+from multibody.contact.kinematics import DRIVE, corner_reach, sliding_velocity, wrap
 
 #: Kinds of events, the first column of an event table; the second is the place xi [m] of the last two.
 ENTRY, EXIT, SWITCH, SLIDING = 0.0, 1.0, 2.0, 3.0
+#: First and last touch of tip corners, beyond the path of contact.
+FIRST_TOUCH, LAST_TOUCH = 4.0, 5.0
 #: Length of an ordinary step over the base pitch. Where the jumps of a law and its first two derivatives come
 #: to less than this share of its largest value within a step, nothing happens.
 _STEP, _NEGLIGIBLE = 0.005, 1e-6
@@ -33,7 +35,12 @@ _SHARP, _MOST_ITERATIONS = 1e-13, 10
 
 
 def event_table(
-    stiffness: PathFunction, bends: Sequence[float], friction: Sequence[tuple[float, float]], pitch: float
+    stiffness: PathFunction,
+    bends: Sequence[float],
+    friction: Sequence[tuple[float, float]],
+    pitch: float,
+    *,
+    corners: bool = False,
 ) -> FloatArray:
     """Rows (kind, place) of what makes the force jump or bend once per mesh cycle, (n, 2).
 
@@ -43,6 +50,7 @@ def event_table(
     bends : where a relief starts [m]
     friction : (kind, place) of the jumps and kinks of the friction law
     pitch : base pitch [m]
+    corners : whether tip corners touch beyond the path of contact
     """
     step = _STEP * pitch
     sizes = {
@@ -56,6 +64,8 @@ def event_table(
         [low + step, high - step]
     ).any():  # the damping, as sqrt(k), bends also where k starts from 0
         rows += [(ENTRY, 0.0), (EXIT, 0.0)]
+        if corners:
+            rows += [(FIRST_TOUCH, 0.0), (LAST_TOUCH, 0.0), (SWITCH, low), (SWITCH, high)]
     return np.array(rows, dtype=float).reshape(-1, 2)
 
 
@@ -88,10 +98,19 @@ def distance(
     where it takes that value is exact.
     """
     ex, ey, length, delta, rho, xi = mesh_position(t, q, p, flags, DRIVE)
-    if kind == EXIT:
-        return float(p[kn.TIP_P] if flags & kn.ENTRY_SHIFT else p[kn.L_XD]) - rho
-    if kind == ENTRY:
-        return float(length + delta - p[kn.TIP_G] if flags & kn.ENTRY_SHIFT else p[kn.L_XA]) - rho
+    shifted = flags & (kn.ENTRY_SHIFT | kn.TIP_CONTACT)
+    if kind in (EXIT, LAST_TOUCH):
+        beyond = 0.0
+        if kind == LAST_TOUCH:
+            gap = delta - relief_at(p, p[kn.L_XD])[0]
+            beyond = corner_reach(gap, p[kn.TIP_P], length, p[kn.RADIUS_P], p[kn.RADIUS_G])
+        return float(p[kn.TIP_P] if shifted else p[kn.L_XD]) + beyond - rho
+    if kind in (ENTRY, FIRST_TOUCH):
+        beyond = 0.0
+        if kind == FIRST_TOUCH:
+            gap = delta - relief_at(p, p[kn.L_XA])[0]
+            beyond = corner_reach(gap, p[kn.TIP_G], length, p[kn.RADIUS_G], p[kn.RADIUS_P])
+        return float(length + delta - p[kn.TIP_G] if shifted else p[kn.L_XA]) - beyond - rho
     if kind == SLIDING and flags & kn.SLIDING:
         omega_p, omega_g = v[2] - p[kn.OMEGA_P], v[5] + p[kn.OMEGA_G]
         arm = xi + 0.5 * (length - p[kn.L_XY])

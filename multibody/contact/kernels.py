@@ -11,17 +11,21 @@ x, y, angles counter-clockwise. In the drive sense the pinion turns clockwise an
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from lumped.typing import FloatArray
 from multibody.contact import friction as fr
 from multibody.contact.compiled import compiled
+from multibody.contact.elements import elastic_load, gradual, stiffness_and_slope, stiffness_at
 from multibody.contact.kinematics import (
     COAST,
     DRIVE,
     MAX_PAIRS,
+    add_gradient,
     add_wrench,
+    corner_gap,
     line_of_action,
     mesh_phase,
     overlap_rate,
@@ -31,7 +35,7 @@ from multibody.contact.kinematics import (
 
 # Bits of the effect switches, and of the linear mesh, which has none of the effects.
 ROTATION_PHASE, MOVING_LINE, SLIDING, ENTRY_SHIFT, CONTACT_LOSS, BACK_SIDE, LINEAR = 1, 2, 4, 8, 16, 32, 64
-FRICTION_LOAD = 128
+FRICTION_LOAD, PATH_WORK, TIP_CONTACT, CONTACT_LAW = 128, 256, 512, 1024
 
 # Places in the parameter vector. Lengths in m, angles in rad, speeds in rad/s.
 (
@@ -43,9 +47,11 @@ FRICTION_LOAD = 128
     V_REG,  # velocity over which friction changes sign; 0 = at once
     T_LOW, T_HIGH,  # the nominal phase is clamped to this open time interval (a smooth segment)
     DAMPING,  # c/sqrt(k) of a tooth pair, 2 zeta sqrt(m_e) [sqrt(kg)]
+    SOFTENING, NOMINAL_FORCE,  # D of Hertz's contact [m/N], and the load at which the table's k holds [N]
+    K_ROWS, C_ROWS, E_ROWS,  # rows of k, c, e in the table of the linear mesh in the loaded form, or 0
     RELIEFS,  # number of reliefs that act
     FIRST_RELIEF,  # of each: gear, roll angles of start and end [rad], amount [m], power of growth
-) = range(25)  # fmt: skip
+) = range(30)  # fmt: skip
 #: Columns of one relief, and the most reliefs: tip and root of both flanks.
 RELIEF_COLUMNS, MOST_RELIEFS = 5, 4
 #: Where the parameters of the friction laws start, see ``multibody.contact.friction``.
@@ -56,30 +62,20 @@ N_PARAMETERS = FRICTION + fr.N_FRICTION
 # Columns of a contact record.
 # OVERLAP and its rate are those pressed elastically (tooth error taken off); CLOSING is the overlap's own
 # rate.
-XI, LOAD, FRICTION_FORCE, MU, K, SLIDE, OVERLAP, OVERLAP_RATE, C, FLANK, CLOSING = range(11)
-N_RECORD = 11
+# ELASTIC is the load without the damper, ENERGY what the two teeth store, PATH their force along the path of
+# contact (``path_force``), and PATH_RATE the velocity of the contact along it.
+(
+    XI, LOAD, FRICTION_FORCE, MU, K, SLIDE, OVERLAP, OVERLAP_RATE, C, FLANK, CLOSING,
+    ELASTIC, ENERGY, PATH, PATH_RATE,
+) = range(15)  # fmt: skip
+N_RECORD = 15
 
-
-@compiled
-def stiffness_at(table: FloatArray, xi: float) -> float:
-    """Stiffness of one tooth pair at xi [N/m], or another tabulated law, clamped to the ends of its path.
-
-    ``table`` has one row per polynomial piece: its left end, its right end, then coefficients, highest
-    power of (xi - left) first.
-    """
-    low, high = 0, table.shape[0] - 1
-    x = min(max(xi, table[low, 0]), table[high, 1])
-    while low < high:
-        middle = (low + high + 1) // 2
-        if x >= table[middle, 0]:
-            low = middle
-        else:
-            high = middle - 1
-    s = x - table[low, 0]
-    value = 0.0
-    for column in range(2, table.shape[1]):
-        value = value * s + table[low, column]
-    return value
+#: How far beyond the tips contact is looked for, over the base pitch.
+_REACH = 0.4
+#: Where teeth touch beyond their tips the damper takes hold gradually: it is whole at this share of the
+#: deflection of one pair under the whole load. A damper that acts at once would make the load jump by the
+#: approach velocity times c at the first touch.
+_GRADUAL = 1.0 / 15.0
 
 
 @compiled
@@ -208,7 +204,7 @@ def mesh_position(
     if not flags & ROTATION_PHASE:
         first, beyond = mesh_phase(psi, length, turn_p, turn_g, rp, rg, p[PITCH], chi_p, chi_g, flank)
     xi = first + 0.5 * (p[L_XY] - length - beyond)
-    rho = xi + 0.5 * (length - p[L_XY] + delta) if flags & ENTRY_SHIFT else xi
+    rho = xi + 0.5 * (length - p[L_XY] + delta) if flags & (ENTRY_SHIFT | TIP_CONTACT) else xi
     return ex, ey, length, delta, rho, xi
 
 
@@ -218,9 +214,37 @@ def engaged(rho: float, delta: float, length: float, p: FloatArray, flags: int, 
 
     ``rho`` is from ``mesh_position``; the rest as ``kinematics.pairs_in_contact``.
     """
+    if flags & TIP_CONTACT:  # candidates; those beyond the tips touch where they press
+        reach = _REACH * p[PITCH]
+        return pairs_in_contact(rho, delta, length, p[PITCH], p[TIP_P] + reach, p[TIP_G] + reach, arms)
     if flags & ENTRY_SHIFT:
         return pairs_in_contact(rho, delta, length, p[PITCH], p[TIP_P], p[TIP_G], arms)
     return pairs_in_contact(rho, 0.0, p[L_XY], p[PITCH], p[L_XD], p[L_XY] - p[L_XA], arms)
+
+
+class Corners(NamedTuple):
+    """Gap that tip corners beyond the path of contact leave [m], and its derivatives.
+
+    Attributes
+    ----------
+    gap : of both corners together [m]; only one is ever beyond its tip
+    by_p, by_g, by_length : derivatives by the flank distances of pinion and gear and by the length of the
+        line of action
+    """
+
+    gap: float
+    by_p: float
+    by_g: float
+    by_length: float
+
+
+@compiled
+def corners_at(arms: FloatArray, length: float, p: FloatArray) -> Corners:
+    """Gap at the tip corners of one tooth pair; ``arms`` are its flank distances (rho_p, rho_g) [m]."""
+    rp, rg = p[RADIUS_P], p[RADIUS_G]
+    gap_p, by_p, length_p = corner_gap(arms[0] - p[TIP_P], p[TIP_P], length, rp, rg)
+    gap_g, by_g, length_g = corner_gap(arms[1] - p[TIP_G], p[TIP_G], length, rg, rp)
+    return Corners(gap_p + gap_g, by_p, by_g, length_p + length_g)
 
 
 @compiled
@@ -242,7 +266,7 @@ def contact_forces(
     q, v : (6,) deviations from nominal position and rotation, and their rates [m, rad, s]
     p : (N_PARAMETERS,) parameters in the order named above
     flags : effect switches, a sum of bits
-    table : the stiffness, see ``stiffness_at``
+    table : the stiffness, see ``elements.stiffness_and_slope``
     wrench : (6,) receives (Fx, Fy, M) of pinion and gear [N, N m]
     contacts : (2 MAX_PAIRS, N_RECORD) receives the records, drive flank first; back sides only when pressed
 
@@ -265,32 +289,64 @@ def contact_forces(
         pairs = engaged(rho, delta, length, p, flags, arms)
         rate = overlap_rate(ex, ey, vx, vy, omega_p, omega_g, rp, rg, flank)
         # d(psi)/dt = s n . (v_g - v_p)/L, from differentiating e.
-        psi_rate = (ey * vx - ex * vy) / length if flags & MOVING_LINE else 0.0
+        psi_rate = length_rate = 0.0
+        if flags & MOVING_LINE:
+            psi_rate = (ey * vx - ex * vy) / length
+            length_rate = flank * (rp + rg) * psi_rate - (ex * vx + ey * vy)
         wp, wg = (omega_p, omega_g) if flags & ROTATION_PHASE else (-p[OMEGA_P], p[OMEGA_G])
         xi_rate = 0.5 * flank * (rp * (psi_rate - wp) - rg * (psi_rate - wg))
+        corners = Corners(0.0, 0.0, 0.0, 0.0)
         for i in range(pairs):
             xi = 0.5 * (arms[i, 0] - arms[i, 1] + p[L_XY])
             arm_p = 0.5 * (arms[i, 0] - arms[i, 1] + length)
             arm_g = length - arm_p
             error, error_slope = relief_at(p, xi)
             pressed, pressing = delta - error, rate - error_slope * xi_rate
+            if flags & TIP_CONTACT:
+                if xi < p[L_XA] or xi > p[L_XD]:
+                    error, error_slope = relief_at(p, min(max(xi, p[L_XA]), p[L_XD]))[0], 0.0
+                corners = corners_at(arms[i], length, p)
+                pressed = delta - error - corners.gap
+                pressing = (
+                    rate
+                    - error_slope * xi_rate
+                    - corners.by_p * flank * rp * (psi_rate - omega_p)
+                    - corners.by_g * flank * rg * (psi_rate - omega_g)
+                    - corners.by_length * length_rate
+                )
+                if pressed <= 0.0 and (arms[i, 0] > p[TIP_P] or arms[i, 1] > p[TIP_G]):
+                    continue
             if side == 1 and unilateral and pressed <= 0.0:
                 continue
-            stiffness = stiffness_at(table, xi)
+            stiffness, stiffness_slope = stiffness_and_slope(table, xi)
             damping = p[DAMPING] * math.sqrt(max(stiffness, 0.0))
-            normal = stiffness * pressed + damping * pressing
-            if unilateral and (pressed <= 0.0 or normal < 0.0):
+            if flags & TIP_CONTACT:
+                damping *= gradual(pressed * stiffness / (_GRADUAL * p[NOMINAL_FORCE]))
+            softening = p[SOFTENING] if flags & CONTACT_LAW else 0.0
+            elastic, stored, stored_slope = elastic_load(
+                pressed, stiffness, stiffness_slope, softening, p[NOMINAL_FORCE]
+            )
+            if unilateral and pressed <= 0.0:
+                elastic = stored = stored_slope = damping = 0.0
+            normal = elastic + damping * pressing
+            if unilateral and normal < 0.0:
                 normal = 0.0
+            path = normal * error_slope - stored_slope
             slide = sliding_velocity(ex, ey, vx, vy, omega_p, omega_g, arm_p, arm_g, flank)
             # Each surface against the contact point, which turns with the line of action.
             rolling = flank * (arm_p * (psi_rate - omega_p) + arm_g * (omega_g - psi_rate))
             mu = signed_friction(p, flags, flank, xi, slide, rolling, arm_p, arm_g, normal)
             add_wrench(wrench, ex, ey, normal, mu * normal, arm_p, arm_g, rp, rg, flank)
+            if flags & (PATH_WORK | TIP_CONTACT):
+                along = 0.5 * path if flags & PATH_WORK else 0.0
+                by_p, by_g = normal * corners.by_p + along, normal * corners.by_g - along
+                add_gradient(wrench, ex, ey, length, by_p, by_g, normal * corners.by_length, rp, rg, flank)
             record = contacts[count]
             record[XI], record[LOAD], record[FRICTION_FORCE], record[MU] = xi, normal, mu * normal, mu
             record[K], record[C], record[SLIDE] = stiffness, damping, slide
             record[OVERLAP], record[OVERLAP_RATE], record[FLANK] = pressed, pressing, flank
-            record[CLOSING] = rate
+            record[CLOSING], record[ELASTIC], record[ENERGY] = rate, elastic, stored
+            record[PATH], record[PATH_RATE] = path, xi_rate
             count += 1
     total = 0.0
     for i in range(6):

@@ -11,7 +11,8 @@ import math
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.compiled import compiled
-from multibody.contact.kernels import nominal_friction, relief_at, stiffness_at
+from multibody.contact.elements import stiffness_and_slope, stiffness_at
+from multibody.contact.kernels import nominal_friction, relief_at
 
 
 @compiled
@@ -38,12 +39,21 @@ def linear_forces(
     delta = q[0] - q[3] - rp * q[2] - rg * q[5]
     rate = v[0] - v[3] - rp * v[2] - rg * v[5]
     count = 0
-    xi = p[kn.L_XA] + advance
-    while xi <= p[kn.L_XD]:
-        error, slope = relief_at(p, xi)
-        stiffness = stiffness_at(table, xi)
-        damping = p[kn.DAMPING] * math.sqrt(max(stiffness, 0.0))
+    k, c, e = int(p[kn.K_ROWS]), int(p[kn.C_ROWS]), int(p[kn.E_ROWS])
+    loaded = k > 0
+    first, last = (table[0, 0], table[k - 1, 1]) if loaded else (p[kn.L_XA], p[kn.L_XD])
+    xi = p[kn.L_XA] + advance - pitch * math.floor((p[kn.L_XA] + advance - first) / pitch)
+    while xi <= last:
         mu = nominal_friction(p, xi)
+        if loaded:
+            stiffness, stiffness_slope = stiffness_and_slope(table[:k], xi)
+            damping = stiffness_at(table[k : k + c], xi)
+            error = stiffness_at(table[k + c : k + c + e], xi)
+            slope = stiffness_and_slope(table[k + c + e :], xi)[1]
+        else:
+            error, slope = relief_at(p, xi)
+            stiffness, stiffness_slope = stiffness_and_slope(table, xi)
+            damping = p[kn.DAMPING] * math.sqrt(max(stiffness, 0.0))
         pressed, pressing = delta - error, rate - slope * speed
         normal = stiffness * pressed + damping * pressing
         friction = mu * normal
@@ -60,6 +70,13 @@ def linear_forces(
         gear_arm = p[kn.L_XY] - xi
         slide = (p[kn.OMEGA_P] - v[2]) * xi - (p[kn.OMEGA_G] + v[5]) * gear_arm - (v[1] - v[4])
         record[kn.SLIDE] = slide
+        record[kn.ELASTIC], record[kn.ENERGY] = stiffness * pressed, 0.5 * stiffness * pressed**2
+        # The damper works on the gap itself, the spring on the error that stands for it in the loaded form.
+        error_slope = stiffness_and_slope(table[k + c : k + c + e], xi)[1] if loaded else slope
+        elastic = stiffness * pressed
+        path = elastic * error_slope + (normal - elastic) * slope
+        record[kn.PATH] = path - 0.5 * stiffness_slope * pressed * pressed
+        record[kn.PATH_RATE] = speed
         count += 1
         xi += pitch
     total = 0.0

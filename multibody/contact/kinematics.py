@@ -182,13 +182,108 @@ def add_wrench(
 
 
 @compiled
+def add_gradient(
+    wrench: FloatArray,
+    ex: float,
+    ey: float,
+    length: float,
+    by_p: float,
+    by_g: float,
+    by_length: float,
+    radius_p: float,
+    radius_g: float,
+    flank: float,
+) -> None:
+    """Add the generalised force by_p grad(rho_p) + by_g grad(rho_g) + by_length grad(L) to ``wrench``.
+
+    The three lengths are all that two flanks know of each other, so every contact energy gives such a force.
+    It obeys action and reaction in force and moment identically, because a rigid motion of both gears
+    together changes none of the lengths (docs/theory/contact_energy.md, "Wrench").
+
+    Parameters
+    ----------
+    wrench : (6,) as ``add_wrench``
+    ex, ey, length : line of action
+    by_p, by_g, by_length : minus the derivatives of the energy by the flank distances and the length [N]
+    radius_p, radius_g, flank : as ``add_wrench``
+    """
+    tilt = flank * (radius_p + radius_g) / length
+    along_x, along_y = ex - tilt * ey, ey + tilt * ex  # centre to centre, over L
+    turning = flank * (radius_p * by_p + radius_g * by_g) / length
+    fx, fy = turning * ey - by_length * along_x, -turning * ex - by_length * along_y
+    wrench[0] += fx
+    wrench[1] += fy
+    wrench[2] -= flank * radius_p * by_p
+    wrench[3] -= fx
+    wrench[4] -= fy
+    wrench[5] -= flank * radius_g * by_g
+
+
+@compiled
+def corner_gap(
+    beyond: float, tip: float, length: float, radius: float, mate: float
+) -> tuple[float, float, float]:
+    """How much more two teeth have to approach until the tip corner of one meets the flank of the other.
+
+    The line of action has left the flank of the gear that ends first: its corner stands off the line, and
+    touches the mate's involute along a tangent of the mate's base circle (docs/theory/contact_energy.md,
+    "Tip corner").
+
+    Parameters
+    ----------
+    beyond : flank distance of the gear with the corner, less that of its tip circle [m]
+    tip, radius : tangent length of the tip circle and base radius of the gear with the corner [m]
+    length : of the line of action [m]
+    mate : base radius of the other gear [m]
+
+    Returns
+    -------
+    (gap, by_distance, by_length) : the gap [m], zero up to the tip, and its derivatives by the flank distance
+        and by the length of the line of action
+    """
+    if beyond <= 0.0:
+        return 0.0, 0.0, 0.0
+    turn = beyond / radius
+    sine, cosine = math.sin(turn), math.cos(turn)
+    # Where the corner stands from the mate's tangent point: back along the line, and off it.
+    back = length - radius * sine - tip * cosine
+    off = 2.0 * radius * math.sin(0.5 * turn) ** 2 + tip * sine
+    tangent = math.sqrt(back * back + off * (off + 2.0 * mate))
+    angle = math.atan2(back, off + mate) - math.atan2(tangent, mate)
+    gap = tangent + mate * angle - (length - tip - beyond)
+    ratio = tip / radius
+    by_distance = 1.0 - math.cos(angle) * (cosine - ratio * sine) - math.sin(angle) * (sine + ratio * cosine)
+    return gap, by_distance, math.cos(angle) - 1.0
+
+
+@compiled
+def corner_reach(gap: float, tip: float, length: float, radius: float, mate: float) -> float:
+    """How far beyond its tip circle a corner still touches, given the approach of the flanks [m].
+
+    The inverse of ``corner_gap``, whose arguments it takes; its leading term
+    gap = (tip/radius)^2 (1/tip + 1/rho) beyond^2/2, with rho the mate's radius of curvature at the corner, is
+    where Newton's method starts.
+    """
+    if gap <= 0.0 or length <= tip:
+        return 0.0
+    bend = (tip / radius) ** 2 * (1.0 / tip + 1.0 / (length - tip))
+    beyond = math.sqrt(2.0 * gap / bend)
+    for _ in range(4):
+        found, slope, _ = corner_gap(beyond, tip, length, radius, mate)
+        if not slope > 0.0:
+            break
+        beyond = max(beyond - (found - gap) / slope, 0.1 * beyond)
+    return beyond
+
+
+@compiled
 def pairs_in_contact(
     rho: float, delta: float, length: float, pitch: float, tip_p: float, tip_g: float, arms: FloatArray
 ) -> int:
     """Find every pair of teeth whose flanks meet within both tip circles.
 
     A flank reaches from its base circle (rho = 0) to its tip circle (rho = tip_p, tip_g: the tangent length
-    sqrt(r_a^2 - r_b^2)). Contact off the line of action, when a tip edge strikes early, is not modelled.
+    sqrt(r_a^2 - r_b^2)).
 
     Parameters
     ----------

@@ -15,14 +15,16 @@ from functools import cached_property
 
 import numpy as np
 
+from lumped.model.mesh_cycle import mesh_cycle
 from lumped.model.mesh_elements import mesh_elements
 from lumped.path_function import PathFunction
-from lumped.path_of_contact import friction_path_function
+from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from multibody.contact import friction as fr
 from multibody.contact import kernels as kn
 from multibody.contact.drawing import base_tooth_angle, bearing_constants, circles, masses, reliefs
+from multibody.contact.elements import stiffness_at
 from multibody.contact.events import SLIDING, event_table
 from multibody.contact.friction_parameters import fill_friction, friction_switches
 from multibody.contact.kinematics import DRIVE, add_wrench, line_of_action, mesh_phase, wrap
@@ -36,11 +38,12 @@ class Machine:
     ----------
     parameters : geometry, nominal motion and friction, in the order of ``kernels``; behind these the lumped
         model's friction coefficient as rows like ``table``, where the multibody model has no law of its own
-    table : stiffness of a tooth pair as ``kernels.stiffness_at`` reads it
+    table : stiffness of a tooth pair as ``elements.stiffness_at`` reads it
     mass, inertia : (2,) pinion, gear [kg], [kg m^2]
     bearing_stiffness, bearing_damping : (2, 2) rows pinion, gear; columns x, y [N/m], [N s/m]
     torque_pinion, torque_gear : driving and braking torque, both positive [N m]
-    pairs : slots of tooth pairs, floor(contact ratio) + 1
+    pairs : slots of tooth pairs, floor(contact ratio) + 1; more where tip corners lengthen the contact
+    ahead : whole pitches by which the pair of the first slot is ahead of the one that was at A
     period : mesh cycle [s]
     switches : phases of the mesh cycle in [0, 1) at which the nominal element laws jump or have a kink
     events : (n, 2) what makes the contact force jump or bend in finite motion, see ``events.event_table``
@@ -55,6 +58,7 @@ class Machine:
     torque_pinion: float
     torque_gear: float
     pairs: int
+    ahead: int
     period: float
     switches: FloatArray
     events: FloatArray
@@ -82,7 +86,7 @@ class Machine:
         inertia, bearings, _, _ = self.bodies
         left, right = self.table[:, 0], self.table[:, 1]
         places = np.concatenate([left, 0.5 * (left + right), right])
-        largest = max(abs(kn.stiffness_at(self.table, xi)) for xi in places)
+        largest = max(abs(stiffness_at(self.table, xi)) for xi in places)
         p = self.parameters
         mesh = np.array([1.0, 0.0, -p[kn.RADIUS_P], -1.0, 0.0, -p[kn.RADIUS_G]])
         stiffness = self.pairs * largest * np.outer(mesh, mesh) + np.diag(bearings)
@@ -90,14 +94,18 @@ class Machine:
         return float(np.sqrt(squares[-1]) * self.period / (2.0 * np.pi))
 
 
-def machine(pair: GearPair) -> Machine:
+def machine(pair: GearPair, flags: int = 0) -> Machine:
     """Describe a gear pair for the multibody model, both torques being that of the pinion.
 
     Parameters
     ----------
     pair : validated gear pair
+    flags : effect switches of ``kernels``; with ``TIP_CONTACT`` the stiffness holds wherever teeth touch,
+        else relief takes it off where the lumped model sees no contact
     """
-    drawn, stiffness = circles(pair), mesh_elements(pair).stiffness
+    drawn, loaded = circles(pair), pair.mesh.contact == "loaded"
+    whole = loaded or flags & kn.TIP_CONTACT
+    stiffness = pair_stiffness(pair) if whole else mesh_elements(pair).stiffness
     r_p, r_g, pitch, l_xy = drawn.base_pinion, drawn.base_gear, drawn.pitch, drawn.tangent
     tip_p, tip_g = drawn.reach_pinion, drawn.reach_gear
     l_xa, l_xp = l_xy - tip_g, l_xy * r_p / (r_p + r_g)
@@ -116,6 +124,8 @@ def machine(pair: GearPair) -> Machine:
     p[kn.T_LOW], p[kn.T_HIGH] = -math.inf, math.inf
     mass, inertia = masses(pair)
     p[kn.DAMPING] = 2.0 * pair.mesh.damping_ratio * math.sqrt(mesh_mass(p, inertia))
+    p[kn.SOFTENING] = pair.mesh.stiffness.softening(pair)
+    p[kn.NOMINAL_FORCE] = pair.operating.pinion_torque / r_p
     relieved = reliefs(pair, drawn)
     p[kn.RELIEFS] = len(relieved)
     p[kn.FIRST_RELIEF : kn.FIRST_RELIEF + kn.RELIEF_COLUMNS * len(relieved)] = np.ravel(relieved)
@@ -129,9 +139,13 @@ def machine(pair: GearPair) -> Machine:
     starts = [at * r_p if which == 0.0 else l_xy - at * r_g for which, at, *_ in relieved]
     places = [place for _, place in friction]
     bearing_stiffness, bearing_damping = bearing_constants(pair, mass)
+    table = pack(stiffness)
+    switches = switch_phases([*stiffness.switches, *starts, *places], l_xa, tip_p, pitch)
+    if loaded and flags & kn.LINEAR:
+        table, switches = _loaded_laws(pair, p)
     return Machine(
         parameters=p,
-        table=pack(stiffness),
+        table=table,
         mass=mass,
         inertia=inertia,
         bearing_stiffness=bearing_stiffness,
@@ -139,10 +153,26 @@ def machine(pair: GearPair) -> Machine:
         torque_pinion=pair.operating.pinion_torque,
         torque_gear=pair.operating.pinion_torque,
         pairs=math.floor((tip_p - l_xa) / pitch) + 1,
+        ahead=math.floor((tip_p - l_xa) / pitch),
         period=pitch / (omega_p * r_p),
-        switches=switch_phases([*stiffness.switches, *starts, *places], l_xa, tip_p, pitch),
-        events=event_table(stiffness, starts, friction, pitch),
+        switches=switches,
+        events=event_table(stiffness, starts, friction, pitch, corners=bool(flags & kn.TIP_CONTACT)),
     )
+
+
+def _loaded_laws(pair: GearPair, p: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Table of the lumped loaded form's k, c, e and gap, one below the other, and its switches as phases.
+
+    The linear mesh in the loaded form checks the equations alone: it reads the lumped element laws.
+    """
+    cycle = mesh_cycle(pair)
+    e = cycle.elements
+    laws = [pack(law) for law in (e.stiffness, e.damping, e.error, e.error if e.gap is None else e.gap)]
+    p[[kn.K_ROWS, kn.C_ROWS, kn.E_ROWS]] = [len(law) for law in laws[:3]]
+    width = max(law.shape[1] for law in laws)
+    # Coefficients stand behind both ends, highest power first: pad between them.
+    rows = [np.insert(law, [2] * (width - law.shape[1]), 0.0, axis=1) for law in laws]
+    return np.ascontiguousarray(np.concatenate(rows)), cycle.edges[:-1] / cycle.period
 
 
 def mesh_mass(p: FloatArray, inertia: FloatArray) -> float:
@@ -189,7 +219,7 @@ def loaded_phase(machine: Machine, flags: int, q: FloatArray) -> Machine:
 
 
 def pack(law: PathFunction) -> FloatArray:
-    """A piecewise polynomial as rows (left, right, coefficients), for ``kernels.stiffness_at``."""
+    """A piecewise polynomial as rows (left, right, coefficients), for ``elements.stiffness_at``."""
     return np.ascontiguousarray(np.column_stack([law.breaks[:-1], law.breaks[1:], law.coefficients.T]))
 
 

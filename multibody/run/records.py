@@ -64,7 +64,7 @@ class Recorder:
         self.q, self.v = np.zeros((n, 6)), np.zeros((n, 6))
         phase = time / machine.period
         self.advance = np.maximum(phase - np.floor(phase + 1e-9), 0.0) * p[kn.PITCH]
-        ahead = np.arange(machine.pairs - 1, -1, -1)[:, None] * p[kn.PITCH]
+        ahead = np.arange(machine.ahead, machine.ahead - machine.pairs, -1)[:, None] * p[kn.PITCH]
         self.pairs = {
             name: np.zeros((machine.pairs, n)) for name in (*_COLUMNS, "contact", "normal_load_back")
         }
@@ -100,7 +100,7 @@ class Recorder:
             # Whole pitches ahead of the newest nominal position; a pair that enters early or leaves late
             # takes the slot of the pair that is out of contact.
             pitches = np.rint((record[:, kn.XI] - p[kn.L_XA] - self.advance[rows]) / p[kn.PITCH])
-            slot = np.mod(slots - 1 - pitches.astype(int), slots)
+            slot = np.mod(machine.ahead - pitches.astype(int), slots)
             drive = record[:, kn.FLANK] > 0
             at = (slot[drive], rows[drive])
             for name, column in _COLUMNS.items():

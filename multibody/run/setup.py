@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from lumped.arguments import one_of, real_number
 from lumped.errors import refuse, shown
 from lumped.model.periodic_system import LTVSystem, periodic_system
+from lumped.model.powers import balance as balance_of
 from lumped.model.results import provenance
 from lumped.model.solution import Initial, initial_state
 from lumped.model.steady import periodic_solution
@@ -19,6 +20,7 @@ from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.effects import active_effects, effect_flags
+from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import Machine, loaded_phase, machine
 from multibody.contact.reversal import friction_velocity as choose_friction_velocity
 from multibody.run.drive import Drive, drive_tables
@@ -120,16 +122,24 @@ def prepare(
         )
     if not isinstance(drive, Drive | None):
         raise refuse("drive", shown(drive), "a multibody.Drive", "Leave it out for constant torques.")
-    flags = effect_flags(effects)
+    flags = effect_flags(effects, pair.mesh.contact) or (kn.LINEAR if pair.mesh.contact == "loaded" else 0)
     if fidelity == "linear":
         if flags and effects is not None and len(effects):
             raise refuse("effects", shown(effects), "none at fidelity 'linear'", "Use fidelity='exact'.")
         flags = kn.LINEAR
-    numbers = machine(pair)
+    numbers = machine(pair, flags)
     call_limit = _call_limit(numbers)
     system = periodic_system(pair, "absolute")
+    if pair.mesh.contact == "loaded":
+        offsets, start = system.cycle.offsets, system.cycle.geometry.L_XA
+        ahead = round((float(offsets[0]) - start) / system.cycle.geometry.base_pitch)
+        numbers = replace(numbers, pairs=offsets.size, ahead=ahead)
+    elif flags & kn.TIP_CONTACT:  # corners lengthen the contact of every pair
+        numbers = replace(numbers, pairs=min(numbers.pairs + 1, MAX_PAIRS))
     balance = periodic_solution(system, np.zeros(1), estimate_error=False)
-    numbers = replace(numbers, torque_pinion=balance.pinion_torque, torque_gear=balance.brake_torque)
+    mean_balance = balance_of(balance, paid=bool(flags & kn.PATH_WORK))
+    torques = mean_balance["pinion_torque"], mean_balance["brake_torque"]
+    numbers = replace(numbers, torque_pinion=torques[0], torque_gear=torques[1])
     velocity, reason = _friction_velocity(numbers, flags, friction_velocity)
     static, _ = from_lumped_state(initial_state(system, "static", balance))
     numbers = loaded_phase(numbers, flags, static)
@@ -155,7 +165,7 @@ def prepare(
     attributes = provenance(
         pair, fidelity=fidelity, effects=names, rtol=rtol, friction_velocity=velocity, drive=drive
     )
-    attributes |= balance.balance | {
+    attributes |= mean_balance | {
         "model": "multibody",
         "fidelity": fidelity,
         "effects": ", ".join(names),

@@ -25,6 +25,8 @@ from multibody.run.model import ExudynModel, contact_state
 from multibody.run.setup import MOST_CYCLES, Fidelity, prepare
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+#: A step over less than this share of the mesh cycle leads across an event.
+_HAIR = 1e-11
 
 
 @dataclass(frozen=True)
@@ -40,8 +42,10 @@ class PowerBalance:
     bearings : dissipated in the bearings
     friction : dissipated by sliding friction between the teeth
     mesh_damping : dissipated by the damping of the teeth
-    mesh_stiffness : work done on the elastic teeth: stored, or moved by the change of stiffness and profile
-        along the path
+    mesh_elastic : increase of the elastic energy of the teeth
+    mesh_jump : elastic energy that came with jumps of the stiffness and that no force paid for
+    unpaid : work on the teeth that goes into no energy, because the contact force has no part along the
+        path of contact; zero with the effect ``path_work``
     """
 
     driving: float
@@ -51,7 +55,14 @@ class PowerBalance:
     bearings: float
     friction: float
     mesh_damping: float
-    mesh_stiffness: float
+    mesh_elastic: float
+    mesh_jump: float
+    unpaid: float
+
+    @property
+    def mesh_stiffness(self) -> float:
+        """Work that the contact forces do on the elastic teeth [J]."""
+        return self.mesh_elastic - self.mesh_jump + self.unpaid
 
     @property
     def residual(self) -> float:
@@ -78,18 +89,33 @@ def power_balance(
     """
     cycles = whole_number("cycles", cycles, 1, MOST_CYCLES)
     setup = prepare(pair, fidelity, initial, effects, rtol, friction_velocity, drive)
-    work = np.zeros(7)
+    work, stored, jumps = np.zeros(7), [0.0], [0.0]
 
-    def visit(_number: int, segment: Segment) -> None:
+    def energy(segment: Segment, t: FloatArray) -> FloatArray:
+        _, contacts, counts = contact_state(setup.model, t, *segment.at(t))
+        valid = np.arange(contacts.shape[1]) < counts[:, None]
+        return np.asarray(np.where(valid, contacts[:, :, kn.ENERGY], 0.0).sum(axis=1))
+
+    def visit(number: int, segment: Segment) -> None:
         steps = np.diff(segment.times)[:, None]
         t = (segment.times[:-1, None] + 0.5 * steps * (1.0 + _NODES)).ravel()
         powers = _powers(setup.model, t, *segment.at(t))
         work[:] += (0.5 * steps * _WEIGHTS).ravel() @ powers
+        hair = _HAIR * setup.machine.period
+        across = np.flatnonzero(steps[:, 0] < hair)
+        first_of, last_of = np.diff(across, prepend=-2) > 1, np.diff(across, append=segment.times.size) > 1
+        before = np.maximum(segment.times[across[first_of]] - hair, segment.times[0])
+        after = segment.times[across[last_of] + 1]
+        jumps.append(float((energy(segment, after) - energy(segment, before)).sum()))
+        first, last = energy(segment, segment.times[[0, -1]])
+        jumps.append(float(first) - stored[-1] if number else 0.0)
+        stored.extend([float(first)] if not number else [])
+        stored.append(float(last))
 
     edges = setup.edges(cycles)
     start = _stored(setup.model, 0.0, setup.q, setup.v)
     q, v = setup.run(edges, visit)
-    driving, braking, bearings, friction, damping, stiffness, coupling = (float(w) for w in work)
+    driving, braking, bearings, friction, damping, unpaid, coupling = (float(w) for w in work)
     return PowerBalance(
         driving=driving,
         braking=braking,
@@ -98,7 +124,9 @@ def power_balance(
         bearings=bearings,
         friction=friction,
         mesh_damping=damping,
-        mesh_stiffness=stiffness,
+        mesh_elastic=stored[-1] - stored[1],
+        mesh_jump=sum(jumps),
+        unpaid=unpaid,
     )
 
 
@@ -128,7 +156,7 @@ def _stored(model: ExudynModel, t: float, q: FloatArray, v: FloatArray) -> float
 def _powers(model: ExudynModel, t: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
     """Powers at n states, (n, 7) [W].
 
-    Driving, braking, bearings, friction, mesh damping, mesh stiffness, damping of the motor's spring.
+    Driving, braking, bearings, friction, mesh damping, unpaid, damping of the motor's spring.
     """
     m = model.machine
     omega_p, omega_g = _speeds(model, v)
@@ -138,13 +166,12 @@ def _powers(model: ExudynModel, t: FloatArray, q: FloatArray, v: FloatArray) -> 
     _, contacts, counts = contact_state(model, t, q, v)
     for i in range(t.size):
         c = contacts[i, : counts[i]]
-        # A contact that does not press stores and dissipates nothing.
-        pressed = c[c[:, kn.LOAD] != 0.0]
-        damping = float(np.sum(pressed[:, kn.C] * pressed[:, kn.OVERLAP_RATE] ** 2))
         powers[i, 3] = c[:, kn.FRICTION_FORCE] @ c[:, kn.SLIDE]
         if model.drive is not None:
             powers[i, [0, 1, 6]] += _drive_powers(model, model.drive, t[i], q[i], v[i])
-        powers[i, 4], powers[i, 5] = damping, c[:, kn.LOAD] @ c[:, kn.CLOSING] - damping
+        powers[i, 4] = (c[:, kn.LOAD] - c[:, kn.ELASTIC]) @ c[:, kn.OVERLAP_RATE]
+        if not model.flags & kn.PATH_WORK:
+            powers[i, 5] = c[:, kn.PATH] @ c[:, kn.PATH_RATE]
     return powers
 
 

@@ -18,6 +18,7 @@ from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from multibody.contact import friction as fr
 from multibody.contact import kernels as kn
+from multibody.contact.elements import stiffness_at
 from multibody.contact.machine import Machine, machine
 from multibody.run.integration import Segment, integrate
 from multibody.run.model import build
@@ -70,7 +71,7 @@ def damping_check(pair: GearPair) -> tuple[Decay, ...]:
     q = np.zeros(6)
     q[2], q[5] = -_AMPLITUDE / p[kn.RADIUS_P], 0.0
     places = _in_contact(numbers)
-    k = np.array([max(kn.stiffness_at(numbers.table, xi), 0.0) for xi in places])
+    k = np.array([max(stiffness_at(numbers.table, xi), 0.0) for xi in places])
     share = float(np.sum(np.sqrt(k)) / np.sqrt(np.sum(k)))  # of pairs side by side, each with its own ratio
     mobility = p[kn.RADIUS_P] ** 2 / numbers.inertia[0] + p[kn.RADIUS_G] ** 2 / numbers.inertia[1]
     found = [

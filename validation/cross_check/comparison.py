@@ -197,6 +197,7 @@ def crosscheck(
     NumericalError : a model fails; the text says what to try
     """
     _check(cycles, samples_per_cycle, fidelities, quantities)
+    must_be_papers_form(pair)
     other = unlike_twin(pair) if twin and len(fidelities) == len(FIDELITIES) else None
     runs = 1 + len(fidelities) + (other is not None)
 
@@ -355,6 +356,22 @@ def _unsettled(result: xr.Dataset, samples: int) -> float:
     dte = result["dte"].to_numpy()[:-1]
     last, before = dte[-samples:], dte[-2 * samples : -samples]
     return float(np.abs(last - before).max()) / max(float(np.ptp(last)), np.finfo(float).tiny)
+
+
+def must_be_papers_form(pair: GearPair) -> None:
+    """Refuse a pair in the loaded form, for which no limits are derived.
+
+    Raises
+    ------
+    ParameterError : ``mesh.contact`` is "loaded"
+    """
+    if pair.mesh.contact != "paper":
+        raise refuse(
+            "mesh.contact",
+            pair.mesh.contact,
+            "'paper' for a cross-check and a report",
+            "Its limits are not derived: compare lumped.steady_state with multibody.steady_state.",
+        )
 
 
 def _check(cycles: int, samples: int, fidelities: Sequence[str], quantities: Sequence[str]) -> None:

@@ -163,7 +163,7 @@ class ShiftedModel:
         at = np.arange(place.size) % times.size
         overlap, rate = states[at, :6] @ system.deflection, states[at, 6:] @ system.deflection
         load = e.stiffness(place) * (overlap - e.error(place))
-        load += e.damping(place) * (rate - e.error.derivative()(place) * speed)
+        load += e.damping(place) * (rate - e.error_slope(place) * speed)
         found = Motion(system, times, states, place, at, load)
         if line is not None:
             return self._on_turned_line(found, line)

@@ -14,6 +14,7 @@ from typing import Any
 
 from lumped import GearPair, load_gear_pair
 from lumped.typing import Progress
+from validation.cross_check.comparison import must_be_papers_form
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
 from validation.plots.style import save
@@ -92,6 +93,7 @@ def report(
     started = time.perf_counter()
     tell: Progress = progress or (lambda fraction, stage="", /: None)
     gear_pair = load_gear_pair(pair)
+    must_be_papers_form(gear_pair)
     target = Path(out)
     earlier = None if compare is None else load_report(compare, quick=quick)
     if earlier is not None:

@@ -73,6 +73,9 @@ MADE_UP = {
     "entry_shift": 0.5,
     "contact_loss": 0.25,
     "friction_load": 30.0,
+    "path_work": 40.0,
+    "tip_contact": 50.0,
+    "contact_law": 70.0,
 }
 
 
@@ -90,7 +93,7 @@ def test_changes_alone_and_without_are_told_apart(monkeypatch):
     for cause in CAUSES:
         own = sum(MADE_UP[name] for name, effect in EFFECTS.items() if effect.cause == cause)
         assert float(found["alone"].sel(cause=cause)) == pytest.approx(abs(own) / 10.0), cause
-        if cause == "friction_load":  # no part of the whole difference
+        if cause in ("friction_load", "contact_energy"):  # no part of the whole difference
             assert np.isnan(found["without"].sel(cause=cause))
             continue
         assert float(found["without"].sel(cause=cause)) == pytest.approx(abs(total - own) / 10.0), cause
@@ -107,6 +110,8 @@ def test_flags_name_the_effects():
     for name in EFFECTS:
         assert active_effects(effect_flags({name})) == (name,)
         assert active_effects(effect_flags({name: False})) == tuple(n for n in DEFAULT_EFFECTS if n != name)
-    assert active_effects(effect_flags({"friction_load": True})) == tuple(EFFECTS)
+    further = {name: True for name in EFFECTS if name not in DEFAULT_EFFECTS}
+    assert active_effects(effect_flags(further)) == tuple(EFFECTS)
+    assert set(active_effects(effect_flags(None, "loaded"))) == set(EFFECTS) - {"friction_load"}
     assert active_effects(effect_flags(None)) == DEFAULT_EFFECTS
     assert effect_flags(()) == 0

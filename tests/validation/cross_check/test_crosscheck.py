@@ -7,6 +7,7 @@ import pytest
 
 import lumped
 import multibody
+import validation
 from lumped import ParameterError
 from validation.cross_check.agreement import (
     QUANTITIES,
@@ -208,3 +209,11 @@ def test_what_is_predicted_is_taken_off_before_judging(pair, check):
 def test_arguments_out_of_range_are_refused_before_any_work(pair, arguments):
     with pytest.raises(ParameterError):
         crosscheck(pair, **arguments)
+
+
+def test_the_loaded_form_is_refused_by_cross_check_and_report_before_any_work(pair, tmp_path):
+    loaded = pair.with_(mesh__contact="loaded")
+    for check in (lambda: crosscheck(loaded), lambda: validation.report(loaded, tmp_path / "report")):
+        with pytest.raises(ParameterError, match=r"mesh\.contact = loaded"):
+            check()
+    assert not (tmp_path / "report").exists()

@@ -320,8 +320,8 @@ TEETH = (
         "relief_rate",
         "relief: sign of its rate",
         "lumped.model.mesh_cycle:MeshCycle.sample",
-        "e.error.derivative()(xi) * speed",
-        "-e.error.derivative()(xi) * speed",
+        "e.error_slope(xi) * speed",
+        "-e.error_slope(xi) * speed",
         _STATIC,
     ),
 )

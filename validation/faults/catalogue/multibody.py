@@ -157,7 +157,7 @@ MULTIBODY = (
     Fault(
         "mb_stiffness",
         "stiffness of the teeth read half a millimetre off",
-        f"{_KERNELS}:stiffness_at",
+        "multibody.contact.elements:stiffness_and_slope",
         "s = x - table[low, 0]",
         "s = x + 5e-4 - table[low, 0]",
         {"mesh.stiffness": {"model": "parabolic"}},

@@ -1,0 +1,144 @@
+"""Compiled equilibrium of the loaded mesh: load of a pair over its compression, gap of tip corners, approach.
+
+Sources: docs/theory/contact_energy.md, "Energy of one pair", "Tip corner".
+"""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+
+from lumped.typing import FloatArray
+
+#: Newton's steps for the load of a pair, of which six are the most needed, and for the approach.
+_LOAD_STEPS, _APPROACH_STEPS = 20, 200
+_SETTLED = 2e-15
+
+
+@numba.njit(cache=True)
+def load_of(
+    compression: float, stiffness: float, softening: float, nominal: float, least: float
+) -> tuple[float, float]:
+    """Load [N] and tangent stiffness [N/m] of one pair, see ``ContactLaw``; zero where it does not press."""
+    if not (compression > 0.0 and stiffness > 0.0):
+        return 0.0, 0.0
+    load = stiffness * compression
+    if softening == 0.0:
+        return load, stiffness
+    tangent = 1.0 / stiffness
+    for _ in range(_LOAD_STEPS):
+        square = load * load + least * least
+        secant = 1.0 / stiffness - 0.5 * softening * math.log(square / (nominal * nominal))
+        tangent = secant - softening * load * load / square
+        step = (load * secant - compression) / tangent
+        load -= step
+        if abs(step) <= _SETTLED * load:
+            break
+    return load, 1.0 / tangent
+
+
+@numba.njit(cache=True)
+def loads_of(
+    compression: FloatArray, stiffness: FloatArray, softening: float, nominal: float, least: float
+) -> tuple[FloatArray, FloatArray]:
+    """``load_of`` at n compressions and stiffnesses; each (n,)."""
+    loads, tangents = np.empty(compression.size), np.empty(compression.size)
+    for i in range(compression.size):
+        loads[i], tangents[i] = load_of(compression[i], stiffness[i], softening, nominal, least)
+    return loads, tangents
+
+
+@numba.njit(cache=True)
+def corner_gap_at(
+    beyond: float, start: float, tangent: float, flank_radius: float, tip_radius: float
+) -> float:
+    """Gap of a tip corner from the mate's flank [m], ``beyond`` before its first contact at ``start``.
+
+    Axes with the flank's tangent point as origin, t along the line of action, n away from the flank's centre;
+    ``tangent`` is the length of the line of action.
+    """
+    if beyond <= 0.0:
+        return 0.0
+    corner = tangent - start  # length on the tip's base tangent of its corner
+    turn = beyond / tip_radius
+    t = tangent - (tip_radius * math.sin(turn) + corner * math.cos(turn))
+    n = 2.0 * tip_radius * math.sin(0.5 * turn) ** 2 + corner * math.sin(turn)
+    length = math.sqrt(max(t * t + n * (n + 2.0 * flank_radius), 0.0))
+    angle = math.atan2(t, n + flank_radius) - math.atan2(length, flank_radius)
+    return length + flank_radius * angle - (start - beyond)
+
+
+@numba.njit(cache=True)
+def gap_at(place: float, relief: float, half: float, ends: FloatArray) -> float:
+    """Gap of a pair at xi = ``place`` [m], its contact point ``half`` beyond where the tips leave the line.
+
+    ``relief`` is the material missing there [m]; ``ends`` are L_XA, L_XD, L_XY and the base radii of pinion
+    and gear [m].
+    """
+    early, late = ends[0] - place + half, place - ends[1] + half
+    before = corner_gap_at(early, ends[0], ends[2], ends[3], ends[4])
+    behind = corner_gap_at(late, ends[2] - ends[1], ends[2], ends[4], ends[3])
+    return float(relief + before + behind)
+
+
+@numba.njit(cache=True)
+def gaps_at(place: FloatArray, relief: FloatArray, half: FloatArray, ends: FloatArray) -> FloatArray:
+    """``gap_at`` at n positions, (n,)."""
+    found = np.empty(place.size)
+    for i in range(place.size):
+        found[i] = gap_at(place[i], relief[i], half[i], ends)
+    return found
+
+
+@numba.njit(cache=True)
+def approaches(
+    place: FloatArray,
+    stiffness: FloatArray,
+    relief: FloatArray,
+    force: float,
+    lengthening: float,
+    softening: float,
+    least: float,
+    ends: FloatArray,
+) -> FloatArray:
+    """Static approach delta at n phases, where the loads of all pairs make the force; (n,) [m], or NaN.
+
+    Parameters
+    ----------
+    place, stiffness, relief : (n, pairs) xi_i [m], k_i, zero for a pair that is not followed [N/m], and the
+        material missing on both flanks [m]
+    force : mean load, at which k holds too [N]
+    lengthening : of the line of action by the loaded bearings [m]
+    softening, least : of the contact law, see ``ContactLaw`` [m/N], [N]
+    ends : as ``gap_at``
+    """
+    found = np.full(place.shape[0], np.nan)
+    for i in range(place.shape[0]):
+        largest = stiffness[i].max()
+        if not largest > 0.0:
+            continue
+        low, high, delta = 0.0, math.inf, force / largest
+        for _ in range(_APPROACH_STEPS):
+            total, slope, half = -force, 0.0, 0.5 * (delta + lengthening)
+            for j in range(place.shape[1]):
+                if stiffness[i, j] > 0.0:
+                    gap = gap_at(place[i, j], relief[i, j], half, ends)
+                    load, tangent = load_of(delta - gap, stiffness[i, j], softening, force, least)
+                    total += load
+                    slope += tangent
+            if total < 0.0:
+                low = delta
+            else:
+                high = delta
+            # Newton's step; where it leaves the bracket, or nothing touches yet, bisect or double.
+            following = delta - total / slope if slope > 0.0 else math.inf
+            if not low < following < high:
+                following = 0.5 * (low + high) if high < math.inf else 2.0 * delta
+            change = abs(following - delta)
+            delta = following
+            if change <= _SETTLED * delta:
+                found[i] = delta
+                break
+    return found

@@ -1,0 +1,256 @@
+"""Contact of the tooth pairs in the statically loaded mesh: where it begins and ends, how stiff it is there.
+
+A pair touches where its gap closes under the mean load, also before A and behind D, where a tip corner meets
+the mate's flank. About that static state N_i = k_t,i (delta - e_i) is linear again: k_t is the tangent
+stiffness, and e the approach at which the tangent would carry nothing.
+
+Sources: docs/theory/contact_energy.md, "The loaded form of the linear model".
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from lumped.errors import NumericalError
+from lumped.path_function import PathFunction
+from lumped.path_of_contact import pair_stiffness
+from lumped.quasi_static.intervals import positive_intervals, restricted
+from lumped.quasi_static.kernels import approaches, gaps_at, loads_of
+from lumped.quasi_static.tooth_error import relief_error, relief_starts
+from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
+
+#: Pairs are followed this fraction of a base pitch beyond A and D.
+_REACH = 0.4
+#: Breaks closer than this fraction of a base pitch are one.
+_SAME = 1e-9
+#: Fit errors over the largest value; lengths are positions' differences, known to some 1e-17 m.
+_TOLERANCE, _LENGTH = 1e-10, 2e-17
+#: Speed of the pair by which contacts are kept [rpm].
+_ANY_SPEED = 1000.0
+#: Below this share of the mean load Hertz's contact is held linear, see ``ContactLaw``.
+LEAST_LOAD = 1e-3
+#: The damper is whole where a pair carries this share of the mean load.
+FULL_DAMPING = 1.0 / 15.0
+
+
+@dataclass(frozen=True, eq=False)
+class ContactLaw:
+    """Load of one tooth pair over its compression p: p = N (1/k - D/2 ln((N^2 + N_1^2)/N_0^2)).
+
+    D = 0 is a linear spring. Otherwise it is the contact of Weber and Banaschek, p = N (1/k - D ln(N/N_0)),
+    kept linear below N_1, a thousandth of the mean load N_0, where its logarithm would make the pair
+    infinitely soft.
+
+    Attributes
+    ----------
+    stiffness : k at the load N_0; its end values hold outside its path [N/m]
+    softening : D [m/N]
+    nominal : N_0 [N]
+    """
+
+    stiffness: PathFunction
+    softening: float
+    nominal: float
+
+    @property
+    def least(self) -> float:
+        """N_1 [N]."""
+        return LEAST_LOAD * self.nominal
+
+    def held(self, xi: FloatArray) -> FloatArray:
+        """K at positions of any shape, held beyond the ends of its path [N/m]."""
+        low, high = self.stiffness.interval
+        return self.stiffness(np.clip(xi, low, np.nextafter(high, low)))
+
+    def load(self, k: FloatArray, compression: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Load [N] and tangent stiffness [N/m], each (n,), at compressions [m]; zero where not positive."""
+        load, tangent = loads_of(compression, k, self.softening, self.nominal, self.least)
+        return load, tangent
+
+
+class StaticPair(NamedTuple):
+    """One pair in static equilibrium at n positions.
+
+    Attributes
+    ----------
+    load, tangent : N [N] and dN/dp [N/m], (n,)
+    error : approach at which the tangent would carry nothing, (n,) [m]
+    gap : between flanks and tip corners without deflection, (n,) [m]
+    """
+
+    load: FloatArray
+    tangent: FloatArray
+    error: FloatArray
+    gap: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedContact:
+    """One tooth pair in the statically loaded mesh, over the interval of xi in which it can touch.
+
+    Attributes
+    ----------
+    stiffness : tangent stiffness k_t(xi), zero where the loaded pair is apart [N/m]
+    error : e(xi) with N = k_t (delta - e) [m]
+    gap : between flanks and tip corners without deflection [m]
+    engagement : share of its damper that acts, 0 at the first touch to 1 [-]
+    secant : k(xi) of the stiffness model, on which the damper is based [N/m]
+    contact : (n, 2) intervals of xi in which the pair carries load [m]
+    """
+
+    stiffness: PathFunction
+    error: PathFunction
+    gap: PathFunction
+    engagement: PathFunction
+    secant: PathFunction
+    contact: FloatArray
+
+
+class StaticMesh:
+    """Static equilibrium of the mesh under the mean load at any position of a tooth pair.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    """
+
+    def __init__(self, pair: GearPair) -> None:
+        g, bearings = pair.geometry, pair.bearings
+        self.pair, self.geometry = pair, g
+        self.force = pair.operating.pinion_torque / g.base_radius_pinion
+        self.law = ContactLaw(pair_stiffness(pair), pair.mesh.stiffness.softening(pair), self.force)
+        compliance = 1.0 / bearings.pinion.loa_stiffness + 1.0 / bearings.gear.loa_stiffness
+        self.lengthening = self.force * compliance  # of the line of action, by the bearings
+        reach = int(np.ceil(g.contact_ratio + 2.0 * _REACH))
+        self.shifts = np.arange(-reach, reach + 1) * g.base_pitch
+        self.ends = np.array([g.L_XA, g.L_XD, g.L_XY, g.base_radius_pinion, g.base_radius_gear])
+        self.low, self.high = g.L_XA - _REACH * g.base_pitch, g.L_XD + _REACH * g.base_pitch
+
+    def _relief(self, place: FloatArray) -> FloatArray:
+        """Material missing on both flanks at positions of any shape, held beyond A and D [m]."""
+        if self.pair.mesh.relief != "static":
+            return np.zeros(place.shape)
+        return relief_error(self.pair, np.clip(place, self.geometry.L_XA, self.geometry.L_XD))
+
+    def approach(self, xi: FloatArray) -> FloatArray:
+        """Static approach delta (n,) [m] with a tooth pair at the positions xi (n,) [m]."""
+        place, law = np.asarray(xi, dtype=float)[:, None] + self.shifts, self.law
+        near = (place > self.low) & (place < self.high)
+        k, relief = np.where(near, law.held(place), 0.0), self._relief(place)
+        found = approaches(
+            place, k, relief, self.force, self.lengthening, law.softening, law.least, self.ends
+        )
+        if not np.isfinite(found).all():
+            raise NumericalError(
+                "At some position no tooth pair can carry the load: check stiffness and relief."
+            )
+        return np.asarray(found, dtype=np.float64)
+
+    def half(self, xi: FloatArray) -> FloatArray:
+        """Half of approach and lengthening, (n,) [m].
+
+        The teeth are deflected, so the contact point lies so far beyond where the tips leave the line of
+        action.
+        """
+        return np.asarray(0.5 * (self.approach(xi) + self.lengthening), dtype=np.float64)
+
+    def compression(self, xi: FloatArray) -> FloatArray:
+        """Approach less the gap of the pair at xi (n,) [m]; negative where it is apart."""
+        half = self.half(xi)
+        approach = 2.0 * half - self.lengthening
+        return np.asarray(approach - gaps_at(xi, self._relief(xi), half, self.ends), dtype=np.float64)
+
+    def static(self, xi: FloatArray) -> StaticPair:
+        """The pair at xi (n,) [m] in equilibrium."""
+        delta = self.approach(xi)
+        gap = gaps_at(xi, self._relief(xi), 0.5 * (delta + self.lengthening), self.ends)
+        load, tangent = self.law.load(self.law.held(xi), delta - gap)
+        return StaticPair(load, tangent, delta - load / np.where(tangent > 0.0, tangent, np.inf), gap)
+
+
+def loaded_contact(pair: GearPair) -> LoadedContact:
+    """Contact of a tooth pair in the mesh under the mean torque.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+
+    Raises
+    ------
+    ParameterError : a relief starts outside the active flank
+    NumericalError : at some position no pair can carry the load, or contact reaches too far beyond the tips
+    """
+    # The static mesh knows no speed: a sweep over speed computes it once.
+    return _loaded_contact(pair.with_(operating__pinion_speed=_ANY_SPEED))
+
+
+@lru_cache(maxsize=32)
+def _loaded_contact(pair: GearPair) -> LoadedContact:
+    mesh, g = StaticMesh(pair), pair.geometry
+    law, near = mesh.law, _SAME * pair.geometry.base_pitch
+    starts = relief_starts(pair) if pair.mesh.relief == "static" else np.empty(0)
+    kinks = np.concatenate([law.stiffness.switches, starts, [g.L_XA, g.L_XD]])
+    jumps = np.add.outer(kinks, mesh.shifts)
+    contact = positive_intervals(mesh.compression, mesh.low, mesh.high, jumps, g.base_pitch)
+    if contact.size == 0 or contact[0, 0] <= mesh.low or contact[-1, 1] >= mesh.high:
+        raise NumericalError(
+            f"Under {pair.operating.pinion_torque:g} N m a tooth pair touches more than {_REACH:g} base "
+            "pitches beyond its tips: lower the torque, check the stiffness."
+        )
+    low, high = float(contact[0, 0]), float(contact[-1, 1])
+    # A tip leaves the line of action where the pair is half the approach inside the path of contact.
+    corners = [
+        *_roots(lambda x: x - g.L_XA - mesh.half(x), g.L_XA, g.L_XP),
+        *_roots(lambda x: g.L_XD - x - mesh.half(x), g.L_XP, g.L_XD),
+    ]
+    marks = np.add.outer(np.concatenate([kinks, contact.ravel(), corners]), mesh.shifts)
+    inside = np.unique(marks[(marks > low + near) & (marks < high - near)])
+    inside = inside[np.diff(inside, prepend=-np.inf) > near]
+    bends, full = np.concatenate([[low], inside, [high]]), FULL_DAMPING * mesh.force
+    for left, right in itertools.pairwise(bends):
+        inside = np.union1d(inside, _roots(lambda x: mesh.static(x).load - full, left, right))
+    smooth = law.stiffness.breaks[(law.stiffness.breaks > low) & (law.stiffness.breaks < high)]
+    breaks = np.concatenate([[low], inside, [high]])
+    pieces = np.union1d(breaks, smooth)
+    largest = float(law.held(np.linspace(low, high, 101)).max())
+    deflection = mesh.force / largest
+    relative = max(_TOLERANCE, _LENGTH / (FULL_DAMPING * deflection))
+
+    def fitted(value: Callable[[FloatArray], FloatArray], scale: float) -> PathFunction:
+        # With a linear law the pieces are those of the stiffness; with Hertz's the fit finds its own.
+        ends = pieces if law.softening == 0.0 else breaks
+        return PathFunction.fit(value, ends, inside, tolerance=relative * scale)
+
+    def engagement(xi: FloatArray) -> FloatArray:
+        share = np.clip(mesh.static(xi).load / full, 0.0, 1.0)
+        return np.asarray(share * share * (3.0 - 2.0 * share), dtype=np.float64)
+
+    return LoadedContact(
+        stiffness=restricted(fitted(lambda xi: mesh.static(xi).tangent, largest), contact),
+        error=fitted(lambda xi: mesh.static(xi).error, deflection),
+        gap=fitted(lambda xi: mesh.static(xi).gap, deflection),
+        engagement=restricted(fitted(engagement, 1.0), contact),
+        secant=PathFunction.fit(law.held, pieces, inside, tolerance=_TOLERANCE * largest),
+        contact=contact,
+    )
+
+
+def _roots(function: Callable[[FloatArray], FloatArray], low: float, high: float) -> list[float]:
+    """Sign changes of a function (n,) -> (n,) between ``low`` and ``high``, at most one in each 64th part."""
+
+    def at(x: float) -> float:
+        return float(function(np.array([x]))[0])
+
+    x = np.linspace(low, high, 65)
+    x[[0, -1]] = np.nextafter(low, high), np.nextafter(high, low)
+    values = function(x)
+    found = np.flatnonzero(np.signbit(values[:-1]) != np.signbit(values[1:]))
+    return [float(brentq(at, x[j], x[j + 1], xtol=1e-15)) for j in found]

@@ -1,0 +1,138 @@
+"""Does the loaded contact carry the load, begin where the gap closes, and pay for every loss?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import lumped
+from lumped.model.mesh_cycle import mesh_cycle
+from lumped.model.mesh_elements import mesh_elements
+from lumped.model.periodic_system import periodic_system
+from lumped.model.powers import mean_powers
+from lumped.model.steady import periodic_solution
+from lumped.quasi_static import corner_gap
+from lumped.quasi_static.loaded_contact import StaticMesh, loaded_contact
+
+PAIR = lumped.load_gear_pair("nasa_28_28").with_(mesh__stiffness={"model": "energy"}, mesh__contact="loaded")
+FORMS = {
+    "Hertz": PAIR,
+    "linear": PAIR.with_(mesh__stiffness={"model": "energy", "hertz": "linear"}),
+    "relief": PAIR.with_(mesh__relief="static"),
+    "rectangular": PAIR.with_(mesh__stiffness={"model": "rectangular"}),
+    "unequal": lumped.load_gear_pair("high_contact_ratio_29_47").with_(mesh__contact="loaded"),
+}
+
+
+def solution(pair):
+    return periodic_solution(periodic_system(pair, "absolute"), np.zeros(1), estimate_error=False)
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_the_loads_of_the_fitted_laws_make_the_mean_load(name):
+    pair = FORMS[name]
+    mesh, cycle, g = StaticMesh(pair), mesh_cycle(pair), lumped.geometry(pair)
+    times = (np.arange(997) + 0.5) / 997 * cycle.period
+    state = cycle.sample(times)
+    delta = mesh.approach(g.L_XA + g.omega_pinion * g.base_radius_pinion * times)
+    load = (state.stiffness * (delta - state.error)).sum(axis=0)
+    assert np.abs(load / mesh.force - 1.0).max() < 1e-8
+    assert state.contact.any(axis=0).all()
+
+
+def test_contact_begins_beyond_a_where_the_corner_has_closed_its_gap():
+    """Without relief the gap is that of the corner, at the place that deflection shifts the contact to."""
+    pair = FORMS["linear"]
+    mesh, g = StaticMesh(pair), lumped.geometry(pair)
+    start, end = loaded_contact(pair).contact[0]
+    assert start < g.L_XA
+    assert end > g.L_XD
+    delta = mesh.approach(np.array([start, end]))
+    half = 0.5 * (
+        delta + mesh.force * (1 / pair.bearings.pinion.loa_stiffness + 1 / pair.bearings.gear.loa_stiffness)
+    )
+    gaps = corner_gap(g, np.array([start, end]) + np.array([-1.0, 1.0]) * half)
+    assert gaps == pytest.approx(delta, rel=1e-9)
+    # Equal gears: symmetric about the pitch point.
+    assert start + end == pytest.approx(2 * g.L_XP, abs=1e-12)
+
+
+def test_tangent_of_hertz_contact_is_stiffer_than_its_secant():
+    """k_t = 1/(1/k - D ln(N/N_0) - D): at the full load k/(1 - D k)."""
+    mesh, g = StaticMesh(PAIR), lumped.geometry(PAIR)
+    found = mesh.static(np.array([g.L_XP]))
+    k = mesh.law.held(np.array([g.L_XP]))[0]
+    assert found.load[0] == pytest.approx(mesh.force, rel=1e-12)
+    assert found.tangent[0] == pytest.approx(k / (1.0 - mesh.law.softening * k), rel=1e-5)
+
+
+def test_corner_contact_grows_with_the_root_of_the_load():
+    """The gap of a corner is a parabola; what deflection shifts goes with the load itself and is small."""
+    g, beyond = lumped.geometry(PAIR), []
+    for torque in (0.56, 0.0056):
+        start, _ = loaded_contact(FORMS["linear"].with_(operating__pinion_torque=torque)).contact[0]
+        beyond.append(g.L_XA - start)
+    assert beyond[0] / beyond[1] == pytest.approx(10.0, rel=0.02)
+
+
+def test_what_the_papers_form_leaves_unpaid_has_a_closed_form():
+    """Where k jumps from 0 at A and to 0 at D, k delta^2/2 comes and goes without work."""
+    pair = lumped.load_gear_pair("nasa_28_28").with_(friction={"law": "coulomb", "coefficient": 0.0})
+    g, k = lumped.geometry(pair), float(mesh_elements(pair).stiffness(lumped.geometry(pair).L_XP))
+    system = periodic_system(pair, "absolute")
+    times = np.array([0.0, np.mod(g.contact_ratio, 1.0)]) * system.period
+    motion = periodic_solution(system, times, estimate_error=False)
+    at_a, at_d = motion.states[:, :6] @ system.structure.deflection
+    powers = mean_powers(motion)
+    assert powers.sliding == pytest.approx(0.0, abs=1e-9 * powers.driving)
+    assert powers.unpaid == pytest.approx(k * (at_a**2 - at_d**2) / 2 / system.period, rel=1e-6)
+    assert powers.lost == pytest.approx(powers.unpaid, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("rpm", "sliding", "dampers", "bearings"),
+    [(500, 0.349, 0.058, 0.011), (4875, 0.293, 0.022, 0.042), (18000, 0.299, 0.127, 0.013)],
+)
+def test_losses_by_place_are_those_of_an_independent_program(rpm, sliding, dampers, bearings):
+    """Per cent of the input, from a prototype that shares no code (docs/theory/contact_energy.md)."""
+    powers = mean_powers(
+        solution(lumped.load_gear_pair("nasa_28_28").with_(operating__pinion_speed=float(rpm)))
+    )
+    found = np.array([powers.sliding, powers.tooth_dampers, powers.bearings]) / powers.driving * 100
+    assert found == pytest.approx([sliding, dampers, bearings], abs=1.1e-3)
+
+
+@pytest.mark.parametrize("name", ["linear", "relief"])
+def test_all_losses_are_paid_by_the_moments_and_the_force_along_the_path(name):
+    """T_g = T_g(moments) + r_bg <sum H>: path forces by quadrature, losses by the ledger of the powers."""
+    pair = FORMS[name].with_(mesh__stiffness={"model": "energy", "hertz": "linear"})
+    g, powers = lumped.geometry(pair), mean_powers(solution(pair))
+    motion = lumped.steady_state(pair, samples_per_cycle=65536)
+    e, contact = mesh_elements(pair), loaded_contact(pair)
+    xi = motion["position"].to_numpy()
+    pressed = motion["dte"].to_numpy() - contact.error(xi)
+    touching = motion["contact"].to_numpy() > 0
+    slopes = contact.error.derivative()(xi), e.stiffness.derivative()(xi)
+    path = motion["normal_load"].to_numpy() * slopes[0] - 0.5 * slopes[1] * pressed**2
+    by_path = np.where(touching, path, 0.0).sum(axis=0).mean() * g.base_radius_pinion * g.omega_pinion
+    # The motion swings about the static one: what a pair stores where it comes and goes jumps with k_t.
+    ends = contact.contact[0]
+    speed = g.base_radius_pinion * g.omega_pinion
+    times = np.sort(np.mod((ends - g.L_XA) / speed, g.mesh_period))
+    at = periodic_solution(periodic_system(pair, "absolute"), times, estimate_error=False)
+    dte = np.interp(np.mod((ends - g.L_XA) / speed, g.mesh_period), times, at.values["dte"])
+    k = np.array([float(e.stiffness(ends[0])), float(e.stiffness(np.nextafter(ends[1], 0.0)))])
+    stored = 0.5 * k * (dte - contact.error([ends[0], np.nextafter(ends[1], 0.0)])) ** 2
+    by_jumps = (stored[0] - stored[1]) / g.mesh_period
+    assert by_jumps - by_path == pytest.approx(powers.unpaid, rel=2e-3)
+    assert motion.attrs["mesh_efficiency"] == pytest.approx(powers.efficiency, abs=1e-9)
+
+
+def test_the_damper_takes_hold_with_the_load():
+    e = mesh_elements(PAIR)
+    start, end = loaded_contact(PAIR).contact[0]
+    assert e.damping([start, np.nextafter(end, 0.0)]) == pytest.approx(
+        [0.0, 0.0], abs=1e-9 * float(e.damping(0.0152))
+    )
+    ratio = e.damping(0.0152) / (2 * PAIR.mesh.damping_ratio * np.sqrt(lumped.bodies(PAIR).effective_mass))
+    assert ratio**2 == pytest.approx(float(loaded_contact(PAIR).secant(0.0152)), rel=1e-9)

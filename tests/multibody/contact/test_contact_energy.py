@@ -1,0 +1,205 @@
+"""Is the contact force the gradient of an energy, and does the ledger close without a source?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.special import lambertw
+
+import lumped
+import multibody
+from lumped.quasi_static import corner_gap as lumped_corner_gap
+from multibody.contact import kernels as kn
+from multibody.contact import kinematics as kin
+from multibody.contact.effects import effect_flags
+from multibody.contact.elements import elastic_load
+from multibody.contact.machine import machine
+
+ALL = effect_flags(None, "loaded")
+#: Neither friction nor dampers, so that all forces come from the energy.
+BARE = {
+    "friction": {"law": "coulomb", "coefficient": 0.0},
+    "mesh.damping_ratio": 0.0,
+    "mesh.contact": "loaded",
+}
+UNEQUAL = {"pinion.teeth": 23, "gear.teeth": 41, "centre_distance": None}
+
+
+def bare(stiffness, **changes):
+    return lumped.load_gear_pair("nasa_28_28").with_({**BARE, "mesh.stiffness": stiffness} | changes)
+
+
+PAIRS = {
+    "Hertz": bare({"model": "energy"}),
+    "linear": bare({"model": "energy", "hertz": "linear"}),
+    "relief": bare({"model": "energy"}, **{"mesh.relief": "static"}),
+    "rectangular": bare({"model": "rectangular"}),
+    "parabolic, unequal": bare({"model": "parabolic"}, **UNEQUAL),
+}
+
+
+def contact(numbers, t, q, v=None, flags=ALL):
+    wrench, contacts = np.zeros(6), np.zeros((2 * kin.MAX_PAIRS, kn.N_RECORD))
+    v = np.zeros(6) if v is None else v
+    count = kn.contact_forces(t, q, v, numbers.parameters, flags, numbers.table, wrench, contacts)
+    return wrench, contacts[:count]
+
+
+def states(numbers, number, flank=1.0):
+    """Times and states with the flanks pressed by 5 to 30 um and the centres off by some um."""
+    rng, p = np.random.default_rng(4), numbers.parameters
+    for _ in range(number):
+        q = rng.uniform(-3e-6, 3e-6, 6)
+        q[[2, 5]] = -flank * rng.uniform(5e-6, 3e-5) / p[kn.RADIUS_P], 0.0
+        yield rng.uniform() * numbers.period, q
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_the_wrench_is_minus_the_gradient_of_the_energy(name):
+    numbers = machine(PAIRS[name], ALL)
+    length = np.array([1.0, 1.0, numbers.parameters[kn.RADIUS_P]] * 2)
+    length[5] = numbers.parameters[kn.RADIUS_G]
+    beyond, worst = 0, []
+    for t, q in states(numbers, 150):
+        wrench, found = contact(numbers, t, q)
+        step = np.diag(2e-9 / length)
+        up, down = (
+            np.array([contact(numbers, t, q + s * one)[1][:, kn.ENERGY].sum() for one in step])
+            for s in (1.0, -1.0)
+        )
+        scale = max(found[:, kn.LOAD].sum(), 1.0)
+        worst.append(np.abs((wrench + (up - down) / (4e-9 / length)) / length).max() / scale)
+        xi = found[:, kn.XI]
+        beyond += np.any((xi < numbers.parameters[kn.L_XA]) | (xi > numbers.parameters[kn.L_XD]))
+    # Central differences: a curvature of some 1/um over 2 nm, and kinks (first touch, ends of the path).
+    assert np.quantile(worst, 0.9) < 1e-6
+    assert max(worst) < 3e-4
+    assert beyond > (0 if name == "relief" else 15)  # corners were among them
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_action_is_reaction_in_force_and_moment(name):
+    numbers, p = machine(PAIRS[name], ALL), machine(PAIRS[name], ALL).parameters
+    p[kn.DAMPING] = 30.0
+    for t, q in states(numbers, 40):
+        w, found = contact(numbers, t, q, np.random.default_rng(1).normal(size=6) * 0.01)
+        px, py = p[kn.CENTRE_PX] + q[0], p[kn.CENTRE_PY] + q[1]
+        gx, gy = p[kn.CENTRE_GX] + q[3], p[kn.CENTRE_GY] + q[4]
+        moment = w[2] + w[5] + px * w[1] - py * w[0] + gx * w[4] - gy * w[3]
+        scale = found[:, kn.LOAD].sum()
+        assert np.abs(w[:2] + w[3:5]).max() < 1e-13 * scale
+        assert abs(moment) < 1e-12 * scale * p[kn.RADIUS_P]
+
+
+def test_stiffness_of_the_mesh_is_symmetric_only_with_path_work():
+    """A force without a potential has a circulatory part: k' delta grad(delta) grad(xi)^T."""
+    numbers = machine(PAIRS["linear"], ALL)
+    length = np.array([1.0, 1.0, numbers.parameters[kn.RADIUS_P]] * 2)
+    length[5] = numbers.parameters[kn.RADIUS_G]
+
+    def skew(flags, t, q):
+        step = np.diag(2e-8 / length)
+        rows = [contact(numbers, t, q + one, flags=flags)[0] for one in step]
+        rows = np.array(rows) - [contact(numbers, t, q - one, flags=flags)[0] for one in step]
+        k = rows / 4e-8 / length
+        return np.abs(k - k.T).max() / np.abs(k).max()
+
+    inside = [(t, q) for t, q in states(numbers, 40) if 0.2 < t / numbers.period < 0.5]
+    found = np.array([(skew(ALL, t, q), skew(ALL & ~kn.PATH_WORK, t, q)) for t, q in inside])
+    assert found[:, 0].max() < 1e-7
+    assert found[:, 1].min() > 1e-5
+    assert found[:, 1].max() > 1e-4
+
+
+@pytest.mark.parametrize("beyond", [1e-5, 3e-4, 1.5e-3])
+def test_corner_gap_has_its_derivatives_its_inverse_and_the_lumped_value(beyond):
+    pair = PAIRS["parabolic, unequal"]
+    p, g = machine(pair).parameters, lumped.geometry(pair)
+    arguments = p[kn.TIP_G], p[kn.L_XY], p[kn.RADIUS_G], p[kn.RADIUS_P]
+    gap, slope, by_length = kin.corner_gap(beyond, *arguments)
+    assert gap == pytest.approx(float(lumped_corner_gap(g, np.array(g.L_XA - beyond))), rel=1e-9, abs=2e-17)
+    assert kin.corner_reach(gap, *arguments) == pytest.approx(beyond, rel=1e-9)
+    h, tip, length, *radii = 1e-7, *arguments
+    ends = [kin.corner_gap(beyond + s, *arguments)[0] for s in (h, -h)]
+    longer = [kin.corner_gap(beyond, tip, length + s, *radii)[0] for s in (h, -h)]
+    assert slope == pytest.approx((ends[0] - ends[1]) / (2 * h), rel=1e-6)
+    assert by_length == pytest.approx((longer[0] - longer[1]) / (2 * h), rel=1e-4, abs=1e-10)
+    # The corner is cut from the mate's involute: the leading term of the gap is half its curvature there.
+    leading = (tip / radii[0]) ** 2 * (1.0 / tip + 1.0 / (length - tip)) * beyond**2 / 2
+    assert gap == pytest.approx(leading, rel=60 * beyond)
+
+
+def test_a_corner_pushes_along_a_tangent_of_the_mates_base_circle():
+    """Whatever the corner does, the flank it touches has its normal on its own base circle."""
+    numbers = machine(PAIRS["linear"], ALL & ~kn.PATH_WORK)
+    p, seen = numbers.parameters, 0
+    for t, q in states(numbers, 200):
+        w, found = contact(numbers, t, q, flags=ALL & ~kn.PATH_WORK)
+        if len(found) == 1 and found[0, kn.XI] < p[kn.L_XA]:
+            force, seen = np.hypot(*w[:2]), seen + 1
+            assert abs(w[2]) == pytest.approx(p[kn.RADIUS_P] * found[0, kn.LOAD], rel=1e-12)
+            assert force == pytest.approx(found[0, kn.LOAD], rel=1e-3)
+    pair = [contact(numbers, t, q, flags=ALL & ~kn.PATH_WORK) for t, q in states(numbers, 400)]
+    corner = [(w, f) for w, f in pair if f[0, kn.XI] < p[kn.L_XA] or f[-1, kn.XI] > p[kn.L_XD]]
+    assert corner
+
+
+@pytest.mark.parametrize("share", [1e-4, 0.01, 0.3, 1.0, 5.0])
+def test_hertz_law_is_the_derivative_of_its_energy_and_lamberts_function(share):
+    k, d, nominal = 8e7, 4.4e-10, 1353.0
+    pressed = share * nominal / k
+    load, _, slope = elastic_load(pressed, k, 2e9, d, nominal)
+    h = 1e-6 * pressed
+    up, down = (elastic_load(pressed + s, k, 2e9, d, nominal)[1] for s in (h, -h))
+    assert (up - down) / (2 * h) == pytest.approx(load, rel=1e-7)
+    softer, stiffer = (elastic_load(pressed, k + s, 0.0, d, nominal)[1] for s in (-1e3, 1e3))
+    assert slope == pytest.approx((stiffer - softer) / 2e3 * 2e9, rel=1e-6)
+    if share >= 0.3:  # far above the load below which the law is held linear
+        w = lambertw(-pressed * np.exp(-1.0 / (k * d)) / (d * nominal), -1).real
+        assert load == pytest.approx(-pressed / (d * w), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("preset", "changes"),
+    [
+        ("nasa_28_28", {"mesh.stiffness": {"model": "energy"}}),
+        ("nasa_28_28", {"mesh.stiffness": {"model": "energy"}, "mesh.relief": "static"}),
+        ("nasa_28_28", {"operating.pinion_speed": 500.0}),
+        ("nasa_28_28", {"operating.pinion_speed": 18000.0, "mesh.stiffness": {"model": "energy"}}),
+        ("fzg_c", {"mesh.stiffness": {"model": "energy"}}),
+        ("nasa_art_25_31", {"mesh.stiffness": {"model": "parabolic"}}),
+        ("kahraman_blankenship_50_50", {"friction": {"law": "coulomb", "coefficient": 0.0}}),
+        ("high_contact_ratio_29_47", {}),
+    ],
+)
+def test_the_first_law_holds_without_a_source(preset, changes):
+    """Driving power is braking power, stored energy and losses; nothing is left to be called unpaid."""
+    pair = lumped.load_gear_pair(preset).with_({"mesh.contact": "loaded"} | changes)
+    ledger = multibody.power_balance(pair, 3, rtol=1e-10, friction_velocity=0.05)
+    assert abs(ledger.residual) < 1e-9 * ledger.driving
+    assert ledger.unpaid == 0.0
+    # The energy does not jump: contact begins and ends where the teeth carry nothing.
+    assert abs(ledger.mesh_jump) < 1e-10 * ledger.driving
+    assert ledger.mesh_damping > 0.0
+    assert ledger.bearings > 0.0
+
+
+def test_without_path_work_and_tip_contact_the_ledger_needs_a_source():
+    pair = lumped.load_gear_pair("nasa_28_28").with_(mesh__stiffness={"model": "energy"})
+    ledger = multibody.power_balance(pair, 3, rtol=1e-10, friction_velocity=0.05)
+    assert abs(ledger.residual) < 1e-9 * ledger.driving
+    assert ledger.mesh_jump > 1e-4 * ledger.driving
+    assert abs(ledger.unpaid) > 1e-6 * ledger.driving
+
+
+@pytest.mark.parametrize("stiffness", ["energy", "rectangular"])
+@pytest.mark.parametrize("relief", ["ignored", "static"])
+def test_with_all_effects_off_it_is_the_lumped_loaded_form(stiffness, relief):
+    pair = lumped.load_gear_pair("nasa_28_28").with_(
+        {"mesh.stiffness": {"model": stiffness}, "mesh.contact": "loaded", "mesh.relief": relief}
+    )
+    run = multibody.simulate(pair, 2, effects=(), rtol=1e-11)
+    motion = lumped.simulate(pair, 2, rtol=1e-11)
+    for name in ("dte", "x_p", "y_p", "normal_load"):
+        wanted = motion[name].to_numpy()
+        assert np.abs(run[name].to_numpy() - wanted).max() < 3e-8 * np.ptp(wanted), name
