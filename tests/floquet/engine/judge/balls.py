@@ -15,8 +15,8 @@ from flint import acb_mat, arb, arb_mat, arb_poly, ctx
 from scipy.optimize import linear_sum_assignment
 
 BITS = 256
-_SMALL = -130.0 * math.log(2.0)
-_TERMS = 80
+_MORE_BITS = 1024
+_TERMS = 80  # of a series with BITS
 _RHO = (1.2, 1.5, 2.0, 3.0, 4.5, 7.0, 12.0, 25.0, 60.0, 200.0)
 _ANGLE = 1.5
 
@@ -53,34 +53,51 @@ def polynomial(poly: arb_poly) -> Coefficients:
     return coefficients
 
 
-def monodromy(pieces: Sequence[Piece], n: int) -> arb_mat:
-    """Enclosure of Phi(T, 0)."""
-    ctx.prec = BITS
-    flows = [flow for piece in pieces for flow in _flows(piece, n)]
+def exact_multipliers(pieces: Callable[[], Sequence[Piece]], n: int) -> list[tuple[complex, float]]:
+    """Centre and radius of a disk about each multiplier, with more bits where these do not tell them apart.
+
+    Raises
+    ------
+    ValueError : they are too close together for that, too
+    """
+    for bits in (BITS, _MORE_BITS):
+        ctx.prec = bits
+        try:
+            return multipliers(monodromy(pieces(), n, bits))
+        except ValueError:
+            if bits == _MORE_BITS:
+                raise
+    raise AssertionError
+
+
+def monodromy(pieces: Sequence[Piece], n: int, bits: int = BITS) -> arb_mat:
+    """Enclosure of Phi(T, 0); the remainder of a step is about 2^-(bits/2)."""
+    flows = [flow for piece in pieces for flow in _flows(piece, n, bits)]
     while len(flows) > 1:
         flows = [flows[i + 1] * flows[i] if i + 1 < len(flows) else flows[i] for i in range(0, len(flows), 2)]
     return flows[0]
 
 
-def _flows(piece: Piece, n: int) -> list[arb_mat]:
-    size = _size(piece, n, piece.start, piece.length)
+def _flows(piece: Piece, n: int, bits: int) -> list[arb_mat]:
+    terms = _TERMS * bits // BITS
+    size = _size(piece, n, piece.start, piece.length, terms)
     parts = max(1, math.ceil(size / _ANGLE))
     length = piece.length / parts
-    return [_flow(piece, n, piece.start + i * length, length) for i in range(parts)]
+    return [_flow(piece, n, piece.start + i * length, length, terms, bits) for i in range(parts)]
 
 
-def _size(piece: Piece, n: int, start: arb, length: arb) -> float:
+def _size(piece: Piece, n: int, start: arb, length: arb, terms: int) -> float:
     """Rough size of length |A|: any will do."""
     A = np.zeros((n, n))
     for i, j, entry in piece.entries:
-        A[i, j] += sum(abs(float(c.mid())) for c in entry(start, length, _TERMS))
+        A[i, j] += sum(abs(float(c.mid())) for c in entry(start, length, terms))
     return float(length.mid()) * float(np.linalg.norm(A, 2))
 
 
-def _flow(piece: Piece, n: int, start: arb, length: arb) -> arb_mat:
+def _flow(piece: Piece, n: int, start: arb, length: arb, terms: int, bits: int) -> arb_mat:
     A: list[arb_mat] = []
     for i, j, entry in piece.entries:
-        for k, c in enumerate(entry(start, length, _TERMS)):
+        for k, c in enumerate(entry(start, length, terms)):
             while len(A) <= k:
                 A.append(arb_mat(n, n))
             A[k][i, j] += c * length
@@ -93,9 +110,9 @@ def _flow(piece: Piece, n: int, start: arb, length: arb) -> arb_mat:
     for R in _RHO:
         if 0.9 * radius > R:
             g = sum(a * R ** (k + 1) / (k + 1) for k, a in enumerate(rough))
-            terms = (g - math.log(R - 1.0) - _SMALL) / math.log(R)
-            best, rho = min((best, rho), (terms, R))
-    count = min(max(1, math.ceil(best)), _TERMS - 2)
+            needed = (g - math.log(R - 1.0) + (0.5 * bits + 2.0) * math.log(2.0)) / math.log(R)
+            best, rho = min((best, rho), (needed, R))
+    count = min(max(1, math.ceil(best)), terms - 2)
     x = [arb_mat([[arb(i == j) for j in range(n)] for i in range(n)])]
     for k in range(count):
         total = A[0] * x[k]

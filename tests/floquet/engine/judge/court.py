@@ -1,8 +1,8 @@
 """Every bound and verdict against ball arithmetic.
 
-    python tests/floquet/engine/judge/court.py [--count 40] [--seed 1] [--jobs 2]     prints the table
+    python tests/floquet/engine/judge/court.py [--count 40] [--kind KIND ...] [--seed 1] [--jobs 2]
 
-`tests/floquet/engine/judge/test_judge.py` runs a sample of it with the suite.
+It prints a table; `tests/floquet/engine/judge/test_judge.py` runs a sample of it with the suite.
 """
 
 from __future__ import annotations
@@ -12,13 +12,14 @@ import math
 import sys
 import warnings
 from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from flint import acb, arb, arb_series, ctx
-from joblib import Parallel, delayed
 
 from floquet import (
     FourierSeries,
@@ -32,17 +33,26 @@ from floquet import (
     monodromy,
     stability_chart,
 )
+from floquet.gear.axes import operating_rpm, vary
+from floquet.gear.multipliers import OffLineOfAction
 from lumped import GearPair
 from lumped.errors import LawRangeWarning, NumericalError, ParameterError, ResolutionWarning
+from lumped.model.periodic_system import periodic_system
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from balls import BITS, Piece, multipliers, worst_ratio
-from balls import monodromy as exact_monodromy
-from gears import MODELS, pieces, random_pair
+from balls import BITS, Piece, exact_multipliers, worst_ratio
+from gears import MODELS, ball, pieces, random_pair
 
 SPECIAL = ("tongue edge", "collision", "low speed")
-KINDS = (*MODELS, *SPECIAL, "formula", "black box")
+KINDS = (
+    *MODELS, *SPECIAL, "stiffness variation", "law over speed", "chebyshev", "bearings",
+    "formula", "black box",
+)  # fmt: skip
+
+
+Disks = Sequence[tuple[complex, float]]
+"""Centre and radius of a disk about each exact multiplier."""
 
 
 class Finding(NamedTuple):
@@ -66,7 +76,12 @@ class Finding(NamedTuple):
 
 
 def judge(kind: str, seed: int) -> list[Finding]:
-    """Findings on one random system."""
+    """Findings on one random system.
+
+    Raises
+    ------
+    ValueError : ball arithmetic does not tell its multipliers apart
+    """
     rng = np.random.default_rng([seed, KINDS.index(kind)])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)
@@ -74,9 +89,10 @@ def judge(kind: str, seed: int) -> list[Finding]:
             return _formula(rng)
         if kind == "black box":
             return _black_box(rng)
+        if kind in _OF_PAIRS:
+            return _OF_PAIRS[kind](rng)
         pair = _pair(rng, kind)
-        truth = multipliers(exact_monodromy(pieces(pair), 6))
-        return _routes(kind, pair, truth)
+        return _routes(kind, pair, exact_multipliers(partial(pieces, pair), 6))
 
 
 def _pair(rng: np.random.Generator, kind: str) -> GearPair:
@@ -104,7 +120,7 @@ def _special(rng: np.random.Generator, kind: str, pair: GearPair) -> GearPair:
         changes["friction.law"] = "none"
     pair = pair.with_(changes)
     block = gear_block(pair)
-    own = pair.operating.pinion_speed
+    own = operating_rpm(pair)
     speeds = own * np.exp(np.linspace(-0.7, 0.7, 400))
 
     def measure(speed: np.ndarray) -> np.ndarray:
@@ -123,10 +139,10 @@ def _special(rng: np.random.Generator, kind: str, pair: GearPair) -> GearPair:
             low = middle
         else:
             high = middle
-    return pair.with_({"operating.pinion_speed": float(low)})
+    return pair.with_({"operating.pinion_speed": float(low)})  # [rpm], as in files
 
 
-def _routes(kind: str, pair: GearPair, truth: Sequence[tuple[complex, float]]) -> list[Finding]:
+def _routes(kind: str, pair: GearPair, truth: Disks) -> list[Finding]:
     findings = []
     fine = gear_block(pair)
     joined = coarsened(gear_block(pair, rtol=1e-9), fine.period, 1.0, [], 1e-7)
@@ -135,26 +151,107 @@ def _routes(kind: str, pair: GearPair, truth: Sequence[tuple[complex, float]]) -
         findings.append(
             _finding(kind, route, found.multipliers[0], found.errors[0], truth, found.certificate)
         )
-    chart = stability_chart(pair, {"speed_rpm": [pair.operating.pinion_speed * 30.0 / np.pi]}, rtol=1e-8)
+    chart = stability_chart(pair, {"speed_rpm": [operating_rpm(pair)]}, rtol=1e-8)
     own = gear_pair_multipliers(pair, 1e-9)
-    for route, values, errors, certificate in (
-        ("chart", chart.multipliers.values[0], chart.multiplier_errors.values[0], chart.attrs["certificate"]),
-        ("pair", own.multipliers, own.multiplier_errors, own.certificate),
-    ):
-        # All ten: the bearings off the line of action are judged by their closed form elsewhere.
-        feedback = np.abs(values[:, None] - own.oloa).min(axis=1) > 1e-12 * (1.0 + np.abs(values))
-        if feedback.sum() == 6:
-            findings.append(_finding(kind, route, values[feedback], errors[feedback], truth, certificate))
+    return [
+        *findings,
+        *_of_ten(kind, "chart", chart.isel(speed_rpm=0), own.oloa, truth),
+        *_of_ten(kind, "pair", own, own.oloa, truth),
+    ]
+
+
+def _of_ten(kind: str, route: str, found: Any, oloa: np.ndarray, truth: Disks) -> list[Finding]:
+    """Finding on the six multipliers that are not the bearings' off the line of action, if they differ."""
+    values, errors = np.asarray(found.multipliers), np.asarray(found.multiplier_errors)
+    certificate = found.attrs["certificate"] if route.startswith("chart") else found.certificate
+    feedback = np.abs(values[:, None] - oloa).min(axis=1) > 1e-12 * (1.0 + np.abs(values))
+    if feedback.sum() != 6:
+        return []
+    return [_finding(kind, route, values[feedback], errors[feedback], truth, certificate)]
+
+
+def _stiffness_variation(rng: np.random.Generator) -> list[Finding]:
+    """A chart over the variation of the total stiffness about its mean."""
+    kind = "stiffness variation"
+    while True:
+        pair, factor = _pair(rng, str(rng.choice(MODELS))), float(rng.uniform(0.0, 1.6))
+        point = {"speed_rpm": operating_rpm(pair), "stiffness_variation": factor}
+        try:
+            chart = stability_chart(pair, {name: [value] for name, value in point.items()}, rtol=1e-8)
+            own = gear_pair_multipliers(vary(pair, point), 1e-9)
+        except NumericalError:  # a stiffness that is not positive
+            continue
+        there = pair.with_({"operating.pinion_speed": point["speed_rpm"]})
+        truth = exact_multipliers(partial(pieces, there, factor=factor), 6)
+        found = chart.isel(speed_rpm=0, stiffness_variation=0)
+        return [
+            *_of_ten(kind, "chart", found, own.oloa, truth),
+            *_of_ten(kind, "pair", own, own.oloa, truth),
+        ]
+
+
+def _law_over_speed(rng: np.random.Generator) -> list[Finding]:
+    """A chart whose speeds share one friction law to a tolerance."""
+    return _over_speeds(rng, "law over speed", "taylor", 12)
+
+
+def _chebyshev(rng: np.random.Generator) -> list[Finding]:
+    """A chart that is interpolated over speed and damping."""
+    return _over_speeds(rng, "chebyshev", "chebyshev", 130)
+
+
+def _over_speeds(rng: np.random.Generator, kind: str, method: str, count: int) -> list[Finding]:
+    while True:
+        pair = _pair(rng, str(rng.choice(MODELS)))
+        if kind != "law over speed" or pair.friction.law not in ("none", "coulomb"):
+            break
+    rpm = operating_rpm(pair)
+    axes = {"speed_rpm": rpm * np.linspace(0.8, 1.6, count), "damping_ratio": np.linspace(0.0, 0.1, 9)}
+    chart = stability_chart(pair, axes, rtol=1e-8, method=method)
+    findings = []
+    for i, j in zip(rng.integers(0, count, 3), rng.integers(0, 9, 3), strict=True):
+        there = pair.with_(
+            {
+                "operating.pinion_speed": float(axes["speed_rpm"][i]),
+                "mesh.damping_ratio": float(axes["damping_ratio"][j]),
+            }
+        )
+        truth = exact_multipliers(partial(pieces, there), 6)
+        found = chart.isel(speed_rpm=i, damping_ratio=j)
+        findings += _of_ten(kind, f"chart, {method}", found, gear_pair_multipliers(there, 1e-6).oloa, truth)
     return findings
 
 
+def _bearings(rng: np.random.Generator) -> list[Finding]:
+    """The bearings off the line of action, some of them at critical damping."""
+    pair = _pair(rng, "rectangular")
+    changes = {}
+    for gear in ("pinion", "gear"):
+        changes[f"bearings.{gear}.oloa_stiffness"] = float(10 ** rng.uniform(6.0, 10.0))
+        ratio = float(rng.choice([0.0, 1.0, rng.uniform(0.0, 1.0), 1.0 - 10.0 ** rng.uniform(-14.0, -2.0)]))
+        changes[f"bearings.{gear}.oloa_damping_ratio"] = ratio
+    pair = pair.with_(changes)
+    system = periodic_system(pair, "relative")
+    ctx.prec, s, truth = BITS, system.structure, []
+    for mass, damping, stiffness in zip(s.mass[4:], s.damping[4:], s.stiffness[4:], strict=True):
+        decay = ball(damping) / (2 * ball(mass))
+        root = acb(decay * decay - ball(stiffness) / ball(mass)).sqrt()
+        truth += [((sign * root - decay) * ball(pair.geometry.mesh_period)).exp() for sign in (1, -1)]
+    disks = [(complex(x.mid()), float((x - acb(complex(x.mid()))).abs_upper())) for x in truth]
+    values, errors = OffLineOfAction.of(system).multipliers(np.array([system.period]))
+    return [_finding("bearings", "closed form", values[0], errors[0], disks, "proven")]
+
+
+_OF_PAIRS = {
+    "stiffness variation": _stiffness_variation,
+    "law over speed": _law_over_speed,
+    "chebyshev": _chebyshev,
+    "bearings": _bearings,
+}
+
+
 def _finding(
-    kind: str,
-    route: str,
-    values: np.ndarray,
-    errors: np.ndarray,
-    truth: Sequence[tuple[complex, float]],
-    certificate: str,
+    kind: str, route: str, values: np.ndarray, errors: np.ndarray, truth: Disks, certificate: str
 ) -> Finding:
     ratio, _ = worst_ratio(values, errors, truth)
     modulus = np.abs(values)
@@ -238,7 +335,7 @@ def _formula(rng: np.random.Generator) -> list[Finding]:
         parts = math.ceil(40.0 * (ends[j + 1] - ends[j]) / T)
         length = (arb(ends[j + 1]) - start) / parts
         exact += [Piece(start + i * length, length, entries, bound) for i in range(parts)]
-    truth = multipliers(exact_monodromy(exact, 2))
+    truth = exact_multipliers(lambda: exact, 2)
     findings = []
     for method in ("auto", "gauss"):
         found = monodromy(system, 1e-8, method=method)
@@ -284,7 +381,7 @@ def _black_box(rng: np.random.Generator) -> list[Finding]:
         ]
         bound = _bounded([entry, lambda t: t * 0 + arb(2)], 4.0)
         exact.append(Piece(arb(start), arb(end) - arb(start), entries, bound))
-    truth = multipliers(exact_monodromy(exact, 2))
+    truth = exact_multipliers(lambda: exact, 2)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         found = monodromy(PeriodicSystem(A, 1.0), 1e-9)
@@ -317,11 +414,24 @@ def main() -> None:
     )
     parser.add_argument("--count", type=int, default=40, help="random systems of each kind")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--kind", choices=KINDS, nargs="+", default=KINDS)
     parser.add_argument("--jobs", type=int, default=2)
     given = parser.parse_args()
-    tasks = [(kind, given.seed * 100_000 + i) for kind in KINDS for i in range(given.count)]
-    results = Parallel(n_jobs=given.jobs)(delayed(judge)(*task) for task in tasks)
-    print(table([finding for result in results for finding in result]))
+    tasks = [(kind, given.seed * 100_000 + i) for i in range(given.count) for kind in given.kind]
+    findings: list[Finding] = []
+    with ProcessPoolExecutor(given.jobs) as pool:
+        waiting = {pool.submit(judge, *task): task for task in tasks}
+        for future in as_completed(waiting):
+            try:
+                found = future.result()
+            except ValueError as error:
+                print(*waiting[future], error, file=sys.stderr, flush=True)
+                continue
+            findings += found
+            for finding in found:
+                if finding.ratio > 1.0 or finding.wrong:
+                    print(*waiting[future], finding, file=sys.stderr, flush=True)
+    print(table(findings))
 
 
 if __name__ == "__main__":

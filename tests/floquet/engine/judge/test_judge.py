@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +13,7 @@ import pytest
 pytest.importorskip("flint")
 sys.path.insert(0, str(Path(__file__).parent))
 
-from balls import monodromy as exact_monodromy
-from balls import multipliers, worst_ratio
+from balls import exact_multipliers, worst_ratio
 from court import judge
 from gears import pieces
 
@@ -43,7 +43,7 @@ def wild_pair() -> GearPair:
 
 def test_faults_in_the_bound_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
     pair = wild_pair()
-    truth = multipliers(exact_monodromy(pieces(pair), 6))
+    truth = exact_multipliers(partial(pieces, pair), 6)
 
     def ratio(values: np.ndarray, errors: np.ndarray) -> float:
         return worst_ratio(values[0], errors[0], truth)[0]
