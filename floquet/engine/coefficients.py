@@ -248,11 +248,11 @@ class KnownMatrix:
     ) -> tuple[FloatArray, FloatArray]:
         """Polynomials of A_ij d_j/d_i, (k, degree + 1, n, n), and bounds (k,) on the norm of their errors."""
         out = np.zeros((start.size, degree + 1, self.dimension, self.dimension))
-        squares = np.zeros(start.size)
+        total = np.zeros(start.size)
         for i, j, entry in self._entries:
             factor = float(scaling[j] / scaling[i])  # powers of two: exact
             series, error = entry.taylor(start, length, degree)
             out[:, :, i, j] = factor * series
             with np.errstate(over="ignore"):  # of a step that is much too long
-                squares += (factor * error) ** 2
-        return out, np.sqrt(squares) * (1.0 + 1e-12)
+                total = np.hypot(total, factor * error)
+        return out, total * (1.0 + 1e-12)

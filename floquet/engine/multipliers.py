@@ -14,6 +14,7 @@ from lumped.typing import ComplexArray, FloatArray
 _EPS = float(np.finfo(np.float64).eps)
 _U = 0.5 * _EPS
 _SLACK = 1.0 + 1e-9  # rounding of a bound itself
+_FLOOR = 1e-150  # what squares in a norm may lose to underflow
 
 
 def _size(matrix: ComplexArray | FloatArray) -> float:
@@ -25,7 +26,8 @@ def _size(matrix: ComplexArray | FloatArray) -> float:
 
 def _rounding(n: int, *factors: ComplexArray | FloatArray) -> float:
     """Bound on the Frobenius norm of the rounding of a product of n x n matrices in a sum."""
-    return 4.0 * (n + 4.0) * _U * len(factors) * math.prod(float(np.linalg.norm(f)) for f in factors) * _SLACK
+    size = math.prod(float(np.linalg.norm(f)) for f in factors)
+    return 4.0 * (n + 4.0) * _U * len(factors) * size * _SLACK + _FLOOR
 
 
 def _triangular_error(M: FloatArray, T: ComplexArray, Z: ComplexArray, delta: float) -> float:
@@ -109,13 +111,14 @@ def multipliers_with_bounds(M: FloatArray, delta: float) -> tuple[ComplexArray, 
     Parameters
     ----------
     M : (n, n), best in balanced coordinates
-    delta : bound on the 2-norm of the error of M
+    delta : bound on the Frobenius norm of the error of M
 
     Returns
     -------
     multipliers : (n,) complex
     bounds : (n,); a simple multiplier's bound grows like delta, that of an m-fold defective one like
-        delta^(1/m). Multipliers that delta does not allow to be told apart share one bound.
+        delta^(1/m). Multipliers that delta does not allow to be told apart share one bound: each has an exact
+        one within it, and each exact one of theirs is that near to one of them.
 
     Sources: docs/theory/proven_bounds.md, "Multipliers".
     """

@@ -26,6 +26,7 @@ _TERMS = 40
 _RADII = np.array([1.5, 2.0, 3.0, 4.5, 7.0, 11.0, 18.0, 30.0, 60.0])
 _CHUNK = 4096
 _SLACK = 1.0 + 1e-9  # rounding of the bounds themselves
+_FLOOR = 1e-150  # what squares in a norm may lose to underflow
 
 
 def proven_propagation(
@@ -128,7 +129,7 @@ def proven_product(steps: FloatArray, errors: FloatArray) -> tuple[FloatArray, f
     flow = np.eye(n)
     with np.errstate(over="ignore", invalid="ignore"):
         for j in range(m):
-            before[j] = np.linalg.norm(flow)
+            before[j] = _size(flow)
             flow = steps[j] @ flow
     if not np.isfinite(flow).all() or not np.isfinite(before).all():
         raise NumericalError(
@@ -147,11 +148,23 @@ def proven_product(steps: FloatArray, errors: FloatArray) -> tuple[FloatArray, f
             tails.pop()
             error = size * error + off * norm + off * error + rounding * size * norm
             block = other @ block
-            rank, norm = rank + 1, float(np.linalg.norm(block)) * _SLACK
+            rank, norm = rank + 1, _size(block)
         blocks.append((rank, block, norm, error))
         if tails:
             other, size, off = tails[-1]
             error = size * error + off * (norm + error) + rounding * size * norm * n
             block = other @ block
-        tails.append((block, math.sqrt(float(np.linalg.norm(block.T @ block))) * _SLACK, error))
+        tails.append((block, _two_norm(block), error))
     return flow, total * _SLACK
+
+
+def _size(matrix: FloatArray) -> float:
+    """Bound on the Frobenius norm."""
+    return float(np.linalg.norm(matrix)) * _SLACK + _FLOOR
+
+
+def _two_norm(matrix: FloatArray) -> float:
+    """Bound on the 2-norm: |A|^2 <= |A^T A|_F, of A divided by its Frobenius norm."""
+    size = _size(matrix)
+    scaled = matrix / size
+    return size * math.sqrt(float(np.linalg.norm(scaled.T @ scaled)) + 1e-12) * _SLACK

@@ -14,7 +14,6 @@ from lumped.friction import LAWS, mean_coefficient
 from lumped.labelling import Coordinate
 from lumped.model.averaged import Mode, modes
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
-from lumped.model.periodic_system import LTVSystem
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -235,10 +234,3 @@ def with_point(values: FloatArray, point: float) -> FloatArray:
     nodes = values.copy()
     nodes[np.argmin(np.abs(nodes - point))] = point
     return nodes
-
-
-def mean_mesh_stiffness(system: LTVSystem) -> float:
-    """Mean over the mesh cycle of the total stiffness: integral of k_i over the path, over one base pitch."""
-    k = system.cycle.elements.stiffness
-    low, high = k.interval
-    return k.mean() * (high - low) / system.cycle.geometry.base_pitch

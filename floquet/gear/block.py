@@ -55,12 +55,15 @@ def gear_block(
     metric = 1.0 / np.abs(per_load)
     levels = ([0.0] if friction_level is None else [0.0, friction_level]) if friction_apart else []
     mesh = MeshGains(system, variation.stiffness_variation, levels, metric)
-    phases, fitted, errors = fit_pieces(mesh, mesh.edges, mesh.metric, rtol=rtol)
+    phases, fitted, errors, at = fit_pieces(mesh, mesh.edges, mesh.metric, rtol=rtol)
+    jumps = np.zeros((phases.size, mesh.jumps.shape[0]))
+    jumps[at] = mesh.jumps.T
     blocks, rigid = [], []
     for p in range(mesh.parts):
         four, misfit = _four(fitted, errors, p, mesh)
         w, wd, f, fr = four
-        blocks.append(Gains(w[:, :3], wd[:, :3], f[:, :3], fr[:, :3], misfit))
+        jump = jumps[:, 2 * p : 2 * p + 2]
+        blocks.append(Gains(w[:, :3], wd[:, :3], f[:, :3], fr[:, :3], misfit, jump))
         rigid.append(Gains(w[:, 3:], wd[:, 3:], f[:, 3:], fr[:, 3:], misfit))
     torques, balance = _torques(variation.pair, system, metric[0], tuple(rigid))
     f = blocks[0].f.copy()

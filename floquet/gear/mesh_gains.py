@@ -15,7 +15,6 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from floquet.gear.axes import mean_mesh_stiffness
 from floquet.rank_one.piecewise import series_rounding, to_series
 from lumped.errors import NumericalError
 from lumped.model.periodic_system import LTVSystem
@@ -124,7 +123,7 @@ class MeshGains:
         self.arm = np.stack([rows @ (s.friction_arm[:, i] / s.mass) for i in (0, 1)])
         self.metric = np.append(metric, metric[0])  # the rigid rotation over m_e is weighed like q
         self.levels, self.parts = levels, 1 + len(levels)
-        self.factor, self.mean = factor, mean_mesh_stiffness(system)
+        self.factor, self.mean = factor, cycle.mean_stiffness
         self.pitch, self.offsets = g.base_pitch, cycle.offsets
         self.edges = cycle.breaks / cycle.period
         middle = cycle.offsets[:, None] + g.base_pitch * 0.5 * (self.edges[:-1] + self.edges[1:])
@@ -142,6 +141,10 @@ class MeshGains:
             degree += self.e.degree
         self.varied = factor != 1.0
         self.count = 1 + degree + self.mu.degree + 1 + (_FACTOR_DEGREE if self.varied else 0)
+        # The mean is a sum over the pieces of the law, each to the moduli of its terms.
+        rows, width = np.abs(e.stiffness.coefficients), np.diff(e.stiffness.breaks)
+        moduli = (rows * width ** np.arange(rows.shape[0], 0, -1)[:, None]).sum() / g.base_pitch
+        self.mean_error = (width.size + 60.0) * _U * float(moduli)
         self.slips = _slips(cycle.break_phases, self.edges, 8.0 * _U * (1.0 + g.contact_ratio))
 
     def _loads(self) -> list[tuple[_Law, _Law | None, float]]:
@@ -157,7 +160,7 @@ class MeshGains:
         loads = self._loads()
         groups = np.zeros((self.parts * len(loads), *phases.shape, 4))
         errors = np.zeros((groups.shape[0], centre.size))
-        factors, fixed = [np.ones_like(phases)] * 2, self.fixed[:, segment]
+        factors, fixed = [np.ones_like(phases)] * 2, self._fixed[0][:, segment]
         if self.varied:
             factors, off, most = self._factors(centre, half, segment, nodes)
             fixed = fixed * most
@@ -212,12 +215,20 @@ class MeshGains:
             size = size * (other.near if near else other.size) * constant
         return np.asarray(size * (normal + arm * mu + full * level), dtype=float)
 
+    @property
+    def jumps(self) -> FloatArray:
+        """Bounds (G, S+1) on the integral over the phase of the errors next to each edge, on either side.
+
+        Where the edge is off by rounding, the gain is for so long that of the other side.
+        """
+        return self._fixed[1]
+
     @cached_property
-    def fixed(self) -> FloatArray:
-        """Bounds (G, S): rounding of values and of positions, and edges that are off by rounding."""
+    def _fixed(self) -> tuple[FloatArray, FloatArray]:
+        """Bounds (G, S) by rounding of values and of positions, and ``jumps``."""
         loads = self._loads()
         errors = np.zeros((self.parts * len(loads), self.edges.size - 1))
-        width = np.diff(self.edges)
+        jumps = np.zeros((errors.shape[0], self.edges.size))
         for j, (law, other, constant) in enumerate(loads):
             for p in range(self.parts):
                 reach = self._reach(law.size, other, constant, p)
@@ -230,10 +241,25 @@ class MeshGains:
                     arm * self.mu.slope + tilt * (self.mu.size + sum(self.levels))
                 )
                 errors[self._index(j, p)] = (_ROUNDINGS * reach + self.place * moved).sum(axis=0)
-                # For a time of slips the gain may be that of the other side of an edge.
-                jump = 2.0 * self.slips * self._reach(law.near, other, constant, p, near=True).sum(axis=0)
-                errors[self._index(j, p)] += (jump[:-1] + jump[1:]) / width
-        return errors
+                near = self._reach(law.near, other, constant, p, near=True).sum(axis=0)
+                jumps[self._index(j, p)] = 2.0 * self.slips * self._largest_factor * near
+        return errors, jumps
+
+    @cached_property
+    def _largest_factor(self) -> FloatArray:
+        """Bound (S+1,) on 1, f and sqrt f of ``_factors`` on both sides of each edge."""
+        if not self.varied:
+            return np.ones(self.edges.size)
+        low, high = self.edges[:-1], self.edges[1:]
+        total, target = self._total(
+            0.5 * (low + high), 0.5 * (high - low), np.arange(low.size), np.array([-1.0, 1.0])
+        )
+        with np.errstate(divide="ignore"):
+            f = np.maximum(1.01 * np.abs(target) / total, 1.0)
+        f[~(total > 0.0)] = np.inf
+        both = np.maximum(np.append(f[:, 0], f[-1, 1]), np.insert(f[:, 1], 0, f[0, 0]))
+        both[[0, -1]] = both[[0, -1]].max()
+        return np.asarray(both)
 
     def _factors(
         self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
@@ -269,9 +295,12 @@ class MeshGains:
 
         most = np.abs(q).sum(axis=1)
         size = most * total.max(axis=1) + np.abs(target).max(axis=1)
+        # By how much the total is wrong, rounding of its positions included, and what that does.
+        wrong = (_ROUNDINGS * self.k.size + self.place * self.k.slope).sum(axis=0)[segment]
+        made = (most + abs(self.factor)) * wrong + abs(1.0 - self.factor) * self.mean_error
         with np.errstate(divide="ignore", invalid="ignore"):
-            floor = least(total)
-            off = np.where(floor > 0.0, sup(q_high * total - target, size) / floor, np.inf)
+            floor = least(total) - wrong
+            off = np.where(floor > 0.0, (sup(q_high * total - target, size) + made) / floor, np.inf)
             floor = least(s_high)
             gap = sup(s_high**2 - q_high, np.abs(s).sum(axis=1) ** 2 + most) + off
             off_root = np.where(floor > 0.0, gap / floor, np.inf)

@@ -13,7 +13,7 @@ from floquet.engine.monodromy import monodromy
 from floquet.engine.propagators.base import Propagator
 from floquet.engine.spectrum import Spectrum
 from floquet.engine.system import PeriodicSystem
-from floquet.gear.axes import GearVariation, mean_mesh_stiffness
+from floquet.gear.axes import GearVariation
 from floquet.gear.block import gear_block
 from floquet.rank_one.batch import fast_multipliers
 from lumped.model.periodic_system import Form, LTVSystem, periodic_system
@@ -76,7 +76,7 @@ class _Coefficients:
         stiffness, damping = gain.stiffness, gain.damping
         if self.factor != 1.0:
             total = system.cycle.sample(times, segment).stiffness.sum(axis=0)
-            mean = mean_mesh_stiffness(system)
+            mean = system.cycle.mean_stiffness
             f = ((mean + self.factor * (total - mean)) / total)[:, None]
             stiffness, damping = f * stiffness, np.sqrt(f) * damping
         m = len(system.coordinates)
@@ -120,7 +120,8 @@ class OffLineOfAction:
         """Multipliers over periods (N,) -> (N, 4), and bounds on their errors."""
         angle = self.exponents * periods[:, None]
         values = np.exp(angle)
-        wrong = self.errors * periods[:, None] + 4.0 * _U * np.abs(angle)
+        # Sixteen units: the product, and periods that are made of speeds in rpm.
+        wrong = self.errors * periods[:, None] + 16.0 * _U * np.abs(angle)
         return values, np.abs(values) * (np.expm1(wrong) + 8.0 * _U)
 
 

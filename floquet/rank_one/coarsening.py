@@ -84,7 +84,9 @@ def coarsened(
     none = np.zeros((len(pieces), m, 1))
     for q in range(Q):
         w, wd = (trimmed(powers[:, j, q]) for j in (0, 1))
-        parts.append(Gains(w, wd, none, none, np.pad(misfits[:, :, q], ((0, 0), (0, 2)))))
+        parts.append(
+            Gains(w, wd, none, none, np.pad(misfits[:, :, q], ((0, 0), (0, 2))), fine.edges[bounds, :, q])
+        )
     return RankOneSystem(
         stiffness=system.stiffness,
         damping=system.damping,
@@ -113,21 +115,23 @@ class _Fine(NamedTuple):
     phases : (P+1,)
     powers : (P, 2, Q, m, d+1) of w and wd
     values : (P, s, 2, Q, m) at Gauss nodes
-    misfits : (P, 2, Q)
+    misfits, edges : (P, 2, Q), (P+1, 2, Q) fit and edge errors of the given pieces
     weights : (2, Q) what turns the norm of a gain into that of A times the longest period
     reference : (m,) constant part of w that is none of A's
     root : (m,) square roots of the metric
-    calm : max omega + |C| times the longest period
+    calm, drive : max omega + |C|, and how fast C lets energy grow, times the longest period
     """
 
     phases: FloatArray
     powers: FloatArray
     values: FloatArray
     misfits: FloatArray
+    edges: FloatArray
     weights: FloatArray
     reference: FloatArray
     root: FloatArray
     calm: float
+    drive: float
 
     @classmethod
     def of(cls, system: RankOneSystem, longest: float, damping: float, most: FloatArray) -> _Fine:
@@ -141,15 +145,19 @@ class _Fine(NamedTuple):
         )
         rows = np.array([np.linalg.norm(form.v / form.omega), damping * np.linalg.norm(form.v)])
         misfits = np.stack([part.fit_errors[:, :2] for part in system.parts], axis=2)
+        none = np.zeros((system.phases.size, 2))
+        edges = [none if part.edge_errors is None else part.edge_errors for part in system.parts]
         return cls(
             phases=system.phases,
             powers=powers,
             values=np.einsum("ijqmk,sk->isjqm", powers, _NODES[:, None] ** np.arange(_DEGREE + 1)),
             misfits=misfits,
+            edges=np.stack(edges, axis=2),
             weights=longest * rows[:, None] * most,
             reference=form.shapes @ form.reference,
             root=np.sqrt(system.metric),
             calm=longest * float(form.omega.max() + np.linalg.norm(form.C)),
+            drive=longest * form.drive,
         )
 
     @property
@@ -196,28 +204,36 @@ class _Fine(NamedTuple):
             [np.cumsum(terms[:0:-1], axis=0)[::-1], np.zeros((1, *beyond.shape))]
         )
         eta = length * (np.sqrt(missing) * self.weights).sum(axis=(1, 2))  # (d,)
-        misfit = float((widths @ self.misfits[start:stop].reshape(widths.size, -1)) @ self.weights.ravel())
-        a = 0.5 * length * self._majorant(powers)
-        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is no good
-            growth = np.exp(2.0 * a.sum() - length * self.calm)
-            distance = (np.exp(2.0 * _ELLIPSE @ a)[:, None] * _DECAY).min(axis=0)
-            error = growth * (
-                np.minimum(distance, 1.0) * eta + 0.5 * np.exp(eta) * eta**2 + np.exp(eta + misfit) * misfit
-            )
-        good = np.flatnonzero(error <= tolerance * max(length, _SHORT))
-        if good.size == 0:
-            return None
-        degree = int(good[0])
-        powers = np.einsum("kd,djqm->jqmk", _POWERS[:, : degree + 1], series.reshape(shape)[: degree + 1])
+        # At an edge that goes, both sides count.
+        lost = (widths[:, None, None] * self.misfits[start:stop]).sum(axis=0)
+        misfit = float(((lost + 2.0 * self.edges[start + 1 : stop].sum(axis=0)) * self.weights).sum())
+        allowed = tolerance * max(length, _SHORT)
         # Rounding of the moments, of the places of the nodes in the piece, and of the change to powers.
         largest = np.sqrt(
             (np.square(values).reshape(u.size, *shape[1:]) * self.root**2).sum(axis=3).max(axis=0)
         )
-        orders = 2.0 * np.arange(degree + 1) + 1.0
-        rounding = _U * orders.sum() * (u.size + 40.0 + 300.0 / length) * largest
-        sizes = np.sqrt(np.square(series.reshape(shape) * self.root).sum(axis=3))[: degree + 1]
-        rounding += 16.0 * _U * np.einsum("d,djq->jq", np.abs(_POWERS).sum(axis=0)[: degree + 1], sizes)
-        return _Piece(stop, powers, rounding, float(error[degree]) * (1.0 + 1e-9))
+        sizes = np.sqrt(np.square(series.reshape(shape) * self.root).sum(axis=3))
+        for degree in np.flatnonzero(self._errors(powers, length, eta, misfit) <= allowed):
+            orders = 2.0 * np.arange(degree + 1) + 1.0
+            rounding = _U * orders.sum() * (u.size + 40.0 + 300.0 / length) * largest
+            change = np.abs(_POWERS).sum(axis=0)[: degree + 1]
+            rounding += 16.0 * _U * np.einsum("d,djq->jq", change, sizes[: degree + 1])
+            # The bound is that of the polynomials that are kept, of this degree.
+            kept = np.einsum("kd,djqm->jqmk", _POWERS[:, : degree + 1], series.reshape(shape)[: degree + 1])
+            missed = eta + length * float((rounding * self.weights).sum())
+            error = self._errors(kept, length, missed, misfit)[degree]
+            if error <= allowed:
+                return _Piece(stop, kept, rounding, float(error) * (1.0 + 1e-9))
+        return None
+
+    def _errors(self, powers: FloatArray, length: float, eta: FloatArray, misfit: float) -> FloatArray:
+        """Bounds (d,) on the change of the flow over a piece that these polynomials make, by their degree."""
+        a = 0.5 * length * self._majorant(powers)
+        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is no good
+            growth = np.exp(2.0 * a.sum() - length * (self.calm - self.drive))
+            distance = (np.exp(2.0 * _ELLIPSE @ a)[:, None] * _DECAY).min(axis=0)
+            first, second = np.minimum(distance, 1.0) * eta, 0.5 * np.exp(eta) * eta**2
+            return np.asarray(growth * (first + second + np.exp(eta + misfit) * misfit))
 
     def _majorant(self, powers: FloatArray) -> FloatArray:
         """Bounds (d+1,) on the coefficients of A in powers of u, times the longest period."""

@@ -24,6 +24,7 @@ def packed(system: RankOneSystem) -> Problem:
     noise, relative = _rounding(system, form)
     fit_error = np.stack([part.fit_errors for part in system.parts]) * (1.0 + 1e-9)
     fit_error += relative * np.stack([_norms(x) for x in (form.w, form.wd, form.f, form.fr)], axis=2)
+    edges = [np.zeros((pieces + 1, 2)) if p.edge_errors is None else p.edge_errors for p in system.parts]
     degrees = np.stack([_degrees(form.w), _degrees(form.wd)], axis=1)
     flow_error = np.zeros(pieces) if system.coarsening is None else system.coarsening.errors
     return Problem(
@@ -37,9 +38,10 @@ def packed(system: RankOneSystem) -> Problem:
         ratios=ratios,
         unequal=unequal,
         fit_error=own(fit_error),
+        edge_error=own(np.stack(edges) * (1.0 + 1e-9)),
         flow_error=own(flow_error),
         C=own(form.C),
-        drive=max(0.0, -float(np.linalg.eigvalsh(0.5 * (form.C + form.C.T)).min())),
+        drive=form.drive,
         noise=noise,
         omega=own(form.omega),
         v=own(form.v),

@@ -83,7 +83,7 @@ def _power_matrix(degree: int) -> FloatArray:
 
 def fit_pieces(
     gains: PolynomialGains, edges: FloatArray, metric: FloatArray, degree: int = 8, rtol: float = 1e-11
-) -> tuple[FloatArray, list[FloatArray], FloatArray]:
+) -> tuple[FloatArray, list[FloatArray], FloatArray, npt.NDArray[np.intp]]:
     """Polynomials of G gains on pieces of the period, halved until what is dropped is small enough.
 
     Parameters
@@ -98,7 +98,7 @@ def fit_pieces(
     Returns
     -------
     phases (P+1,); for each gain (P, m, d+1) in powers of u in [-1, 1], lowest first; and (P, G) bounds on the
-    errors everywhere in each piece, rounding included
+    errors everywhere in each piece, rounding included; (S+1,) which of the phases are ``edges``
 
     Raises
     ------
@@ -148,11 +148,12 @@ def fit_pieces(
     # Start points are exact only for the segments' own ends; others differ by rounding, which the second
     # kind of error allows for.
     phases = np.append(start[order], edges[-1])
-    phases[_nearest(phases, edges)] = edges
+    at = _nearest(phases, edges)
+    phases[at] = edges
     power = np.concatenate(fits, axis=1)[:, order]
     polynomials = [trimmed(p) / root[:, None] for p in power]
     # 1 + 1e-12: rounding of the sums that make the bounds.
-    return phases, polynomials, np.ascontiguousarray(np.concatenate(misfits)[order]) * (1.0 + 1e-12)
+    return phases, polynomials, np.ascontiguousarray(np.concatenate(misfits)[order]) * (1.0 + 1e-12), at
 
 
 def _nearest(phases: FloatArray, edges: FloatArray) -> npt.NDArray[np.intp]:

@@ -26,6 +26,8 @@ class Gains:
     w, wd : (P, m, d+1) feedback of v . z [1/s^2] and of v . z' [1/s], lowest power first
     f, fr : (P, m, d+1) forcing f + fr/T, fr for what goes with a rate of change over the period
     fit_errors : (P, 4) largest error of w, wd, f and fr on each piece, norm sqrt(sum metric e^2)
+    edge_errors : (P+1, 2) integral over the phase of what the errors of w and wd are beyond that next to
+        each end of a piece, on either side; None: nothing
     """
 
     w: FloatArray
@@ -33,6 +35,7 @@ class Gains:
     f: FloatArray
     fr: FloatArray
     fit_errors: FloatArray
+    edge_errors: FloatArray | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -219,6 +222,11 @@ class ModalForm:
     reference: FloatArray
     input: FloatArray
     shapes: FloatArray
+
+    @property
+    def drive(self) -> float:
+        """Bound on the rate at which C lets energy grow [1/s]; 0 where all supports are damped."""
+        return max(0.0, -float(np.linalg.eigvalsh(0.5 * (self.C + self.C.T)).min()))
 
     def state_matrix(self) -> FloatArray:
         """Matrix (2m, 2m) that turns x = (omega eta, eta') into (z, z')."""

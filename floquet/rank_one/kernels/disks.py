@@ -272,7 +272,7 @@ def _join(values: ComplexArray, radii: FloatArray, scratch: FloatArray, group: n
     for i in range(n):
         for j in range(n):
             if j != i and group[i] == group[j]:
-                radii[i] = max(radii[i], abs(values[i] - values[j]) + scratch[j])
+                radii[i] = max(radii[i], (abs(values[i] - values[j]) + scratch[j]) * (1.0 + 1e-12))
 
 
 @compiled(nogil=True)

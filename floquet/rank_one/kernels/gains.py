@@ -28,6 +28,7 @@ class Problem(NamedTuple):
     ratios : (P,) rho where wd = rho w for all parts, else nan
     unequal : (Q, P) bound on the norm of wd - rho w there
     fit_error : (Q, P, 4) largest |error| of w, wd, f, fr by their polynomials on each piece
+    edge_error : (Q, P+1, 2) integral over the phase of a further |error| of w, wd at either side of each end
     flow_error : (P,) bound on what the error of the transition matrix over each piece has besides
     C, omega, v : (m, m) [1/s], (m,) [rad/s], (m,)
     drive : bound on the rate [1/s] at which C lets the state grow; 0 where all supports are damped
@@ -46,6 +47,7 @@ class Problem(NamedTuple):
     ratios: FloatArray
     unequal: FloatArray
     fit_error: FloatArray
+    edge_error: FloatArray
     flow_error: FloatArray
     C: FloatArray
     drive: float
@@ -178,13 +180,14 @@ def part_of(poly: FloatArray, degree: int, part: int, parts: int, factor: float,
 @compiled(_nrt=False)
 def load_piece(
     problem: Problem, i: int, gains: FloatArray, zeta: float, T: float, piece: Piece
-) -> tuple[float, float, float, float]:
+) -> tuple[float, float, float, float, float, float]:
     """Sum the parts of piece i.
 
     Returns
     -------
-    bound on |A| per unit time, bound on its error, bound on the error of f, and the ratio wd/w where it is
-    the same for all powers and coordinates, else nan
+    bound on |A| per unit time, bound on its error, bound on the error of f, the ratio wd/w where it is the
+    same for all powers and coordinates, else nan, and bounds on the integrals over time of further errors of
+    A at the start and at the end
     """
     nu, nu_rate, calm = piece.sizes[0], piece.sizes[1], piece.sizes[2]
     rho, fit = problem.ratios[i], problem.fit_error
@@ -193,13 +196,16 @@ def load_piece(
     _summed(problem.w, i, piece.degrees[0], gains, 1.0, piece.w)
     if math.isnan(rho):
         _summed(problem.wd, i, piece.degrees[1], gains, zeta, piece.wd)
-    rate, error, error_f = calm, problem.noise, 0.0
+    rate, error, error_f, first, last = calm, problem.noise, 0.0, 0.0, 0.0
+    edge = problem.edge_error
     for j in range(piece.f.shape[0]):
         store(piece.f, (j,), zero())
     for q in range(gains.size):
         g = abs(gains[q])
         rate += g * (problem.sizes[q, i, 0] * nu + abs(zeta) * problem.sizes[q, i, 1] * nu_rate)
         error += g * (fit[q, i, 0] * nu + fit[q, i, 1] * abs(zeta) * nu_rate)
+        first += g * T * (edge[q, i, 0] * nu + edge[q, i, 1] * abs(zeta) * nu_rate)
+        last += g * T * (edge[q, i + 1, 0] * nu + edge[q, i + 1, 1] * abs(zeta) * nu_rate)
         if not math.isnan(rho):
             error += g * abs(zeta) * problem.unequal[q, i] * nu_rate
         error_f += g * (fit[q, i, 2] + fit[q, i, 3] * abs(zeta) / T)
@@ -208,7 +214,7 @@ def load_piece(
                 piece.f[j, r] += gains[q] * problem.f[q, i, r, j]
             for j in range(problem.fr.shape[3]):
                 piece.f[j, r] += gains[q] * zeta / T * problem.fr[q, i, r, j]
-    return rate, error, error_f, zeta * rho
+    return rate, error, error_f, zeta * rho, first, last
 
 
 @compiled(_nrt=False)

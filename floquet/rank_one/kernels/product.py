@@ -14,11 +14,12 @@ BLOCKS = 34
 """Blocks of steps held at once at most: enough for 2^32 steps."""
 _EPS = 2.220446049250313e-16
 _SLACK = 1.0 + 1e-11  # rounding of a bound itself
+_FLOOR = 1e-150  # squares of what is smaller may be lost
 
 
 @compiled(_nrt=False)
 def frobenius(rows: FloatArray, scratch: FloatArray) -> float:
-    """Norm of rows[:, 0:n], by way of the first row of ``scratch``."""
+    """Bound on the norm of rows[:, 0:n], by way of ``scratch[0]``: squares may be lost to underflow."""
     n = rows.shape[0]
     total = zero()
     for i in range(n):
@@ -27,7 +28,7 @@ def frobenius(rows: FloatArray, scratch: FloatArray) -> float:
     square = 0.0
     for lane in range(n):
         square += scratch[0, lane]
-    return math.sqrt(square)
+    return math.sqrt(square) + _FLOOR
 
 
 @compiled(_nrt=False)
@@ -114,7 +115,13 @@ def _gram(A: FloatArray, out: FloatArray) -> None:
 
 @compiled(_nrt=False)
 def spectral(A: FloatArray, square: FloatArray, scratch: FloatArray) -> float:
-    """Bound on the 2-norm of A[:, 0:n]: |A|^2 <= |A^T A|_F, too large by at most the fourth root of n."""
+    """Bound on the 2-norm of A[:, 0:n]: |A|^2 <= |A^T A|_F, too large by at most the fourth root of n.
+
+    |A|_F where the fourth powers in that would be lost to underflow.
+    """
+    size = frobenius(A, scratch)
+    if size < 1e-60:
+        return size * _SLACK
     _gram(A, square)
     return math.sqrt(frobenius(square, scratch)) * _SLACK
 

@@ -218,7 +218,7 @@ def _sample(
         end = 1.0 if k == count - 1 else begin + width
         if balanced or (sample < samples and sample < end * samples):
             if i != last:
-                _, _, _, ratio = load_piece(problem, i, gains, zeta, T, piece)
+                _, _, _, ratio, _, _ = load_piece(problem, i, gains, zeta, T, piece)
                 psi[:] = 0.0
                 for q in range(gains.size):
                     for j in range(degree):

@@ -167,7 +167,7 @@ def steps_of_period(
     size_input, log_tolerance = norm(problem.input), math.log(limits.tolerance)
     for i in range(problem.phases.size - 1):
         length = (problem.phases[i + 1] - problem.phases[i]) * T
-        rate, misfit, misfit_f, ratio = load_piece(problem, i, gains, zeta, T, piece)
+        rate, misfit, misfit_f, ratio, first, last = load_piece(problem, i, gains, zeta, T, piece)
         parts = max(1, math.ceil(0.5 * length * rate / limits.angle))
         part = 0
         while part < parts:
@@ -198,7 +198,13 @@ def steps_of_period(
             count_w = piece.degrees[0] + (piece.degrees[1] if math.isnan(ratio) else 0)
             rounding = _U * math.sqrt(2.0 * m) * size * ((count_w + 20.0) * turned + total + 10.0)
             back = math.exp(growth) * (1.0 + 1e-12)
-            spread = 2.0 * h * back * back * math.exp(2.0 * h * misfit)
+            # What is wrong at an end of the piece acts in the step at that end, not in all of them alike.
+            off = 2.0 * h * misfit
+            if part == 0:
+                off += first
+            if part == parts - 1:
+                off += last
+            spread = back * back * math.exp(off)
             twice = 1.0 + size_step
             # 1 + 1e-6: rounding of the bound itself, of the number of terms above all.
             error = (residual + twice * (limits.tolerance + rounding)) * back * (1.0 + 1e-6)
@@ -206,7 +212,7 @@ def steps_of_period(
             for j in range(piece.degrees[2] + 1):
                 size_f += row_norm(piece.fs, j, m)
             size_f /= h  # fs holds h^2 f
-            local[count, 0] = error + misfit * spread
+            local[count, 0] = error + off * spread
             for c in range(2):
                 # The motion from rest in the middle, and its error; misfits act for all of the step.
                 force = size_f if c == 0 else h * size_input
@@ -216,8 +222,8 @@ def steps_of_period(
                     reach += start[q, FORCED + c] ** 2
                 reach = own + math.sqrt(reach)
                 error_f = twice * own + (error + 2.0 * m * _EPS * twice) * reach
-                local[count, 1 + c] = error_f + misfit * spread * 2.0 * force
-            local[count, 1] += misfit_f * spread
+                local[count, 1 + c] = error_f + off * spread * 2.0 * force
+            local[count, 1] += 2.0 * h * misfit_f * spread
             layout[count, 0], layout[count, 1], layout[count, 2] = i, part, parts
             layout[count, 3] = problem.flow_error[i]
             count += 1

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from floquet import PROPAGATORS, gear_pair_multipliers, gear_pair_system, monodromy, stability_chart
-from floquet.gear.axes import GEAR_AXES, GearVariation, mean_mesh_stiffness, vary
+from floquet.gear.axes import GEAR_AXES, GearVariation, vary
 from lumped import geometry, load_gear_pair, periodic_system
 from lumped.errors import ParameterError
 
@@ -111,7 +111,7 @@ def test_stiffness_variation_keeps_the_mean(pair, factor: float) -> None:
     total = -gear_pair_system(GearVariation(pair, stiffness_variation=factor), "feedback").evaluate(times)
     # Row of x_p: m_p x_p'' = -sum N_i, so the q column holds k(t)/m_p whatever the friction.
     k = total[:, 4, 0] * system.structure.mass[2]
-    mean = mean_mesh_stiffness(system)
+    mean = system.cycle.mean_stiffness
     assert weights @ k / system.period == pytest.approx(mean, rel=1e-12)  # piecewise constant: rounding only
     ratio = 2.0  # double against single contact with the rectangular model
     full = np.ptp(k) / factor if factor else 0.0
