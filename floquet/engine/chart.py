@@ -114,8 +114,8 @@ def chart_dataset(
     Returns
     -------
     Dataset with spectral_radius, error, verdict (1 stable, 0 undecided, -1 unstable) over the axes, and where
-    given, multipliers, multiplier_errors over the axes and ``multiplier``. Its attribute
-    ``certificate`` is "proven", "estimate" or "mixed", which a variable ``proven`` then details.
+    given, multipliers, multiplier_errors over the axes and ``multiplier``. ``proven`` says where the errors
+    are bounds by a theorem, the attribute ``certificate`` whether all are: "proven", "estimate" or "mixed".
     """
     shape = tuple(values.size for values in grid.values())
     dims = tuple(grid)
@@ -131,6 +131,7 @@ def chart_dataset(
             "1",
             "stability verdict, undecided where the bound contains 1",
         ),
+        "proven": (dims, proven.reshape(shape), "1", "whether the error is a proven bound, else an estimate"),
     }  # fmt: skip
     if multipliers is not None and multiplier_errors is not None:
         full, each = (*dims, "multiplier"), (*shape, -1)
@@ -146,7 +147,4 @@ def chart_dataset(
     dataset = labelled_dataset(variables, {name: (values, "", name) for name, values in grid.items()})
     dataset["verdict"].attrs.update(flag_values=[-1, 0, 1], flag_meanings="unstable undecided stable")
     dataset.attrs["certificate"] = "proven" if proven.all() else "mixed" if proven.any() else "estimate"
-    if dataset.attrs["certificate"] == "mixed":
-        label = {"units": "1", "long_name": "whether the error is a proven bound"}
-        dataset["proven"] = (dims, proven.reshape(shape), label)
     return dataset

@@ -16,7 +16,7 @@ from floquet.engine.multipliers import multipliers_with_bounds
 from floquet.engine.propagation import Propagation, error_of_product, propagate
 from floquet.engine.propagators.base import Propagator
 from floquet.engine.propagators.registry import propagator
-from floquet.engine.spectrum import Spectrum
+from floquet.engine.spectrum import Certificate, Spectrum
 from floquet.engine.system import PeriodicSystem
 from lumped.arguments import real_numbers
 from lumped.errors import NumericalError
@@ -32,7 +32,7 @@ class PeriodicMotion:
     times : (k,) [s]
     states : (k, n) x at ``times``
     initial : (n,) x(0)
-    initial_error : bound on the 2-norm of the error of x(0) in the coordinates x_i / scaling_i
+    initial_error : estimate of the 2-norm of the error of x(0) in the coordinates x_i / scaling_i
     scaling : (n,) scales of the states, such that the forcing over one period is of order one
     closure : |x(T) - x(0)| in the same coordinates, x(T) by marching through the period
     spectrum : multipliers of the system: where its ``verdict`` is "unstable" the motion exists, but nothing
@@ -46,6 +46,11 @@ class PeriodicMotion:
     scaling: FloatArray
     closure: float
     spectrum: Spectrum
+
+    @property
+    def certificate(self) -> Certificate:
+        """What all errors here are, those of the spectrum too: an estimate."""
+        return self.spectrum.certificate
 
 
 def periodic_motion(

@@ -26,7 +26,7 @@ _TERMS = 40
 _RADII = np.array([1.5, 2.0, 3.0, 4.5, 7.0, 11.0, 18.0, 30.0, 60.0])
 _CHUNK = 4096
 _SLACK = 1.0 + 1e-9  # rounding of the bounds themselves
-_FLOOR = 1e-150  # what squares in a norm may lose to underflow
+_FLOOR = 1e-300  # what underflow may take
 
 
 def proven_propagation(
@@ -159,8 +159,9 @@ def proven_product(steps: FloatArray, errors: FloatArray) -> tuple[FloatArray, f
 
 
 def _size(matrix: FloatArray) -> float:
-    """Bound on the Frobenius norm."""
-    return float(np.linalg.norm(matrix)) * _SLACK + _FLOOR
+    """Bound on the Frobenius norm, of the matrix divided by its largest entry: squares do not underflow."""
+    largest = float(np.abs(matrix).max()) + _FLOOR
+    return largest * float(np.linalg.norm(matrix / largest)) * _SLACK + _FLOOR
 
 
 def _two_norm(matrix: FloatArray) -> float:

@@ -64,17 +64,17 @@ def stability_chart(
         interpolation in speed and in damping or friction between them, for charts of many more points than
         that (speeds at which a friction law changes its regimes are computed directly); "auto", whichever of
         the two costs less; or a method of `monodromy` for an independent check
-    store : "all"; or "radius" for the spectral radius, its error and the verdict without the multipliers: 17
-        bytes a point instead of 257
+    store : "all"; or "radius" for the spectral radius, its error and the verdict without the multipliers: 18
+        bytes a point instead of 258
     n_jobs : threads (Taylor) or processes (others); default all cores for Taylor, 1 for the others
     progress : told the finished fraction
 
     Returns
     -------
-    xarray.Dataset over the axes: spectral_radius, error, verdict and, with store "all", multipliers and
-    multiplier_errors (10 each: the feedback block and the off-line-of-action block; the rigid rotation is no
-    part of them). Its attribute ``certificate`` is "proven", "estimate" or "mixed", which the variable
-    ``proven`` then tells for every point: estimates are what "chebyshev" interpolates, what "taylor" gives
+    xarray.Dataset over the axes: spectral_radius, error, verdict, proven and, with store "all", multipliers
+    and multiplier_errors (10 each: the feedback block and the off-line-of-action block; the rigid rotation is
+    no part of them). Its attribute ``certificate`` is "proven", "estimate" or "mixed", which the variable
+    ``proven`` tells for every point: estimates are what "chebyshev" interpolates, what "taylor" gives
     over speeds that share a friction law to a tolerance, and all of the other methods.
 
     Raises

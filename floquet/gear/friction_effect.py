@@ -51,7 +51,8 @@ def friction_effect(
     Dataset over ``law`` and the axes: ``growth`` [per mesh cycle]; ``growth_change`` from the reference;
     ``growth_error``, bound on the error of the change; ``verdict_change``, +1 where the law stabilises what
     was unstable, -1 where it makes unstable what was stable, 0 elsewhere (also where one is undecided).
-    ``reference_growth`` over the axes.
+    ``reference_growth`` over the axes. The attribute ``certificate`` is that of all charts, see
+    `stability_chart`.
 
     Raises
     ------
@@ -68,6 +69,7 @@ def friction_effect(
         if progress is not None:
             progress((index + 1) / (len(laws) + 1))
     base, others = charts[0], charts[1:]
+    kinds = {chart.attrs["certificate"] for chart in charts}
     dims = tuple(grid)
     growth = np.stack([np.log(c.spectral_radius.values) for c in others])
     error = np.stack([_log_error(c) + _log_error(base) for c in others])
@@ -84,7 +86,11 @@ def friction_effect(
             "reference_growth": (dims, reference_growth, "1", f"growth per cycle, law {reference}"),
         },
         {"law": (np.array(laws, dtype=object), "1", "friction law"), **axis_coordinates(grid)},
-        {"title": f"effect of friction on {pair.name}", "reference": reference},
+        {
+            "title": f"effect of friction on {pair.name}",
+            "reference": reference,
+            "certificate": kinds.pop() if len(kinds) == 1 else "mixed",
+        },
     )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from floquet.engine.multipliers import radii_with_bounds, verdicts
+from floquet.engine.spectrum import Certificate
 from floquet.rank_one.batch import Points, in_threads, multipliers_of
 from floquet.rank_one.kernels.steady import Balance as KernelBalance
 from floquet.rank_one.kernels.steady import periodic_points
@@ -27,12 +28,13 @@ class FastPeriodicMotion:
     Attributes
     ----------
     initial : (N, 2m) state (z, z') at t = 0, in the units of the system, for a gear pair [m, m/s]
-    errors : (N,) bound on the norm of the error of ``initial`` in energy coordinates (`ModalForm`)
+    errors : (N,) estimate of the norm of the error of ``initial`` in energy coordinates (`ModalForm`)
     amplitude : (N,) of the input of `Balance`; 0 where the system has none
-    amplitude_errors : (N,) bound on its error
+    amplitude_errors : (N,) estimate of its error
     energy_norm : (N,) norm of ``initial`` in energy coordinates, to judge ``errors`` by
     deflection : (N, S) v . z at the phases j/S of the period
     spectral_radius, radius_errors : (N,) largest |multiplier|, with a bound on its error
+    certificate : of ``radius_errors`` and so of ``verdict``
     """
 
     initial: FloatArray
@@ -43,6 +45,7 @@ class FastPeriodicMotion:
     deflection: FloatArray
     spectral_radius: FloatArray
     radius_errors: FloatArray
+    certificate: Certificate = "proven"
 
     @property
     def verdict(self) -> npt.NDArray[np.int8]:

@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 
 from lumped.typing import FloatArray
 from validation.plots.labels import WHITE_BOX
-from validation.plots.style import BLACK, IN_X, RED, legend, one_panel, write_beside
+from validation.plots.style import BLACK, GREY, IN_X, RED, legend, one_panel, write_beside
 
 #: Blue for fast decay to white at the boundary.
 _STABLE = LinearSegmentedColormap.from_list("decay", ["#08519c", "#6baed6", "#f7fbff"])
@@ -68,6 +68,7 @@ def field_figure(
     ax.set(xlim=(xs[0], xs[-1]), ylim=(ys[0], ys[-1]))
     bar = figure.colorbar(drawn, ax=ax, pad=0.01, extend=extend)
     bar.set_label(words, fontsize=8.5)
+    note_certificate(ax, chart)
     bar.outline.set_linewidth(0.5)
     ax.set(xlabel=axis_label(chart, x), ylabel=axis_label(chart, y))
     ax.grid(False)
@@ -125,8 +126,16 @@ def stability_line_figure(chart: xr.Dataset, x: str, value: float | None) -> Fig
     ax.fill_between(xs, 1.0, np.maximum(values, 1.0), color=UNSTABLE, linewidth=0.0)
     ax.set_xlim(xs[0], xs[-1])
     mark_operating_value(ax, value)
+    note_certificate(ax, chart)
     ax.set(xlabel=axis_label(chart, x), ylabel="spectral radius [-], unstable above 1")
     return figure
+
+
+def note_certificate(ax: Axes, chart: xr.Dataset) -> None:
+    """Say above the right end what the errors behind a chart are."""
+    words = {"mixed": "partly proven, partly estimates"}
+    kind = str(chart.attrs["certificate"])
+    ax.set_title(f"error bounds: {words.get(kind, kind)}", loc="right", fontsize=7.5, color=GREY)
 
 
 def field(

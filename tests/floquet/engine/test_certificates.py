@@ -5,8 +5,20 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from floquet import FourierSeries, KnownMatrix, PeriodicSystem, PiecewisePolynomial, monodromy
+from floquet import (
+    FourierSeries,
+    KnownMatrix,
+    PeriodicSystem,
+    PiecewisePolynomial,
+    fast_periodic_motions,
+    friction_effect,
+    gear_block,
+    monodromy,
+    periodic_motion,
+    stability_chart,
+)
 from floquet.engine.proven import proven_product
+from lumped import load_gear_pair
 from lumped.errors import NumericalError, ParameterError, ResolutionWarning
 
 
@@ -64,6 +76,32 @@ def test_the_product_keeps_terms_of_second_order() -> None:
     exact, bound = proven_product(np.tile(np.eye(2), (m, 1, 1)), np.full(m, e))
     assert exact == pytest.approx(np.eye(2))
     assert np.sqrt(2.0) * ((1.0 + e) ** m - 1.0) <= bound
+
+
+def test_decay_beyond_the_squares_of_floating_point_keeps_its_bound() -> None:
+    # 150 steps of ten, then 170 of 1/10: the flow after step 149 is 1e-170, whose square is no number.
+    steps = np.concatenate([np.full(150, 10.0), np.full(170, 0.1)]).reshape(-1, 1, 1)
+    errors = np.zeros(320)
+    errors[149] = 1e-3
+    product, bound = proven_product(steps, errors)
+    assert product[0, 0] == pytest.approx(1e-20)
+    assert 1e-3 * 1e149 * 1e-170 <= bound < 1e-22
+    dead = monodromy(PeriodicSystem(KnownMatrix([[-4000.0]]), 0.2))
+    assert dead.multiplier_errors[0] >= 5e-324
+    assert dead.verdict == "stable"
+
+
+def test_charts_and_motions_say_what_their_errors_are() -> None:
+    pair = load_gear_pair("nasa_28_28").with_({"friction.law": "xu_kahraman"})
+    speeds = {"speed_rpm": [3000.0, 3010.0]}
+    together, alone = stability_chart(pair, speeds), stability_chart(pair, {"speed_rpm": [3000.0]})
+    assert (together.attrs["certificate"], alone.attrs["certificate"]) == ("estimate", "proven")
+    assert together["proven"].values.tolist() == [False, False]
+    effect = friction_effect(pair, speeds, ["coulomb", "xu_kahraman"])
+    assert effect.attrs["certificate"] == "mixed"
+    assert fast_periodic_motions(gear_block(pair)).certificate == "proven"
+    forced = PeriodicSystem(lambda t: np.array([[-1.0]]), 1.0, b=lambda t: np.array([1.0]))
+    assert periodic_motion(forced).certificate == "estimate"
 
 
 def test_what_cannot_be_proven_is_refused() -> None:

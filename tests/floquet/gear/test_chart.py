@@ -25,7 +25,7 @@ def test_slices_make_the_same_chart_and_tell_how_far_it_is(pair, monkeypatch) ->
     told: list[float] = []
     sliced = stability_chart(pair, SMALL, rtol=1e-8, method="auto", store="radius", progress=told.append)
     assert sliced["spectral_radius"].dims == ("damping_ratio", "speed_rpm")
-    assert set(sliced.data_vars) == {"spectral_radius", "error", "verdict"}
+    assert set(sliced.data_vars) == {"spectral_radius", "error", "verdict", "proven"}
     for name in ("speed_rpm", "damping_ratio"):
         assert np.array_equal(sliced[name], whole[name])
         assert sliced[name].attrs["units"] == whole[name].attrs["units"]

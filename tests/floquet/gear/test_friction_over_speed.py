@@ -142,7 +142,7 @@ def test_radius_alone_is_that_of_all_multipliers(method: str, extra: dict[str, l
     axes = {"damping_ratio": [0.0, 0.03], **extra, "speed_rpm": np.linspace(900.0, 15000.0, 80)}
     whole = stability_chart(pair, axes, rtol=1e-8, method=method)
     alone = stability_chart(pair, axes, rtol=1e-8, method=method, store="radius")
-    assert set(alone.data_vars) == {"spectral_radius", "error", "verdict"}
+    assert set(alone.data_vars) == {"spectral_radius", "error", "verdict", "proven"}
     for name in alone.data_vars:
         assert (alone[name] == whole[name]).all()
     assert (np.abs(whole.multipliers).max("multiplier") == whole.spectral_radius).all()

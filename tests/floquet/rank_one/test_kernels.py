@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from floquet import RankOneSystem, fast_monodromies
+from floquet import RankOneSystem, coarsened, fast_monodromies
 from floquet.rank_one.kernels.disks import spectra
 from floquet.rank_one.kernels.lanes import LANES
 from floquet.rank_one.kernels.majorant import MAX_TERMS, enough_terms, powers_of_radii
@@ -92,6 +92,36 @@ def test_supports_that_feed_energy_in_enter_the_bound() -> None:
     silent = fast_monodromies(replace(system, gains=replace(declared, fit_errors=np.zeros((1, 4)))))
     assert distance > 1000 * silent.errors[0]
     assert found.errors[0] < 1000 * distance
+
+
+@pytest.mark.parametrize("route", ["as given", "joined"])
+def test_a_break_that_is_off_enters_the_bound(route: str) -> None:
+    # The gain jumps at 0.7 + e of the period and is given as if it did at 0.7.
+    e, zero = 1e-6, np.zeros((2, 1, 1))
+    w, jump = np.array([[[30.0]], [[2000.0]]]), np.array([[0.0, 0.0], [2000.0 * e, 0.0], [0.0, 0.0]])
+
+    def system(place: float, edge_errors: np.ndarray | None) -> RankOneSystem:
+        return RankOneSystem(
+            stiffness=np.array([1.0]), damping=np.array([0.1]), v=np.array([1.0]), period=1.0,
+            phases=np.array([0.0, place, 1.0]), metric=np.array([1.0]),
+            gains=Gains(w, zero, zero, zero, np.zeros((2, 4)), edge_errors),
+        )  # fmt: skip
+
+    exact, given, silent = system(0.7 + e, None), system(0.7, jump), system(0.7, None)
+    if route == "joined":  # so short a period that one piece will do
+        given, silent = (coarsened(replace(s, period=1e-4), 1e-4, 1.0, [], 1e-3) for s in (given, silent))
+        exact = replace(exact, period=1e-4)
+        assert given.phases.size == 2
+    S = np.linalg.solve(given.modal().state_matrix(), exact.modal().state_matrix())
+    moved = S @ fast_monodromies(exact).matrices[0] @ np.linalg.inv(S)
+    found = fast_monodromies(given)
+    distance = np.linalg.norm(found.matrices[0] - moved)
+    assert distance <= found.errors[0]
+    told = 2000.0 * e * exact.period * np.linalg.norm(1.0 / given.modal().omega)
+    assert found.errors[0] - fast_monodromies(silent).errors[0] >= 0.99 * told
+    if route == "as given":
+        assert distance > 1000.0 * fast_monodromies(silent).errors[0]
+        assert found.errors[0] < 1000.0 * distance
 
 
 def spectrum(M: np.ndarray, delta: float = 0.0) -> tuple[np.ndarray, np.ndarray, bool]:

@@ -54,7 +54,7 @@ def test_every_axis_makes_a_chart_over_speed(tmp_path, axis):
     worst = radius.isel(radius.argmax(...))
     assert f"multiplier {float(worst):.6f} at speed_rpm {float(worst['speed_rpm']):.5g}, " in result.stdout
     assert dict(chart.sizes) == {"speed_rpm": 12, axis.split("=")[0]: 3}
-    assert set(chart.data_vars) == {"spectral_radius", "error", "verdict"}
+    assert set(chart.data_vars) == {"spectral_radius", "error", "verdict", "proven"}
     assert chart["speed_rpm"].attrs["units"] == "rpm"
     assert picture.read_bytes().startswith(b"\x89PNG")
 

@@ -93,15 +93,14 @@ def test_no_label_of_a_tongue_covers_another() -> None:
 
 def over_speed_and_damping(speeds, dampings, radius) -> xr.Dataset:
     data = {"spectral_radius": (("speed_rpm", "damping_ratio"), radius)}
-    return xr.Dataset(data, {"speed_rpm": speeds, "damping_ratio": dampings})
+    axes = {"speed_rpm": speeds, "damping_ratio": dampings}
+    return xr.Dataset(data, axes, {"certificate": "mixed"})
 
 
 def test_a_large_chart_is_one_image_and_not_a_polygon_per_point() -> None:
     x, y = np.linspace(1000.0, 20000.0, 1000), np.linspace(0.0, 0.05, 500)
     radius = 0.9 + 0.15 * np.exp(-(((x[:, None] - 9000.0) / 500.0) ** 2) - (y / 0.01) ** 2)
-    chart = xr.Dataset(
-        {"spectral_radius": (("speed_rpm", "damping_ratio"), radius)}, {"speed_rpm": x, "damping_ratio": y}
-    )
+    chart = over_speed_and_damping(x, y, radius)
     ax = stability_figure(chart, "speed_rpm", "damping_ratio", (5000.0, 0.05)).axes[0]
     (image,) = ax.images
     assert image.get_array().shape == (500, 1000)
@@ -121,10 +120,8 @@ def test_a_large_chart_is_one_image_and_not_a_polygon_per_point() -> None:
 def test_uneven_axes_and_falling_ones_are_drawn_at_their_values() -> None:
     x, y = np.array([3000.0, 1000.0, 1100.0]), np.array([0.0, 0.01, 0.05])
     values = np.array([[0.3, 0.3, 0.3], [0.1, 0.1, 0.1], [0.2, 0.2, 0.2]])
-    chart = xr.Dataset(
-        {"spectral_radius": (("speed_rpm", "damping_ratio"), values)}, {"speed_rpm": x, "damping_ratio": y}
-    )
-    ax = stability_figure(chart, "speed_rpm", "damping_ratio", None).axes[0]
+    ax = stability_figure(over_speed_and_damping(x, y, values), "speed_rpm", "damping_ratio", None).axes[0]
+    assert ax.get_title(loc="right") == "error bounds: partly proven, partly estimates"
     (mesh,) = [c for c in ax.collections if isinstance(c, QuadMesh)]
     assert np.allclose(mesh.get_array()[0], [0.1, 0.2, 0.3])
     assert ax.get_xlim() == (1000.0, 3000.0)

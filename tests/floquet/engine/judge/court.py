@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+import time
 import warnings
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -416,12 +417,17 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--kind", choices=KINDS, nargs="+", default=KINDS)
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--minutes", type=float, default=math.inf, help="end with what is done by then")
     given = parser.parse_args()
     tasks = [(kind, given.seed * 100_000 + i) for i in range(given.count) for kind in given.kind]
     findings: list[Finding] = []
     with ProcessPoolExecutor(given.jobs) as pool:
         waiting = {pool.submit(judge, *task): task for task in tasks}
+        end = time.monotonic() + 60.0 * given.minutes
         for future in as_completed(waiting):
+            if time.monotonic() > end:
+                pool.shutdown(wait=False, cancel_futures=True)
+                break
             try:
                 found = future.result()
             except ValueError as error:
