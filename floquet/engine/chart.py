@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import multiprocessing
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from joblib import Parallel, delayed
 
 from floquet.engine.multipliers import verdicts
 from floquet.engine.spectrum import Spectrum
@@ -56,7 +58,8 @@ def scan(
     ----------
     evaluate : parameters -> `Spectrum`; every point must give the same number of multipliers
     axes : name -> values
-    n_jobs : processes, as in joblib; -1 for all cores. ``evaluate`` must then be picklable.
+    n_jobs : processes; -1 for all cores. With more than one, ``evaluate`` must be picklable, and a script
+        must start its work under ``if __name__ == "__main__":``.
     progress : told the finished fraction
 
     Returns
@@ -76,11 +79,9 @@ def scan(
     results: list[Spectrum] = []
     n_jobs = whole_number("n_jobs", n_jobs, -1, 1024, "Use -1 for all cores.") or 1
     if n_jobs == 1:
-        stream = (_at_point(evaluate, point) for point in points)
+        stream: Iterator[Spectrum] = (_at_point(evaluate, point) for point in points)
     else:
-        stream = Parallel(n_jobs=n_jobs, return_as="generator")(
-            delayed(_at_point)(evaluate, point) for point in points
-        )
+        stream = _in_processes(partial(_at_point, evaluate), points, n_jobs)
     for spectrum in stream:
         results.append(spectrum)
         if progress is not None:
@@ -91,6 +92,19 @@ def scan(
     radius_error = np.array([r.error for r in results])
     proven = np.array([r.certificate == "proven" for r in results])
     return chart_dataset(grid, multipliers, errors, radius, radius_error, proven)
+
+
+def _in_processes(
+    evaluate: Callable[[dict[str, float]], Spectrum], points: list[dict[str, float]], n_jobs: int
+) -> Iterator[Spectrum]:
+    """Spectra in order, by processes that start clean: a fork could copy a lock that a thread holds."""
+    methods = multiprocessing.get_all_start_methods()
+    context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
+    with ProcessPoolExecutor(n_jobs if n_jobs > 0 else None, mp_context=context) as pool:
+        try:
+            yield from pool.map(evaluate, points)
+        finally:
+            pool.shutdown(cancel_futures=True)
 
 
 def _at_point(evaluate: Callable[[dict[str, float]], Spectrum], point: dict[str, float]) -> Spectrum:

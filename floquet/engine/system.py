@@ -131,8 +131,10 @@ class PeriodicSystem:
         States of mixed units (displacements and rates) make every norm meaningless; all error bounds of this
         package are taken in the coordinates x_i / d_i. Multipliers do not depend on d.
         """
-        middle = 0.5 * (self.edges[:-1] + self.edges[1:])
-        magnitude = np.abs(self.evaluate(middle)).max(axis=0)
+        # At several places: in the middle alone an entry may happen to be zero.
+        width = np.diff(self.edges)[:, None]
+        places = self.edges[:-1, None] + width * np.array([0.13, 0.5, 0.78])
+        magnitude = np.abs(self.evaluate(places.ravel())).max(axis=0)
         _, (scale, _) = matrix_balance(magnitude, permute=False, separate=True)
         return np.asarray(scale, dtype=float)
 

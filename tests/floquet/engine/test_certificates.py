@@ -70,6 +70,13 @@ def test_errors_of_the_polynomials_of_a_formula_hold(degree: int) -> None:
     assert (error > 1e-3 * errors).all() or degree == 14
 
 
+def test_a_coefficient_that_is_zero_in_the_middle_does_not_spoil_the_scales() -> None:
+    # x'' + 3.43 (1 + cos t) x = 0: at t = T/2 nothing balances the 1.
+    wave = FourierSeries(2.0 * np.pi, 3.43, [3.43])
+    found = monodromy(PeriodicSystem(KnownMatrix([[0.0, 1.0], [-wave, 0.0]]), 2.0 * np.pi))
+    assert found.matrix_error < 1e-10
+
+
 def test_the_product_keeps_terms_of_second_order() -> None:
     # Errors so large that the first order alone is not enough: (1 + e)^m - 1 > m e.
     e, m = 0.05, 40
