@@ -12,37 +12,33 @@ import math
 import sys
 import time
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import partial
-from itertools import pairwise
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from flint import acb, arb, arb_series, ctx
+from flint import acb, ctx
 
 from floquet import (
-    FourierSeries,
-    KnownMatrix,
-    PeriodicSystem,
-    PiecewisePolynomial,
     coarsened,
     fast_multipliers,
     gear_block,
     gear_pair_multipliers,
-    monodromy,
     stability_chart,
 )
 from floquet.gear.axes import operating_rpm, vary
 from floquet.gear.multipliers import OffLineOfAction
 from lumped import GearPair
-from lumped.errors import LawRangeWarning, NumericalError, ParameterError, ResolutionWarning
+from lumped.errors import LawRangeWarning, NumericalError, ParameterError
 from lumped.model.periodic_system import periodic_system
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from balls import BITS, Piece, exact_multipliers, worst_ratio
+from balls import BITS, exact_multipliers
+from findings import Disks, Finding, finding
+from formulas import black_box, formula
 from gears import MODELS, ball, pieces, random_pair
 
 SPECIAL = ("tongue edge", "collision", "low speed")
@@ -50,30 +46,6 @@ KINDS = (
     *MODELS, *SPECIAL, "stiffness variation", "law over speed", "chebyshev", "bearings",
     "formula", "black box",
 )  # fmt: skip
-
-
-Disks = Sequence[tuple[complex, float]]
-"""Centre and radius of a disk about each exact multiplier."""
-
-
-class Finding(NamedTuple):
-    """One bound against the truth.
-
-    Attributes
-    ----------
-    kind, route : what was tried, and by which route
-    ratio : error over bound, the multipliers matched best
-    wrong : whether the verdict says the opposite of the truth
-    undecided : whether there is none
-    certificate : "proven", "estimate", or "warned" for an estimate with a warning
-    """
-
-    kind: str
-    route: str
-    ratio: float
-    wrong: bool
-    undecided: bool
-    certificate: str
 
 
 def judge(kind: str, seed: int) -> list[Finding]:
@@ -87,9 +59,9 @@ def judge(kind: str, seed: int) -> list[Finding]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)
         if kind == "formula":
-            return _formula(rng)
+            return formula(rng)
         if kind == "black box":
-            return _black_box(rng)
+            return black_box(rng)
         if kind in _OF_PAIRS:
             return _OF_PAIRS[kind](rng)
         pair = _pair(rng, kind)
@@ -149,9 +121,7 @@ def _routes(kind: str, pair: GearPair, truth: Disks) -> list[Finding]:
     joined = coarsened(gear_block(pair, rtol=1e-9), fine.period, 1.0, [], 1e-7)
     for route, block in (("kernel", fine), ("joined pieces", joined)):
         found = fast_multipliers(block)
-        findings.append(
-            _finding(kind, route, found.multipliers[0], found.errors[0], truth, found.certificate)
-        )
+        findings.append(finding(kind, route, found.multipliers[0], found.errors[0], truth, found.certificate))
     chart = stability_chart(pair, {"speed_rpm": [operating_rpm(pair)]}, rtol=1e-8)
     own = gear_pair_multipliers(pair, 1e-9)
     return [
@@ -168,7 +138,7 @@ def _of_ten(kind: str, route: str, found: Any, oloa: np.ndarray, truth: Disks) -
     feedback = np.abs(values[:, None] - oloa).min(axis=1) > 1e-12 * (1.0 + np.abs(values))
     if feedback.sum() != 6:
         return []
-    return [_finding(kind, route, values[feedback], errors[feedback], truth, certificate)]
+    return [finding(kind, route, values[feedback], errors[feedback], truth, certificate)]
 
 
 def _stiffness_variation(rng: np.random.Generator) -> list[Finding]:
@@ -240,7 +210,7 @@ def _bearings(rng: np.random.Generator) -> list[Finding]:
         truth += [((sign * root - decay) * ball(pair.geometry.mesh_period)).exp() for sign in (1, -1)]
     disks = [(complex(x.mid()), float((x - acb(complex(x.mid()))).abs_upper())) for x in truth]
     values, errors = OffLineOfAction.of(system).multipliers(np.array([system.period]))
-    return [_finding("bearings", "closed form", values[0], errors[0], disks, "proven")]
+    return [finding("bearings", "closed form", values[0], errors[0], disks, "proven")]
 
 
 _OF_PAIRS = {
@@ -249,147 +219,6 @@ _OF_PAIRS = {
     "chebyshev": _chebyshev,
     "bearings": _bearings,
 }
-
-
-def _finding(
-    kind: str, route: str, values: np.ndarray, errors: np.ndarray, truth: Disks, certificate: str
-) -> Finding:
-    ratio, _ = worst_ratio(values, errors, truth)
-    modulus = np.abs(values)
-    radius, error = float(modulus.max()), float((modulus + errors).max() - modulus.max())
-    low, high = (max(abs(c) + s * r for c, r in truth) for s in (-1.0, 1.0))
-    wrong = (radius + error < 1.0 and low > 1.0) or (radius - error > 1.0 and high < 1.0)
-    undecided = not (radius + error < 1.0 or radius - error > 1.0)
-    return Finding(kind, route, ratio, wrong, undecided, certificate)
-
-
-Entry = Callable[[arb_series], arb_series]
-
-
-def _analytic(entry: Callable[..., object]) -> Callable[[arb, arb, int], list[arb]]:
-    """Taylor coefficients of an entire function of the time, by arithmetic of power series."""
-
-    def coefficients(start: arb, length: arb, count: int) -> list[arb]:
-        kept, ctx.cap = ctx.cap, count
-        series = entry(arb_series([start, length], count))
-        ctx.cap = kept
-        return [series[k] for k in range(count)]  # type: ignore[index]
-
-    return coefficients
-
-
-def _bounded(
-    entries: Sequence[Callable[..., object]], radius: float
-) -> Callable[[arb, arb], tuple[arb, float]]:
-    """Bound on entries over the disk |s| <= radius about the start of a step."""
-
-    def bound(start: arb, length: arb) -> tuple[arb, float]:
-        reach = radius * length.upper()
-        place = acb(start + arb(0, reach), arb(0, reach))
-        largest = max((abs(acb(entry(place))).upper() for entry in entries), key=float)  # type: ignore[call-overload]
-        return arb(largest), radius
-
-    return bound
-
-
-def _cos(t: object, order: int, period: float) -> object:
-    angle = t * (arb.pi() * 2 * order / arb(period))  # type: ignore[operator]
-    return angle.cos()
-
-
-def _sin(t: object, order: int, period: float) -> object:
-    angle = t * (arb.pi() * 2 * order / arb(period))  # type: ignore[operator]
-    return angle.sin()
-
-
-def _formula(rng: np.random.Generator) -> list[Finding]:
-    """Random A(t) of piecewise polynomials times Fourier series, damped or not."""
-    ctx.prec = BITS
-    T = float(rng.uniform(0.3, 6.0))
-    inner = np.sort(rng.uniform(0.0, T, int(rng.integers(0, 4))))
-    ends = np.array([0.0, *inner, T])
-    rows = rng.normal(size=(ends.size - 1, int(rng.integers(1, 5))))
-    count = int(rng.integers(1, 4))
-    mean, a, b = float(rng.uniform(0.5, 20.0)), rng.normal(size=count), rng.normal(size=count)
-    damping = float(rng.choice([0.0, 0.05, rng.uniform(0.0, 2.0)]))
-    wave = FourierSeries(T, mean, a.tolist(), b.tolist())
-    ripple = PiecewisePolynomial(ends, rows)
-    entry = -(wave + ripple * FourierSeries(T, 0.3, [0.5]))
-    system = PeriodicSystem(KnownMatrix([[0.0, 1.0], [entry, -damping]]), T)
-    exact = []
-    for j in range(ends.size - 1):
-
-        def stiffness(t: object, j: int = j) -> object:
-            total = t * 0 + arb(mean)  # type: ignore[operator]
-            for k in range(count):
-                total = total + _cos(t, k + 1, T) * arb(a[k]) + _sin(t, k + 1, T) * arb(b[k])
-            poly = t * 0  # type: ignore[operator]
-            for c in rows[j, ::-1]:
-                poly = poly * (t - arb(ends[j])) + arb(c)  # type: ignore[operator]
-            return (total + poly * (arb(0.3) + _cos(t, 1, T) * arb(0.5))) * -1
-
-        start = arb(ends[j])
-        one = _analytic(lambda t: t * 0 + arb(1))
-        fixed = _analytic(lambda t: t * 0 - arb(damping))
-        bound = _bounded([stiffness, lambda t: t * 0 + arb(1 + damping)], 4.0)
-        entries = [(0, 1, one), (1, 0, _analytic(stiffness)), (1, 1, fixed)]
-        parts = math.ceil(40.0 * (ends[j + 1] - ends[j]) / T)
-        length = (arb(ends[j + 1]) - start) / parts
-        exact += [Piece(start + i * length, length, entries, bound) for i in range(parts)]
-    truth = exact_multipliers(lambda: exact, 2)
-    findings = []
-    for method in ("auto", "gauss"):
-        found = monodromy(system, 1e-8, method=method)
-        kind, route = "formula", "engine" if method == "auto" else "engine, sampled"
-        errors = found.multiplier_errors
-        findings.append(_finding(kind, route, found.multipliers, errors, truth, found.certificate))
-    return findings
-
-
-def _black_box(rng: np.random.Generator) -> list[Finding]:
-    """An oscillator with a narrow bump of its stiffness at a random time, as a callable."""
-    ctx.prec = BITS
-    width, centre = float(10.0 ** rng.uniform(-4.2, -1.0)), float(rng.uniform(0.2, 0.8))
-    mean, wave, push = (
-        float(rng.uniform(5.0, 60.0)),
-        float(rng.uniform(0.0, 5.0)),
-        float(rng.uniform(-3.0, 3.0)),
-    )
-
-    # Beyond 12 widths the bump is 1e-31 of its height: nothing there makes the pieces of the judge finite.
-    def A(t: float) -> np.ndarray:
-        x = (t - centre) / width
-        bump = push / width * math.exp(-0.5 * x * x) if abs(x) < 12.0 else 0.0
-        return np.array([[0.0, 1.0], [-(mean + wave * math.cos(2.0 * math.pi * t) + bump), -0.04]])
-
-    def calm(t: object) -> object:
-        return (_cos(t, 1, 1.0) * arb(wave) + arb(mean)) * -1  # type: ignore[operator]
-
-    def stiffness(t: object) -> object:
-        x = (t - arb(centre)) / arb(width)  # type: ignore[operator]
-        return calm(t) - (x * x * arb(-0.5)).exp() * (arb(push) / arb(width))  # type: ignore[operator]
-
-    low, high = max(centre - 12.0 * width, 0.0), min(centre + 12.0 * width, 1.0)
-    inner = np.linspace(low, high, 1 + math.ceil(4.0 * (high - low) / width))
-    ends = sorted({*np.linspace(0.0, low, 17), *inner, *np.linspace(high, 1.0, 17)})
-    exact = []
-    for start, end in pairwise(ends):
-        entry = stiffness if low <= 0.5 * (start + end) <= high else calm
-        entries = [
-            (0, 1, _analytic(lambda t: t * 0 + arb(1))),
-            (1, 0, _analytic(entry)),
-            (1, 1, _analytic(lambda t: t * 0 - arb(0.04))),
-        ]
-        bound = _bounded([entry, lambda t: t * 0 + arb(2)], 4.0)
-        exact.append(Piece(arb(start), arb(end) - arb(start), entries, bound))
-    truth = exact_multipliers(lambda: exact, 2)
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        found = monodromy(PeriodicSystem(A, 1.0), 1e-9)
-    warned = any(issubclass(w.category, ResolutionWarning) for w in caught)
-    certificate = "warned" if warned else found.certificate
-    errors = found.multiplier_errors
-    return [_finding("black box", "callable", found.multipliers, errors, truth, certificate)]
 
 
 def table(findings: Sequence[Finding]) -> str:
@@ -434,9 +263,9 @@ def main() -> None:
                 print(*waiting[future], error, file=sys.stderr, flush=True)
                 continue
             findings += found
-            for finding in found:
-                if finding.ratio > 1.0 or finding.wrong:
-                    print(*waiting[future], finding, file=sys.stderr, flush=True)
+            for one in found:
+                if one.ratio > 1.0 or one.wrong:
+                    print(*waiting[future], one, file=sys.stderr, flush=True)
     print(table(findings))
 
 
