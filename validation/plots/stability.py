@@ -133,7 +133,7 @@ def stability_line_figure(chart: xr.Dataset, x: str, value: float | None) -> Fig
 
 def note_certificate(ax: Axes, chart: xr.Dataset) -> None:
     """Say above the right end what the errors behind a chart are."""
-    words = {"mixed": "partly proven, partly estimates"}
+    words = {"mixed": "partly proven"}
     kind = str(chart.attrs["certificate"])
     ax.set_title(f"error bounds: {words.get(kind, kind)}", loc="right", fontsize=7.5, color=GREY)
 

@@ -121,7 +121,7 @@ def test_uneven_axes_and_falling_ones_are_drawn_at_their_values() -> None:
     x, y = np.array([3000.0, 1000.0, 1100.0]), np.array([0.0, 0.01, 0.05])
     values = np.array([[0.3, 0.3, 0.3], [0.1, 0.1, 0.1], [0.2, 0.2, 0.2]])
     ax = stability_figure(over_speed_and_damping(x, y, values), "speed_rpm", "damping_ratio", None).axes[0]
-    assert ax.get_title(loc="right") == "error bounds: partly proven, partly estimates"
+    assert ax.get_title(loc="right") == "error bounds: partly proven"
     (mesh,) = [c for c in ax.collections if isinstance(c, QuadMesh)]
     assert np.allclose(mesh.get_array()[0], [0.1, 0.2, 0.3])
     assert ax.get_xlim() == (1000.0, 3000.0)
