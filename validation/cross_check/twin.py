@@ -27,7 +27,8 @@ _BEARINGS = {
 _SPEEDS = (0.93, 0.77, 1.19, 0.61, 0.43)
 #: Mesh damping ratio of the twin, at least: a quick run must not ring for long.
 _DAMPING = 0.03
-_SAMPLES = 64
+#: Times per mesh cycle at which teeth must touch and press.
+_SAMPLES = 256
 
 
 def unlike_twin(pair: GearPair) -> GearPair | None:
@@ -42,13 +43,27 @@ def unlike_twin(pair: GearPair) -> GearPair | None:
             speed = pair.operating.pinion_speed * factor * 30.0 / np.pi
             try:
                 twin = pair.with_(changes | {"operating.pinion_speed": speed})
-                motion = periodic_cycle(twin, _SAMPLES)
+                if prediction_holds(twin):
+                    return twin
             except SpurcheckError:
                 continue
-            if motion.spectral_radius > UNSTABLE or motion.values["normal_load"].min() < 0.0:
-                continue
-            return twin
     return None
+
+
+def prediction_holds(pair: GearPair) -> bool:
+    """Whether the lumped motion holds by its own numbers: it is stable, and teeth in contact touch and press.
+
+    Teeth that approach each other may press by damping before they touch: in the lumped model alone.
+
+    Raises
+    ------
+    NumericalError : no periodic motion exists
+    """
+    motion = periodic_cycle(pair, _SAMPLES)
+    pairs, values = motion.system.cycle.sample(motion.time), motion.values
+    touching = (values["dte"] >= pairs.error) | (pairs.stiffness == 0.0)
+    pressing = values["normal_load"] >= 0.0
+    return bool(motion.spectral_radius <= UNSTABLE and touching.all() and pressing.all())
 
 
 def _variations(pair: GearPair) -> Iterator[dict[str, Any]]:

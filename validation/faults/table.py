@@ -6,6 +6,7 @@ import hashlib
 import json
 import math
 import random
+import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -14,6 +15,10 @@ from typing import Any
 from validation.faults.catalogue import FAULTS, GROUPS
 from validation.faults.fault import Fault
 from validation.faults.judging import Outcome
+
+_MODELS = ("lumped", "linear", "exact")
+#: What ends the name of a law that is checked for each axis or bearing.
+_AXIS = re.compile(r" [xy](_[pg])?$")
 
 
 def sample(count: int, seed: str) -> tuple[Fault, ...]:
@@ -57,6 +62,28 @@ def counts(rows: Iterable[Mapping[str, Any]]) -> dict[str, int]:
     return dict(Counter(str(one["verdict"]) for one in rows))
 
 
+def laws_that_act(rows: Iterable[Mapping[str, Any]]) -> dict[tuple[str, str], int]:
+    """Law of nature and model -> how many faults of the rows break it there."""
+    found: Counter[tuple[str, str]] = Counter()
+    for one in rows:
+        checks = [check.removeprefix("twin: ") for names in one["caught"].values() for check in names]
+        laws = {check.removeprefix("nature: ") for check in checks if check.startswith("nature: ")}
+        split = (law.rsplit(", ", 1) for law in laws)
+        found.update({(_AXIS.sub("", law), model) for law, model in split})
+    return dict(found)
+
+
+def _laws(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Section of the Markdown table: how many faults break each law of nature, on each model."""
+    found = laws_that_act(rows)
+    lines = ["## Laws of nature", "", "Faults that break each law, by the model on which it is checked.", ""]
+    lines += ["| law | " + " | ".join(_MODELS) + " |", "|---" * (len(_MODELS) + 1) + "|"]
+    for law in sorted({law for law, _ in found}):
+        counted = (str(found.get((law, model), "")) for model in _MODELS)
+        lines.append(f"| {law.replace('_', ' ')} | {' | '.join(counted)} |")
+    return [*lines, ""] if found else []
+
+
 def markdown(rows: Sequence[Mapping[str, Any]]) -> str:
     """The table in Markdown, one section per group."""
     lines = [", ".join(f"{number} {name}" for name, number in sorted(counts(rows).items())) + ".", ""]
@@ -80,7 +107,7 @@ def markdown(rows: Sequence[Mapping[str, Any]]) -> str:
                 f"| {one['words']} | {size} | {one['quantity']} | {by_check} | {by_report} | {seen} |"
             )
         lines.append("")
-    return "\n".join(lines).replace("|mu|", "mu")
+    return "\n".join([*lines, *_laws(rows)]).replace("|mu|", "mu")
 
 
 def _seen(caught: Mapping[str, Sequence[str]]) -> str:
