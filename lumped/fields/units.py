@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import operator
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import Decimal, DivisionByZero, InvalidOperation, Overflow
 from functools import cache
@@ -151,18 +153,20 @@ class Quantity:
     @property
     def allowed(self) -> str:
         """The allowed range as text, with its unit."""
-        parts = [
-            f"{sign} {bound:g}"
-            for sign, bound in (
-                (">", self.above),
-                (">=", self.at_least),
-                ("<", self.below),
-                ("<=", self.at_most),
-            )
-            if bound is not None
-        ]
         unit = "" if self.unit == "1" else f" {self.unit}"
-        return " and ".join(f"{part}{unit}" for part in parts) or f"any finite number{unit}"
+        parts = (f"{sign} {bound:g}{unit}" for sign, _, bound, _ in self._bounds)
+        return " and ".join(parts) or f"any finite number{unit}"
+
+    @property
+    def _bounds(self) -> list[tuple[str, str, float, Callable[[float, float], bool]]]:
+        """Sign, key of JSON Schema, value and comparison of each bound that is given."""
+        every = (
+            (">", "exclusiveMinimum", self.above, operator.gt),
+            (">=", "minimum", self.at_least, operator.ge),
+            ("<", "exclusiveMaximum", self.below, operator.lt),
+            ("<=", "maximum", self.at_most, operator.le),
+        )
+        return [(sign, key, bound, holds) for sign, key, bound, holds in every if bound is not None]
 
     def parse(self, value: object) -> float | None:
         """Read a field's value (number or text with a unit) into SI, or raise pydantic's error."""
@@ -179,13 +183,7 @@ class Quantity:
         if not math.isfinite(si):
             raise self._refusal(text, "Give a finite number.")
         # Bounds are converted like values, so a value at a bound equals it bit for bit.
-        inside = (
-            (self.above is None or si > to_si(self.above, self.unit))
-            and (self.at_least is None or si >= to_si(self.at_least, self.unit))
-            and (self.below is None or si < to_si(self.below, self.unit))
-            and (self.at_most is None or si <= to_si(self.at_most, self.unit))
-        )
-        if not inside:
+        if not all(holds(si, to_si(bound, self.unit)) for _, _, bound, holds in self._bounds):
             raise self._refusal(text, self.action)
         return si
 
@@ -210,10 +208,6 @@ class Quantity:
 
     def json_schema(self) -> JsonSchemaValue:
         """JSON Schema of the quantity: a number in the stated unit with its bounds, or text with a unit."""
-        number: dict[str, Any] = {"type": "number"}
-        keys = ("exclusiveMinimum", "minimum", "exclusiveMaximum", "maximum")
-        for key, bound in zip(keys, (self.above, self.at_least, self.below, self.at_most), strict=True):
-            if bound is not None:
-                number[key] = bound
+        number = {"type": "number"} | {key: bound for _, key, bound, _ in self._bounds}
         text = {"type": "string", "examples": [UNITS[self.unit][3]]}
         return {"anyOf": [number, text], "unit": self.unit, "si_unit": UNITS[self.unit][0]}

@@ -16,7 +16,8 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from lumped.errors import ParameterError, StorageError, refuse
+from lumped.errors import StorageError, refuse
+from validation.files.output import not_writable
 
 #: Value of "format" in report.json, by which an earlier report is recognised.
 FORMAT = "spurcheck-report"
@@ -130,7 +131,7 @@ def _working_folder(target: Path, purpose: str) -> Path:
     try:
         return Path(tempfile.mkdtemp(prefix=_WORKING, suffix=f".{purpose}", dir=place))
     except OSError as error:
-        raise _not_writable(target, error) from None
+        raise not_writable(target, error) from None
 
 
 def _put(temporary: Path, target: Path, kind: Kind) -> None:
@@ -230,7 +231,7 @@ def _make_parents(target: Path) -> list[Path]:
     except OSError as error:
         for folder in made:
             _remove_if_empty(folder)
-        raise _not_writable(target, error) from None
+        raise not_writable(target, error) from None
     return made
 
 
@@ -243,11 +244,4 @@ def _content(folder: Path) -> bool:
     try:
         return any(not path.name.startswith(_WORKING) for path in folder.iterdir())
     except OSError as error:
-        raise _not_writable(folder, error) from None
-
-
-def _not_writable(out: Path, error: OSError) -> ParameterError:
-    reason = error.strerror or type(error).__name__
-    return refuse(
-        "output", out, "a place that can be written", f"It cannot be written ({reason}): choose another."
-    )
+        raise not_writable(folder, error) from None

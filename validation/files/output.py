@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from lumped.errors import StorageError, refuse
+from lumped.errors import ParameterError, StorageError, refuse
 
 #: Longest name of a MATLAB variable.
 _LONGEST_NAME = 63
@@ -47,11 +47,15 @@ def check_file(path: Path, suffixes: tuple[str, ...], *, force: bool) -> Path:
         with tempfile.TemporaryFile(dir=path.parent):
             pass
     except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise refuse(
-            "output", path, "a place that can be written", f"It cannot be written ({reason})."
-        ) from None
+        raise not_writable(path, error) from None
     return path
+
+
+def not_writable(path: Path, error: OSError) -> ParameterError:
+    """Build the refusal of a place for results."""
+    reason = error.strerror or type(error).__name__
+    action = f"It cannot be written ({reason}): choose another."
+    return refuse("output", path, "a place that can be written", action)
 
 
 @contextmanager
