@@ -50,16 +50,21 @@ def unlike_twin(pair: GearPair) -> GearPair | None:
     return None
 
 
-def prediction_holds(pair: GearPair) -> bool:
+def prediction_holds(pair: GearPair, samples: int = _SAMPLES) -> bool:
     """Whether the lumped motion holds by its own numbers: it is stable, and teeth in contact touch and press.
 
     Teeth that approach each other may press by damping before they touch: in the lumped model alone.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    samples : times per mesh cycle at which the teeth are looked at
 
     Raises
     ------
     NumericalError : no periodic motion exists
     """
-    motion = periodic_cycle(pair, _SAMPLES)
+    motion = periodic_cycle(pair, samples)
     pairs, values = motion.system.cycle.sample(motion.time), motion.values
     touching = (values["dte"] >= pairs.error) | (pairs.stiffness == 0.0)
     pressing = values["normal_load"] >= 0.0

@@ -21,6 +21,8 @@ from lumped.friction.registry import LAWS
 from validation.cross_check.comparison import crosscheck
 from validation.cross_check.twin import prediction_holds
 
+#: Times per mesh cycle at which teeth must touch: between fewer, contact may be lost unseen.
+_TIMES = 4096
 _STIFFNESS = (
     {"model": "rectangular"},
     {"model": "parabolic"},
@@ -58,7 +60,7 @@ def drawn(count: int, seed: str, *, relief: bool = False) -> Iterator[GearPair]:
 def _holds(pair: GearPair) -> bool:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)
-        return prediction_holds(pair)
+        return prediction_holds(pair, _TIMES)
 
 
 def _varied(base: GearPair, rng: random.Random) -> GearPair:

@@ -82,7 +82,12 @@ def test_finite_motion_scales_with_torque():
 @pytest.mark.parametrize("effect", sorted(multibody.EFFECTS))
 def test_each_effect_acts(effect):
     """A switch that did nothing would make the attribution of differences worthless."""
-    pair = BASE.with_(friction__law="xu_kahraman") if effect == "friction_load" else BASE
+    # Two effects act on laws that the pair itself has not.
+    laws = {
+        "friction_load": {"friction.law": "xu_kahraman"},
+        "contact_law": {"mesh.stiffness": {"model": "energy"}},
+    }
+    pair = BASE.with_(laws.get(effect, {}))
     start = np.zeros(12)
     start[0] = -5e-6 / lumped.geometry(BASE).base_radius_pinion  # apart, so that loss of contact can act
     reference = multibody.simulate(pair, 3, effects=(), initial=start)
