@@ -37,6 +37,7 @@ from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.results import response
 from lumped.model.steady import periodic_solution, sample_times
+from lumped.path_function import PathFunction
 from lumped.typing import FloatArray
 from multibody.contact.machine import Machine, machine
 from validation.cross_check.agreement import relative_size
@@ -50,6 +51,8 @@ from validation.cross_check.tolerances import GROUPS
 _TIMES = 1024
 #: Pieces of the zone in which friction may hold the teeth, and times per mesh cycle to read their changes.
 _PIECES, _HELD_TIMES = 16, 256
+#: A change over twice this distance [m] by more than this share of the largest value is a jump.
+_BESIDE, _JUMP = 1e-9, 1e-3
 #: Effect -> what it is in words.
 EFFECT_WORDS: Mapping[str, str] = {
     "entry_shift": "late entry and early exit",
@@ -71,6 +74,8 @@ class Effects:
     powers : power of ``ledger.LOSSES`` -> sum of the largest changes over the driving power
     beyond : part of the change by late entry that contact beyond the nominal path makes; it is not predicted
     held : quantity -> largest first-order change by friction that holds the teeth; empty where it does not
+    read : part of the change by sliding that one step between the places makes, at which the prediction reads
+        the actual contact: so far a jump of the law beside the pitch point may be off; 0 without such a jump
     """
 
     size: Mapping[str, float]
@@ -79,6 +84,7 @@ class Effects:
     powers: Mapping[str, float]
     beyond: float
     held: Mapping[str, float]
+    read: float
 
     def largest(self, quantity: str) -> float:
         """Sum over the effects of the largest changes of a quantity."""
@@ -89,6 +95,8 @@ class Effects:
         most = sum(changes[quantity] for name, changes in self.most.items() if name not in self.alone)
         if "entry_shift" in self.alone:
             most += self.beyond * self.most["entry_shift"][quantity]
+        if self.read:
+            most += self.read * self.most["sliding_velocity"][quantity]
         return most + self.held.get(quantity, 0.0)
 
 
@@ -172,7 +180,17 @@ def first_order(predicted: FiniteMotion) -> Effects:
     held = {} if predicted.settled else _held(every, size["sliding_velocity"], numbers, driving)
     powers = {name: sum(changes[name] for changes in most.values()) + held.get(name, 0.0) for name in LOSSES}
     beyond = 0.0 if shifts is None or end == 0.0 else shifts.beyond / end
-    return Effects(relative, most, alone, powers, beyond, held)
+    read = 0.0
+    if shifts is not None and _jumps_beside(cycle.elements.friction, cycle.geometry.L_XP):
+        read = pitch / predicted.model.times.size / max(size["sliding_velocity"], np.finfo(float).tiny)
+    return Effects(relative, most, alone, powers, beyond, held, read)
+
+
+def _jumps_beside(law: PathFunction, pitch_point: float) -> bool:
+    """Whether a friction law jumps at another place than the pitch point, as a change of regime does."""
+    inner = law.switches[np.abs(law.switches - pitch_point) > _BESIDE]
+    jumps = np.abs(law(inner + _BESIDE) - law(inner - _BESIDE))
+    return bool(np.any(jumps > _JUMP * np.abs(law(law.breaks[:-1])).max()))
 
 
 def _values(

@@ -208,7 +208,7 @@ def _statics(
         Judgement(
             f"nature: mean bearing load {axis}, {name}",
             abs(float(value)) / load,
-            sampled[axis[0]] + _uneven(motion[axis].to_numpy()) * stiffness[axis] / load + allowed + 1e-6,
+            sampled[axis[0]] + _missed(motion, axis) * stiffness[axis] / load + allowed + 1e-6,
             "T_p/r_bp less the mean moment of friction, or the mean friction; limit: what even times can "
             "miss of a history that jumps, its variation in the lumped model over their number, and of the "
             "displacement" + (", and the shift of the contact, by which the levers move" if allowed else ""),
@@ -221,9 +221,11 @@ def _mean(motion: xr.Dataset, name: str) -> float:
     return float(motion[name].to_numpy().mean())
 
 
-def _uneven(values: FloatArray) -> float:
-    """What half the samples change in the mean of a smooth history."""
-    return abs(float(values[::2].mean() - values.mean()))
+def _missed(motion: xr.Dataset, name: str) -> float:
+    """What even times can miss of the mean of a displacement: step^2/8 times the variation of its rate."""
+    rate, time = motion[f"{name}_dot"].to_numpy(), motion["time"].to_numpy()
+    step = float(time[1] - time[0])
+    return step * float(np.abs(np.diff(rate, append=rate[:1])).sum()) / (8.0 * rate.size)
 
 
 def _variation(motion: PeriodicSolution) -> dict[str, float]:
