@@ -21,8 +21,6 @@ from lumped.friction.registry import LAWS
 from validation.cross_check.comparison import crosscheck
 from validation.cross_check.twin import prediction_holds
 
-#: Times per mesh cycle at which teeth must touch: between fewer, contact may be lost unseen.
-_TIMES = 4096
 _STIFFNESS = (
     {"model": "rectangular"},
     {"model": "parabolic"},
@@ -60,7 +58,7 @@ def drawn(count: int, seed: str, *, relief: bool = False) -> Iterator[GearPair]:
 def _holds(pair: GearPair) -> bool:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)
-        return prediction_holds(pair, _TIMES)
+        return prediction_holds(pair)
 
 
 def _varied(base: GearPair, rng: random.Random) -> GearPair:
