@@ -8,6 +8,8 @@ import pytest
 
 import lumped
 from validation.cross_check.comparison import crosscheck
+from validation.cross_check.twin import unlike_twin
+from validation.faults.sound import drawn
 
 
 def bearings(*stiffness):
@@ -102,3 +104,18 @@ def test_relief_acts_where_the_contact_stands():
     found = crosscheck(pair, cycles=6, samples_per_cycle=64, twin=False)
     [x_g] = [a for a in found.of("exact") if a.quantity == "x_g"]
     assert x_g.remainder_l2 < 0.05 * x_g.effects["rotation_phase"]
+
+
+@pytest.mark.parametrize(
+    ("seed", "number", "cycles"),
+    [("g.9", 0, 40), ("final.7", 5, 8)],
+    ids=["a periodic solution that the motion forgets", "half of the samples miss as much as all"],
+)
+def test_a_drawn_sound_pair_is_not_refused(seed, number, cycles):
+    pair = list(drawn(number + 1, seed))[number]
+    assert crosscheck(pair, cycles=cycles, samples_per_cycle=128, twin=False).failures == ()
+
+
+def test_a_change_of_regime_is_read_to_a_step_between_places():
+    pair = unlike_twin(list(drawn(19, "final.8"))[18])
+    assert crosscheck(pair, cycles=6, samples_per_cycle=64, twin=False).failures == ()
