@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Collection, Hashable, Iterable, Iterator, Set, ValuesView
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Set, ValuesView
 from typing import Any, SupportsIndex, TypeVar
 
 import numpy as np
@@ -128,9 +128,18 @@ def one_of(field: str, value: object, names: Iterable[str], action: str = "Choos
 
 
 def some_of(
-    field: str, values: Collection[Name], names: Iterable[Name], action: str = "Correct the name."
+    field: str,
+    values: Collection[Name],
+    names: Iterable[Name],
+    action: str = "Correct the name.",
+    kept: Callable[[object], object] = lambda value: value,
 ) -> tuple[Name, ...]:
     """Return a selection of names or numbers, or refuse it; a single text is none.
+
+    Parameters
+    ----------
+    field, values, names, action : as in ``one_of``
+    kept : other spelling of a name -> the name
 
     Raises
     ------
@@ -143,7 +152,7 @@ def some_of(
         or getattr(values, "ndim", 1) == 0
     )
     chosen: list[Any] = []
-    for value in [values] if single else values:
+    for value in [values] if single else map(kept, values):
         if single or not isinstance(value, Hashable) or value not in known:
             raise refuse(field, shown(value), "a list out of " + ", ".join(map(str, known)), action)
         chosen.append(value)

@@ -13,9 +13,9 @@ import numpy as np
 from floquet.engine.chart import Axes, checked_axes
 from floquet.gear.axes import axis_coordinates
 from floquet.gear.chart import stability_chart
-from lumped.arguments import one_of, some_of
+from lumped.arguments import some_of
 from lumped.errors import refuse
-from lumped.friction import FRICTIONAL, LAWS
+from lumped.friction.registry import FRICTIONAL, LAWS, file_name, law_named
 from lumped.labelling import labelled_dataset
 from lumped.schema.pair import GearPair
 from lumped.typing import Progress
@@ -59,8 +59,8 @@ def friction_effect(
     ParameterError : unknown law, or an unusable axis
     """
     grid = checked_axes(axes)
-    laws = some_of("laws", laws, LAWS)
-    one_of("reference", reference, LAWS)
+    laws = some_of("laws", laws, LAWS, kept=file_name)
+    reference = law_named(reference, "reference").name
     if "friction_coefficient" in grid and reference == "none":
         raise refuse("axes", "friction_coefficient", "axes other than friction", "Choose another reference.")
     charts = []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import unicodedata
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -34,15 +35,23 @@ class Section(BaseModel):
 
 @dataclass(frozen=True)
 class OneOf:
-    """Annotation of a text field: one of these names. The names may come from a registry."""
+    """Annotation of a text field: one of these names. The names may come from a registry.
+
+    Attributes
+    ----------
+    names : as they are kept
+    kept : other spelling -> name, where there are others
+    """
 
     names: tuple[str, ...]
+    kept: Callable[[object], object] | None = None
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
         """Validate and describe it as pydantic does a ``Literal``."""
-        return core_schema.literal_schema(list(self.names))
+        names = core_schema.literal_schema(list(self.names))
+        return names if self.kept is None else core_schema.no_info_before_validator_function(self.kept, names)
 
 
 def _readable(text: str) -> str:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic_core import PydanticCustomError, core_schema
 
 from lumped.errors import shown
+from lumped.fields.spelling import DEFINITIONS, about_digits, as_pint_reads
 
 if TYPE_CHECKING:
     import pint
@@ -47,7 +48,7 @@ UNITS: dict[str, tuple[str, Decimal, str, str]] = {
     "Hz": ("Hz", Decimal(1), "a frequency", "50 kHz"),
 }
 _ZERO_CELSIUS = Decimal("273.15")
-_NOT_IN_QUANTITY = re.compile(r"[^\w\s.+\-*/^()°²³·]")
+_NOT_IN_QUANTITY = re.compile(r"[^\w\s.+\-*/^()°º%²³⁻¹·⋅×]")
 
 
 @cache
@@ -58,6 +59,8 @@ def _registry() -> pint.UnitRegistry[Decimal]:
     registry: pint.UnitRegistry[Decimal] = pint.UnitRegistry(
         non_int_type=Decimal, autoconvert_offset_to_baseunit=True
     )
+    for definition in DEFINITIONS:
+        registry.define(definition)
     return registry
 
 
@@ -85,12 +88,13 @@ def to_si(value: float | str, unit: str) -> float:
         raise ValueError(f"text of {len(value)} characters is no quantity; {advice}")
     # The unit parser drops what it does not know: it would read 1,5 as 15.
     if odd := _NOT_IN_QUANTITY.search(value):
-        comma = " and decimals with a point" if odd[0] == "," else ""
-        raise ValueError(f"{value!r} has the character {odd[0]!r}; {advice}{comma}")
+        raise ValueError(f"{value!r} has the character {odd[0]!r}; {about_digits(value) or advice}")
+    if gap := about_digits(value):
+        raise ValueError(f"{value!r}: {gap}")
     if not any(character.isdigit() for character in value):
         raise ValueError(f"'{value}' has no number; {advice}")
     try:
-        quantity: pint.Quantity[Decimal] = registry.Quantity(value)
+        quantity: pint.Quantity[Decimal] = registry.Quantity(as_pint_reads(value, unit))
     except (InvalidOperation, Overflow, DivisionByZero):
         raise ValueError(f"'{value}' is no finite quantity; {advice}") from None
     except Exception as error:  # noqa: BLE001  (pint lets tokenizer, attribute and arithmetic errors through)
@@ -102,6 +106,8 @@ def to_si(value: float | str, unit: str) -> float:
     try:
         # Comparing base units rather than dimensions keeps the radian: 50 Hz is not 50 rad/s.
         if quantity.to_root_units().units != registry.Quantity(1, si).to_root_units().units:
+            if unit == "rpm" and quantity.check("1/[time]"):
+                advice = "turns or radians? Write Hz (turns a second), rpm or rad/s"
             raise ValueError(f"'{value}' is not {meaning}; {advice}")
         result = float(quantity.to(si).magnitude)
     except (InvalidOperation, Overflow, OverflowError):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from types import MappingProxyType
 
@@ -33,11 +34,38 @@ LAWS: Mapping[str, FrictionLaw] = MappingProxyType(
 FRICTIONAL = tuple(name for name in LAWS if name != _NONE.name)
 
 
-def law_named(name: str) -> FrictionLaw:
+def _plain(text: str) -> str:
+    return re.sub(r"[\W_]+", " ", text).strip().casefold().removeprefix("law ")
+
+
+_SPELLINGS = {
+    _plain(spelling): law.name
+    for law in LAWS.values()
+    for spelling in (law.name, law.label, law.numeral, law.title, law.authors, law.long_name)
+    if spelling
+}
+
+
+def file_name(spelling: object) -> object:
+    """Return the name in parameter files of a law that is named otherwise: "II", "Coulomb", "law III".
+
+    Parameters
+    ----------
+    spelling : number, label or authors in any case; anything else is returned unchanged
+    """
+    return _SPELLINGS.get(_plain(spelling), spelling) if isinstance(spelling, str) else spelling
+
+
+def law_named(name: str, field: str = "friction.law") -> FrictionLaw:
     """Return a law by name.
+
+    Parameters
+    ----------
+    name : as in parameter files, or as tables and reports call it
+    field : argument that holds it
 
     Raises
     ------
     ParameterError : no law has this name
     """
-    return LAWS[one_of("friction.law", name, LAWS)]
+    return LAWS[one_of(field, file_name(name), LAWS)]

@@ -11,7 +11,7 @@ from pydantic_core import PydanticCustomError
 from lumped.errors import refuse, shown
 from lumped.fields.section import OneOf, Section
 from lumped.fields.units import Quantity
-from lumped.friction.registry import LAWS
+from lumped.friction.registry import LAWS, file_name
 from lumped.lubrication.viscosity import ZERO_CELSIUS, kinematic_viscosity, oil_density, walther_constants
 from lumped.lubrication.viscosity_grade import grade_viscosity, midpoint
 
@@ -112,7 +112,7 @@ def _increasing(value: object) -> object:
 class Friction(Section):
     """Sliding friction between the teeth: the law and the parameters of all laws (they are compared)."""
 
-    law: Annotated[str, OneOf(tuple(LAWS))] = Field(
+    law: Annotated[str, OneOf(tuple(LAWS), file_name)] = Field(
         description=", ".join(f"{law.numeral} {law.name}" for law in LAWS.values() if law.numeral)
     )
     coefficient: Annotated[float | None, Quantity("1", at_least=0, at_most=1, optional=True)] = Field(

@@ -37,7 +37,7 @@ Law = Annotated[
     str | None,
     typer.Option(
         "--law",
-        help="Friction law by its name in parameter files, such as coulomb; an unknown name lists them all.",
+        help="Friction law: I to V, none, or a name such as coulomb; an unknown name lists them all.",
     ),
 ]
 Settings = Annotated[

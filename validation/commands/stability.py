@@ -99,6 +99,7 @@ def stability(
     spurcheck stability --view laws --law composite --against coulomb -o difference.png
     """
     from floquet.gear.multipliers import gear_pair_multipliers
+    from lumped.friction.registry import law_named
     from validation.commands.stability_views import VIEWS, Request, show
     from validation.files.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
 
@@ -110,7 +111,9 @@ def stability(
     grid = _grid(axes or [])
     speeds = None if operating_range is None else _range(operating_range)
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
-    request = Request(gear_pair, grid, speeds, tongues, against, method, multipliers, targets)
+    request = Request(
+        gear_pair, grid, speeds, tongues, law_named(against, "--against").name, method, multipliers, targets
+    )
     request.check(view)
     found = gear_pair_multipliers(gear_pair)
     _print_point(gear_pair, found)

@@ -22,7 +22,6 @@ from floquet.gear.paths import multiplier_paths
 from floquet.gear.tongues import LabelledRegion, label_regions
 from lumped import GearPair
 from lumped.errors import refuse
-from lumped.friction import LAWS
 from lumped.typing import FloatArray
 from validation.commands.options import write_result
 from validation.commands.terminal import progress_bar, stdout, table
@@ -81,8 +80,6 @@ class Request:
             coulomb_gear_pair(self.pair, 0.0)  # refuses a ratio for which there is no closed form
         if self.method not in METHODS:
             raise refuse("--method", self.method, ", ".join(METHODS), "Leave it out to have it chosen.")
-        if self.against not in LAWS:
-            raise refuse("--against", self.against, ", ".join(LAWS), "Choose among these.")
         if view == "laws" and self.against == self.pair.friction.law:
             raise refuse(
                 "--against", self.against, "another law than that of the pair", "Choose it by --law."

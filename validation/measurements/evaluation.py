@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import xarray as xr
 
 from lumped.arguments import some_of
-from lumped.friction import LAWS
+from lumped.friction.registry import LAWS, file_name
 from lumped.schema.pair import GearPair
 from validation.measurements.alignment import Alignment, align
 from validation.measurements.identification import Identification, NormalSource, identify_friction
@@ -70,7 +70,8 @@ def evaluate(
     NumericalError : the record does not fit the prediction in any phase, or carries no friction
     """
     laws = [name for name in LAWS if name != "none"]
-    some_of("identify", identify, [CONSTANT, *laws], "Name mu, a constant coefficient, or a law to scale.")
+    advice = "Name mu, a constant coefficient, or a law to scale."
+    wanted = some_of("identify", identify, [CONSTANT, *laws], advice, file_name)
     spec = measurement.spec
     prediction = predict(pair, spec.pinion_speed, spec.pinion_torque, recurrence=spec.recurrence)
     phase = align(measurement, prediction, shift=shift)
@@ -82,6 +83,6 @@ def evaluate(
         metrics=overlay_metrics(measurement, prediction, phase),
         found=tuple(
             identify_friction(measurement, prediction, phase, law=law, normal=normal, zero=zero)
-            for law in (None if name == CONSTANT else name for name in identify)
+            for law in (None if name == CONSTANT else name for name in wanted)
         ),
     )

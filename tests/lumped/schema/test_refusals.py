@@ -151,7 +151,7 @@ class TestOtherFields:
         ("path", "value", "near"),
         [
             ("friction.law", "colomb", "coulomb"),
-            ("friction.law", "Xu-Kahraman", "xu_kahraman"),
+            ("friction.law", "Xu-Kaharman", "xu_kahraman"),
             ("mesh.stiffness", {"model": "parabolc"}, "parabolic"),
             ("pinion.tip_relief.shape", "liner", "linear"),
         ],
