@@ -15,7 +15,7 @@ from lumped.model.averaged import averaged_matrix, modes
 from lumped.model.periodic_system import periodic_system
 from lumped.quasi_static.load_sharing import share_load
 from validation.cross_check.metrics import mesh_orders
-from validation.verification.checks import Check
+from validation.verification.checks import Check, check, rows_check
 
 _SAMPLES = 512
 
@@ -34,25 +34,11 @@ def arithmetic(pair: GearPair) -> tuple[Check, ...]:
     return (_orders(), _speeds(pair), _losses(pair), _forces(pair), _averaged(pair), _sharing())
 
 
-def _worst(
-    key: str, subject: str, exact: str, rows: list[tuple[float, float]], limit: float, reason: str
-) -> Check:
-    value = max(abs(found - wanted) / max(abs(wanted), 1e-300) for found, wanted in rows)
-    return Check(key, subject, exact, value, limit, reason)
-
-
 def _orders() -> Check:
     phase = 2.0 * np.pi * np.arange(64) / 64
     found = mesh_orders(3.0 + 2.0 * np.cos(phase + 0.4) + 0.5 * np.sin(3.0 * phase), 64, 4)
     rows = list(zip(found.amplitude + 1.0, (4.0, 3.0, 1.0, 1.5, 1.0), strict=True))
-    return _worst(
-        "mesh_orders",
-        "amplitudes by mesh order",
-        "amplitudes that a sum of cosines was made with",
-        [*rows, (float(found.phase[1]), 0.4)],
-        1e-12,
-        "rounding",
-    )
+    return rows_check("mesh_orders", [*rows, (float(found.phase[1]), 0.4)])
 
 
 def _speeds(pair: GearPair) -> Check:
@@ -72,14 +58,7 @@ def _speeds(pair: GearPair) -> Check:
         if near is not None:
             rows.append((near.natural_frequency, wanted))
             rows.append((near.resonant_speed, 60.0 * near.natural_frequency / pair.pinion.teeth))
-    return _worst(
-        "frequencies",
-        "speed, natural frequencies off the line of action and their resonant speeds",
-        "sqrt(K/m)/(2 pi) of each bearing, and 60 f over the teeth of the pinion",
-        rows,
-        1e-6,
-        "an eigenvalue solver finds close frequencies to the root of rounding",
-    )
+    return rows_check("frequencies", rows)
 
 
 def _losses(pair: GearPair) -> Check:
@@ -106,14 +85,7 @@ def _losses(pair: GearPair) -> Check:
     arms = ((g.L_XD - g.L_XP) / g.base_pitch, (g.L_XP - g.L_XA) / g.base_pitch)
     if max(arms) <= 1.0 and min(arms) > 0.0 and 1.0 < g.contact_ratio < 2.0:
         rows.append((ohlendorf_of(pair), loss))
-    return _worst(
-        "losses",
-        "loss factors, input power and efficiency of this pair at rest, for one friction coefficient",
-        "mean sliding velocity under equally shared load, summed over the cycle here",
-        rows,
-        0.02,
-        "the loss is that factor to first order in mu = 0.05; half a percent of it remains",
-    )
+    return rows_check("losses", rows)
 
 
 def _uniform_loss_factor(g: Geometry) -> float:
@@ -153,15 +125,7 @@ def _forces(pair: GearPair) -> Check:
     clear = np.minimum(np.abs(place - g.L_XA), np.abs(place - g.L_XD)) > 1e-6 * g.base_pitch
     wrong = (motion["contact"].to_numpy() > 0.0) != ((place > g.L_XA) & (place < g.L_XD))
     rows.append((1.0 + float((wrong & clear).sum()), 1.0))
-    return _worst(
-        "forces",
-        "bearing forces, friction power, contacts and driving torque of the periodic motion",
-        "stiffness times displacement in the mean; friction force times nominal sliding velocity; contact "
-        "from A to D; the torque of the parameter file",
-        rows,
-        1e-4,
-        "the damping force has no mean over a whole cycle, but for samples beside a jump",
-    )
+    return rows_check("forces", rows)
 
 
 def _averaged(pair: GearPair) -> Check:
@@ -170,14 +134,7 @@ def _averaged(pair: GearPair) -> Check:
     matrices = system.matrices((np.arange(samples) + 0.5) * (system.period / samples))
     mean = np.asarray(matrices.mean(axis=0))
     error = float(np.abs(averaged_matrix(system) - mean).max() / np.abs(mean).max())
-    return Check(
-        key="averaged",
-        subject="averaged system, from which natural frequencies come",
-        exact="mean of A(t) at 4096 times",
-        value=error,
-        limit=2e-3,
-        reason="a sample to either side of each jump",
-    )
+    return check("averaged", error, samples=samples)
 
 
 def _sharing() -> Check:
@@ -186,4 +143,4 @@ def _sharing() -> Check:
     delta = (1000.0 + 1e8 * 2e-6) / 3e8
     rows = [(float(found.transmission_error), delta), (float(found.load[0]), 2e8 * delta)]
     rows += [(float(found.load[1]), 1e8 * delta - 200.0)]
-    return _worst("load_sharing", "static load sharing", "a case solved by hand", rows, 1e-12, "rounding")
+    return rows_check("load_sharing", rows)

@@ -3,7 +3,14 @@
 from __future__ import annotations
 
 import math
+import tomllib
+from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
 
 
 @dataclass(frozen=True)
@@ -40,6 +47,34 @@ class Check:
         if self.theory is None:
             return f"≤ {self.limit:g}"
         return f"{self.theory - self.limit:g} to {self.theory + self.limit:g}"
+
+
+#: "check" or "refinement" -> key -> words, limit and reason.
+_STATED = tomllib.loads((files("validation.verification") / "checks.toml").read_text(encoding="utf-8"))
+
+
+def _row(kind: str, key: str, numbers: dict[str, object]) -> dict[str, Any]:
+    """Words and limit of a key, with the numbers put in and the lines of every text joined."""
+    row = _STATED[kind][key].items()
+    return {k: " ".join(v.format(**numbers).split()) if isinstance(v, str) else v for k, v in row}
+
+
+def check(key: str, value: float, **numbers: object) -> Check:
+    """Check of a key of ``checks.toml``.
+
+    Parameters
+    ----------
+    key : in the table "check"
+    value : what was computed
+    **numbers : those that its words have in braces
+    """
+    return Check(key=key, value=float(value), **_row("check", key, numbers))
+
+
+def rows_check(key: str, rows: ArrayLike) -> Check:
+    """Check of the largest relative difference between numbers (rows, 2): found, and what they must be."""
+    found, wanted = np.asarray(rows, dtype=float).T
+    return check(key, np.max(np.abs(found - wanted) / np.maximum(np.abs(wanted), 1e-300)))
 
 
 def error_check(subject: str, exact: str, value: float, limit: float) -> Check:
@@ -125,3 +160,12 @@ class Refinement:
         """Whether the used resolution is within its limit and refining has brought the error down to it."""
         first, used = self.levels[0].error, self.error
         return math.isfinite(used) and used <= self.limit and used <= max(first, self.limit)
+
+
+def refinement(key: str, levels: Sequence[Level], **numbers: object) -> Refinement:
+    """Refinement of a key of ``checks.toml``; ``numbers`` are those that its words have in braces."""
+    return Refinement(key=key, levels=tuple(levels), **_row("refinement", key, numbers))
+
+
+#: Relative error of a peak to peak that is read off samples: half a unit of the third digit, the last shown.
+SAMPLING_LIMIT = float(_STATED["refinement"]["sampling"]["limit"])

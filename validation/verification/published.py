@@ -26,7 +26,7 @@ from lumped.stiffness.tooth_beam import beam_compliance
 from lumped.typing import FloatArray
 from multibody.contact import friction as fr
 from multibody.contact import kernels as kn
-from validation.verification.checks import Check
+from validation.verification.checks import Check, check
 
 #: Module -> formulas that are published, each of which shows one number.
 FORMULAS: Mapping[str, frozenset[str]] = {
@@ -183,14 +183,7 @@ def published_checks(pair: GearPair) -> tuple[Check, ...]:
 
 def shown(values: tuple[PublishedValue, ...]) -> Check:
     """How many published values are not met."""
-    return Check(
-        key="published_values",
-        subject="every published formula that the models use: laws, film, oil, ISO 6336, contact",
-        exact="the number in its docstring, worked out apart from the code; how many differ",
-        value=float(sum(not value.passes for value in values)),
-        limit=0.0,
-        reason="numbers are compared to the digits shown",
-    )
+    return check("published_values", sum(not value.passes for value in values))
 
 
 def _tooth() -> Check:
@@ -203,14 +196,7 @@ def _tooth() -> Check:
         beam = beam_compliance(profile, length, modulus, 0.5 * modulus / shear - 1.0)
         for part, value in zip((beam.bending, beam.shear, beam.axial), wanted, strict=True):
             errors.append(abs(width / float(part[0]) / value - 1.0))
-    return Check(
-        key="tooth",
-        subject="a tooth in bending, shear and compression",
-        exact="stiffnesses by an independent program, ROSS 2.3.0, with true fillets",
-        value=max(errors),
-        limit=1e-9,
-        reason="the values are stated to eleven digits",
-    )
+    return check("tooth", max(errors))
 
 
 def _compliances(pair: GearPair) -> Check:
@@ -232,11 +218,4 @@ def _compliances(pair: GearPair) -> Check:
         )
         root, half = profile.root_radius, profile.root_half_angle
         total += foundation_compliance(profile.base_radius, root, 0.5 * wheel.bore, half, angle, e, nu)
-    return Check(
-        key="compliances",
-        subject="stiffness of this pair's teeth by the energy method",
-        exact="its parts, of both teeth and their contact, added up again",
-        value=float(np.abs(found * total / g.face_width - 1.0).max()),
-        limit=1e-9,
-        reason="rounding",
-    )
+    return check("compliances", np.abs(found * total / g.face_width - 1.0).max())

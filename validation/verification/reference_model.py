@@ -20,7 +20,7 @@ from lumped import GearPair
 from lumped.errors import NumericalError, ParameterError
 from multibody.contact.drawing import circles
 from multibody.study.shared import Shared, shared_of
-from validation.verification.checks import Check
+from validation.verification.checks import Check, check
 from validation.verification.published import PublishedValue, published_values, shown
 
 if TYPE_CHECKING:
@@ -30,7 +30,6 @@ T = TypeVar("T")
 
 #: Mesh cycles of the third build.
 _CYCLES = 3
-_CALLED = "exudyn's natural frequencies of the machine with frozen mesh"
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,36 +106,15 @@ def reference_model(pair: GearPair, static_load: float) -> ReferenceModel:
 
 def _static_load(pair: GearPair, static_load: float) -> Check:
     own = pair.operating.pinion_torque / circles(pair).base_pinion
-    return Check(
-        key="static_load",
-        subject="static load along the line of action in this report",
-        exact="torque over the base radius that the multibody model draws; relative",
-        value=abs(static_load / own - 1.0),
-        limit=1e-12,
-        reason="rounding",
-    )
+    return check("static_load", abs(static_load / own - 1.0))
 
 
 def _damping(decays: tuple[multibody.Decay, ...]) -> Check:
-    return Check(
-        key="damping",
-        subject="free vibration of the frozen mesh, and of both bodies along and off the line of action",
-        exact="decay with the damping ratios of the parameter file; difference of the ratios",
-        value=max(abs(decay.measured - decay.given) for decay in decays),
-        limit=1e-7,
-        reason="runs at a relative tolerance of 1e-11 over two periods",
-    )
+    return check("damping", max(abs(decay.measured - decay.given) for decay in decays))
 
 
 def _third_build(build: multibody.TurningBuild) -> Check:
-    return Check(
-        key="third_build",
-        subject="bodies that turn through their own angle in exudyn's nodes",
-        exact="transmission error of the usual build in deviations; over its peak to peak",
-        value=build.difference / build.span,
-        limit=1e-4,
-        reason="whole angles are integrated to 1e-8 rad, and steps straddle the jumps of the tooth forces",
-    )
+    return check("third_build", build.difference / build.span)
 
 
 def _modes(modes: xr.Dataset) -> Iterator[Check]:
@@ -146,20 +124,5 @@ def _modes(modes: xr.Dataset) -> Iterator[Check]:
         return float(np.abs(frequency.sel(source=own) / frequency.sel(source=other) - 1.0).max())
 
     ratios = np.abs(damping.sel(source="exudyn linear") - damping.sel(source="lumped frozen"))
-    yield Check(
-        key="frozen_modes",
-        subject=f"{_CALLED}, fidelity linear",
-        exact="those of the lumped A(t) at this phase, relative, and its damping ratios, difference",
-        value=max(apart("exudyn linear", "lumped frozen"), float(ratios.max())),
-        limit=1e-6,
-        reason="exudyn differentiates the forces numerically",
-    )
-    yield Check(
-        key="frozen_modes_exact",
-        subject=f"{_CALLED}, fidelity exact",
-        exact="those of the lumped A(t) with the spring -N/L_XY of the turned line of action; relative",
-        value=apart("exudyn exact", "lumped turned line"),
-        limit=1e-3,
-        reason="the contact stands beside its nominal place by a share of a base pitch of this size, where "
-        "the stiffness is another; 1 % of a stiffness changes a frequency by five times as much",
-    )
+    yield check("frozen_modes", max(apart("exudyn linear", "lumped frozen"), float(ratios.max())))
+    yield check("frozen_modes_exact", apart("exudyn exact", "lumped turned line"))

@@ -18,10 +18,8 @@ from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.propagation import STAGES, STEP_ANGLE, step_maps
 from lumped.model.steady import periodic_cycle
 from lumped.typing import FloatArray
-from validation.verification.checks import Level, Refinement
+from validation.verification.checks import SAMPLING_LIMIT, Level, Refinement, refinement
 
-#: Relative error of a peak to peak that is read off samples: half a unit of the third digit, the last shown.
-SAMPLING_LIMIT = 5e-4
 _MOST_SAMPLES = 8192
 _SAMPLES = 64
 _CYCLES = 4
@@ -83,32 +81,18 @@ def _stages(pair: GearPair) -> Refinement:
         found = _periodic_state(system, stages)
         error = float(np.abs(found - finest)[: system.size // 2].max() / scale)
         levels.append(Level(f"Gauss, {stages} stages, order {2 * stages}", error, stages == STAGES))
-    return Refinement(
-        key="steady_state",
-        subject="periodic motion: order of the steps",
-        measure=f"displacements at the start of the cycle against {STAGES + 2} stages, over the largest",
-        levels=tuple(levels),
-        limit=1e-9,
-        reason="far below every difference that is discussed",
-    )
+    return refinement("steady_state", levels, stages=STAGES + 2)
 
 
 def _sampling(pair: GearPair, samples: int) -> Refinement:
     finest = 8 * samples
     spans = {count: _span(pair, count) for count in (samples // 4, samples, 2 * samples, finest)}
-    return Refinement(
-        key="sampling",
-        subject="periodic motion: samples per mesh cycle",
-        measure=f"peak to peak of the transmission error against {finest} samples, relative",
-        levels=tuple(
-            Level(f"{count} samples", abs(span / spans[finest] - 1.0), count == samples)
-            for count, span in spans.items()
-            if count != finest
-        ),
-        limit=SAMPLING_LIMIT,
-        reason="half a unit of the third digit, the last one shown in the headline; samples are doubled "
-        "until this holds",
-    )
+    levels = [
+        Level(f"{count} samples", abs(span / spans[finest] - 1.0), count == samples)
+        for count, span in spans.items()
+        if count != finest
+    ]
+    return refinement("sampling", levels, samples=finest)
 
 
 def _over_tolerance(error: Callable[[float], float], *tolerances: float) -> tuple[Level, ...]:
@@ -127,14 +111,8 @@ def _transient(pair: GearPair) -> Refinement:
         run = lumped.simulate(pair, _CYCLES, samples_per_cycle=_SAMPLES, rtol=rtol)
         return np.asarray(run["dte"].to_numpy(), dtype=np.float64)
 
-    return Refinement(
-        key="transient",
-        subject=f"transient of the lumped model, {_CYCLES} mesh cycles from rest: tolerance",
-        measure="transmission error against rtol 1e-12, largest difference over the peak to peak",
-        levels=_over_tolerance(_against(dte, 1e-12), 1e-6, 1e-8, 1e-10),
-        limit=1e-7,
-        reason="errors of a step add up over the transient",
-    )
+    levels = _over_tolerance(_against(dte, 1e-12), 1e-6, 1e-8, 1e-10)
+    return refinement("transient", levels, cycles=_CYCLES)
 
 
 def _closure(pair: GearPair) -> Refinement:
@@ -145,15 +123,7 @@ def _closure(pair: GearPair) -> Refinement:
         first, second = run["dte"].to_numpy()[: 2 * _SAMPLES].reshape(2, _SAMPLES)
         return float(np.abs(second - first).max() / np.ptp(first))
 
-    return Refinement(
-        key="closure",
-        subject="periodic motion carried on by the transient integrator",
-        measure="second mesh cycle against the first, transmission error, largest difference over the peak "
-        "to peak",
-        levels=_over_tolerance(error, 1e-6, 1e-8, 1e-10),
-        limit=1e-7,
-        reason="two independent integrators (Gauss collocation, DOP853) share only the equations",
-    )
+    return refinement("closure", _over_tolerance(error, 1e-6, 1e-8, 1e-10))
 
 
 def _multibody(pair: GearPair) -> Refinement:
@@ -163,14 +133,8 @@ def _multibody(pair: GearPair) -> Refinement:
         )
         return np.asarray(run["dte"].to_numpy(), dtype=np.float64)
 
-    return Refinement(
-        key="multibody",
-        subject=f"exact multibody model, {_CYCLES} mesh cycles: tolerance",
-        measure="transmission error against rtol 1e-10, largest difference over the peak to peak",
-        levels=_over_tolerance(_against(dte, 1e-10), 1e-5, 1e-6, 1e-8),
-        limit=1e-4,
-        reason="a hundredth of the smallest difference of the models that is discussed",
-    )
+    levels = _over_tolerance(_against(dte, 1e-10), 1e-5, 1e-6, 1e-8)
+    return refinement("multibody", levels, cycles=_CYCLES)
 
 
 def _monodromy(pair: GearPair) -> Refinement:
@@ -181,15 +145,11 @@ def _monodromy(pair: GearPair) -> Refinement:
     def error(rtol: float, method: str) -> float:
         return float(np.linalg.norm(monodromy(system, rtol, method=method).matrix - finest)) / size
 
-    return Refinement(
-        key="monodromy",
-        subject="monodromy matrix: tolerance and method",
-        measure="matrix against rtol 1e-10 by Gauss collocation, relative to its norm",
-        levels=(
+    return refinement(
+        "monodromy",
+        (
             *(Level(f"rtol {rtol:.0e}, Gauss", error(rtol, "gauss")) for rtol in (1e-4, 1e-6)),
             Level("rtol 1e-08, Gauss", error(1e-8, "gauss"), True),
             Level("rtol 1e-08, Magnus of order 6", error(1e-8, "magnus6")),
         ),
-        limit=1e-7,
-        reason="ten times what is asked for: the norm of the comparison is not the balanced one",
     )

@@ -18,12 +18,10 @@ from floquet import fast_multipliers, gear_block, gear_pair_system, monodromy
 from lumped import GearPair
 from lumped.model.periodic_system import periodic_system
 from lumped.typing import ComplexArray
-from validation.verification.checks import Check
+from validation.verification.checks import Check, check
 
 #: Rows of q, x_p, x_g and of y_p, y_g, with their rates, among the ten relative states.
 _FEEDBACK, _OLOA = [0, 1, 2, 5, 6, 7], [3, 4, 8, 9]
-#: Limit of both; 1 % of any coefficient changes the second by 1e-4 and more (presets and random pairs).
-LIMIT = 1e-5
 #: Places in each piece of the fitted gains.
 _PLACES = 25
 
@@ -67,27 +65,9 @@ def stability_routes(pair: GearPair) -> StabilityRoutes:
     compiled = fast_multipliers(gear_block(pair)).multipliers[0]
     own, oloa = (np.linalg.eigvals(flow.matrix[np.ix_(r, r)]).astype(complex) for r in (_FEEDBACK, _OLOA))
     ours, theirs = (np.real(np.poly(values)) for values in (compiled, own))
-    exact = "the flow map of the multibody model, by runs from perturbed states"
-    reason = (
-        "central differences of runs to 1e-10; 1 % of any coefficient changes it ten times as much or more"
-    )
     checks = (
-        Check(
-            key="flow_map",
-            subject="monodromy matrix of this pair",
-            exact=f"{exact}; over its norm",
-            value=float(np.linalg.norm(a - b) / np.linalg.norm(b)),
-            limit=LIMIT,
-            reason=reason,
-        ),
-        Check(
-            key="compiled_multipliers",
-            subject="compiled multipliers of this pair, their characteristic polynomial",
-            exact=f"that of {exact}; over its largest coefficient",
-            value=float(np.max(np.abs(ours - theirs)) / np.max(np.abs(theirs))),
-            limit=LIMIT,
-            reason=reason,
-        ),
+        check("flow_map", float(np.linalg.norm(a - b) / np.linalg.norm(b))),
+        check("compiled_multipliers", np.max(np.abs(ours - theirs)) / np.max(np.abs(theirs))),
     )
     return StabilityRoutes(own, oloa, checks)
 
@@ -111,11 +91,4 @@ def fit_bound(pair: GearPair) -> Check:
             size = float(np.sqrt(block.metric @ apart[:, :, column].T ** 2).max())
             bound = float(block.total.fit_errors[piece, gain])
             used = max(used, size / bound if bound > 0.0 else np.inf if size > 0.0 else 0.0)
-    return Check(
-        key="misfit",
-        subject="error of the polynomials in the compiled multipliers of this pair, which their bound counts",
-        exact=f"A(t) at {_PLACES} times in each piece; largest error over its bound",
-        value=used,
-        limit=1.0,
-        reason="a bound is never exceeded",
-    )
+    return check("misfit", used, places=_PLACES)

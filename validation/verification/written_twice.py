@@ -22,12 +22,9 @@ from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.drawing import circles, masses
 from multibody.contact.machine import machine
-from validation.verification.checks import Check
+from validation.verification.checks import Check, check, rows_check
 
-_OWN = "the same from the drawing by the multibody model; relative"
 _PLACES = 101
-#: Laws near the pitch point vary fast, and a place is known to rounding only.
-_LAW_LIMIT = 1e-8
 
 
 def written_twice(pair: GearPair) -> tuple[Check, ...]:
@@ -38,16 +35,6 @@ def written_twice(pair: GearPair) -> tuple[Check, ...]:
     pair : a validated gear pair
     """
     return (_geometry(pair), _bodies(pair), _damping(pair), _laws(pair), _stiffness(pair), *_relief(pair))
-
-
-def _check(
-    key: str, subject: str, found: FloatArray, wanted: FloatArray, limit: float, exact: str = _OWN
-) -> Check:
-    size = np.maximum(np.abs(wanted), 1e-300)
-    value = float(np.max(np.abs(found - wanted) / size))
-    return Check(
-        key, subject, exact, value, limit, "two formulas for one number: rounding, or the error of a fit"
-    )
 
 
 def _geometry(pair: GearPair) -> Check:
@@ -74,18 +61,15 @@ def _geometry(pair: GearPair) -> Check:
         (g.mesh_period, 2.0 * math.pi / (omega * pair.pinion.teeth)),
         (g.face_width, min(pair.pinion.face_width, pair.gear.face_width)),
     ]
-    found, wanted = np.array(rows, dtype=float).T
-    return _check("geometry", "circles, path of contact and speeds of this pair", found, wanted, 1e-9)
+    return rows_check("geometry", rows)
 
 
 def _bodies(pair: GearPair) -> Check:
     b, (mass, inertia) = bodies(pair), masses(pair)
     c = circles(pair)
     own = 1.0 / (c.base_pinion**2 / inertia[0] + c.base_gear**2 / inertia[1])
-    found = np.array([b.mass_pinion, b.mass_gear, b.inertia_pinion, b.inertia_gear, b.effective_mass])
-    return _check(
-        "bodies", "masses and inertias of this pair", found, np.array([*mass, *inertia, own]), 1e-12
-    )
+    found = [b.mass_pinion, b.mass_gear, b.inertia_pinion, b.inertia_gear, b.effective_mass]
+    return rows_check("bodies", list(zip(found, [*mass, *inertia, own], strict=True)))
 
 
 def _inside(pair: GearPair) -> FloatArray:
@@ -98,7 +82,7 @@ def _damping(pair: GearPair) -> Check:
     own = p[kn.DAMPING] * np.sqrt(np.maximum(elements.stiffness(xi), 0.0))
     scale = max(float(np.abs(own).max()), 1e-300)
     found = elements.damping(xi)
-    return _check("mesh_damping", "damping of a tooth pair", found / scale + 1.0, own / scale + 1.0, 1e-6)
+    return rows_check("mesh_damping", np.stack([found, own], axis=1) / scale + 1.0)
 
 
 def _laws(pair: GearPair) -> Check:
@@ -115,14 +99,7 @@ def _laws(pair: GearPair) -> Check:
         # Where a law jumps, rounding of the place decides; such a place is left out.
         away[np.abs(xi[:, None] - np.append(law.switches, 0.0)).min(axis=1) < 1e-9] = 0.0
         worst = max(worst, float(away.max() / max(np.abs(own).max(), 1e-300)))
-    return Check(
-        "friction_laws",
-        "every friction law along the path of contact of this pair",
-        "the same law as the multibody model has it, with conversions of its own; over its largest value",
-        worst,
-        _LAW_LIMIT,
-        "polynomials fitted to 1e-10",
-    )
+    return check("friction_laws", worst)
 
 
 def _stiffness(pair: GearPair) -> Check:
@@ -152,15 +129,7 @@ def _stiffness(pair: GearPair) -> Check:
         and not model.ramp_length
     ):
         rows.append((elements.stiffness.mean() * ratio, mean))
-    found, wanted = np.array(rows).T
-    return _check(
-        "iso6336",
-        "stiffness of this pair's teeth by ISO 6336-1, and its curve where that is built on it",
-        found,
-        wanted,
-        1e-9,
-        "the standard's equations (82) to (93), written once more here; relative",
-    )
+    return rows_check("iso6336", rows)
 
 
 def _relief(pair: GearPair) -> Iterator[Check]:
@@ -170,6 +139,4 @@ def _relief(pair: GearPair) -> Iterator[Check]:
     xi, p = _inside(pair), machine(pair.with_({"mesh.relief": "static"})).parameters
     own = np.array([kn.relief_at(p, x)[0] for x in xi])
     scale = float(sum(r.amount for r in reliefs))
-    yield _check(
-        "relief", "relief of both flanks", relief_error(pair, xi) / scale + 1.0, own / scale + 1.0, 1e-9
-    )
+    yield rows_check("relief", np.stack([relief_error(pair, xi), own], axis=1) / scale + 1.0)

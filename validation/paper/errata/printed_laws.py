@@ -11,7 +11,6 @@ import numpy as np
 
 from lumped import GearPair, PathFunction
 from lumped.friction import ContactPath, xu_kahraman
-from lumped.lubrication.film import film_thickness
 from lumped.path_of_contact import contact_path
 from lumped.typing import FloatArray
 from validation.paper.operating_points import mean_of_law
@@ -100,16 +99,7 @@ def film_thickness_printed(
     factor = 10.0 ** (PRINTED_FILM_EXPONENT - 3) if film else 1.0
     if speed:
         factor *= 10.0 ** (0.69 * (PRINTED_SPEED_EXPONENT + 6))
-    repaired = film_thickness(
-        path.unit_load * 1e-3,
-        path.radius(xi) * 1e3,
-        path.viscosity * 1e3,
-        path.entraining_velocity(xi),
-        path.effective_modulus * 1e-6,
-        pressure_viscosity_k=path.pressure_viscosity_k,
-        pressure_viscosity_s=path.pressure_viscosity_s,
-    )
-    return np.asarray(1e-6 * factor * repaired, dtype=np.float64)
+    return factor * path.film_thickness(xi)
 
 
 def _fitted(pair: GearPair, law: Law, bounds: list[float] | None = None) -> PathFunction:
