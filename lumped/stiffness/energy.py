@@ -5,9 +5,8 @@ Banaschek's contact the mean mesh stiffness lies within a tenth of ISO 6336-1's,
 linearised contact of the literature makes it a quarter larger. ``scale = "iso6336"`` brings the mean to the
 standard's.
 
-By default each pair stands alone, as in most of the literature: the sum of the pairs in contact leaves out
-that they share the two bodies (structural coupling) and is an upper estimate in double contact.
-``coupling = "ring_twist"`` takes in the part of it that has a closed form.
+Each pair stands alone, as in most of the literature: the sum of the pairs in contact leaves out that they
+share the two bodies (structural coupling) and is an upper estimate in double contact.
 """
 
 from __future__ import annotations
@@ -17,15 +16,14 @@ from typing import Literal
 
 import numpy as np
 from numpy.polynomial import Chebyshev
-from numpy.typing import ArrayLike
 from pydantic import Field
 
 from lumped.path_function import PathFunction
 from lumped.ranges import RangeViolation, range_violations
 from lumped.stiffness import iso6336
 from lumped.stiffness.base import MeshingPair, StiffnessModel
-from lumped.stiffness.coupling import coupled, twist_compliance
-from lumped.stiffness.foundation import BODY_RATIO, HALF_ANGLE
+from lumped.stiffness.body import thin_rims
+from lumped.stiffness.foundation import HALF_ANGLE
 from lumped.stiffness.pair_compliance import Contact, pair_compliance
 from lumped.stiffness.ramp import RampLength, ramped
 from lumped.typing import FloatArray
@@ -59,14 +57,12 @@ def energy_curve(pair: MeshingPair, hertz: Contact = "weber_banaschek") -> PathF
 
 
 def foundation_violations(pair: MeshingPair) -> tuple[RangeViolation, ...]:
-    """Fitted ranges of the foundation formula that the two gears leave."""
+    """Fitted range of the foundation formula that the two gears leave, and their thin rims."""
     found: list[RangeViolation] = []
     for name, wheel in zip(("pinion", "gear"), pair.wheels, strict=True):
-        values: dict[str, ArrayLike] = {HALF_ANGLE.quantity: wheel.tooth.root_half_angle}
-        if wheel.bore > 0.0:
-            values[BODY_RATIO.quantity] = wheel.tooth.root_radius / (0.5 * wheel.bore)
-        found += range_violations(f"fillet foundation of the {name}", (BODY_RATIO, HALF_ANGLE), values)
-    return tuple(found)
+        half = {HALF_ANGLE.quantity: wheel.tooth.root_half_angle}
+        found += range_violations(f"fillet foundation of the {name}", (HALF_ANGLE,), half)
+    return (*found, *thin_rims(pair))
 
 
 class EnergyStiffness(StiffnessModel):
@@ -77,10 +73,6 @@ class EnergyStiffness(StiffnessModel):
         "weber_banaschek",
         description="contact compliance: by Weber and Banaschek at the operating torque, or linearised",
     )
-    coupling: Literal["none", "ring_twist"] = Field(
-        "none",
-        description="'ring_twist': pairs in contact together share the twist of bored gear bodies",
-    )
     scale: Literal["none", "iso6336"] = Field(
         "none", description="'iso6336' scales the curve to the mean mesh stiffness of ISO 6336-1 method B"
     )
@@ -89,25 +81,23 @@ class EnergyStiffness(StiffnessModel):
     def curve(self, pair: MeshingPair) -> PathFunction:
         """Stiffness of a tooth pair from A to D by the potential-energy method [N/m]."""
         k = energy_curve(pair, self.hertz)
-        if self.coupling == "ring_twist":
-            k = coupled(k, twist_compliance(pair), pair.geometry)
         if self.scale == "iso6336":
             k = k.scaled(iso6336.mean_of(pair) / (k.mean() * pair.geometry.contact_ratio))
         return ramped(k, self.ramp_length)
 
     def violations(self, pair: MeshingPair) -> tuple[RangeViolation, ...]:
         """Ranges of the fillet foundation's fit, and of ISO 6336-1 where the curve is scaled to it."""
-        return foundation_violations(pair) + (iso6336.violations(pair) if self.scale == "iso6336" else ())
+        return foundation_violations(pair) + (iso6336.fit_violations(pair) if self.scale == "iso6336" else ())
 
     def softening(self, pair: MeshingPair) -> float:
         """D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N].
 
         Weber and Banaschek's contact depends on the load by -2 (1 - nu^2)/(pi E b) ln(a) per tooth, and its
         half width a grows as the root of the load, so D = sum (1 - nu^2)/(pi E b) over both teeth, at every
-        position. The linearised contact does not depend on the load; curves that are scaled, coupled or
-        ramped keep the operating torque.
+        position. The linearised contact does not depend on the load; curves that are scaled or ramped
+        keep the operating torque.
         """
-        changed = self.scale != "none" or self.coupling != "none" or self.ramp_length > 0.0
+        changed = self.scale != "none" or self.ramp_length > 0.0
         if self.hertz != "weber_banaschek" or changed:
             return 0.0
         plane = sum((1.0 - g.poisson_ratio**2) / g.youngs_modulus for g in (pair.pinion, pair.gear))

@@ -5,9 +5,10 @@ analytical formula, J. Mech. Des. 126 (2004) 748-752: an elastic ring, clamped a
 a constant stress distribution on the root circle below one tooth, fitted by polynomials. The body carries one
 loaded tooth; what the load of a neighbouring tooth adds (structural coupling) is not in the formula.
 
-The formula contains the twist of the whole ring against its clamped bore. Lame's solution gives that part in
-closed form (``ring_twist``), and what remains of the formula, the local deflection, varies by a few per cent
-only between h = 1.4 and 6. A gear without a bore has no hub to twist against: it gets the local part alone.
+The formula contains the twist of the whole ring against its clamped bore, a rotation that all pairs share. It
+is no part of a tooth: Lame's solution gives it in closed form (``torsional_stiffness``), and it belongs
+between the gear and its shaft. What remains of the formula, the local deflection, hardly depends on the bore.
+It is taken at one body for every gear, bored or solid (docs/theory/mesh_physics.md, "Gear body").
 """
 
 from __future__ import annotations
@@ -32,13 +33,14 @@ COEFFICIENTS = np.array(
 COEFFICIENTS.setflags(write=False)
 
 _SOURCE = "Sainsot, Velex and Duverger (2004)"
-#: Ratio of root to bore radius and half tooth angle on the root circle for which the polynomials were fitted.
-BODY_RATIO = ValidityRange("root radius over bore radius", "1", 1.4, 7.0, _SOURCE)
+#: Half tooth angle on the root circle for which the polynomials were fitted.
 HALF_ANGLE = ValidityRange("half tooth angle on the root circle", "rad", 0.01, 0.12, _SOURCE)
-
-
-#: Body ratio at which the local part is taken: the middle of the fit's range, where it is flattest.
+#: Body ratio at which the local part is taken: the middle of the fit's range 1.4 to 7, where it is flattest.
 LOCAL_RATIO = 4.0
+#: Thinner rims bend between the teeth: body and support then decide, and no formula here holds.
+BODY_RATIO = ValidityRange(
+    "root radius over bore radius", "1", 2.0, None, "plane finite elements of the gear body"
+)
 
 
 def coefficients(ratio: ArrayLike, half_angle: ArrayLike) -> FloatArray:
@@ -59,30 +61,29 @@ def coefficients(ratio: ArrayLike, half_angle: ArrayLike) -> FloatArray:
     return np.tensordot(COEFFICIENTS, terms, axes=1)
 
 
-def ring_twist(
-    base_radius: float, root_radius: float, bore_radius: float, modulus: float, poisson: float
-) -> float:
-    """Deflection along the line of action by the twist of the ring from bore to root, times face width.
+def torsional_stiffness(root_radius: float, bore_radius: float, modulus: float, poisson: float) -> float:
+    """Torsional stiffness of the ring from bore to root circle over face width, 4 pi G/(1/r_i^2 - 1/r_f^2).
 
-    The torque F r_b twists the ring by F r_b/(4 pi G b) (1/r_i^2 - 1/r_f^2) (Lame), which moves the contact
-    by r_b times that angle.
+    Lame's solution. A solid gear has no bore to turn against: infinite.
 
     Parameters
     ----------
-    base_radius, root_radius, bore_radius : r_b, r_f, r_i > 0 [m]
+    root_radius, bore_radius : r_f, r_i >= 0 [m]
     modulus, poisson : E [Pa], nu [-]
 
     Returns
     -------
-    compliance times face width [m^2/N]
+    torque per angle and face width [N/rad]
 
     Examples
     --------
-    >>> f"{ring_twist(0.04, 0.04, 0.01, 206e9, 0.3):.4e}"
-    '1.5066e-11'
+    >>> f"{torsional_stiffness(0.04, 0.01, 206e9, 0.3):.4e}"
+    '1.0620e+08'
     """
+    if bore_radius == 0.0:
+        return math.inf
     shear_modulus = modulus / (2.0 * (1.0 + poisson))
-    return base_radius**2 * (bore_radius**-2 - root_radius**-2) / (4.0 * math.pi * shear_modulus)
+    return 4.0 * math.pi * shear_modulus / (bore_radius**-2 - root_radius**-2)
 
 
 def published_compliance(
@@ -118,34 +119,22 @@ def published_compliance(
 def foundation_compliance(
     base_radius: float,
     root_radius: float,
-    bore_radius: float,
     half_angle: float,
     load_angle: FloatArray,
     modulus: float,
     poisson: float,
 ) -> FloatArray:
-    """Deflection of the tooth by the gear body, for any bore: published, local, or local and twist.
-
-    With a bore inside the fit's range, the published formula. Without a bore, its local part. With a bore too
-    small for the fit, the local part and the twist in closed form; with one too large, the published formula
-    beyond its range.
+    """Deflection of the tooth by the gear body without the body's twist: the local part of the formula.
 
     Parameters
     ----------
     base_radius, root_radius, half_angle, load_angle, modulus : as in ``published_compliance``
-    bore_radius : radius of the bore [m]; 0 is a solid gear
     poisson : nu [-]
 
     Returns
     -------
     compliance times face width [m^2/N], shape of ``load_angle``
     """
-    args = (half_angle, load_angle, modulus)
-    assert BODY_RATIO.high is not None
-    if root_radius <= BODY_RATIO.high * bore_radius:
-        return published_compliance(base_radius, root_radius, root_radius / bore_radius, *args)
-    local = published_compliance(base_radius, root_radius, LOCAL_RATIO, *args)
-    local = local - ring_twist(base_radius, root_radius, root_radius / LOCAL_RATIO, modulus, poisson)
-    if bore_radius == 0.0:
-        return local
-    return local + ring_twist(base_radius, root_radius, bore_radius, modulus, poisson)
+    whole = published_compliance(base_radius, root_radius, LOCAL_RATIO, half_angle, load_angle, modulus)
+    twist = torsional_stiffness(root_radius, root_radius / LOCAL_RATIO, modulus, poisson)
+    return whole - base_radius**2 / twist

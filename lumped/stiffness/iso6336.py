@@ -13,6 +13,7 @@ import math
 
 from lumped.ranges import RangeViolation, ValidityRange, range_violations
 from lumped.stiffness.base import MeshingPair
+from lumped.stiffness.body import thin_rims
 
 #: C1 to C9 of q', eq. (84), in the order of the terms.
 COEFFICIENTS = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)
@@ -163,7 +164,12 @@ def mean_of(pair: MeshingPair) -> float:
 
 
 def violations(pair: MeshingPair) -> tuple[RangeViolation, ...]:
-    """Validity ranges of the standard that a pair at its operating point leaves."""
+    """Ranges of the standard that a pair at its operating point leaves, and rims too thin for its discs."""
+    return (*fit_violations(pair), *thin_rims(pair))
+
+
+def fit_violations(pair: MeshingPair) -> tuple[RangeViolation, ...]:
+    """Validity ranges of the standard's fit that a pair at its operating point leaves."""
     small, large = _ordered(pair)
     force = pair.operating.pinion_torque / pair.geometry.reference_radius_pinion
     values = {

@@ -113,7 +113,6 @@ def _tooth(wheel: Wheel, material: Material, length: FloatArray, width: float) -
     foundation = foundation_compliance(
         profile.base_radius,
         profile.root_radius,
-        0.5 * wheel.bore,
         profile.root_half_angle,
         angle,
         modulus,

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Any, Literal, Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 from pydantic import Field, ValidationInfo, model_validator
 from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
@@ -15,7 +16,6 @@ from lumped.errors import NumericalError, refuse
 from lumped.gear_geometry.geometry import Geometry
 from lumped.path_function import PathFunction, shifted
 from lumped.stiffness.base import MeshingPair, StiffnessModel
-from lumped.stiffness.coupling import neighbour_breaks
 from lumped.stiffness.energy import energy_curve
 from lumped.stiffness.ramp import RampLength, check_ramp_length, ramped
 from lumped.stiffness.table_file import check_stiffness_table, read_stiffness_table
@@ -27,6 +27,8 @@ _END_GAP = 0.02
 #: Largest gap between points, over a mesh cycle, across which a curve is still called sampled.
 _LARGEST_GAP = 0.25
 _FIT_TOLERANCE = 1e-10
+#: Positions closer than this fraction of a base pitch are one.
+_SAME = 1e-9
 
 
 class TableStiffness(StiffnessModel):
@@ -152,9 +154,38 @@ def _shared(total: PPoly, ramp_length: float, pair: MeshingPair) -> PathFunction
         return np.asarray(total(np.mod(xi - low, period)) * part, dtype=np.float64)
 
     ramps = [low + ramp_length, high - ramp_length] if ramp_length > 0.0 else []
-    breaks, switches = neighbour_breaks([low, high, *ramps], low + total.x, geometry)
+    breaks, switches = _neighbour_breaks([low, high, *ramps], low + total.x, geometry)
     scale = float(np.abs(total.c[-1]).max())
     return _positive(PathFunction.fit(share, breaks, switches, tolerance=_FIT_TOLERANCE * scale))
+
+
+def _neighbour_breaks(
+    switches: ArrayLike, knots: ArrayLike, geometry: Geometry
+) -> tuple[FloatArray, FloatArray]:
+    """Breaks and switches of a function of a pair and its neighbours over the path of contact.
+
+    Parameters
+    ----------
+    switches : (m,) positions at which one pair alone jumps or has a kink, A and D among them [m]
+    knots : (n,) positions at which one pair alone passes from one polynomial piece to the next [m]
+    geometry : of the pair
+
+    Returns
+    -------
+    breaks : from A to D, increasing, none within rounding of another [m]
+    switches : those inside that are jumps or kinks [m]
+    """
+    g, same = geometry, _SAME * geometry.base_pitch
+    shifts = np.arange(1 - g.pairs, g.pairs) * g.base_pitch
+
+    def within(positions: ArrayLike) -> FloatArray:
+        moved = np.unique(np.add.outer(np.asarray(positions), shifts))
+        moved = moved[(moved > g.L_XA + same) & (moved < g.L_XD - same)]
+        return moved[np.diff(moved, prepend=-np.inf) > same]
+
+    jumps, joints = within(switches), within(knots)
+    apart = np.abs(np.subtract.outer(joints, jumps)).min(axis=1, initial=np.inf) > same
+    return np.unique(np.concatenate([[g.L_XA, g.L_XD], jumps, joints[apart]])), jumps
 
 
 def _check_gaps(gap: float, geometry: Geometry) -> None:

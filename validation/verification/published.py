@@ -47,7 +47,7 @@ FORMULAS: Mapping[str, frozenset[str]] = {
         "lubrication.viscosity": "walther_constants kinematic_viscosity oil_density",
         "lubrication.viscosity_grade": "viscosity_index viscosity_at_100 grade_viscosity",
         "stiffness.contact": "linear_hertz_compliance contact_half_width local_compliance",
-        "stiffness.foundation": "coefficients ring_twist",
+        "stiffness.foundation": "coefficients torsional_stiffness",
         "stiffness.iso6336": "theoretical_single_stiffness basic_rack_factor material_factor "
         "single_stiffness mean_mesh_stiffness",
         "stiffness.parabolic": "iso_end_ratio",
@@ -217,5 +217,5 @@ def _compliances(pair: GearPair) -> Check:
             beam.bending + beam.shear + beam.axial + local_compliance(half_width, h / np.cos(angle), e, nu)
         )
         root, half = profile.root_radius, profile.root_half_angle
-        total += foundation_compliance(profile.base_radius, root, 0.5 * wheel.bore, half, angle, e, nu)
+        total += foundation_compliance(profile.base_radius, root, half, angle, e, nu)
     return check("compliances", np.abs(found * total / g.face_width - 1.0).max())

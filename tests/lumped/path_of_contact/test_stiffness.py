@@ -81,26 +81,39 @@ def test_size_differs_from_iso_where_the_standard_or_the_fit_says_so():
     assert low == pytest.approx(float(blankenship.mean_ratio.sel(variant="as given")), rel=1e-9)
 
 
-def test_bore_softens_and_solid_bodies_do_not_matter_without_one():
-    pair = load_gear_pair("kahraman_blankenship_50_50")
-    assert float(iso_comparison(pair).mean_ratio.sel(variant="solid bodies")) == float(
-        iso_comparison(pair).mean_ratio.sel(variant="as given")
-    )
-    bored = iso_comparison(pair.with_(pinion__bore=40.0, gear__bore=40.0)).mean_ratio
-    assert float(bored.sel(variant="as given")) < float(bored.sel(variant="solid bodies"))
+_FEET = ["fillet foundation of the pinion", "fillet foundation of the gear"]
 
 
 @pytest.mark.parametrize(
     ("stiffness", "laws"),
     [
-        ({"model": "energy"}, ["fillet foundation of the pinion", "fillet foundation of the gear"]),
+        ({"model": "energy"}, _FEET),
         ({"model": "rectangular"}, ["ISO 6336-1 tooth stiffness"]),
         ({"model": "parabolic", "peak": 3e8}, ["ISO 6336-1 tooth stiffness"]),
         ({"model": "parabolic", "peak": 3e8, "end_ratio": 0.6}, []),
         ({"model": "rectangular", "pair_stiffness": 3e8}, []),
+        ({"model": "energy", "scale": "iso6336"}, [*_FEET, "ISO 6336-1 tooth stiffness"]),
     ],
 )
 def test_only_the_ranges_of_the_model_in_use_are_reported(stiffness, laws):
     # 16/24 teeth are too wide for the foundation's fit, 20 N m too little for the standard's load range.
     pair = load_gear_pair("fzg_c").with_(mesh__stiffness=stiffness, operating__pinion_torque=20)
     assert [v.law for v in pair.mesh.stiffness.violations(pair)] == laws
+
+
+@pytest.mark.parametrize(
+    "stiffness",
+    [
+        {"model": "energy"},
+        {"model": "energy", "scale": "iso6336"},
+        {"model": "rectangular"},
+        {"model": "parabolic"},
+    ],
+)
+def test_a_thin_rim_is_flagged_once_by_every_computed_stiffness(stiffness):
+    # Root circle of 50 teeth of 3 mm: 142.5 mm.
+    pair = load_gear_pair("kahraman_blankenship_50_50").with_(mesh__stiffness=stiffness, gear__bore=71.0)
+    assert pair.mesh.stiffness.violations(pair) == ()
+    thin = pair.with_(gear__bore=72.0)
+    (rim,) = thin.mesh.stiffness.violations(thin)
+    assert rim.law == "rim of the gear"

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import lumped
 import multibody
 from lumped import NumericalError
 from multibody.contact.effects import CAUSES
@@ -22,6 +23,7 @@ from validation.reporting.chapters import (
     CHAPTERS,
     code_verification,
     paper,
+    parameters,
     reference_model,
     solution_verification,
     stability,
@@ -276,3 +278,13 @@ def test_a_pair_without_multibody_motion_has_no_causes(pair, monkeypatch):
 
     monkeypatch.setattr(causes.multibody, "attribution", fail)
     assert causes.causes(causes.attribution(pair)) == []
+
+
+def test_a_bored_body_is_stated_as_a_spring_and_a_solid_one_is_not(sharing):
+    bored = lumped.load_gear_pair("nasa_28_28").with_(gear__bore=15.0)
+    content = parameters.CHAPTER.write(sharing(bored))
+    (spring,) = [f for f in table_of(content, "derived").items if f.key.startswith("body_twist")]
+    assert spring.key == "body_twist_gear"
+    # 4 pi G b/(1/r_i^2 - 1/r_f^2) with G = 206/2.6 GPa, b = 6.35 mm, r_i = 7.5 mm, r_f = 40.48 mm.
+    assert spring.value.value == pytest.approx(3.683e5, rel=1e-3)
+    assert "2.11e+08 N/m" in spring.note

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterator
 from typing import Any
 
 from lumped import bodies, mesh_elements
 from lumped.schema.files import leaf_paths
 from lumped.schema.pair import stated_unit
+from lumped.stiffness.body import body_twist
 from validation.reporting.blocks import Badge, Cell, Content, Text, facts, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
@@ -72,8 +74,25 @@ def write(results: Results) -> Content:
             "N/m",
             "of all pairs in contact, over a mesh cycle",
         ),
+        *_twist(results),
     )
     return Content((table, Text("What follows from the parameters:"), derived))
+
+
+def _twist(results: Results) -> Iterator[tuple[str, str, float, str, str]]:
+    """Torsional stiffness of the bored gear bodies, with what it is along the line of action."""
+    g = results.geometry
+    radii = (g.base_radius_pinion, g.base_radius_gear)
+    for name, torsional, radius in zip(("pinion", "gear"), body_twist(results.pair), radii, strict=True):
+        if math.isfinite(torsional):
+            yield (
+                f"body_twist_{name}",
+                f"torsional stiffness from rim to bore, {name}",
+                torsional,
+                "N m/rad",
+                f"{torsional / radius**2:.3g} N/m along the line of action; not in the mesh stiffness: it "
+                "acts in series with the shaft, which the model has not",
+            )
 
 
 def _shown(value: Any) -> Cell:
