@@ -8,15 +8,14 @@ anew.
 from __future__ import annotations
 
 import operator
-import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from importlib.resources import files
 from statistics import mean
-from typing import Any, Literal
+from typing import Literal
 
 from lumped.model.steady import UNSTABLE
 from validation.paper.records import Number, Statement
+from validation.paper.tables import rows
 from validation.validity.flags import LOAD_NOISE
 
 Numbers = Mapping[str, float]
@@ -88,12 +87,4 @@ class ClaimRule(Statement):
         return ""
 
 
-def _joined(value: Any) -> Any:
-    """A value of the file; the lines of a text joined."""
-    return " ".join(value.split()) if isinstance(value, str) else value
-
-
-RULES: tuple[ClaimRule, ...] = tuple(
-    ClaimRule(**{key: _joined(value) for key, value in row.items()})
-    for row in tomllib.loads((files(__package__) / "claims.toml").read_text(encoding="utf-8"))["claim"]
-)
+RULES = tuple(ClaimRule(**row) for row in rows("validation.paper.claims", "claims.toml", "claim"))

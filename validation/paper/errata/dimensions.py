@@ -10,8 +10,6 @@ import math
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from validation.paper.records import Evidence
-
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -40,15 +38,9 @@ def _sum_check(*terms: Any) -> str:
     return PASSES
 
 
-def evidence(what: str, check: Callable[[bool], str]) -> Evidence:
-    """The dimension check of an equation as printed and as repaired.
-
-    Parameters
-    ----------
-    what : part of the equation, "" for all of it
-    check : a function of this module
-    """
-    return Evidence(f"dimension check {what}".rstrip(), "", check(True), check(False), PASSES)
+def verdicts(check: Callable[[bool], str]) -> dict[str, str]:
+    """What the dimension check of an equation says of it as printed and as repaired, for ``stated``."""
+    return {"dimension_printed": check(True), "dimension_repaired": check(False)}
 
 
 def equation_8(printed: bool) -> str:

@@ -13,6 +13,7 @@ from lumped import GearPair
 from lumped.labelling import labelled_dataset
 from lumped.model.equations import PRINTED_EQUATIONS
 from validation.paper.errata.response import Response, response, speed_drift
+from validation.paper.errata.stated import stated
 from validation.paper.records import Erratum, Evidence
 
 #: Cycles of the free runs that show a drift of the mean speed.
@@ -71,23 +72,25 @@ def one_pair_efficiency(pair: GearPair, xi: float, mu: float, *, printed: bool) 
     return (g.base_radius_gear + mu * (g.L_XY - xi)) / (g.base_radius_pinion + sign * mu * xi) * ratio
 
 
-_TERMS = {
-    1: ("+ sum of X_p F with the sign of (10)", "- sum of X_p F"),
-    2: ("- sum of r_bg N", "+ sum of r_bg N"),
-    7: ("+ sum of N; K_gBy, zeta_gBy", "- sum of N; K_gBx, zeta_gBx"),
-    9: ("- sum of F", "+ sum of F"),
-}
-
-
 def _erratum(pair: GearPair, number: int, printed: Response, repaired: Response, steady: float) -> Erratum:
     drift = speed_drift(pair, as_printed=(number,), cycles=DRIFT_CYCLES)
     evidence = _rows(printed, repaired, drift, steady)
-    if number == 1:
-        evidence.insert(0, _recess(pair))
     if number == 7:
         evidence.append(_bearing_symbol(pair, repaired))
-    text = _text(number, printed, repaired, drift, evidence[0])
-    return Erratum(str(number), *_TERMS[number], "wrong", text, tuple(evidence))
+    created = 100 * printed.created_power
+    numbers = {
+        "printed": printed,
+        "repaired": repaired,
+        "created": created,
+        "destroyed": -created,
+        "drift": 100 * drift,
+        "times": drift,
+        "cycles": DRIFT_CYCLES,
+        "dte": 100 * (printed.peak_to_peak("dte") / repaired.peak_to_peak("dte") - 1),
+        "x_g": (printed.mean("x_g"), repaired.mean("x_g")),
+        "relative": (_relative_motion(printed), _relative_motion(repaired)),
+    }
+    return stated(str(number), numbers | _recess(pair), evidence)
 
 
 def _rows(printed: Response, repaired: Response, drift: float, steady: float) -> list[Evidence]:
@@ -136,13 +139,13 @@ def _relative_motion(r: Response) -> float:
     return float(np.ptp(r.cycle["y_p"].to_numpy() - r.cycle["y_g"].to_numpy())) * 1e6
 
 
-def _recess(pair: GearPair) -> Evidence:
+def _recess(pair: GearPair) -> dict[str, float]:
+    """Efficiency of one pair late in recess, as printed and as repaired, and the place [mm]."""
     g = pair.geometry
-    # A place late in recess; 21 mm from X for the 28/28 pair, as far along the recess for any other.
+    # 21 mm from X for the 28/28 pair, as far along the recess for any other.
     xi = g.L_XP + 0.7551 * (g.L_XD - g.L_XP)
     wrong, right = (one_pair_efficiency(pair, xi, 0.05, printed=printed) for printed in (True, False))
-    name = f"efficiency of one pair in recess, xi = {1e3 * xi:.1f} mm, mu = 0.05"
-    return Evidence(name, "1", wrong, right, "below 1")
+    return {"xi": 1e3 * xi, "recess_printed": wrong, "recess_repaired": right}
 
 
 def _bearing_symbol(pair: GearPair, repaired: Response) -> Evidence:
@@ -155,39 +158,4 @@ def _bearing_symbol(pair: GearPair, repaired: Response) -> Evidence:
         "µm",
         repaired.peak_to_peak("x_g"),
         unlike.peak_to_peak("x_g"),
-    )
-
-
-def _text(number: int, printed: Response, repaired: Response, drift: float, first: Evidence) -> str:
-    created, dte = 100 * printed.created_power, printed.peak_to_peak("dte") / repaired.peak_to_peak("dte") - 1
-    if number == 1:
-        return (
-            f"With the printed sign friction drives the pinion in recess: {first.quantity} is "
-            f"{first.printed:.4f} instead of {first.repaired:.4f}. Over the cycle the tooth forces create "
-            f"{created:.3g} % of the driving power, the mesh efficiency becomes {printed.efficiency:.4f}, "
-            f"and under the torques of the repaired model the mean speed drifts by {100 * drift:.2g} % in "
-            f"{DRIFT_CYCLES} mesh cycles. The DTE changes by {100 * dte:.2g} % of its peak to peak."
-        )
-    if number == 2:
-        return (
-            f"With the printed sign the mesh brakes the gear that it should drive: it destroys "
-            f"{-created:.4g} % of the driving power, a steady mean speed needs a brake torque of "
-            f"{printed.brake_torque:.4g} N m (the gear would have to be driven), and under the torques of "
-            f"the repaired model the speed runs away ({drift:.3g} times the nominal speed in {DRIFT_CYCLES} "
-            "mesh cycles)."
-        )
-    if number == 7:
-        return (
-            "With the printed sign both gears are pushed the same way along the LOA: the sum of the tooth "
-            f"forces is up to {printed.third_law_x:.4g} N instead of 0, x_g has mean "
-            f"{printed.mean('x_g'):.3g} µm instead of {repaired.mean('x_g'):.3g} µm, the DTE changes by "
-            f"{100 * dte:.3g} % of its peak to peak and the largest multiplier from {repaired.radius:.4f} to "
-            f"{printed.radius:.4f}. K_gBy in the same equation matters only where the two bearing "
-            "stiffnesses differ."
-        )
-    return (
-        "With the printed sign friction pushes both gears the same way: the sum of the tooth forces off the "
-        f"LOA is up to {printed.third_law_y:.4g} N instead of 0, and the relative motion y_p - y_g vanishes "
-        f"to {_relative_motion(printed):.2g} µm where it should be {_relative_motion(repaired):.3g} µm. DTE "
-        "and multipliers do not change, because y does not feed back."
     )

@@ -7,7 +7,8 @@ import numpy as np
 from lumped import GearPair, Geometry, load_gear_pair
 from lumped.typing import FloatArray
 from validation.paper.errata import dimensions
-from validation.paper.records import Erratum, Evidence
+from validation.paper.errata.stated import stated
+from validation.paper.records import Erratum
 
 
 def erratum_8() -> Erratum:
@@ -15,27 +16,8 @@ def erratum_8() -> Erratum:
     # Which of theta_p'', theta_g'', x_p'', x_g'', y_p'', y_g'' stands in equations 1, 2, 6 to 9.
     inertia = {"printed": [0, 1, 2, 3, 2, 5], "repaired": [0, 1, 2, 3, 4, 5]}
     ranks = [int(np.linalg.matrix_rank(np.eye(6)[columns])) for columns in inertia.values()]
-    return Erratum(
-        "8",
-        "m_p x_p'' + ... + K_pBx y_p",
-        "m_p y_p'' + ... + K_pBy y_p",
-        "misprinted symbol",
-        f"As printed y_p has no inertia: the accelerations of the six equations have rank {ranks[0]} instead "
-        f"of {ranks[1]}, x_p'' is determined twice (6 and 8) and y_p'' never, so the set cannot be "
-        "integrated. The dimensions do not show it, because x and y are both lengths; the symmetry with "
-        "equation 9 does.",
-        (
-            Evidence("rank of the inertia matrix of equations 1, 2, 6 to 9", "1", ranks[0], ranks[1], "6"),
-            dimensions.evidence("", dimensions.equation_8),
-            Evidence(
-                "power balance, third law, motion, mean speed and multipliers",
-                "",
-                "none: y_p'' is not determined",
-                "those of the model",
-                "exist",
-            ),
-        ),
-    )
+    numbers = dict(zip(inertia, ranks, strict=True))
+    return stated("8", numbers | dimensions.verdicts(dimensions.equation_8))
 
 
 def gear_arms(g: Geometry, phase: FloatArray, *, printed: bool) -> FloatArray:
@@ -60,35 +42,19 @@ def erratum_5b(pair: GearPair) -> Erratum:
     """Equation 5b: right for contact ratios below 2 only."""
     low, high = pair.geometry, high_contact_ratio().geometry
     phase = np.linspace(0.0, 1.0, 64, endpoint=False)
-    name = "largest |X_p + X_g - L_XY| at contact ratio"
 
     def residual(g: Geometry, printed: bool) -> float:
         total = pinion_arms(g, phase) + gear_arms(g, phase, printed=printed)
         return 1e3 * float(np.abs(total - g.L_XY).max())
 
-    return Erratum(
-        "5b",
-        "L_YC + i lambda - mod(Omega_g r_bg t, lambda)",
-        "L_XY - X_pi, for any number of pairs",
-        "incomplete",
-        f"Both arms of a contact add up to L_XY. For the pair's contact ratio {low.contact_ratio:.3f} the "
-        f"print gives that (to {residual(low, True):.1g} mm); for the 28/28 pair with taller teeth and "
-        f"contact ratio {high.contact_ratio:.3f} it is off by {residual(high, True):.4f} mm, one base pitch, "
-        "which puts the sign change of friction in the wrong place. Omega_g r_bg and Omega_p r_bp are the "
-        "same velocity.",
-        (
-            *(
-                Evidence(f"{name} {g.contact_ratio:.3f}", "mm", residual(g, True), residual(g, False), "0")
-                for g in (low, high)
-            ),
-            Evidence(
-                f"power balance, motion and multipliers at contact ratio {low.contact_ratio:.3f}",
-                "",
-                "as repaired: the same arms" if low.pairs == 2 else "wrong lever of friction",
-                "those of the model",
-            ),
-        ),
-    )
+    numbers: dict[str, object] = {
+        "low": low,
+        "high": high,
+        "motion": "as repaired: the same arms" if low.pairs == 2 else "wrong lever of friction",
+    }
+    for name, g in (("low", low), ("high", high)):
+        numbers |= {f"{name}_printed": residual(g, True), f"{name}_repaired": residual(g, False)}
+    return stated("5b", numbers)
 
 
 def high_contact_ratio() -> GearPair:
