@@ -28,7 +28,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import lumped
-from floquet import fast_multipliers, fast_periodic_motions, gear_block, stability_chart
+from floquet import fast_multipliers, gear_block, stability_chart
 from floquet.gear.reference import extended_monodromy, stress_test
 from lumped.errors import LawRangeWarning
 from lumped.schema.pair import GearPair
@@ -167,30 +167,6 @@ def baselines(per_point: float, points: int) -> None:
         )
 
 
-def steady(count: int) -> None:
-    block = gear_block(PAIR, rtol=1e-10)
-    speeds = np.linspace(*SPEEDS, count)
-    periods = block.period * PAIR.operating.pinion_speed * 30 / np.pi / speeds
-    fast_periodic_motions(block, periods[:4])
-    motion, seconds = cpu(lambda: fast_periodic_motions(block, periods, tolerance=1e-10))
-    relative = float((motion.errors / motion.energy_norm).max())
-    row(
-        "steady state, transmission error at 64 phases, brake torque",
-        f"{CORES * count / seconds:.0f} speeds/s",
-        f"{seconds / count * 1e6:.1f} us/speed, largest relative bound {relative:.0e}",
-    )
-    radius = float(stability_chart(PAIR, {"speed_rpm": [4000.0]}).spectral_radius[0])
-    cycles = math.ceil(math.log(1e-6) / math.log(radius))
-    pair = PAIR.with_(operating__pinion_speed=4000.0)
-    lumped.simulate(pair, cycles=2)
-    _, transient = cpu(lambda: lumped.simulate(pair, cycles=cycles))
-    row(
-        f"the same by settling to 1e-6, {cycles} cycles at 4000 rpm",
-        f"{CORES / transient:.1f} speeds/s",
-        f"lumped.simulate; steady state is {transient / (seconds / count):.0f} times as fast",
-    )
-
-
 def child(size: int, method: str, store: str, **environment: str) -> list[float]:
     """Import time, wall time and peak memory of a chart in a fresh process."""
     run = subprocess.run(
@@ -248,13 +224,6 @@ def test_solver(benchmark: Any, name: str, rtol: float, by_column: bool) -> None
     benchmark.extra_info["points"] = 1
 
 
-def test_steady_state(benchmark: Any) -> None:
-    block = gear_block(PAIR, rtol=1e-10)
-    periods = block.period * np.linspace(0.2, 8.0, 2000)
-    benchmark.pedantic(lambda: fast_periodic_motions(block, periods), rounds=3, warmup_rounds=1)
-    benchmark.extra_info["points"] = 2000
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -269,7 +238,6 @@ def main() -> None:
     per_point = charts(arguments.size)
     by_turning(4000)
     baselines(per_point, 6)
-    steady(20_000)
     processes()
     accuracy(arguments.pairs, arguments.seed)
 

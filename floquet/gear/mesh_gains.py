@@ -1,6 +1,6 @@
-"""What the mesh does to (q, x_p, x_g) and to the rigid rotation, as polynomials with bounds on their errors.
+"""What the mesh does to (q, x_p, x_g), as polynomials with bounds on their errors.
 
-The laws k, c, mu and e of a tooth pair are piecewise polynomials, so between two breaks of any law of any
+The laws k, c and mu of a tooth pair are piecewise polynomials, so between two breaks of any law of any
 pair the gains are polynomials of known degree: k (normal + mu (arm_0 + arm_1 xi)) and the like.
 
 Sources: docs/theory/proven_bounds.md, "The gains".
@@ -91,11 +91,11 @@ class _Law:
 
 
 class MeshGains:
-    """Gains on (q, x_p, x_g) and on the rigid rotation R/m_e, as `fit_pieces` asks for them.
+    """Gains on (q, x_p, x_g) as `fit_pieces` asks for them.
 
     In this order: feedback of deflection and of its rate by normal loads (with their friction, unless it is
-    apart), the same by each part of friction, forcing by the unloaded error and its rate likewise. The parts
-    of friction are mu less the sum of the ``levels``, and each level but the first, which is zero.
+    apart), the same by each part of friction. The parts of friction are mu less the sum of the ``levels``,
+    and each level but the first, which is zero.
 
     Parameters
     ----------
@@ -108,20 +108,15 @@ class MeshGains:
     ----------
     edges : (S+1,) ends of the segments as parts of the period
     parts : 1 + number of levels
-    has_error : whether there are gains of the unloaded error
     count : see `PolynomialGains`
     """
 
     def __init__(self, system: LTVSystem, factor: float, levels: Sequence[float], metric: FloatArray) -> None:
         s, cycle = system.structure, system.cycle
         g = cycle.geometry
-        rows = np.zeros((4, 6))
-        rows[:3] = system.reduction
-        effective = 1.0 / abs(float(rows[0] @ (s.normal / s.mass)))
-        rows[3, :2] = s.mass[:2] / np.array([g.base_radius_pinion, g.base_radius_gear]) / effective
-        self.normal = rows @ (s.normal / s.mass)
-        self.arm = np.stack([rows @ (s.friction_arm[:, i] / s.mass) for i in (0, 1)])
-        self.metric = np.append(metric, metric[0])  # the rigid rotation over m_e is weighed like q
+        self.normal = system.reduction @ (s.normal / s.mass)
+        self.arm = np.stack([system.reduction @ (s.friction_arm[:, i] / s.mass) for i in (0, 1)])
+        self.metric = metric
         self.levels, self.parts = levels, 1 + len(levels)
         self.factor, self.mean = factor, cycle.mean_stiffness
         self.pitch, self.offsets = g.base_pitch, cycle.offsets
@@ -130,65 +125,50 @@ class MeshGains:
         self.touch = (middle >= cycle.start) & (middle <= cycle.end)
         self.side = np.sign(middle - g.L_XP)
         e = cycle.elements
-        self.has_error = bool(np.any(e.error.coefficients))
-        laws = (e.stiffness, e.damping, e.friction, e.error, e.error_slope)
-        self.k, self.c, self.mu, self.e, self.rate = (
-            _Law.of(law, middle, self.touch, g.base_pitch) for law in laws
+        self.k, self.c, self.mu = (
+            _Law.of(law, middle, self.touch, g.base_pitch) for law in (e.stiffness, e.damping, e.friction)
         )
         self.place = _PLACE * (cycle.end + g.base_pitch)
-        degree = max(self.k.degree, self.c.degree)
-        if self.has_error:
-            degree += self.e.degree
         self.varied = factor != 1.0
-        self.count = 1 + degree + self.mu.degree + 1 + (_FACTOR_DEGREE if self.varied else 0)
+        degree = max(self.k.degree, self.c.degree) + self.mu.degree + 1
+        self.count = 1 + degree + (_FACTOR_DEGREE if self.varied else 0)
         # The mean is a sum over the pieces of the law, each to the moduli of its terms.
         rows, width = np.abs(e.stiffness.coefficients), np.diff(e.stiffness.breaks)
         moduli = (rows * width ** np.arange(rows.shape[0], 0, -1)[:, None]).sum() / g.base_pitch
         self.mean_error = (width.size + 60.0) * _U * float(moduli)
         self.slips = _slips(cycle.break_phases, self.edges, 8.0 * _U * (1.0 + g.contact_ratio))
 
-    def _loads(self) -> list[tuple[_Law, _Law | None, float]]:
-        """Law, further factor and constant of each load: k, c, k e, c e' lambda."""
-        loads: list[tuple[_Law, _Law | None, float]] = [(self.k, None, 1.0), (self.c, None, 1.0)]
-        return [*loads, (self.k, self.e, 1.0), (self.c, self.rate, self.pitch)] if self.has_error else loads
-
     def __call__(
         self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """See `PolynomialGains`."""
         phases = centre[:, None] + half[:, None] * nodes
-        loads = self._loads()
-        groups = np.zeros((self.parts * len(loads), *phases.shape, 4))
+        groups = np.zeros((2 * self.parts, *phases.shape, 3))
         errors = np.zeros((groups.shape[0], centre.size))
         factors, fixed = [np.ones_like(phases)] * 2, self._fixed[0][:, segment]
         if self.varied:
             factors, off, most = self._factors(centre, half, segment, nodes)
             fixed = fixed * most
-            for j, (law, other, constant) in enumerate(loads):
+            for j, law in enumerate((self.k, self.c)):
                 for p in range(self.parts):
-                    reach = self._reach(law.size, other, constant, p)[:, segment].sum(axis=0)
-                    errors[self._index(j, p)] = off[j % 2] * reach
+                    reach = self._reach(law.size, self.mu.size, p)[:, segment].sum(axis=0)
+                    errors[2 * p + j] = off[j] * reach
         for i in range(self.offsets.size):
             if not self.touch[i, segment].any():
                 continue
             xi = self.offsets[i] + self.pitch * phases
             mu, arm = self.mu(xi, i, segment)[..., None], self.arm[0] + xi[..., None] * self.arm[1]
             sign = self.side[i, segment][:, None, None]
-            rows = [np.broadcast_to(self.normal, (*xi.shape, 4))]
+            rows = [np.broadcast_to(self.normal, (*xi.shape, 3))]
             if self.levels:
                 rows += [(mu - sum(self.levels) * sign) * arm, *(s * sign * arm for s in self.levels[1:])]
             else:
                 rows[0] = rows[0] + mu * arm
-            for j, (law, other, constant) in enumerate(loads):
-                load = law(xi, i, segment) * factors[j % 2]
-                if other is not None:
-                    load = load * other(xi, i, segment) * constant
+            for j, law in enumerate((self.k, self.c)):
+                load = law(xi, i, segment) * factors[j]
                 for p, row in enumerate(rows):
-                    groups[self._index(j, p)] -= load[..., None] * row
+                    groups[2 * p + j] -= load[..., None] * row
         return groups, errors, fixed
-
-    def _index(self, load: int, part: int) -> int:
-        return 2 * part + load if load < 2 else 2 * self.parts + 2 * part + load - 2
 
     def _row(self, part: int) -> tuple[float, float, float, float]:
         """Bounds on a row: constant, per unit of |mu|, of levels, and per unit of position and |mu|."""
@@ -204,15 +184,10 @@ class MeshGains:
             (0.0, arm, sum(self.levels), arms[1]) if part == 1 else (0.0, 0.0, self.levels[part - 1], arms[1])
         )
 
-    def _reach(
-        self, size: FloatArray, other: _Law | None, constant: float, part: int, *, near: bool = False
-    ) -> FloatArray:
-        """Bound on the norm of what one pair adds to a gain."""
+    def _reach(self, size: FloatArray, mu: FloatArray, part: int) -> FloatArray:
+        """Bound on the norm of what one pair adds to a gain, from bounds on its load and on |mu|."""
         normal, arm, level, _ = self._row(part)
         full = self._row(1)[1] if self.levels and part else arm
-        mu = self.mu.near if near else self.mu.size
-        if other is not None:
-            size = size * (other.near if near else other.size) * constant
         return np.asarray(size * (normal + arm * mu + full * level), dtype=float)
 
     @property
@@ -226,23 +201,18 @@ class MeshGains:
     @cached_property
     def _fixed(self) -> tuple[FloatArray, FloatArray]:
         """Bounds (G, S) by rounding of values and of positions, and ``jumps``."""
-        loads = self._loads()
-        errors = np.zeros((self.parts * len(loads), self.edges.size - 1))
-        jumps = np.zeros((errors.shape[0], self.edges.size))
-        for j, (law, other, constant) in enumerate(loads):
+        errors = np.zeros((2 * self.parts, self.edges.size - 1))
+        jumps = np.zeros((2 * self.parts, self.edges.size))
+        for j, law in enumerate((self.k, self.c)):
             for p in range(self.parts):
-                reach = self._reach(law.size, other, constant, p)
                 _, arm, _, tilt = self._row(p)
-                slope, size = law.slope, law.size
-                if other is not None:
-                    slope = constant * (law.slope * other.size + law.size * other.slope)
-                    size = constant * law.size * other.size
-                moved = self._reach(slope, None, 1.0, p) + size * (
+                reach = self._reach(law.size, self.mu.size, p)
+                moved = self._reach(law.slope, self.mu.size, p) + law.size * (
                     arm * self.mu.slope + tilt * (self.mu.size + sum(self.levels))
                 )
-                errors[self._index(j, p)] = (_ROUNDINGS * reach + self.place * moved).sum(axis=0)
-                near = self._reach(law.near, other, constant, p, near=True).sum(axis=0)
-                jumps[self._index(j, p)] = 2.0 * self.slips * self._largest_factor * near
+                errors[2 * p + j] = (_ROUNDINGS * reach + self.place * moved).sum(axis=0)
+                near = self._reach(law.near, self.mu.near, p).sum(axis=0)
+                jumps[2 * p + j] = 2.0 * self.slips * self._largest_factor * near
         return errors, jumps
 
     @cached_property

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TypeVar
@@ -18,7 +18,7 @@ import numpy.typing as npt
 from floquet.engine.multipliers import multipliers_with_bounds
 from floquet.engine.spectrum import Certificate
 from floquet.rank_one.kernels.disks import spectra
-from floquet.rank_one.kernels.gains import Limits, Problem
+from floquet.rank_one.kernels.gains import Limits
 from floquet.rank_one.kernels.taylor import propagate_points
 from floquet.rank_one.packing import own, packed
 from floquet.rank_one.system import Coarsening, RankOneSystem
@@ -38,87 +38,10 @@ class FastMonodromy:
     matrices : (N, 2m, 2m) in x = (omega eta, eta') of `ModalForm`, dimensionless
     errors : (N,) bound on the Frobenius norm of the error of each: majorant of the truncation, misfit of the
         polynomials, rounding; proven, see docs/theory/proven_bounds.md
-    forced : (N, 2m) state at T from rest under the forcing
     """
 
     matrices: FloatArray
     errors: FloatArray
-    forced: FloatArray
-
-
-@dataclass(frozen=True, eq=False)
-class Points:
-    """N variants of one system as the kernels take them: what is shared, and one row per variant.
-
-    Attributes
-    ----------
-    problem, limits : what the kernels share
-    periods, damping_factors, gain_factors : (N,), (N,), (N, Q)
-    threads : default one per core
-    """
-
-    problem: Problem
-    limits: Limits
-    periods: FloatArray
-    damping_factors: FloatArray
-    gain_factors: FloatArray
-    threads: int | None
-
-    @classmethod
-    def of(
-        cls,
-        system: RankOneSystem,
-        periods: npt.ArrayLike | None,
-        damping_factors: npt.ArrayLike,
-        gain_factors: npt.ArrayLike,
-        tolerance: float,
-        threads: int | None,
-        max_steps: int,
-    ) -> Points:
-        """Check and arrange the arguments of `fast_monodromies`."""
-        if system.v.size > 3:
-            raise refuse(
-                "coordinates", system.v.size, "at most 3", "Use floquet.monodromy for larger systems."
-            )
-        given = system.period if periods is None else periods
-        T = own(real_numbers("periods", given, 0.0, above=True, unit="s"))
-        tolerance = real_number("tolerance", tolerance, 1e-16, 0.1)
-        max_steps = whole_number("max_steps", max_steps, 1, 2**31 - 1)
-        if threads is not None:
-            threads = whole_number("threads", threads, 1, 1024)
-        parts = len(system.parts)
-        factors = np.ones((T.size, parts))
-        gains = _factors("gain_factors", gain_factors, T.shape, (T.size, parts - 1))
-        factors[:, 1:] = gains if gains.ndim == 2 else gains[:, None]
-        zeta = own(_factors("damping_factors", damping_factors, T.shape))
-        _within(system.coarsening, T, zeta, factors)
-        # Longer steps have fewer terms per unit of time, but amplify rounding, 30 eps = exp(-32.6), by
-        # exp(angle): to an eighth of the tolerance.
-        angle = min(max(math.log(tolerance) + 30.5, 3.0), 9.0)
-        return cls(
-            problem=packed(system),
-            limits=Limits(tolerance, angle, max_steps),
-            periods=T,
-            damping_factors=zeta,
-            gain_factors=factors,
-            threads=threads,
-        )
-
-    def row_arguments(self, part: slice) -> tuple[Problem, FloatArray, FloatArray, FloatArray, Limits]:
-        """Leading arguments of a kernel for a slice of the variants."""
-        return (
-            self.problem, self.gain_factors[part], self.damping_factors[part], self.periods[part], self.limits
-        )  # fmt: skip
-
-    def refuse_failures(self, failures: Sequence[int]) -> None:
-        """Raise NumericalError for the first index that is not negative."""
-        bad = [index for index in failures if index >= 0]
-        if bad:
-            raise NumericalError(
-                f"period {self.periods[bad[0]]:g} s needs more than {self.limits.max_steps} Taylor steps, or "
-                "a step more terms than the kernel has. Raise max_steps, loosen the tolerance, or raise the "
-                "speed."
-            )
 
 
 def fast_monodromies(
@@ -137,7 +60,7 @@ def fast_monodromies(
     ----------
     system : the system; its phases, w and wd are taken as independent of T
     periods : (N,) [s]; default the system's own
-    damping_factors : (N,) or scalar, factor on wd (and on fr)
+    damping_factors : (N,) or scalar, factor on wd
     gain_factors : (N,) or scalar, factor on the gains ``system.varied``, or (N, Q-1), one for each set
     tolerance : largest neglected remainder of one step, in units of the energy norm
     threads : default one per core
@@ -147,20 +70,40 @@ def fast_monodromies(
     ------
     NumericalError : too many steps or terms, or a result that is not finite
     """
-    points = Points.of(system, periods, damping_factors, gain_factors, tolerance, threads, max_steps)
-    n, N = 2 * system.v.size, points.periods.size
-    M, bound, forced = np.empty((N, n, n)), np.empty(N), np.empty((N, n))
+    if system.v.size > 3:
+        raise refuse("coordinates", system.v.size, "at most 3", "Use floquet.monodromy for larger systems.")
+    given = system.period if periods is None else periods
+    T = own(real_numbers("periods", given, 0.0, above=True, unit="s"))
+    tolerance = real_number("tolerance", tolerance, 1e-16, 0.1)
+    max_steps = whole_number("max_steps", max_steps, 1, 2**31 - 1)
+    if threads is not None:
+        threads = whole_number("threads", threads, 1, 1024)
+    factors = np.ones((T.size, len(system.parts)))
+    gains = _factors("gain_factors", gain_factors, T.shape, factors[:, 1:].shape)
+    factors[:, 1:] = gains if gains.ndim == 2 else gains[:, None]
+    zeta = own(_factors("damping_factors", damping_factors, T.shape))
+    _within(system.coarsening, T, zeta, factors)
+    # Longer steps have fewer terms per unit of time, but amplify rounding, 30 eps = exp(-32.6), by
+    # exp(angle): to an eighth of the tolerance.
+    limits = Limits(tolerance, min(max(math.log(tolerance) + 30.5, 3.0), 9.0), max_steps)
+    problem, n = packed(system), 2 * system.v.size
+    M, bound = np.empty((T.size, n, n)), np.empty(T.size)
 
     def run(part: slice) -> int:
-        failed = propagate_points(*points.row_arguments(part), M[part], bound[part], forced[part])
+        failed = propagate_points(problem, factors[part], zeta[part], T[part], limits, M[part], bound[part])
         return -1 if failed < 0 else part.start + failed
 
-    points.refuse_failures(in_threads(run, N, threads))
+    bad = [index for index in in_threads(run, T.size, threads) if index >= 0]
+    if bad:
+        raise NumericalError(
+            f"period {T[bad[0]]:g} s needs more than {max_steps} Taylor steps, or a step more terms than the "
+            "kernel has. Raise max_steps, loosen the tolerance, or raise the speed."
+        )
     if not np.isfinite(M).all():
         raise NumericalError(
             "the state grows beyond floating point within one period; shorten the period (raise the speed)."
         )
-    return FastMonodromy(M, bound, forced)
+    return FastMonodromy(M, bound)
 
 
 @dataclass(frozen=True, eq=False)

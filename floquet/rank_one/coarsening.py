@@ -22,6 +22,7 @@ Sources: docs/theory/floquet.md, "Computing M".
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -60,7 +61,7 @@ def coarsened(
 
     Returns
     -------
-    The system without forcing and balance, with the bounds as its `Coarsening`
+    The system with the bounds as its `Coarsening`
     """
     longest = real_number("longest", longest, 0.0, above=True, unit="s")
     damping = real_number("damping", damping, 0.0)
@@ -80,21 +81,14 @@ def coarsened(
     m, Q = system.v.size, len(system.parts)
     powers = np.stack([piece.powers for piece in pieces]).reshape(len(pieces), 2, Q, m, _DEGREE + 1)
     misfits = np.stack([piece.misfits for piece in pieces])
-    parts = []
-    none = np.zeros((len(pieces), m, 1))
-    for q in range(Q):
-        w, wd = (trimmed(powers[:, j, q]) for j in (0, 1))
-        parts.append(
-            Gains(w, wd, none, none, np.pad(misfits[:, :, q], ((0, 0), (0, 2))), fine.edges[bounds, :, q])
-        )
-    return RankOneSystem(
-        stiffness=system.stiffness,
-        damping=system.damping,
-        v=system.v,
+    parts = [
+        Gains(trimmed(powers[:, 0, q]), trimmed(powers[:, 1, q]), misfits[:, :, q], fine.edges[bounds, :, q])
+        for q in range(Q)
+    ]
+    return replace(
+        system,
         phases=system.phases[bounds],
         gains=parts[0],
-        period=system.period,
-        metric=system.metric,
         varied=tuple(parts[1:]),
         coarsening=Coarsening(np.array([piece.error for piece in pieces]), longest, damping, most[1:]),
     )
@@ -144,7 +138,7 @@ class _Fine(NamedTuple):
             axis=1,
         )
         rows = np.array([np.linalg.norm(form.v / form.omega), damping * np.linalg.norm(form.v)])
-        misfits = np.stack([part.fit_errors[:, :2] for part in system.parts], axis=2)
+        misfits = np.stack([part.fit_errors for part in system.parts], axis=2)
         none = np.zeros((system.phases.size, 2))
         edges = [none if part.edge_errors is None else part.edge_errors for part in system.parts]
         return cls(

@@ -23,7 +23,7 @@ def packed(system: RankOneSystem) -> Problem:
     ratios, unequal = _ratios(form.w, form.wd, wd_size)
     noise, relative = _rounding(system, form)
     fit_error = np.stack([part.fit_errors for part in system.parts]) * (1.0 + 1e-9)
-    fit_error += relative * np.stack([_norms(x) for x in (form.w, form.wd, form.f, form.fr)], axis=2)
+    fit_error += relative * np.stack([_norms(form.w), wd_size], axis=2)
     edges = [np.zeros((pieces + 1, 2)) if p.edge_errors is None else p.edge_errors for p in system.parts]
     degrees = np.stack([_degrees(form.w), _degrees(form.wd)], axis=1)
     flow_error = np.zeros(pieces) if system.coarsening is None else system.coarsening.errors
@@ -31,8 +31,6 @@ def packed(system: RankOneSystem) -> Problem:
         phases=own(system.phases),
         w=_lanes(form.w),
         wd=_lanes(form.wd),
-        f=own(form.f),
-        fr=own(form.fr),
         degrees=degrees,
         sizes=own(np.stack([w_size, wd_size], axis=2)),
         ratios=ratios,
@@ -45,7 +43,6 @@ def packed(system: RankOneSystem) -> Problem:
         noise=noise,
         omega=own(form.omega),
         v=own(form.v),
-        input=own(form.input),
         reference=own(form.reference),
     )
 

@@ -19,43 +19,20 @@ from lumped.typing import ComplexArray, FloatArray
 
 @dataclass(frozen=True, eq=False)
 class Gains:
-    """Periodic gains and forcing on the pieces of one period; polynomials in powers of u in [-1, 1].
+    """Periodic gains on the pieces of one period; polynomials in powers of u in [-1, 1].
 
     Attributes
     ----------
     w, wd : (P, m, d+1) feedback of v . z [1/s^2] and of v . z' [1/s], lowest power first
-    f, fr : (P, m, d+1) forcing f + fr/T, fr for what goes with a rate of change over the period
-    fit_errors : (P, 4) largest error of w, wd, f and fr on each piece, norm sqrt(sum metric e^2)
+    fit_errors : (P, 2) largest error of w and wd on each piece, norm sqrt(sum metric e^2)
     edge_errors : (P+1, 2) integral over the phase of what the errors of w and wd are beyond that next to
         each end of a piece, on either side; None: nothing
     """
 
     w: FloatArray
     wd: FloatArray
-    f: FloatArray
-    fr: FloatArray
     fit_errors: FloatArray
     edge_errors: FloatArray | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class Balance:
-    """A constant input whose amplitude is not given but follows from a mean over the periodic motion.
-
-    The input adds a ``input`` to the forcing; a is such that the mean over the period of f + fr/T - w (v . z)
-    - wd (v . z') is -known - a own, w, wd, f and fr being those of ``gains``, which have one row.
-
-    Attributes
-    ----------
-    input : (m,)
-    gains : one `Gains` for each of `RankOneSystem.parts`, (P, 1, d+1)
-    known, own : numbers, own not zero
-    """
-
-    input: FloatArray
-    gains: tuple[Gains, ...]
-    known: float
-    own: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,23 +54,21 @@ class Coarsening:
 
 @dataclass(frozen=True, eq=False)
 class RankOneSystem:
-    """z'' + D z' + L z + w(t) (v . z) + wd(t) (v . z') = f(t), periodic w, wd and f, m <= 3 coordinates.
+    """z'' + D z' + L z + w(t) (v . z) + wd(t) (v . z') = 0, periodic w and wd, m <= 3 coordinates.
 
     Attributes
     ----------
     stiffness, damping : (m,) L [1/s^2] and D [1/s]
     v : (m,) how the coordinates feed back
     phases : (P+1,) ends of the pieces as parts of the period, switches among them
-    gains : w, wd and f
+    gains : w and wd
     period : T [s]
     metric : (m,) positive weights g (masses): diag(g) makes the mean feedback symmetric as nearly as can
         be, so that the energy of the mean system measures errors well
     varied : one or more further sets of gains that a chart adds, each times a factor of its own for every
         point, as where the friction coefficient goes up and down with speed; the system by itself has them
         with factor 1
-    balance : an input that forced motion needs, as the brake torque that holds a mean speed; no part of
-        `to_periodic_system`
-    coarsening : where pieces have been joined, what that costs; such a system has no forcing
+    coarsening : where pieces have been joined, what that costs
     """
 
     stiffness: FloatArray
@@ -104,7 +79,6 @@ class RankOneSystem:
     period: float
     metric: FloatArray
     varied: Gains | tuple[Gains, ...] = ()
-    balance: Balance | None = None
     coarsening: Coarsening | None = None
 
     @property
@@ -115,8 +89,8 @@ class RankOneSystem:
     @cached_property
     def total(self) -> Gains:
         """The sum of the parts, each with factor 1."""
-        w, wd, f, fr = (_added([getattr(part, key) for part in self.parts]) for key in ("w", "wd", "f", "fr"))
-        return Gains(w, wd, f, fr, np.sum([part.fit_errors for part in self.parts], axis=0))
+        w, wd = (stacked(self.parts, key).sum(axis=0) for key in ("w", "wd"))
+        return Gains(w, wd, np.sum([part.fit_errors for part in self.parts], axis=0))
 
     def to_periodic_system(self) -> PeriodicSystem:
         """Return the same system for the general engine, which checks the kernel independently."""
@@ -140,13 +114,7 @@ class RankOneSystem:
             out[:, m:, m:] -= _horner(gains.wd, piece, u)[:, :, None] * self.v
             return out
 
-        def b(t: FloatArray) -> FloatArray:
-            piece, u = place(t)
-            out = np.zeros((t.size, 2 * m))
-            out[:, m:] = _horner(gains.f, piece, u) + _horner(gains.fr, piece, u) / T
-            return out
-
-        return PeriodicSystem(A, T, tuple(self.phases[1:-1] * T), vectorized=True, b=b)
+        return PeriodicSystem(A, T, tuple(self.phases[1:-1] * T), vectorized=True)
 
     def mean_exponents(self) -> ComplexArray:
         """Exponents (2m,) [1/s] of the system with gains averaged over the period."""
@@ -177,26 +145,25 @@ class RankOneSystem:
                 "Use the general engine.",
             )
         inverse = Phi.T * g
-        polys = [_stacked([getattr(part, key) for part in self.parts]) for key in ("w", "wd", "f", "fr")]
-        w, wd, f, fr = (np.ascontiguousarray(np.einsum("ab,qpbj->qpaj", inverse, x)) for x in polys)
+        w, wd = (
+            np.ascontiguousarray(np.einsum("ab,qpbj->qpaj", inverse, stacked(self.parts, key)))
+            for key in ("w", "wd")
+        )
         return ModalForm(
             omega=np.sqrt(squares),
             C=inverse @ (self.damping[:, None] * Phi),
             v=Phi.T @ self.v,
             w=w,
             wd=wd,
-            f=f,
-            fr=fr,
             # The mean feedback k g^-1 v v^T is part of omega^2.
             reference=inverse @ (k * self.v / g),
-            input=np.zeros(self.v.size) if self.balance is None else inverse @ self.balance.input,
             shapes=Phi,
         )
 
 
 @dataclass(frozen=True, eq=False)
 class ModalForm:
-    """eta'' + C eta' + omega^2 eta + (w - reference) (v . eta) + wd (v . eta') = f + fr/T, z = shapes @ eta.
+    """eta'' + C eta' + omega^2 eta + (w - reference) (v . eta) + wd (v . eta') = 0, z = shapes @ eta.
 
     In the states x = (omega eta, eta') the squared norm is twice the energy of the mean undamped
     frictionless system, the natural measure of errors.
@@ -206,9 +173,8 @@ class ModalForm:
     omega : (m,) natural frequencies of that system [rad/s]
     C : (m, m) damping of the supports [1/s]
     v : (m,) the deflection is v . eta
-    w, wd, f, fr : (Q, P, m, d+1) polynomials of the Q parts of `RankOneSystem.parts` on P pieces
+    w, wd : (Q, P, m, d+1) polynomials of the Q parts of `RankOneSystem.parts` on P pieces
     reference : (m,) constant part of w that omega^2 has already
-    input : (m,) constant forcing that is balanced, see `Balance`
     shapes : (m, m) modes of that system as columns, orthonormal in the metric
     """
 
@@ -217,10 +183,7 @@ class ModalForm:
     v: FloatArray
     w: FloatArray
     wd: FloatArray
-    f: FloatArray
-    fr: FloatArray
     reference: FloatArray
-    input: FloatArray
     shapes: FloatArray
 
     @property
@@ -248,14 +211,11 @@ def trimmed(poly: FloatArray) -> FloatArray:
     return np.ascontiguousarray(poly[:, :, : 1 + (int(used[-1]) if used.size else 0)])
 
 
-def _stacked(polys: list[FloatArray]) -> FloatArray:
-    """Polynomials (P, m, d+1) of several degrees as one array (Q, P, m, d+1)."""
+def stacked(parts: tuple[Gains, ...], key: str) -> FloatArray:
+    """The polynomials of all parts, of several degrees, as one array (Q, P, m, d+1)."""
+    polys = [getattr(part, key) for part in parts]
     count = max(poly.shape[2] for poly in polys)
     return np.stack([padded(poly, count) for poly in polys])
-
-
-def _added(polys: list[FloatArray]) -> FloatArray:
-    return np.asarray(_stacked(polys).sum(axis=0))
 
 
 def _horner(poly: FloatArray, piece: npt.NDArray[np.intp], u: FloatArray) -> FloatArray:

@@ -151,7 +151,7 @@ def test_a_malformed_drive_is_refused_by_name(argument):
 )
 def test_malformed_variants_are_refused_by_name(argument):
     block = floquet.gear_block(PAIR)
-    for function in (floquet.fast_multipliers, floquet.fast_monodromies, floquet.fast_periodic_motions):
+    for function in (floquet.fast_multipliers, floquet.fast_monodromies):
         for value in NOTHING.values():
             with pytest.raises(ParameterError, match=argument):
                 function(block, **{argument: value})

@@ -19,8 +19,6 @@ from floquet import (
     PROPAGATORS,
     Monodromy,
     PeriodicSystem,
-    fast_periodic_motions,
-    gear_block,
     monodromy,
     periodic_motion,
 )
@@ -28,7 +26,6 @@ from floquet.engine.propagation import propagate_fixed
 from floquet.engine.propagators.registry import propagator
 from floquet.engine.reference_systems import mathieu, meissner, meissner_trace
 from floquet.gear.reference import stress_test
-from lumped import GearPair, load_gear_pair, steady_state
 from lumped.typing import FloatArray
 from validation.verification.checks import Check, OrderCheck, check, error_check
 
@@ -94,26 +91,9 @@ def harmonic_motion_error(rtol: float = 1e-11, unit: float = 1.0) -> float:
     return float(np.abs(motion.states - exact).max() / np.abs(exact).max())
 
 
-def lumped_motion_error(pair: GearPair) -> float:
-    """Error of the transmission error of the compiled periodic motion over its peak.
-
-    The lumped model solves all 12 states with the brake torque unknown, the kernel the 6 that feed back.
-    """
-    exact = steady_state(pair, samples_per_cycle=64)["dte"].to_numpy().ravel()[:64]
-    found = fast_periodic_motions(gear_block(pair), samples=64).deflection[0]
-    return float(np.abs(found - exact).max() / np.abs(exact).max())
-
-
 def check_forced_motion() -> Iterator[Check]:
-    """Periodic motions of the general engine and of the compiled kernel."""
+    """Periodic motion of the general engine."""
     yield error_check("forced motion of constant coefficients", "closed form", harmonic_motion_error(), 1e-9)
-    worst = max(
-        lumped_motion_error(load_gear_pair("nasa_28_28").with_({"friction.law": law, "mesh.relief": relief}))
-        for law in ("none", "coulomb", "benedict_kelley")
-        for relief in ("ignored", "static")
-    )
-    # The damping near a pair's entry with relief is fitted to 1e-7 of its peak.
-    yield error_check("forced motion of a gear pair, compiled", "that of the lumped model", worst, 1e-7)
 
 
 def _smooth(coefficients: FloatArray, jump: float = 0.0) -> PeriodicSystem:

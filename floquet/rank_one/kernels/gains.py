@@ -22,26 +22,22 @@ class Problem(NamedTuple):
     phases : (P+1,) ends of the pieces as parts of the period, 0 to 1
     w, wd : (Q, P, d+1, LANES) coefficients in powers of the piece's u in [-1, 1], lowest first, coordinates
         in the first lanes; the damping factor zeta multiplies wd
-    f, fr : (Q, P, m, d+1) likewise; the forcing is f + (zeta/T) fr
     degrees : (P, 2) of w and wd
     sizes : (Q, P, 2) bounds on the norms of w and wd over the piece, without the reference
     ratios : (P,) rho where wd = rho w for all parts, else nan
     unequal : (Q, P) bound on the norm of wd - rho w there
-    fit_error : (Q, P, 4) largest |error| of w, wd, f, fr by their polynomials on each piece
+    fit_error : (Q, P, 2) largest |error| of w and wd by their polynomials on each piece
     edge_error : (Q, P+1, 2) integral over the phase of a further |error| of w, wd at either side of each end
     flow_error : (P,) bound on what the error of the transition matrix over each piece has besides
     C, omega, v : (m, m) [1/s], (m,) [rad/s], (m,)
     drive : bound on the rate [1/s] at which C lets the state grow; 0 where all supports are damped
     noise : bound on the error of A [1/s] by the change to modal coordinates and the rounding of C and omega
-    input : (m,) constant forcing whose motion from rest is carried beside that of f
     reference : (m,) constant part of w that omega^2 already has, so that w - reference acts
     """
 
     phases: FloatArray
     w: FloatArray
     wd: FloatArray
-    f: FloatArray
-    fr: FloatArray
     degrees: npt.NDArray[np.int64]
     sizes: FloatArray
     ratios: FloatArray
@@ -54,7 +50,6 @@ class Problem(NamedTuple):
     noise: float
     omega: FloatArray
     v: FloatArray
-    input: FloatArray
     reference: FloatArray
 
 
@@ -80,9 +75,9 @@ class Piece(NamedTuple):
 
     Attributes
     ----------
-    w, wd, f : (d+1, LANES) over the piece
-    ws, wds, fs : the same over one step, times h^2, h and h^2
-    degrees : of w, wd, f on this piece
+    w, wd : (d+1, LANES) over the piece
+    ws, wds : the same over one step, times h^2 and h
+    degrees : of w and wd on this piece
     a, powers : majorant, and what ``enough_terms`` needs besides
     Z, s, sd : (terms, 3, LANES), (terms, LANES): coefficients of eta, v . eta and its derivative
     v, hC, h2_omega2, h2_reference : (3,), (3, 3), (3,), (3,)
@@ -93,10 +88,8 @@ class Piece(NamedTuple):
 
     w: FloatArray
     wd: FloatArray
-    f: FloatArray
     ws: FloatArray
     wds: FloatArray
-    fs: FloatArray
     degrees: npt.NDArray[np.int64]
     a: FloatArray
     powers: FloatArray
@@ -117,13 +110,11 @@ def scratch_for(problem: Problem) -> Piece:
     """Allocate the scratch of one thread."""
     m = problem.v.size
     dw, dd = problem.w.shape[2], problem.wd.shape[2]
-    df = max(problem.f.shape[3], problem.fr.shape[3])
     v = np.zeros(3)
     v[:m] = problem.v
     return Piece(
-        np.zeros((dw, LANES)), np.zeros((dd, LANES)), np.zeros((df, LANES)),
-        np.zeros((dw, LANES)), np.zeros((dd, LANES)), np.zeros((df, LANES)),
-        np.zeros(3, dtype=np.int64), np.zeros(max(dw, dd)), powers_of_radii(max(dw, dd)),
+        np.zeros((dw, LANES)), np.zeros((dd, LANES)), np.zeros((dw, LANES)), np.zeros((dd, LANES)),
+        np.zeros(2, dtype=np.int64), np.zeros(max(dw, dd)), powers_of_radii(max(dw, dd)),
         np.zeros((MAX_TERMS + 2, 3, LANES)),
         np.zeros((MAX_TERMS + 2, LANES)), np.zeros((MAX_TERMS + 2, LANES)),
         v, np.zeros((3, 3)), np.zeros(3), np.zeros(3),
@@ -139,7 +130,7 @@ def scratch_for(problem: Problem) -> Piece:
 
 
 @compiled(_nrt=False)
-def row_norm(poly: FloatArray, j: int, m: int) -> float:
+def _row_norm(poly: FloatArray, j: int, m: int) -> float:
     """Norm of poly[j, 0:m]."""
     total = 0.0
     for r in range(m):
@@ -160,7 +151,7 @@ def _summed(
 
 
 @compiled(_nrt=False)
-def part_of(poly: FloatArray, degree: int, part: int, parts: int, factor: float, out: FloatArray) -> None:
+def _part_of(poly: FloatArray, degree: int, part: int, parts: int, factor: float, out: FloatArray) -> None:
     """Out = factor times poly in the time of one of so many equal parts, by synthetic division."""
     if parts == 1:
         for j in range(degree + 1):
@@ -180,26 +171,23 @@ def part_of(poly: FloatArray, degree: int, part: int, parts: int, factor: float,
 @compiled(_nrt=False)
 def load_piece(
     problem: Problem, i: int, gains: FloatArray, zeta: float, T: float, piece: Piece
-) -> tuple[float, float, float, float, float, float]:
+) -> tuple[float, float, float, float, float]:
     """Sum the parts of piece i.
 
     Returns
     -------
-    bound on |A| per unit time, bound on its error, bound on the error of f, the ratio wd/w where it is the
-    same for all powers and coordinates, else nan, and bounds on the integrals over time of further errors of
-    A at the start and at the end
+    bound on |A| per unit time, bound on its error, the ratio wd/w where it is the same for all powers and
+    coordinates, else nan, and bounds on the integrals over time of further errors of A at the start and at
+    the end
     """
     nu, nu_rate, calm = piece.sizes[0], piece.sizes[1], piece.sizes[2]
     rho, fit = problem.ratios[i], problem.fit_error
     piece.degrees[0], piece.degrees[1] = problem.degrees[i, 0], problem.degrees[i, 1]
-    piece.degrees[2] = piece.f.shape[0] - 1
     _summed(problem.w, i, piece.degrees[0], gains, 1.0, piece.w)
     if math.isnan(rho):
         _summed(problem.wd, i, piece.degrees[1], gains, zeta, piece.wd)
-    rate, error, error_f, first, last = calm, problem.noise, 0.0, 0.0, 0.0
+    rate, error, first, last = calm, problem.noise, 0.0, 0.0
     edge = problem.edge_error
-    for j in range(piece.f.shape[0]):
-        store(piece.f, (j,), zero())
     for q in range(gains.size):
         g = abs(gains[q])
         rate += g * (problem.sizes[q, i, 0] * nu + abs(zeta) * problem.sizes[q, i, 1] * nu_rate)
@@ -208,13 +196,7 @@ def load_piece(
         last += g * T * (edge[q, i + 1, 0] * nu + edge[q, i + 1, 1] * abs(zeta) * nu_rate)
         if not math.isnan(rho):
             error += g * abs(zeta) * problem.unequal[q, i] * nu_rate
-        error_f += g * (fit[q, i, 2] + fit[q, i, 3] * abs(zeta) / T)
-        for r in range(problem.v.size):
-            for j in range(problem.f.shape[3]):
-                piece.f[j, r] += gains[q] * problem.f[q, i, r, j]
-            for j in range(problem.fr.shape[3]):
-                piece.f[j, r] += gains[q] * zeta / T * problem.fr[q, i, r, j]
-    return rate, error, error_f, zeta * rho, first, last
+    return rate, error, zeta * rho, first, last
 
 
 @compiled(_nrt=False)
@@ -226,29 +208,28 @@ def load_step(problem: Problem, piece: Piece, part: int, parts: int, h: float, r
     m = problem.v.size
     nu, nu_rate, calm = piece.sizes[0], piece.sizes[1], piece.sizes[2]
     merged = not math.isnan(ratio)
-    dw, dd, df = piece.degrees[0], piece.degrees[1], piece.degrees[2]
+    dw, dd = piece.degrees[0], piece.degrees[1]
     change = 0.0
-    part_of(piece.w, dw, part, parts, h * h, piece.ws)
+    _part_of(piece.w, dw, part, parts, h * h, piece.ws)
     for q in range(m):
         piece.h2_omega2[q] = (h * problem.omega[q]) ** 2
         piece.h2_reference[q] = -h * h * problem.reference[q]
         change += (piece.ws[0, q] + piece.h2_reference[q]) ** 2
         for p in range(m):
             piece.hC[q, p] = h * problem.C[q, p]
-    part_of(piece.f, df, part, parts, h * h, piece.fs)
     for j in range(piece.a.size):
         piece.a[j] = 0.0
     # ws holds h^2 w and wds h wd.
     piece.a[0] = h * calm + math.sqrt(change) * nu / h
     for j in range(dw + 1):
-        size = row_norm(piece.ws, j, m) / h
+        size = _row_norm(piece.ws, j, m) / h
         if j > 0:
             piece.a[j] = size * nu
         if merged:
             piece.a[j] += size * abs(ratio) * nu_rate
     if merged:
         return int(dw)
-    part_of(piece.wd, dd, part, parts, h, piece.wds)
+    _part_of(piece.wd, dd, part, parts, h, piece.wds)
     for j in range(dd + 1):
-        piece.a[j] += row_norm(piece.wds, j, m) * nu_rate
+        piece.a[j] += _row_norm(piece.wds, j, m) * nu_rate
     return int(max(dw, dd))

@@ -7,8 +7,7 @@ for every R > 0, and for every R > 1 the terms beyond degree p sum to at most
 
     exp(g(R)) R^-p/(R - 1)   for all |u| <= 1.
 
-This gives p before any vector is computed. The solution from rest under a forcing f has |x_{k+1}| <= h |f|
-r_k, by induction from the same recurrence: its bound is that of degree p - 1.
+This gives p before any vector is computed.
 """
 
 from __future__ import annotations
@@ -51,7 +50,7 @@ def powers_of_radii(count: int) -> FloatArray:
 @compiled(fastmath={"contract"}, _nrt=False)
 def enough_terms(
     a: FloatArray, degree: int, log_tolerance: float, powers: FloatArray, work: FloatArray
-) -> tuple[int, float, float]:
+) -> tuple[int, float]:
     """Degree p after which the neglected terms sum to less than the tolerance; -1 above MAX_TERMS.
 
     Parameters
@@ -64,20 +63,19 @@ def enough_terms(
 
     Returns
     -------
-    p; the factor by which the tolerance is larger, per unit of h |f|, for the solution from rest; sum of all
-    r_k, which measures rounding
+    p; sum of all r_k, which measures rounding
     """
     first, second = scaled(a[0], load(powers, (0, 0))), scaled(a[0], load(powers, (1, 0)))
     for j in range(1, degree + 1):
         first, second = plus(a[j], load(powers, (0, j)), first), plus(a[j], load(powers, (1, j)), second)
     store(work, (0,), first)
     store(work, (1,), second)
-    best, radius = 1.0 + MAX_TERMS, 1.0
+    best = 1.0 + MAX_TERMS
     for i in range(_LOGS.size):
         terms = (work[(i + 1) // LANES, (i + 1) % LANES] - _LOWER[i] - log_tolerance) / _LOGS[i]
         if terms < best:
-            best, radius = terms, RADII[i + 1]
+            best = terms
     size = math.exp(work[0, 0])
     if not best <= MAX_TERMS:
-        return -1, math.inf, size
-    return max(1, math.ceil(best)), radius, size
+        return -1, size
+    return max(1, math.ceil(best)), size

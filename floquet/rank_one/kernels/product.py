@@ -8,8 +8,6 @@ from floquet.rank_one.kernels.compiled import compiled
 from floquet.rank_one.kernels.lanes import LANES, load, plus, plus_square, scaled, store, zero
 from lumped.typing import FloatArray
 
-FORCED = 6
-"""First of the two lanes that carry forced motion: under the forcing, and under the input."""
 BLOCKS = 34
 """Blocks of steps held at once at most: enough for 2^32 steps."""
 _EPS = 2.220446049250313e-16
@@ -78,10 +76,10 @@ def divide(
 
     Parameters
     ----------
-    end, start : (n, LANES), the columns from FORCED on being states from rest in the middle
+    end, start : (n, LANES)
     unit : rows of the unit matrix
     scratch : (2, n, LANES)
-    step : (n, LANES), out: P, and in the columns from FORCED on states at the end from rest at the start
+    step : (n, LANES), out: P
 
     Returns
     -------
@@ -96,9 +94,6 @@ def divide(
         store(back, (i,), plus(-1.0, load(end, (i,)), load(back, (i,))))
     residual, size = frobenius(back, inverse), frobenius(step, inverse)
     residual += (n + 1.0) * _EPS * size * frobenius(start, inverse)
-    for i in range(n):
-        for lane in range(FORCED, LANES):
-            step[i, lane] = -back[i, lane]
     return size, residual
 
 
@@ -133,11 +128,11 @@ def carry(
     layout: FloatArray,
     count: int,
     flow: FloatArray,
-    weights: FloatArray,
+    before: FloatArray,
     work: FloatArray,
     table: FloatArray,
 ) -> float:
-    """Product of the steps, its error bound and the weight with which each step's error reaches the end.
+    """Product of the steps and its error bound.
 
     With Q_j the computed product of the steps before step j, E_j the error of step j with the rounding of its
     multiplication, and S_j the *exact* flow from the end of step j to that of the period, the error of the
@@ -147,11 +142,11 @@ def carry(
 
     Parameters
     ----------
-    steps : (count, n, LANES), the columns from FORCED on are states at the end of the step from rest
+    steps : (count, n, LANES)
     local : (count,) bound on |E_j|, 2-norm
     layout : (count, 4) as from ``steps_of_period``
-    flow : (n, LANES), out: the product, with the states from rest in the columns from FORCED on
-    weights : (count, 2), out: bounds on |S_j|, and |Q_j|
+    flow : (n, LANES), out: the product
+    before : (count,) scratch: bounds on |Q_j|
     work : (2 BLOCKS + 2, n, LANES) scratch
     table : (5, BLOCKS) scratch: norm, error, rank of the blocks; norm, error of their product
 
@@ -165,48 +160,41 @@ def carry(
         for lane in range(LANES):
             flow[i, lane] = 1.0 if i == lane and lane < n else 0.0
     for k in range(count):
-        weights[k, 1] = frobenius(flow, scratch)
+        before[k] = frobenius(flow, scratch)
         multiply(steps[k], flow, product)
         for i in range(n):
             store(flow, (i,), load(product, (i,)))
-            for lane in range(FORCED, LANES):
-                flow[i, lane] += steps[k, i, lane]
     top, total, inner, wrong, norm = 0, 0.0, 1.0, 0.0, 0.0
     for k in range(count - 1, -1, -1):
         # n eps |P| is the rounding of multiplying by this step.
         size = frobenius(steps[k], scratch)
         own = local[k]
-        local[k] += n * _EPS * size
+        error = own + n * _EPS * size
         part, parts, extra = int(layout[k, 1]), int(layout[k, 2]), layout[k, 3]
         after = table[3, top - 1] + table[4, top - 1] if top > 0 else 1.0
         if extra > 0.0 and parts > 1:
             # The steps of such a piece make one block, whose norm while it grows is the product of theirs.
             if part == parts - 1:
                 inner = 1.0
-                block = work[2 + top]
                 for i in range(n):
-                    store(block, (i,), load(steps[k], (i,)))
+                    store(work[2 + top], (i,), load(steps[k], (i,)))
                 wrong, norm = own, size
-                weights[k, 0] = after
             else:
-                weights[k, 0] = after * inner
                 multiply(work[2 + top], steps[k], product)
                 for i in range(n):
                     store(work[2 + top], (i,), load(product, (i,)))
                 wrong = wrong * (size + own) + norm * own + n * _EPS * norm * size
                 norm *= size
+            total += after * inner * error * before[k]
             inner *= size + own
-            total += weights[k, 0] * local[k] * weights[k, 1]
             if part > 0:
                 continue
-            total += after * extra * weights[k, 1]
+            total += after * extra * before[k]
             wrong += extra
         else:
-            weights[k, 0] = after
-            total += after * (local[k] + extra * (1.0 if part == parts - 1 else 0.0)) * weights[k, 1]
-            block = work[2 + top]
+            total += after * (error + extra * (1.0 if part == parts - 1 else 0.0)) * before[k]
             for i in range(n):
-                store(block, (i,), load(steps[k], (i,)))
+                store(work[2 + top], (i,), load(steps[k], (i,)))
             wrong = own + extra
             norm = size
         rank = 0

@@ -2,9 +2,9 @@
 
 In modal coordinates of a reference problem (`floquet.rank_one.system`) the system reads
 
-    eta'' + C eta' + omega^2 eta + w(t) (v . eta) + wd(t) (v . eta') = f(t),
+    eta'' + C eta' + omega^2 eta + w(t) (v . eta) + wd(t) (v . eta') = 0,
 
-with w, wd, f polynomials on every piece of the period. In the energy coordinates x = (omega eta, eta') the
+with w, wd polynomials on every piece of the period. In the energy coordinates x = (omega eta, eta') the
 part omega^2 is skew, so that one step of length 2 h has the matrix A(u) = sum_j A_j u^j, -1 <= u <= 1, with
 
     |A_0| <= a_0 = h (max omega + |C| + |w_0| |v/omega| + |wd_0| |v|),   |A_j| <= a_j likewise without
@@ -16,8 +16,7 @@ The series starts in the middle of the step, where it needs fewer terms and wher
 sums at u = 1 and -1 are the flows E and S from the middle to the end and back to the start, and P = E S^-1 is
 that of the step. Let E and S be wrong by at most d each, and let r be what P S - E comes to. Then P is wrong
 by at most (r + (1 + |P|) d) |S^-1|, and |S^-1|, the flow from the start to the middle, is bounded by the
-growth of energy. A motion from rest in the middle, e at the end and s at the start, is e - P s at the end
-when it is at rest at the start.
+growth of energy.
 """
 
 from __future__ import annotations
@@ -27,36 +26,27 @@ import math
 import numpy as np
 
 from floquet.rank_one.kernels.compiled import compiled
-from floquet.rank_one.kernels.gains import (
-    Limits,
-    Piece,
-    Problem,
-    load_piece,
-    load_step,
-    row_norm,
-    scratch_for,
-)
+from floquet.rank_one.kernels.gains import Limits, Piece, Problem, load_piece, load_step, scratch_for
 from floquet.rank_one.kernels.lanes import LANES, load, plus, scaled, store, zero
-from floquet.rank_one.kernels.majorant import enough_terms, norm
-from floquet.rank_one.kernels.product import BLOCKS, FORCED, carry, divide
+from floquet.rank_one.kernels.majorant import enough_terms
+from floquet.rank_one.kernels.product import BLOCKS, carry, divide
 from lumped.typing import FloatArray
 
-_EPS = 2.220446049250313e-16
-_U = 0.5 * _EPS
+_U = 0.5 * 2.220446049250313e-16
 
 
 @compiled(fastmath={"contract"}, _nrt=False)
-def series(problem: Problem, piece: Piece, terms: int, h: float, ratio: float) -> None:
+def _series(piece: Piece, terms: int, h: float, ratio: float) -> None:
     """Fill Z[k] (3, LANES), the Taylor coefficients in step time, k = 2..terms+1, from Z[0] and Z[1].
 
     With wd = ratio w the two convolutions merge into one with s + (ratio/h) s'. All three coordinates side by
     side, and the newest values last in every sum: what is older need not wait for them.
     """
     v, C, o, ref = piece.v, piece.hC, piece.h2_omega2, piece.h2_reference
-    Z, s, sd, w, wd, f = piece.Z, piece.s, piece.sd, piece.ws, piece.wds, piece.fs
+    Z, s, sd, w, wd = piece.Z, piece.s, piece.sd, piece.ws, piece.wds
     merged = not math.isnan(ratio)
     lag = ratio / h if merged else 0.0
-    dw, dd, df = piece.degrees[0], piece.degrees[1], piece.degrees[2]
+    dw, dd = piece.degrees[0], piece.degrees[1]
     x0, x1, x2 = load(Z, (0, 0)), load(Z, (0, 1)), load(Z, (0, 2))
     y0, y1, y2 = load(Z, (1, 0)), load(Z, (1, 1)), load(Z, (1, 2))
     here = plus(v[2], x2, plus(v[1], x1, scaled(v[0], x0)))
@@ -92,20 +82,12 @@ def series(problem: Problem, piece: Piece, terms: int, h: float, ratio: float) -
         store(Z, (k + 2, 0), y0)
         store(Z, (k + 2, 1), y1)
         store(Z, (k + 2, 2), y2)
-        if k <= df:
-            for r in range(problem.v.size):
-                Z[k + 2, r, FORCED] -= factor * f[k, r]
-                if k == 0:
-                    Z[2, r, FORCED + 1] -= factor * h * h * problem.input[r]
-            y0, y1, y2 = load(Z, (k + 2, 0)), load(Z, (k + 2, 1)), load(Z, (k + 2, 2))
         here, there = there, plus(v[2], y2, plus(v[1], y1, scaled(v[0], y0)))
-    store(s, (terms,), here)
-    store(s, (terms + 1,), there)
 
 
 @compiled(_nrt=False)
-def start_from_rest(problem: Problem, piece: Piece, h: float) -> None:
-    """Unit initial states x = (omega eta, eta') in the first 2m columns, rest in the others."""
+def _unit_states(problem: Problem, piece: Piece, h: float) -> None:
+    """Unit initial states x = (omega eta, eta') in the first 2m columns."""
     m = problem.v.size
     for q in range(m):
         store(piece.Z, (0, q), scaled(1.0 / problem.omega[q], load(piece.unit, (q,))))
@@ -113,7 +95,7 @@ def start_from_rest(problem: Problem, piece: Piece, h: float) -> None:
 
 
 @compiled(fastmath={"contract"}, _nrt=False)
-def ends_of_step(
+def _ends_of_step(
     problem: Problem, piece: Piece, terms: int, h: float, end: FloatArray, start: FloatArray
 ) -> None:
     """Energy coordinates at both ends of the step, (2m, LANES), summed from the smallest terms on."""
@@ -152,9 +134,8 @@ def steps_of_period(
     Parameters
     ----------
     gains, zeta, T : weights (Q,) of the parts, damping factor, period [s]
-    steps : (max_steps, 2m, LANES), out: transition matrix, and states from rest under f and
-        under the input in the columns from FORCED on
-    local : (max_steps, 3), out: bounds on the errors of the matrix and of both states from rest
+    steps : (max_steps, 2m, LANES), out: transition matrices
+    local : (max_steps,), out: bounds on their errors
     layout : (max_steps, 4), out: piece, number of the step in it, number of steps in it, and the bound on
         what the error of the piece has besides those of its steps
 
@@ -164,10 +145,10 @@ def steps_of_period(
     """
     m = problem.v.size
     count = 0
-    size_input, log_tolerance = norm(problem.input), math.log(limits.tolerance)
+    log_tolerance = math.log(limits.tolerance)
     for i in range(problem.phases.size - 1):
         length = (problem.phases[i + 1] - problem.phases[i]) * T
-        rate, misfit, misfit_f, ratio, first, last = load_piece(problem, i, gains, zeta, T, piece)
+        rate, misfit, ratio, first, last = load_piece(problem, i, gains, zeta, T, piece)
         parts = max(1, math.ceil(0.5 * length * rate / limits.angle))
         part = 0
         while part < parts:
@@ -175,17 +156,17 @@ def steps_of_period(
                 return -1
             h = 0.5 * length / parts
             degree = load_step(problem, piece, part, parts, h, ratio)
-            terms, factor_f, size = enough_terms(piece.a, degree, log_tolerance, piece.powers, piece.ends[0])
+            terms, size = enough_terms(piece.a, degree, log_tolerance, piece.powers, piece.ends[0])
             if terms < 0:
                 # The polynomials vary too much within the step: begin the piece again with half of it.
                 count -= part
                 parts *= 2
                 part = 0
                 continue
-            start_from_rest(problem, piece, h)
-            series(problem, piece, terms, h, ratio)
+            _unit_states(problem, piece, h)
+            _series(piece, terms, h, ratio)
             end, start, scratch = piece.ends[0], piece.ends[1], piece.ends[2:]
-            ends_of_step(problem, piece, terms, h, end, start)
+            _ends_of_step(problem, piece, terms, h, end, start)
             size_step, residual = divide(end, start, piece.unit, scratch, steps[count])
             # Neither the skew part of A nor damping lets the energy grow; what is left of a at most does.
             turned, total = 2.0 * h * piece.sizes[3], 0.0
@@ -205,25 +186,9 @@ def steps_of_period(
             if part == parts - 1:
                 off += last
             spread = back * back * math.exp(off)
-            twice = 1.0 + size_step
             # 1 + 1e-6: rounding of the bound itself, of the number of terms above all.
-            error = (residual + twice * (limits.tolerance + rounding)) * back * (1.0 + 1e-6)
-            size_f = 0.0
-            for j in range(piece.degrees[2] + 1):
-                size_f += row_norm(piece.fs, j, m)
-            size_f /= h  # fs holds h^2 f
-            local[count, 0] = error + off * spread
-            for c in range(2):
-                # The motion from rest in the middle, and its error; misfits act for all of the step.
-                force = size_f if c == 0 else h * size_input
-                own = (factor_f * limits.tolerance + rounding) * force
-                reach = 0.0
-                for q in range(2 * m):
-                    reach += start[q, FORCED + c] ** 2
-                reach = own + math.sqrt(reach)
-                error_f = twice * own + (error + 2.0 * m * _EPS * twice) * reach
-                local[count, 1 + c] = error_f + off * spread * 2.0 * force
-            local[count, 1] += 2.0 * h * misfit_f * spread
+            error = (residual + (1.0 + size_step) * (limits.tolerance + rounding)) * back * (1.0 + 1e-6)
+            local[count] = error + off * spread
             layout[count, 0], layout[count, 1], layout[count, 2] = i, part, parts
             layout[count, 3] = problem.flow_error[i]
             count += 1
@@ -240,7 +205,6 @@ def propagate_points(
     limits: Limits,
     M: FloatArray,
     bound: FloatArray,
-    forced: FloatArray,
 ) -> int:
     """Monodromy matrices in energy coordinates for many points.
 
@@ -249,7 +213,6 @@ def propagate_points(
     gains, damping_factor, periods : (N, Q), (N,), (N,) [s]
     M : (N, 2m, 2m), out: Phi(T, 0) in x = (omega eta, eta')
     bound : (N,), out: bound on the Frobenius norm of the error of M: truncation, fit and rounding
-    forced : (N, 2m), out: state at T from rest at 0 under f
 
     Returns
     -------
@@ -258,22 +221,17 @@ def propagate_points(
     n = 2 * problem.v.size
     piece = scratch_for(problem)
     steps = np.empty((limits.max_steps, n, LANES))
-    local, layout = np.empty((limits.max_steps, 3)), np.empty((limits.max_steps, 4))
-    table = np.zeros((5, BLOCKS))
-    weights, work, flow = (
-        np.empty((limits.max_steps, 2)),
-        np.zeros((2 * BLOCKS + 2, n, LANES)),
-        np.zeros((n, LANES)),
-    )
+    local, layout = np.empty(limits.max_steps), np.empty((limits.max_steps, 4))
+    before, table = np.empty(limits.max_steps), np.zeros((5, BLOCKS))
+    work, flow = np.zeros((2 * BLOCKS + 2, n, LANES)), np.zeros((n, LANES))
     for point in range(periods.size):
         count = steps_of_period(
             problem, gains[point], damping_factor[point], periods[point], limits, piece, steps, local, layout
         )
         if count < 0:
             return point
-        bound[point] = carry(steps, local[:, 0], layout, count, flow, weights, work, table)
+        bound[point] = carry(steps, local, layout, count, flow, before, work, table)
         for i in range(n):
-            forced[point, i] = flow[i, FORCED]
             for j in range(n):
                 M[point, i, j] = flow[i, j]
     return -1

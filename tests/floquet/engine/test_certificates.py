@@ -10,9 +10,7 @@ from floquet import (
     KnownMatrix,
     PeriodicSystem,
     PiecewisePolynomial,
-    fast_periodic_motions,
     friction_effect,
-    gear_block,
     monodromy,
     periodic_motion,
     stability_chart,
@@ -116,7 +114,6 @@ def test_charts_and_motions_say_what_their_errors_are() -> None:
     assert together["proven"].values.tolist() == [False, False]
     effect = friction_effect(pair, speeds, ["coulomb", "xu_kahraman"])
     assert effect.attrs["certificate"] == "mixed"
-    assert fast_periodic_motions(gear_block(pair)).certificate == "proven"
     forced = PeriodicSystem(lambda t: np.array([[-1.0]]), 1.0, b=lambda t: np.array([1.0]))
     assert periodic_motion(forced).certificate == "estimate"
 

@@ -46,9 +46,7 @@ def random_system(rng: np.random.Generator) -> RankOneSystem:
         gains=Gains(
             w=w,
             wd=wd,
-            f=rng.normal(size=(pieces, m, int(rng.integers(1, 4)))),
-            fr=rng.normal(size=(pieces, m, int(rng.integers(1, 4)))),
-            fit_errors=np.zeros((pieces, 4)),
+            fit_errors=np.zeros((pieces, 2)),
         ),
         period=float(10.0 ** rng.uniform(-0.5, 1.5)),
         metric=metric,
@@ -108,7 +106,7 @@ def test_declared_misfit_of_the_polynomials_enters_the_bound() -> None:
         direction /= np.sqrt(system.metric @ direction**2)
         wrong = system.gains.w.copy()
         wrong[:, :, 0] += e * direction
-        declared = np.zeros((system.phases.size - 1, 4))
+        declared = np.zeros((system.phases.size - 1, 2))
         declared[:, 0] = e
         # Energy coordinates depend on the mean of w: carry the exact result to those of the wrong system.
         exact = fast_monodromies(system)
@@ -126,8 +124,8 @@ def test_declared_misfit_of_the_polynomials_enters_the_bound() -> None:
 def test_constant_coefficients() -> None:
     rng = np.random.default_rng(8)
     system = random_system(rng)
-    first = (getattr(system.gains, key)[:1, :, :1] for key in ("w", "wd", "f", "fr"))
-    still = replace(system, gains=Gains(*first, np.zeros((1, 4))), phases=np.array([0.0, 1.0]))
+    first = (getattr(system.gains, key)[:1, :, :1] for key in ("w", "wd"))
+    still = replace(system, gains=Gains(*first, np.zeros((1, 2))), phases=np.array([0.0, 1.0]))
     A = still.to_periodic_system().evaluate(np.array([0.4 * still.period]))[0]
     exact = in_energy_coordinates(still, expm(A * still.period))
     result = fast_monodromies(still)
@@ -266,7 +264,7 @@ def test_varied_gains_add_with_their_factor() -> None:
     for _ in range(10):
         system = random_system(rng)
         extra = 0.2 * rng.normal(size=system.gains.w.shape)
-        zeros = [np.zeros_like(getattr(system.gains, key)) for key in ("wd", "f", "fr", "fit_errors")]
+        zeros = [np.zeros_like(getattr(system.gains, key)) for key in ("wd", "fit_errors")]
         family = replace(system, varied=Gains(extra, *zeros))
         g = float(rng.uniform(-1.0, 1.0))
         many = fast_monodromies(family, [system.period], gain_factors=g)

@@ -22,10 +22,9 @@ def staircase(rng: np.random.Generator, pieces: int, degree: int = 0, m: int = 2
     v, metric = rng.normal(size=m), rng.uniform(0.5, 2.0, m)
     w = 0.3 * rng.normal(size=(pieces, m, degree + 1))
     w[:, :, 0] += rng.uniform(0.5, 2.0) * v / metric
-    nothing = np.zeros((pieces, m, 1))
 
     def gains(w: np.ndarray, wd: np.ndarray) -> Gains:
-        return Gains(w, wd, nothing, nothing, np.zeros((pieces, 4)))
+        return Gains(w, wd, np.zeros((pieces, 2)))
 
     return RankOneSystem(
         stiffness=rng.uniform(0.5, 4.0, m),
@@ -80,13 +79,12 @@ def test_bound_is_near_the_first_order_change(degree: int) -> None:
     halves = [power(np.polynomial.Polynomial([middle, 0.5])).coef for middle in (-0.5, 0.5)]
     w = np.zeros((2, 1, degree + 2))
     w[:, 0] = halves
-    nothing = np.zeros((2, 1, 1))
     system = RankOneSystem(
         stiffness=np.array([0.2]),
         damping=np.array([0.0]),
         v=np.array([1.0]),
         phases=np.array([0.0, 0.5, 1.0]),
-        gains=Gains(w, nothing, nothing, nothing, np.zeros((2, 4))),
+        gains=Gains(w, np.zeros((2, 1, 1)), np.zeros((2, 2))),
         period=T,
         metric=np.array([1.0]),
     )
@@ -167,7 +165,7 @@ def test_variants_beyond_the_bound_are_refused() -> None:
 def test_errors_of_the_given_polynomials_are_passed_on() -> None:
     rng = np.random.default_rng(4)
     system = staircase(rng, 12)
-    declared = np.full((12, 4), 1e-3)
+    declared = np.full((12, 2), 1e-3)
     wrong = replace(system, gains=replace(system.gains, fit_errors=declared))
     plain, careful = (coarsened(s, 0.05, 1.0, [1.0], 0.1) for s in (system, wrong))
     assert plain.phases.size < 13

@@ -116,7 +116,7 @@ def test_disturbed_matrices_are_covered(pair, scale: float) -> None:
         noise = np.random.default_rng(abs(hash((t.tobytes(), z.tobytes()))) % 2**32)
         E = noise.normal(size=clean.matrices.shape)
         E *= scale / np.linalg.norm(E, axis=(1, 2))[:, None, None]
-        return FastMonodromy(clean.matrices + E, clean.errors + scale * declared, clean.forced)
+        return FastMonodromy(clean.matrices + E, clean.errors + scale * declared)
 
     t, z = np.random.default_rng(2).uniform(*T, 40), np.linspace(0.0, 1.0, 40)
     exact = fast_monodromies(block, t, z).matrices
@@ -146,7 +146,7 @@ def test_feature_between_the_nodes_is_seen(pair) -> None:
         clean = fast_monodromies(block, t, z)
         asked.append(t.size)
         bump = 0.1 if len(asked) > 1 and t.size == 24 else 0.0
-        return FastMonodromy(clean.matrices + bump, clean.errors, clean.forced)
+        return FastMonodromy(clean.matrices + bump, clean.errors)
 
     series = interpolant(flow, (T[0], T[1]), (0.0, 1.0), turns, 1e-8)
     assert asked[-1] == 24
