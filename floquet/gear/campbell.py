@@ -127,7 +127,9 @@ def _exponents_by_mode(matrix: FloatArray, omega: FloatArray, period: float) -> 
     modulus = np.abs(values)
     solution, mode = linear_sum_assignment(-forward * (1.0 + 0.01 * modulus / modulus.max())[:, None])
     chosen = values[solution[np.argsort(mode)]].astype(complex)
-    with np.errstate(divide="ignore", invalid="ignore"):  # a multiplier of zero has no exponent
+    # A multiplier that is zero, or so small that it has lost its digits, has no exponent.
+    chosen[np.abs(chosen) < np.finfo(np.float64).tiny] = 0.0
+    with np.errstate(divide="ignore", invalid="ignore"):
         principal = np.log(chosen) / period
     mesh = 2.0 * np.pi / period
     return np.asarray(principal + 1j * mesh * np.round((omega - principal.imag) / mesh))
