@@ -23,9 +23,6 @@ if TYPE_CHECKING:
 
 Axes = Mapping[str, npt.ArrayLike]
 
-VERDICTS = {"stable": 1, "undecided": 0, "unstable": -1}
-"""Values of the chart variable ``verdict``."""
-
 
 def checked_axes(axes: Axes) -> dict[str, FloatArray]:
     """Return the axes as 1-D float arrays.

@@ -155,28 +155,14 @@ def _significant(x: float) -> float:
     return float(f"{x:.9e}")
 
 
-def radius_with_bound(multipliers: ComplexArray, bounds: FloatArray) -> tuple[float, float]:
-    """Spectral radius and a bound on its error from multipliers and their bounds."""
-    modulus = np.abs(multipliers)
-    radius = float(modulus.max())
-    # No more than this below: the largest multiplier's own bound, which is at most as much.
-    return radius, float((modulus + bounds).max()) - radius
-
-
-def verdict(radius: float, error: float) -> str:
-    """Say "stable" or "unstable" when the whole interval radius +- error does, else "undecided"."""
-    if radius + error < 1.0:
-        return "stable"
-    return "unstable" if radius - error > 1.0 else "undecided"
-
-
 def radii_with_bounds(multipliers: ComplexArray, errors: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Largest |multiplier| of each row, (N, n) -> (N,), and a bound on its error."""
+    """Largest |multiplier| of each row, (..., n) -> (...,), and a bound on its error."""
     modulus = np.abs(multipliers)
-    radius = modulus.max(axis=1)
-    return radius, (modulus + errors).max(axis=1) - radius
+    radius = modulus.max(axis=-1)
+    # No more than this below: the largest multiplier's own bound, which is at most as much.
+    return radius, (modulus + errors).max(axis=-1) - radius
 
 
 def verdicts(radius: FloatArray, error: FloatArray) -> npt.NDArray[np.int8]:
     """1 stable, 0 undecided where radius +- error contains 1, -1 unstable; any shape."""
-    return (radius + error < 1.0).astype(np.int8) - (radius - error > 1.0).astype(np.int8)
+    return np.asarray(radius + error < 1.0, dtype=np.int8) - np.asarray(radius - error > 1.0, dtype=np.int8)

@@ -46,14 +46,6 @@ class Propagation:
     scaling: FloatArray
     evaluations: int
 
-    @property
-    def matrix(self) -> FloatArray:
-        """Monodromy matrix Phi(T, 0) in the coordinates of the system."""
-        product = np.eye(self.steps.shape[1])
-        for step in self.steps:
-            product = step @ product
-        return product * self.scaling[:, None] / self.scaling[None, :]
-
 
 def _step_batch(
     system: PeriodicSystem, method: Propagator, start: FloatArray, end: FloatArray, d: FloatArray

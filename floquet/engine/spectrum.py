@@ -11,7 +11,7 @@ from typing import Literal
 
 import numpy as np
 
-from floquet.engine.multipliers import radius_with_bound, verdict
+from floquet.engine.multipliers import radii_with_bounds, verdicts
 from lumped.typing import ComplexArray, FloatArray
 
 Certificate = Literal["proven", "estimate"]
@@ -38,7 +38,8 @@ class Spectrum:
 
     @cached_property
     def _radius(self) -> tuple[float, float]:
-        return radius_with_bound(self.multipliers, self.multiplier_errors)
+        radius, error = radii_with_bounds(self.multipliers, self.multiplier_errors)
+        return float(radius), float(error)
 
     @property
     def spectral_radius(self) -> float:
@@ -53,7 +54,8 @@ class Spectrum:
     @property
     def verdict(self) -> str:
         """One of "stable", "unstable", and "undecided" when ``spectral_radius`` +- ``error`` contains 1."""
-        return verdict(*self._radius)
+        radius, error = (np.array(value) for value in self._radius)
+        return ("undecided", "stable", "unstable")[int(verdicts(radius, error))]
 
     @property
     def exponents(self) -> ComplexArray:

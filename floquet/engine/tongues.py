@@ -68,8 +68,7 @@ def combinations(omega: FloatArray) -> Iterator[tuple[int, int, int, float]]:
             yield i, j, -1, float(omega[j] - omega[i])
 
 
-@dataclass(frozen=True, eq=False)
-class ModeShares:
+def mode_shares(state: npt.ArrayLike, omega: FloatArray) -> FloatArray:
     """How much each mode of the mean system takes part in a motion, forwards and backwards.
 
     In the modal states (omega eta, eta') mode i moves as a_i exp(i omega_i t) + b_i exp(-i omega_i t) with
@@ -77,30 +76,22 @@ class ModeShares:
     of the energy: a sum resonance feeds both its modes with equal action (relations of Manley and Rowe),
     however far apart their frequencies are.
 
-    Attributes
+    Parameters
     ----------
-    forward, backward : (m,) shares of the a_i and of the b_i; together they sum to one
+    state : (2m,) complex, (omega eta, eta')
+    omega : (m,) natural frequencies of the mean system
+
+    Returns
+    -------
+    (2, m), shares of the a_i and of the b_i; together they sum to one
     """
-
-    forward: FloatArray
-    backward: FloatArray
-
-    @property
-    def total(self) -> FloatArray:
-        """Share of each mode, (m,)."""
-        return self.forward + self.backward
-
-
-def mode_shares(state: npt.ArrayLike, omega: FloatArray) -> ModeShares:
-    """Shares of the modes in a complex state vector x = (omega eta, eta'), (2m,)."""
     x = np.asarray(state, dtype=complex)
     m = omega.size
     actions = np.abs(np.stack([x[:m] - 1j * x[m:], x[:m] + 1j * x[m:]])) ** 2 / omega
-    actions = actions / actions.sum()
-    return ModeShares(actions[0], actions[1])
+    return np.asarray(actions / actions.sum())
 
 
-def label_tongue(matrix: npt.ArrayLike, omega: FloatArray, excitation: float) -> tuple[Tongue, ModeShares]:
+def label_tongue(matrix: npt.ArrayLike, omega: FloatArray, excitation: float) -> Tongue:
     """Name the instability of a monodromy matrix by the shape of its fastest growing motion.
 
     Parametric excitation at Omega couples two rotating motions whose frequencies differ by k Omega. If they
@@ -115,22 +106,17 @@ def label_tongue(matrix: npt.ArrayLike, omega: FloatArray, excitation: float) ->
     matrix : (2m, 2m) monodromy matrix in the modal states (omega eta, eta') of the mean system
     omega : (m,) natural frequencies of the mean system [rad/s]
     excitation : Omega = 2 pi/T [rad/s]
-
-    Returns
-    -------
-    the label, and the shares of the modes in the growing motion
     """
     values, vectors = np.linalg.eig(np.asarray(matrix, dtype=float))
-    shares = mode_shares(vectors[:, np.argmax(np.abs(values))], omega)
+    forward, backward = mode_shares(vectors[:, np.argmax(np.abs(values))], omega)
     fits: list[tuple[bool, float, Tongue]] = []
-    forward, backward = shares.forward, shares.backward
     for i, j, sign, total in combinations(omega):
         along, against = (forward, backward) if sign < 0 else (backward, forward)
         weight = math.sqrt(max(forward[i] * along[j], backward[i] * against[j]))
         order = max(1, round(total / excitation))
         near = abs(total / (order * excitation) - 1.0) <= _DETUNING
         fits.append((near, weight, Tongue(i + 1, j + 1, sign, order)))
-    return max(fits)[2], shares
+    return max(fits)[2]
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from floquet.engine.chart import checked_axes
 from floquet.engine.intervals import UnstableInterval, seeded_nodes, unstable_intervals
-from floquet.engine.tongues import ModeShares, Tongue, combinations, label_tongue, tongue_coordinates
+from floquet.engine.tongues import Tongue, combinations, label_tongue, tongue_coordinates
 from floquet.gear.axes import GearVariation, axis_coordinates, gear_axis, vary
 from floquet.gear.block import gear_block
 from floquet.gear.chart import stability_chart
@@ -64,13 +64,8 @@ def predicted_lines(pair: GearPair | GearVariation, orders: int = 12) -> dict[To
     }
 
 
-def label_variation(variation: GearVariation) -> tuple[Tongue, ModeShares]:
-    """Label the fastest growing motion of a pair by its mode shape, see `label_tongue`.
-
-    Returns
-    -------
-    label, and the shares of the modes of the mean system in that motion
-    """
+def label_variation(variation: GearVariation) -> Tongue:
+    """Label the fastest growing motion of a pair by its mode shape, see `label_tongue`."""
     block = gear_block(variation)
     matrix = fast_monodromies(block).matrices[0]
     return label_tongue(matrix, block.modal().omega, 2.0 * np.pi / block.period)
@@ -81,7 +76,6 @@ def stability_boundaries(
     speed_rpm: tuple[float, float] = (500.0, 20000.0),
     axes: dict[str, npt.ArrayLike] | None = None,
     *,
-    friction_law: str | None = None,
     nodes: int = 400,
     orders: int = 12,
     xtol: float = 1e-8,
@@ -100,7 +94,6 @@ def stability_boundaries(
     speed_rpm : range searched [rpm]
     axes : one more axis {name: values} out of `GEAR_AXES` other than speed, with the meaning that it has in
         `stability_chart`; default the pair as it is
-    friction_law : law to use instead of the pair's
     nodes : evenly spaced speeds of the search besides
     orders : largest k of the clusters
     xtol : relative accuracy of the boundaries
@@ -124,8 +117,6 @@ def stability_boundaries(
     low, high = checked_range(speed_rpm)
     nodes = whole_number("nodes", nodes, 0, 1_000_000)
     xtol = real_number("xtol", xtol, 1e-15, 0.1)
-    if friction_law is not None:
-        pair = pair.with_({"friction.law": friction_law})
     checked = checked_axes(axes) if axes is not None else {}
     if axes is not None and (len(checked) != 1 or "speed_rpm" in checked):
         raise refuse("axes", ", ".join(checked), "one other than speed_rpm", "Scan other axes one at a time.")
@@ -145,7 +136,7 @@ def stability_boundaries(
             return np.ravel(stability_chart(pair, grid, rtol=rtol, store="radius").spectral_radius.values)
 
         for interval in unstable_intervals(radius, start, xtol=xtol):
-            label, _ = label_variation(vary(pair, {**point, "speed_rpm": interval.peak}))
+            label = label_variation(vary(pair, {**point, "speed_rpm": interval.peak}))
             found.setdefault(label, {}).setdefault(index, []).append(interval)
         if progress is not None:
             progress((index + 1) / values.size)

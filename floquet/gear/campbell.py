@@ -121,7 +121,7 @@ def campbell(
 def _exponents_by_mode(matrix: FloatArray, omega: FloatArray, period: float) -> ComplexArray:
     """Exponent (m,) [1/s] of the solution that belongs to each mode, on the branch near its frequency."""
     values, vectors = np.linalg.eig(matrix)
-    forward = np.stack([mode_shares(x, omega).forward for x in vectors.T])
+    forward = np.stack([mode_shares(x, omega)[0] for x in vectors.T])
     # Each mode gets a solution of its own. In a tongue a growing and a decaying one share the mode equally:
     # the slight preference for the larger modulus takes the growing one.
     modulus = np.abs(values)

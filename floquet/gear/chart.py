@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Literal
 
@@ -20,7 +19,7 @@ from floquet.engine.spectrum import Spectrum
 from floquet.gear.axes import gear_axis, vary
 from floquet.gear.multipliers import gear_pair_multipliers
 from floquet.gear.plane import Plane, Store, plane_multipliers
-from lumped.arguments import one_of, real_number, whole_number
+from lumped.arguments import one_of, real_number
 from lumped.errors import refuse
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
@@ -46,7 +45,6 @@ def stability_chart(
     rtol: float = 1e-10,
     method: str | Propagator = "taylor",
     store: Literal["all", "radius"] = "all",
-    n_jobs: int | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Stability chart of a gear pair.
@@ -66,7 +64,6 @@ def stability_chart(
         the two costs less; or a method of `monodromy` for an independent check
     store : "all"; or "radius" for the spectral radius, its error and the verdict without the multipliers: 18
         bytes a point instead of 258
-    n_jobs : threads (Taylor) or processes (others); default all cores for Taylor, 1 for the others
     progress : told the finished fraction
 
     Returns
@@ -89,8 +86,6 @@ def stability_chart(
     points = math.prod(values.size for values in grid.values())
     if points > _LARGEST:
         raise refuse("points of the chart", points, f"at most {_LARGEST}", "Give the axes smaller counts.")
-    if n_jobs is not None:
-        n_jobs = whole_number("n_jobs", n_jobs, 1, 1024)
     one_of("store", store, ("all", "radius"))
     if friction_law is not None:
         pair = pair.with_({"friction.law": friction_law})
@@ -103,10 +98,13 @@ def stability_chart(
             raise refuse(
                 "method", method, '"taylor" for axes without speed_rpm', "Interpolation is over speed."
             )
-        dataset = _compiled_chart(pair, grid, rtol, n_jobs, progress, method == "chebyshev", store == "all")
+        dataset = _compiled_chart(pair, grid, rtol, progress, method == "chebyshev", store == "all")
     else:
-        evaluate = partial(_evaluate, pair, rtol, method)
-        dataset = scan(evaluate, grid, n_jobs=1 if n_jobs is None else n_jobs, progress=progress)
+
+        def evaluate(point: dict[str, float]) -> Spectrum:
+            return gear_pair_multipliers(vary(pair, point), rtol, method=method)
+
+        dataset = scan(evaluate, grid, progress=progress)
         if store == "radius":
             dataset = dataset.drop_vars(["multipliers", "multiplier_errors"])
     for name in grid:
@@ -132,15 +130,10 @@ def chart_method(axes: Mapping[str, FloatArray]) -> str:
     return "chebyshev" if many and "speed_rpm" in axes else "taylor"
 
 
-def _evaluate(pair: GearPair, rtol: float, method: str | Propagator, point: dict[str, float]) -> Spectrum:
-    return gear_pair_multipliers(vary(pair, point), rtol, method=method)
-
-
 def _compiled_chart(
     pair: GearPair,
     grid: Mapping[str, FloatArray],
     rtol: float,
-    threads: int | None,
     progress: Progress | None,
     interpolate: bool,
     multipliers: bool,
@@ -154,11 +147,12 @@ def _compiled_chart(
     inner = [n for n in grid if n in _INNER and (n != "friction_coefficient" or grid[n].max() > 0.0)]
     if interpolate and len(inner) == 3:
         inner.remove("friction_coefficient")
-    shape = tuple(values.size for values in grid.values())
+    index = np.arange(math.prod(values.size for values in grid.values()))
+    index = index.reshape([values.size for values in grid.values()])
     steps = {name: grid[name].size if name in inner else 1 for name in grid}
     if "speed_rpm" in inner:
         steps["speed_rpm"] = max(_SPEEDS, _SLICE * steps["speed_rpm"] // math.prod(steps.values()))
-    whole, done = Store(math.prod(shape), multipliers), 0
+    store, done = Store(index.size, multipliers), 0
     for block in product(
         *([slice(i, i + steps[name]) for i in range(0, grid[name].size, steps[name])] for name in grid)
     ):
@@ -166,15 +160,11 @@ def _compiled_chart(
         mesh = np.meshgrid(*(here[name] for name in inner), indexing="ij")
         flat = {name: values.ravel() for name, values in zip(inner, mesh, strict=True)}
         point = {name: float(values[0]) for name, values in here.items() if name not in inner}
-        size = tuple(values.size for values in here.values())
-        plane, found = Plane(pair, point, flat, math.prod(size)), Store(math.prod(size), multipliers)
-        plane_multipliers(plane, found, rtol, threads, interpolate)
-        for target, source in zip(whole.arrays(), found.arrays(), strict=True):
-            rest = target.shape[1:]
-            target.reshape((*shape, *rest))[block] = source.reshape((*size, *rest))
-        done += plane.count
+        plane = Plane(pair, point, flat, index[block].ravel())
+        plane_multipliers(plane, store, rtol, interpolate)
+        done += plane.index.size
         if progress is not None:
-            progress(done / math.prod(shape))
+            progress(done / index.size)
     return chart_dataset(
-        grid, whole.multipliers, whole.errors, whole.radius, whole.radius_error, whole.proven
+        grid, store.multipliers, store.errors, store.radius, store.radius_error, store.proven
     )

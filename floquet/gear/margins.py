@@ -255,7 +255,7 @@ def _tongue(
         tip = tongue_tip(excess, window, (0.0, _LARGEST_DAMPING))
     damping, left, right = _edges(radius, interval, window, tip)
     return TongueMargin(
-        label=str(label_variation(vary(pair, {"damping_ratio": 0.0, "speed_rpm": interval.peak}))[0]),
+        label=str(label_variation(vary(pair, {"damping_ratio": 0.0, "speed_rpm": interval.peak}))),
         lower=interval.lower,
         upper=interval.upper,
         radius=interval.peak_radius,

@@ -42,13 +42,13 @@ class Plane:
     pair : the gear pair
     point : name -> value of the axes that are the same for all points
     flat : name -> values (count,) of those that are not
-    count : number of points
+    index : (count,) where their multipliers belong in a `Store`
     """
 
     pair: GearPair
     point: Mapping[str, float]
     flat: Mapping[str, FloatArray]
-    count: int
+    index: npt.NDArray[np.intp]
 
     def variation(self, speed_rpm: float | None = None) -> GearVariation:
         """The pair with the reference values of damping and friction, to which the factors relate."""
@@ -64,12 +64,12 @@ class Plane:
     def damping(self) -> FloatArray:
         """Factors (count,) on the damping of the reference."""
         given = self.flat.get("damping_ratio")
-        return np.ones(self.count) if given is None else given / _REFERENCE_DAMPING
+        return np.ones(self.index.size) if given is None else given / _REFERENCE_DAMPING
 
     def friction(self) -> FloatArray:
         """Factors (count,) on the mean friction of the reference."""
         given = self.flat.get("friction_coefficient")
-        return np.ones(self.count) if given is None else given / given.max()
+        return np.ones(self.index.size) if given is None else given / given.max()
 
 
 class Store:
@@ -92,11 +92,6 @@ class Store:
         self.proven = np.zeros(count, dtype=bool)
         self.multipliers = np.empty((count, 10), dtype=complex) if multipliers else None
         self.errors = np.empty((count, 10)) if multipliers else None
-
-    def arrays(self) -> list[npt.NDArray[np.generic]]:
-        """Whatever is kept."""
-        given = (self.radius, self.radius_error, self.proven, self.multipliers, self.errors)
-        return [array for array in given if array is not None]
 
     def put(
         self,
@@ -125,7 +120,6 @@ def plane_multipliers(
     plane: Plane,
     store: Store,
     rtol: float,
-    threads: int | None,
     interpolate: bool,
 ) -> None:
     """Multipliers of all points: the feedback block and the bearings off the line of action.
@@ -135,11 +129,10 @@ def plane_multipliers(
     plane : the points
     store : takes the multipliers
     rtol : wanted error relative to the scale of the monodromy matrices
-    threads : default one per core
     interpolate : over speed and over damping or friction, where speeds are many and share one friction law
     """
     first = plane.variation()
-    speeds = plane.flat.get("speed_rpm", np.full(plane.count, operating_rpm(first.pair)))
+    speeds = plane.flat.get("speed_rpm", np.full(plane.index.size, operating_rpm(first.pair)))
     unique, which = np.unique(speeds, return_inverse=True)
     damping, friction = plane.damping(), plane.friction()
     for family in friction_families(first, unique):
@@ -163,21 +156,19 @@ def plane_multipliers(
         def put(
             index: npt.NDArray[np.intp],
             found: FastMultipliers,
-            part: npt.NDArray[np.intp] = part,
+            owner: npt.NDArray[np.intp] = plane.index[part],
             periods: FloatArray = periods,
             bearings: OffLineOfAction = bearings,
             exact: bool = exact,
         ) -> None:
-            store.put(part[index], found, bearings, periods[index], exact)
+            store.put(owner[index], found, bearings, periods[index], exact)
 
         done = False
         if several:
-            done = _interpolated(
-                block, variation, family, periods, damping[part], friction[part], rtol, threads, put
-            )
+            done = _interpolated(block, variation, family, periods, damping[part], friction[part], rtol, put)
         if not done:
             factors = friction[part, None] * family.factors[row[which[part]]]
-            _direct(block, periods, damping[part], factors, rtol, threads, put)
+            _direct(block, periods, damping[part], factors, rtol, put)
 
 
 def _direct(
@@ -186,7 +177,6 @@ def _direct(
     damping: FloatArray,
     factors: FloatArray,
     rtol: float,
-    threads: int | None,
     put: Put,
 ) -> None:
     """The kernel at every point, in bands of periods with a coarser block for each."""
@@ -205,7 +195,7 @@ def _direct(
         for first in range(0, band.size, _CHUNK):
             part = band[first : first + _CHUNK]
             found = fast_multipliers(
-                system, periods[part], damping[part], factors[part], tolerance=2e-4 * rtol, threads=threads
+                system, periods[part], damping[part], factors[part], tolerance=2e-4 * rtol
             )
             put(part, found)
 
@@ -222,7 +212,6 @@ def _interpolated(
     damping: FloatArray,
     friction: FloatArray,
     rtol: float,
-    threads: int | None,
     put: Put,
 ) -> bool:
     """`_direct` by interpolation over periods and over damping or friction, whichever varies.
@@ -244,7 +233,7 @@ def _interpolated(
         zeta = np.full(T.size, fixed) if by_friction else parameters
         gains = strength[:, None] * factors[index] if block.parts[1:] else np.ones((T.size, 0))
         tolerance = max(1e-5 * rtol, 1e-14)
-        return fast_monodromies(block, T, zeta, gains, tolerance=tolerance, threads=threads)
+        return fast_monodromies(block, T, zeta, gains, tolerance=tolerance)
 
     # The points are all combinations of both.
     points = np.empty((unique.size, other.size), dtype=np.intp)
@@ -254,9 +243,7 @@ def _interpolated(
         put(points[rows].ravel(), found)
 
     try:
-        interpolated_multipliers(
-            flow, unique, other, float(block.modal().omega.max()), 1e-3 * rtol, receive, threads
-        )
+        interpolated_multipliers(flow, unique, other, float(block.modal().omega.max()), 1e-3 * rtol, receive)
     except _AnotherFamily:
         return False
     return True

@@ -14,7 +14,6 @@ from scipy import ndimage
 from floquet.engine.tongues import Tongue
 from floquet.gear.axes import vary
 from floquet.gear.boundaries import label_variation
-from lumped.arguments import whole_number
 from lumped.schema.pair import GearPair
 
 if TYPE_CHECKING:
@@ -39,20 +38,18 @@ class LabelledRegion:
     nodes: int
 
 
-def label_regions(pair: GearPair, chart: xr.Dataset, min_nodes: int = 1) -> list[LabelledRegion]:
+def label_regions(pair: GearPair, chart: xr.Dataset) -> list[LabelledRegion]:
     """Name every connected unstable region of a chart by the mode shape at its most unstable node.
 
     Parameters
     ----------
     pair : the pair of the chart, with the friction law of the chart
     chart : dataset of `stability_chart` over any axes
-    min_nodes : smaller regions are left out
 
     Returns
     -------
     regions, the largest first
     """
-    min_nodes = whole_number("min_nodes", min_nodes, 1, 10**9)
     radius = chart["spectral_radius"]
     names = [str(n) for n in radius.dims]
     values = radius.to_numpy()
@@ -60,11 +57,8 @@ def label_regions(pair: GearPair, chart: xr.Dataset, min_nodes: int = 1) -> list
     regions = []
     for index in range(1, count + 1):
         inside = numbered == index
-        size = int(inside.sum())
-        if size < min_nodes:
-            continue
         node = np.unravel_index(int(np.argmax(np.where(inside, values, -np.inf))), values.shape)
         point = {n: float(chart[n].values[i]) for n, i in zip(names, node, strict=True)}
-        label, _ = label_variation(vary(pair, point))
-        regions.append(LabelledRegion(label, point, float(values[node]), size))
+        label = label_variation(vary(pair, point))
+        regions.append(LabelledRegion(label, point, float(values[node]), int(inside.sum())))
     return sorted(regions, key=lambda region: -region.nodes)

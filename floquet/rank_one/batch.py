@@ -18,11 +18,11 @@ import numpy.typing as npt
 from floquet.engine.multipliers import multipliers_with_bounds
 from floquet.engine.spectrum import Certificate
 from floquet.rank_one.kernels.disks import spectra
-from floquet.rank_one.kernels.gains import Limits
+from floquet.rank_one.kernels.gains import MAX_STEPS, Limits
 from floquet.rank_one.kernels.taylor import propagate_points
 from floquet.rank_one.packing import own, packed
 from floquet.rank_one.system import Coarsening, RankOneSystem
-from lumped.arguments import real_array, real_number, real_numbers, whole_number
+from lumped.arguments import real_array, real_number, real_numbers
 from lumped.errors import NumericalError, refuse, shown
 from lumped.typing import ComplexArray, FloatArray
 
@@ -51,8 +51,6 @@ def fast_monodromies(
     gain_factors: npt.ArrayLike = 1.0,
     *,
     tolerance: float = 1e-13,
-    threads: int | None = None,
-    max_steps: int = 20_000,
 ) -> FastMonodromy:
     """Monodromy matrices for many periods T and factors on wd and on the varied gains.
 
@@ -63,8 +61,6 @@ def fast_monodromies(
     damping_factors : (N,) or scalar, factor on wd
     gain_factors : (N,) or scalar, factor on the gains ``system.varied``, or (N, Q-1), one for each set
     tolerance : largest neglected remainder of one step, in units of the energy norm
-    threads : default one per core
-    max_steps : steps per period at most
 
     Raises
     ------
@@ -75,9 +71,6 @@ def fast_monodromies(
     given = system.period if periods is None else periods
     T = own(real_numbers("periods", given, 0.0, above=True, unit="s"))
     tolerance = real_number("tolerance", tolerance, 1e-16, 0.1)
-    max_steps = whole_number("max_steps", max_steps, 1, 2**31 - 1)
-    if threads is not None:
-        threads = whole_number("threads", threads, 1, 1024)
     factors = np.ones((T.size, len(system.parts)))
     gains = _factors("gain_factors", gain_factors, T.shape, factors[:, 1:].shape)
     factors[:, 1:] = gains if gains.ndim == 2 else gains[:, None]
@@ -85,7 +78,7 @@ def fast_monodromies(
     _within(system.coarsening, T, zeta, factors)
     # Longer steps have fewer terms per unit of time, but amplify rounding, 30 eps = exp(-32.6), by
     # exp(angle): to an eighth of the tolerance.
-    limits = Limits(tolerance, min(max(math.log(tolerance) + 30.5, 3.0), 9.0), max_steps)
+    limits = Limits(tolerance, min(max(math.log(tolerance) + 30.5, 3.0), 9.0))
     problem, n = packed(system), 2 * system.v.size
     M, bound = np.empty((T.size, n, n)), np.empty(T.size)
 
@@ -93,11 +86,11 @@ def fast_monodromies(
         failed = propagate_points(problem, factors[part], zeta[part], T[part], limits, M[part], bound[part])
         return -1 if failed < 0 else part.start + failed
 
-    bad = [index for index in in_threads(run, T.size, threads) if index >= 0]
+    bad = [index for index in in_threads(run, T.size) if index >= 0]
     if bad:
         raise NumericalError(
-            f"period {T[bad[0]]:g} s needs more than {max_steps} Taylor steps, or a step more terms than the "
-            "kernel has. Raise max_steps, loosen the tolerance, or raise the speed."
+            f"period {T[bad[0]]:g} s needs more than {MAX_STEPS} Taylor steps, or a step more terms than the "
+            "kernel has. Loosen the tolerance, or raise the speed."
         )
     if not np.isfinite(M).all():
         raise NumericalError(
@@ -128,8 +121,6 @@ def fast_multipliers(
     gain_factors: npt.ArrayLike = 1.0,
     *,
     tolerance: float = 1e-13,
-    threads: int | None = None,
-    max_steps: int = 20_000,
 ) -> FastMultipliers:
     """Floquet multipliers for many periods and factors on wd, with error bounds.
 
@@ -137,12 +128,9 @@ def fast_multipliers(
     bound of the kernel does not separate them (defective ones at the edges of tongues),
     `multipliers_with_bounds` decides.
     """
-    flow = fast_monodromies(
-        system, periods, damping_factors, gain_factors,
-        tolerance=tolerance, threads=threads, max_steps=max_steps,
-    )  # fmt: skip
+    flow = fast_monodromies(system, periods, damping_factors, gain_factors, tolerance=tolerance)
     parts: list[FastMultipliers] = in_threads(
-        lambda part: multipliers_of(flow.matrices[part], flow.errors[part]), flow.errors.size, threads
+        lambda part: multipliers_of(flow.matrices[part], flow.errors[part]), flow.errors.size
     )
     return FastMultipliers(
         np.concatenate([part.multipliers for part in parts]),
@@ -188,9 +176,9 @@ def _within(coarsening: Coarsening | None, T: FloatArray, zeta: FloatArray, fact
             raise refuse(name, f"{value:g}", f"at most {limit:g}", "Coarsen the system for a wider range.")
 
 
-def in_threads(run: Callable[[slice], _T], size: int, threads: int | None = None) -> list[_T]:
-    """Call ``run`` on slices of range(size) by threads (the kernels release the interpreter lock)."""
-    count = threads or os.cpu_count() or 1
+def in_threads(run: Callable[[slice], _T], size: int) -> list[_T]:
+    """Call ``run`` on slices of range(size), a thread a core (the kernels release the interpreter lock)."""
+    count = os.cpu_count() or 1
     chunk = max(1, min(512, -(-size // count)))
     parts = [slice(first, min(first + chunk, size)) for first in range(0, size, chunk)]
     if count == 1 or len(parts) == 1:

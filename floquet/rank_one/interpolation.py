@@ -16,6 +16,7 @@ import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
 from floquet.rank_one.batch import FastMonodromy, FastMultipliers, in_threads, multipliers_of
+from floquet.rank_one.piecewise import to_series
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 
@@ -85,11 +86,11 @@ def interpolant(
                 f"interpolation to {tolerance:g} needs more than {_LARGEST} nodes. Use the direct method, or "
                 "split the range of speeds."
             )
-        x, y = _nodes(K, period), _nodes(L, parameter)
-        matrices = flow(np.repeat(x, L), np.tile(y, K))
+        (x, onto_x), (y, onto_y) = to_series(K), to_series(L)
+        matrices = flow(np.repeat(_between(x, period), L), np.tile(_between(y, parameter), K))
         n = matrices.matrices.shape[1]
         values = matrices.matrices.reshape(K, L, n, n)
-        coefficients = np.einsum("ak,bl,klij->abij", _to_series(K), _to_series(L), values, optimize=True)
+        coefficients = np.einsum("ak,bl,klij->abij", onto_x, onto_y, values, optimize=True)
         size = np.linalg.norm(values, axis=(2, 3)).max()
         norms = np.linalg.norm(coefficients, axis=(2, 3))
         tail_x = float(norms[-3:].sum())
@@ -102,8 +103,7 @@ def interpolant(
             L = math.ceil(1.4 * L)
     # Fixed points, so that the same chart has the same bounds: a Kronecker sequence fills the rectangle.
     spread = np.mod(np.outer(np.arange(1, _CHECKS + 1), [0.7548776662466927, 0.5698402909980532]), 1.0)
-    T = period[0] + spread[:, 0] * (period[1] - period[0])
-    p = parameter[0] + spread[:, 1] * (parameter[1] - parameter[0])
+    T, p = _between(2.0 * spread[:, 0] - 1.0, period), _between(2.0 * spread[:, 1] - 1.0, parameter)
     direct = flow(T, p)
     trial = Interpolant(coefficients, period, parameter, 0.0)
     found = np.array([trial(T[i : i + 1], p[i : i + 1])[0, 0] for i in range(_CHECKS)])
@@ -120,7 +120,6 @@ def interpolated_multipliers(
     rate: float,
     tolerance: float,
     receive: Receive,
-    threads: int | None = None,
 ) -> None:
     """Multipliers over a product grid of periods and parameters, handed on in parts as they come.
 
@@ -131,64 +130,37 @@ def interpolated_multipliers(
     rate : bound on the frequencies of the system [rad/s]
     tolerance : of the interpolation, relative to |M|
     receive : called for every part of the grid, from several threads at a time
-    threads : default one per core
     """
     order = np.argsort(periods)
-    sorted_periods = periods[order]
-    a = periods.size
     ends = (float(parameters.min()), float(parameters.max()))
-    first = 0
-    while first < a:
-        last = int(np.searchsorted(sorted_periods, _BAND * sorted_periods[first], side="right"))
-        rows = order[first:last]
-        low, high = float(sorted_periods[first]), float(sorted_periods[last - 1])
+    height = max(1, _CHUNK // parameters.size)
+    while order.size:
+        low = float(periods[order[0]])
+        rows = order[periods[order] <= _BAND * low]
+        order = order[rows.size :]
+        high = float(periods[rows[-1]])
         if low == high:
             high = low * (1.0 + 1e-9)  # one speed alone: any width will do
         series = interpolant(flow, (low, high), ends, rate * (high - low), tolerance)
-        _evaluate(series, periods, parameters, rows, receive, threads)
-        first = last
+
+        def run(chunks: slice, series: Interpolant = series, rows: npt.NDArray[np.intp] = rows) -> None:
+            for chunk in range(chunks.start, chunks.stop):
+                part = rows[chunk * height : (chunk + 1) * height]
+                M = series(periods[part], parameters)
+                M = M.reshape(-1, *M.shape[2:])
+                receive(part, multipliers_of(M, np.full(M.shape[0], series.error), "estimate"))
+
+        in_threads(run, -(-rows.size // height))
 
 
-def _evaluate(
-    series: Interpolant,
-    periods: FloatArray,
-    parameters: FloatArray,
-    rows: npt.NDArray[np.intp],
-    receive: Receive,
-    threads: int | None,
-) -> None:
-    """Evaluate the rows that belong to one interpolant."""
-    b, n = parameters.size, series.coefficients.shape[2]
-    height = max(1, _CHUNK // b)
-    delta = np.full(height * b, series.error)
-
-    def run(chunks: slice) -> None:
-        for chunk in range(chunks.start, chunks.stop):
-            part = rows[chunk * height : (chunk + 1) * height]
-            M = series(periods[part], parameters).reshape(part.size * b, n, n)
-            receive(part, multipliers_of(M, delta[: part.size * b], "estimate"))
-
-    in_threads(run, -(-rows.size // height), threads)
-
-
-def _nodes(count: int, ends: tuple[float, float]) -> FloatArray:
-    if count == 1:
-        return np.array([ends[0]])
-    return np.asarray(0.5 * (ends[0] + ends[1]) + 0.5 * (ends[1] - ends[0]) * chebyshev.chebpts1(count))
+def _between(unit: FloatArray, ends: tuple[float, float]) -> FloatArray:
+    return np.asarray(0.5 * (ends[0] + ends[1]) + 0.5 * (ends[1] - ends[0]) * unit)
 
 
 def _unit(values: FloatArray, ends: tuple[float, float]) -> FloatArray:
     if ends[0] == ends[1]:
         return np.zeros_like(values)
     return np.asarray((2.0 * values - ends[0] - ends[1]) / (ends[1] - ends[0]))
-
-
-def _to_series(count: int) -> FloatArray:
-    """Values at ``_nodes`` -> Chebyshev coefficients, by the discrete orthogonality of the cosines."""
-    vander = chebyshev.chebvander(chebyshev.chebpts1(count), count - 1) if count > 1 else np.ones((1, 1))
-    matrix = 2.0 / count * vander.T
-    matrix[0] *= 0.5
-    return np.asarray(matrix)
 
 
 def _lebesgue(count: int) -> float:

@@ -48,7 +48,6 @@ class PolynomialGains(Protocol):
         ...
 
 
-@cache
 def to_series(count: int) -> tuple[FloatArray, FloatArray]:
     """Chebyshev points of the first kind, and values there -> Chebyshev coefficients (count, count).
 

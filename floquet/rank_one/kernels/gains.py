@@ -13,6 +13,9 @@ from floquet.rank_one.kernels.lanes import LANES, load, plus, scaled, store, zer
 from floquet.rank_one.kernels.majorant import MAX_TERMS, norm, powers_of_radii
 from lumped.typing import FloatArray
 
+MAX_STEPS = 20_000
+"""Steps per period at most."""
+
 
 class Problem(NamedTuple):
     """A family of rank-one feedback systems: each gain is a sum of Q parts, weighted for every point.
@@ -54,18 +57,16 @@ class Problem(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """Accuracy and effort.
+    """Accuracy and length of the steps.
 
     Attributes
     ----------
     tolerance : of each step's truncation, relative to 1
     angle : largest majorant exponent per half of a step
-    max_steps : steps per period at most
     """
 
     tolerance: float
     angle: float
-    max_steps: int
 
 
 class Piece(NamedTuple):

@@ -26,7 +26,15 @@ import math
 import numpy as np
 
 from floquet.rank_one.kernels.compiled import compiled
-from floquet.rank_one.kernels.gains import Limits, Piece, Problem, load_piece, load_step, scratch_for
+from floquet.rank_one.kernels.gains import (
+    MAX_STEPS,
+    Limits,
+    Piece,
+    Problem,
+    load_piece,
+    load_step,
+    scratch_for,
+)
 from floquet.rank_one.kernels.lanes import LANES, load, plus, scaled, store, zero
 from floquet.rank_one.kernels.majorant import enough_terms
 from floquet.rank_one.kernels.product import BLOCKS, carry, divide
@@ -134,14 +142,14 @@ def steps_of_period(
     Parameters
     ----------
     gains, zeta, T : weights (Q,) of the parts, damping factor, period [s]
-    steps : (max_steps, 2m, LANES), out: transition matrices
-    local : (max_steps,), out: bounds on their errors
-    layout : (max_steps, 4), out: piece, number of the step in it, number of steps in it, and the bound on
+    steps : (MAX_STEPS, 2m, LANES), out: transition matrices
+    local : (MAX_STEPS,), out: bounds on their errors
+    layout : (MAX_STEPS, 4), out: piece, number of the step in it, number of steps in it, and the bound on
         what the error of the piece has besides those of its steps
 
     Returns
     -------
-    number of steps; -1 if there would be more than max_steps or MAX_TERMS
+    number of steps; -1 if there would be more than MAX_STEPS or MAX_TERMS
     """
     m = problem.v.size
     count = 0
@@ -152,7 +160,7 @@ def steps_of_period(
         parts = max(1, math.ceil(0.5 * length * rate / limits.angle))
         part = 0
         while part < parts:
-            if count + parts - part > limits.max_steps:
+            if count + parts - part > MAX_STEPS:
                 return -1
             h = 0.5 * length / parts
             degree = load_step(problem, piece, part, parts, h, ratio)
@@ -216,13 +224,13 @@ def propagate_points(
 
     Returns
     -------
-    index of the first point that needs more than max_steps or MAX_TERMS, -1 if none
+    index of the first point that needs more than MAX_STEPS or MAX_TERMS, -1 if none
     """
     n = 2 * problem.v.size
     piece = scratch_for(problem)
-    steps = np.empty((limits.max_steps, n, LANES))
-    local, layout = np.empty(limits.max_steps), np.empty((limits.max_steps, 4))
-    before, table = np.empty(limits.max_steps), np.zeros((5, BLOCKS))
+    steps = np.empty((MAX_STEPS, n, LANES))
+    local, layout = np.empty(MAX_STEPS), np.empty((MAX_STEPS, 4))
+    before, table = np.empty(MAX_STEPS), np.zeros((5, BLOCKS))
     work, flow = np.zeros((2 * BLOCKS + 2, n, LANES)), np.zeros((n, LANES))
     for point in range(periods.size):
         count = steps_of_period(

@@ -11,10 +11,9 @@ from floquet.engine.multipliers import (
     least_separation,
     multipliers_with_bounds,
     radii_with_bounds,
-    radius_with_bound,
-    verdict,
     verdicts,
 )
+from floquet.engine.spectrum import Spectrum
 
 
 def distances(computed: np.ndarray, exact: np.ndarray) -> np.ndarray:
@@ -157,7 +156,8 @@ def test_the_separation_of_a_cluster_is_never_overestimated() -> None:
 def test_a_radius_whose_interval_ends_at_1_is_undecided() -> None:
     ends = [(0.75, 0.25), (1.25, 0.25), (1.0, 0.0)]
     inside = [(0.5, 0.25), (1.5, 0.25)]
-    assert [verdict(*each) for each in ends + inside] == ["undecided"] * 3 + ["stable", "unstable"]
+    each = [Spectrum(np.array([radius + 0j]), np.array([error]), 1.0) for radius, error in ends + inside]
+    assert [one.verdict for one in each] == ["undecided"] * 3 + ["stable", "unstable"]
     assert verdicts(*np.array(ends + inside).T).tolist() == [0, 0, 0, 1, -1]
 
 
@@ -180,6 +180,7 @@ def test_the_order_of_equal_moduli_is_fixed() -> None:
 
 def test_the_radius_may_be_that_of_another_multiplier_within_its_bound() -> None:
     values, bounds = np.array([1.0, -0.875]), np.array([0.0625, 0.25])
-    assert radius_with_bound(values, bounds) == (1.0, 0.125)
+    one = Spectrum(values, bounds, 1.0)
+    assert (one.spectral_radius, one.error) == (1.0, 0.125)
     radii, errors = radii_with_bounds(np.array([values, [0.5, 0.25]]), np.array([bounds, bounds[::-1]]))
     assert (radii.tolist(), errors.tolist()) == ([1.0, 0.5], [0.125, 0.25])

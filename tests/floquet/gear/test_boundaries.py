@@ -149,9 +149,8 @@ def test_boundaries_over_every_axis_are_those_of_the_chart(pair, name: str, valu
 def test_principal_tongue_is_named_by_its_mode_shape(pair) -> None:
     found = stability_boundaries(pair, (15000.0, 18500.0))
     assert found.label.values.tolist() == ["2w3/2"]
-    label, shares = label_variation(vary(pair, {"speed_rpm": float(found.peak.values[0])}))
+    label = label_variation(vary(pair, {"speed_rpm": float(found.peak.values[0])}))
     assert label == Tongue(3, 3, 1, 2)
-    assert shares.total[2] > 0.8
     # Its line lies within the tongue or close by: damping and detuning shift it by a few percent at most.
     assert predicted_lines(pair)[label] == pytest.approx(float(found.peak.values[0]), rel=0.03)
 

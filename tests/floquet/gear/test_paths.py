@@ -24,7 +24,7 @@ def modes_of(pair: GearPair, speed: float, path: np.ndarray) -> list[int]:
     """Mode of the mean system in which the motion of each multiplier has 9 tenths of its action."""
     block = gear_block(vary(pair, {"speed_rpm": speed}))
     values, vectors = np.linalg.eig(fast_monodromies(block).matrices[0])
-    shares = np.array([mode_shares(x, block.modal().omega).total for x in vectors.T])
+    shares = np.array([mode_shares(x, block.modal().omega).sum(axis=0) for x in vectors.T])
     nearest = [int(np.argmin(np.abs(values - one))) for one in path]
     assert (shares[nearest].max(axis=1) > 0.9).all()
     return [int(mode) for mode in shares[nearest].argmax(axis=1)]
