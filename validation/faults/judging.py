@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
 import time
 import tomllib
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 
@@ -17,8 +16,7 @@ from validation.faults.fault import Fault
 from validation.faults.quantities import FELT, change, quantities
 from validation.faults.rewriting import applied
 from validation.reporting.results import QUICK, Results
-from validation.verification.code import code_checks
-from validation.verification.solution import enough_samples, refinements
+from validation.verification import Check, Refinement, code_checks, enough_samples, refinements
 
 PAIR = "nasa_28_28"
 #: The default pair with nothing alike on both sides, where faults show that symmetry hides.
@@ -45,13 +43,6 @@ TWIN: Mapping[str, object] = {
     "operating.pinion_speed": 3700.0,
 }
 _RELIEF = {"shape": "linear", "amount": 15.0, "start_roll_angle": 26.0}
-#: Part of the verdicts -> commands that have it.
-PARTS: Mapping[str, str] = {
-    "cross-check": "crosscheck, report",
-    "code verification": "report",
-    "solution verification": "report",
-    "models": "report",
-}
 _CYCLES, _SAMPLES = 6, 64
 
 
@@ -111,8 +102,10 @@ def judge(fault: Fault, *, thorough: bool = True) -> Outcome:
     ------
     FaultError : the fault does not fit the program
     """
-    with _quiet():
-        before = _sound(tuple(_plain(pair) for pair in pairs(fault)))
+    with warnings.catch_warnings():
+        for kind in (LawRangeWarning, RuntimeWarning):
+            warnings.simplefilter("ignore", kind)
+        before = _sound(tuple(pair.to_toml() for pair in pairs(fault)))
         started = time.perf_counter()
         size, quantity = 0.0, ""
         caught: dict[str, tuple[str, ...]] = {}
@@ -139,10 +132,6 @@ def _sound(texts: tuple[str, ...]) -> tuple[Mapping[str, FloatArray], ...]:
     return tuple(quantities(load_gear_pair(tomllib.loads(text))) for text in texts)
 
 
-def _plain(pair: GearPair) -> str:
-    return pair.to_toml()
-
-
 def _made(fault: Fault, caught: dict[str, tuple[str, ...]]) -> Iterator[GearPair]:
     """The pairs of a program with the fault; one that it refuses is caught."""
     try:
@@ -151,9 +140,9 @@ def _made(fault: Fault, caught: dict[str, tuple[str, ...]]) -> Iterator[GearPair
         caught["refused"] = (_line(error),)
 
 
-def _failing(checks: Callable[[GearPair], Iterator[str]], pair: GearPair) -> list[str]:
+def _failing(checks: Callable[[GearPair], list[str]], pair: GearPair) -> list[str]:
     try:
-        return list(checks(pair))
+        return checks(pair)
     except Exception as error:  # noqa: BLE001  (as above)
         return [_line(error)]
 
@@ -162,41 +151,19 @@ def _line(error: Exception) -> str:
     return f"{type(error).__name__}: {str(error).splitlines()[0][:80] if str(error) else ''}"
 
 
-def _cross_check(pair: GearPair) -> Iterator[str]:
-    for failure in crosscheck(pair, cycles=_CYCLES, samples_per_cycle=_SAMPLES).failures:
-        yield failure.check
+def _crossed(pair: GearPair) -> list[str]:
+    return [one.check for one in crosscheck(pair, cycles=_CYCLES, samples_per_cycle=_SAMPLES).failures]
 
 
-def _code(pair: GearPair) -> Iterator[str]:
-    for check in code_checks(pair):
-        if not check.passes:
-            yield check.key
+def _failed(checks: Iterable[Check | Refinement]) -> list[str]:
+    return [check.key for check in checks if not check.passes]
 
 
-def _solution(pair: GearPair) -> Iterator[str]:
-    for refinement in refinements(pair, enough_samples(pair, _SAMPLES)):
-        if not refinement.passes:
-            yield refinement.key
-
-
-def _models(pair: GearPair) -> Iterator[str]:
-    """The multibody model by itself, and the multipliers by two routes."""
-    for check in Results(pair, QUICK).checks:
-        if not check.passes:
-            yield check.key
-
-
-_CHECKS: Mapping[str, Callable[[GearPair], Iterator[str]]] = {
-    "cross-check": _cross_check,
-    "code verification": _code,
-    "solution verification": _solution,
-    "models": _models,
+#: Part of the verdicts -> names of the checks that fail. "models": the multibody model by itself, and the
+#: multipliers by two routes.
+_CHECKS: Mapping[str, Callable[[GearPair], list[str]]] = {
+    "cross-check": _crossed,
+    "code verification": lambda pair: _failed(code_checks(pair)),
+    "solution verification": lambda pair: _failed(refinements(pair, enough_samples(pair, _SAMPLES))),
+    "models": lambda pair: _failed(Results(pair, QUICK).checks),
 }
-
-
-@contextlib.contextmanager
-def _quiet() -> Iterator[None]:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", LawRangeWarning)
-        warnings.simplefilter("ignore", RuntimeWarning)
-        yield

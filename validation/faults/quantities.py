@@ -69,13 +69,6 @@ def change(before: Mapping[str, FloatArray], after: Mapping[str, FloatArray]) ->
     return worst
 
 
-def same(before: Mapping[str, FloatArray], after: Mapping[str, FloatArray]) -> bool:
-    """Whether both are equal to the last bit."""
-    return before.keys() == after.keys() and all(
-        np.array_equal(before[name], after[name], equal_nan=True) for name in before
-    )
-
-
 def _numbers(data: xr.Dataset, prefix: str) -> dict[str, FloatArray]:
     return {
         f"{prefix} {name}": values.to_numpy().astype(float)

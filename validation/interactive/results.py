@@ -41,7 +41,6 @@ class Sampling:
 
 
 FINE = Sampling()
-COARSE = Sampling(speeds=16, dampings=4, slices=3, sweep_speeds=8)
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -73,8 +74,5 @@ def label_above(ax: Axes, names: Sequence[str], places: Sequence[float], weights
 def pretty(label: str) -> str:
     """Label as written in text, with omega and indices: 2w3/5 -> 2ω₃/5."""
     digits = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
-    out, after = "", False
-    for character in label:
-        out += character.translate(digits) if after and character.isdigit() else character.replace("w", "ω")
-        after = character == "w" or (after and character.isdigit())
-    return out.removesuffix("/1").replace("-", "−")
+    indexed = re.sub(r"w(\d*)", lambda found: "ω" + found[1].translate(digits), label)
+    return indexed.removesuffix("/1").replace("-", "−")

@@ -14,7 +14,7 @@ from lumped.errors import LawRangeWarning
 from validation.faults.catalogue import FAULTS, GROUPS
 from validation.faults.fault import Fault
 from validation.faults.judging import Outcome, judge, pairs
-from validation.faults.quantities import change, quantities, same
+from validation.faults.quantities import change, quantities
 from validation.faults.rewriting import FaultError, applied
 from validation.faults.sound import drawn
 from validation.faults.table import laws_that_act, markdown, row, sample, verdict
@@ -62,7 +62,10 @@ def test_faults_leave_no_trace(sound):
         if fault in cheap():
             with applied(fault):
                 list(pairs(fault))
-    assert all(same(before, quantities(pair)) for before, pair in zip(sound, pairs(), strict=True))
+    for before, pair in zip(sound, pairs(), strict=True):
+        after = quantities(pair)
+        assert before.keys() == after.keys()
+        assert all(np.array_equal(before[name], after[name], equal_nan=True) for name in before)
 
 
 def test_a_fault_acts_wherever_its_function_is_held(sound):

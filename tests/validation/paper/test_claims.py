@@ -194,13 +194,10 @@ def test_samples_that_prove_nothing_are_left_out_of_the_share(stated):
         {**stated, "rms_y_p": 0.01, "min_load_4": -0.5},
         {**stated, "rms_y_p": 0.01, "radius_4": 1.2},
     ]
-    varied = Sensitivity(
-        {name: np.array([row[name] for row in rows]) for name in stated}, np.zeros((4, 1)), 0
-    )
-    claim = judged(rule, stated, varied, {})
+    claim = judged(rule, stated, Sensitivity(rows, np.zeros((4, 1)), 0), {})
     assert (claim.usable, claim.share) == (2, 0.5)
     assert 1.0 <= claim.low <= claim.high <= 30.0
-    none = Sensitivity({k: v[2:] for k, v in varied.numbers.items()}, np.zeros((2, 1)), 0)
+    none = Sensitivity(rows[2:], np.zeros((2, 1)), 0)
     assert judged(rule, stated, none, {}).share is None
 
 
@@ -233,13 +230,8 @@ def test_percentiles_and_the_accuracy_claim(stated):
     rule = next(rule for rule in RULES if rule.name == ACCURACY)
     peak = stated["peak_friction"]
     factors = np.array([0.5, 0.969, 0.971, 1.0, 1.029, 1.031, *np.full(94, 2.0)])
-    n = factors.size
-    varied = Sensitivity(
-        {k: np.full(n, v) for k, v in stated.items()} | {"peak_friction": peak * factors},
-        np.zeros((n, 1)),
-        0,
-    )
-    claim = judged(rule, stated, varied, {})
+    rows = [{**stated, "peak_friction": peak * float(factor)} for factor in factors]
+    claim = judged(rule, stated, Sensitivity(rows, np.zeros((len(rows), 1)), 0), {})
     assert claim.share == pytest.approx(0.03)  # 0.971, 1 and 1.029 of a hundred
     # Linear between the fifth and sixth of a hundred: 4.95 of 99 steps from the smallest.
     assert claim.low == pytest.approx(peak * (1.029 + 0.95 * 0.002), rel=1e-9)

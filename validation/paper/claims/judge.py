@@ -88,8 +88,7 @@ def judged(
     share = low = high = None
     usable = 0
     if varied is not None:
-        rows = [{k: float(v[j]) for k, v in varied.numbers.items()} for j in range(varied.size)]
-        rows = [row for row in rows if not rule.unusable(row)]
+        rows = [row for row in varied.numbers if not rule.unusable(row)]
         usable = len(rows)
         if rows:
             values = np.array([rule.value(row) for row in rows])

@@ -112,19 +112,14 @@ class Sensitivity:
 
     Attributes
     ----------
-    numbers : name as in ``measure`` -> (samples,) values
-    samples : sampled assumptions that gave numbers (samples, len(ASSUMPTIONS))
+    numbers : of each sample that gave some, name as in ``measure`` -> value
+    samples : the assumptions of these (samples, len(ASSUMPTIONS))
     failed : samples without periodic motion or refused by the schema
     """
 
-    numbers: dict[str, FloatArray]
+    numbers: list[dict[str, float]]
     samples: FloatArray
     failed: int
-
-    @property
-    def size(self) -> int:
-        """Number of samples that gave numbers."""
-        return int(self.samples.shape[0])
 
 
 def sample_assumptions(
@@ -167,8 +162,4 @@ def sample_assumptions(
             f"{failed} of {samples} samples of the assumptions have no periodic motion: check the pair's "
             "speed and stiffness."
         )
-    return Sensitivity(
-        numbers={name: np.array([r[name] for r in rows]) for name in rows[0]},
-        samples=np.array(kept),
-        failed=failed,
-    )
+    return Sensitivity(rows, np.array(kept), failed)
