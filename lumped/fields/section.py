@@ -14,9 +14,9 @@ from lumped.fields.units import Quantity, to_file
 
 
 class Section(BaseModel):
-    """Base of every part of the schema: frozen, and unknown keys are errors."""
+    """Base of every part of the schema: frozen, unknown keys are errors, defaults are as a file says them."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, validate_default=True)
 
     def to_mapping(self) -> dict[str, Any]:
         """Return nested plain data in file units; None is left out, as a file cannot say it."""

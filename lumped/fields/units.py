@@ -11,9 +11,10 @@ from decimal import Decimal, DivisionByZero, InvalidOperation, Overflow
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from pydantic_core import PydanticCustomError, core_schema
 
-from lumped.errors import shown
+from lumped.errors import refuse, shown
 from lumped.fields.spelling import DEFINITIONS, about_digits, as_pint_reads
 
 if TYPE_CHECKING:
@@ -51,6 +52,52 @@ _ZERO_CELSIUS = Decimal("273.15")
 _NOT_IN_QUANTITY = re.compile(r"[^\w\s.+\-*/^()°º%²³⁻¹·⋅×]")
 
 
+class SIValue(float):
+    """A number in SI with its unit, which a field reads as and takes back unchanged.
+
+    It is a float in every formula, and what comes out of a formula is a bare number.
+
+    Attributes
+    ----------
+    unit : SI unit, as text
+    """
+
+    __slots__ = ("unit",)
+    unit: str
+
+    def __new__(cls, value: float, unit: str) -> SIValue:
+        """Make the value of a number in ``unit``."""
+        made = super().__new__(cls, value)
+        made.unit = unit
+        return made
+
+    def to(self, unit: str) -> float:
+        """Return the bare number in another unit of the same kind: ``pair.operating.pinion_speed.to("rpm")``.
+
+        Raises
+        ------
+        ParameterError : no unit, or one of another kind
+        """
+        stated = next(key for key, one in UNITS.items() if one[0] == self.unit)
+        try:
+            zero, one = (to_si(f"{number} {unit}", stated) for number in (0, 1))
+        except ValueError as error:
+            raise refuse("unit", shown(unit), f"a unit that {self.unit} converts to", f"{error}.") from None
+        if unit in UNITS and UNITS[unit][0] == self.unit:
+            return to_stated(self, unit)  # exact
+        return (self - zero) / (one - zero)
+
+    def __getnewargs__(self) -> tuple[float, str]:  # type: ignore[override]
+        """Copy and pickle with the unit."""
+        return float(self), self.unit
+
+    def __repr__(self) -> str:
+        """Return text that a field takes."""
+        return f"{float(self)!r} {self.unit}"
+
+    __str__ = float.__repr__
+
+
 @cache
 def _registry() -> pint.UnitRegistry[Decimal]:
     # Decimal arithmetic makes "3.175 mm" and 3.175 the same float, correctly rounded once.
@@ -65,11 +112,11 @@ def _registry() -> pint.UnitRegistry[Decimal]:
 
 
 def to_si(value: float | str, unit: str) -> float:
-    """Convert a number in the stated unit, or a string with any unit of that dimension, to SI.
+    """Convert a number in the stated unit, a string with any unit of that dimension, or an `SIValue`, to SI.
 
     Parameters
     ----------
-    value : number in ``unit``, or text such as ``"200 lbf*in"``
+    value : number in ``unit``, text such as ``"200 lbf*in"``, or what a field reads as
     unit : the field's stated unit, a key of ``UNITS``
 
     Raises
@@ -77,13 +124,17 @@ def to_si(value: float | str, unit: str) -> float:
     ValueError : text that is no quantity, has no unit, or has another dimension
     """
     si, factor, meaning, example = UNITS[unit]
+    advice = f"write a number (read as {unit}) or a string such as '{example}'"
+    if isinstance(value, SIValue):
+        if value.unit != si:
+            raise ValueError(f"{value!r} is not {meaning}; {advice}")
+        return float(value)
     if not isinstance(value, str):
         if not math.isfinite(value):
             return float(value)
         number = Decimal(repr(float(value)))
         return float(number + _ZERO_CELSIUS if unit == "degC" else number * factor)
     registry = _registry()
-    advice = f"write a number (read as {unit}) or a string such as '{example}'"
     if len(value) > 80:
         raise ValueError(f"text of {len(value)} characters is no quantity; {advice}")
     # The unit parser drops what it does not know: it would read 1,5 as 15.
@@ -126,7 +177,7 @@ def to_file(value: float, unit: str) -> float | str:
     unit : the field's stated unit
     """
     stated = to_stated(value, unit)
-    return stated if to_si(stated, unit) == value else f"{value!r} {UNITS[unit][0]}"
+    return stated if to_si(stated, unit) == value else f"{float(value)!r} {UNITS[unit][0]}"
 
 
 def to_stated(value: float, unit: str) -> float:
@@ -175,9 +226,11 @@ class Quantity:
         return [(sign, key, bound, holds) for sign, key, bound, holds in every if bound is not None]
 
     def parse(self, value: object) -> float | None:
-        """Read a field's value (number or text with a unit) into SI, or raise pydantic's error."""
+        """Read a number, text with a unit or an `SIValue` into SI, or raise pydantic's error."""
         if value is None and self.optional:
             return None
+        if isinstance(value, np.generic):
+            value = value.item()
         if isinstance(value, bool) or not isinstance(value, (int, float, str)):
             raise self._refusal(shown(value), "Give a number or a string with a unit.")
         try:
@@ -185,13 +238,14 @@ class Quantity:
         except (ValueError, OverflowError) as error:
             action = str(error)
             raise self._refusal(shown(repr(value)), action[:1].upper() + action[1:] + ".") from None
-        text = value if isinstance(value, str) else f"{value!r} {self.unit}".removesuffix(" 1")
+        bare = not isinstance(value, (str, SIValue))
+        text = f"{value!r} {self.unit}".removesuffix(" 1") if bare else shown(value)
         if not math.isfinite(si):
             raise self._refusal(text, "Give a finite number.")
         # Bounds are converted like values, so a value at a bound equals it bit for bit.
         if not all(holds(si, to_si(bound, self.unit)) for _, _, bound, holds in self._bounds):
             raise self._refusal(text, self.action)
-        return si
+        return si if self.unit == "1" else SIValue(si, UNITS[self.unit][0])
 
     def _refusal(self, value: str, action: str) -> PydanticCustomError:
         return PydanticCustomError(

@@ -119,7 +119,7 @@ class Friction(Section):
         None, description="mean coefficient of laws I and IV; default the mean of law II over the path"
     )
     sharpness: Annotated[float, Quantity("1/mm", above=0)] = Field(
-        50e3, description="Phi of law IV, the steepness of the sign change at the pitch point"
+        50.0, description="Phi of law IV, the steepness of the sign change at the pitch point"
     )
     maximum: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
         0.2, description="upper bound of law II, which is infinite at the pitch point"
@@ -132,5 +132,5 @@ class Friction(Section):
         description="composite roughness R_comp of the film parameter; default root sum square of both Ra",
     )
     film_length: Annotated[float, Quantity("mm", above=0)] = Field(
-        0.8e-3, description="cut-off length L_x of the roughness filter in the film parameter"
+        0.8, description="cut-off length L_x of the roughness filter in the film parameter"
     )

@@ -11,7 +11,6 @@ from typing import Any
 from lumped.errors import refuse, shown
 from lumped.fields.refusals import nearest
 from lumped.fields.text_file import parse_toml, read_text
-from lumped.fields.units import to_stated
 from lumped.schema.pair import GearPair, validated
 
 #: Largest parameter file read, a bound against a wrong path rather than a limit of the format.
@@ -66,35 +65,13 @@ def load_gear_pair(source: str | Path | Mapping[str, Any] | GearPair) -> GearPai
 
 
 def json_schema() -> dict[str, Any]:
-    """Return the JSON Schema of a parameter file; every quantity carries ``unit`` and ``si_unit``.
-
-    A default is what the file would say: a bare number in the stated unit.
-    """
+    """Return the JSON Schema of a parameter file; every quantity carries ``unit`` and ``si_unit``."""
     schema = GearPair.model_json_schema()
     for section in (schema, *schema["$defs"].values()):
         for field in section["properties"].values():
-            default = field.get("default")
-            if default in (None, []):  # held so inside, but nothing that a file can say
+            if field.get("default") in (None, []):  # held so inside, but nothing that a file can say
                 field.pop("default", None)
-            elif "unit" in field and not isinstance(default, str):
-                field["default"] = to_stated(default, field["unit"])
     return schema
-
-
-def leaf_paths(pair: GearPair) -> dict[str, Any]:
-    """Return every set field of a pair as dotted path -> value in file units, ``sources`` apart."""
-    found: dict[str, Any] = {}
-
-    def walk(data: Mapping[str, Any], prefix: str) -> None:
-        for key, value in data.items():
-            path = f"{prefix}{key}"
-            if isinstance(value, Mapping):
-                walk(value, f"{path}.")
-            else:
-                found[path] = value
-
-    walk({k: v for k, v in pair.to_mapping().items() if k != "sources"}, "")
-    return found
 
 
 def _exists(path: Path) -> bool:

@@ -47,7 +47,7 @@ class BasicRack(Section):
         description="normal module; or give diametral_pitch [1/inch] instead"
     )
     pressure_angle: Annotated[float, Quantity("deg", at_least=10, at_most=35)] = Field(
-        0.3490658503988659, description="pressure angle of the basic rack"
+        20.0, description="pressure angle of the basic rack"
     )
     addendum_coefficient: Annotated[float, Quantity("1", above=0, at_most=2)] = Field(
         1.0, description="addendum over module"
@@ -128,7 +128,7 @@ class Gear(Section):
         7850.0, description="density, for the disc"
     )
     youngs_modulus: Annotated[float, Quantity("GPa", at_least=1e-6, at_most=2000)] = Field(
-        206e9, description="Young's modulus"
+        206.0, description="Young's modulus"
     )
     poisson_ratio: Annotated[float, Quantity("1", at_least=0, below=0.5)] = Field(
         0.3, description="Poisson ratio"

@@ -7,6 +7,7 @@ may carry any unit of that dimension (``lumped.fields.units``).
 from __future__ import annotations
 
 import copy
+import html
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -14,6 +15,7 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import BeforeValidator, Field, PlainSerializer, ValidationError, model_validator
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
@@ -21,7 +23,7 @@ from pydantic_core import PydanticCustomError
 from lumped.errors import FieldProblem, ParameterError
 from lumped.fields.refusals import field_of, translated, unknown_key
 from lumped.fields.section import Section, Text
-from lumped.fields.units import Quantity
+from lumped.fields.units import Quantity, to_stated
 from lumped.gear_geometry.existence import existence_problems
 from lumped.gear_geometry.geometry import Geometry, Wheel, build_geometry
 from lumped.gear_geometry.tooth_profile import ToothProfile
@@ -196,6 +198,28 @@ class GearPair(Section):
                 action = "Check the unit, or leave it out: the disc's is taken."
                 yield FieldProblem(f"{name}.{field}", f"{given:g} {unit}", allowed, action)
 
+    def __repr__(self) -> str:
+        """Return the pair in one line; ``to_toml()`` says every field."""
+        pinion, gear, at = self.pinion, self.gear, self.operating
+        return (
+            f"<GearPair {self.name}: {pinion.teeth}/{gear.teeth} teeth, "
+            f"module {self.basic_rack.module * 1e3:g} mm, "
+            f"face widths {pinion.face_width * 1e3:g}/{gear.face_width * 1e3:g} mm, "
+            f"{to_stated(at.pinion_speed, 'rpm'):g} rpm, {at.pinion_torque:g} N m, "
+            f"friction {self.friction.law}>"
+        )
+
+    __str__ = __repr__
+
+    def _repr_html_(self) -> str:
+        """Return every field with its unit as a table that unfolds, for notebooks."""
+        rows = "".join(
+            f"<tr><td>{path}</td><td>{html.escape(str(value))}</td><td>{_unit_beside(path, value)}</td></tr>"
+            for path, value in leaf_paths(self).items()
+        )
+        head = html.escape(repr(self)[1:-1])
+        return f"<details><summary>{head}</summary><table>{rows}</table></details>"
+
     def to_mapping(self) -> dict[str, Any]:
         """Return the pair as nested plain data for TOML or JSON; reading it back gives an equal pair."""
         data = super().to_mapping()
@@ -215,13 +239,30 @@ class GearPair(Section):
         ----------
         changes : dotted field paths -> values, e.g. ``{"operating.pinion_speed": "2000 rpm"}``
         **fields : the same with ``__`` for the dot: ``operating__pinion_speed=2000``. A bare number means
-            the field's stated unit; a dict replaces a whole section; ``None`` restores the default.
+            the field's stated unit, and what shows a unit has that one: text, or a value read from a field.
+            A dict replaces a whole section; ``None`` restores the default.
 
         Raises
         ------
         ParameterError : an unknown path or a value that a file could not have either
         """
         return _varied(self, {**(changes or {}), **{key.replace("__", "."): v for key, v in fields.items()}})
+
+
+def leaf_paths(pair: GearPair) -> dict[str, Any]:
+    """Return every set field of a pair as dotted path -> value in file units, ``sources`` apart."""
+    found: dict[str, Any] = {}
+
+    def walk(data: Mapping[str, Any], prefix: str) -> None:
+        for key, value in data.items():
+            path = f"{prefix}{key}"
+            if isinstance(value, Mapping):
+                walk(value, f"{path}.")
+            else:
+                found[path] = value
+
+    walk({k: v for k, v in pair.to_mapping().items() if k != "sources"}, "")
+    return found
 
 
 def geometry(pair: GearPair) -> Geometry:
@@ -253,7 +294,10 @@ def validated(data: Mapping[str, Any], source: str, folder: Path = Path()) -> Ge
 def _varied(pair: GearPair, changes: Mapping[str, Any]) -> GearPair:
     data = pair.to_mapping()
     sources: dict[str, str] = data.setdefault("sources", {})
-    for path, value in changes.items():
+    for path, given in changes.items():
+        value = given.item() if isinstance(given, np.generic) else given
+        if _reads(pair, path, value):
+            continue
         outdated = [path]
         for group in _ALTERNATIVES:
             if path in group and value is not None:
@@ -266,6 +310,16 @@ def _varied(pair: GearPair, changes: Mapping[str, Any]) -> GearPair:
         if path not in ("name", "description", "sources") and value is not None:
             sources[STORED_AS.get(path, path)] = "varied by the user"
     return validated(data, f"{pair.name} varied")
+
+
+def _reads(pair: GearPair, path: str, value: object) -> bool:
+    """Whether a field reads as this value already."""
+    found: object = pair
+    for part in path.split("."):
+        if not isinstance(found, Section) or part not in type(found).model_fields:
+            return False
+        found = getattr(found, part)
+    return type(found) is type(value) and repr(found) == repr(value)
 
 
 def _assign(data: dict[str, Any], path: str, value: Any) -> None:
@@ -313,3 +367,11 @@ def stated_unit(path: str) -> str | None:
     # A quantity that may also be a word has its unit in the JSON Schema alone.
     extra = info.json_schema_extra
     return str(extra["unit"]) if isinstance(extra, dict) and "unit" in extra else None
+
+
+def _unit_beside(path: str, value: object) -> str:
+    """Unit of a number in a parameter file; nothing where the value has none, or says its own."""
+    if isinstance(value, str) or (path.startswith("mesh.stiffness.") and isinstance(value, list)):
+        return ""
+    unit = stated_unit(path)
+    return "" if unit in (None, "1") else str(unit).replace("**", "^").replace("*", " ")

@@ -86,7 +86,7 @@ def test_hostile_values_of_one_field(within, hostile_values, data):
 
 
 def _paths():
-    from lumped.schema.files import leaf_paths
+    from lumped.schema.pair import leaf_paths
 
     return [
         *leaf_paths(load_gear_pair("fzg_c")),

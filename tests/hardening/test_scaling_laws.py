@@ -13,8 +13,7 @@ from floquet.gear.multipliers import gear_pair_multipliers
 from lumped import load_gear_pair, steady_state
 from lumped.errors import LawRangeWarning, ParameterError
 from lumped.fields.units import UNITS, to_si
-from lumped.schema.files import leaf_paths
-from lumped.schema.pair import stated_unit
+from lumped.schema.pair import leaf_paths, stated_unit
 
 #: SI unit -> exponents of length, time and force (a mass is force time^2 / length).
 EXPONENTS = {

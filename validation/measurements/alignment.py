@@ -57,7 +57,7 @@ def mesh_cycles(measurement: Measurement, pair: GearPair) -> FloatArray:
     measurement : the record
     pair : the gear pair
     """
-    at = pair.with_({"operating.pinion_speed": f"{measurement.spec.pinion_speed!r} rad/s"})
+    at = pair.with_({"operating.pinion_speed": measurement.spec.pinion_speed})
     g = at.geometry
     if measurement.spec.abscissa.kind == "roll_angle":
         return np.asarray(

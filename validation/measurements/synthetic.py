@@ -81,7 +81,7 @@ def synthetic_measurement(
             "name": "synthetic tooth forces",
             "source": f"computed, seed {seed}",
             "data": "tooth_forces.csv",
-            "pinion_speed": f"{truth.pair.operating.pinion_speed!r} rad/s",
+            "pinion_speed": repr(truth.pair.operating.pinion_speed),
             "pinion_torque": truth.pair.operating.pinion_torque,
             "recurrence": truth.recurrence,
             "abscissa": {"kind": "time", "column": "time", "unit": "s"},
@@ -119,7 +119,7 @@ def write_measurement(measurement: Measurement, folder: str | Path) -> Path:
     target = Path(folder)
     target.mkdir(parents=True, exist_ok=True)
     data = spec.model_dump(mode="json", exclude_none=True)
-    data["pinion_speed"] = f"{spec.pinion_speed!r} rad/s"
+    data["pinion_speed"] = repr(spec.pinion_speed)
     data["data"] = spec.data or "record.csv"
     (target / "measurement.toml").write_text(tomli_w.dumps(data), encoding="utf-8")
     headings = [spec.abscissa.column, *(c.column for c in spec.channel)]

@@ -48,8 +48,8 @@ def second_pair(pair: GearPair) -> GearPair:
         {
             "lubricant": pair.lubricant,
             "friction": pair.friction,
-            "pinion.roughness": f"{pair.pinion.roughness!r} m",
-            "gear.roughness": f"{pair.gear.roughness!r} m",
+            "pinion.roughness": pair.pinion.roughness,
+            "gear.roughness": pair.gear.roughness,
         }
     )
 

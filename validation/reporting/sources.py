@@ -5,7 +5,8 @@ from __future__ import annotations
 from functools import cache
 
 from lumped import GearPair, load_gear_pair
-from lumped.schema.files import leaf_paths, preset_names
+from lumped.schema.files import preset_names
+from lumped.schema.pair import leaf_paths
 
 #: Source of a value that the parameter file leaves to the schema.
 DEFAULT = "default of the schema"

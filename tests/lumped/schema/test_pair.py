@@ -6,11 +6,11 @@ import tomllib
 import pytest
 from pydantic import ValidationError
 
-from lumped import GearPair, ParameterError, bodies, geometry, json_schema, load_gear_pair
+from lumped import GearPair, ParameterError, bodies, geometry, json_schema, load_gear_pair, preset_names
 from lumped.fields.refusals import models_in
 from lumped.fields.units import UNITS
 from lumped.schema.files import preset_text
-from lumped.schema.pair import stated_unit
+from lumped.schema.pair import leaf_paths, stated_unit
 
 
 def test_pair_is_frozen_and_hashable(nasa):
@@ -22,6 +22,21 @@ def test_pair_is_frozen_and_hashable(nasa):
     assert again == nasa
     assert hash(again) == hash(nasa)
     assert len({nasa, again, nasa.with_(mesh__damping_ratio=0.06)}) == 2
+
+
+def test_a_pair_shows_itself_in_a_line(nasa):
+    line = "<GearPair nasa_28_28: 28/28 teeth, module 3.175 mm, face widths 6.35/6.35 mm, 4875 rpm, 56.5 N m"
+    assert repr(nasa) == str(nasa) == f"{line}, friction xu_kahraman>"
+
+
+@pytest.mark.parametrize("name", preset_names())
+def test_a_notebook_shows_every_field_with_its_unit(name):
+    pair = load_gear_pair(name).with_(name="a<b", operating__pinion_speed=1450)
+    text = pair._repr_html_()
+    assert "a&lt;b" in text
+    assert "a<b" not in text
+    assert "<td>operating.pinion_speed</td><td>1450.0</td><td>rpm</td>" in text
+    assert text.count("<tr>") == len(leaf_paths(pair))
 
 
 def test_a_pair_loads_as_itself(nasa):

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from lumped import GearPair, bodies, geometry, load_gear_pair, preset_names
-from lumped.schema.files import leaf_paths
+from lumped.schema.pair import leaf_paths
 
 NAMES = preset_names()
 #: Rounded as printed on the model page.

@@ -1,7 +1,8 @@
 """Sources that the report prints beside the parameters."""
 
 import lumped
-from lumped.schema.files import leaf_paths, preset_text
+from lumped.schema.files import preset_text
+from lumped.schema.pair import leaf_paths
 from validation.reporting.sources import is_assumed, source_of
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from lumped.fields.units import to_si
-from lumped.schema.files import leaf_paths, load_gear_pair
-from lumped.schema.pair import GearPair
+from lumped.schema.files import load_gear_pair
+from lumped.schema.pair import GearPair, leaf_paths
 from validation.exchange.rexs.said import Said
 
 ASSUMED = "assumed"

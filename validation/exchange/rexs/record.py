@@ -12,8 +12,8 @@ import json
 from typing import Any
 
 from lumped.errors import ParameterError
-from lumped.schema.files import leaf_paths, load_gear_pair
-from lumped.schema.pair import GearPair
+from lumped.schema.files import load_gear_pair
+from lumped.schema.pair import GearPair, leaf_paths
 from validation.exchange.rexs.assumptions import ASSUMED
 from validation.exchange.rexs.model import RexsModel, broken
 from validation.exchange.rexs.relief import KINDS

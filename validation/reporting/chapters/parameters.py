@@ -8,8 +8,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from lumped import bodies, mesh_elements
-from lumped.schema.files import leaf_paths
-from lumped.schema.pair import stated_unit
+from lumped.schema.pair import leaf_paths, stated_unit
 from lumped.stiffness.body import body_twist
 from validation.reporting.blocks import Badge, Cell, Content, Text, facts, table_of
 from validation.reporting.chapter import Chapter

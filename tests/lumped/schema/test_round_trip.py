@@ -1,0 +1,134 @@
+"""Does a field of any preset, read and written back, leave the pair as it is? One test over all fields."""
+
+import copy
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+from lumped import ParameterError, load_gear_pair, preset_names
+from lumped.fields.section import Section
+from lumped.fields.units import UNITS, SIValue
+
+#: Sections that no preset has, so that their fields are tried too.
+MORE = {
+    "mesh.stiffness": [
+        {"model": "energy", "ramp_length": 0.3},
+        {"model": "parabolic", "peak": 8e7, "end_ratio": 0.6, "ramp_length": 0.2},
+        {"model": "rectangular", "pair_stiffness": "90 N/um"},
+        {"model": "table", "axis": "phase", "points": [0, 0.5, 1, 1.7], "stiffness": [4e7, 5e7, 5e7, 4e7]},
+    ],
+    "lubricant.viscosity_law": [
+        {"iso_vg": 220, "temperature": 60},
+        {"kinematic_viscosity_40": 220, "kinematic_viscosity_100": 19, "temperature": "140 degF"},
+    ],
+    **{f"{gear}.tip_relief": [{"amount": 17, "start_roll_angle": 28.3}] for gear in ("pinion", "gear")},
+    **{f"{gear}.root_relief": [{"amount": 3.3, "start_roll_angle": 13}] for gear in ("pinion", "gear")},
+    **{
+        gear: [
+            {"teeth": 28, "face_width": 6.1, "roughness": 0.7, "tip_diameter": 95.1, "bore": 31.3},
+            {"teeth": 28, "face_width": 6.1, "roughness": 1, "addendum": 3.1, "mass": 0.31, "inertia": 3e-4},
+        ]
+        for gear in ("pinion", "gear")
+    },
+    "operating.brake_torque": [56.3],
+    "friction": [{"law": "V", "coefficient": 0.07, "composite_roughness": 0.77, "sharpness": 33.3}],
+}  # fmt: skip
+PAIRS = [load_gear_pair(name) for name in preset_names()]
+NASA = load_gear_pair("nasa_28_28")
+PAIRS += [NASA.with_({path: value}) for path, values in MORE.items() for value in values]
+
+
+def fields(section, prefix=""):
+    for name in type(section).model_fields:
+        value = getattr(section, name)
+        yield f"{prefix}{name}", value
+        if isinstance(value, Section):
+            yield from fields(value, f"{prefix}{name}.")
+
+
+@pytest.mark.parametrize("pair", PAIRS, ids=lambda pair: pair.name)
+def test_what_a_field_reads_as_can_be_written_back(pair):
+    found = dict(fields(pair))
+    assert len(found) > 50
+    for path, value in found.items():
+        if path.rpartition(".")[2] != "model":  # the model of a section goes with its section
+            assert pair.with_({path: value}) == pair, path
+        if isinstance(value, SIValue):  # what is shown may be typed again
+            assert (
+                pair.with_({path: repr(value)}).to_toml().split("[sources]")[0]
+                == (pair.to_toml().split("[sources]")[0])
+            ), path
+    assert pair.with_(found) == pair
+
+
+def test_the_same_number_of_another_field_is_carried_over(nasa):
+    other = load_gear_pair("fzg_c")
+    for path, value in fields(other):
+        if isinstance(value, SIValue) and path.startswith(("operating", "bearings", "pinion.roughness")):
+            varied = nasa.with_({path: value})
+            assert dict(fields(varied))[path] == value, path
+            assert load_gear_pair(varied.to_mapping()) == varied
+
+
+def test_every_number_with_a_unit_shows_it(quantity_field):
+    path, quantity = quantity_field
+    values = [dict(fields(pair))[path] for pair in PAIRS if path in dict(fields(pair))]
+    values = [value for value in values if value is not None]
+    assert values, "no pair of the test has this field"
+    for value in values:
+        if quantity.unit == "1":
+            assert type(value) is float
+        else:
+            assert value.unit == UNITS[quantity.unit][0]
+            assert repr(value).endswith(f" {value.unit}")
+            assert quantity.parse(value) == value
+
+
+def test_a_value_of_another_kind_is_refused(nasa):
+    with pytest.raises(ParameterError, match=r"56.5 N\*m is not a rotational speed"):
+        nasa.with_(operating__pinion_speed=nasa.operating.pinion_torque)
+
+
+@pytest.mark.parametrize("kind", [np.float64, np.float32, np.int64, int])
+def test_numbers_of_numpy_are_numbers(nasa, kind):
+    varied = nasa.with_(operating__pinion_speed=kind(3000), pinion__teeth=np.int64(28))
+    assert varied.operating.pinion_speed == pytest.approx(100 * math.pi, rel=1e-15)
+
+
+class TestValue:
+    @pytest.mark.parametrize(
+        ("path", "unit", "number"),
+        [
+            ("operating.pinion_speed", "rpm", 4875.0),
+            ("operating.pinion_speed", "Hz", 81.25),
+            ("operating.pinion_speed", "1/min", 4875.0),
+            ("pinion.face_width", "mm", 6.35),
+            ("pinion.face_width", "inch", 0.25),
+            ("gear.youngs_modulus", "N/mm2", 206e3),
+            ("operating.pinion_torque", "in-lb", 56.5 / 0.0254 / 4.4482216152605),
+        ],
+    )
+    def test_in_another_unit(self, nasa, path, unit, number):
+        assert dict(fields(nasa))[path].to(unit) == pytest.approx(number, rel=1e-14)
+
+    def test_a_temperature(self):
+        assert SIValue(333.15, "K").to("degF") == pytest.approx(140.0)
+        assert SIValue(333.15, "K").to("degC") == pytest.approx(60.0)
+
+    def test_another_kind_is_refused(self, nasa):
+        for unit in ("mm", "Nm", "parsnips", ""):
+            with pytest.raises(ParameterError, match="a unit that rad/s converts to"):
+                nasa.operating.pinion_speed.to(unit)
+
+    def test_a_formula_gives_a_bare_number(self, nasa):
+        speed = nasa.operating.pinion_speed
+        for result in (1.1 * speed, speed / 2, -speed, speed + speed, np.float64(2) * speed):
+            assert not isinstance(result, SIValue)
+
+    def test_it_is_copied_and_sent_with_its_unit(self, nasa):
+        speed = nasa.operating.pinion_speed
+        for again in (copy.deepcopy(speed), pickle.loads(pickle.dumps(speed))):
+            assert (repr(again), again.unit) == (repr(speed), "rad/s")
+        assert f"{speed}" == str(float(speed))
