@@ -40,7 +40,7 @@ class Monodromy(Spectrum):
     scaling : (n,) the balancing scales d
     liouville_residual : |sum over substeps of log det - integral of tr A|. Taken per substep it stays
         meaningful when M is so nearly singular that its own determinant carries no information.
-    method, rtol, substeps, evaluations : how it was computed
+    method : of computing it
     resolution : features of A(t) that are narrower than this may have been missed [s]; 0 where A is a formula
     """
 
@@ -49,9 +49,6 @@ class Monodromy(Spectrum):
     scaling: FloatArray
     liouville_residual: float
     method: str
-    rtol: float
-    substeps: int
-    evaluations: int
     resolution: float
 
 
@@ -96,14 +93,12 @@ def monodromy(
         return _proven(system, system.A, rtol, max_substeps)
     step = propagator("gauss" if automatic else method)
     local = rtol
-    evaluations = 0
     for _attempt in range(4):
         propagation = propagate(system, step, local, max_substeps)
-        evaluations += propagation.evaluations
         M, delta, rounding = error_of_product(propagation)
         size = max(float(np.linalg.norm(M, 2)), _DEAD)
         if delta <= rtol * size:
-            return _record(system, propagation, M, delta, step.name, rtol, evaluations, "estimate")
+            return _record(system, propagation, M, delta, step.name, "estimate")
         if rounding > 0.9 * rtol * size:
             break
         # Growth and decay inside the period amplified the local errors: ask for that much more.
@@ -139,8 +134,6 @@ def _record(
     balanced: FloatArray,
     delta: float,
     method: str,
-    rtol: float,
-    evaluations: int,
     certificate: Certificate,
 ) -> Monodromy:
     d = propagation.scaling
@@ -154,9 +147,6 @@ def _record(
         scaling=d,
         liouville_residual=liouville_residual(system, propagation),
         method=method,
-        rtol=float(rtol),
-        substeps=propagation.steps.shape[0],
-        evaluations=evaluations,
         resolution=0.0 if certificate == "proven" else system.period / LOOKS,
         certificate=certificate,
     )
@@ -171,7 +161,7 @@ def _proven(system: PeriodicSystem, known: KnownMatrix, rtol: float, max_substep
             f"{delta / size:.2g} of its norm, rounding included. Ask for rtol >= {2.0 * delta / size:.1g}, "
             'or for an estimate: method = "gauss".'
         )
-    return _record(system, propagation, M, delta, "taylor", rtol, 0, "proven")
+    return _record(system, propagation, M, delta, "taylor", "proven")
 
 
 def liouville_residual(system: PeriodicSystem, propagation: Propagation) -> float:

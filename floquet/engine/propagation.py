@@ -36,7 +36,6 @@ class Propagation:
     truncation : (m,) estimated Frobenius norm of the truncation error of each step matrix
     rounding : (m,) the same of its rounding error, which no smaller step can remove
     scaling : (n,) d, powers of two (`PeriodicSystem.balancing`)
-    evaluations : how many times A was evaluated
     """
 
     times: FloatArray
@@ -44,7 +43,6 @@ class Propagation:
     truncation: FloatArray
     rounding: FloatArray
     scaling: FloatArray
-    evaluations: int
 
 
 def _step_batch(
@@ -128,7 +126,6 @@ def propagate(
     d = system.balancing() if scaling is None else scaling
     start, end = _initial_grid(system, method, d)
     done: list[tuple[FloatArray, FloatArray, FloatArray, FloatArray]] = []
-    evaluations = 5 * (system.edges.size - 1)
     accepted, warned = 0, False
     rng = np.random.default_rng(_SEED)
     n = system.dimension
@@ -143,7 +140,6 @@ def propagate(
         whole, size = _step_batch(system, method, start, end, d)
         first, _ = _step_batch(system, method, start, middle, d)
         second, _ = _step_batch(system, method, middle, end, d)
-        evaluations += 3 * start.size * method.nodes.size
         with np.errstate(over="ignore", invalid="ignore"):
             halves = second @ first
             truncation = np.linalg.norm(whole - halves, axis=(1, 2))
@@ -157,7 +153,6 @@ def propagate(
         good = ratio <= 1.0
         missed = np.flatnonzero(good)
         missed = missed[_unseen(system, method, start[missed], end[missed], d, rtol, rng)]
-        evaluations += LOOKS + 2 * method.nodes.size * int(good.sum())
         good[missed] = False
         ratio[missed] = np.inf
         if missed.size and not warned:
@@ -175,22 +170,14 @@ def propagate(
                 f"the step size fell to rounding at t = {t:.17g} s, so A is not smooth there. "
                 "Add that time to breakpoints if A jumps, or check A for a singularity."
             )
-        ordered = [(start, middle, first), (middle, end, second)]
-        for a, _, matrices in ordered:
+        for a, matrices in ((start, first), (middle, second)):
             done.append((a[good], matrices[good], 0.5 * truncation[good], 0.5 * rounding[good]))
         accepted += 2 * int(good.sum())
         start, end = _cut(start[~good], end[~good], ratio[~good], method.order)
-    t = np.concatenate([part[0] for part in done])
+    t, steps, truncation, rounding = (np.concatenate(parts) for parts in zip(*done, strict=True))
     order = np.argsort(t)
-    rounding = np.concatenate([part[3] for part in done])[order]
-    return Propagation(
-        times=np.append(t[order], system.period),
-        steps=np.concatenate([part[1] for part in done])[order],
-        truncation=np.concatenate([part[2] for part in done])[order],
-        rounding=rounding,
-        scaling=d,
-        evaluations=evaluations,
-    )
+    times = np.append(t[order], system.period)
+    return Propagation(times, steps[order], truncation[order], rounding[order], scaling=d)
 
 
 def _unseen(

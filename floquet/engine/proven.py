@@ -64,15 +64,8 @@ def proven_propagation(
     order = np.argsort(np.concatenate(times))
     flows, local = np.concatenate(steps)[order], np.concatenate(errors)[order]
     product, bound = proven_product(flows, local)
-    propagation = Propagation(
-        times=np.append(np.concatenate(times)[order], system.period),
-        steps=flows,
-        truncation=local,
-        rounding=np.zeros_like(local),
-        scaling=d,
-        evaluations=0,
-    )
-    return propagation, product, bound
+    ends = np.append(np.concatenate(times)[order], system.period)
+    return Propagation(ends, flows, local, rounding=np.zeros_like(local), scaling=d), product, bound
 
 
 def _steps(

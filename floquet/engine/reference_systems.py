@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 from scipy.linalg import eigh
+from scipy.optimize import brentq
 
 from floquet.engine.monodromy import monodromy
 from floquet.engine.system import PeriodicSystem
@@ -180,7 +181,7 @@ class GearChain:
 def tongue_ends(
     system: HsuSystem | GearChain, predicted: Sequence[float], epsilon: float, *, rtol: float = 1e-11
 ) -> tuple[float, float]:
-    """Ends of the tongue around a predicted one, by bisection on the computed spectral radius.
+    """Ends of the tongue around a predicted one, by root finding on the computed spectral radius.
 
     Parameters
     ----------
@@ -195,14 +196,8 @@ def tongue_ends(
     limit = 1.0 if damped else 1.0 + np.sqrt(rtol)
     middle, width = 0.5 * (predicted[0] + predicted[1]), predicted[1] - predicted[0]
 
-    def unstable(excitation: float) -> bool:
-        return monodromy(system.at(excitation, epsilon), rtol).spectral_radius > limit
+    def excess(excitation: float) -> float:
+        return monodromy(system.at(excitation, epsilon), rtol).spectral_radius - limit
 
-    found = []
-    for end in (-1.0, 1.0):
-        inside, outside = middle, middle + end * width
-        while abs(outside - inside) > 1e-9 * middle:
-            between = 0.5 * (inside + outside)
-            inside, outside = (between, outside) if unstable(between) else (inside, between)
-        found.append(0.5 * (inside + outside))
-    return found[0], found[1]
+    lower, upper = (brentq(excess, middle, middle + end * width, xtol=1e-9 * middle) for end in (-1.0, 1.0))
+    return float(lower), float(upper)

@@ -31,12 +31,23 @@ class FrictionFamily:
     members : (k,) indices of the speeds
     level : |mu| of the second function, which only changes sign at the pitch point; None where one is enough
     factors : (k, 1) of mu at the reference speed; or (k, 2) of mu less the level, and of the level
+    law : the law at other speeds; None where it is the same at all
     """
 
     speed_rpm: float
     members: npt.NDArray[np.intp]
     level: float | None
     factors: FloatArray
+    law: _Law | None
+
+    def factors_at(self, speeds_rpm: FloatArray) -> FloatArray | None:
+        """Factors (k, 1 or 2) at further speeds; None where these are not all of the family."""
+        if self.law is None:
+            return np.ones((speeds_rpm.size, 1))
+        members, weights = self.law.weights(self.speed_rpm, speeds_rpm)
+        if members.size < speeds_rpm.size or (self.level is None and weights[:, 1].any()):
+            return None
+        return self.law.factors(self.speed_rpm, self.level is not None, weights)
 
 
 def depends_on_speed(pair: GearPair) -> bool:
@@ -59,7 +70,7 @@ def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[
     pair = variation.pair
     rest = np.arange(speeds_rpm.size)
     if not depends_on_speed(pair):
-        return [FrictionFamily(operating_rpm(pair), rest, None, np.ones((rest.size, 1)))]
+        return [FrictionFamily(operating_rpm(pair), rest, None, np.ones((rest.size, 1)), None)]
     law = _Law(variation)
     families = []
     while rest.size:
@@ -68,20 +79,9 @@ def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[
         apart = bool(weights[:, 1].any())
         level = (variation.friction_mean or law.mean(reference)) if apart else None
         factors = law.factors(reference, apart, weights)
-        families.append(FrictionFamily(reference, rest[members], level, factors))
+        families.append(FrictionFamily(reference, rest[members], level, factors, law))
         rest = np.delete(rest, members)
     return families
-
-
-def factors_at(variation: GearVariation, family: FrictionFamily, speeds_rpm: FloatArray) -> FloatArray | None:
-    """Factors (k, 1 or 2) of a family at further speeds; None where these are not all of the family."""
-    if not depends_on_speed(variation.pair):
-        return np.ones((speeds_rpm.size, 1))
-    law = _Law(variation)
-    members, weights = law.weights(family.speed_rpm, speeds_rpm)
-    if members.size < speeds_rpm.size or (family.level is None and weights[:, 1].any()):
-        return None
-    return law.factors(family.speed_rpm, family.level is not None, weights)
 
 
 class _Law:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from floquet.engine.multipliers import radii_with_bounds
 from floquet.gear.axes import GearVariation, operating_rpm, vary
 from floquet.gear.block import gear_block
-from floquet.gear.friction_over_speed import FrictionFamily, depends_on_speed, factors_at, friction_families
+from floquet.gear.friction_over_speed import FrictionFamily, friction_families
 from floquet.gear.multipliers import OffLineOfAction
 from floquet.rank_one.batch import FastMonodromy, FastMultipliers, fast_monodromies, fast_multipliers
 from floquet.rank_one.coarsening import coarsened
@@ -150,7 +150,7 @@ def plane_multipliers(
         )
         periods = block.period * variation.pair.operating.pinion_speed * 30.0 / np.pi / speeds[part]
         # At the other speeds of a family the law is that of one speed times factors found by sampling.
-        exact = family.members.size == 1 or not depends_on_speed(variation.pair)
+        exact = family.members.size == 1 or family.law is None
         bearings = OffLineOfAction.of(periodic_system(variation.pair, "relative"))
 
         def put(
@@ -165,7 +165,7 @@ def plane_multipliers(
 
         done = False
         if several:
-            done = _interpolated(block, variation, family, periods, damping[part], friction[part], rtol, put)
+            done = _interpolated(block, family, periods, damping[part], friction[part], rtol, put)
         if not done:
             factors = friction[part, None] * family.factors[row[which[part]]]
             _direct(block, periods, damping[part], factors, rtol, put)
@@ -206,7 +206,6 @@ class _AnotherFamily(Exception):
 
 def _interpolated(
     block: RankOneSystem,
-    variation: GearVariation,
     family: FrictionFamily,
     periods: FloatArray,
     damping: FloatArray,
@@ -226,7 +225,7 @@ def _interpolated(
 
     def flow(T: FloatArray, parameters: FloatArray) -> FastMonodromy:
         nodes, index = np.unique(T, return_inverse=True)
-        factors = factors_at(variation, family, scale / nodes)
+        factors = family.factors_at(scale / nodes)
         if factors is None:
             raise _AnotherFamily
         strength = parameters if by_friction else np.full(T.size, fixed)

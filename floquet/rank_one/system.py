@@ -78,13 +78,13 @@ class RankOneSystem:
     gains: Gains
     period: float
     metric: FloatArray
-    varied: Gains | tuple[Gains, ...] = ()
+    varied: tuple[Gains, ...] = ()
     coarsening: Coarsening | None = None
 
     @property
     def parts(self) -> tuple[Gains, ...]:
         """The gains whose sum acts."""
-        return (self.gains, *((self.varied,) if isinstance(self.varied, Gains) else self.varied))
+        return (self.gains, *self.varied)
 
     @cached_property
     def total(self) -> Gains:

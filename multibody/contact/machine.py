@@ -64,6 +64,12 @@ class Machine:
     events: FloatArray
 
     @cached_property
+    def overlap(self) -> FloatArray:
+        """Row (6,) that reads the overlap of the driving flanks off small (x_p, y_p, phi_p, x_g, ...) [m]."""
+        p = self.parameters
+        return np.array([1.0, 0.0, -p[kn.RADIUS_P], -1.0, 0.0, -p[kn.RADIUS_G]])
+
+    @cached_property
     def bodies(self) -> FloatArray:
         """Constant coefficients of the bodies' equations of motion, (4, 6).
 
@@ -87,9 +93,7 @@ class Machine:
         left, right = self.table[:, 0], self.table[:, 1]
         places = np.concatenate([left, 0.5 * (left + right), right])
         largest = max(abs(stiffness_at(self.table, xi)) for xi in places)
-        p = self.parameters
-        mesh = np.array([1.0, 0.0, -p[kn.RADIUS_P], -1.0, 0.0, -p[kn.RADIUS_G]])
-        stiffness = self.pairs * largest * np.outer(mesh, mesh) + np.diag(bearings)
+        stiffness = self.pairs * largest * np.outer(self.overlap, self.overlap) + np.diag(bearings)
         squares = np.linalg.eigvalsh(stiffness / np.sqrt(np.outer(inertia, inertia)))
         return float(np.sqrt(squares[-1]) * self.period / (2.0 * np.pi))
 

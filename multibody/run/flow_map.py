@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+#: Relative tolerance of the runs whose differences make the map.
+_RTOL = 1e-10
 #: Perturbation over the static deflection: large for the linear level, where size does not matter; at the
 #: exact level central differences err by its square times the nonlinearity, and by rtol over it.
 _STEP = {"linear": 1.0, "exact": 1e-3}
@@ -83,21 +85,19 @@ def monodromy(
     *,
     fidelity: Fidelity = "exact",
     effects: Collection[str] | Mapping[str, bool] | None = None,
-    rtol: float = 1e-10,
-    friction_velocity: float | None = None,
 ) -> FlowMap:
     """Monodromy matrix by perturbed runs over one mesh cycle, about the model's own periodic motion.
 
     Parameters
     ----------
     pair : a validated gear pair
-    fidelity, effects, rtol, friction_velocity : as ``multibody.simulate``
+    fidelity, effects : as ``multibody.simulate``
 
     Raises
     ------
     NumericalError : no periodic motion is found near the lumped one
     """
-    setup = prepare(pair, fidelity, "periodic", effects, rtol, friction_velocity)
+    setup = prepare(pair, fidelity, "periodic", effects, _RTOL)
     orbit = find_orbit(setup)
     full = _differences(orbit.flow, orbit.state, _scale(setup) * _STEP[fidelity])
     read, lift = _relative(orbit.machine)

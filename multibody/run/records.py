@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+_COORDINATES = ("theta_p", "theta_g", "x_p", "x_g", "y_p", "y_g")
 # q = (x_p, y_p, phi_p, x_g, y_g, phi_g) out of (theta_p, theta_g, x_p, x_g, y_p, y_g): theta_p = -phi_p.
 _ORDER = np.array([2, 4, 0, 3, 5, 1])
 _SIGN = np.array([1.0, 1.0, -1.0, 1.0, 1.0, 1.0])
@@ -132,19 +133,10 @@ class Recorder:
 
     def _motion(self) -> dict[str, FloatArray]:
         """Coordinates, rates, transmission error and bearing forces."""
-        machine, p = self.model.machine, self.model.machine.parameters
-        values: dict[str, FloatArray] = {}
-        for suffix, rows in (("", self.q), ("_dot", self.v)):
-            x_p, y_p, phi_p, x_g, y_g, phi_g = rows.T
-            values |= {
-                f"theta_p{suffix}": -phi_p,
-                f"theta_g{suffix}": phi_g,
-                f"x_p{suffix}": x_p,
-                f"x_g{suffix}": x_g,
-                f"y_p{suffix}": y_p,
-                f"y_g{suffix}": y_g,
-                f"dte{suffix}": -p[kn.RADIUS_P] * phi_p - p[kn.RADIUS_G] * phi_g + x_p - x_g,
-            }
+        machine = self.model.machine
+        states = [f"{name}{suffix}" for suffix in ("", "_dot") for name in _COORDINATES]
+        values = dict(zip(states, to_lumped_state(self.q, self.v).T, strict=True))
+        values |= {"dte": self.q @ machine.overlap, "dte_dot": self.v @ machine.overlap}
         stiffness, damping = machine.bearing_stiffness, machine.bearing_damping
         for i, gear in enumerate("pg"):
             for j, axis in enumerate("xy"):

@@ -19,17 +19,12 @@ from multibody.run.flow_map import steady_state
 if TYPE_CHECKING:
     import xarray as xr
 
+_SAMPLES = 128
 _QUANTITIES = ("dte", "x_p", "y_p", "theta_p")
 _KINDS = {"alone": "this cause alone", "without": "all causes but this"}
 
 
-def attribution(
-    pair: GearPair,
-    *,
-    samples_per_cycle: int = 128,
-    rtol: float = 1e-9,
-    progress: Progress | None = None,
-) -> xr.Dataset:
+def attribution(pair: GearPair, *, progress: Progress | None = None) -> xr.Dataset:
     """How much each finite-motion effect changes the periodic motion, and the momentary load in friction.
 
     Each motion has the brake torque that balances it: in a run from the same state every effect that changes
@@ -38,7 +33,6 @@ def attribution(
     Parameters
     ----------
     pair : a validated gear pair
-    samples_per_cycle, rtol : of the motions, as ``multibody.steady_state``
     progress : called with the finished fraction
 
     Returns
@@ -52,7 +46,7 @@ def attribution(
     """
 
     def motion(effects: set[str]) -> xr.Dataset:
-        return steady_state(pair, effects=effects, samples_per_cycle=samples_per_cycle, rtol=rtol)
+        return steady_state(pair, effects=effects, samples_per_cycle=_SAMPLES)
 
     every = set(DEFAULT_EFFECTS)
     groups = {cause: {name for name in EFFECTS if EFFECTS[name].cause == cause} for cause in CAUSES}
@@ -81,6 +75,6 @@ def attribution(
             "cause": (causes, "1", "cause of the difference"),
             "quantity": (list(_QUANTITIES), "1", "quantity that changes"),
         },
-        provenance(pair, samples_per_cycle=samples_per_cycle, rtol=rtol)
+        provenance(pair, samples_per_cycle=_SAMPLES)
         | {"largest": max(motions, key=lambda cause: table["alone"][causes.index(cause), 0])},
     )

@@ -74,9 +74,8 @@ def damping_check(pair: GearPair) -> tuple[Decay, ...]:
     k = np.array([max(stiffness_at(numbers.table, xi), 0.0) for xi in places])
     share = float(np.sum(np.sqrt(k)) / np.sqrt(np.sum(k)))  # of pairs side by side, each with its own ratio
     mobility = p[kn.RADIUS_P] ** 2 / numbers.inertia[0] + p[kn.RADIUS_G] ** 2 / numbers.inertia[1]
-    found = [
-        _decay("mesh", held, q, np.sqrt(k.sum() * mobility), pair.mesh.damping_ratio * share, _overlap(p)),
-    ]
+    omega, ratio = np.sqrt(k.sum() * mobility), pair.mesh.damping_ratio * share
+    found = [_decay("mesh", held, q, omega, ratio, numbers.overlap)]
     free = replace(numbers, table=np.column_stack([numbers.table[:, :2], 0.0 * numbers.table[:, 2:]]))
     for i, (name, bearing) in enumerate((("pinion", pair.bearings.pinion), ("gear", pair.bearings.gear))):
         ratios = (bearing.loa_damping_ratio, bearing.oloa_damping_ratio)
@@ -103,11 +102,6 @@ def _in_contact(numbers: Machine) -> FloatArray:
     p = numbers.parameters
     first = p[kn.L_XA] + p[kn.T_LOW] * p[kn.OMEGA_P] * p[kn.RADIUS_P]
     return np.arange(first, p[kn.L_XD], p[kn.PITCH])
-
-
-def _overlap(p: FloatArray) -> FloatArray:
-    """Row that reads the overlap off the coordinates."""
-    return np.array([1.0, 0.0, -p[kn.RADIUS_P], -1.0, 0.0, -p[kn.RADIUS_G]])
 
 
 def _decay(

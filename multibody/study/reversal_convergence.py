@@ -15,7 +15,6 @@ from lumped.arguments import real_numbers
 from lumped.errors import refuse, shown
 from lumped.labelling import labelled_dataset
 from lumped.model.results import provenance
-from lumped.model.solution import Initial
 from lumped.schema.pair import GearPair
 from lumped.typing import Progress
 from multibody.run.simulation import simulate
@@ -34,8 +33,6 @@ def reversal_convergence(
     cycles: int = 4,
     *,
     velocities: Sequence[float] = VELOCITIES,
-    initial: Initial = "static",
-    rtol: float = 1e-8,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Convergence of a run as friction changes its sign over a smaller and smaller velocity.
@@ -43,7 +40,7 @@ def reversal_convergence(
     Parameters
     ----------
     pair : a validated gear pair
-    cycles, initial, rtol : of the runs, as ``multibody.simulate``
+    cycles : of the runs, from the static state
     velocities : falling, at least two [m/s]
     progress : called with the finished fraction
 
@@ -63,7 +60,7 @@ def reversal_convergence(
         raise refuse("velocities", shown(velocities), "two or more, falling, > 0 m/s", "Sort them.")
     runs = []
     for number, velocity in enumerate(values):
-        runs.append(simulate(pair, cycles, initial=initial, rtol=rtol, friction_velocity=float(velocity)))
+        runs.append(simulate(pair, cycles, friction_velocity=float(velocity)))
         if progress is not None:
             progress((number + 1) / values.size)
     change = np.full((values.size - 1, len(_QUANTITIES)), np.nan)
@@ -88,5 +85,5 @@ def reversal_convergence(
             "velocity": (values[:-1], "m/s", "velocity over which friction changes its sign"),
             "quantity": (list(_QUANTITIES), "1", "quantity that changes"),
         },
-        provenance(pair, cycles=cycles, initial=initial, rtol=rtol) | {"last_velocity": float(values[-1])},
+        provenance(pair, cycles=cycles) | {"last_velocity": float(values[-1])},
     )

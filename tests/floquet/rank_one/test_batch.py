@@ -265,7 +265,7 @@ def test_varied_gains_add_with_their_factor() -> None:
         system = random_system(rng)
         extra = 0.2 * rng.normal(size=system.gains.w.shape)
         zeros = [np.zeros_like(getattr(system.gains, key)) for key in ("wd", "fit_errors")]
-        family = replace(system, varied=Gains(extra, *zeros))
+        family = replace(system, varied=(Gains(extra, *zeros),))
         g = float(rng.uniform(-1.0, 1.0))
         many = fast_monodromies(family, [system.period], gain_factors=g)
         summed = replace(system, gains=replace(system.gains, w=system.gains.w + g * extra))

@@ -34,7 +34,7 @@ def staircase(rng: np.random.Generator, pieces: int, degree: int = 0, m: int = 2
         gains=gains(w, 0.05 * rng.normal(size=(pieces, m, 2))),
         period=1.0,
         metric=metric,
-        varied=gains(0.2 * rng.normal(size=(pieces, m, 1)), 0.01 * rng.normal(size=(pieces, m, 1))),
+        varied=(gains(0.2 * rng.normal(size=(pieces, m, 1)), 0.01 * rng.normal(size=(pieces, m, 1))),),
     )
 
 
