@@ -56,7 +56,6 @@ class PeriodicSystem:
     b: Callable[..., npt.ArrayLike] | None = None
     dimension: int = field(init=False)
     edges: FloatArray = field(init=False, repr=False)
-    """Segment ends, 0 = edges[0] < edges[1] < ... < edges[-1] = T [s], shape (m+1,)."""
 
     def __post_init__(self) -> None:
         for name, returned in (("A", "(n, n)"), ("b", "(n,)")):

@@ -65,7 +65,7 @@ class GearAxis:
     units, long_name : labels of the axis
     apply : (variation, value) -> variation
     own : pair -> value that the pair itself has
-    allowed : text of the allowed range, with ``low`` and ``high`` as its ends
+    low, high : allowed range, without its lower end where ``open_low``
     """
 
     units: str
