@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+
+from validation.files.tables import read_table
 
 
 @dataclass(frozen=True)
@@ -50,13 +50,13 @@ class Check:
 
 
 #: "check" or "refinement" -> key -> words, limit and reason.
-_STATED = tomllib.loads((files("validation.verification") / "checks.toml").read_text(encoding="utf-8"))
+_STATED = read_table("validation.verification", "checks.toml")
 
 
 def _row(kind: str, key: str, numbers: dict[str, object]) -> dict[str, Any]:
-    """Words and limit of a key, with the numbers put in and the lines of every text joined."""
+    """Words and limit of a key, with the numbers put in."""
     row = _STATED[kind][key].items()
-    return {k: " ".join(v.format(**numbers).split()) if isinstance(v, str) else v for k, v in row}
+    return {k: v.format(**numbers) if isinstance(v, str) else v for k, v in row}
 
 
 def check(key: str, value: float, **numbers: object) -> Check:

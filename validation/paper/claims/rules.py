@@ -14,8 +14,8 @@ from statistics import mean
 from typing import Literal
 
 from lumped.model.steady import UNSTABLE
+from validation.files.tables import read_table
 from validation.paper.records import Number, Statement
-from validation.paper.tables import rows
 from validation.validity.flags import LOAD_NOISE
 
 Numbers = Mapping[str, float]
@@ -87,4 +87,4 @@ class ClaimRule(Statement):
         return ""
 
 
-RULES = tuple(ClaimRule(**row) for row in rows("validation.paper.claims", "claims.toml", "claim"))
+RULES = tuple(ClaimRule(**row) for row in read_table("validation.paper.claims", "claims.toml")["claim"])

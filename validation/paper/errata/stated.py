@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from validation.files.tables import read_table
 from validation.paper.records import Erratum, Evidence
-from validation.paper.tables import rows
 
-_WORDS = {row["equation"]: row for row in rows("validation.paper.errata", "errata.toml", "erratum")}
+_TABLE = read_table("validation.paper.errata", "errata.toml")
+_WORDS = {row["equation"]: row for row in _TABLE["erratum"]}
 
 
 def stated(equation: str, numbers: Mapping[str, Any], further: Iterable[Evidence] = ()) -> Erratum:
