@@ -11,8 +11,8 @@ from lumped.model.sweep import speed_sweep
 from lumped.path_function import PathFunction
 from lumped.path_of_contact.stiffness import mesh_stiffness, stiffness_components
 from lumped.quasi_static import optimal_relief, static_transmission_error
-from lumped.schema.files import json_schema, load_gear_pair, preset_names
-from lumped.schema.pair import GearPair, geometry
+from lumped.schema.files import geometry, json_schema, load_gear_pair, preset_names
+from lumped.schema.pair import GearPair
 
 __all__ = [
     "Bodies",

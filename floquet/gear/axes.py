@@ -14,6 +14,7 @@ from lumped.friction import LAWS, mean_coefficient
 from lumped.labelling import Coordinate
 from lumped.model.averaged import Mode, modes
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -34,9 +35,9 @@ class GearVariation:
     stiffness_variation: float = 1.0
 
     @classmethod
-    def of(cls, source: GearPair | GearVariation) -> GearVariation:
+    def of(cls, source: AnyPair | GearVariation) -> GearVariation:
         """A pair as it is, or a variation of one."""
-        return cls(source) if isinstance(source, GearPair) else source
+        return source if isinstance(source, GearVariation) else cls(load_gear_pair(source))
 
     def cycle(self) -> MeshCycle:
         """Mesh cycle, with the friction law scaled to ``friction_mean``."""

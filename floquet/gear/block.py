@@ -13,11 +13,11 @@ from floquet.rank_one.piecewise import fit_pieces
 from floquet.rank_one.system import Gains, RankOneSystem
 from lumped.arguments import real_number
 from lumped.model.periodic_system import periodic_system
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair
 
 
 def gear_block(
-    source: GearPair | GearVariation,
+    source: AnyPair | GearVariation,
     rtol: float = 1e-11,
     *,
     friction_apart: bool = False,

@@ -22,6 +22,7 @@ from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_number, real_numbers, whole_number
 from lumped.errors import refuse, shown
 from lumped.labelling import labelled_dataset
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
 
@@ -44,7 +45,7 @@ def checked_range(speed_rpm: tuple[float, float]) -> tuple[float, float]:
     return float(speeds[0]), float(speeds[1])
 
 
-def predicted_lines(pair: GearPair | GearVariation, orders: int = 12) -> dict[Tongue, float]:
+def predicted_lines(pair: AnyPair | GearVariation, orders: int = 12) -> dict[Tongue, float]:
     """Pinion speeds [rpm] at which the mesh frequency is (omega_i +- omega_j)/k.
 
     omega are the natural frequencies of the time-averaged undamped feedback block, k = 1..orders.
@@ -72,7 +73,7 @@ def label_variation(variation: GearVariation) -> Tongue:
 
 
 def stability_boundaries(
-    pair: GearPair,
+    pair: AnyPair,
     speed_rpm: tuple[float, float] = (500.0, 20000.0),
     axes: dict[str, npt.ArrayLike] | None = None,
     *,
@@ -114,6 +115,7 @@ def stability_boundaries(
     ------
     ParameterError : unusable range or axis
     """
+    pair = load_gear_pair(pair)
     low, high = checked_range(speed_rpm)
     nodes = whole_number("nodes", nodes, 0, 1_000_000)
     xtol = real_number("xtol", xtol, 1e-15, 0.1)

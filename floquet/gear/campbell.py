@@ -19,7 +19,7 @@ from floquet.rank_one.batch import fast_monodromies
 from lumped.arguments import real_number, real_numbers, whole_number
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import ComplexArray, FloatArray
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def campbell(
-    pair: GearPair, speeds_rpm: npt.ArrayLike, *, mesh_orders: int = 6, orders: int = 6, rtol: float = 1e-9
+    pair: AnyPair, speeds_rpm: npt.ArrayLike, *, mesh_orders: int = 6, orders: int = 6, rtol: float = 1e-9
 ) -> xr.Dataset:
     """Frequencies of the Floquet solutions over speed, against mesh orders and predicted tongues.
 
@@ -58,6 +58,7 @@ def campbell(
     NumericalError
         A speed so low that a multiplier is too small for a number.
     """
+    pair = load_gear_pair(pair)
     speeds = real_numbers("speeds_rpm", speeds_rpm, 0.0, above=True, increasing=True, unit="rpm")
     mesh_orders = whole_number("mesh_orders", mesh_orders, 1, 1000)
     rtol = real_number("rtol", rtol, 1e-13, 1e-3)

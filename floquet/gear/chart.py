@@ -21,6 +21,7 @@ from floquet.gear.multipliers import gear_pair_multipliers
 from floquet.gear.plane import Plane, Store, plane_multipliers
 from lumped.arguments import one_of, real_number
 from lumped.errors import refuse
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
 
@@ -38,7 +39,7 @@ _LARGEST = 25_000_000
 
 
 def stability_chart(
-    pair: GearPair,
+    pair: AnyPair,
     axes: Axes,
     *,
     friction_law: str | None = None,
@@ -80,6 +81,7 @@ def stability_chart(
     NumericalError
         A point fails; the message names it.
     """
+    pair = load_gear_pair(pair)
     grid = checked_axes(axes)
     for name, values in grid.items():
         gear_axis(name).check(name, values)

@@ -17,7 +17,7 @@ from lumped.arguments import some_of
 from lumped.errors import refuse
 from lumped.friction.registry import FRICTIONAL, LAWS, file_name, law_named
 from lumped.labelling import labelled_dataset
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import Progress
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def friction_effect(
-    pair: GearPair,
+    pair: AnyPair,
     axes: Axes,
     laws: Sequence[str] = FRICTIONAL,
     *,
@@ -58,6 +58,7 @@ def friction_effect(
     ------
     ParameterError : unknown law, or an unusable axis
     """
+    pair = load_gear_pair(pair)
     grid = checked_axes(axes)
     laws = some_of("laws", laws, LAWS, kept=file_name)
     reference = law_named(reference, "reference").name

@@ -27,6 +27,7 @@ from lumped import GearPair
 from lumped.friction import mean_coefficient
 from lumped.labelling import labelled_dataset
 from lumped.path_of_contact import friction_path_function
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
@@ -126,7 +127,7 @@ class StabilityMargins:
         return max((t.critical_damping for t in self.tongues), default=0.0)
 
 
-def stability_margins(pair: GearPair, speed_rpm: tuple[float, float]) -> StabilityMargins:
+def stability_margins(pair: AnyPair, speed_rpm: tuple[float, float]) -> StabilityMargins:
     """Find every tongue over speed and its distance to the operating point, in speed and in damping.
 
     Friction is held at its mean over the path of contact: it moves tongues by far less than their width
@@ -143,6 +144,7 @@ def stability_margins(pair: GearPair, speed_rpm: tuple[float, float]) -> Stabili
     ParameterError : not two increasing positive speeds
     NumericalError : a monodromy matrix cannot be computed; the text says what to try
     """
+    pair = load_gear_pair(pair)
     speed_range = checked_range(speed_rpm)
     rpm = operating_rpm(pair)
     here = pair.mesh.damping_ratio

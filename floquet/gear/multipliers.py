@@ -17,7 +17,7 @@ from floquet.gear.axes import GearVariation
 from floquet.gear.block import gear_block
 from floquet.rank_one.batch import fast_multipliers
 from lumped.model.periodic_system import Form, LTVSystem, periodic_system
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair
 from lumped.typing import ComplexArray, FloatArray
 
 _U = 0.5 * float(np.finfo(np.float64).eps)
@@ -42,7 +42,7 @@ class GearPairMultipliers(Spectrum):
     liouville_residual: float
 
 
-def gear_pair_system(source: GearPair | GearVariation, form: Form = "relative") -> PeriodicSystem:
+def gear_pair_system(source: AnyPair | GearVariation, form: Form = "relative") -> PeriodicSystem:
     """Return the gear pair (or a variation of it) as a `PeriodicSystem`.
 
     Parameters
@@ -126,7 +126,7 @@ class OffLineOfAction:
 
 
 def gear_pair_multipliers(
-    source: GearPair | GearVariation, rtol: float = 1e-10, *, method: str | Propagator = "taylor"
+    source: AnyPair | GearVariation, rtol: float = 1e-10, *, method: str | Propagator = "taylor"
 ) -> GearPairMultipliers:
     """Floquet multipliers of a gear pair over one mesh cycle.
 

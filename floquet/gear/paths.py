@@ -21,6 +21,7 @@ from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_number, real_numbers
 from lumped.errors import refuse
 from lumped.labelling import labelled_dataset
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import ComplexArray, FloatArray, Progress
 
@@ -36,7 +37,7 @@ _EFFORT = 1e8
 
 
 def multiplier_paths(
-    pair: GearPair,
+    pair: AnyPair,
     name: str,
     values: npt.ArrayLike,
     *,
@@ -68,6 +69,7 @@ def multiplier_paths(
     ParameterError : unknown axis, values that are not increasing, or speeds so low that the modes turn
         through millions of radians between two values
     """
+    pair = load_gear_pair(pair)
     axis = gear_axis(name)
     points = real_numbers("values", values, increasing=True)
     axis.check(name, points)

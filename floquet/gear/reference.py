@@ -20,13 +20,14 @@ from scipy.optimize import linear_sum_assignment
 from floquet.gear.block import gear_block
 from floquet.rank_one.batch import fast_multipliers
 from floquet.rank_one.coarsening import coarsened
-from lumped import load_gear_pair, preset_names
+from lumped import preset_names
 from lumped.arguments import whole_number
 from lumped.errors import LawRangeWarning
 from lumped.friction import LAWS
 from lumped.labelling import labelled_dataset
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.path_function import PathFunction, shifted
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -39,8 +40,9 @@ _LD = np.longdouble
 _LAPACK = 1e-13
 
 
-def extended_monodromy(pair: GearPair) -> FloatArray:
+def extended_monodromy(pair: AnyPair) -> FloatArray:
     """Monodromy matrix (6, 6) of (q, x_p, x_g) and their rates over ``RATE``, all in units of m."""
+    pair = load_gear_pair(pair)
     system = periodic_system(pair, "feedback")
     lengths, w, wd = _steps(system)
     flows = _transitions(

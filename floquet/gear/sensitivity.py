@@ -18,6 +18,7 @@ from lumped.arguments import some_of
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset
 from lumped.model.periodic_system import periodic_system
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -32,7 +33,7 @@ _FORWARD = ((0, -25 / 12), (1, 4.0), (2, -3.0), (3, 4 / 3), (4, -1 / 4))
 
 
 def gear_sensitivities(
-    pair: GearPair, parameters: Sequence[str] | None = None, *, rtol: float = 1e-8
+    pair: AnyPair, parameters: Sequence[str] | None = None, *, rtol: float = 1e-8
 ) -> xr.Dataset:
     """Derivatives of the largest |multiplier| of a gear pair with respect to parameters.
 
@@ -60,6 +61,7 @@ def gear_sensitivities(
     NumericalError
         The largest multiplier is nearly defective, or a switch passes another one at this very point.
     """
+    pair = load_gear_pair(pair)
     names = list(GEAR_AXES if parameters is None else some_of("parameters", parameters, GEAR_AXES))
     axes = [gear_axis(name) for name in names]
     whole = gear_pair_multipliers(pair, rtol)

@@ -14,7 +14,7 @@ from scipy import ndimage
 from floquet.engine.tongues import Tongue
 from floquet.gear.axes import vary
 from floquet.gear.boundaries import label_variation
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -38,7 +38,7 @@ class LabelledRegion:
     nodes: int
 
 
-def label_regions(pair: GearPair, chart: xr.Dataset) -> list[LabelledRegion]:
+def label_regions(pair: AnyPair, chart: xr.Dataset) -> list[LabelledRegion]:
     """Name every connected unstable region of a chart by the mode shape at its most unstable node.
 
     Parameters
@@ -50,6 +50,7 @@ def label_regions(pair: GearPair, chart: xr.Dataset) -> list[LabelledRegion]:
     -------
     regions, the largest first
     """
+    pair = load_gear_pair(pair)
     radius = chart["spectral_radius"]
     names = [str(n) for n in radius.dims]
     values = radius.to_numpy()

@@ -16,10 +16,11 @@ from lumped.losses.sharing import springs
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import contact_path
 from lumped.ranges import checked
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
-    from lumped.schema.pair import GearPair
+    pass
 
 _HALVINGS = 40
 
@@ -60,7 +61,7 @@ def anderson_loewenthal_coefficient(
     return np.asarray(np.maximum(f, 0.0), dtype=np.float64)
 
 
-def anderson_loewenthal_sliding_loss(pair: GearPair) -> float:
+def anderson_loewenthal_sliding_loss(pair: AnyPair) -> float:
     """Mean sliding loss of the mesh [W].
 
     The instantaneous loss f w v_s of every pair in contact, each pair with an equal share of the load, is
@@ -68,6 +69,7 @@ def anderson_loewenthal_sliding_loss(pair: GearPair) -> float:
     the coefficient belongs to the load that the pair carries. Rolling and windage losses of the same report
     are not part of it.
     """
+    pair = load_gear_pair(pair)
     g, path = pair.geometry, contact_path(pair)
     at = quadrature(g, [_graded(g.L_XA, g.L_XP, g.L_XD)])
     touching, xi = at.contact, at.position[at.contact]

@@ -14,13 +14,13 @@ from lumped.friction import FRICTIONAL, LAWS
 from lumped.labelling import labelled_dataset
 from lumped.losses.quasi_static import quasi_static_losses
 from lumped.model.solution import steady_state
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-def dynamic_losses(pair: GearPair, solution: xr.Dataset) -> xr.Dataset:
+def dynamic_losses(pair: AnyPair, solution: xr.Dataset) -> xr.Dataset:
     """Sliding loss and efficiency over time of a lumped or multibody solution.
 
     The loss is -SUM F_i v_s,i with the nominal sliding velocity: by the mean moment balance of both gears it
@@ -42,6 +42,7 @@ def dynamic_losses(pair: GearPair, solution: xr.Dataset) -> xr.Dataset:
     ------
     ParameterError : the dataset has no friction power
     """
+    pair = load_gear_pair(pair)
     if "friction_power_nominal" not in solution:
         raise refuse(
             "solution",
@@ -101,7 +102,7 @@ def sliding_power_along_path(solution: xr.Dataset) -> xr.Dataset:
     )
 
 
-def losses_of_laws(pair: GearPair, *, dynamic: bool = True) -> xr.Dataset:
+def losses_of_laws(pair: AnyPair, *, dynamic: bool = True) -> xr.Dataset:
     """Mesh efficiency of every law with friction at the operating point.
 
     Parameters
@@ -114,6 +115,7 @@ def losses_of_laws(pair: GearPair, *, dynamic: bool = True) -> xr.Dataset:
     xarray.Dataset over ``law``: mesh_efficiency, power_loss [W], mean_coefficient (quasi-static), and
     mesh_efficiency_dynamic; attribute ``left_out``, laws that the pair does not allow and why
     """
+    pair = load_gear_pair(pair)
     rows: dict[str, dict[str, float]] = {}
     left_out: list[str] = []
     for name in FRICTIONAL:

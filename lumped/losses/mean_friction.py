@@ -11,10 +11,11 @@ from numpy.typing import ArrayLike
 from lumped.losses.loss_factor import loss_factor
 from lumped.path_of_contact import contact_path
 from lumped.ranges import checked
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
-    from lumped.schema.pair import GearPair
+    pass
 
 
 def iso_14179_mean_coefficient(
@@ -60,8 +61,9 @@ def iso_14179_mean_coefficient(
     return np.asarray(0.048 * (w / (v * rho)) ** 0.2 * eta**-0.05 * ra**0.25 * factor, dtype=np.float64)
 
 
-def iso_14179_of(pair: GearPair) -> float:
+def iso_14179_of(pair: AnyPair) -> float:
     """``iso_14179_mean_coefficient`` of a pair at its operating point, with mineral oil [-]."""
+    pair = load_gear_pair(pair)
     g, path = pair.geometry, contact_path(pair)
     return float(
         iso_14179_mean_coefficient(
@@ -74,10 +76,11 @@ def iso_14179_of(pair: GearPair) -> float:
     )
 
 
-def iso_14179_mesh_loss(pair: GearPair) -> float:
+def iso_14179_mesh_loss(pair: AnyPair) -> float:
     """Load-dependent loss of the mesh with mineral oil after ISO/TR 14179-2, P_VZP = P mu_mz H_v [W].
 
     With the exact loss factor of equal load sharing, which is Ohlendorf's wherever his closed form holds.
     """
+    pair = load_gear_pair(pair)
     power = pair.operating.pinion_torque * pair.operating.pinion_speed
     return power * iso_14179_of(pair) * loss_factor(pair, "uniform")

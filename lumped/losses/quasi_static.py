@@ -18,12 +18,11 @@ from lumped.model.results import labelled, provenance
 from lumped.model.steady import sample_times
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr
-
-    from lumped.schema.pair import GearPair
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +39,7 @@ class _Loads:
 
 
 def quasi_static_losses(
-    pair: GearPair,
+    pair: AnyPair,
     law: str | None = None,
     sharing: Sharing = "elements",
     *,
@@ -69,6 +68,7 @@ def quasi_static_losses(
     ``input_power`` [W], ``loss_factor`` H_v and ``mean_coefficient`` = loss/(H_v input power) come from an
     exact quadrature between the switches, not from the samples.
     """
+    pair = load_gear_pair(pair)
     g = pair.geometry
     time = sample_times(g.mesh_period, samples_per_cycle)
     mu = friction_path_function(pair, law)

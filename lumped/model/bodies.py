@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.gear import Gear
-from lumped.schema.pair import GearPair
 
 
 @dataclass(frozen=True)
@@ -38,8 +38,9 @@ def solid_disc(radius: float, width: float, density: float, bore: float = 0.0) -
     return mass, 0.5 * mass * (radius**2 + inner**2)
 
 
-def bodies(pair: GearPair) -> Bodies:
+def bodies(pair: AnyPair) -> Bodies:
     """Return masses and inertias: those given, else the disc of reference diameter and face width."""
+    pair = load_gear_pair(pair)
     g = pair.geometry
     m_p, j_p = _resolved(pair.pinion, g.reference_radius_pinion)
     m_g, j_g = _resolved(pair.gear, g.reference_radius_gear)

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.gear_geometry.geometry import Geometry
 from lumped.model.mesh_elements import MeshElements, mesh_elements
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
 
 #: One-sided limits are taken this fraction of a base pitch inside a segment.
@@ -186,6 +186,7 @@ class MeshCycle:
         )
 
 
-def mesh_cycle(pair: GearPair) -> MeshCycle:
+def mesh_cycle(pair: AnyPair) -> MeshCycle:
     """Return the mesh cycle of a gear pair."""
+    pair = load_gear_pair(pair)
     return MeshCycle(pair.geometry, mesh_elements(pair))

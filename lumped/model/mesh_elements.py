@@ -14,6 +14,7 @@ from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.quasi_static.loaded_contact import loaded_contact
 from lumped.quasi_static.loaded_mesh import loaded_mesh
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -52,7 +53,7 @@ class MeshElements:
         return (self.error if self.gap is None else self.gap).derivative()
 
 
-def mesh_elements(pair: GearPair) -> MeshElements:
+def mesh_elements(pair: AnyPair) -> MeshElements:
     """Return the element laws of a gear pair.
 
     Raises
@@ -60,6 +61,7 @@ def mesh_elements(pair: GearPair) -> MeshElements:
     ParameterError : a law refuses its parameters
     NumericalError : a law is not finite on the path of contact
     """
+    pair = load_gear_pair(pair)
     mass = bodies(pair).effective_mass
     if pair.mesh.contact == "loaded":
         return _loaded_elements(pair, mass)

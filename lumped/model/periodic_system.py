@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.arguments import one_of
 from lumped.model.equations import COORDINATES, Structure, structure
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -132,7 +133,7 @@ class LTVSystem:
 
 
 def periodic_system(
-    pair: GearPair,
+    pair: AnyPair,
     form: Form = "relative",
     *,
     as_printed: Collection[int] = (),
@@ -152,6 +153,7 @@ def periodic_system(
     ------
     ParameterError : unknown form or equation
     """
+    pair = load_gear_pair(pair)
     one_of("form", form, get_args(Form))
     s = structure(pair, as_printed)
     g = pair.geometry

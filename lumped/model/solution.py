@@ -21,7 +21,7 @@ from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.results import dataset, provenance
 from lumped.model.steady import PeriodicSolution, periodic_solution, sample_times
 from lumped.path_function import PathFunction
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray, Progress
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ _MAX_STEPS_PER_SEGMENT = 200_000
 
 
 def simulate(
-    pair: GearPair,
+    pair: AnyPair,
     cycles: int = 20,
     *,
     samples_per_cycle: int = 256,
@@ -68,6 +68,7 @@ def simulate(
     ParameterError : arguments out of range
     NumericalError : the integration fails or is not finite
     """
+    pair = load_gear_pair(pair)
     cycles = whole_number("cycles", cycles, 1, 100_000)
     rtol = real_number("rtol", rtol, 1e-13, 1e-2)
     system = periodic_system(pair, "absolute", as_printed=as_printed)
@@ -222,7 +223,7 @@ def _integrate(
 
 
 def steady_state(
-    pair: GearPair, *, samples_per_cycle: int = 512, as_printed: Collection[int] = ()
+    pair: AnyPair, *, samples_per_cycle: int = 512, as_printed: Collection[int] = ()
 ) -> xr.Dataset:
     """Periodic motion over one mesh cycle, without settling.
 
@@ -243,6 +244,7 @@ def steady_state(
     ------
     NumericalError : the speed sits on a stability boundary, where no periodic motion exists
     """
+    pair = load_gear_pair(pair)
     system = periodic_system(pair, "absolute", as_printed=as_printed)
     times = sample_times(system.period, samples_per_cycle)
     solution = periodic_solution(system, times)

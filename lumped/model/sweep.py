@@ -21,6 +21,7 @@ from lumped.model.powers import balance
 from lumped.model.results import provenance
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.path_of_contact import friction_path_function
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
 
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
 
 def speed_sweep(
-    pair: GearPair,
+    pair: AnyPair,
     speeds_rpm: Iterable[float],
     *,
     samples_per_cycle: int = 128,
@@ -56,6 +57,7 @@ def speed_sweep(
     ------
     ParameterError : a speed or the number of samples is out of range, before any work starts
     """
+    pair = load_gear_pair(pair)
     speeds = running_speeds(speeds_rpm)
     pairs = [pair.with_({"operating.pinion_speed": float(rpm)}) for rpm in speeds]
     names = ("dte", "x_p", "x_g", "y_p", "y_g")

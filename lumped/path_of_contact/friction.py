@@ -20,19 +20,21 @@ from lumped.lubrication import film
 from lumped.lubrication.roughness import composite_roughness, mean_roughness
 from lumped.path_function import PathFunction
 from lumped.ranges import RangeViolation, range_violations, warn_violations
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
 _CHECKED_POSITIONS = 201
 
 
-def contact_path(pair: GearPair) -> ContactPath:
+def contact_path(pair: AnyPair) -> ContactPath:
     """Collect the nominal contact of a pair: kinematics at nominal speed, full static load w_n, film data.
 
     S is the mean of both Ra; R_comp is their root sum of squares unless ``friction.composite_roughness`` is
     given. The full static load w_n = T_p/(Z r_bp) is used at every position, as in the paper, also where two
     pairs share it.
     """
+    pair = load_gear_pair(pair)
     g, lubricant, friction = pair.geometry, pair.lubricant, pair.friction
     pinion, gear = pair.pinion, pair.gear
     composite = friction.composite_roughness
@@ -61,7 +63,7 @@ def contact_path(pair: GearPair) -> ContactPath:
 
 
 def friction_path_function(
-    pair: GearPair, law: str | None = None, interval: tuple[float, float] | None = None
+    pair: AnyPair, law: str | None = None, interval: tuple[float, float] | None = None
 ) -> PathFunction:
     """Signed friction coefficient mu_i(xi) of one tooth pair at nominal speed and load.
 
@@ -85,6 +87,7 @@ def friction_path_function(
     -----
     LawRangeWarning : the contact leaves a validity range of the law, see ``law_range_violations``
     """
+    pair = load_gear_pair(pair)
     path, name = contact_path(pair), _name(pair, law)
     settings: FrictionSettings = pair.friction
     if interval not in (None, (path.L_XA, path.L_XD)):
@@ -96,7 +99,7 @@ def friction_path_function(
     return function
 
 
-def law_range_violations(pair: GearPair, law: str | None = None) -> tuple[RangeViolation, ...]:
+def law_range_violations(pair: AnyPair, law: str | None = None) -> tuple[RangeViolation, ...]:
     """List where a pair leaves the validity ranges of a friction law.
 
     A law made of others (V) is checked against each of them where that one is in force.
@@ -106,6 +109,7 @@ def law_range_violations(pair: GearPair, law: str | None = None) -> tuple[RangeV
     pair : the gear pair
     law : name of a friction law; default ``pair.friction.law``
     """
+    pair = load_gear_pair(pair)
     return violations_of(contact_path(pair), pair.friction, _name(pair, law))
 
 

@@ -19,6 +19,7 @@ import numpy as np
 
 from lumped.gear_geometry.geometry import Geometry
 from lumped.labelling import labelled_dataset
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.stiffness import iso6336
 from lumped.stiffness.energy import energy_curve, foundation_violations
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 LOADS = (iso6336.LOW_LOAD, 1600.0)
 
 
-def iso_comparison(pair: GearPair) -> xr.Dataset:
+def iso_comparison(pair: AnyPair) -> xr.Dataset:
     """Energy stiffness over ISO 6336-1's, as the pair is and with one assumption changed at a time.
 
     Parameters
@@ -49,6 +50,7 @@ def iso_comparison(pair: GearPair) -> xr.Dataset:
     ParameterError : the rack cannot cut these teeth
     NumericalError : the strain energy did not converge
     """
+    pair = load_gear_pair(pair)
     g = pair.geometry
     top, mean = iso6336.single_of(pair), iso6336.mean_of(pair)
     low, high = (pair.with_(operating__pinion_torque=_torque(load, g)) for load in LOADS)

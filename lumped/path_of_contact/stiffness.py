@@ -12,7 +12,7 @@ import numpy as np
 from lumped.arguments import whole_number
 from lumped.labelling import labelled_dataset
 from lumped.path_function import PathFunction
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.stiffness import iso6336
 from lumped.stiffness.pair_compliance import pair_compliance
 
@@ -20,17 +20,18 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def pair_stiffness(pair: GearPair) -> PathFunction:
+def pair_stiffness(pair: AnyPair) -> PathFunction:
     """Stiffness k_i(xi) of one tooth pair from A to D, by the pair's stiffness model [N/m].
 
     Raises
     ------
     ParameterError : the model's parameters do not fit this pair
     """
+    pair = load_gear_pair(pair)
     return pair.mesh.stiffness.curve(pair)
 
 
-def stiffness_components(pair: GearPair, points: int = 201) -> xr.Dataset:
+def stiffness_components(pair: AnyPair, points: int = 201) -> xr.Dataset:
     """Components of the potential-energy stiffness over the path of contact, contact by Weber and Banaschek.
 
     Parameters
@@ -45,6 +46,7 @@ def stiffness_components(pair: GearPair, points: int = 201) -> xr.Dataset:
     carry ISO 6336-1's single stiffness times face width, ``iso_single_stiffness`` [N/m], and the quadrature
     error
     """
+    pair = load_gear_pair(pair)
     g = pair.geometry
     xi = np.linspace(g.L_XA, g.L_XD, whole_number("points", points, 2, 100_000))
     found = pair_compliance(pair, xi)
@@ -73,7 +75,7 @@ def stiffness_components(pair: GearPair, points: int = 201) -> xr.Dataset:
     )
 
 
-def mesh_stiffness(pair: GearPair, samples: int = 512) -> xr.Dataset:
+def mesh_stiffness(pair: AnyPair, samples: int = 512) -> xr.Dataset:
     """Total mesh stiffness of the pair's stiffness model over one mesh cycle.
 
     Parameters
@@ -87,6 +89,7 @@ def mesh_stiffness(pair: GearPair, samples: int = 512) -> xr.Dataset:
     ``mesh_stiffness`` [N/m]; the attribute ``mean`` is the exact mean and ``iso_mean`` ISO 6336-1's c_gamma
     times face width [N/m]
     """
+    pair = load_gear_pair(pair)
     g = pair.geometry
     curve = pair_stiffness(pair)
     samples = whole_number("samples", samples, 1, 1_000_000)

@@ -21,7 +21,7 @@ from lumped.path_of_contact import pair_stiffness
 from lumped.quasi_static.intervals import positive_intervals, restricted
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.tooth_error import error_function
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
 
 
@@ -41,7 +41,7 @@ class LoadedMesh:
     contact: FloatArray
 
 
-def loaded_mesh(pair: GearPair) -> LoadedMesh:
+def loaded_mesh(pair: AnyPair) -> LoadedMesh:
     """Stiffness and unloaded error of a tooth pair for the linear model at the operating torque.
 
     Raises
@@ -49,6 +49,7 @@ def loaded_mesh(pair: GearPair) -> LoadedMesh:
     ParameterError : a relief starts outside the active flank
     NumericalError : at this torque no pair touches at some position
     """
+    pair = load_gear_pair(pair)
     g, torque = pair.geometry, pair.operating.pinion_torque
     k, error = pair_stiffness(pair), error_function(pair)
     if not error.coefficients.any():

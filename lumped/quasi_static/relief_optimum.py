@@ -24,6 +24,7 @@ from lumped.gear_geometry.geometry import Geometry
 from lumped.labelling import labelled_dataset
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.transmission_error import MeshPositions, mesh_positions
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -58,7 +59,7 @@ class OptimalRelief:
 
 
 def relief_map(
-    pair: GearPair,
+    pair: AnyPair,
     amounts: ArrayLike,
     lengths: ArrayLike,
 ) -> xr.Dataset:
@@ -74,6 +75,7 @@ def relief_map(
     -------
     xarray.Dataset : ``peak_to_peak`` [m] over ``amount`` [m] and ``length`` [m]
     """
+    pair = load_gear_pair(pair)
     amount = real_numbers("amounts", amounts, 0.0, unit="m", action="Give the material removed at the tip.")
     length = real_numbers("lengths", lengths, 0.0, above=True, unit="m")
     g, bare, force = _prepared(pair, None)
@@ -88,7 +90,7 @@ def relief_map(
     )
 
 
-def optimal_relief(pair: GearPair, *, torque: float | None = None) -> OptimalRelief:
+def optimal_relief(pair: AnyPair, *, torque: float | None = None) -> OptimalRelief:
     """Linear tip relief of both gears for the least peak to peak static transmission error.
 
     A map over amounts up to twice the largest deflection and over lengths finds the valley, a simplex search
@@ -104,6 +106,7 @@ def optimal_relief(pair: GearPair, *, torque: float | None = None) -> OptimalRel
     ------
     ParameterError : the design torque is not positive
     """
+    pair = load_gear_pair(pair)
     g, bare, force = _prepared(pair, torque)
     plain = share_load(bare.stiffness, bare.error, force).transmission_error
     scale, path = float(plain.max() - min(bare.error.min(), 0.0)), g.L_XD - g.L_XA
@@ -138,7 +141,7 @@ def optimal_relief(pair: GearPair, *, torque: float | None = None) -> OptimalRel
     )
 
 
-def with_tip_relief(pair: GearPair, optimum: OptimalRelief) -> GearPair:
+def with_tip_relief(pair: AnyPair, optimum: OptimalRelief) -> GearPair:
     """Return the pair with this tip relief on both gears.
 
     Parameters
@@ -146,6 +149,7 @@ def with_tip_relief(pair: GearPair, optimum: OptimalRelief) -> GearPair:
     pair : a validated gear pair
     optimum : the relief
     """
+    pair = load_gear_pair(pair)
 
     def section(start: float) -> dict[str, object]:
         return {"amount": optimum.amount * 1e6, "start_roll_angle": math.degrees(start)}

@@ -18,6 +18,7 @@ import numpy as np
 from lumped.errors import refuse
 from lumped.path_function import PathFunction
 from lumped.quasi_static.kernels import gaps_at
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ def flank_relief(relief: ProfileRelief, end: float, roll: FloatArray) -> FloatAr
     return np.asarray(relief.amount * (s if relief.shape == "linear" else s**2), dtype=np.float64)
 
 
-def relief_error(pair: GearPair, xi: FloatArray) -> FloatArray:
+def relief_error(pair: AnyPair, xi: FloatArray) -> FloatArray:
     """Sum of the reliefs of both flanks at the contact position xi [m].
 
     Parameters
@@ -56,19 +57,21 @@ def relief_error(pair: GearPair, xi: FloatArray) -> FloatArray:
     ------
     ParameterError : a relief starts outside the active flank
     """
+    pair = load_gear_pair(pair)
     total = np.zeros(np.shape(xi))
     for relief in _reliefs(pair):
         total = total + relief(np.asarray(xi, dtype=float))
     return total
 
 
-def error_function(pair: GearPair) -> PathFunction:
+def error_function(pair: AnyPair) -> PathFunction:
     """Unloaded error e(xi) of a tooth pair from A to D [m], exactly, with switches where a relief starts.
 
     Raises
     ------
     ParameterError : a relief starts outside the active flank
     """
+    pair = load_gear_pair(pair)
     low, high = pair.geometry.L_XA, pair.geometry.L_XD
     switches = relief_starts(pair)
     breaks = np.array([low, *switches, high])

@@ -19,6 +19,7 @@ from lumped.labelling import labelled_dataset
 from lumped.path_of_contact import pair_stiffness
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.tooth_error import corner_gap, relief_error
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -53,7 +54,7 @@ class MeshPositions:
     error: FloatArray
 
 
-def mesh_positions(pair: GearPair, *, phases: int = 256, extended: bool = True) -> MeshPositions:
+def mesh_positions(pair: AnyPair, *, phases: int = 256, extended: bool = True) -> MeshPositions:
     """Stiffness and unloaded error of the tooth pairs over one mesh cycle.
 
     Parameters
@@ -66,6 +67,7 @@ def mesh_positions(pair: GearPair, *, phases: int = 256, extended: bool = True) 
     ------
     ParameterError : a relief starts outside the active flank, or too few phases
     """
+    pair = load_gear_pair(pair)
     phases = whole_number("phases", phases, 2, 65536, "Give the number of positions per mesh cycle.")
     g = pair.geometry
     reach = REACH if extended else 0.0
@@ -81,7 +83,7 @@ def mesh_positions(pair: GearPair, *, phases: int = 256, extended: bool = True) 
 
 
 def static_transmission_error(
-    pair: GearPair,
+    pair: AnyPair,
     torques: ArrayLike | None = None,
     *,
     phases: int = 256,
@@ -110,6 +112,7 @@ def static_transmission_error(
     ParameterError : a negative torque, or a relief that starts outside the active flank
     NumericalError : contact reaches further beyond the path than the pairs are followed
     """
+    pair = load_gear_pair(pair)
     given = pair.operating.pinion_torque if torques is None else torques
     torque = real_numbers("torques", given, 0.0, unit="N m", action="Give driving torques.")
     g = pair.geometry

@@ -11,7 +11,11 @@ from typing import Any
 from lumped.errors import refuse, shown
 from lumped.fields.refusals import nearest
 from lumped.fields.text_file import parse_toml, read_text
+from lumped.gear_geometry.geometry import Geometry
 from lumped.schema.pair import GearPair, validated
+
+#: What stands for a gear pair: a preset name, the path of a TOML file, parameters in file units, or the pair.
+AnyPair = GearPair | str | Path | Mapping[str, Any]
 
 #: Largest parameter file read, a bound against a wrong path rather than a limit of the format.
 MAX_FILE_BYTES = 1_000_000
@@ -38,8 +42,10 @@ def preset_text(name: str) -> str:
     return (resources.files("lumped") / "presets" / f"{name}.toml").read_text(encoding="utf-8")
 
 
-def load_gear_pair(source: str | Path | Mapping[str, Any] | GearPair) -> GearPair:
+def load_gear_pair(source: AnyPair) -> GearPair:
     """Read a gear pair from a preset name, a TOML file or a mapping, and validate it.
+
+    Every function that takes a gear pair calls this first, so each takes these.
 
     Parameters
     ----------
@@ -62,6 +68,11 @@ def load_gear_pair(source: str | Path | Mapping[str, Any] | GearPair) -> GearPai
     if path.suffix.lower() != ".toml" and not _exists(path) and "/" not in str(source):
         preset_text(str(source))
     return validated(parse_toml(_read(path), str(path)), str(path), path.parent)
+
+
+def geometry(pair: AnyPair) -> Geometry:
+    """Return the geometry of a gear pair, as ``pair.geometry``."""
+    return load_gear_pair(pair).geometry
 
 
 def json_schema() -> dict[str, Any]:

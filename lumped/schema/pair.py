@@ -265,11 +265,6 @@ def leaf_paths(pair: GearPair) -> dict[str, Any]:
     return found
 
 
-def geometry(pair: GearPair) -> Geometry:
-    """Return the geometry of a gear pair, as ``pair.geometry``."""
-    return pair.geometry
-
-
 def validated(data: Mapping[str, Any], source: str, folder: Path = Path()) -> GearPair:
     """Return the gear pair of plain data, or refuse it in the user's words.
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from lumped.errors import NumericalError
 from lumped.model.propagation import step_maps
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import ComplexArray, FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.machine import Machine
@@ -81,7 +81,7 @@ class FlowMap:
 
 
 def monodromy(
-    pair: GearPair,
+    pair: AnyPair,
     *,
     fidelity: Fidelity = "exact",
     effects: Collection[str] | Mapping[str, bool] | None = None,
@@ -97,6 +97,7 @@ def monodromy(
     ------
     NumericalError : no periodic motion is found near the lumped one
     """
+    pair = load_gear_pair(pair)
     setup = prepare(pair, fidelity, "periodic", effects, _RTOL)
     orbit = find_orbit(setup)
     full = _differences(orbit.flow, orbit.state, _scale(setup) * _STEP[fidelity])
@@ -170,7 +171,7 @@ def find_orbit(setup: Setup) -> Orbit:
 
 
 def steady_state(
-    pair: GearPair,
+    pair: AnyPair,
     *,
     fidelity: Fidelity = "exact",
     samples_per_cycle: int = 512,
@@ -196,6 +197,7 @@ def steady_state(
     ------
     NumericalError : no periodic motion is found near the lumped one
     """
+    pair = load_gear_pair(pair)
     setup = prepare(pair, fidelity, "periodic", effects, rtol, friction_velocity)
     orbit = find_orbit(setup)
     q, v = from_lumped_state(orbit.state)

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from lumped.arguments import whole_number
 from lumped.model.solution import Initial
 from lumped.model.steady import sample_times
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray, Progress
 from multibody.run.drive import Drive
 from multibody.run.integration import Segment
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def simulate(
-    pair: GearPair,
+    pair: AnyPair,
     cycles: int = 20,
     *,
     fidelity: Fidelity = "exact",
@@ -76,6 +76,7 @@ def simulate(
     At fidelity "exact" the friction law is read where the nominal motion slides as fast as the teeth actually
     do, with the sign of the actual sliding velocity, so friction never feeds energy in.
     """
+    pair = load_gear_pair(pair)
     cycles = whole_number("cycles", cycles, 1, MOST_CYCLES)
     setup = prepare(pair, fidelity, initial, effects, rtol, friction_velocity, drive)
     run, _, _ = record(setup, cycles, samples_per_cycle, progress=progress)

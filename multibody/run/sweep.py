@@ -17,7 +17,7 @@ from lumped.arguments import whole_number
 from lumped.labelling import labelled_dataset
 from lumped.model.results import provenance
 from lumped.model.sweep import running_speeds
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray, Progress
 from multibody.run.records import to_lumped_state
 from multibody.run.setup import MOST_CYCLES, Fidelity, prepare
@@ -37,7 +37,7 @@ _VARIABLES = {
 
 
 def speed_sweep(
-    pair: GearPair,
+    pair: AnyPair,
     speeds_rpm: Iterable[float],
     *,
     settle: int = 80,
@@ -68,6 +68,7 @@ def speed_sweep(
     ------
     ParameterError, NumericalError : as ``multibody.simulate``
     """
+    pair = load_gear_pair(pair)
     speeds = running_speeds(speeds_rpm)
     settle = whole_number("settle", settle, 0, MOST_CYCLES)
     cycles = whole_number("cycles", cycles, 1, MOST_CYCLES)

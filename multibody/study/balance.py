@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from lumped.arguments import whole_number
 from lumped.model.solution import Initial
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.run.drive import Drive, DriveTables, value_and_integral
@@ -72,7 +72,7 @@ class PowerBalance:
 
 
 def power_balance(
-    pair: GearPair,
+    pair: AnyPair,
     cycles: int = 20,
     *,
     fidelity: Fidelity = "exact",
@@ -87,6 +87,7 @@ def power_balance(
     The powers are integrated over every step of the integrator by four-point Gauss quadrature on its dense
     output.
     """
+    pair = load_gear_pair(pair)
     cycles = whole_number("cycles", cycles, 1, MOST_CYCLES)
     setup = prepare(pair, fidelity, initial, effects, rtol, friction_velocity, drive)
     work, stored, jumps = np.zeros(7), [0.0], [0.0]

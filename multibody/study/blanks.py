@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.gear import Gear
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -49,13 +50,14 @@ class Blank:
         return self.taken_inertia / self.inertia - 1.0
 
 
-def blanks(pair: GearPair) -> tuple[Blank, Blank]:
+def blanks(pair: AnyPair) -> tuple[Blank, Blank]:
     """Bodies of pinion and gear by their outlines, beside what the simulations take.
 
     Parameters
     ----------
     pair : a validated gear pair
     """
+    pair = load_gear_pair(pair)
     mass, inertia = masses(pair)
     drawn = circles(pair)
     sides = ((pair.pinion, drawn.base_pinion, drawn.tip_pinion), (pair.gear, drawn.base_gear, drawn.tip_gear))

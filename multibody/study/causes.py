@@ -11,7 +11,7 @@ import numpy as np
 
 from lumped.labelling import labelled_dataset
 from lumped.model.results import provenance
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import Progress
 from multibody.contact.effects import CAUSES, DEFAULT_EFFECTS, EFFECTS
 from multibody.run.flow_map import steady_state
@@ -24,7 +24,7 @@ _QUANTITIES = ("dte", "x_p", "y_p", "theta_p")
 _KINDS = {"alone": "this cause alone", "without": "all causes but this"}
 
 
-def attribution(pair: GearPair, *, progress: Progress | None = None) -> xr.Dataset:
+def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Dataset:
     """How much each finite-motion effect changes the periodic motion, and the momentary load in friction.
 
     Each motion has the brake torque that balances it: in a run from the same state every effect that changes
@@ -44,6 +44,7 @@ def attribution(pair: GearPair, *, progress: Progress | None = None) -> xr.Datas
     ``largest`` names the finite motion that changes the transmission error most. A quantity that does not
     move without effects (y_p without friction) is NaN.
     """
+    pair = load_gear_pair(pair)
 
     def motion(effects: set[str]) -> xr.Dataset:
         return steady_state(pair, effects=effects, samples_per_cycle=_SAMPLES)

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
 from multibody.contact import friction as fr
 from multibody.contact import kernels as kn
@@ -54,7 +54,7 @@ class Decay:
         return 2.0 * np.pi * self.measured / np.sqrt(rest) if rest > 0.0 else np.inf
 
 
-def damping_check(pair: GearPair) -> tuple[Decay, ...]:
+def damping_check(pair: AnyPair) -> tuple[Decay, ...]:
     """Measure the damping ratios of the mesh and of the four bearing directions by free decay.
 
     Parameters
@@ -65,6 +65,7 @@ def damping_check(pair: GearPair) -> tuple[Decay, ...]:
     -------
     five ``Decay``, each of a run of the exudyn model
     """
+    pair = load_gear_pair(pair)
     numbers = _frozen(machine(pair))
     p = numbers.parameters
     held = replace(numbers, mass=_HEAVY * numbers.mass)

@@ -22,7 +22,7 @@ from lumped.labelling import labelled_dataset
 from lumped.model.averaged import averaged_state_space
 from lumped.model.periodic_system import periodic_system
 from lumped.model.results import provenance
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import ComplexArray, FloatArray
 from multibody.contact import kernels as kn
 from multibody.run.model import ExudynModel, accelerations, build, contact_state
@@ -42,7 +42,7 @@ SOURCES = {
 _AT_REST = 1e-9
 
 
-def frozen_modes(pair: GearPair, phase: float = 0.3) -> xr.Dataset:
+def frozen_modes(pair: AnyPair, phase: float = 0.3) -> xr.Dataset:
     """Compare natural frequencies and damping ratios of the pair with the mesh frozen at a phase.
 
     Parameters
@@ -60,6 +60,7 @@ def frozen_modes(pair: GearPair, phase: float = 0.3) -> xr.Dataset:
     ParameterError : the phase is out of range
     NumericalError : a mode is overdamped, or the loaded teeth find no rest at this phase
     """
+    pair = load_gear_pair(pair)
     phase = real_number("phase", phase, 1e-9, 1.0 - 1e-9)
     linear, exact = (prepare(pair, fidelity) for fidelity in ("linear", "exact"))
     time = phase * linear.machine.period

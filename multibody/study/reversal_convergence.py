@@ -15,7 +15,7 @@ from lumped.arguments import real_numbers
 from lumped.errors import refuse, shown
 from lumped.labelling import labelled_dataset
 from lumped.model.results import provenance
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import Progress
 from multibody.run.simulation import simulate
 
@@ -29,7 +29,7 @@ _QUANTITIES = ("dte", "x_p", "y_p")
 
 
 def reversal_convergence(
-    pair: GearPair,
+    pair: AnyPair,
     cycles: int = 4,
     *,
     velocities: Sequence[float] = VELOCITIES,
@@ -55,6 +55,7 @@ def reversal_convergence(
     ParameterError : velocities that do not fall, or arguments out of range
     NumericalError : a run fails; the text says what to try
     """
+    pair = load_gear_pair(pair)
     values = real_numbers("velocities", velocities, 0.0, above=True, unit="m/s")
     if values.size < 2 or (np.diff(values) >= 0.0).any():
         raise refuse("velocities", shown(velocities), "two or more, falling, > 0 m/s", "Sort them.")

@@ -17,7 +17,7 @@ import numpy as np
 
 from lumped.arguments import real_number, whole_number
 from lumped.errors import NumericalError
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.run.integration import Segment, quiet, settings
@@ -54,7 +54,7 @@ class TurningBuild:
 
 
 def turning_build(
-    pair: GearPair,
+    pair: AnyPair,
     cycles: int = 5,
     *,
     atol: float = 1e-8,
@@ -74,6 +74,7 @@ def turning_build(
     ParameterError : arguments out of range
     NumericalError : a run fails
     """
+    pair = load_gear_pair(pair)
     cycles = whole_number("cycles", cycles, 1, _MOST_CYCLES)
     atol = real_number("atol", atol, 1e-12, 1e-3)
     setup = prepare(pair, initial="periodic", rtol=_REFERENCE)

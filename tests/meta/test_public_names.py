@@ -1,4 +1,4 @@
-"""Is every public name documented: meaning, arguments, units, source?"""
+"""Is every public name documented: meaning, arguments, units, source? Does it take a pair by name?"""
 
 import dataclasses
 import importlib
@@ -7,9 +7,14 @@ import pkgutil
 import re
 import sys
 
+import numpy as np
 import pytest
 
+import floquet
 import lumped
+import multibody
+from lumped import losses, path_of_contact, quasi_static
+from lumped.errors import ParameterError
 
 PACKAGES = ("lumped", "multibody", "floquet", "validation")
 #: Modules that hold no mathematics of gears, so that there is nothing to cite.
@@ -138,3 +143,69 @@ def test_an_unknown_keyword_raises():
         lumped.simulate(pair, cycle=3)
     with pytest.raises(lumped.ParameterError, match="pinion_sped"):
         pair.with_(operating__pinion_sped=1000.0)
+
+
+ANNOTATIONS = ("AnyPair", "AnyPair | GearVariation", "GearPair | str | Path")
+
+
+def taking_a_pair():
+    for parameter in FUNCTIONS:
+        function = inspect.unwrap(parameter.values[0])
+        for name, argument in inspect.signature(function).parameters.items():
+            if re.search(r"\b(GearPair|AnyPair)\b", str(argument.annotation)):
+                yield pytest.param(function, name, str(argument.annotation), id=parameter.id)
+
+
+TAKING = list(taking_a_pair())
+
+
+@pytest.mark.parametrize(("function", "name", "annotation"), TAKING)
+def test_what_is_no_pair_is_refused_by_name(function, name, annotation):
+    if annotation not in ANNOTATIONS:
+        assert function.__name__ in ("figure_records", "stability_zones", "load_gear_pair"), annotation
+        return
+    others = {
+        other: None
+        for other, argument in inspect.signature(function).parameters.items()
+        if argument.default is argument.empty and other != name
+    }
+    for value in (3, None, 2.5, ["nasa_28_28"], object()):
+        with pytest.raises(ParameterError, match=r"pair = .*allowed a preset name"):
+            function(**others, **{name: value})
+    with pytest.raises(ParameterError, match="Did you mean 'nasa_28_28'"):
+        function(**others, **{name: "nasa_2828"})
+
+
+def test_there_are_many():
+    assert len(TAKING) > 60
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lumped.bodies,
+        lumped.geometry,
+        lumped.mesh_stiffness,
+        lumped.static_transmission_error,
+        lambda pair: lumped.simulate(pair, 2),
+        lambda pair: lumped.steady_state(pair, samples_per_cycle=16),
+        lambda pair: lumped.speed_sweep(pair, [3000.0], samples_per_cycle=16),
+        lambda pair: multibody.simulate(pair, 1, samples_per_cycle=16),
+        lambda pair: floquet.stability_chart(pair, {"speed_rpm": [3000.0, 4000.0]}),
+        lambda pair: floquet.gear_pair_multipliers(pair).multipliers,
+        lambda pair: floquet.campbell(pair, [3000.0, 4000.0]),
+        losses.loss_factor,
+        path_of_contact.pair_stiffness,
+        quasi_static.mesh_positions,
+    ],
+)
+def test_a_name_gives_what_the_pair_gives(call):
+    by_name, by_pair = call("fzg_c"), call(lumped.load_gear_pair("fzg_c"))
+    if hasattr(by_name, "identical"):
+        for result in (by_name, by_pair):
+            result.attrs = {}
+        assert by_name.identical(by_pair)
+    elif isinstance(by_name, np.ndarray):
+        assert np.array_equal(by_name, by_pair)
+    else:
+        assert repr(by_name) == repr(by_pair)

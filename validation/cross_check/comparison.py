@@ -18,6 +18,7 @@ from lumped.arguments import some_of, whole_number
 from lumped.errors import NumericalError, SpurcheckError, refuse
 from lumped.model.results import VARIABLES
 from lumped.model.steady import UNSTABLE, periodic_cycle
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray, Progress
 from validation.cross_check import metrics
 from validation.cross_check.agreement import (
@@ -161,7 +162,7 @@ class CrossCheck:
 
 
 def crosscheck(
-    pair: GearPair,
+    pair: AnyPair,
     *,
     cycles: int = 40,
     samples_per_cycle: int = 256,
@@ -198,6 +199,7 @@ def crosscheck(
     ParameterError : arguments out of range
     NumericalError : a model fails; the text says what to try
     """
+    pair = load_gear_pair(pair)
     _check(cycles, samples_per_cycle, fidelities, quantities)
     must_be_papers_form(pair)
     other = unlike_twin(pair) if twin and len(fidelities) == len(FIDELITIES) else None

@@ -10,13 +10,13 @@ import scipy.signal
 
 from lumped.model.averaged import averaged_state_space
 from lumped.model.periodic_system import Form
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from validation.files.output import check_file, save_mat, whole_file
 
 STATE_SPACE_SUFFIXES = (".mat", ".npz")
 
 
-def scipy_state_space(pair: GearPair, form: Form = "relative") -> scipy.signal.StateSpace:
+def scipy_state_space(pair: AnyPair, form: Form = "relative") -> scipy.signal.StateSpace:
     """Return the time-averaged pair as a SciPy state space.
 
     For python-control, ``lumped.model.averaged.averaged_state_space`` returns the same model with named
@@ -35,12 +35,13 @@ def scipy_state_space(pair: GearPair, form: Form = "relative") -> scipy.signal.S
     ------
     ParameterError : form "absolute", which has no steady response
     """
+    pair = load_gear_pair(pair)
     plant = averaged_state_space(pair, form)
     return scipy.signal.StateSpace(plant.A, plant.B, plant.C, plant.D)
 
 
 def write_state_space(
-    pair: GearPair, path: str | Path, form: Form = "relative", *, force: bool = False
+    pair: AnyPair, path: str | Path, form: Form = "relative", *, force: bool = False
 ) -> Path:
     """Write the time-averaged pair as a file of its matrices.
 
@@ -63,6 +64,7 @@ def write_state_space(
     ------
     ParameterError : form "absolute", an unknown suffix, or an existing file without ``force``
     """
+    pair = load_gear_pair(pair)
     path = check_file(Path(path), STATE_SPACE_SUFFIXES, force=force)
     plant = averaged_state_space(pair, form)
     matlab = path.suffix.lower() == ".mat"

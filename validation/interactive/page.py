@@ -54,9 +54,10 @@ def write_interactive_page(
     ParameterError : a refused parameter
     NumericalError : a computation fails; the text says what to try
     """
+    pair = load_gear_pair(pair)
     page = Path(path)
     values = page.with_suffix(".nc") if data is None else Path(data)
-    results = compute(load_gear_pair(pair), sampling, multibody=multibody, progress=progress)
+    results = compute(pair, sampling, multibody=multibody, progress=progress)
     write_dataset(results.dataset(), values)
     write_text(page, render(results, values.name))
     return page

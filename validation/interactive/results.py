@@ -18,6 +18,7 @@ from lumped.labelling import Variable, labelled_dataset
 from lumped.model.averaged import modes
 from lumped.model.results import provenance
 from lumped.path_of_contact import law_range_violations
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray, Progress
 from validation.interactive.slices import SLICES, Slices
 from validation.validity.map import STATES, validity_state
@@ -85,7 +86,7 @@ class PageResults:
 
 
 def compute(
-    pair: GearPair,
+    pair: AnyPair,
     sampling: Sampling = FINE,
     *,
     multibody: xr.Dataset | None = None,
@@ -105,6 +106,7 @@ def compute(
     ------
     NumericalError : the stability chart or the response with the pair's own law fails
     """
+    pair = load_gear_pair(pair)
     tell: Progress = progress or (lambda fraction, stage="", /: None)
     try:
         found = modes(pair)

@@ -11,7 +11,7 @@ import numpy as np
 
 from lumped.arguments import real_number
 from lumped.errors import NumericalError
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
 from validation.measurements.prediction import Prediction
 from validation.measurements.record import Measurement
@@ -46,7 +46,7 @@ class Alignment:
         return float(np.median(np.diff(self.cycles)))
 
 
-def mesh_cycles(measurement: Measurement, pair: GearPair) -> FloatArray:
+def mesh_cycles(measurement: Measurement, pair: AnyPair) -> FloatArray:
     """Mesh cycles of the samples before alignment, (k,) [-].
 
     From roll angles eps of pair A's contact on the pinion, xi = r_bp eps and u = (xi - L_XA)/lambda; from
@@ -57,6 +57,7 @@ def mesh_cycles(measurement: Measurement, pair: GearPair) -> FloatArray:
     measurement : the record
     pair : the gear pair
     """
+    pair = load_gear_pair(pair)
     at = pair.with_({"operating.pinion_speed": measurement.spec.pinion_speed})
     g = at.geometry
     if measurement.spec.abscissa.kind == "roll_angle":

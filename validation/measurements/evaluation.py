@@ -12,7 +12,7 @@ import xarray as xr
 
 from lumped.arguments import some_of
 from lumped.friction.registry import LAWS, file_name
-from lumped.schema.pair import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from validation.measurements.alignment import Alignment, align
 from validation.measurements.identification import Identification, NormalSource, identify_friction
 from validation.measurements.overlay import overlay, overlay_metrics
@@ -47,7 +47,7 @@ class Evaluation:
 
 def evaluate(
     measurement: Measurement,
-    pair: GearPair,
+    pair: AnyPair,
     *,
     identify: Sequence[str] = (),
     normal: NormalSource = "measured",
@@ -69,6 +69,7 @@ def evaluate(
     ParameterError : something unknown to identify, or channels that it needs are missing
     NumericalError : the record does not fit the prediction in any phase, or carries no friction
     """
+    pair = load_gear_pair(pair)
     laws = [name for name in LAWS if name != "none"]
     advice = "Name mu, a constant coefficient, or a law to scale."
     wanted = some_of("identify", identify, [CONSTANT, *laws], advice, file_name)

@@ -17,6 +17,7 @@ from lumped import GearPair, Geometry
 from lumped.friction import LAWS
 from lumped.path_of_contact import contact_path, law_range_violations
 from lumped.ranges import RangeViolation
+from lumped.schema.files import AnyPair, load_gear_pair
 from validation.files.tables import read_table
 
 if TYPE_CHECKING:
@@ -75,7 +76,7 @@ def flag(key: str, state: State, value: float | None, detail: str) -> Flag:
 
 
 def validity_flags(
-    pair: GearPair, motion: xr.Dataset, multipliers: GearPairMultipliers | None = None
+    pair: AnyPair, motion: xr.Dataset, multipliers: GearPairMultipliers | None = None
 ) -> tuple[Flag, ...]:
     """Check the assumptions of the LTV model on a motion.
 
@@ -85,6 +86,7 @@ def validity_flags(
     motion : dataset of ``lumped.steady_state``, or of a ``simulate``, over whole mesh cycles
     multipliers : Floquet multipliers of the pair, where they are known
     """
+    pair = load_gear_pair(pair)
     g = pair.geometry
     flags = [
         contact_loss(pair, g, motion),

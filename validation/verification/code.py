@@ -13,6 +13,7 @@ import numpy as np
 import multibody
 from floquet import gear_pair_multipliers, gear_pair_system, monodromy
 from lumped import GearPair, steady_state
+from lumped.schema.files import AnyPair, load_gear_pair
 from validation.verification.arithmetic import arithmetic
 from validation.verification.checks import Check, check
 from validation.verification.closed_forms import closed_forms
@@ -23,13 +24,14 @@ from validation.verification.written_twice import written_twice
 _CYCLES = 3
 
 
-def code_checks(pair: GearPair) -> tuple[Check, ...]:
+def code_checks(pair: AnyPair) -> tuple[Check, ...]:
     """Errors against closed forms and laws of mechanics; those on a gear pair use this one.
 
     Raises
     ------
     NumericalError : a model fails on this pair
     """
+    pair = load_gear_pair(pair)
     return (
         *published_checks(pair),
         *closed_forms(),

@@ -17,6 +17,7 @@ from lumped.arguments import whole_number
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.propagation import STAGES, STEP_ANGLE, step_maps
 from lumped.model.steady import periodic_cycle
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
 from validation.verification.checks import SAMPLING_LIMIT, Level, Refinement, refinement
 
@@ -25,7 +26,7 @@ _SAMPLES = 64
 _CYCLES = 4
 
 
-def refinements(pair: GearPair, samples: int) -> tuple[Refinement, ...]:
+def refinements(pair: AnyPair, samples: int) -> tuple[Refinement, ...]:
     """Refine every kind of solution that the report uses.
 
     Parameters
@@ -37,12 +38,13 @@ def refinements(pair: GearPair, samples: int) -> tuple[Refinement, ...]:
     ------
     NumericalError : a model fails; the text says what to try
     """
+    pair = load_gear_pair(pair)
     samples = whole_number("samples", samples, 8, 8192)
     others = (study(pair) for study in (_transient, _closure, _multibody, _monodromy))
     return (_stages(pair), _sampling(pair, samples), *others)
 
 
-def enough_samples(pair: GearPair, samples: int) -> int:
+def enough_samples(pair: AnyPair, samples: int) -> int:
     """Samples per mesh cycle at which the peak to peak of the transmission error is within its limit.
 
     A peak between two samples is missed by up to its curvature, one at a switch by more. The number is
@@ -53,6 +55,7 @@ def enough_samples(pair: GearPair, samples: int) -> int:
     pair : the gear pair
     samples : to start from
     """
+    pair = load_gear_pair(pair)
     while samples < _MOST_SAMPLES:
         coarse, fine = (_span(pair, count) for count in (samples, 4 * samples))
         if abs(coarse / fine - 1.0) < 0.5 * SAMPLING_LIMIT:

@@ -10,6 +10,7 @@ from pathlib import Path
 from lumped.errors import refuse, shown
 from lumped.gear_geometry.geometry import Geometry
 from lumped.lubrication.viscosity_grade import grade_viscosity
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.gear import Gear
 from lumped.schema.pair import GearPair
 from validation.exchange.rexs.container import form_of, zipped
@@ -23,7 +24,7 @@ from validation.exchange.rexs.xml_form import to_xml
 LATEST = WRITTEN[-1]
 
 
-def write_rexs(pair: GearPair, path: str | Path, version: str = LATEST, *, record: bool = True) -> Path:
+def write_rexs(pair: AnyPair, path: str | Path, version: str = LATEST, *, record: bool = True) -> Path:
     """Write a gear pair as a REXS file.
 
     Standard attributes carry what REXS has attributes for, with the fifteen digits that it allows; whatever
@@ -45,6 +46,7 @@ def write_rexs(pair: GearPair, path: str | Path, version: str = LATEST, *, recor
     ------
     ParameterError : an unknown suffix or version
     """
+    pair = load_gear_pair(pair)
     from validation.files.output import whole_file
 
     path = Path(path)

@@ -7,7 +7,7 @@ from dataclasses import fields
 import numpy as np
 import xarray as xr
 
-from lumped import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import Progress
 from validation.paper.claims import numbers as claim_numbers
 from validation.paper.claims.rules import RULES, ClaimRule, Numbers
@@ -27,7 +27,7 @@ _TEXT = (
 
 
 def claims(
-    pair: GearPair,
+    pair: AnyPair,
     *,
     samples: int = 100,
     seed: int = 2008,
@@ -52,6 +52,7 @@ def claims(
     ------
     NumericalError : the pair has no periodic motion at an operating point of the paper
     """
+    pair = load_gear_pair(pair)
     stated = claim_numbers.measure(pair)
     varied = sample_assumptions(pair, samples, seed=seed, progress=progress) if samples else None
     twin = {} if runs is None else twin_numbers(runs)

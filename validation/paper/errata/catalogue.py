@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import math
 
-from lumped import GearPair
 from lumped.path_of_contact import contact_path
+from lumped.schema.files import AnyPair, load_gear_pair
 from validation.paper.errata.film import film_errata
 from validation.paper.errata.laws import law_errata
 from validation.paper.errata.signs import sign_errata
@@ -28,7 +28,7 @@ _TEXT = (
 )
 
 
-def errata_chapter(pair: GearPair) -> ErrataChapter:
+def errata_chapter(pair: AnyPair) -> ErrataChapter:
     """Show every erratum of the paper by computation.
 
     Parameters
@@ -44,6 +44,7 @@ def errata_chapter(pair: GearPair) -> ErrataChapter:
     ------
     NumericalError : the pair has no periodic motion at its operating point
     """
+    pair = load_gear_pair(pair)
     shown = pair.with_({"friction.law": "coulomb", "friction.coefficient": SHOWN_COEFFICIENT})
     (*first, ninth), histories = sign_errata(shown)
     return ErrataChapter(

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from lumped import GearPair
+from lumped.schema.files import AnyPair, load_gear_pair
 from validation.paper.operating_points import FIGURE_4, LAWS
 from validation.paper.records import FigureRecord, Number
 from validation.paper.twins import SPAN, agreement, mesh_orders, quality, total, twins
 
 
-def law_runs(pair: GearPair, *, with_multibody: bool = True) -> xr.Dataset:
+def law_runs(pair: AnyPair, *, with_multibody: bool = True) -> xr.Dataset:
     """Periodic motion under laws I to IV in both models, see ``twins``; ``variant`` is the law's name.
 
     Parameters
@@ -19,6 +19,7 @@ def law_runs(pair: GearPair, *, with_multibody: bool = True) -> xr.Dataset:
     pair : the gear pair, which the operating point of figure 4 is given to
     with_multibody : whether the multibody twin is computed too
     """
+    pair = load_gear_pair(pair)
     at = FIGURE_4.of(pair)
     variants = {law: at.with_({"friction.law": law}) for law in LAWS}
     return twins(variants, with_multibody=with_multibody).rename(variant="law")
