@@ -11,6 +11,7 @@ import pytest
 pytest.importorskip("sphinx", reason="the docs extra is not installed")
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs"))
 
+from computed.faults import faults
 from computed.markdown import CheckFailed, must_pass, table
 from computed.schema import parameters
 from docutils import nodes
@@ -18,6 +19,10 @@ from extensions.docstrings import rewritten
 from extensions.mathml import mathml
 from extensions.scripts import pieces
 from sphinx.errors import ExtensionError
+
+from validation.faults.catalogue import FAULTS
+from validation.faults.judging import Outcome
+from validation.faults.table import row
 
 
 def test_a_failing_check_stops_the_build():
@@ -28,6 +33,13 @@ def test_a_failing_check_stops_the_build():
 
 def test_table_cells_are_not_markup():
     assert table(("a", "b"), [("x|y*z", None)]).splitlines()[2] == r"| x\|y\*z | – |"
+
+
+def test_the_table_of_faults_says_which_check_saw_one():
+    outcome = Outcome(0.9, "speed", {"cross-check": (), "code verification": ("frequencies",)})
+    shown = faults([row(FAULTS["speed_unit"], outcome)])
+    # The cross-check does not use it.
+    assert "| 90 % | speed | passes | fails | code verification: frequencies |" in shown
 
 
 def test_fields_of_a_docstring():

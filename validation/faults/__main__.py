@@ -23,7 +23,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument(
         "--thorough", action="store_true", help="ask every part, also after the first that sees it"
     )
-    parser.add_argument("-o", "--output", type=Path, help="table as .json or .md")
+    parser.add_argument("-o", "--output", type=Path, help="rows as .json")
     given = parser.parse_args(arguments)
     if given.sound is not None:
         return sound_pairs(given.sound, given.seed, given.output, relief=given.relief)

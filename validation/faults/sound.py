@@ -11,7 +11,7 @@ import random
 import time
 import warnings
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -107,24 +107,6 @@ def sound_pairs(count: int, seed: str, output: Path | None = None, *, relief: bo
         known = json.loads(output.read_text(encoding="utf-8")) if output.exists() else []
         output.write_text(json.dumps([*known, *rows], indent=1) + "\n", encoding="utf-8")
     return int(verdicts["not confirmed"] > 0)
-
-
-def summary(rows: Sequence[Mapping[str, Any]]) -> str:
-    """What became of sound pairs, in Markdown."""
-    verdicts = Counter(row["verdict"] for row in rows)
-    judged = [row for row in rows if "use" in row]
-    worst = max(judged, key=lambda row: row["use"])
-    seconds = sum(row["seconds"] for row in rows) / len(rows)
-    counted = ", ".join(f"{n} {name}" for name, n in sorted(verdicts.items()))
-    lines = [
-        f"{len(rows)} pairs: {counted}. Largest use of a limit: {worst['use']:.2f} ({worst['check']}). "
-        f"{seconds:.1f} s per pair.",
-        "",
-    ]
-    for row in rows:
-        if row["verdict"] == "not confirmed":
-            lines.append(f"- {row['name']} ({row['preset']}): {'; '.join(row['failures'])}")
-    return "\n".join(lines) + "\n"
 
 
 def _row(pair: GearPair, name: str) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""The table of faults: run, written and read."""
+"""The table of faults: its rows, and what can be counted in them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ from validation.faults.catalogue import FAULTS, GROUPS
 from validation.faults.fault import Fault
 from validation.faults.judging import Outcome
 
-_MODELS = ("lumped", "linear", "exact")
 #: What ends the name of a law that is checked for each axis or bearing.
 _AXIS = re.compile(r" [xy](_[pg])?$")
 
@@ -73,51 +72,6 @@ def laws_that_act(rows: Iterable[Mapping[str, Any]]) -> dict[tuple[str, str], in
     return dict(found)
 
 
-def _laws(rows: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Section of the Markdown table: how many faults break each law of nature, on each model."""
-    found = laws_that_act(rows)
-    lines = ["## Laws of nature", "", "Faults that break each law, by the model on which it is checked.", ""]
-    lines += ["| law | " + " | ".join(_MODELS) + " |", "|---" * (len(_MODELS) + 1) + "|"]
-    for law in sorted({law for law, _ in found}):
-        counted = (str(found.get((law, model), "")) for model in _MODELS)
-        lines.append(f"| {law.replace('_', ' ')} | {' | '.join(counted)} |")
-    return [*lines, ""] if found else []
-
-
-def markdown(rows: Sequence[Mapping[str, Any]]) -> str:
-    """The table in Markdown, one section per group."""
-    lines = [", ".join(f"{number} {name}" for name, number in sorted(counts(rows).items())) + ".", ""]
-    for group in GROUPS:
-        mine = [one for one in rows if one["group"] == group]
-        if not mine:
-            continue
-        lines += [
-            f"## {group.capitalize()}",
-            "",
-            "| fault | change | of | crosscheck | report | first seen by |",
-        ]
-        lines += ["|---|---|---|---|---|---|"]
-        for one in mine:
-            size = "not computed" if one["size"] is None else f"{100.0 * one['size']:.3g} %"
-            caught = one["caught"]
-            seen = _seen(caught) or f"**{one['verdict']}**" + (f": {one['unseen']}" if one["unseen"] else "")
-            by_check = "fails" if {"refused", "cross-check"} & caught.keys() else "passes"
-            by_report = "fails" if caught else "passes"
-            lines.append(
-                f"| {one['words']} | {size} | {one['quantity']} | {by_check} | {by_report} | {seen} |"
-            )
-        lines.append("")
-    return "\n".join([*lines, *_laws(rows)]).replace("|mu|", "mu")
-
-
-def _seen(caught: Mapping[str, Sequence[str]]) -> str:
-    for part, checks in caught.items():
-        more = f" and {len(checks) - 1} more" if len(checks) > 1 else ""
-        return f"{part}: {checks[0]}{more}".replace("|", "/")
-    return ""
-
-
 def save(rows: Sequence[Mapping[str, Any]], target: Path) -> None:
-    """Write rows as .json, or as a Markdown table."""
-    text = markdown(rows) if target.suffix == ".md" else json.dumps(rows, indent=1, ensure_ascii=False) + "\n"
-    target.write_text(text, encoding="utf-8")
+    """Write rows as JSON."""
+    target.write_text(json.dumps(rows, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")

@@ -13,11 +13,11 @@ import validation
 from lumped.errors import LawRangeWarning
 from validation.faults.catalogue import FAULTS, GROUPS
 from validation.faults.fault import Fault
-from validation.faults.judging import Outcome, judge, pairs
+from validation.faults.judging import judge, pairs
 from validation.faults.quantities import change, quantities
 from validation.faults.rewriting import FaultError, applied
 from validation.faults.sound import drawn
-from validation.faults.table import laws_that_act, markdown, row, sample, verdict
+from validation.faults.table import laws_that_act, sample, verdict
 from validation.reporting.results import QUICK, Results
 from validation.verification.code import code_checks
 
@@ -129,13 +129,6 @@ def test_every_law_of_nature_sees_a_fault_on_every_model_that_it_judges():
     assert {found for found in seen if found[0].startswith("power ")} == {
         (power, model) for power in powers for model in ("linear", "exact")
     }
-
-
-def test_the_table_says_which_check_saw_a_fault():
-    outcome = Outcome(0.9, "speed", {"cross-check": (), "code verification": ("frequencies",)})
-    shown = markdown([row(FAULTS["speed_unit"], outcome)])
-    assert "code verification: frequencies" in shown
-    assert "| passes | fails |" in shown  # the cross-check does not use it
 
 
 def test_sound_pairs_are_drawn_alike_by_one_seed():
