@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import operator
+import os
 from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Set, ValuesView
+from pathlib import Path
 from typing import Any, SupportsIndex, TypeVar
 
 import numpy as np
@@ -14,6 +16,7 @@ from lumped.errors import refuse, shown
 from lumped.typing import FloatArray
 
 Name = TypeVar("Name", str, int)
+T = TypeVar("T")
 
 
 def whole_number(
@@ -157,6 +160,34 @@ def some_of(
             raise refuse(field, shown(value), "a list out of " + ", ".join(map(str, known)), action)
         chosen.append(value)
     return tuple(chosen)
+
+
+def of_type(field: str, value: object, kind: type[T], what: str) -> T:
+    """Return an object of one type, or refuse it.
+
+    Parameters
+    ----------
+    what : the type in words, and what makes one
+
+    Raises
+    ------
+    ParameterError : of another type
+    """
+    if not isinstance(value, kind):
+        raise refuse(field, shown(value), what, "Give one of these.")
+    return value
+
+
+def file_path(field: str, value: object) -> Path:
+    """Return a path given as text or as a path, or refuse it.
+
+    Raises
+    ------
+    ParameterError : neither of them
+    """
+    if not isinstance(value, (str, os.PathLike)):
+        raise refuse(field, shown(value), "a path", "Give the name of a file or folder.")
+    return Path(value)
 
 
 def _real(value: object) -> FloatArray | None:

@@ -19,7 +19,7 @@ from floquet.engine.propagators.registry import propagator
 from floquet.engine.proven import proven_propagation
 from floquet.engine.spectrum import Certificate, Spectrum
 from floquet.engine.system import PeriodicSystem
-from lumped.arguments import real_number, whole_number
+from lumped.arguments import of_type, real_number, whole_number
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 
@@ -87,6 +87,7 @@ def monodromy(
         Non-finite A, growth beyond floating point, too many substeps, or rounding alone exceeds rtol. The
         text says what to try.
     """
+    of_type("system", system, PeriodicSystem, "a PeriodicSystem; of a gear pair: gear_pair_system")
     rtol, max_substeps = checked_effort(rtol, max_substeps)
     automatic = isinstance(method, str) and method == "auto"
     if automatic and isinstance(system.A, KnownMatrix):

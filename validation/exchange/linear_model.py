@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import scipy.signal
 
+from lumped.arguments import file_path
 from lumped.model.averaged import averaged_state_space
 from lumped.model.periodic_system import Form
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -65,7 +66,7 @@ def write_state_space(
     ParameterError : form "absolute", an unknown suffix, or an existing file without ``force``
     """
     pair = load_gear_pair(pair)
-    path = check_file(Path(path), STATE_SPACE_SUFFIXES, force=force)
+    path = check_file(file_path("path", path), STATE_SPACE_SUFFIXES, force=force)
     plant = averaged_state_space(pair, form)
     matlab = path.suffix.lower() == ".mat"
 

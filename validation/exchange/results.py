@@ -6,6 +6,7 @@ from pathlib import Path
 
 import xarray as xr
 
+from lumped.arguments import file_path, of_type
 from lumped.errors import ParameterError, refuse, shown
 from validation.files.output import COLUMN_DIMENSIONS, DATA_SUFFIXES, check_file, write_dataset
 
@@ -33,7 +34,8 @@ def write_results(result: xr.Dataset, path: str | Path, *, force: bool = False) 
     ------
     ParameterError : an unknown suffix, an existing file without ``force``, or a name MATLAB cannot have
     """
-    path = check_file(Path(path), DATA_SUFFIXES, force=force)
+    of_type("result", result, xr.Dataset, "a dataset, as simulate returns it")
+    path = check_file(file_path("path", path), DATA_SUFFIXES, force=force)
     if path.suffix.lower() == ".csv":
         result, _ = one_table(result)
         if not result.data_vars or not set(result.sizes) - set(COLUMN_DIMENSIONS):
@@ -75,7 +77,7 @@ def read_netcdf(path: str | Path) -> xr.Dataset:
     ------
     ParameterError : no such file, no NetCDF 4 file, or content that no result has
     """
-    path = Path(path)
+    path = file_path("path", path)
     if not path.is_file():
         raise refuse("result", path, "a file that exists", "Check the path.")
     try:

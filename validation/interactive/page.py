@@ -14,6 +14,7 @@ from markupsafe import Markup
 
 from floquet.gear.axes import operating_rpm
 from lumped import GearPair, load_gear_pair
+from lumped.arguments import file_path, of_type
 from lumped.friction import LAWS
 from lumped.typing import Progress
 from validation.files.output import write_dataset, write_text
@@ -55,8 +56,9 @@ def write_interactive_page(
     NumericalError : a computation fails; the text says what to try
     """
     pair = load_gear_pair(pair)
-    page = Path(path)
-    values = page.with_suffix(".nc") if data is None else Path(data)
+    of_type("sampling", sampling, Sampling, "a Sampling")
+    page = file_path("path", path)
+    values = page.with_suffix(".nc") if data is None else file_path("data", data)
     results = compute(pair, sampling, multibody=multibody, progress=progress)
     write_dataset(results.dataset(), values)
     write_text(page, render(results, values.name))

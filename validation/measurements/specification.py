@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidationError, model_validator
 
+from lumped.arguments import file_path
 from lumped.errors import ParameterError, refuse
 from lumped.fields.refusals import translated
 from lumped.fields.section import OneOf, Section, Text
@@ -138,7 +139,7 @@ def read_specification(source: str | Path | Mapping[str, Any]) -> tuple[Measurem
     if isinstance(source, Mapping):
         data, folder, name = dict(source), Path(), "mapping"
     else:
-        path = Path(source)
+        path = file_path("measurement", source)
         folder, name = path.parent, str(path)
         data = parse_toml(read_text(path, MAX_FILE_BYTES, kind="TOML file"), name)
     try:

@@ -12,7 +12,7 @@ import numpy as np
 import tomli_w
 from scipy.signal import lfilter
 
-from lumped.arguments import real_number, whole_number
+from lumped.arguments import file_path, real_number, whole_number
 from lumped.errors import refuse
 from lumped.typing import FloatArray
 from validation.measurements.prediction import Prediction
@@ -116,7 +116,7 @@ def write_measurement(measurement: Measurement, folder: str | Path) -> Path:
     plain = all(c.gain == 1.0 and c.zero == 0.0 for c in spec.channel)
     if not plain or spec.abscissa.column is None:
         raise refuse("measurement", spec.name, "gains 1, zeros 0, a column of abscissae", "Rescale it first.")
-    target = Path(folder)
+    target = file_path("folder", folder)
     target.mkdir(parents=True, exist_ok=True)
     data = spec.model_dump(mode="json", exclude_none=True)
     data["pinion_speed"] = repr(spec.pinion_speed)

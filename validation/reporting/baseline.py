@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import Any, Never
 
+from lumped.arguments import file_path
 from lumped.errors import refuse
 from lumped.fields.text_file import read_text
 from validation.files.folder import FORMAT, FORMAT_VERSION, REPORT
@@ -27,7 +28,7 @@ def load_report(source: str | Path, *, quick: bool | None = None) -> dict[str, A
     ------
     ParameterError : no such file, not a report, of another layout, or of other sampling
     """
-    path = Path(source)
+    path = file_path("compare", source)
     if path.is_dir():
         path = path / REPORT.file
     text = read_text(path, _MAX_BYTES, field="--compare", kind="report.json", action=_ACTION)

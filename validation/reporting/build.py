@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from lumped import GearPair, load_gear_pair
+from lumped.arguments import file_path
 from lumped.typing import Progress
 from validation.cross_check.comparison import must_be_papers_form
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
@@ -94,7 +95,7 @@ def report(
     tell: Progress = progress or (lambda fraction, stage="", /: None)
     gear_pair = load_gear_pair(pair)
     must_be_papers_form(gear_pair)
-    target = Path(out)
+    target = file_path("out", out)
     earlier = None if compare is None else load_report(compare, quick=quick)
     if earlier is not None:
         compare_reports(earlier, earlier, tolerance=tolerance)  # refuses a tolerance before any work

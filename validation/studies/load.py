@@ -8,6 +8,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from lumped.arguments import file_path
 from lumped.errors import FieldProblem, ParameterError, refuse, shown
 from lumped.fields.refusals import translated
 from lumped.fields.text_file import parse_toml, read_text
@@ -37,7 +38,7 @@ def load_study(source: str | Path | Mapping[str, Any] | Study, *, name: str = ""
         return _validated(dict(source), name or "mapping", Path())
     if isinstance(source, str) and "\n" in source:
         return _validated(parse_toml(source, name or "study"), name or "study", Path())
-    path = Path(source)
+    path = file_path("study", source)
     text = read_text(path, MAX_FILE_BYTES, field="study", kind="TOML file")
     return _validated(parse_toml(text, str(path)), str(path), path.parent)
 

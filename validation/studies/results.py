@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from lumped.arguments import file_path
 from lumped.model.results import parameters_hash
 from validation.files.output import whole_file
 from validation.studies.analyses import ANALYSES
@@ -37,7 +38,7 @@ def read_results(folder: str | Path) -> xr.Dataset:
     ------
     StoreError, ParameterError : no store, or not one of its own study
     """
-    root = Path(folder)
+    root = file_path("folder", folder)
     cases = CaseList(load_study(read_definition(root), name=str(root / STORE)))
     return results_dataset(cases, read_table(root, cases))
 

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from lumped.arguments import file_path, of_type, real_number
 from lumped.errors import refuse
 from validation.stop_signals import stopping_as_interrupt, undisturbed
 from validation.studies.cases import CaseList, StudyEvaluator
@@ -108,11 +109,12 @@ def run_sweep(
     KeyboardInterrupt : Ctrl-C, SIGTERM or SIGHUP; nothing computed before is lost
     """
     start = time.perf_counter()
-    if case_seconds is not None and not 1e-3 <= case_seconds <= 1e6:
-        raise refuse(
-            "case_seconds", f"{case_seconds:g} s", "0.001 s to 1e6 s", "Give the longest time of a case."
+    if case_seconds is not None:
+        real_number(
+            "case_seconds", case_seconds, 1e-3, 1e6, unit="s", action="Give the longest time of a case."
         )
-    root = Path(folder)
+    root = file_path("folder", folder)
+    of_type("study", study, Study, "a Study, as load_study returns it")
     cases = CaseList(study)
     _check_memory(cases)
     _prepare(root, resume)

@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 
 from lumped import GearPair, Geometry
+from lumped.arguments import of_type
 from lumped.friction import LAWS
 from lumped.path_of_contact import contact_path, law_range_violations
 from lumped.ranges import RangeViolation
@@ -87,6 +88,7 @@ def validity_flags(
     multipliers : Floquet multipliers of the pair, where they are known
     """
     pair = load_gear_pair(pair)
+    of_type("motion", motion, xr.Dataset, "a dataset, as steady_state returns it")
     g = pair.geometry
     flags = [
         contact_loss(pair, g, motion),
@@ -102,7 +104,10 @@ def validity_flags(
     if "error_estimate" in motion.attrs:
         flags.append(solution_error(motion))
     if multipliers is not None:
-        flags.append(stability(multipliers))
+        from floquet.gear.multipliers import GearPairMultipliers
+
+        what = "what gear_pair_multipliers returns"
+        flags.append(stability(of_type("multipliers", multipliers, GearPairMultipliers, what)))
     return tuple(flags)
 
 

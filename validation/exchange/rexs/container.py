@@ -8,6 +8,7 @@ import zipfile
 import zlib
 from pathlib import Path, PurePosixPath
 
+from lumped.arguments import file_path
 from lumped.errors import ParameterError, refuse, shown
 from lumped.fields.text_file import read_bytes
 from validation.exchange.rexs.json_form import parse_json
@@ -44,7 +45,7 @@ def read_rexs(path: str | Path) -> RexsModel:
     ParameterError : no such file, too large, an archive that is hostile or has not exactly one model, not a
         REXS model, or one before version 1.4
     """
-    path = Path(path)
+    path = file_path("path", path)
     data = read_bytes(path, MAX_BYTES, field="REXS file")
     if data[:2] == b"PK":
         data = _unzipped(data, path.name)

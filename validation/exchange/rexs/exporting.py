@@ -7,6 +7,7 @@ from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
 
+from lumped.arguments import file_path
 from lumped.errors import refuse, shown
 from lumped.gear_geometry.geometry import Geometry
 from lumped.lubrication.viscosity_grade import grade_viscosity
@@ -49,7 +50,7 @@ def write_rexs(pair: AnyPair, path: str | Path, version: str = LATEST, *, record
     pair = load_gear_pair(pair)
     from validation.files.output import whole_file
 
-    path = Path(path)
+    path = file_path("path", path)
     form = form_of(path)
     if version not in WRITTEN:
         raise refuse("version", shown(version), "one of " + ", ".join(WRITTEN), "Choose a version.")
