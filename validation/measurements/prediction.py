@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from lumped import Geometry, PathFunction, mesh_elements, steady_state
+from lumped import Geometry, steady_state
 from lumped.arguments import real_number, whole_number
 from lumped.errors import refuse
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -30,17 +30,18 @@ class Prediction:
     Attributes
     ----------
     pair : the gear pair at the record's operating point
-    geometry : of it
-    friction : its signed mu(xi)
     cycle : one mesh cycle of results, ``lumped.steady_state``
     recurrence : mesh cycles after which the same labelled pair is in contact again
     """
 
     pair: GearPair
-    geometry: Geometry
-    friction: PathFunction
     cycle: xr.Dataset
     recurrence: int
+
+    @property
+    def geometry(self) -> Geometry:
+        """Of the pair."""
+        return self.pair.geometry
 
     def age(self, cycles: ArrayLike, label: str) -> FloatArray:
         """Mesh cycles since the labelled pair was last at A; in contact while below the contact ratio."""
@@ -115,15 +116,8 @@ def predict(
     if torque is not None:
         torque = real_number("torque", torque, 0.0, above=True, unit="N m")
         at = at.with_({"operating.pinion_torque": torque})
-    g = at.geometry
     again = at.pinion.teeth
     if recurrence is not None:  # no fewer than the pairs in contact at once
         advice = "Count the mesh cycles until the same labelled pair is in contact again."
-        again = whole_number("recurrence", recurrence, g.pairs, 1_000_000, advice)
-    return Prediction(
-        pair=at,
-        geometry=g,
-        friction=mesh_elements(at).friction,
-        cycle=steady_state(at, samples_per_cycle=_SAMPLES),
-        recurrence=again,
-    )
+        again = whole_number("recurrence", recurrence, at.geometry.pairs, 1_000_000, advice)
+    return Prediction(at, steady_state(at, samples_per_cycle=_SAMPLES), again)

@@ -7,6 +7,7 @@ import pytest
 
 from lumped import geometry, load_gear_pair, simulate
 from lumped.errors import NumericalError, ParameterError
+from lumped.path_of_contact import friction_path_function
 from validation.measurements import (
     align,
     identify_friction,
@@ -133,7 +134,7 @@ def test_a_scale_on_a_law_and_a_zero_error_come_back(pair):
     assert found.estimate == pytest.approx(0.7, rel=1e-3)
     np.testing.assert_allclose(found.zero, -4.0, atol=0.02)
     g = truth.geometry
-    path = np.abs(truth.friction(np.linspace(g.L_XA, g.L_XD, 20_001)))
+    path = np.abs(friction_path_function(truth.pair)(np.linspace(g.L_XA, g.L_XD, 20_001)))
     assert found.mean_mu == pytest.approx(0.7 * path.mean(), rel=1e-3)
 
 

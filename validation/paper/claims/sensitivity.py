@@ -13,6 +13,9 @@ from lumped.arguments import whole_number
 from lumped.typing import FloatArray, Progress
 from validation.paper.claims.numbers import measure
 
+#: Of the hypercube.
+SEED = 2008
+
 
 @dataclass(frozen=True)
 class Assumption:
@@ -123,7 +126,7 @@ class Sensitivity:
 
 
 def sample_assumptions(
-    pair: GearPair, samples: int = 100, *, seed: int = 2008, progress: Progress | None = None
+    pair: GearPair, samples: int = 100, *, seed: int = SEED, progress: Progress | None = None
 ) -> Sensitivity:
     """Work out the claim numbers over a Latin hypercube of the assumptions.
 
