@@ -134,7 +134,7 @@ class StaticMesh:
         self.ends = np.array([g.L_XA, g.L_XD, g.L_XY, g.base_radius_pinion, g.base_radius_gear])
         self.low, self.high = g.L_XA - _REACH * g.base_pitch, g.L_XD + _REACH * g.base_pitch
 
-    def _relief(self, place: FloatArray) -> FloatArray:
+    def relief(self, place: FloatArray) -> FloatArray:
         """Material missing on both flanks at positions of any shape, held beyond A and D [m]."""
         if self.pair.mesh.relief != "static":
             return np.zeros(place.shape)
@@ -144,7 +144,7 @@ class StaticMesh:
         """Static approach delta (n,) [m] with a tooth pair at the positions xi (n,) [m]."""
         place, law = np.asarray(xi, dtype=float)[:, None] + self.shifts, self.law
         near = (place > self.low) & (place < self.high)
-        k, relief = np.where(near, law.held(place), 0.0), self._relief(place)
+        k, relief = np.where(near, law.held(place), 0.0), self.relief(place)
         found = approaches(
             place, k, relief, self.force, self.lengthening, law.softening, law.least, self.ends
         )
@@ -166,12 +166,12 @@ class StaticMesh:
         """Approach less the gap of the pair at xi (n,) [m]; negative where it is apart."""
         half = self.half(xi)
         approach = 2.0 * half - self.lengthening
-        return np.asarray(approach - gaps_at(xi, self._relief(xi), half, self.ends), dtype=np.float64)
+        return np.asarray(approach - gaps_at(xi, self.relief(xi), half, self.ends), dtype=np.float64)
 
     def static(self, xi: FloatArray) -> StaticPair:
         """The pair at xi (n,) [m] in equilibrium."""
         delta = self.approach(xi)
-        gap = gaps_at(xi, self._relief(xi), 0.5 * (delta + self.lengthening), self.ends)
+        gap = gaps_at(xi, self.relief(xi), 0.5 * (delta + self.lengthening), self.ends)
         load, tangent = self.law.load(self.law.held(xi), delta - gap)
         return StaticPair(load, tangent, delta - load / np.where(tangent > 0.0, tangent, np.inf), gap)
 

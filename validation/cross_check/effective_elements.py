@@ -36,7 +36,7 @@ def moved(law: PathFunction, place: FloatArray, stands_at: FloatArray) -> PathFu
     def value(actual: FloatArray, _nodes: FloatArray) -> FloatArray:
         return law(np.clip(actual, *law.interval))
 
-    return _through(value, law, law.breaks[1:-1], place, stands_at)
+    return through(value, law.interval, law.breaks[1:-1], place, stands_at)
 
 
 def at_sliding(
@@ -73,7 +73,7 @@ def at_sliding(
     pieces = law.breaks.size - 1
     parts = np.interp(np.arange(pieces * _PARTS + 1) / _PARTS, np.arange(pieces + 1), law.breaks)
     marks = np.union1d(parts, pitch_point + width * _TANH)
-    return _through(value, law, marks, place, slides_as)
+    return through(value, law.interval, marks, place, slides_as)
 
 
 def shortened(law: PathFunction, first: float, last: float) -> PathFunction:
@@ -113,15 +113,15 @@ def reversed_within(law: PathFunction, first: float, last: float) -> PathFunctio
     return PathFunction(edges, sign * columns, switches)
 
 
-def _through(
+def through(
     value: Callable[[FloatArray, FloatArray], FloatArray],
-    law: PathFunction,
+    interval: tuple[float, float],
     marks: FloatArray,
     place: FloatArray,
     image: FloatArray,
 ) -> PathFunction:
     """``value`` of each place's image and place: lines, broken at places and where the image meets a mark."""
-    low, high = law.interval
+    low, high = interval
     before, after = image[:-1, None] - marks, image[1:, None] - marks
     crossing = np.nonzero(before * after < 0.0)
     share, piece = before[crossing] / (before[crossing] - after[crossing]), crossing[0]

@@ -56,16 +56,19 @@ from lumped import GearPair
 from lumped.arguments import some_of
 from lumped.model.mesh_cycle import mesh_cycle
 from lumped.model.periodic_system import periodic_system
-from lumped.model.results import dataset
 from lumped.model.solution import initial_state
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.typing import FloatArray
+from validation.cross_check.loaded_motion import LoadedModel
 from validation.cross_check.shifted_motion import ShiftedModel, Shifts
 
 #: Times per mesh cycle at which the motion is read off: while it settles, and in the end at least.
 _COARSE, _FINE = 1024, 4096
-#: Effects that are predicted; names as in ``multibody.EFFECTS``.
-PREDICTED = ("rotation_phase", "moving_line", "sliding_velocity", "entry_shift")
+#: ``mesh.contact`` -> effects that are predicted; names as in ``multibody.EFFECTS``.
+PREDICTED: Mapping[str, tuple[str, ...]] = {
+    "paper": ("rotation_phase", "moving_line", "sliding_velocity", "entry_shift"),
+    "loaded": ("rotation_phase", "moving_line", "sliding_velocity", "tip_contact", "path_work"),
+}
 _CHANGED = ("dte", "x_p", "x_g", "y_p", "y_g", "normal_load", "friction_force")
 
 
@@ -100,7 +103,7 @@ class FiniteMotion:
 def finite_motion(
     pair: GearPair,
     cycle: xr.Dataset,
-    effects: Collection[str] = PREDICTED,
+    effects: Collection[str] | None = None,
     *,
     friction_velocity: float = 0.0,
 ) -> FiniteMotion:
@@ -110,7 +113,7 @@ def finite_motion(
     ----------
     pair : a validated gear pair
     cycle : lumped periodic motion at even times over one mesh cycle, the end left out
-    effects : names out of ``PREDICTED``, as ``multibody.steady_state`` takes them
+    effects : names out of ``PREDICTED``, as ``multibody.steady_state`` takes them; default all of them
     friction_velocity : sliding velocity over which friction changes its sign (tanh) [m/s]; 0 at once
 
     Returns
@@ -122,7 +125,8 @@ def finite_motion(
     ParameterError : unknown effect
     NumericalError : the nominal motion is not periodic
     """
-    some_of("effects", effects, PREDICTED, "Name effects that are predicted.")
+    known = PREDICTED[pair.mesh.contact]
+    effects = known if effects is None else some_of("effects", effects, known, "Name predicted effects.")
     nominal = mesh_cycle(pair)
     system = periodic_system(pair, "absolute", cycle=nominal)
     balance = periodic_solution(system, np.zeros(1), estimate_error=False)
@@ -130,7 +134,8 @@ def finite_motion(
     coarse = sample_times(nominal.period, _COARSE)
     fine = sample_times(nominal.period, every * cycle.sizes["time"])
     static = initial_state(system, "static", balance)
-    model = ShiftedModel(pair, nominal, system, static, coarse, frozenset(effects), friction_velocity)
+    kind = LoadedModel if pair.mesh.contact == "loaded" else ShiftedModel
+    model = kind(pair, nominal, system, static, coarse, frozenset(effects), friction_velocity)
     shifts, settled = model.settle(None)
     if settled:
         model = replace(model, times=fine)
@@ -146,7 +151,6 @@ def finite_motion(
             still = {name: np.zeros(cycle[name].shape) for name in _CHANGED}
             return FiniteMotion(still, 0.0, 0.0, False, model, None)
         found = model.motion(shifts)
-    states = found.states[np.searchsorted(found.times, fine)]
-    motion = dataset(found.system, fine, states, {})
-    changes = {name: motion[name].to_numpy()[..., ::every] - cycle[name].to_numpy() for name in _CHANGED}
+    motion = model.response(found, fine)
+    changes = {name: motion[name][..., ::every] - cycle[name].to_numpy() for name in _CHANGED}
     return FiniteMotion(changes, shifts.entry, shifts.exit, settled, model, shifts)

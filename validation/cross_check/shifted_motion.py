@@ -5,7 +5,7 @@ The derivations are in ``validation.cross_check.finite_motion``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +13,11 @@ from numpy.typing import NDArray
 from lumped import GearPair
 from lumped.errors import NumericalError
 from lumped.model.mesh_cycle import MeshCycle
+from lumped.model.mesh_elements import MeshElements
 from lumped.model.periodic_system import LTVSystem, periodic_system
+from lumped.model.results import response
 from lumped.model.steady import periodic_solution
+from lumped.path_function import PathFunction
 from lumped.typing import FloatArray
 from validation.cross_check.actual_friction import law_ratio
 from validation.cross_check.effective_elements import at_sliding, moved, shortened
@@ -31,6 +34,8 @@ _ITERATIONS = 60
 _REMEMBERED = 6
 #: Combinations of remembered iterations that differ by less than this share of the largest are left out.
 _ALIKE = 1e-8
+#: Parts of ``Shifts`` that are numbers.
+_NUMBERS = ("entry", "exit", "beyond")
 #: Sliding as good as zero, as a distance from the pitch point [m].
 _BESIDE = 1e-9
 
@@ -48,6 +53,8 @@ class Shifts:
     slides_as : (k,) where the nominal motion slides as fast as the teeth do there
     rolling : (k,) sum of the rolling velocities there [m/s]
     arm_pinion, arm_gear : (k,) distances of the contact from both tangent points there
+    overlap, longer : (k,) overlap of the flanks, and by how much the line of action is longer than nominal
+    load : (k,) normal load there [N]
     """
 
     entry: float
@@ -59,15 +66,19 @@ class Shifts:
     rolling: FloatArray
     arm_pinion: FloatArray
     arm_gear: FloatArray
+    overlap: FloatArray
+    longer: FloatArray
+    load: FloatArray
 
     def thinned(self, every: int) -> Shifts:
         """The same at every so-many-th place."""
-        arrays = ("place", "stands_at", "slides_as", "rolling", "arm_pinion", "arm_gear")
-        return replace(self, **{name: getattr(self, name)[:: max(every, 1)] for name in arrays})
+        arrays = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in _NUMBERS}
+        return replace(self, **{name: values[:: max(every, 1)] for name, values in arrays.items()})
 
-    def judged(self, place: FloatArray) -> FloatArray:
-        """What must settle: the two ends, and the sliding at some places, (2 + k,)."""
-        return np.concatenate([[self.entry, self.exit], np.interp(place, self.place, self.slides_as)])
+    def judged(self, place: FloatArray, along: tuple[str, ...]) -> FloatArray:
+        """What must settle: the two ends, and what is named ``along`` at some places, (2 + n k,)."""
+        values = [np.interp(place, self.place, getattr(self, name)) for name in along]
+        return np.concatenate([[self.entry, self.exit], *values])
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +123,19 @@ class ShiftedModel:
     effects: frozenset[str]
     friction_velocity: float
 
+    #: What of ``Shifts`` must settle along the path.
+    settling = ("slides_as",)
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Places between which a pair is followed [m]."""
+        return self.cycle.geometry.L_XA, self.cycle.geometry.L_XD
+
+    @property
+    def friction(self) -> PathFunction:
+        """The friction law of the nominal motion, between these places."""
+        return self.cycle.elements.friction
+
     def settle(self, start: Shifts | None) -> tuple[Shifts, bool]:
         """Shifts that are those of their own motion: the last ones, and whether they settled.
 
@@ -122,7 +146,7 @@ class ShiftedModel:
         ----------
         D. G. Anderson, "Iterative procedures for nonlinear integral equations", J. ACM 12 (1965) 547-560.
         """
-        floor = _SETTLED * self.cycle.geometry.base_pitch
+        floor, along = _SETTLED * self.cycle.geometry.base_pitch, self.settling
         shifts = self.shifts_after(self.motion(start))
         best, closest, age = shifts, np.inf, 0
         tried: list[tuple[Shifts, Shifts]] = []
@@ -133,7 +157,7 @@ class ShiftedModel:
                 break
             tried = [*tried[-_REMEMBERED:], (shifts, found)]
             given, results = (
-                np.stack([s.judged(found.place) for s in part]) for part in zip(*tried, strict=True)
+                np.stack([s.judged(found.place, along) for s in part]) for part in zip(*tried, strict=True)
             )
             mismatch = results - given
             size = np.abs(mismatch[-1]).max() / max(floor, _OF_SHIFT * max(found.entry, found.exit))
@@ -144,7 +168,8 @@ class ShiftedModel:
             weights = np.linalg.lstsq(np.diff(mismatch, axis=0).T, mismatch[-1], rcond=_ALIKE)[0]
             guess = results[-1] - weights @ np.diff(results, axis=0)
             first, last = np.maximum(guess[:2], 0.0)
-            shifts = replace(found, entry=float(first), exit=float(last), slides_as=guess[2:])
+            moved_along = dict(zip(along, np.split(guess[2:], len(along)), strict=True))
+            shifts = replace(found, entry=float(first), exit=float(last), **moved_along)
         return best, closest < _ACCEPTED
 
     def motion(self, shifts: Shifts | None, *, line: float | None = None) -> Motion:
@@ -156,11 +181,14 @@ class ShiftedModel:
         times = self._with_jumps(system)
         states = periodic_solution(system, times, estimate_error=False).states
         g, e = self.cycle.geometry, system.cycle.elements
-        # A pair passes its path in as many cycles as there are pairs; each repeats the same motion.
-        speed = g.base_pitch / self.cycle.period
-        place = g.L_XA + (np.arange(g.pairs)[:, None] * g.base_pitch + times * speed).ravel()
-        place = place[: int(np.searchsorted(place, g.L_XD)) + 1]
+        # A pair passes its path in several cycles; each repeats the same motion.
+        speed, (low, high) = g.base_pitch / self.cycle.period, self.reach
+        before, after = np.floor((low - g.L_XA) / g.base_pitch), np.ceil((high - g.L_XA) / g.base_pitch)
+        cycles = np.arange(before, after)[:, None]
+        place = g.L_XA + (cycles * g.base_pitch + times * speed).ravel()
         at = np.arange(place.size) % times.size
+        inside = slice(int(np.searchsorted(place, low)), int(np.searchsorted(place, high)) + 1)
+        place, at = place[inside], at[inside]
         overlap, rate = states[at, :6] @ system.deflection, states[at, 6:] @ system.deflection
         load = e.stiffness(place) * (overlap - e.error(place))
         load += e.damping(place) * (rate - e.error_slope(place) * speed)
@@ -168,6 +196,16 @@ class ShiftedModel:
         if line is not None:
             return self._on_turned_line(found, line)
         return self._on_turned_line(found, self.turns(found)) if "moving_line" in self.effects else found
+
+    def response(self, motion: Motion, times: FloatArray) -> dict[str, FloatArray]:
+        """Variables of ``lumped.model.results.response`` at times of the motion, in the nominal pairs' slots."""
+        states = motion.states[np.searchsorted(motion.times, times)]
+        found = response(motion.system, times, states)
+        offsets = motion.system.cycle.offsets
+        if offsets.size == self.cycle.offsets.size:
+            return found
+        slots = np.abs(self.cycle.offsets[:, None] - offsets).argmin(axis=1)
+        return {name: values if values.ndim == 1 else values[slots] for name, values in found.items()}
 
     def turns(self, motion: Motion) -> FloatArray:
         """By how much the line of action turns at each time, (n,) [rad]."""
@@ -200,8 +238,7 @@ class ShiftedModel:
         rolling = (g.omega_pinion + rates[0] + turning) * arm_p
         rolling += (g.omega_gear + rates[1] - turning) * arm_g
         way = motion.times * (g.base_pitch / self.cycle.period)
-        entry = self._met(way, reach - further, 0.0, 1.0)
-        last = self._met(way, reach + further, g.L_XD - g.L_XA, -1.0)
+        entry, last = self._ends(way, reach, further)
         return Shifts(
             entry=max(entry, 0.0),
             exit=max(last, 0.0),
@@ -212,6 +249,9 @@ class ShiftedModel:
             rolling=rolling,
             arm_pinion=arm_p,
             arm_gear=arm_g,
+            overlap=(motion.system.deflection @ z)[at],
+            longer=longer[at],
+            load=motion.load,
         )
 
     def held(self, motion: Motion) -> bool:
@@ -234,9 +274,11 @@ class ShiftedModel:
 
     def _system(self, shifts: Shifts) -> LTVSystem:
         """Equations of motion with the element laws as they act after these shifts."""
-        g, e = self.cycle.geometry, self.cycle.elements
-        ends = g.L_XA + shifts.entry, g.L_XD - shifts.exit
-        friction = e.friction
+        elements = replace(self._contact(shifts), friction=self._friction(shifts))
+        return periodic_system(self.pair, "absolute", cycle=MeshCycle(self.cycle.geometry, elements))
+
+    def _friction(self, shifts: Shifts) -> PathFunction:
+        g, friction = self.cycle.geometry, self.friction
         if friction.coefficients.any():
             width = self.friction_velocity / (g.omega_pinion + g.omega_gear)
             ratio = np.ones_like(shifts.place)
@@ -245,14 +287,27 @@ class ShiftedModel:
                     self.pair, shifts.slides_as, shifts.rolling, shifts.arm_pinion, shifts.arm_gear
                 )
             friction = at_sliding(friction, g.L_XP, shifts.place, shifts.slides_as, width, ratio)
-        elements = replace(
+        return friction
+
+    def _contact(self, shifts: Shifts) -> MeshElements:
+        """Stiffness, damping and error after these shifts."""
+        g, e = self.cycle.geometry, self.cycle.elements
+        ends = g.L_XA + shifts.entry, g.L_XD - shifts.exit
+        return replace(
             e,
             stiffness=shortened(moved(e.stiffness, shifts.place, shifts.stands_at), *ends),
             damping=shortened(moved(e.damping, shifts.place, shifts.stands_at), *ends),
-            friction=friction,
             error=moved(e.error, shifts.place, shifts.stands_at) if e.error.coefficients.any() else e.error,
         )
-        return periodic_system(self.pair, "absolute", cycle=MeshCycle(g, elements))
+
+    def _ends(self, way: FloatArray, reach: FloatArray, further: FloatArray) -> tuple[float, float]:
+        """How far into the path the load starts, and how far before its end it stops [m].
+
+        ``way`` is the way since A at the times of the motion, ``reach`` and ``further`` how far the contact
+        stands inside its tips and along the path there.
+        """
+        length = self.cycle.geometry.L_XD - self.cycle.geometry.L_XA
+        return self._met(way, reach - further, 0.0, 1.0), self._met(way, reach + further, length, -1.0)
 
     def _on_turned_line(self, motion: Motion, turned: float | FloatArray) -> Motion:
         """Let the normal load act along the turned line: y moves by the receptances of eqs. 8 and 9."""

@@ -1,0 +1,182 @@
+"""The loaded form's motion with contacts that follow the motion, as the exact contact does.
+
+The loaded form is linear about the static motion. Here the pairs of teeth are linear about the motion that was
+found before: N = k_t (delta - e) with tangent k_t and e of the contact law at the actual compression, at the
+place where the contact stands. A motion that repeats itself then obeys the contact law itself; each repetition is
+a step of Newton's method.
+
+Sources: docs/theory/contact_energy.md, "The loaded form of the linear model".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.model.bodies import bodies
+from lumped.model.mesh_elements import MeshElements
+from lumped.model.periodic_system import LTVSystem, MeshGain
+from lumped.path_function import PathFunction
+from lumped.path_of_contact import friction_path_function
+from lumped.quasi_static.kernels import corner_gaps, gaps_at
+from lumped.quasi_static.loaded_contact import FULL_DAMPING, StaticMesh
+from lumped.quasi_static.tooth_error import relief_starts
+from lumped.typing import FloatArray
+from validation.cross_check.effective_elements import through
+from validation.cross_check.shifted_motion import ShiftedModel, Shifts
+
+
+#: Half the distance over which slopes along the path are read [m].
+_BESIDE = 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class PushedSystem(LTVSystem):
+    """A system on which the teeth push beside the normal load along the nominal line of action.
+
+    A pair with the energy U(rho_p, rho_g, L) pushes with -dU/d rho_p and -dU/d rho_g along its flank distances.
+    The motion changes them by r_bp (theta_p + psi) and -r_bg (theta_g - psi), psi = (y_g - y_p)/L_XY.
+
+    Attributes
+    ----------
+    place : (k,) places of one pair [m]
+    push : (2, k) what it pushes there along the flank distances of pinion and gear, the nominal load left out [N]
+    """
+
+    place: FloatArray = field(default_factory=lambda: np.empty(0))
+    push: FloatArray = field(default_factory=lambda: np.empty((2, 0)))
+
+    def gain(self, time: ArrayLike, segment: int | NDArray[np.int64] | None = None) -> MeshGain:
+        """The mesh's feedback and the push of all pairs."""
+        g, found = self.cycle.geometry, super().gain(time, segment)
+        way = np.mod(np.atleast_1d(np.asarray(time, dtype=float)) / self.period, 1.0) * g.base_pitch
+        at = self.cycle.offsets[:, None] + way
+        by_p, by_g, by_l = (np.interp(at, self.place, v, left=0.0, right=0.0).sum(0) for v in self.push)
+        r_p, r_g = g.base_radius_pinion, g.base_radius_gear
+        across = (r_p * by_p + r_g * by_g + (r_p + r_g)*by_l) / g.L_XY
+        forces = np.stack([r_p * by_p, -r_g * by_g, -by_l, by_l, -across, across], axis=1)
+        return replace(found, error=found.error + forces / self.structure.mass @ self.reduction.T)
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedModel(ShiftedModel):
+    """The loaded form of one pair, linear about a motion instead of the static one."""
+
+    settling = ("slides_as", "overlap")
+
+    @cached_property
+    def mesh(self) -> StaticMesh:
+        """The mesh under the mean load."""
+        return StaticMesh(self.pair)
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Places between which a pair is followed [m]."""
+        return self.mesh.low, self.mesh.high
+
+    @cached_property
+    def friction(self) -> PathFunction:
+        """The friction law of the nominal motion, between these places."""
+        return friction_path_function(self.pair, interval=self.reach)
+
+    def _ends(self, way: FloatArray, reach: FloatArray, further: FloatArray) -> tuple[float, float]:
+        """Where contact begins and ends is decided by its gap."""
+        return 0.0, 0.0
+
+    def _system(self, shifts: Shifts) -> LTVSystem:
+        """Equations of motion linear about the motion of these shifts."""
+        system, mesh = super()._system(shifts), self.mesh
+        push = np.zeros((3, shifts.place.size))
+        if "tip_contact" in self.effects:
+            push += shifts.load * self._corner_slopes(shifts)
+        if "path_work" in self.effects:
+            push[:2] += 0.5 * np.outer([1.0, -1.0], self._along_path(shifts))
+        given = {f.name: getattr(system, f.name) for f in fields(system)}
+        return PushedSystem(**given, place=shifts.place, push=push)
+
+    def _corner_slopes(self, shifts: Shifts) -> FloatArray:
+        """Derivatives of the gap at tip corners by both flank distances and by L, (3, k)."""
+        g, half = self.cycle.geometry, 0.5 * (shifts.overlap + shifts.longer)
+        slopes = np.zeros((3, half.size))
+        tips = (
+            (shifts.stands_at + half, g.L_XD, g.base_radius_gear, g.base_radius_pinion),
+            (g.L_XY - shifts.stands_at + half, g.L_XY - g.L_XA, g.base_radius_pinion, g.base_radius_gear),
+        )
+        for row, (arm, tip, flank, own) in enumerate(tips):
+            at = np.flatnonzero(arm > tip)
+            length = g.L_XY + shifts.longer[at]
+
+            def gap(beside: float, longer: float, at=at, arm=arm, tip=tip, flank=flank, own=own, length=length):
+                return corner_gaps(arm[at] - tip + beside, length - tip + longer, length + longer, flank, own)
+
+            for column, step in ((row, (_BESIDE, 0.0)), (2, (0.0, _BESIDE))):
+                high, low = gap(*step), gap(*(-s for s in step))
+                slopes[column, at] = (high - low) / (2.0 * _BESIDE)
+        return slopes
+
+    def _along_path(self, shifts: Shifts) -> FloatArray:
+        """Force H of one pair along the path at the places of the shifts, (k,) [N]."""
+        law, at = self.mesh.law, shifts.stands_at
+        low, high = (self.mesh.relief(at + s) for s in (-_BESIDE, _BESIDE))
+        relief, k = (high - low) / (2.0 * _BESIDE), law.held(at)
+        near, far = (law.held(at + s) for s in (-_BESIDE, _BESIDE))
+        slope = (far - near) / (2.0 * _BESIDE)
+        return np.asarray(shifts.load * relief - 0.5 * slope * (shifts.load / k) ** 2)
+
+    def _contact(self, shifts: Shifts) -> MeshElements:
+        """Stiffness, damping, error and gap about the motion of these shifts."""
+        g, mesh, law = self.cycle.geometry, self.mesh, self.mesh.law
+        place, stands_at = shifts.place, shifts.stands_at
+        if "tip_contact" in self.effects:
+            overlap, longer = shifts.overlap, shifts.longer
+        else:
+            overlap, longer = mesh.approach(place), np.full(place.size, mesh.lengthening)
+
+        scale = 2.0 * self.pair.mesh.damping_ratio * np.sqrt(bodies(self.pair).effective_mass)
+        full = FULL_DAMPING * mesh.force
+
+        def state(at: FloatArray) -> dict[str, FloatArray]:
+            actual, delta, more = (np.interp(at, place, v) for v in (stands_at, overlap, longer))
+            gap = gaps_at(actual, mesh.relief(actual), 0.5 * (delta + more), mesh.ends)
+            k = law.held(actual)
+            load, tangent = law.load(k, delta - gap)
+            engaged = np.clip(load / full, 0.0, 1.0)
+            return {
+                "gap": gap,
+                "pressed": delta - gap,
+                "load": load,
+                "stiffness": tangent,
+                "error": delta - load / np.where(tangent > 0.0, tangent, np.inf),
+                "damping": scale * np.sqrt(k) * engaged**2 * (3.0 - 2.0 * engaged),
+            }
+
+        # A pair lets go where its flanks part, and where its damper would pull more than they press.
+        found, speed = state(place), g.base_pitch / self.cycle.period
+        pressing = found["damping"] * np.gradient(found["pressed"], place) * speed
+        touching = np.where(found["pressed"] > 0.0, found["load"] + pressing, found["pressed"])
+        turn = np.flatnonzero(np.signbit(touching[1:]) != np.signbit(touching[:-1]))
+        share = touching[turn] / (touching[turn] - touching[turn + 1])
+        ends = place[turn] + share * np.diff(place)[turn]
+        nodes = np.union1d(place, ends)
+        image = np.interp(nodes, place, stands_at)
+        marks = np.unique(np.concatenate([law.stiffness.breaks, relief_starts(self.pair)]))
+
+        def fitted(name: str) -> PathFunction:
+            def value(_: FloatArray, at: FloatArray) -> FloatArray:
+                values = state(at)[name]
+                if name in ("stiffness", "damping"):
+                    values = np.where(np.interp(at, place, touching) > 0.0, values, 0.0)
+                return values
+
+            return through(value, self.reach, marks, nodes, image)
+
+        return MeshElements(
+            stiffness=fitted("stiffness"),
+            damping=fitted("damping"),
+            friction=self.friction,
+            error=fitted("error"),
+            gap=fitted("gap"),
+        )
