@@ -72,9 +72,8 @@ N_RECORD = 15
 
 #: How far beyond the tips contact is looked for, over the base pitch.
 _REACH = 0.4
-#: Where teeth touch beyond their tips the damper takes hold gradually: it is whole at this share of the
-#: deflection of one pair under the whole load. A damper that acts at once would make the load jump by the
-#: approach velocity times c at the first touch.
+#: Where teeth touch beyond their tips the damper takes hold gradually: it is whole at this share of the whole
+#: load. A damper that acts at once would make the load jump by the approach velocity times c at the first touch.
 _GRADUAL = 1.0 / 15.0
 
 
@@ -320,12 +319,12 @@ def contact_forces(
                 continue
             stiffness, stiffness_slope = stiffness_and_slope(table, xi)
             damping = p[DAMPING] * math.sqrt(max(stiffness, 0.0))
-            if flags & TIP_CONTACT:
-                damping *= gradual(pressed * stiffness / (_GRADUAL * p[NOMINAL_FORCE]))
             softening = p[SOFTENING] if flags & CONTACT_LAW else 0.0
             elastic, stored, stored_slope = elastic_load(
                 pressed, stiffness, stiffness_slope, softening, p[NOMINAL_FORCE]
             )
+            if flags & TIP_CONTACT:
+                damping *= gradual(elastic / (_GRADUAL * p[NOMINAL_FORCE]))
             if unilateral and pressed <= 0.0:
                 elastic = stored = stored_slope = damping = 0.0
             normal = elastic + damping * pressing

@@ -55,13 +55,19 @@ class ActualContact(ContactPath):
 
 
 def law_ratio(
-    pair: GearPair, slides_as: FloatArray, rolling: FloatArray, arm_pinion: FloatArray, arm_gear: FloatArray
+    pair: GearPair,
+    interval: tuple[float, float],
+    slides_as: FloatArray,
+    rolling: FloatArray,
+    arm_pinion: FloatArray,
+    arm_gear: FloatArray,
 ) -> FloatArray:
     """Coefficient at the actual contact over that of the nominal motion where it slides as fast, (k,).
 
     Parameters
     ----------
     pair : a validated gear pair, whose friction law is read
+    interval : places between which the lumped law is read; beyond it keeps its value [m]
     slides_as : (k,) where the nominal motion slides as fast as the teeth do [m]
     rolling : (k,) sum of the rolling velocities [m/s]
     arm_pinion, arm_gear : (k,) distances of the contact from both tangent points [m]
@@ -74,7 +80,7 @@ def law_ratio(
     nominal = {field.name: getattr(path, field.name) for field in fields(path)}
     speeds = path.omega_pinion + path.omega_gear
     sliding = speeds * np.maximum(np.abs(slides_as - path.L_XP), PITCH_RESOLUTION)
-    held = np.clip(slides_as, path.L_XA, path.L_XD)  # as the lumped law is read
+    held = np.clip(slides_as, *interval)
     actual = ActualContact(
         **nominal, sliding=sliding, rolling=rolling, arm_pinion=arm_pinion, arm_gear=arm_gear
     )

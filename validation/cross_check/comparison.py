@@ -201,7 +201,6 @@ def crosscheck(
     """
     pair = load_gear_pair(pair)
     _check(cycles, samples_per_cycle, fidelities, quantities)
-    must_be_papers_form(pair)
     other = unlike_twin(pair) if twin and len(fidelities) == len(FIDELITIES) else None
     runs = 1 + len(fidelities) + (other is not None)
 

@@ -59,6 +59,8 @@ EFFECT_WORDS: Mapping[str, str] = {
     "rotation_phase": "stiffness where the contact stands",
     "sliding_velocity": "friction at the actual sliding",
     "moving_line": "turned line of action",
+    "tip_contact": "contact where flanks and tip corners meet in motion",
+    "path_work": "work along the path",
 }
 
 
@@ -116,7 +118,7 @@ def first_order(predicted: FiniteMotion) -> Effects:
     every = replace(
         predicted.model,
         times=sample_times(cycle.period, _TIMES),
-        effects=frozenset(PREDICTED),
+        effects=frozenset(PREDICTED[predicted.model.pair.mesh.contact]),
         friction_velocity=0.0,
     )
     nominal = every.motion(None, line=0.0)
@@ -125,17 +127,22 @@ def first_order(predicted: FiniteMotion) -> Effects:
 
     def values(motion: Motion) -> dict[str, FloatArray]:
         states = motion.states[np.searchsorted(motion.times, every.times)]
-        return _values(motion.system, numbers, driving, every.times, states)
+        taken = _losses(motion.system, numbers, driving, every.times, states)
+        return every.response(motion, every.times) | taken
 
     before = values(nominal)
     shifts = predicted.shifts
     end = max(max(one.entry, one.exit, one.beyond) for one in (found, shifts or found))
-    size = {
+    static = every.static_overlap(found.place)
+    every_size = {
         "entry_shift": end,
+        "tip_contact": float(np.abs(found.overlap - static).max()),
+        "path_work": 0.0,  # a force, no displacement
         "rotation_phase": float(np.abs(found.stands_at - found.place).max()),
         "sliding_velocity": float(np.abs(found.slides_as - found.place).max()),
         "moving_line": float(np.abs(every.turns(nominal)).max()),
     }
+    size = {name: every_size[name] for name in sorted(every.effects)}
 
     def change(effect: str, shifts: Shifts, line: float, velocity: float = 0.0) -> dict[str, float]:
         alone = replace(every, effects=frozenset({effect}), friction_velocity=velocity)
@@ -155,16 +162,20 @@ def first_order(predicted: FiniteMotion) -> Effects:
     def displaced(effect: str, pattern: FloatArray | float, entry: float, exit: float) -> dict[str, float]:
         moved = found.place + pattern * size[effect]
         shifted = replace(found, entry=entry, exit=exit, stands_at=moved, slides_as=moved)
+        if effect == "tip_contact":
+            shifted = replace(found, overlap=static + pattern * (found.overlap - static))
         return change(effect, shifted, size["moving_line"])
 
     after_pitch = np.where(found.place < cycle.geometry.L_XP, -1.0, 1.0)
     patterns: Mapping[str, Sequence[FloatArray | float]] = {
         "rotation_phase": (1.0, -1.0),
         "sliding_velocity": (1.0, -1.0, after_pitch, -after_pitch),
+        "tip_contact": (1.0, -1.0, after_pitch, -after_pitch),
         "moving_line": (1.0,),  # the other sign does as much
+        "path_work": (1.0,),  # the nominal motion tells it to first order
     }
     most: dict[str, dict[str, float]] = {}
-    for effect in PREDICTED:
+    for effect in size:
         if effect == "entry_shift":
             late, early = displaced(effect, 0.0, end, 0.0), displaced(effect, 0.0, 0.0, end)
             most[effect] = {name: late[name] + early[name] for name in late}
@@ -193,12 +204,12 @@ def _jumps_beside(law: PathFunction, pitch_point: float) -> bool:
     return bool(np.any(jumps > _JUMP * np.abs(law(law.breaks[:-1])).max()))
 
 
-def _values(
+def _losses(
     system: LTVSystem, numbers: Machine, driving: float, times: FloatArray, states: FloatArray
 ) -> dict[str, FloatArray]:
-    """Quantities over the cycle, and powers over the driving one."""
+    """Mean powers over the driving one."""
     taken = losses(system, numbers, times, states, np.full(times.size, 1.0 / times.size))
-    return response(system, times, states) | {name: np.array(p / driving) for name, p in taken.items()}
+    return {name: np.array(p / driving) for name, p in taken.items()}
 
 
 def _changes(before: Mapping[str, FloatArray], after: Mapping[str, FloatArray]) -> dict[str, float]:
@@ -213,7 +224,7 @@ def _held(every: ShiftedModel, reach: float, numbers: Machine, driving: float) -
 
     def values(system: LTVSystem) -> dict[str, FloatArray]:
         states = periodic_solution(system, times, estimate_error=False).states
-        return _values(system, numbers, driving, times, states)
+        return response(system, times, states) | _losses(system, numbers, driving, times, states)
 
     before, low, high = values(every.nominal), max(g.L_XA, g.L_XP - reach), min(g.L_XD, g.L_XP + reach)
     ends = np.linspace(low, high, _PIECES + 1)

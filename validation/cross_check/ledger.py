@@ -93,6 +93,11 @@ def losses(
     }
 
 
+def paid_by_the_brake(powers: Mapping[str, float]) -> dict[str, float]:
+    """The same where a contact with an energy makes the brake pay for what its force would take or give."""
+    return dict(powers) | {"braking": powers["braking"] + powers["mesh_stiffness"], "mesh_stiffness": 0.0}
+
+
 def multibody_powers(balance: multibody.PowerBalance, period: float) -> dict[str, float]:
     """The same of a multibody run over one mesh cycle; what it stored counts as driving power less [W]."""
     found = {name: float(getattr(balance, name)) / period for name in POWERS}

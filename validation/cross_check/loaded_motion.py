@@ -82,6 +82,10 @@ class LoadedModel(ShiftedModel):
         """The friction law of the nominal motion, between these places."""
         return friction_path_function(self.pair, interval=self.reach)
 
+    def static_overlap(self, place: FloatArray) -> FloatArray:
+        """Approach of the static motion at places of one pair (k,) [m]."""
+        return self.mesh.approach(place)
+
     def _ends(self, way: FloatArray, reach: FloatArray, further: FloatArray) -> tuple[float, float]:
         """Where contact begins and ends is decided by its gap."""
         return 0.0, 0.0
@@ -133,7 +137,7 @@ class LoadedModel(ShiftedModel):
         if "tip_contact" in self.effects:
             overlap, longer = shifts.overlap, shifts.longer
         else:
-            overlap, longer = mesh.approach(place), np.full(place.size, mesh.lengthening)
+            overlap, longer = self.static_overlap(place), np.full(place.size, mesh.lengthening)
 
         scale = 2.0 * self.pair.mesh.damping_ratio * np.sqrt(bodies(self.pair).effective_mass)
         full = FULL_DAMPING * mesh.force
@@ -153,10 +157,11 @@ class LoadedModel(ShiftedModel):
                 "damping": scale * np.sqrt(k) * engaged**2 * (3.0 - 2.0 * engaged),
             }
 
-        # A pair lets go where its flanks part, and where its damper would pull more than they press.
         found, speed = state(place), g.base_pitch / self.cycle.period
-        pressing = found["damping"] * np.gradient(found["pressed"], place) * speed
-        touching = np.where(found["pressed"] > 0.0, found["load"] + pressing, found["pressed"])
+        touching = found["pressed"]
+        if "tip_contact" in self.effects:  # a pair also lets go where its damper would pull more than it presses
+            pressing = found["damping"] * np.gradient(touching, place) * speed
+            touching = np.where(touching > 0.0, found["load"] + pressing, touching)
         turn = np.flatnonzero(np.signbit(touching[1:]) != np.signbit(touching[:-1]))
         share = touching[turn] / (touching[turn] - touching[turn + 1])
         ends = place[turn] + share * np.diff(place)[turn]

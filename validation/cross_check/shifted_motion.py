@@ -136,6 +136,10 @@ class ShiftedModel:
         """The friction law of the nominal motion, between these places."""
         return self.cycle.elements.friction
 
+    def static_overlap(self, place: FloatArray) -> FloatArray:
+        """Overlap about which the contact is linear, at places of one pair (k,) [m]."""
+        return np.zeros(place.size)
+
     def settle(self, start: Shifts | None) -> tuple[Shifts, bool]:
         """Shifts that are those of their own motion: the last ones, and whether they settled.
 
@@ -283,9 +287,8 @@ class ShiftedModel:
             width = self.friction_velocity / (g.omega_pinion + g.omega_gear)
             ratio = np.ones_like(shifts.place)
             if "sliding_velocity" in self.effects:
-                ratio = law_ratio(
-                    self.pair, shifts.slides_as, shifts.rolling, shifts.arm_pinion, shifts.arm_gear
-                )
+                rates = shifts.rolling, shifts.arm_pinion, shifts.arm_gear
+                ratio = law_ratio(self.pair, friction.interval, shifts.slides_as, *rates)
             friction = at_sliding(friction, g.L_XP, shifts.place, shifts.slides_as, width, ratio)
         return friction
 

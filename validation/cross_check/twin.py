@@ -53,7 +53,8 @@ def unlike_twin(pair: GearPair) -> GearPair | None:
 def prediction_holds(pair: GearPair) -> bool:
     """Whether the lumped motion holds by its own numbers: it is stable, and teeth in contact touch and press.
 
-    Teeth that approach each other may press by damping before they touch: in the lumped model alone.
+    Teeth that approach each other may press by damping before they touch: in the lumped model alone. In the
+    loaded form, where a pair begins and ends its contact gradually, all pairs together must press.
 
     Raises
     ------
@@ -63,6 +64,9 @@ def prediction_holds(pair: GearPair) -> bool:
     pairs, values = motion.system.cycle.sample(motion.time), motion.values
     touching = (values["dte"] >= pairs.error) | (pairs.stiffness == 0.0)
     pressing = values["normal_load"] >= 0.0
+    if pair.mesh.contact == "loaded":
+        pressing = values["normal_load"].sum(axis=0) > 0.0
+        touching = pressing
     return bool(motion.spectral_radius <= UNSTABLE and touching.all() and pressing.all())
 
 
