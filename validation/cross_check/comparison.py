@@ -271,7 +271,8 @@ def crosscheck(
     checks: tuple[Judgement, ...] = ()
     powers: Mapping[str, Mapping[str, float]] = {}
     if effects is not None and len(fidelities) == len(FIDELITIES):
-        checks, powers = laws_of_nature(pair, last, one, results, effects.powers, shift)
+        push = np.zeros(6) if predicted is None else predicted.push
+        checks, powers = laws_of_nature(pair, last, one, results, effects.powers, shift, push)
     unsettled = {f: _unsettled(r, samples_per_cycle) for f, r in results.items()}
     if one is not None:
         unsettled["exact"] = float(one.attrs["closure"])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -33,14 +33,13 @@ def moved(law: PathFunction, place: FloatArray, stands_at: FloatArray) -> PathFu
     PathFunction, linear between the places and the crossings of breaks of the law
     """
 
-    def value(actual: FloatArray, _nodes: FloatArray) -> FloatArray:
-        return law(np.clip(actual, *law.interval))
-
-    return through(value, law.interval, law.breaks[1:-1], place, stands_at)
+    lines = Lines.between(law.interval, law.breaks[1:-1], place, stands_at)
+    return lines.through(law(np.clip(np.interp(lines.inner, place, stands_at), *law.interval)))
 
 
 def at_sliding(
     law: PathFunction,
+    interval: tuple[float, float],
     pitch_point: float,
     place: FloatArray,
     slides_as: FloatArray,
@@ -51,7 +50,9 @@ def at_sliding(
 
     Parameters
     ----------
-    law : mu(xi) at nominal rotation, where xi tells the sliding velocity: it vanishes at the pitch point
+    law : mu(xi) at nominal rotation, where xi tells the sliding velocity: it vanishes at the pitch point;
+        beyond its ends it keeps its value there
+    interval : places between which a pair is followed [m]
     pitch_point : L_XP [m]
     place : (k,) nominal positions, over the whole path [m]
     slides_as : (k,) where the nominal motion slides as fast as the teeth do there [m]
@@ -65,15 +66,13 @@ def at_sliding(
     """
     width = width if width > np.diff(place).max() else 0.0
 
-    def value(equivalent: FloatArray, nodes: FloatArray) -> FloatArray:
-        mu = law(np.clip(equivalent, *law.interval)) * np.interp(nodes, place, ratio)
-        sharpness = np.tanh(np.abs(equivalent - pitch_point) / width) if width > 0.0 else 1.0
-        return np.asarray(sharpness * mu, dtype=np.float64)
-
     pieces = law.breaks.size - 1
     parts = np.interp(np.arange(pieces * _PARTS + 1) / _PARTS, np.arange(pieces + 1), law.breaks)
     marks = np.union1d(parts, pitch_point + width * _TANH)
-    return through(value, law.interval, marks, place, slides_as)
+    lines = Lines.between(interval, marks, place, slides_as)
+    equivalent = np.interp(lines.inner, place, slides_as)
+    mu = law(np.clip(equivalent, *law.interval)) * np.interp(lines.inner, place, ratio)
+    return lines.through(mu * np.tanh(np.abs(equivalent - pitch_point) / width) if width > 0.0 else mu)
 
 
 def shortened(law: PathFunction, first: float, last: float) -> PathFunction:
@@ -113,30 +112,44 @@ def reversed_within(law: PathFunction, first: float, last: float) -> PathFunctio
     return PathFunction(edges, sign * columns, switches)
 
 
-def through(
-    value: Callable[[FloatArray, FloatArray], FloatArray],
-    interval: tuple[float, float],
-    marks: FloatArray,
-    place: FloatArray,
-    image: FloatArray,
-) -> PathFunction:
-    """``value`` of each place's image and place: lines, broken at places and where the image meets a mark."""
-    low, high = interval
-    before, after = image[:-1, None] - marks, image[1:, None] - marks
-    crossing = np.nonzero(before * after < 0.0)
-    share, piece = before[crossing] / (before[crossing] - after[crossing]), crossing[0]
-    nodes = np.concatenate([place, place[piece] + share * np.diff(place)[piece], [low, high]])
-    nodes = np.unique(nodes[(nodes >= low) & (nodes <= high)])
-    nodes = nodes[np.diff(nodes, prepend=-np.inf) > _SAME]
-    nodes[-1] = high
-    # Each line goes through two inner points, so a jump at its end stays outside.
-    width = np.diff(nodes)
-    inner = (nodes[:-1] + share * width for share in (0.25, 0.75))
-    near, far = (value(np.interp(x, place, image), x) for x in inner)
-    slope = (far - near) / (0.5 * width)
-    start = near - 0.25 * width * slope
-    jump = np.abs(start[1:] - (start + slope * width)[:-1]) > _JUMP * np.abs(near).max()
-    return PathFunction(nodes, np.stack([slope, start]), nodes[1:-1][jump])
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """Straight lines that stand for laws along the path, each through two inner places of its piece.
+
+    So a jump at a node stays outside.
+
+    Attributes
+    ----------
+    nodes : (n + 1,) ends of the pieces [m]
+    inner : (2, n) the two places in each [m]
+    """
+
+    nodes: FloatArray
+    inner: FloatArray
+
+    @classmethod
+    def between(
+        cls, interval: tuple[float, float], marks: FloatArray, place: FloatArray, image: FloatArray
+    ) -> Lines:
+        """Lines broken at the places (k,) and where their image (k,) meets a mark, on an interval [m]."""
+        low, high = interval
+        before, after = image[:-1, None] - marks, image[1:, None] - marks
+        crossing = np.nonzero(before * after < 0.0)
+        share, piece = before[crossing] / (before[crossing] - after[crossing]), crossing[0]
+        nodes = np.concatenate([place, place[piece] + share * np.diff(place)[piece], [low, high]])
+        nodes = np.unique(nodes[(nodes >= low) & (nodes <= high)])
+        nodes = nodes[np.diff(nodes, prepend=-np.inf) > _SAME]
+        nodes[-1] = high
+        return cls(nodes, nodes[:-1] + np.multiply.outer([0.25, 0.75], np.diff(nodes)))
+
+    def through(self, values: FloatArray) -> PathFunction:
+        """The law with these values (2, n) at the inner places."""
+        near, far = values
+        width = np.diff(self.nodes)
+        slope = (far - near) / (0.5 * width)
+        start = near - 0.25 * width * slope
+        jump = np.abs(start[1:] - (start + slope * width)[:-1]) > _JUMP * np.abs(near).max()
+        return PathFunction(self.nodes, np.stack([slope, start]), self.nodes[1:-1][jump])
 
 
 def _from(law: PathFunction, place: float) -> FloatArray:

@@ -59,7 +59,7 @@ from lumped.model.periodic_system import periodic_system
 from lumped.model.solution import initial_state
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.typing import FloatArray
-from validation.cross_check.loaded_motion import LoadedModel
+from validation.cross_check.loaded_motion import LoadedModel, PushedSystem
 from validation.cross_check.shifted_motion import ShiftedModel, Shifts
 
 #: Times per mesh cycle at which the motion is read off: while it settles, and in the end at least.
@@ -85,6 +85,7 @@ class FiniteMotion:
         nothing is predicted
     model : the lumped model with the effects that are predicted
     shifts : what the predicted motion moves; None where nothing is predicted
+    push : (6,) mean generalised forces of the teeth beside those of normal load and friction [N m, N]
     """
 
     changes: Mapping[str, FloatArray]
@@ -93,6 +94,7 @@ class FiniteMotion:
     settled: bool
     model: ShiftedModel
     shifts: Shifts | None
+    push: FloatArray
 
     def over(self, quantity: str, length: int) -> FloatArray:
         """Change of a quantity over whole cycles cut to ``length`` times."""
@@ -149,8 +151,11 @@ def finite_motion(
         shifts, without = model.settle(None)
         if not without:
             still = {name: np.zeros(cycle[name].shape) for name in _CHANGED}
-            return FiniteMotion(still, 0.0, 0.0, False, model, None)
+            return FiniteMotion(still, 0.0, 0.0, False, model, None, np.zeros(6))
         found = model.motion(shifts)
     motion = model.response(found, fine)
     changes = {name: motion[name][..., ::every] - cycle[name].to_numpy() for name in _CHANGED}
-    return FiniteMotion(changes, shifts.entry, shifts.exit, settled, model, shifts)
+    push = np.zeros(6)
+    if isinstance(found.system, PushedSystem):
+        push = found.system.forces(fine).mean(axis=0)
+    return FiniteMotion(changes, shifts.entry, shifts.exit, settled, model, shifts, push)

@@ -20,15 +20,16 @@ from lumped.model.bodies import bodies
 from lumped.model.mesh_elements import MeshElements
 from lumped.model.periodic_system import LTVSystem, MeshGain
 from lumped.path_function import PathFunction
-from lumped.path_of_contact import friction_path_function
 from lumped.quasi_static.kernels import corner_gaps, gaps_at
 from lumped.quasi_static.loaded_contact import FULL_DAMPING, StaticMesh
 from lumped.quasi_static.tooth_error import relief_starts
 from lumped.typing import FloatArray
-from validation.cross_check.effective_elements import through
+from validation.cross_check.effective_elements import Lines
 from validation.cross_check.shifted_motion import ShiftedModel, Shifts
 
 
+#: Pairs are followed to this share of the distance of A and D from the nearest tangent point, where radii vanish.
+_FROM_TANGENT = 0.1
 #: Half the distance over which slopes along the path are read [m].
 _BESIDE = 1e-7
 
@@ -37,28 +38,33 @@ _BESIDE = 1e-7
 class PushedSystem(LTVSystem):
     """A system on which the teeth push beside the normal load along the nominal line of action.
 
-    A pair with the energy U(rho_p, rho_g, L) pushes with -dU/d rho_p and -dU/d rho_g along its flank distances.
-    The motion changes them by r_bp (theta_p + psi) and -r_bg (theta_g - psi), psi = (y_g - y_p)/L_XY.
+    A pair with the energy U(rho_p, rho_g, L) pushes with -dU/d rho_p, -dU/d rho_g and -dU/dL. The motion changes
+    these lengths by r_bp (theta_p + psi), -r_bg (theta_g - psi) and x_g - x_p + (r_bp + r_bg) psi, with
+    psi = (y_g - y_p)/L_XY.
 
     Attributes
     ----------
     place : (k,) places of one pair [m]
-    push : (2, k) what it pushes there along the flank distances of pinion and gear, the nominal load left out [N]
+    push : (3, k) what it pushes there, the nominal load left out [N]
     """
 
     place: FloatArray = field(default_factory=lambda: np.empty(0))
-    push: FloatArray = field(default_factory=lambda: np.empty((2, 0)))
+    push: FloatArray = field(default_factory=lambda: np.empty((3, 0)))
 
     def gain(self, time: ArrayLike, segment: int | NDArray[np.int64] | None = None) -> MeshGain:
         """The mesh's feedback and the push of all pairs."""
-        g, found = self.cycle.geometry, super().gain(time, segment)
+        found = super().gain(time, segment)
+        return replace(found, error=found.error + self.forces(time) / self.structure.mass @ self.reduction.T)
+
+    def forces(self, time: ArrayLike) -> FloatArray:
+        """Generalised forces of the push at times (k,) [s], (k, 6) [N m, N]."""
+        g = self.cycle.geometry
         way = np.mod(np.atleast_1d(np.asarray(time, dtype=float)) / self.period, 1.0) * g.base_pitch
         at = self.cycle.offsets[:, None] + way
         by_p, by_g, by_l = (np.interp(at, self.place, v, left=0.0, right=0.0).sum(0) for v in self.push)
         r_p, r_g = g.base_radius_pinion, g.base_radius_gear
-        across = (r_p * by_p + r_g * by_g + (r_p + r_g)*by_l) / g.L_XY
-        forces = np.stack([r_p * by_p, -r_g * by_g, -by_l, by_l, -across, across], axis=1)
-        return replace(found, error=found.error + forces / self.structure.mass @ self.reduction.T)
+        across = (r_p * by_p + r_g * by_g + (r_p + r_g) * by_l) / g.L_XY
+        return np.stack([r_p * by_p, -r_g * by_g, -by_l, by_l, -across, across], axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,12 +81,9 @@ class LoadedModel(ShiftedModel):
     @property
     def reach(self) -> tuple[float, float]:
         """Places between which a pair is followed [m]."""
-        return self.mesh.low, self.mesh.high
-
-    @cached_property
-    def friction(self) -> PathFunction:
-        """The friction law of the nominal motion, between these places."""
-        return friction_path_function(self.pair, interval=self.reach)
+        g = self.cycle.geometry
+        low, high = _FROM_TANGENT * g.L_XA, g.L_XY - _FROM_TANGENT * (g.L_XY - g.L_XD)
+        return max(self.mesh.low, low), min(self.mesh.high, high)
 
     def static_overlap(self, place: FloatArray) -> FloatArray:
         """Approach of the static motion at places of one pair (k,) [m]."""
@@ -166,22 +169,21 @@ class LoadedModel(ShiftedModel):
         share = touching[turn] / (touching[turn] - touching[turn + 1])
         ends = place[turn] + share * np.diff(place)[turn]
         nodes = np.union1d(place, ends)
-        image = np.interp(nodes, place, stands_at)
         marks = np.unique(np.concatenate([law.stiffness.breaks, relief_starts(self.pair)]))
 
-        def fitted(name: str) -> PathFunction:
-            def value(_: FloatArray, at: FloatArray) -> FloatArray:
-                values = state(at)[name]
-                if name in ("stiffness", "damping"):
-                    values = np.where(np.interp(at, place, touching) > 0.0, values, 0.0)
-                return values
+        lines = Lines.between(self.reach, marks, nodes, np.interp(nodes, place, stands_at))
+        at = lines.inner.ravel()
+        values, acts = state(at), np.interp(at, place, touching) > 0.0
+        for name in ("stiffness", "damping"):
+            values[name] = np.where(acts, values[name], 0.0)
 
-            return through(value, self.reach, marks, nodes, image)
+        def fitted(name: str) -> PathFunction:
+            return lines.through(values[name].reshape(2, -1))
 
         return MeshElements(
             stiffness=fitted("stiffness"),
             damping=fitted("damping"),
-            friction=self.friction,
+            friction=self.cycle.elements.friction,
             error=fitted("error"),
             gap=fitted("gap"),
         )

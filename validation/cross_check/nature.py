@@ -48,6 +48,7 @@ def laws_of_nature(
     runs: Mapping[Fidelity, xr.Dataset],
     most: Mapping[str, float],
     shift: float,
+    push: FloatArray,
 ) -> tuple[tuple[Judgement, ...], Mapping[str, Mapping[str, float]]]:
     """Check both models.
 
@@ -59,6 +60,7 @@ def laws_of_nature(
     runs : fidelity -> motion of the multibody model over whole cycles, the last end included
     most : power -> largest first-order change by finite motions, over the driving power
     shift : of the contact, over the base pitch
+    push : (6,) mean generalised forces of the teeth beside normal load and friction, in the exact model
 
     Returns
     -------
@@ -80,9 +82,9 @@ def laws_of_nature(
     found = [_friction(m, "lumped", reference)]
     found += [_friction(m, name, run) for name, run in runs.items()]
     for name, motion in motions.items():
-        allowed = shift if name == "exact" else 0.0
+        allowed, beside = (shift, push) if name == "exact" else (0.0, np.zeros(6))
         found += _action_and_reaction(m, name, motion)
-        found += _statics(m, name, motion, pair.operating.pinion_torque, allowed, variation)
+        found += _statics(m, name, motion, pair.operating.pinion_torque, allowed, variation, beside)
     for name, one in powers.items():
         found += _first_law(name, one)
     found += _power_by_power(powers, most, shift, paid=pair.mesh.contact == "loaded")
@@ -187,17 +189,22 @@ def _statics(
     torque: float,
     allowed: float,
     variation: Mapping[str, float],
+    push: FloatArray,
 ) -> list[Judgement]:
-    """Mean moments of the pinion, and mean forces of each gear off the line of action."""
+    """Mean moments of the pinion, and mean forces of each gear off the line of action.
+
+    With the mean forces ``push`` (6,) of the teeth beside normal load and friction, pinion's moment first.
+    """
     p, (k_p, k_g) = m.parameters, m.bearing_stiffness
     force = motion["friction_force"].to_numpy()
     moment = (force * motion["position"].to_numpy()).sum(axis=0)
     total, load = force.sum(axis=0), torque / p[kn.RADIUS_P]
+    along = load + (push[0] - moment.mean()) / p[kn.RADIUS_P]
     values = {
-        "x_p": -k_p[0] * _mean(motion, "x_p") + moment.mean() / p[kn.RADIUS_P] - load,
-        "x_g": k_g[0] * _mean(motion, "x_g") + moment.mean() / p[kn.RADIUS_P] - load,
-        "y_p": k_p[1] * _mean(motion, "y_p") - total.mean(),
-        "y_g": -k_g[1] * _mean(motion, "y_g") - total.mean(),
+        "x_p": -k_p[0] * _mean(motion, "x_p") - along + push[2],
+        "x_g": k_g[0] * _mean(motion, "x_g") - along - push[3],
+        "y_p": k_p[1] * _mean(motion, "y_p") - total.mean() - push[4],
+        "y_g": -k_g[1] * _mean(motion, "y_g") - total.mean() + push[5],
     }
     stiffness = {"x_p": k_p[0], "x_g": k_g[0], "y_p": k_p[1], "y_g": k_g[1]}
     samples = force.shape[1]

@@ -131,11 +131,6 @@ class ShiftedModel:
         """Places between which a pair is followed [m]."""
         return self.cycle.geometry.L_XA, self.cycle.geometry.L_XD
 
-    @property
-    def friction(self) -> PathFunction:
-        """The friction law of the nominal motion, between these places."""
-        return self.cycle.elements.friction
-
     def static_overlap(self, place: FloatArray) -> FloatArray:
         """Overlap about which the contact is linear, at places of one pair (k,) [m]."""
         return np.zeros(place.size)
@@ -282,14 +277,16 @@ class ShiftedModel:
         return periodic_system(self.pair, "absolute", cycle=MeshCycle(self.cycle.geometry, elements))
 
     def _friction(self, shifts: Shifts) -> PathFunction:
-        g, friction = self.cycle.geometry, self.friction
+        g, friction = self.cycle.geometry, self.cycle.elements.friction
         if friction.coefficients.any():
             width = self.friction_velocity / (g.omega_pinion + g.omega_gear)
             ratio = np.ones_like(shifts.place)
             if "sliding_velocity" in self.effects:
                 rates = shifts.rolling, shifts.arm_pinion, shifts.arm_gear
                 ratio = law_ratio(self.pair, friction.interval, shifts.slides_as, *rates)
-            friction = at_sliding(friction, g.L_XP, shifts.place, shifts.slides_as, width, ratio)
+            friction = at_sliding(
+                friction, self.reach, g.L_XP, shifts.place, shifts.slides_as, width, ratio
+            )
         return friction
 
     def _contact(self, shifts: Shifts) -> MeshElements:
