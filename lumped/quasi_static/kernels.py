@@ -82,24 +82,27 @@ def corner_gaps(
 
 
 @numba.njit(cache=True)
-def gap_at(place: float, relief: float, half: float, ends: FloatArray) -> float:
+def gap_at(place: float, relief: float, half: float, longer: float, ends: FloatArray) -> float:
     """Gap of a pair at xi = ``place`` [m], its contact point ``half`` beyond where the tips leave the line.
 
-    ``relief`` is the material missing there [m]; ``ends`` are L_XA, L_XD, L_XY and the base radii of pinion
-    and gear [m].
+    ``relief`` is the material missing there and ``longer`` what the line of action is longer than nominal [m];
+    ``ends`` are L_XA, L_XD, L_XY and the base radii of pinion and gear [m].
     """
     early, late = ends[0] - place + half, place - ends[1] + half
-    before = corner_gap_at(early, ends[0], ends[2], ends[3], ends[4])
-    behind = corner_gap_at(late, ends[2] - ends[1], ends[2], ends[4], ends[3])
+    length = ends[2] + longer
+    before = corner_gap_at(early, ends[0] + longer, length, ends[3], ends[4])
+    behind = corner_gap_at(late, length - ends[1], length, ends[4], ends[3])
     return float(relief + before + behind)
 
 
 @numba.njit(cache=True)
-def gaps_at(place: FloatArray, relief: FloatArray, half: FloatArray, ends: FloatArray) -> FloatArray:
+def gaps_at(
+    place: FloatArray, relief: FloatArray, half: FloatArray, longer: FloatArray, ends: FloatArray
+) -> FloatArray:
     """``gap_at`` at n positions, (n,)."""
     found = np.empty(place.size)
     for i in range(place.size):
-        found[i] = gap_at(place[i], relief[i], half[i], ends)
+        found[i] = gap_at(place[i], relief[i], half[i], longer[i], ends)
     return found
 
 
@@ -135,7 +138,7 @@ def approaches(
             total, slope, half = -force, 0.0, 0.5 * (delta + lengthening)
             for j in range(place.shape[1]):
                 if stiffness[i, j] > 0.0:
-                    gap = gap_at(place[i, j], relief[i, j], half, ends)
+                    gap = gap_at(place[i, j], relief[i, j], half, lengthening, ends)
                     load, tangent = load_of(delta - gap, stiffness[i, j], softening, force, least)
                     total += load
                     slope += tangent

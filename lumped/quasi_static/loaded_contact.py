@@ -166,12 +166,19 @@ class StaticMesh:
         """Approach less the gap of the pair at xi (n,) [m]; negative where it is apart."""
         half = self.half(xi)
         approach = 2.0 * half - self.lengthening
-        return np.asarray(approach - gaps_at(xi, self.relief(xi), half, self.ends), dtype=np.float64)
+        return np.asarray(approach - self.gap(xi, half, np.full(half.size, self.lengthening)))
+
+    def gap(self, xi: FloatArray, half: FloatArray, longer: FloatArray) -> FloatArray:
+        """Gap of the pair at xi without deflection, (n,) [m].
+
+        ``half`` is half the approach and the lengthening, ``longer`` that of the line of action, (n,) [m].
+        """
+        return np.asarray(gaps_at(xi, self.relief(xi), half, longer, self.ends), dtype=np.float64)
 
     def static(self, xi: FloatArray) -> StaticPair:
         """The pair at xi (n,) [m] in equilibrium."""
         delta = self.approach(xi)
-        gap = gaps_at(xi, self.relief(xi), 0.5 * (delta + self.lengthening), self.ends)
+        gap = self.gap(xi, 0.5 * (delta + self.lengthening), np.full(delta.size, self.lengthening))
         load, tangent = self.law.load(self.law.held(xi), delta - gap)
         return StaticPair(load, tangent, delta - load / np.where(tangent > 0.0, tangent, np.inf), gap)
 

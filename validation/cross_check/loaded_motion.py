@@ -20,7 +20,7 @@ from lumped.model.bodies import bodies
 from lumped.model.mesh_elements import MeshElements
 from lumped.model.periodic_system import LTVSystem, MeshGain
 from lumped.path_function import PathFunction
-from lumped.quasi_static.kernels import corner_gaps, gaps_at
+from lumped.quasi_static.kernels import corner_gaps
 from lumped.quasi_static.loaded_contact import FULL_DAMPING, StaticMesh
 from lumped.quasi_static.tooth_error import relief_starts
 from lumped.typing import FloatArray
@@ -116,7 +116,9 @@ class LoadedModel(ShiftedModel):
             at = np.flatnonzero(arm > tip)
             length = g.L_XY + shifts.longer[at]
 
-            def gap(beside: float, longer: float, at=at, arm=arm, tip=tip, flank=flank, own=own, length=length):
+            def gap(
+                beside: float, longer: float, at=at, arm=arm, tip=tip, flank=flank, own=own, length=length
+            ):
                 return corner_gaps(arm[at] - tip + beside, length - tip + longer, length + longer, flank, own)
 
             for column, step in ((row, (_BESIDE, 0.0)), (2, (0.0, _BESIDE))):
@@ -147,7 +149,7 @@ class LoadedModel(ShiftedModel):
 
         def state(at: FloatArray) -> dict[str, FloatArray]:
             actual, delta, more = (np.interp(at, place, v) for v in (stands_at, overlap, longer))
-            gap = gaps_at(actual, mesh.relief(actual), 0.5 * (delta + more), mesh.ends)
+            gap = mesh.gap(actual, 0.5 * (delta + more), more)
             k = law.held(actual)
             load, tangent = law.load(k, delta - gap)
             engaged = np.clip(load / full, 0.0, 1.0)
@@ -162,7 +164,9 @@ class LoadedModel(ShiftedModel):
 
         found, speed = state(place), g.base_pitch / self.cycle.period
         touching = found["pressed"]
-        if "tip_contact" in self.effects:  # a pair also lets go where its damper would pull more than it presses
+        if (
+            "tip_contact" in self.effects
+        ):  # a pair also lets go where its damper would pull more than it presses
             pressing = found["damping"] * np.gradient(touching, place) * speed
             touching = np.where(touching > 0.0, found["load"] + pressing, touching)
         turn = np.flatnonzero(np.signbit(touching[1:]) != np.signbit(touching[:-1]))

@@ -284,9 +284,7 @@ class ShiftedModel:
             if "sliding_velocity" in self.effects:
                 rates = shifts.rolling, shifts.arm_pinion, shifts.arm_gear
                 ratio = law_ratio(self.pair, friction.interval, shifts.slides_as, *rates)
-            friction = at_sliding(
-                friction, self.reach, g.L_XP, shifts.place, shifts.slides_as, width, ratio
-            )
+            friction = at_sliding(friction, self.reach, g.L_XP, shifts.place, shifts.slides_as, width, ratio)
         return friction
 
     def _contact(self, shifts: Shifts) -> MeshElements:
