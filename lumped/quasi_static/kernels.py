@@ -85,8 +85,8 @@ def corner_gaps(
 def gap_at(place: float, relief: float, half: float, longer: float, ends: FloatArray) -> float:
     """Gap of a pair at xi = ``place`` [m], its contact point ``half`` beyond where the tips leave the line.
 
-    ``relief`` is the material missing there and ``longer`` what the line of action is longer than nominal [m];
-    ``ends`` are L_XA, L_XD, L_XY and the base radii of pinion and gear [m].
+    ``relief`` is the material missing there, ``longer`` by how much the line of action is longer than nominal
+    [m]; ``ends`` are L_XA, L_XD, L_XY and the base radii of pinion and gear [m].
     """
     early, late = ends[0] - place + half, place - ends[1] + half
     length = ends[2] + longer

@@ -72,8 +72,8 @@ N_RECORD = 15
 
 #: How far beyond the tips contact is looked for, over the base pitch.
 _REACH = 0.4
-#: Where teeth touch beyond their tips the damper takes hold gradually: it is whole at this share of the whole
-#: load. A damper that acts at once would make the load jump by the approach velocity times c at the first touch.
+#: Where teeth touch beyond their tips the damper takes hold gradually: it is whole at this share of the mean
+#: load. Acting at once it would make the load jump by c times the speed of approach at the first touch.
 _GRADUAL = 1.0 / 15.0
 
 

@@ -32,7 +32,6 @@ def moved(law: PathFunction, place: FloatArray, stands_at: FloatArray) -> PathFu
     -------
     PathFunction, linear between the places and the crossings of breaks of the law
     """
-
     lines = Lines.between(law.interval, law.breaks[1:-1], place, stands_at)
     return lines.through(law(np.clip(np.interp(lines.inner, place, stands_at), *law.interval)))
 

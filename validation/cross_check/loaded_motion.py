@@ -1,17 +1,18 @@
 """The loaded form's motion with contacts that follow the motion, as the exact contact does.
 
-The loaded form is linear about the static motion. Here the pairs of teeth are linear about the motion that was
-found before: N = k_t (delta - e) with tangent k_t and e of the contact law at the actual compression, at the
-place where the contact stands. A motion that repeats itself then obeys the contact law itself; each repetition is
-a step of Newton's method.
+The loaded form is linear about the static motion. Here the pairs of teeth are linear about the motion that
+was found before: N = k_t (delta - e) with k_t and e of the contact law at the actual compression, where the
+contact stands. A motion that repeats itself obeys the contact law itself; each repetition is a step of
+Newton's method.
 
-Sources: docs/theory/contact_energy.md, "The loaded form of the linear model".
+Sources: docs/theory/contact_energy.md, "What the exact contact changes in the loaded form".
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,8 +28,7 @@ from lumped.typing import FloatArray
 from validation.cross_check.effective_elements import Lines
 from validation.cross_check.shifted_motion import ShiftedModel, Shifts
 
-
-#: Pairs are followed to this share of the distance of A and D from the nearest tangent point, where radii vanish.
+#: Pairs are followed to this share of the way from a tangent point, where radii vanish, to A or D.
 _FROM_TANGENT = 0.1
 #: Half the distance over which slopes along the path are read [m].
 _BESIDE = 1e-7
@@ -38,9 +38,9 @@ _BESIDE = 1e-7
 class PushedSystem(LTVSystem):
     """A system on which the teeth push beside the normal load along the nominal line of action.
 
-    A pair with the energy U(rho_p, rho_g, L) pushes with -dU/d rho_p, -dU/d rho_g and -dU/dL. The motion changes
-    these lengths by r_bp (theta_p + psi), -r_bg (theta_g - psi) and x_g - x_p + (r_bp + r_bg) psi, with
-    psi = (y_g - y_p)/L_XY.
+    A pair with the energy U(rho_p, rho_g, L) pushes with -dU/d rho_p, -dU/d rho_g and -dU/dL. The motion
+    changes these lengths by r_bp (theta_p + psi), -r_bg (theta_g - psi) and x_g - x_p + (r_bp + r_bg) psi,
+    with psi = (y_g - y_p)/L_XY.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class PushedSystem(LTVSystem):
 class LoadedModel(ShiftedModel):
     """The loaded form of one pair, linear about a motion instead of the static one."""
 
-    settling = ("slides_as", "overlap")
+    settling: ClassVar[tuple[str, ...]] = ("slides_as", "overlap")
 
     @cached_property
     def mesh(self) -> StaticMesh:
@@ -95,9 +95,9 @@ class LoadedModel(ShiftedModel):
 
     def _system(self, shifts: Shifts) -> LTVSystem:
         """Equations of motion linear about the motion of these shifts."""
-        system, mesh = super()._system(shifts), self.mesh
+        system = super()._system(shifts)
         push = np.zeros((3, shifts.place.size))
-        if "tip_contact" in self.effects:
+        if "tip_contact" in self.effects:  # U falls by N for every length that the gap grows by
             push += shifts.load * self._corner_slopes(shifts)
         if "path_work" in self.effects:
             push[:2] += 0.5 * np.outer([1.0, -1.0], self._along_path(shifts))
@@ -112,17 +112,14 @@ class LoadedModel(ShiftedModel):
             (shifts.stands_at + half, g.L_XD, g.base_radius_gear, g.base_radius_pinion),
             (g.L_XY - shifts.stands_at + half, g.L_XY - g.L_XA, g.base_radius_pinion, g.base_radius_gear),
         )
-        for row, (arm, tip, flank, own) in enumerate(tips):
+        for row, (arm, tip, *radii) in enumerate(tips):
             at = np.flatnonzero(arm > tip)
-            length = g.L_XY + shifts.longer[at]
-
-            def gap(
-                beside: float, longer: float, at=at, arm=arm, tip=tip, flank=flank, own=own, length=length
-            ):
-                return corner_gaps(arm[at] - tip + beside, length - tip + longer, length + longer, flank, own)
-
-            for column, step in ((row, (_BESIDE, 0.0)), (2, (0.0, _BESIDE))):
-                high, low = gap(*step), gap(*(-s for s in step))
+            beyond, length = arm[at] - tip, g.L_XY + shifts.longer[at]
+            for column, further, longer in ((row, _BESIDE, 0.0), (2, 0.0, _BESIDE)):
+                high, low = (
+                    corner_gaps(beyond + s * further, length + s * longer - tip, length + s * longer, *radii)
+                    for s in (1.0, -1.0)
+                )
                 slopes[column, at] = (high - low) / (2.0 * _BESIDE)
         return slopes
 
@@ -164,9 +161,8 @@ class LoadedModel(ShiftedModel):
 
         found, speed = state(place), g.base_pitch / self.cycle.period
         touching = found["pressed"]
-        if (
-            "tip_contact" in self.effects
-        ):  # a pair also lets go where its damper would pull more than it presses
+        # A pair lets go where its flanks part, and where its damper would pull more than they press.
+        if "tip_contact" in self.effects:
             pressing = found["damping"] * np.gradient(touching, place) * speed
             touching = np.where(touching > 0.0, found["load"] + pressing, touching)
         turn = np.flatnonzero(np.signbit(touching[1:]) != np.signbit(touching[:-1]))

@@ -281,9 +281,7 @@ def _power_by_power(
         for power, text in POWERS.items():
             limit, reason = _INTEGRATION[name], "the same equations: only integration error may remain"
             if exact and paid and power == "mesh_stiffness":
-                reason = (
-                    "a contact with an energy takes nothing over a cycle: only integration error may remain"
-                )
+                reason = "what a contact with an energy stores it returns: only integration error may remain"
             elif exact:
                 counted = [lost for lost in LOSSES if lost == power or power not in most]
                 change = sum(most[lost] for lost in counted if expected[lost])

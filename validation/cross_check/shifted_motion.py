@@ -6,6 +6,7 @@ The derivations are in ``validation.cross_check.finite_motion``.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -124,7 +125,7 @@ class ShiftedModel:
     friction_velocity: float
 
     #: What of ``Shifts`` must settle along the path.
-    settling = ("slides_as",)
+    settling: ClassVar[tuple[str, ...]] = ("slides_as",)
 
     @property
     def reach(self) -> tuple[float, float]:
@@ -167,8 +168,9 @@ class ShiftedModel:
             weights = np.linalg.lstsq(np.diff(mismatch, axis=0).T, mismatch[-1], rcond=_ALIKE)[0]
             guess = results[-1] - weights @ np.diff(results, axis=0)
             first, last = np.maximum(guess[:2], 0.0)
-            moved_along = dict(zip(along, np.split(guess[2:], len(along)), strict=True))
-            shifts = replace(found, entry=float(first), exit=float(last), **moved_along)
+            shifts = replace(found, entry=float(first), exit=float(last))
+            guessed = dict(zip(along, np.split(guess[2:], len(along)), strict=True))
+            shifts = replace(shifts, **guessed)  # type: ignore[arg-type]
         return best, closest < _ACCEPTED
 
     def motion(self, shifts: Shifts | None, *, line: float | None = None) -> Motion:
@@ -197,7 +199,7 @@ class ShiftedModel:
         return self._on_turned_line(found, self.turns(found)) if "moving_line" in self.effects else found
 
     def response(self, motion: Motion, times: FloatArray) -> dict[str, FloatArray]:
-        """Variables of ``lumped.model.results.response`` at times of the motion, in the nominal pairs' slots."""
+        """Variables of ``lumped.model.results.response`` at times of the motion, in the nominal slots."""
         states = motion.states[np.searchsorted(motion.times, times)]
         found = response(motion.system, times, states)
         offsets = motion.system.cycle.offsets
