@@ -153,8 +153,8 @@ def finite_motion(
             still = {name: np.zeros(cycle[name].shape) for name in _CHANGED}
             return FiniteMotion(still, 0.0, 0.0, False, model, None, np.zeros(6))
         found = model.motion(shifts)
-    motion = model.response(found, fine)
-    changes = {name: motion[name][..., ::every] - cycle[name].to_numpy() for name in _CHANGED}
+    motion, unmoved = model.response(found, fine), model.response(model.unmoved(), fine)
+    changes = {name: (motion[name] - unmoved[name])[..., ::every] for name in _CHANGED}
     push = np.zeros(6)
     if isinstance(found.system, PushedSystem):
         push = found.system.forces(fine).mean(axis=0)

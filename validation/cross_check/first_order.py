@@ -130,7 +130,7 @@ def first_order(predicted: FiniteMotion) -> Effects:
         taken = _losses(motion.system, numbers, driving, every.times, states)
         return every.response(motion, every.times) | taken
 
-    before = values(nominal)
+    before = values(every.unmoved())
     shifts = predicted.shifts
     end = max(max(one.entry, one.exit, one.beyond) for one in (found, shifts or found))
     static = every.static_overlap(found.place)

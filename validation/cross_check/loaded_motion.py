@@ -26,7 +26,7 @@ from lumped.quasi_static.loaded_contact import FULL_DAMPING, StaticMesh
 from lumped.quasi_static.tooth_error import relief_starts
 from lumped.typing import FloatArray
 from validation.cross_check.effective_elements import Lines
-from validation.cross_check.shifted_motion import ShiftedModel, Shifts
+from validation.cross_check.shifted_motion import Motion, ShiftedModel, Shifts
 
 #: Pairs are followed to this share of the way from a tangent point, where radii vanish, to A or D.
 _FROM_TANGENT = 0.1
@@ -84,6 +84,15 @@ class LoadedModel(ShiftedModel):
         g = self.cycle.geometry
         low, high = _FROM_TANGENT * g.L_XA, g.L_XY - _FROM_TANGENT * (g.L_XY - g.L_XD)
         return max(self.mesh.low, low), min(self.mesh.high, high)
+
+    def unmoved(self) -> Motion:
+        """The motion about the static one, rebuilt like all others.
+
+        Changes are counted from it and not from the nominal motion, or a wrong law there would be taken off as
+        a change.
+        """
+        bare = replace(self, effects=frozenset())
+        return bare.motion(bare.shifts_after(bare.motion(None)), line=0.0)
 
     def static_overlap(self, place: FloatArray) -> FloatArray:
         """Approach of the static motion at places of one pair (k,) [m]."""

@@ -173,6 +173,10 @@ class ShiftedModel:
             shifts = replace(shifts, **guessed)  # type: ignore[arg-type]
         return best, closest < _ACCEPTED
 
+    def unmoved(self) -> Motion:
+        """The motion that changes are counted from: the nominal one."""
+        return self.motion(None, line=0.0)
+
     def motion(self, shifts: Shifts | None, *, line: float | None = None) -> Motion:
         """Periodic motion under these shifts; None is the nominal motion.
 

@@ -11,7 +11,6 @@ from lumped.model.mesh_elements import mesh_elements
 from lumped.model.periodic_system import periodic_system
 from lumped.model.powers import mean_powers
 from lumped.model.steady import periodic_solution
-from lumped.quasi_static import corner_gap
 from lumped.quasi_static.loaded_contact import StaticMesh, loaded_contact
 
 PAIR = lumped.load_gear_pair("nasa_28_28").with_(mesh__stiffness={"model": "energy"}, mesh__contact="loaded")
@@ -22,6 +21,21 @@ FORMS = {
     "rectangular": PAIR.with_(mesh__stiffness={"model": "rectangular"}),
     "unequal": lumped.load_gear_pair("high_contact_ratio_29_47").with_(mesh__contact="loaded"),
 }
+
+
+def gap_of_a_corner(beyond, flank, length, radius):
+    """Between two equal gears whose bearings have given way: the corner's involute against the mate's.
+
+    The corner stands on the tangent of the mate's base circle at the length of the arc that it would unwind.
+    ``flank`` is the length of the corner's own tangent, ``length`` that of the line of action.
+    """
+    turn = beyond / radius
+    across, along = flank * np.sin(turn), flank * np.cos(turn)
+    corner = np.array([length - radius * np.sin(turn) - along, radius * (1 - np.cos(turn)) + across])
+    from_centre = corner + np.array([0.0, radius])
+    tangent = np.sqrt(from_centre @ from_centre - radius**2)
+    turned = np.arctan2(*from_centre) - np.arctan2(tangent, radius)
+    return tangent + radius * turned - (length - flank - beyond)
 
 
 def solution(pair):
@@ -48,11 +62,11 @@ def test_contact_begins_beyond_a_where_the_corner_has_closed_its_gap():
     assert start < g.L_XA
     assert end > g.L_XD
     delta = mesh.approach(np.array([start, end]))
-    half = 0.5 * (
-        delta + mesh.force * (1 / pair.bearings.pinion.loa_stiffness + 1 / pair.bearings.gear.loa_stiffness)
-    )
-    gaps = corner_gap(g, np.array([start, end]) + np.array([-1.0, 1.0]) * half)
-    assert gaps == pytest.approx(delta, rel=1e-9)
+    longer = mesh.force * (1 / pair.bearings.pinion.loa_stiffness + 1 / pair.bearings.gear.loa_stiffness)
+    for way, approach in ((g.L_XA - start, delta[0]), (end - g.L_XD, delta[1])):
+        beyond = way + 0.5 * (approach + longer)  # of the corner, on the tooth that has it
+        gap = gap_of_a_corner(beyond, g.L_XY - g.L_XA, g.L_XY + longer, g.base_radius_pinion)
+        assert gap == pytest.approx(approach, rel=1e-9)
     # Equal gears: symmetric about the pitch point.
     assert start + end == pytest.approx(2 * g.L_XP, abs=1e-12)
 

@@ -16,7 +16,7 @@ from validation.cross_check.agreement import (
     off_switch_samples,
 )
 from validation.cross_check.comparison import crosscheck
-from validation.cross_check.first_order import EFFECT_WORDS
+from validation.cross_check.finite_motion import PREDICTED
 from validation.cross_check.tolerances import LOST, tolerance
 
 
@@ -154,7 +154,7 @@ def test_a_failure_names_check_value_and_limit(check):
 def test_raw_limits_are_what_the_effects_can_do_to_first_order(check):
     """Every quantity of the default pair is within; friction of the wrong sign would be twice itself away."""
     effects = check.effects
-    assert set(effects.most) == set(effects.alone) == set(EFFECT_WORDS)
+    assert set(effects.most) == set(effects.alone) == set(PREDICTED["paper"])
     for a in check.of("exact"):
         assert a.raw_limit.limit == effects.largest(a.quantity) + check.contact_shift
         assert a.relative_l2 < a.raw_limit.limit < 0.5, a.quantity
@@ -209,11 +209,3 @@ def test_what_is_predicted_is_taken_off_before_judging(pair, check):
 def test_arguments_out_of_range_are_refused_before_any_work(pair, arguments):
     with pytest.raises(ParameterError):
         crosscheck(pair, **arguments)
-
-
-def test_the_loaded_form_is_refused_by_cross_check_and_report_before_any_work(pair, tmp_path):
-    loaded = pair.with_(mesh__contact="loaded")
-    for check in (lambda: crosscheck(loaded), lambda: validation.report(loaded, tmp_path / "report")):
-        with pytest.raises(ParameterError, match=r"mesh\.contact = loaded"):
-            check()
-    assert not (tmp_path / "report").exists()

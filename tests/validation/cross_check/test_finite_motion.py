@@ -14,9 +14,11 @@ from lumped.model.mesh_cycle import mesh_cycle
 from lumped.model.periodic_system import periodic_system
 from lumped.path_function import PathFunction
 from validation.cross_check.agreement import contact_shift, off_switch_samples
-from validation.cross_check.finite_motion import PREDICTED, finite_motion
+from validation.cross_check.finite_motion import PREDICTED as EVERY
+from validation.cross_check.finite_motion import finite_motion
 from validation.cross_check.shifted_motion import ShiftedModel
 
+PREDICTED = EVERY["paper"]
 RECTANGULAR = lumped.load_gear_pair("nasa_28_28").with_(
     friction__law="xu_kahraman", mesh__stiffness={"model": "rectangular"}
 )

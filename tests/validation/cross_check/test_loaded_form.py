@@ -1,0 +1,158 @@
+"""Does the cross-check judge the loaded form: a prediction that meets the exact contact, and faults that do not?"""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import lumped
+import multibody
+from lumped.model import mesh_elements
+from lumped.quasi_static import loaded_contact
+from lumped.quasi_static.loaded_contact import StaticMesh
+from validation.cross_check import loaded_motion
+from validation.cross_check.comparison import crosscheck
+from validation.cross_check.finite_motion import finite_motion
+from validation.cross_check.loaded_motion import LoadedModel
+
+EQUAL = lumped.load_gear_pair("nasa_28_28").with_(mesh__stiffness={"model": "energy"}, mesh__contact="loaded")
+#: The corner of the gear's tip stands a seventh of a radian from the line of action; soft bearings.
+UNEQUAL = lumped.load_gear_pair("fzg_c").with_(
+    mesh__stiffness={"model": "energy"}, mesh__contact="loaded", operating__pinion_speed=1000
+)
+RELIEF = EQUAL.with_(mesh__relief="static")
+QUICK = {"cycles": 6, "samples_per_cycle": 64}
+
+
+@pytest.mark.parametrize("pair", [EQUAL, UNEQUAL], ids=["equal", "unequal"])
+@pytest.mark.parametrize(
+    "effects",
+    [
+        {"tip_contact"},
+        {"tip_contact", "path_work"},
+        {"tip_contact", "rotation_phase", "moving_line"},
+        {"tip_contact", "rotation_phase", "moving_line", "path_work"},
+    ],
+    ids=["contact", "path", "motion", "all"],
+)
+def test_the_exact_contact_is_met_from_the_lumped_model_alone(pair, effects):
+    """Without friction; the motion is read at 4096 times a cycle and settles to some 1e-9 m.
+
+    Without the forces of corners across the line of action, all of y would be left.
+    """
+    pair = pair.with_(friction__law="none")
+    cycle = lumped.steady_state(pair, samples_per_cycle=128)
+    predicted = finite_motion(pair, cycle, effects)
+    run = multibody.steady_state(
+        pair, samples_per_cycle=128, effects=effects | {"contact_law", "contact_loss"}, rtol=1e-10
+    )
+    swing = np.ptp(cycle["dte"].to_numpy())
+    for name, least in (("dte", 5e-3), ("y_p", 3e-3)):
+        change = run[name].to_numpy() - cycle[name].to_numpy()
+        left = change - predicted.changes[name]
+        assert np.abs(change).max() > least * swing, name
+        assert np.abs(left).max() < 2e-3 * swing, name
+        assert np.linalg.norm(left) < 0.03 * np.linalg.norm(change), name
+
+
+@pytest.mark.parametrize("pair", [EQUAL, UNEQUAL, RELIEF], ids=["equal", "unequal", "relief"])
+def test_a_sound_pair_is_confirmed(pair):
+    check = crosscheck(pair, **QUICK, twin=False)
+    assert check.verdict == "confirmed", check.failures
+    dte = next(a for a in check.of("exact") if a.quantity == "dte")
+    # The prediction leaves a twentieth of its limit, so that a fault has no room.
+    assert dte.remainder_l2 < 0.25 * dte.tolerance.limit
+
+
+def test_the_twin_of_a_loaded_pair_is_checked_too():
+    check = crosscheck(EQUAL, **QUICK)
+    assert check.twin is not None
+    assert check.twin.pair.mesh.contact == "loaded"
+    assert check.verdict == "confirmed", check.failures
+
+
+def test_the_brake_pays_for_every_loss_in_both_models():
+    check = crosscheck(EQUAL, **QUICK, twin=False)
+    exact = check.powers["exact"]
+    assert abs(exact["mesh_stiffness"]) < 1e-8 * exact["driving"]
+    lost = exact["friction"] + exact["bearings"] + exact["mesh_damping"]
+    assert exact["driving"] - exact["braking"] == pytest.approx(lost, rel=1e-5)
+
+
+def _scaled(law, factor):
+    return dataclasses.replace(law, coefficients=factor * law.coefficients)
+
+
+def softer(m):
+    true = loaded_contact.pair_stiffness
+    m.setattr(loaded_contact, "pair_stiffness", lambda pair: _scaled(true(pair), 0.97))
+
+
+def without_hertz(m):
+    true = loaded_contact.ContactLaw
+    m.setattr(loaded_contact, "ContactLaw", lambda k, _, force: true(k, 0.0, force))
+
+
+def contact_ends_at_the_tips(m):
+    true = StaticMesh.gap
+
+    def never(self, xi, half, longer):
+        g = self.geometry
+        return np.where((xi < g.L_XA) | (xi > g.L_XD), 1.0, true(self, xi, half, longer))
+
+    m.setattr(StaticMesh, "gap", never)
+
+
+def relief_halved(m):
+    true = StaticMesh.relief
+    m.setattr(StaticMesh, "relief", lambda self, place: 0.5 * true(self, place))
+
+
+def damper_doubled(m):
+    true = mesh_elements._loaded_elements
+
+    def doubled(pair, mass):
+        elements = true(pair, mass)
+        return dataclasses.replace(elements, damping=_scaled(elements.damping, 2.0))
+
+    m.setattr(mesh_elements, "_loaded_elements", doubled)
+
+
+def corners_push_the_other_way(m):
+    true = LoadedModel._corner_slopes
+    m.setattr(LoadedModel, "_corner_slopes", lambda self, shifts: -true(self, shifts))
+
+
+def corners_push_along_the_line_alone(m):
+    true = loaded_motion.PushedSystem.forces
+
+    def along(self, time):
+        forces = true(self, time)
+        forces[:, 4:] = 0.0
+        return forces
+
+    m.setattr(loaded_motion.PushedSystem, "forces", along)
+
+
+FAULTS = {
+    softer: EQUAL,
+    without_hertz: EQUAL,
+    contact_ends_at_the_tips: EQUAL,
+    relief_halved: RELIEF,
+    damper_doubled: EQUAL,
+    corners_push_the_other_way: UNEQUAL,
+    corners_push_along_the_line_alone: UNEQUAL,
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS, ids=lambda f: f.__name__)
+def test_a_fault_in_the_loaded_form_is_not_confirmed(fault, monkeypatch):
+    loaded_contact._loaded_contact.cache_clear()
+    fault(monkeypatch)
+    try:
+        check = crosscheck(FAULTS[fault], **QUICK, twin=False)
+    finally:
+        loaded_contact._loaded_contact.cache_clear()
+    assert check.verdict == "not confirmed"
