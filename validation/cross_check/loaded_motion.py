@@ -88,8 +88,7 @@ class LoadedModel(ShiftedModel):
     def unmoved(self) -> Motion:
         """The motion about the static one, rebuilt like all others.
 
-        Changes are counted from it and not from the nominal motion, or a wrong law there would be taken off as
-        a change.
+        Changes are counted from it and not from the nominal motion: a wrong law there would be taken off.
         """
         bare = replace(self, effects=frozenset())
         return bare.motion(bare.shifts_after(bare.motion(None)), line=0.0)

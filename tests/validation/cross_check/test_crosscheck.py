@@ -7,7 +7,6 @@ import pytest
 
 import lumped
 import multibody
-import validation
 from lumped import ParameterError
 from validation.cross_check.agreement import (
     QUANTITIES,
