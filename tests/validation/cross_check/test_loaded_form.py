@@ -1,4 +1,4 @@
-"""Does the cross-check judge the loaded form: a prediction that meets the exact contact, and faults that do not?"""
+"""Does the cross-check judge the loaded form: what it predicts meets the exact contact, and faults do not?"""
 
 from __future__ import annotations
 
