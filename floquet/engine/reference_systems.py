@@ -6,23 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 from floquet.engine.monodromy import monodromy
-from floquet.engine.system import PeriodicSystem
+from floquet.engine.system import PeriodicSystem, second_order
 from lumped.typing import FloatArray
-
-
-def second_order(stiffness: npt.ArrayLike, damping: npt.ArrayLike) -> FloatArray:
-    """State matrices of z'' + C z' + K z = 0, K and C of shape (..., m, m) -> (..., 2m, 2m)."""
-    K, C = np.broadcast_arrays(np.asarray(stiffness, dtype=float), np.asarray(damping, dtype=float))
-    m = K.shape[-1]
-    out = np.zeros((*K.shape[:-2], 2 * m, 2 * m))
-    out[..., :m, m:] = np.eye(m)
-    out[..., m:, :m], out[..., m:, m:] = -K, -C
-    return out
 
 
 def meissner(delta: float, epsilon: float, period: float = 2.0 * np.pi) -> PeriodicSystem:

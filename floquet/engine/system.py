@@ -22,6 +22,16 @@ from lumped.typing import FloatArray
 _INSET = 64 * np.finfo(np.float64).eps
 
 
+def second_order(stiffness: npt.ArrayLike, damping: npt.ArrayLike) -> FloatArray:
+    """State matrices of z'' + C z' + K z = 0, K and C of shape (..., m, m) -> (..., 2m, 2m)."""
+    K, C = np.broadcast_arrays(np.asarray(stiffness, dtype=float), np.asarray(damping, dtype=float))
+    m = K.shape[-1]
+    out = np.zeros((*K.shape[:-2], 2 * m, 2 * m))
+    out[..., :m, m:] = np.eye(m)
+    out[..., m:, :m], out[..., m:, m:] = -K, -C
+    return out
+
+
 @dataclass(frozen=True, eq=False)
 class PeriodicSystem:
     """A linear system x' = A(t) x + b(t) whose coefficients repeat after one period.

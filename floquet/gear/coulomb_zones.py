@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 import numpy.typing as npt
 
-from floquet.engine.system import PeriodicSystem
+from floquet.engine.system import PeriodicSystem, second_order
 from lumped.arguments import one_of, real_number, real_numbers
 from lumped.errors import refuse
 from lumped.labelling import labelled_dataset
@@ -95,11 +95,8 @@ class CoulombGearPair:
         phases, gains, zeta = self.phases, self.gains, self.damping_ratio
 
         def A(t: FloatArray) -> FloatArray:
-            g = gains[np.clip(np.searchsorted(phases, t / period, side="right") - 1, 0, 2)]
-            out = np.zeros((t.size, 2, 2))
-            out[:, 0, 1] = 1.0
-            out[:, 1, 0], out[:, 1, 1] = -g, -2.0 * zeta * g
-            return out
+            g = gains[np.clip(np.searchsorted(phases, t / period, side="right") - 1, 0, 2), None, None]
+            return second_order(g, 2.0 * zeta * g)
 
         return PeriodicSystem(A, period, tuple(phases[1:-1] * period), vectorized=True)
 

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import eigh
 
-from floquet.engine.system import PeriodicSystem
+from floquet.engine.system import PeriodicSystem, second_order
 from lumped.errors import refuse
 from lumped.typing import ComplexArray, FloatArray
 
@@ -94,35 +94,26 @@ class RankOneSystem:
 
     def to_periodic_system(self) -> PeriodicSystem:
         """Return the same system for the general engine, which checks the kernel independently."""
-        m = self.v.size
-        T = self.period
-        gains = self.total
+        T, gains = self.period, self.total
 
-        def place(t: FloatArray) -> tuple[npt.NDArray[np.intp], FloatArray]:
+        def A(t: FloatArray) -> FloatArray:
             phase = t / T
             piece = np.clip(np.searchsorted(self.phases, phase, side="right") - 1, 0, self.phases.size - 2)
             low, high = self.phases[piece], self.phases[piece + 1]
-            return piece, (2.0 * phase - low - high) / (high - low)
-
-        def A(t: FloatArray) -> FloatArray:
-            piece, u = place(t)
-            out = np.zeros((t.size, 2 * m, 2 * m))
-            out[:, :m, m:] = np.eye(m)
-            out[:, m:, :m] = -np.diag(self.stiffness)
-            out[:, m:, m:] = -np.diag(self.damping)
-            out[:, m:, :m] -= _horner(gains.w, piece, u)[:, :, None] * self.v
-            out[:, m:, m:] -= _horner(gains.wd, piece, u)[:, :, None] * self.v
-            return out
+            u = (2.0 * phase - low - high) / (high - low)
+            return self._state_matrices(_horner(gains.w, piece, u), _horner(gains.wd, piece, u))
 
         return PeriodicSystem(A, T, tuple(self.phases[1:-1] * T), vectorized=True)
 
+    def _state_matrices(self, w: FloatArray, wd: FloatArray) -> FloatArray:
+        """A (..., 2m, 2m) of (z, z') with gains (..., m)."""
+        K = np.diag(self.stiffness) + w[..., None] * self.v
+        C = np.diag(self.damping) + wd[..., None] * self.v
+        return second_order(K, C)
+
     def mean_exponents(self) -> ComplexArray:
         """Exponents (2m,) [1/s] of the system with gains averaged over the period."""
-        m = self.v.size
-        A = np.zeros((2 * m, 2 * m))
-        A[:m, m:] = np.eye(m)
-        A[m:, :m] = -np.diag(self.stiffness) - np.outer(self._mean(self.total.w), self.v)
-        A[m:, m:] = -np.diag(self.damping) - np.outer(self._mean(self.total.wd), self.v)
+        A = self._state_matrices(self._mean(self.total.w), self._mean(self.total.wd))
         return np.asarray(np.linalg.eigvals(A), dtype=complex)
 
     def _mean(self, poly: FloatArray) -> FloatArray:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from floquet import PeriodicSystem
+from floquet.engine import reference_systems
 
 
 def accurate_expm(A: np.ndarray) -> np.ndarray:
@@ -66,15 +67,4 @@ def known_system() -> Callable[..., tuple[PeriodicSystem, np.ndarray]]:
 @pytest.fixture
 def mathieu() -> Callable[..., PeriodicSystem]:
     """x'' + 2 c x' + (a - 2 q cos 2t) x = 0 with its basic period pi."""
-
-    def build(a: float, q: float, c: float = 0.0) -> PeriodicSystem:
-        def A(t: np.ndarray) -> np.ndarray:
-            out = np.zeros((t.size, 2, 2))
-            out[:, 0, 1] = 1.0
-            out[:, 1, 0] = -(a - 2 * q * np.cos(2 * t))
-            out[:, 1, 1] = -2 * c
-            return out
-
-        return PeriodicSystem(A, np.pi, vectorized=True)
-
-    return build
+    return reference_systems.mathieu
