@@ -50,7 +50,7 @@ if TYPE_CHECKING:
         steady_state,
     )
     from multibody import attribution, power_balance
-    from validation import crosscheck, report, validity_flags, write_interactive_page
+    from validation import crosscheck, plot, report, validity_flags, write_interactive_page
     from validation.exchange import gear_pair_from_rexs, write_results, write_rexs
     from validation.studies import load_study, read_results, run_sweep
 
@@ -83,6 +83,7 @@ __all__ = [
     "multibody",
     "optimal_relief",
     "periodic_system",
+    "plot",
     "power_balance",
     "preset_names",
     "read_results",

@@ -1,0 +1,90 @@
+"""The figure of a result: one name for all results of the main functions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from lumped.arguments import of_type
+from lumped.errors import refuse
+from lumped.fields.text_file import parse_toml
+from lumped.schema.files import load_gear_pair
+from lumped.schema.pair import GearPair
+from validation.plots.campbell import campbell_figure
+from validation.plots.motion import history_figure
+from validation.plots.multipliers import multiplier_paths_figure
+from validation.plots.stability import friction_effect_figure, stability_figure, stability_line_figure
+from validation.plots.sweep import sweep_figure
+from validation.plots.tongues import boundaries_figure
+
+
+def _pair(result: xr.Dataset) -> GearPair:
+    """Gear pair that a run was made with."""
+    return load_gear_pair(parse_toml(result.attrs["parameters"], "parameters of the result"))
+
+
+def _sweep(result: xr.Dataset) -> Figure:
+    pair = _pair(result)
+    load = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
+    return sweep_figure(result, pair.to_mapping()["operating"]["pinion_speed"], load)
+
+
+def _axes(result: xr.Dataset, *others: str) -> list[str]:
+    """Axes of a chart, the speed first."""
+    names = [str(name) for name in result.dims if name not in others]
+    return sorted(names, key=lambda name: name != "speed_rpm")
+
+
+def _chart(result: xr.Dataset) -> Figure:
+    axes = _axes(result, "multiplier")
+    if len(axes) > 2:
+        raise refuse("result", f"axes {', '.join(axes)}", "one or two axes", "Select with result.sel(...).")
+    if len(axes) == 1:
+        return stability_line_figure(result, axes[0], None)
+    return stability_figure(result, axes[0], axes[1], None)
+
+
+def _effect(result: xr.Dataset) -> Figure:
+    axes = _axes(result, "law")
+    if len(axes) != 2 or result.sizes["law"] != 1:
+        raise refuse("result", "this effect", "one law over two axes", "Select with result.sel(law=[...]).")
+    return friction_effect_figure(result, str(result["law"][0].item()), axes[0], axes[1])
+
+
+#: Variable that only one kind of result has -> its figure.
+_FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
+    "dte": lambda result: history_figure(_pair(result).geometry, result),
+    "dte_peak_to_peak": _sweep,
+    "growth_change": _effect,
+    "mesh_frequency": campbell_figure,
+    "interval_lower": lambda result: boundaries_figure(result, _axes(result, "tongue", "interval")[-1]),
+    "certain": multiplier_paths_figure,
+    "verdict": _chart,
+}
+
+
+def plot(result: xr.Dataset) -> Figure:
+    """Draw a result.
+
+    Parameters
+    ----------
+    result : dataset of ``simulate`` or ``steady_state`` of either model, ``speed_sweep``, ``stability_chart``
+        (one or two axes), ``stability_boundaries``, ``campbell``, ``multiplier_paths`` or ``friction_effect``
+        (one law, two axes)
+
+    Returns
+    -------
+    matplotlib.figure.Figure: a notebook shows it, ``.savefig("name.png")`` writes it
+
+    Raises
+    ------
+    ParameterError : another dataset, or more axes than a figure has
+    """
+    of_type("result", result, xr.Dataset, "a dataset, as simulate returns it")
+    for variable, draw in _FIGURES.items():
+        if variable in result:
+            return draw(result)
+    known = "a result of simulate, steady_state, speed_sweep, stability_chart or campbell"
+    raise refuse("result", ", ".join(map(str, result.data_vars)), known, "Draw it with xarray's own .plot().")
