@@ -145,6 +145,7 @@ class GearPair(Section):
     @model_validator(mode="after")
     def _must_exist(self) -> GearPair:
         problems = existence_problems(*self.wheels, self.geometry, self.mesh.backlash)
+        problems = self._with_centre_distance(problems)
         problems += [*self._too_light("pinion"), *self._too_light("gear")]
         if problems:
             raise ParameterError(problems, self.name)
@@ -156,11 +157,32 @@ class GearPair(Section):
     @cached_property
     def geometry(self) -> Geometry:
         """Circles, line of action, contact ratio and mesh period, SI; built once."""
-        speed = self.operating.pinion_speed
         try:
-            return build_geometry(*self.wheels, self.centre_distance, self.mesh.backlash, speed)
+            return self._geometry_at(self.centre_distance)
         except ParameterError as error:
-            raise ParameterError(list(error.problems), self.name) from None
+            raise ParameterError(self._with_centre_distance(list(error.problems)), self.name) from None
+
+    def _geometry_at(self, centre_distance: float | None) -> Geometry:
+        speed = self.operating.pinion_speed
+        return build_geometry(*self.wheels, centre_distance, self.mesh.backlash, speed)
+
+    def _with_centre_distance(self, problems: list[FieldProblem]) -> list[FieldProblem]:
+        """Problems, led by the fixed centre distance where the teeth would mesh without it."""
+        if self.centre_distance is None or not problems:
+            return problems
+        try:
+            free = self._geometry_at(None)
+        except ParameterError:
+            return problems
+        if existence_problems(*self.wheels, free, self.mesh.backlash):
+            return problems
+        of_it = [problem for problem in problems if problem.field == "centre_distance"]
+        fits = f"{free.centre_distance * 1e3:.6g} mm"
+        allowed = ", ".join([*(problem.allowed for problem in of_it), f"about {fits} for these teeth"])
+        given = of_it[0].value if of_it else f"{self.centre_distance * 1e3:.6g} mm"
+        action = f"Delete centre_distance or set it to {fits}."
+        first = FieldProblem("centre_distance", given, allowed, action)
+        return [first, *(problem for problem in problems if problem not in of_it)]
 
     @cached_property
     def wheels(self) -> tuple[Wheel, Wheel]:

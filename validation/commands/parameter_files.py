@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Annotated
 
@@ -52,6 +53,27 @@ def init(
     stage: Annotated[
         int | None, typer.Option("--stage", metavar="N", help="Stage of the REXS file: 1 is the first.")
     ] = None,
+    teeth: Annotated[
+        str | None,
+        typer.Option("--teeth", metavar="PINION/GEAR", help="Start from your own pair instead: 19/41."),
+    ] = None,
+    module: Annotated[str | None, typer.Option("--module", help="With --teeth: module, mm.")] = None,
+    face_width: Annotated[
+        str | None, typer.Option("--face-width", help="With --teeth: face width of both gears, mm.")
+    ] = None,
+    speed: opt.Speed = None,
+    torque: opt.Torque = None,
+    bearing_stiffness: Annotated[
+        str | None,
+        typer.Option("--bearing-stiffness", help="With --teeth: of each shaft, N/m or '300 N/um'."),
+    ] = None,
+    bearing_damping: Annotated[
+        str | None, typer.Option("--bearing-damping", help="With --teeth: damping ratio of each shaft.")
+    ] = None,
+    oil: Annotated[
+        str | None, typer.Option("--oil", help="With --teeth: ISO viscosity grade, vg220.")
+    ] = None,
+    law: opt.Law = None,
     force: opt.Force = False,
 ) -> None:
     """Write a commented parameter file to edit.
@@ -69,11 +91,26 @@ def init(
     spurcheck init nasa_28_28 -o my_pair.toml
 
     spurcheck init --from-rexs gearbox.rexs --stage 2 -o my_pair.toml
+
+    spurcheck init --teeth 19/41 --module 2.5 --face-width 20 --speed 1450 --torque 80 --oil vg220
     """
     from lumped.schema.files import preset_text
     from validation.files.output import check_file, write_text
 
+    own = {
+        "--module": ("basic_rack.module", module),
+        "--face-width": ("gears.face_width", face_width),
+        "--speed": ("operating.pinion_speed", speed),
+        "--torque": ("operating.pinion_torque", torque),
+        "--bearing-stiffness": ("bearings.stiffness", bearing_stiffness),
+        "--bearing-damping": ("bearings.damping_ratio", bearing_damping),
+        "--oil": ("oil", oil),
+        "--law": ("friction.law", law),
+    }
     text, name = preset_text(preset), preset
+    if teeth is not None or any(value is not None for _, value in own.values()):
+        stem = output.stem if output is not None and str(output) != "-" else None
+        text, name = _text_of_own(teeth, own, preset, from_rexs, stem)
     if from_rexs is not None or stage is not None:
         text, name = _text_from_rexs(from_rexs, stage)
     if output is not None and str(output) == "-":
@@ -82,6 +119,30 @@ def init(
     path = check_file(output or Path(f"{name}.toml"), (".toml",), force=force)
     write_text(path, text)
     stderr().print(f"wrote {path}; next: spurcheck report {path} -o report")
+
+
+def _text_of_own(
+    teeth: str | None,
+    own: dict[str, tuple[str, str | None]],
+    preset: str,
+    from_rexs: Path | None,
+    stem: str | None,
+) -> tuple[str, str]:
+    """Parameter file of a pair that the options describe, and a name for it."""
+    from lumped.errors import refuse
+    from validation.exchange.own_pair import own_pair_text
+
+    if teeth is None:
+        given = next(option for option, (_, value) in own.items() if value is not None)
+        raise refuse(given, own[given][1], "with --teeth", "Give --teeth PINION/GEAR too, or edit the file.")
+    if preset != opt.DEFAULT_PAIR or from_rexs is not None:
+        raise refuse("--teeth", teeth, "without a preset or REXS file", "Leave one of them out.")
+    for option in ("--module", "--face-width", "--speed", "--torque"):
+        if own[option][1] is None:
+            raise refuse(option, "missing", "a value beside --teeth", "Give it.")
+    name = stem or f"pair_{re.sub('[^0-9]+', '_', teeth)}"
+    values = {path: opt.value_of(text) for path, text in own.values() if text is not None}
+    return own_pair_text(name, {"teeth": teeth} | values), name
 
 
 def _text_from_rexs(path: Path | None, stage: int | None) -> tuple[str, str]:

@@ -66,7 +66,7 @@ _FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
 
 
 def plot(result: xr.Dataset) -> Figure:
-    """Draw a result.
+    """Draw a result as its figure.
 
     Parameters
     ----------

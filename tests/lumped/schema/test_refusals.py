@@ -350,7 +350,16 @@ class TestGeometryThatCannotExist:
 
     def test_wedged_teeth(self, edited):
         data = edited("pinion.profile_shift", 0.1)
-        problem(data, "centre_distance", allowed="backlash >= 0", action="wedge")
+        problem(data, "centre_distance", allowed="backlash >= 0", action="set it to 89.2134 mm")
+
+    def test_a_centre_distance_of_other_teeth_is_named_first(self, edited):
+        data = edited("pinion.teeth", 19)
+        data["gear"]["teeth"] = 41
+        with pytest.raises(ParameterError) as caught:
+            load_gear_pair(data)
+        assert caught.value.problems[0].action == "Delete centre_distance or set it to 95.25 mm."
+        data["centre_distance"] = 95.25
+        assert load_gear_pair(data).geometry.contact_ratio > 1.5
 
     def test_profile_shifts_without_any_centre_distance(self, edited):
         data = edited("pinion.profile_shift", -1.5)

@@ -49,7 +49,7 @@ def completed(values: dict[str, Any]) -> dict[str, Any]:
     for path, value in _FIXED.items():
         full.setdefault(path, value)
     law = "lubricant.viscosity_law"
-    if f"{law}.kinematic_viscosity_40" in full:
+    if any(path.startswith(law) for path in full):
         full.setdefault(f"{law}.temperature", _TEMPERATURE)
     else:
         full.setdefault("lubricant.viscosity", _VISCOSITY)

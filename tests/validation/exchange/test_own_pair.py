@@ -1,0 +1,73 @@
+"""Does `spurcheck init --teeth` write a complete file of the user's own pair, and nothing of a preset?"""
+
+import pytest
+from typer.testing import CliRunner
+
+from lumped import ParameterError, load_gear_pair, preset_names
+from lumped.schema.pair import leaf_paths
+from validation.cli import app
+from validation.exchange.own_pair import GIVEN, own_pair_text
+
+OWN = {"--teeth": "19/41", "--module": "2.5", "--face-width": "20", "--speed": "1450", "--torque": "80"}
+
+
+def init(*more, without=(), **options):
+    given = [part for key, value in OWN.items() if key not in without for part in (key, value)]
+    return CliRunner().invoke(app, ["init", *given, *more])
+
+
+def test_the_file_holds_what_was_given_and_says_why_the_rest_is_assumed(tmp_path):
+    path = tmp_path / "mypair.toml"
+    result = init("--bearing-stiffness", "300 N/um", "--oil", "vg220", "--law", "II", "-o", str(path))
+    assert result.exit_code == 0, result.output
+    pair = load_gear_pair(path)
+    found, sources = leaf_paths(pair), dict(pair.sources)
+    expected = {
+        "name": "mypair", "pinion.teeth": 19, "gear.teeth": 41, "basic_rack.module": 2.5,
+        "pinion.face_width": 20.0, "gear.face_width": 20.0, "operating.pinion_speed": 1450.0,
+        "operating.pinion_torque": 80.0, "bearings.gear.oloa_stiffness": 3e8,
+        "lubricant.viscosity_law.iso_vg": 220, "friction.law": "benedict_kelley",
+    }  # fmt: skip
+    for key, value in expected.items():
+        assert found[key] == value
+        assert key == "name" or sources[key] == GIVEN
+    assert set(sources) == set(found) - {"name", "description"}
+    assert all(source == GIVEN or source.startswith("assumed: ") for source in sources.values())
+    assert "centre_distance" not in found
+
+
+def test_nothing_of_a_preset_is_in_it():
+    text = init("-o", "-").output
+    for name in preset_names():
+        preset = load_gear_pair(name)
+        assert name not in text
+        assert not [source for _, source in preset.sources if f'"{source}"' in text]
+        assert preset.description not in text
+
+
+@pytest.mark.parametrize("missing", [key for key in OWN if key != "--teeth"])
+def test_a_missing_number_is_asked_for_by_its_option(missing):
+    result = init(without=[missing])
+    assert result.exit_code == 2
+    assert result.stderr.startswith(f"error: {missing} = missing")
+
+
+@pytest.mark.parametrize(
+    ("more", "named"),
+    [(["nasa_28_28"], None), (["fzg_c"], "--teeth"), (["--oil", "olive"], "--oil"), (["--oil", "vg219"], "iso_vg")],
+)  # fmt: skip
+def test_what_does_not_go_together_is_refused(more, named, tmp_path):
+    result = init(*more, "-o", str(tmp_path / "x.toml"))
+    assert result.exit_code == (0 if named is None else 2)
+    assert named is None or named in result.stderr
+
+
+def test_an_option_of_the_pair_needs_teeth():
+    result = CliRunner().invoke(app, ["init", "--module", "3"])
+    assert (result.exit_code, result.stderr.startswith("error: --module = 3")) == (2, True)
+
+
+def test_teeth_are_two_numbers():
+    for text in ("19", "19-41", "a/b", ""):
+        with pytest.raises(ParameterError, match="--teeth 19/41"):
+            own_pair_text("x", {"teeth": text})
