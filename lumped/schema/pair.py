@@ -180,7 +180,8 @@ class GearPair(Section):
         fits = f"{free.centre_distance * 1e3:.6g} mm"
         allowed = ", ".join([*(problem.allowed for problem in of_it), f"about {fits} for these teeth"])
         given = of_it[0].value if of_it else f"{self.centre_distance * 1e3:.6g} mm"
-        action = f"Delete centre_distance or set it to {fits}."
+        advice = f"Delete centre_distance or set it to {fits}."
+        action = " ".join([*(problem.action for problem in of_it), advice])
         first = FieldProblem("centre_distance", given, allowed, action)
         return [first, *(problem for problem in problems if problem not in of_it)]
 
