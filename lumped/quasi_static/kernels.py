@@ -14,19 +14,24 @@ from lumped.typing import FloatArray
 
 #: Newton's steps for the load of a pair, of which six are the most needed, and for the approach.
 _LOAD_STEPS, _APPROACH_STEPS = 20, 200
+#: Most times that the loads of neighbours are relaxed; each gains a decade or more.
+_SWEEPS = 100
 _SETTLED = 2e-15
 
 
 @numba.njit(cache=True)
 def load_of(
-    compression: float, stiffness: float, softening: float, nominal: float, least: float
+    compression: float, stiffness: float, softening: float, nominal: float, least: float, guess: float
 ) -> tuple[float, float]:
-    """Load [N] and tangent stiffness [N/m] of one pair, see ``ContactLaw``; zero where it does not press."""
+    """Load [N] and tangent stiffness [N/m] of one pair, see ``ContactLaw``; zero where it does not press.
+
+    ``guess`` is a load near by, or 0.
+    """
     if not (compression > 0.0 and stiffness > 0.0):
         return 0.0, 0.0
-    load = stiffness * compression
     if softening == 0.0:
-        return load, stiffness
+        return stiffness * compression, stiffness
+    load = guess if guess > 0.0 else stiffness * compression
     tangent = 1.0 / stiffness
     for _ in range(_LOAD_STEPS):
         square = load * load + least * least
@@ -40,14 +45,59 @@ def load_of(
 
 
 @numba.njit(cache=True)
-def loads_of(
-    compression: FloatArray, stiffness: FloatArray, softening: float, nominal: float, least: float
-) -> tuple[FloatArray, FloatArray]:
-    """``load_of`` at n compressions and stiffnesses; each (n,)."""
-    loads, tangents = np.empty(compression.size), np.empty(compression.size)
-    for i in range(compression.size):
-        loads[i], tangents[i] = load_of(compression[i], stiffness[i], softening, nominal, least)
-    return loads, tangents
+def shared_loads(
+    compression: FloatArray,
+    stiffness: FloatArray,
+    coupling: FloatArray,
+    softening: float,
+    nominal: float,
+    least: float,
+    loads: FloatArray,
+    tangents: FloatArray,
+    alone: FloatArray,
+) -> None:
+    """Loads of tooth pairs that move each other, and how they grow when all are compressed further together.
+
+    Each pair has ``load_of`` what its neighbours leave of its compression, p_i - sum_j w_ij N_j; loads that
+    are relaxed one after the other find the minimum of a convex energy.
+
+    Parameters
+    ----------
+    compression, stiffness : (pairs,) p_i [m], negative where apart, and k_i, zero for a pair that is not
+        followed [N/m]
+    coupling : (pairs, pairs) w_ij, zero on the diagonal [m/N]
+    softening, nominal, least : as ``load_of``
+    loads : (pairs,) first guess, receives N_i [N]
+    tangents : (pairs,) receives dN_i/dp at a common p [N/m]
+    alone : (pairs,) zero for a pair that is not followed; receives the tangents of pairs alone [N/m]
+    """
+    most = _SWEEPS if coupling.any() else 1
+    for _ in range(most):
+        change = total = 0.0
+        for i in range(loads.size):
+            if stiffness[i] > 0.0:
+                pressed = compression[i]
+                for j in range(loads.size):
+                    pressed -= coupling[i, j] * loads[j]
+                load, alone[i] = load_of(pressed, stiffness[i], softening, nominal, least, loads[i])
+                change += abs(load - loads[i])
+                total += load
+                loads[i] = load
+        if change <= _SETTLED * total:
+            break
+    tangents[:] = alone
+    for _ in range(most):
+        change = total = 0.0
+        for i in range(loads.size):
+            if alone[i] > 0.0:
+                left = 1.0
+                for j in range(loads.size):
+                    left -= coupling[i, j] * tangents[j]
+                change += abs(alone[i] * left - tangents[i])
+                tangents[i] = alone[i] * left
+                total += tangents[i]
+        if change <= _SETTLED * total:
+            break
 
 
 @numba.njit(cache=True)
@@ -107,10 +157,41 @@ def gaps_at(
 
 
 @numba.njit(cache=True)
+def middle_loads(
+    compression: FloatArray,
+    stiffness: FloatArray,
+    coupling: FloatArray,
+    softening: float,
+    nominal: float,
+    least: float,
+) -> FloatArray:
+    """Load [N], tangent [N/m] and compression by its own load [m] of the middle one of (n, pairs); (n, 3)."""
+    found = np.empty((compression.shape[0], 3))
+    middle = compression.shape[1] // 2
+    for i in range(compression.shape[0]):
+        loads, tangents = np.zeros(compression.shape[1]), np.zeros(compression.shape[1])
+        shared_loads(
+            compression[i],
+            stiffness[i],
+            coupling[i],
+            softening,
+            nominal,
+            least,
+            loads,
+            tangents,
+            np.zeros(loads.size),
+        )
+        pressed = compression[i, middle] - np.dot(coupling[i, middle], loads)
+        found[i] = loads[middle], tangents[middle], pressed
+    return found
+
+
+@numba.njit(cache=True)
 def approaches(
     place: FloatArray,
     stiffness: FloatArray,
     relief: FloatArray,
+    coupling: FloatArray,
     force: float,
     lengthening: float,
     softening: float,
@@ -123,25 +204,36 @@ def approaches(
     ----------
     place, stiffness, relief : (n, pairs) xi_i [m], k_i, zero for a pair that is not followed [N/m], and the
         material missing on both flanks [m]
+    coupling : (n, pairs, pairs) w_ij, see ``shared_loads`` [m/N]
     force : mean load, at which k holds too [N]
     lengthening : of the line of action by the loaded bearings [m]
     softening, least : of the contact law, see ``ContactLaw`` [m/N], [N]
     ends : as ``gap_at``
     """
     found = np.full(place.shape[0], np.nan)
+    pairs = place.shape[1]
+    loads, gaps = np.zeros(pairs), np.zeros(pairs)
+    tangents, alone = np.zeros(pairs), np.zeros(pairs)
     for i in range(place.shape[0]):
         largest = stiffness[i].max()
         if not largest > 0.0:
             continue
         low, high, delta = 0.0, math.inf, force / largest
+        if i > 0 and found[i - 1] > 0.0:  # the phase before may be near by: start from there
+            delta = found[i - 1]
+        alone[:] = 0.0
+        for j in range(pairs):
+            if not stiffness[i, j] > 0.0:
+                loads[j] = 0.0
         for _ in range(_APPROACH_STEPS):
-            total, slope, half = -force, 0.0, 0.5 * (delta + lengthening)
-            for j in range(place.shape[1]):
+            half = 0.5 * (delta + lengthening)
+            for j in range(pairs):
                 if stiffness[i, j] > 0.0:
-                    gap = gap_at(place[i, j], relief[i, j], half, lengthening, ends)
-                    load, tangent = load_of(delta - gap, stiffness[i, j], softening, force, least)
-                    total += load
-                    slope += tangent
+                    gaps[j] = gap_at(place[i, j], relief[i, j], half, lengthening, ends)
+            shared_loads(
+                delta - gaps, stiffness[i], coupling[i], softening, force, least, loads, tangents, alone
+            )
+            total, slope = loads.sum() - force, tangents.sum()
             if total < 0.0:
                 low = delta
             else:

@@ -2,7 +2,8 @@
 
 A pair touches where its gap closes under the mean load, also before A and behind D, where a tip corner meets
 the mate's flank. About that static state N_i = k_t,i (delta - e_i) is linear again: k_t is the tangent
-stiffness, and e the approach at which the tangent would carry nothing.
+stiffness, all pairs approaching together, and e the approach at which the tangent would carry nothing. Where
+the stiffness model has it, the load of a pair moves its neighbours.
 
 Sources: docs/theory/contact_energy.md, "The loaded form of the linear model".
 """
@@ -22,10 +23,10 @@ from lumped.errors import NumericalError
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import pair_stiffness
 from lumped.quasi_static.intervals import positive_intervals, restricted
-from lumped.quasi_static.kernels import approaches, gaps_at, loads_of
+from lumped.quasi_static.kernels import approaches, gaps_at, middle_loads
 from lumped.quasi_static.tooth_error import relief_error, relief_starts
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray
+from lumped.typing import BoolArray, FloatArray
 
 #: Pairs are followed this fraction of a base pitch beyond A and D.
 _REACH = 0.4
@@ -70,26 +71,28 @@ class ContactLaw:
         low, high = self.stiffness.interval
         return self.stiffness(np.clip(xi, low, np.nextafter(high, low)))
 
-    def load(self, k: FloatArray, compression: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Load [N] and tangent stiffness [N/m], each (n,), at compressions [m]; zero where not positive."""
-        load, tangent = loads_of(compression, k, self.softening, self.nominal, self.least)
-        return load, tangent
-
 
 class StaticPair(NamedTuple):
     """One pair in static equilibrium at n positions.
 
     Attributes
     ----------
-    load, tangent : N [N] and dN/dp [N/m], (n,)
-    error : approach at which the tangent would carry nothing, (n,) [m]
+    approach : delta, common to all pairs, (n,) [m]
+    load, tangent : N [N] and dN/ddelta [N/m], (n,)
     gap : between flanks and tip corners without deflection, (n,) [m]
+    pressed : by the own load, what gap and neighbours leave of the approach; negative where apart, (n,) [m]
     """
 
+    approach: FloatArray
     load: FloatArray
     tangent: FloatArray
-    error: FloatArray
     gap: FloatArray
+    pressed: FloatArray
+
+    @property
+    def error(self) -> FloatArray:
+        """Approach at which the tangent would carry nothing, (n,) [m]."""
+        return self.approach - self.load / np.where(self.tangent > 0.0, self.tangent, np.inf)
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,6 +129,7 @@ class StaticMesh:
         g, bearings = pair.geometry, pair.bearings
         self.pair, self.geometry = pair, g
         self.force = pair.operating.pinion_torque / g.base_radius_pinion
+        self.neighbours = pair.mesh.stiffness.neighbours(pair)
         self.law = ContactLaw(pair_stiffness(pair), pair.mesh.stiffness.softening(pair), self.force)
         compliance = 1.0 / bearings.pinion.loa_stiffness + 1.0 / bearings.gear.loa_stiffness
         self.lengthening = self.force * compliance  # of the line of action, by the bearings
@@ -140,19 +144,34 @@ class StaticMesh:
             return np.zeros(place.shape)
         return relief_error(self.pair, np.clip(place, self.geometry.L_XA, self.geometry.L_XD))
 
+    def pairs(self, xi: FloatArray) -> tuple[FloatArray, BoolArray]:
+        """Places (n, pairs) [m] of all pairs, that at xi (n,) in the middle, and which are followed."""
+        place = np.asarray(xi, dtype=float)[:, None] + self.shifts
+        return place, (place > self.low) & (place < self.high)
+
     def approach(self, xi: FloatArray) -> FloatArray:
         """Static approach delta (n,) [m] with a tooth pair at the positions xi (n,) [m]."""
-        place, law = np.asarray(xi, dtype=float)[:, None] + self.shifts, self.law
-        near = (place > self.low) & (place < self.high)
-        k, relief = np.where(near, law.held(place), 0.0), self.relief(place)
+        place, near = self.pairs(xi)
+        law, k = self.law, np.where(near, self.law.held(place), 0.0)
+        relief, coupling = self.relief(place), self.coupling(place, near)
         found = approaches(
-            place, k, relief, self.force, self.lengthening, law.softening, law.least, self.ends
+            place, k, relief, coupling, self.force, self.lengthening, law.softening, law.least, self.ends
         )
         if not np.isfinite(found).all():
             raise NumericalError(
                 "At some position no tooth pair can carry the load: check stiffness and relief."
             )
         return np.asarray(found, dtype=np.float64)
+
+    def static(self, xi: FloatArray) -> StaticPair:
+        """The pair at xi (n,) [m] in equilibrium."""
+        place, near = self.pairs(xi)
+        delta = np.broadcast_to(self.approach(xi)[:, None], place.shape)
+        longer = np.full(place.size, self.lengthening)
+        gap = self.gap(place.ravel(), 0.5 * (delta.ravel() + longer), longer).reshape(place.shape)
+        load, tangent, pressed = self.together(place, delta - gap, near)
+        middle = place.shape[1] // 2
+        return StaticPair(delta[:, middle], load, tangent, gap[:, middle], pressed)
 
     def half(self, xi: FloatArray) -> FloatArray:
         """Half of approach and lengthening, (n,) [m].
@@ -162,12 +181,6 @@ class StaticMesh:
         """
         return np.asarray(0.5 * (self.approach(xi) + self.lengthening), dtype=np.float64)
 
-    def compression(self, xi: FloatArray) -> FloatArray:
-        """Approach less the gap of the pair at xi (n,) [m]; negative where it is apart."""
-        half = self.half(xi)
-        approach = 2.0 * half - self.lengthening
-        return np.asarray(approach - self.gap(xi, half, np.full(half.size, self.lengthening)))
-
     def gap(self, xi: FloatArray, half: FloatArray, longer: FloatArray) -> FloatArray:
         """Gap of the pair at xi without deflection, (n,) [m].
 
@@ -175,12 +188,37 @@ class StaticMesh:
         """
         return np.asarray(gaps_at(xi, self.relief(xi), half, longer, self.ends), dtype=np.float64)
 
-    def static(self, xi: FloatArray) -> StaticPair:
-        """The pair at xi (n,) [m] in equilibrium."""
-        delta = self.approach(xi)
-        gap = self.gap(xi, 0.5 * (delta + self.lengthening), np.full(delta.size, self.lengthening))
-        load, tangent = self.law.load(self.law.held(xi), delta - gap)
-        return StaticPair(load, tangent, delta - load / np.where(tangent > 0.0, tangent, np.inf), gap)
+    def together(
+        self, place: FloatArray, compression: FloatArray, near: BoolArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Of the middle one of pairs that share a load N [N], dN/ddelta [N/m] and what presses it [m]; (n,).
+
+        Parameters
+        ----------
+        place, compression : (n, pairs) xi, whole pitches apart, the pair behind first, and delta less gap [m]
+        near : whether a pair is followed
+        """
+        law, k = self.law, np.where(near, self.law.held(place), 0.0)
+        coupling = self.coupling(place, near)
+        found = middle_loads(compression, k, coupling, law.softening, law.nominal, law.least)
+        return found[:, 0], found[:, 1], found[:, 2]
+
+    def coupling(self, place: FloatArray, near: BoolArray) -> FloatArray:
+        """How far pairs at xi (n, pairs) [m], whole pitches apart, move each other; (n, pairs, pairs) [m/N].
+
+        Parameters
+        ----------
+        place : the pair behind first
+        near : whether a pair is followed
+        """
+        pairs = place.shape[1]
+        found = np.zeros((*place.shape, pairs))
+        for apart, moved in enumerate(self.neighbours, 1):
+            for behind in range(pairs - apart):
+                both = near[:, behind] & near[:, behind + apart]
+                values = np.where(both, moved(place[:, behind]), 0.0)
+                found[:, behind, behind + apart] = found[:, behind + apart, behind] = values
+        return found
 
 
 def loaded_contact(pair: GearPair) -> LoadedContact:
@@ -206,7 +244,7 @@ def _loaded_contact(pair: GearPair) -> LoadedContact:
     starts = relief_starts(pair) if pair.mesh.relief == "static" else np.empty(0)
     kinks = np.concatenate([law.stiffness.switches, starts, [g.L_XA, g.L_XD]])
     jumps = np.add.outer(kinks, mesh.shifts)
-    contact = positive_intervals(mesh.compression, mesh.low, mesh.high, jumps, g.base_pitch)
+    contact = positive_intervals(lambda xi: mesh.static(xi).pressed, mesh.low, mesh.high, jumps, g.base_pitch)
     if contact.size == 0 or contact[0, 0] <= mesh.low or contact[-1, 1] >= mesh.high:
         raise NumericalError(
             f"Under {pair.operating.pinion_torque:g} N m a tooth pair touches more than {_REACH:g} base "
@@ -232,8 +270,8 @@ def _loaded_contact(pair: GearPair) -> LoadedContact:
     relative = max(_TOLERANCE, _LENGTH / (FULL_DAMPING * deflection))
 
     def fitted(value: Callable[[FloatArray], FloatArray], scale: float) -> PathFunction:
-        # With a linear law the pieces are those of the stiffness; with Hertz's the fit finds its own.
-        ends = pieces if law.softening == 0.0 else breaks
+        # With a linear law of pairs that stand alone the pieces are those of the stiffness.
+        ends = pieces if law.softening == 0.0 and not mesh.neighbours else breaks
         return PathFunction.fit(value, ends, inside, tolerance=relative * scale)
 
     def engagement(xi: FloatArray) -> FloatArray:

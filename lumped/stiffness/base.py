@@ -81,6 +81,13 @@ class StiffnessModel(Section):
         """
         return ()
 
+    def neighbours(self, pair: MeshingPair) -> tuple[PathFunction, ...]:
+        """How far a unit load on a pair moves the pair m base pitches ahead, m = 1, 2, ... [m/N].
+
+        Functions of the position of the pair behind; none for stiffness in which pairs stand alone.
+        """
+        return ()
+
     def softening(self, pair: MeshingPair) -> float:
         """How the compliance of a pair falls with load: D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N].
 

@@ -5,8 +5,9 @@ Banaschek's contact the mean mesh stiffness lies within a tenth of ISO 6336-1's,
 linearised contact of the literature makes it a quarter larger. ``scale = "iso6336"`` brings the mean to the
 standard's.
 
-Each pair stands alone, as in most of the literature: the sum of the pairs in contact leaves out that they
-share the two bodies (structural coupling) and is an upper estimate in double contact.
+The curve is of a pair alone. Pairs that touch together share the two bodies; how far they move each other is
+``EnergyStiffness.neighbours``. The paper's form of the model leaves it out, as most of the literature does,
+so that its stiffness is an upper estimate in double contact; the loaded form takes it.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from lumped.stiffness import iso6336
 from lumped.stiffness.base import MeshingPair, StiffnessModel
 from lumped.stiffness.body import thin_rims
 from lumped.stiffness.foundation import HALF_ANGLE
+from lumped.stiffness.neighbours import neighbour_compliances
 from lumped.stiffness.pair_compliance import Contact, pair_compliance
 from lumped.stiffness.ramp import RampLength, ramped
 from lumped.typing import FloatArray
@@ -88,6 +90,10 @@ class EnergyStiffness(StiffnessModel):
     def violations(self, pair: MeshingPair) -> tuple[RangeViolation, ...]:
         """Ranges of the fillet foundation's fit, and of ISO 6336-1 where the curve is scaled to it."""
         return foundation_violations(pair) + (iso6336.fit_violations(pair) if self.scale == "iso6336" else ())
+
+    def neighbours(self, pair: MeshingPair) -> tuple[PathFunction, ...]:
+        """Motion of the next pairs by the load of one; a curve that is scaled to the standard has it."""
+        return neighbour_compliances(pair) if self.scale == "none" else ()
 
     def softening(self, pair: MeshingPair) -> float:
         """D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N].

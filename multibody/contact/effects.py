@@ -90,6 +90,12 @@ EFFECTS: dict[str, Effect] = {
         "contact_energy",
         default=False,
     ),
+    "neighbours": Effect(
+        kn.NEIGHBOURS,
+        "the load of a tooth moves the next teeth, where the stiffness model knows how far",
+        "contact_energy",
+        default=False,
+    ),
 }
 #: Why the models may differ, in words. Rotations and centres together place the contact; one without the
 #: other is no motion of the machine, so the two effects count as one cause.

@@ -1,4 +1,4 @@
-"""Element laws of one tooth pair: tabulated stiffness, load and stored energy over the compression.
+"""Element laws of the tooth pairs: tabulated stiffness, loads and stored energy over the compression.
 
 Sources: docs/theory/contact_energy.md, "Energy of one pair".
 """
@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import math
 
-from lumped.typing import FloatArray
+import numpy as np
+
+from lumped.typing import BoolArray, FloatArray
 from multibody.contact.compiled import compiled
 
 #: Below this share of the mean load a pair is linear: Hertz's logarithm would make it infinitely soft.
@@ -48,44 +50,140 @@ def stiffness_at(table: FloatArray, xi: float) -> float:
 
 
 @compiled
-def elastic_load(
-    pressed: float, stiffness: float, slope: float, softening: float, nominal: float
-) -> tuple[float, float, float]:
-    """Load of one tooth pair, the energy it stores and the energy's slope along the path of contact.
+def compliances(load: float, stiffness: float, softening: float, nominal: float) -> tuple[float, float]:
+    """Compression of one tooth pair over its load, and how it grows with the load [m/N].
 
-    With N = k p the energy is U = k p^2/2. Hertz's contact by Weber and Banaschek grows stiffer with the
-    load, p = N (1/k - D/2 ln(S/N_0^2)) with S = N^2 + N_1^2, which is linear below N_1. It stores
-    U = N p - C with the integral C of p over N, of which k alone depends on the place
-    (docs/theory/contact_energy.md, "Energy of one pair").
+    With Hertz's contact by Weber and Banaschek p = N (1/k - D/2 ln(S/N_0^2)) with S = N^2 + N_1^2: it grows
+    stiffer with the load, and is linear below N_1. Pulled, in a mesh that cannot part, it is linear.
 
     Parameters
     ----------
-    pressed : approach of the flanks less all gaps between them [m]
-    stiffness, slope : k at the load ``nominal`` and its slope over xi [N/m], [N/m^2]
+    load : N [N]
+    stiffness : k at the load ``nominal`` [N/m]
     softening : D [m/N]; 0 is a linear spring
     nominal : N_0 [N]
-
-    Returns
-    -------
-    (load, energy, slope) : [N], [J], [J/m] at constant ``pressed``
     """
+    if softening == 0.0 or load <= 0.0:
+        return 1.0 / stiffness, 1.0 / stiffness
+    square = load * load + (_LINEAR_BELOW * nominal) ** 2
+    secant = 1.0 / stiffness - 0.5 * softening * math.log(square / nominal**2)
+    return secant, secant - softening * load * load / square
+
+
+@compiled
+def elastic_load(pressed: float, stiffness: float, softening: float, nominal: float) -> float:
+    """Load of one tooth pair alone [N]; arguments as ``compliances`` and ``stored_energy``."""
     if stiffness <= 0.0:
-        return 0.0, 0.0, 0.0
+        return 0.0
     load = stiffness * pressed
     if softening == 0.0 or pressed <= 0.0:
-        return load, 0.5 * load * pressed, 0.5 * slope * pressed * pressed
-    least = (_LINEAR_BELOW * nominal) ** 2
+        return load
     for _ in range(_MOST_STEPS):
-        square = load * load + least
-        compliance = 1.0 / stiffness - 0.5 * softening * math.log(square / nominal**2)
-        step = (load * compliance - pressed) / (compliance - softening * load * load / square)
+        secant, tangent = compliances(load, stiffness, softening, nominal)
+        step = (load * secant - pressed) / tangent
         load -= step
         if abs(step) <= 1e-15 * load:
             break
+    return load
+
+
+@compiled
+def stored_energy(
+    load: float, stiffness: float, slope: float, softening: float, nominal: float
+) -> tuple[float, float]:
+    """Energy that one tooth pair stores [J], and its slope along the path of contact [J/m].
+
+    U = N p - C with the integral C of p over N, of which k alone depends on the place
+    (docs/theory/contact_energy.md, "Energy of one pair"). The slope is at constant compression.
+
+    Parameters
+    ----------
+    load, stiffness, softening, nominal : as ``compliances``
+    slope : of k over xi [N/m^2]
+    """
+    if stiffness <= 0.0:
+        return 0.0, 0.0
+    along = 0.5 * slope * (load / stiffness) ** 2
+    stored = 0.5 * load * load / stiffness
+    if softening == 0.0 or load <= 0.0:
+        return stored, along
+    least = (_LINEAR_BELOW * nominal) ** 2
     square = load * load + least
+    # N p - C of the logarithm: the integral of N ln(S) is (S ln(S) - S)/2.
     ends = square * (math.log(square / nominal**2) - 1.0) - least * (math.log(least / nominal**2) - 1.0)
-    stored = load * pressed - 0.5 * load * load / stiffness + 0.25 * softening * ends
-    return load, stored, 0.5 * slope * (load / stiffness) ** 2
+    return stored - 0.5 * softening * (load * load * math.log(square / nominal**2) - 0.5 * ends), along
+
+
+@compiled
+def shared_loads(
+    count: int,
+    pressed: FloatArray,
+    stiffness: FloatArray,
+    pulls: BoolArray,
+    coupling: FloatArray,
+    softening: float,
+    nominal: float,
+    loads: FloatArray,
+) -> None:
+    """Loads of tooth pairs that move each other, p_i = N_i c_i(N_i) + sum_j w_ij N_j where they touch.
+
+    Newton's steps for the pairs that touch; then those that would pull are let go and those that would
+    overlap are taken in, until none is left. The energy is convex, so there is one answer.
+
+    Parameters
+    ----------
+    count : number of pairs, the first entries of the arrays
+    pressed, stiffness : approach less all gaps [m], and k [N/m]
+    pulls : whether the pair cannot part
+    coupling : w_ij, zero on the diagonal [m/N]
+    softening, nominal : as ``compliances``
+    loads : receives N_i [N]
+    """
+    touch = np.empty(count, np.bool_)
+    for i in range(count):
+        touch[i] = stiffness[i] > 0.0 and (pulls[i] or pressed[i] > 0.0)
+        loads[i] = stiffness[i] * pressed[i] if touch[i] else 0.0
+    matrix, rest = np.empty((count, count)), np.empty(count)
+    for _ in range(2 * count + 1):
+        for _ in range(_MOST_STEPS):
+            for i in range(count):
+                secant, tangent = 1.0, 1.0
+                if touch[i]:
+                    secant, tangent = compliances(loads[i], stiffness[i], softening, nominal)
+                rest[i] = loads[i] * secant - pressed[i] if touch[i] else 0.0
+                for j in range(count):
+                    matrix[i, j] = coupling[i, j] if touch[i] and touch[j] else 0.0
+                    rest[i] += matrix[i, j] * loads[j]
+                matrix[i, i] = tangent
+            # Gauss's elimination; the matrix is symmetric and positive definite.
+            for i in range(count):
+                for k in range(i + 1, count):
+                    share = matrix[k, i] / matrix[i, i]
+                    for j in range(i, count):
+                        matrix[k, j] -= share * matrix[i, j]
+                    rest[k] -= share * rest[i]
+            step = total = 0.0
+            for i in range(count - 1, -1, -1):
+                for j in range(i + 1, count):
+                    rest[i] -= matrix[i, j] * rest[j]
+                rest[i] /= matrix[i, i]
+                if touch[i]:
+                    loads[i] -= rest[i]
+                    step += abs(rest[i])
+                    total += abs(loads[i])
+            if step <= 1e-15 * total:
+                break
+        settled = True
+        for i in range(count):
+            left = pressed[i]
+            for j in range(count):
+                left -= coupling[i, j] * loads[j]
+            if touch[i] and not pulls[i] and loads[i] <= 0.0:
+                touch[i], loads[i], settled = False, 0.0, False
+            elif not touch[i] and stiffness[i] > 0.0 and left > 0.0:
+                touch[i], settled = True, False
+        if settled:
+            break
 
 
 @compiled

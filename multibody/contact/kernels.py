@@ -11,21 +11,29 @@ x, y, angles counter-clockwise. In the drive sense the pinion turns clockwise an
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
+from lumped.path_function import FIT_DEGREE
 from lumped.typing import FloatArray
 from multibody.contact import friction as fr
 from multibody.contact.compiled import compiled
-from multibody.contact.elements import elastic_load, gradual, stiffness_and_slope, stiffness_at
+from multibody.contact.elements import (
+    elastic_load,
+    gradual,
+    shared_loads,
+    stiffness_and_slope,
+    stiffness_at,
+    stored_energy,
+)
 from multibody.contact.kinematics import (
     COAST,
     DRIVE,
     MAX_PAIRS,
+    Corners,
     add_gradient,
     add_wrench,
-    corner_gap,
+    corners_at,
     line_of_action,
     mesh_phase,
     overlap_rate,
@@ -35,7 +43,7 @@ from multibody.contact.kinematics import (
 
 # Bits of the effect switches, and of the linear mesh, which has none of the effects.
 ROTATION_PHASE, MOVING_LINE, SLIDING, ENTRY_SHIFT, CONTACT_LOSS, BACK_SIDE, LINEAR = 1, 2, 4, 8, 16, 32, 64
-FRICTION_LOAD, PATH_WORK, TIP_CONTACT, CONTACT_LAW = 128, 256, 512, 1024
+FRICTION_LOAD, PATH_WORK, TIP_CONTACT, CONTACT_LAW, NEIGHBOURS = 128, 256, 512, 1024, 2048
 
 # Places in the parameter vector. Lengths in m, angles in rad, speeds in rad/s.
 (
@@ -56,8 +64,12 @@ FRICTION_LOAD, PATH_WORK, TIP_CONTACT, CONTACT_LAW = 128, 256, 512, 1024
 RELIEF_COLUMNS, MOST_RELIEFS = 5, 4
 #: Where the parameters of the friction laws start, see ``multibody.contact.friction``.
 FRICTION = FIRST_RELIEF + RELIEF_COLUMNS * MOST_RELIEFS
+#: How far pairs 1, 2, ... base pitches apart move each other: the number of such functions, then each as
+#: a row of ``elements.stiffness_and_slope`` over the position of the pair behind [m/N].
+COUPLED = FRICTION + fr.N_FRICTION
+FIRST_COUPLED, COUPLED_COLUMNS = COUPLED + 1, FIT_DEGREE + 3
 #: The rows of ``friction_size``'s table, if there is one, stand behind all others.
-N_PARAMETERS = FRICTION + fr.N_FRICTION
+N_PARAMETERS = FIRST_COUPLED + COUPLED_COLUMNS * (MAX_PAIRS - 1)
 
 # Columns of a contact record.
 # OVERLAP and its rate are those pressed elastically (tooth error taken off); CLOSING is the overlap's own
@@ -69,6 +81,12 @@ N_PARAMETERS = FRICTION + fr.N_FRICTION
     ELASTIC, ENERGY, PATH, PATH_RATE,
 ) = range(15)  # fmt: skip
 N_RECORD = 15
+
+# Rows of what is known of the pairs before their loads are.
+(
+    POSITION, PRESSED, PRESSING, RELIEF_SLOPE, BY_P, BY_G, BY_L, STIFFNESS, SLOPE, NORMAL,
+) = range(10)  # fmt: skip
+N_STATE = 10
 
 #: How far beyond the tips contact is looked for, over the base pitch.
 _REACH = 0.4
@@ -221,29 +239,14 @@ def engaged(rho: float, delta: float, length: float, p: FloatArray, flags: int, 
     return pairs_in_contact(rho, 0.0, p[L_XY], p[PITCH], p[L_XD], p[L_XY] - p[L_XA], arms)
 
 
-class Corners(NamedTuple):
-    """Gap that tip corners beyond the path of contact leave [m], and its derivatives.
-
-    Attributes
-    ----------
-    gap : of both corners together [m]; only one is ever beyond its tip
-    by_p, by_g, by_length : derivatives by the flank distances of pinion and gear and by the length of the
-        line of action
-    """
-
-    gap: float
-    by_p: float
-    by_g: float
-    by_length: float
-
-
 @compiled
-def corners_at(arms: FloatArray, length: float, p: FloatArray) -> Corners:
-    """Gap at the tip corners of one tooth pair; ``arms`` are its flank distances (rho_p, rho_g) [m]."""
-    rp, rg = p[RADIUS_P], p[RADIUS_G]
-    gap_p, by_p, length_p = corner_gap(arms[0] - p[TIP_P], p[TIP_P], length, rp, rg)
-    gap_g, by_g, length_g = corner_gap(arms[1] - p[TIP_G], p[TIP_G], length, rg, rp)
-    return Corners(gap_p + gap_g, by_p, by_g, length_p + length_g)
+def coupling_at(p: FloatArray, apart: int, xi: float) -> tuple[float, float]:
+    """Motion of a pair by a unit load on one ``apart`` pitches off, the one behind at xi; its slope [m/N]."""
+    if apart > p[COUPLED]:
+        return 0.0, 0.0
+    first = FIRST_COUPLED + COUPLED_COLUMNS * (apart - 1)
+    row = p[first : first + COUPLED_COLUMNS].reshape((1, COUPLED_COLUMNS))
+    return stiffness_and_slope(row, xi)
 
 
 @compiled
@@ -278,7 +281,11 @@ def contact_forces(
     omega_p, omega_g = v[2] - p[OMEGA_P], v[5] + p[OMEGA_G]
     vx, vy = v[0] - v[3], v[1] - v[4]
     unilateral = (flags & CONTACT_LOSS) != 0
-    arms = np.empty((MAX_PAIRS, 2))
+    coupled = p[COUPLED] > 0.0 and (flags & NEIGHBOURS) != 0
+    softening = p[SOFTENING] if flags & CONTACT_LAW else 0.0
+    arms, state = np.empty((MAX_PAIRS, 2)), np.empty((N_STATE, MAX_PAIRS))
+    bound = np.empty(MAX_PAIRS, np.bool_)
+    coupling, slopes = np.zeros((MAX_PAIRS, MAX_PAIRS)), np.zeros((MAX_PAIRS, MAX_PAIRS))
     count = 0
     for side in range(2 if flags & BACK_SIDE else 1):
         flank = DRIVE if side == 0 else COAST
@@ -294,17 +301,16 @@ def contact_forces(
             length_rate = flank * (rp + rg) * psi_rate - (ex * vx + ey * vy)
         wp, wg = (omega_p, omega_g) if flags & ROTATION_PHASE else (-p[OMEGA_P], p[OMEGA_G])
         xi_rate = 0.5 * flank * (rp * (psi_rate - wp) - rg * (psi_rate - wg))
-        corners = Corners(0.0, 0.0, 0.0, 0.0)
         for i in range(pairs):
             xi = 0.5 * (arms[i, 0] - arms[i, 1] + p[L_XY])
-            arm_p = 0.5 * (arms[i, 0] - arms[i, 1] + length)
-            arm_g = length - arm_p
             error, error_slope = relief_at(p, xi)
             pressed, pressing = delta - error, rate - error_slope * xi_rate
+            corners, beyond = Corners(0.0, 0.0, 0.0, 0.0), False
             if flags & TIP_CONTACT:
                 if xi < p[L_XA] or xi > p[L_XD]:
                     error, error_slope = relief_at(p, min(max(xi, p[L_XA]), p[L_XD]))[0], 0.0
-                corners = corners_at(arms[i], length, p)
+                corners = corners_at(arms[i, 0], arms[i, 1], length, p[TIP_P], p[TIP_G], rp, rg)
+                beyond = arms[i, 0] > p[TIP_P] or arms[i, 1] > p[TIP_G]
                 pressed = delta - error - corners.gap
                 pressing = (
                     rate
@@ -313,20 +319,55 @@ def contact_forces(
                     - corners.by_g * flank * rg * (psi_rate - omega_g)
                     - corners.by_length * length_rate
                 )
-                if pressed <= 0.0 and (arms[i, 0] > p[TIP_P] or arms[i, 1] > p[TIP_G]):
-                    continue
-            if side == 1 and unilateral and pressed <= 0.0:
-                continue
-            stiffness, stiffness_slope = stiffness_and_slope(table, xi)
-            damping = p[DAMPING] * math.sqrt(max(stiffness, 0.0))
-            softening = p[SOFTENING] if flags & CONTACT_LAW else 0.0
-            elastic, stored, stored_slope = elastic_load(
-                pressed, stiffness, stiffness_slope, softening, p[NOMINAL_FORCE]
+            bound[i] = not (unilateral or beyond)
+            state[POSITION, i], state[PRESSED, i], state[PRESSING, i] = xi, pressed, pressing
+            state[RELIEF_SLOPE, i] = error_slope
+            state[BY_P, i], state[BY_G, i], state[BY_L, i] = corners.by_p, corners.by_g, corners.by_length
+            state[STIFFNESS, i], state[SLOPE, i] = stiffness_and_slope(table, xi)
+            state[NORMAL, i] = elastic_load(pressed, state[STIFFNESS, i], softening, p[NOMINAL_FORCE])
+            if not bound[i]:
+                state[NORMAL, i] = max(state[NORMAL, i], 0.0)
+        if coupled and pairs > 1:
+            for i in range(pairs):
+                for j in range(i):
+                    # The newest pair, furthest behind, comes first.
+                    coupling[i, j], slopes[i, j] = coupling_at(p, i - j, state[POSITION, j])
+                    coupling[j, i], slopes[j, i] = coupling[i, j], slopes[i, j]
+            shared_loads(
+                pairs,
+                state[PRESSED],
+                state[STIFFNESS],
+                bound,
+                coupling,
+                softening,
+                p[NOMINAL_FORCE],
+                state[NORMAL],
             )
+        for i in range(pairs):
+            xi, pressed, pressing = state[POSITION, i], state[PRESSED, i], state[PRESSING, i]
+            elastic, stiffness, error_slope = state[NORMAL, i], state[STIFFNESS, i], state[RELIEF_SLOPE, i]
+            own, moved, moved_slope = pressed, 0.0, 0.0
+            if coupled:
+                for j in range(pairs):
+                    if j != i:
+                        moved += coupling[i, j] * state[NORMAL, j]
+                        moved_slope += slopes[i, j] * state[NORMAL, j]
+                own -= moved
+            if own <= 0.0 and not bound[i] and (side == 1 or arms[i, 0] > p[TIP_P] or arms[i, 1] > p[TIP_G]):
+                continue
+            arm_p = 0.5 * (arms[i, 0] - arms[i, 1] + length)
+            arm_g = length - arm_p
+            damping = p[DAMPING] * math.sqrt(max(stiffness, 0.0))
             if flags & TIP_CONTACT:
                 damping *= gradual(elastic / (_GRADUAL * p[NOMINAL_FORCE]))
-            if unilateral and pressed <= 0.0:
-                elastic = stored = stored_slope = damping = 0.0
+            stored, stored_slope = stored_energy(
+                elastic, stiffness, state[SLOPE, i], softening, p[NOMINAL_FORCE]
+            )
+            # Half of w_ij N_i N_j is counted at either pair, and half of its slope at constant compression.
+            stored += 0.5 * elastic * moved
+            stored_slope -= 0.5 * elastic * moved_slope
+            if unilateral and own <= 0.0:
+                damping = 0.0
             normal = elastic + damping * pressing
             if unilateral and normal < 0.0:
                 normal = 0.0
@@ -338,8 +379,8 @@ def contact_forces(
             add_wrench(wrench, ex, ey, normal, mu * normal, arm_p, arm_g, rp, rg, flank)
             if flags & (PATH_WORK | TIP_CONTACT):
                 along = 0.5 * path if flags & PATH_WORK else 0.0
-                by_p, by_g = normal * corners.by_p + along, normal * corners.by_g - along
-                add_gradient(wrench, ex, ey, length, by_p, by_g, normal * corners.by_length, rp, rg, flank)
+                by_p, by_g = normal * state[BY_P, i] + along, normal * state[BY_G, i] - along
+                add_gradient(wrench, ex, ey, length, by_p, by_g, normal * state[BY_L, i], rp, rg, flank)
             record = contacts[count]
             record[XI], record[LOAD], record[FRICTION_FORCE], record[MU] = xi, normal, mu * normal, mu
             record[K], record[C], record[SLIDE] = stiffness, damping, slide

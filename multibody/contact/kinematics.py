@@ -39,6 +39,7 @@ and gear are exchanged.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from lumped.typing import FloatArray
 from multibody.contact.compiled import compiled
@@ -305,3 +306,29 @@ def pairs_in_contact(
             count += 1
         rho_p += pitch
     return count
+
+
+class Corners(NamedTuple):
+    """Gap that tip corners beyond the path of contact leave [m], and its derivatives.
+
+    Attributes
+    ----------
+    gap : of both corners together [m]; only one is ever beyond its tip
+    by_p, by_g, by_length : derivatives by the flank distances of pinion and gear and by the length of the
+        line of action
+    """
+
+    gap: float
+    by_p: float
+    by_g: float
+    by_length: float
+
+
+@compiled
+def corners_at(
+    rho_p: float, rho_g: float, length: float, tip_p: float, tip_g: float, radius_p: float, radius_g: float
+) -> Corners:
+    """Gap at the tip corners of the tooth pair with flank distances rho_p and rho_g, see ``Corners`` [m]."""
+    gap_p, by_p, length_p = corner_gap(rho_p - tip_p, tip_p, length, radius_p, radius_g)
+    gap_g, by_g, length_g = corner_gap(rho_g - tip_g, tip_g, length, radius_g, radius_p)
+    return Corners(gap_p + gap_g, by_p, by_g, length_p + length_g)

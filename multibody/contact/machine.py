@@ -1,6 +1,7 @@
 """A gear pair turned into the plain numbers that a multibody model needs.
 
-Only the stiffness of a tooth pair is taken from ``lumped``, and the coefficient of a friction law that
+Only the stiffness of a tooth pair and how far it moves the next ones are taken from ``lumped``, and the
+coefficient of a friction law that
 ``multibody.contact.friction`` does not have. Circles, path of contact, tooth thickness,
 bodies, bearings, damping, relief and friction are derived here again from the fields of the schema, so that
 agreement of the two models is evidence for both (``multibody.SHARED`` lists what is not).
@@ -27,7 +28,7 @@ from multibody.contact.drawing import base_tooth_angle, bearing_constants, circl
 from multibody.contact.elements import stiffness_at
 from multibody.contact.events import SLIDING, event_table
 from multibody.contact.friction_parameters import fill_friction, friction_switches
-from multibody.contact.kinematics import DRIVE, add_wrench, line_of_action, mesh_phase, wrap
+from multibody.contact.kinematics import DRIVE, MAX_PAIRS, add_wrench, line_of_action, mesh_phase, wrap
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,6 +134,10 @@ def machine(pair: GearPair, flags: int = 0) -> Machine:
     relieved = reliefs(pair, drawn)
     p[kn.RELIEFS] = len(relieved)
     p[kn.FIRST_RELIEF : kn.FIRST_RELIEF + kn.RELIEF_COLUMNS * len(relieved)] = np.ravel(relieved)
+    for apart, moved in enumerate(pair.mesh.stiffness.neighbours(pair)[: MAX_PAIRS - 1]):
+        first = kn.FIRST_COUPLED + kn.COUPLED_COLUMNS * apart
+        p[first : first + kn.COUPLED_COLUMNS] = pack(moved)[0]
+        p[kn.COUPLED] = apart + 1
     fill_friction(pair, p)
     friction = friction_switches(p)
     if p[kn.FRICTION + fr.LAW] == fr.TABLE:

@@ -41,6 +41,12 @@ SHARED: tuple[Shared, ...] = (
         ("lumped/path_of_contact/iso_comparison.py", "tests/lumped/stiffness", "docs/theory/mesh_physics.md"),
     ),
     Shared(
+        "how far the load of a tooth pair moves the next pairs",
+        "rigid bodies have no elasticity; it acts only in the loaded form",
+        "plane finite elements of three teeth, the published deflection of the body, reciprocity",
+        ("tests/lumped/stiffness", "docs/theory/contact_energy.md"),
+    ),
+    Shared(
         "drawing and operating point: the fields of the parameter file in SI units",
         "both models are of the same pair",
         "every unit and range of the schema is tested, and the report prints every value with its source",

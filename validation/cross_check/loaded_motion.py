@@ -24,7 +24,7 @@ from lumped.path_function import PathFunction
 from lumped.quasi_static.kernels import corner_gaps
 from lumped.quasi_static.loaded_contact import FULL_DAMPING, StaticMesh
 from lumped.quasi_static.tooth_error import relief_starts
-from lumped.typing import FloatArray
+from lumped.typing import BoolArray, FloatArray
 from validation.cross_check.effective_elements import Lines
 from validation.cross_check.shifted_motion import Motion, ShiftedModel, Shifts
 
@@ -133,12 +133,26 @@ class LoadedModel(ShiftedModel):
 
     def _along_path(self, shifts: Shifts) -> FloatArray:
         """Force H of one pair along the path at the places of the shifts, (k,) [N]."""
-        law, at = self.mesh.law, shifts.stands_at
+        mesh, law, at = self.mesh, self.mesh.law, shifts.stands_at
         low, high = (self.mesh.relief(at + s) for s in (-_BESIDE, _BESIDE))
         relief, k = (high - low) / (2.0 * _BESIDE), law.held(at)
         near, far = (law.held(at + s) for s in (-_BESIDE, _BESIDE))
         slope = (far - near) / (2.0 * _BESIDE)
-        return np.asarray(shifts.load * relief - 0.5 * slope * (shifts.load / k) ** 2)
+        # Half of what a pair and its neighbours move each other counts at either.
+        places, followed = self._neighbours(shifts.place, shifts.place)
+        others = np.where(followed, np.interp(places, shifts.place, shifts.load), 0.0)
+        actual = np.interp(places, shifts.place, at)
+        behind, ahead = (
+            mesh.coupling(actual + s, followed)[:, followed.shape[1] // 2] for s in (-_BESIDE, _BESIDE)
+        )
+        moved = ((ahead - behind) / (2.0 * _BESIDE) * others).sum(axis=1)
+        return np.asarray(shifts.load * (relief + 0.5 * moved) - 0.5 * slope * (shifts.load / k) ** 2)
+
+    def _neighbours(self, at: FloatArray, place: FloatArray) -> tuple[FloatArray, BoolArray]:
+        """Places of a pair at (n,) and of its neighbours, (n, pairs) [m], and whether they are followed."""
+        most = len(self.mesh.neighbours)
+        places = at[:, None] + np.arange(-most, most + 1) * self.cycle.geometry.base_pitch
+        return places, (places >= place[0]) & (places <= place[-1])
 
     def _contact(self, shifts: Shifts) -> MeshElements:
         """Stiffness, damping, error and gap about the motion of these shifts."""
@@ -153,25 +167,28 @@ class LoadedModel(ShiftedModel):
         full = FULL_DAMPING * mesh.force
 
         def state(at: FloatArray) -> dict[str, FloatArray]:
-            actual, delta, more = (np.interp(at, place, v) for v in (stands_at, overlap, longer))
-            gap = mesh.gap(actual, 0.5 * (delta + more), more)
-            k = law.held(actual)
-            load, tangent = law.load(k, delta - gap)
+            places, near = self._neighbours(at, place)
+            actual, delta, more = (np.interp(places, place, v) for v in (stands_at, overlap, longer))
+            middle = near.shape[1] // 2
+            gap = mesh.gap(actual.ravel(), 0.5 * (delta + more).ravel(), more.ravel()).reshape(near.shape)
+            load, tangent, pressed = mesh.together(actual, delta - gap, near)
+            actual, delta, gap = actual[:, middle], delta[:, middle], gap[:, middle]
             engaged = np.clip(load / full, 0.0, 1.0)
             return {
                 "gap": gap,
-                "pressed": delta - gap,
+                "compression": delta - gap,
+                "pressed": pressed,
                 "load": load,
                 "stiffness": tangent,
                 "error": delta - load / np.where(tangent > 0.0, tangent, np.inf),
-                "damping": scale * np.sqrt(k) * engaged**2 * (3.0 - 2.0 * engaged),
+                "damping": scale * np.sqrt(law.held(actual)) * engaged**2 * (3.0 - 2.0 * engaged),
             }
 
         found, speed = state(place), g.base_pitch / self.cycle.period
         touching = found["pressed"]
         # A pair lets go where its flanks part, and where its damper would pull more than they press.
         if "tip_contact" in self.effects:
-            pressing = found["damping"] * np.gradient(touching, place) * speed
+            pressing = found["damping"] * np.gradient(found["compression"], place) * speed
             touching = np.where(touching > 0.0, found["load"] + pressing, touching)
         turn = np.flatnonzero(np.signbit(touching[1:]) != np.signbit(touching[:-1]))
         share = touching[turn] / (touching[turn] - touching[turn + 1])

@@ -17,6 +17,7 @@ from scipy.sparse.linalg import splu
 
 from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.stiffness.foundation import BODY_RATIO, foundation_compliance, torsional_stiffness
+from lumped.stiffness.neighbours import foot_compliance, foot_loads
 from lumped.stiffness.tooth_beam import beam_compliance
 
 NU = 0.3
@@ -234,3 +235,32 @@ def test_a_free_tooth_does_not_feel_the_bore_of_a_thick_rim():
     assert max(off[h] for h in (3.0, 6.0)) < 0.015
     assert off[BODY_RATIO.low] < 0.04
     assert off[1.6] > 0.1
+
+
+@pytest.mark.parametrize(
+    ("teeth", "shift", "ratio"), [(16, 0.18, 4.0), (28, 0.0, 2.0), (28, 0.0, 4.0), (75, 0.0, 4.0)]
+)
+def test_a_load_moves_the_next_teeth_as_in_finite_elements(teeth, shift, ratio):
+    profile = ToothProfile(teeth, 1.0, math.radians(20.0), shift, 1.25, 0.38)
+    tip_length = math.sqrt((teeth / 2 + 1 + shift) ** 2 - profile.base_radius**2)
+    gear = PlaneGear(profile, tip_length, profile.root_radius / ratio, (-1, 0, 1))
+    base_pitch, checked = math.pi * math.cos(math.radians(20.0)), 0
+    for row in (0, 8, 24, 32):
+        length, moved = gear.lengths[row], gear.moved(row, clamped=True)
+        for number in (-1, 1):
+            there = length + number * base_pitch
+            if not gear.lengths[0] <= there <= gear.lengths[-1]:
+                continue
+            reference = gear.neighbour(moved, number, there) - twist(profile, ratio)
+            own, other = (
+                foot_loads(
+                    np.array([at / profile.base_radius - profile.base_half_angle]),
+                    profile.base_radius / profile.root_radius,
+                    profile.root_half_angle,
+                )[:, 0]
+                for at in (length, there)
+            )
+            feet = foot_compliance(ratio, NU, profile.root_half_angle, number * gear.pitch)
+            assert other @ feet @ own == pytest.approx(reference, rel=0.045)
+            checked += 1
+    assert checked >= 2

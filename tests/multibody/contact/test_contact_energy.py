@@ -9,11 +9,12 @@ from scipy.special import lambertw
 import lumped
 import multibody
 from lumped.quasi_static import corner_gap as lumped_corner_gap
-from lumped.quasi_static.kernels import loads_of
+from lumped.quasi_static.kernels import load_of
+from lumped.quasi_static.kernels import shared_loads as lumped_shared_loads
 from multibody.contact import kernels as kn
 from multibody.contact import kinematics as kin
 from multibody.contact.effects import effect_flags
-from multibody.contact.elements import elastic_load
+from multibody.contact.elements import elastic_load, shared_loads, stored_energy
 from multibody.contact.machine import machine
 
 ALL = effect_flags(None, "loaded")
@@ -75,7 +76,7 @@ def test_the_wrench_is_minus_the_gradient_of_the_energy(name):
     # Central differences: a curvature of some 1/um over 2 nm, and kinks (first touch, ends of the path).
     assert np.quantile(worst, 0.9) < 1e-6
     assert max(worst) < 3e-4
-    assert beyond > (0 if name == "relief" else 15)  # corners were among them
+    assert beyond > 15 or name == "relief"  # corners were among them
 
 
 @pytest.mark.parametrize("name", PAIRS)
@@ -108,7 +109,7 @@ def test_stiffness_of_the_mesh_is_symmetric_only_with_path_work():
     inside = [(t, q) for t, q in states(numbers, 40) if 0.2 < t / numbers.period < 0.5]
     found = np.array([(skew(ALL, t, q), skew(ALL & ~kn.PATH_WORK, t, q)) for t, q in inside])
     assert found[:, 0].max() < 1e-7
-    assert found[:, 1].min() > 1e-5
+    assert found[:, 1].min() > 1e-6
     assert found[:, 1].max() > 1e-4
 
 
@@ -149,19 +150,74 @@ def test_a_corner_pushes_along_a_tangent_of_the_mates_base_circle():
 def test_hertz_law_is_the_derivative_of_its_energy_and_lamberts_function(share):
     k, d, nominal = 8e7, 4.4e-10, 1353.0
     pressed = share * nominal / k
-    load, _, slope = elastic_load(pressed, k, 2e9, d, nominal)
+
+    def energy(p, k):
+        return stored_energy(elastic_load(p, k, d, nominal), k, 2e9, d, nominal)
+
+    load, slope = elastic_load(pressed, k, d, nominal), energy(pressed, k)[1]
     h = 1e-6 * pressed
-    up, down = (elastic_load(pressed + s, k, 2e9, d, nominal)[1] for s in (h, -h))
+    up, down = (energy(pressed + s, k)[0] for s in (h, -h))
     assert (up - down) / (2 * h) == pytest.approx(load, rel=1e-7)
-    softer, stiffer = (elastic_load(pressed, k + s, 0.0, d, nominal)[1] for s in (-1e3, 1e3))
+    softer, stiffer = (energy(pressed, k + s)[0] for s in (-1e3, 1e3))
     assert slope == pytest.approx((stiffer - softer) / 2e3 * 2e9, rel=1e-6)
     # The lumped model's own evaluation: load, and its slope as the tangent.
-    both = loads_of(np.array([pressed, pressed + h]), np.array([k, k]), d, nominal, 1e-3 * nominal)
-    assert both[0][0] == pytest.approx(load, rel=1e-12)
-    assert both[1][0] == pytest.approx((both[0][1] - both[0][0]) / h, rel=1e-5)
+    (here, tangent), (further, _) = (
+        load_of(p, k, d, nominal, 1e-3 * nominal, 0.0) for p in (pressed, pressed + h)
+    )
+    assert here == pytest.approx(load, rel=1e-12)
+    assert tangent == pytest.approx((further - here) / h, rel=1e-5)
     if share >= 0.3:  # far above the load below which the law is held linear
         w = lambertw(-pressed * np.exp(-1.0 / (k * d)) / (d * nominal), -1).real
         assert load == pytest.approx(-pressed / (d * w), rel=1e-6)
+
+
+@pytest.mark.parametrize("softening", [0.0, 4.4e-10])
+def test_neighbours_share_the_load_in_both_models(softening):
+    """Newton's steps here, relaxation there; and the conditions of contact themselves."""
+    rng, seen = np.random.default_rng(7), set()
+    for _ in range(2000):
+        n, nominal = int(rng.integers(1, 5)), 1353.0
+        k, pressed = rng.uniform(5e7, 1e8, n), rng.uniform(-5e-6, 2e-5, n)
+        w = rng.uniform(-1.5e-9, 4e-9, (n, n))
+        w = np.tril(w, -1) + np.tril(w, -1).T
+        loads, theirs = np.empty(n), np.zeros(n)
+        shared_loads(n, pressed, k, np.zeros(n, bool), w, softening, nominal, loads)
+        lumped_shared_loads(
+            pressed, k, w, softening, nominal, 1e-3 * nominal, theirs, np.zeros(n), np.zeros(n)
+        )
+        assert loads == pytest.approx(theirs, rel=1e-11, abs=1e-9)
+        left = pressed - w @ loads
+        touch = loads > 0.0
+        own = [
+            elastic_load(one, stiffness, softening, nominal) for one, stiffness in zip(left, k, strict=True)
+        ]
+        assert loads[touch] == pytest.approx(np.array(own)[touch], rel=1e-10)
+        assert np.all(left[~touch] <= 1e-20)
+        seen.add((n, int(touch.sum())))
+    assert {(4, 1), (4, 3), (4, 4), (2, 1)} <= seen
+
+
+def test_each_pair_is_moved_by_what_the_lumped_model_says_of_the_pair_behind():
+    pair = bare({"model": "energy", "hertz": "linear"}, **UNEQUAL)
+    numbers, together = machine(pair, ALL), 0
+    moved = pair.mesh.stiffness.neighbours(pair)[0]
+    for t, q in states(numbers, 60):
+        found = contact(numbers, t, q)[1]
+        if len(found) == 2 and found[:, kn.LOAD].min() > 0.0:
+            behind, together = found[:, kn.XI].min(), together + 1
+            left = found[:, kn.OVERLAP] - moved(behind) * found[::-1, kn.ELASTIC]
+            assert found[:, kn.ELASTIC] == pytest.approx(found[:, kn.K] * left, rel=1e-9)
+            alone = contact(numbers, t, q, flags=ALL & ~kn.NEIGHBOURS)[1]
+            assert alone[:, kn.LOAD].sum() > 1.05 * found[:, kn.LOAD].sum()
+    assert together > 10
+
+
+def test_a_pair_that_cannot_part_pulls_and_still_moves_its_neighbour():
+    loads, w = np.empty(2), np.array([[0.0, 2e-9], [2e-9, 0.0]])
+    k, pressed = np.array([8e7, 6e7]), np.array([1e-5, -4e-6])
+    shared_loads(2, pressed, k, np.ones(2, bool), w, 0.0, 1353.0, loads)
+    assert loads == pytest.approx(np.linalg.solve(np.diag(1.0 / k) + w, pressed), rel=1e-12)
+    assert loads[1] < 0.0
 
 
 @pytest.mark.parametrize(
@@ -175,6 +231,7 @@ def test_hertz_law_is_the_derivative_of_its_energy_and_lamberts_function(share):
         ("nasa_art_25_31", {"mesh.stiffness": {"model": "parabolic"}}),
         ("kahraman_blankenship_50_50", {"friction": {"law": "coulomb", "coefficient": 0.0}}),
         ("high_contact_ratio_29_47", {}),
+        ("high_contact_ratio_29_47", {"mesh.stiffness": {"model": "energy"}}),
     ],
 )
 def test_the_first_law_holds_without_a_source(preset, changes):

@@ -75,6 +75,7 @@ MADE_UP = {
     "friction_load": 30.0,
     "path_work": 40.0,
     "tip_contact": 50.0,
+    "neighbours": 0.5,
     "contact_law": 70.0,
 }
 

@@ -82,10 +82,11 @@ def test_finite_motion_scales_with_torque():
 @pytest.mark.parametrize("effect", sorted(multibody.EFFECTS))
 def test_each_effect_acts(effect):
     """A switch that did nothing would make the attribution of differences worthless."""
-    # Two effects act on laws that the pair itself has not.
+    # Three effects act on laws that the pair itself has not.
     laws = {
         "friction_load": {"friction.law": "xu_kahraman"},
         "contact_law": {"mesh.stiffness": {"model": "energy"}},
+        "neighbours": {"mesh.stiffness": {"model": "energy"}},
     }
     pair = BASE.with_(laws.get(effect, {}))
     start = np.zeros(12)
