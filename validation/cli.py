@@ -27,7 +27,6 @@ from validation.stop_signals import interrupt_once
 app = typer.Typer(
     name="spurcheck",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",
     context_settings={"help_option_names": ["-h", "--help"]},

@@ -75,9 +75,11 @@ def _is_list(info: FieldInfo) -> bool:
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """Return the question whether the nearest known name was meant, or nothing."""
-    close = difflib.get_close_matches(name[:80], list(known), n=1, cutoff=0.5)
-    return f"Did you mean '{close[0]}'?" if close else ""
+    """Ask whether the nearest known name was meant, or those that it is a word of; else nothing."""
+    names = list(known)
+    parts = [one for one in names if name and name in one.split("_")]  # torque: pinion_torque, brake_torque
+    close = parts or difflib.get_close_matches(name[:80], names, n=1, cutoff=0.5)
+    return f"Did you mean {' or '.join(map(repr, close))}?" if close else ""
 
 
 def unknown_key(path: str, known: list[str], part: str) -> FieldProblem:

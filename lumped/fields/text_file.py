@@ -9,7 +9,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from lumped.errors import ParameterError, refuse
+from lumped.errors import ParameterError, refuse, shown
 
 #: Most parts of a dotted key. No schema nests half as deep, and reading a key takes the square of its parts.
 _MAX_PARTS = 50
@@ -35,7 +35,13 @@ def parse_toml(text: str, source: str) -> dict[str, Any]:
                 raise ValueError(f"more than {_MAX_PARTS} dots in a row (at character {found.start()})")
         return tomllib.loads(text)
     except (RecursionError, ValueError) as error:
-        raise refuse("file", source, "well-formed TOML", f"The TOML is malformed: {error}.") from None
+        why = f"The TOML is malformed: {error}."
+        if found_at := re.search(r"at line (\d+)", str(error)):
+            line = text.splitlines()[int(found_at[1]) - 1].strip()
+            comma = re.search(r"=\s*[+-]?\d+,\d", line)
+            hint = " Decimals have a point, and text is put in quotes." if comma else ""
+            why = f"Line {found_at[1]} is malformed: {shown(line)} ({error}).{hint}"
+        raise refuse("file", source, "well-formed TOML", why) from None
 
 
 def read_text(

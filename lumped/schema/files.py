@@ -20,6 +20,12 @@ AnyPair = GearPair | str | Path | Mapping[str, Any]
 #: Largest parameter file read, a bound against a wrong path rather than a limit of the format.
 MAX_FILE_BYTES = 1_000_000
 
+#: Section that only another kind of file has -> what that is.
+_OTHER_FILES = {
+    "gear_pair": "a study: run it with 'spurcheck sweep'",
+    "channel": "a measured record: give it to 'spurcheck measurement'",
+}
+
 
 @cache
 def preset_names() -> tuple[str, ...]:
@@ -67,7 +73,11 @@ def load_gear_pair(source: AnyPair) -> GearPair:
         return validated(parse_toml(preset_text(source), f"preset {source}"), f"preset {source}")
     if path.suffix.lower() != ".toml" and not _exists(path) and "/" not in str(source):
         preset_text(str(source))
-    return validated(parse_toml(_read(path), str(path)), str(path), path.parent)
+    data = parse_toml(_read(path), str(path))
+    for key, other in _OTHER_FILES.items():
+        if key in data and "pinion" not in data:
+            raise refuse("file", path, "the parameters of a gear pair", f"This is {other}.")
+    return validated(data, str(path), path.parent)
 
 
 def geometry(pair: AnyPair) -> Geometry:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import conclude, guarded, progress_bar, stdout, table
+from validation.commands.terminal import conclude, guarded, print_json, progress_bar, stdout, table
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -54,6 +54,7 @@ def crosscheck(
     torque: opt.Torque = None,
     law: opt.Law = None,
     settings: opt.Settings = None,
+    as_json: opt.Json = False,
     force: opt.Force = False,
 ) -> None:
     """Check the lumped model against the independent multibody model.
@@ -84,7 +85,6 @@ def crosscheck(
     from lumped.errors import refuse
     from validation.cross_check.comparison import crosscheck as run
     from validation.files.output import check_file
-    from validation.reporting.formatting import number
 
     if checkpoint is not None:
         raise refuse("--checkpoint", checkpoint, "only with --grid", "One pair takes seconds: leave it out.")
@@ -92,6 +92,18 @@ def crosscheck(
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
     with progress_bar("cross-check") as tell:
         check = run(gear_pair, cycles=cycles, samples_per_cycle=samples, progress=tell)
+    if as_json:
+        print_json(_data(check))
+    else:
+        _print(check)
+    if target is not None:
+        _write(check, target)
+    conclude(check.verdict, target, strict=strict, tell=not as_json)
+
+
+def _print(check: CrossCheck) -> None:
+    from validation.reporting.formatting import number
+
     console = stdout()
     for shown in _tables(check):
         console.print(shown)
@@ -110,9 +122,17 @@ def crosscheck(
     for failure in check.failures:
         text = f"fails: {failure.check} {number(failure.value, 3)}, limit {number(failure.limit, 3)}"
         console.print(f"{text} ({failure.reason})", soft_wrap=True, markup=False)
-    if target is not None:
-        _write(check, target)
-    conclude(check.verdict, target, strict=strict)
+
+
+def _data(check: CrossCheck) -> dict[str, object]:
+    """Verdict, failures and agreements as plain data."""
+    from dataclasses import asdict
+
+    return {
+        "verdict": check.verdict,
+        "failures": [asdict(failure) for failure in check.failures],
+        "agreements": [asdict(a) | {"judged": a.judged, "within": a.within} for a in check.agreements],
+    }
 
 
 def _tables(check: CrossCheck) -> list[Table]:
@@ -153,18 +173,11 @@ def _word(within: bool, kept: str = "within") -> Text:
 
 
 def _write(check: CrossCheck, target: Path) -> None:
-    from dataclasses import asdict
-
     from validation.cross_check.agreement import off_switch_samples
     from validation.files.output import write_text
 
     if target.suffix.lower() == ".json":
-        data = {
-            "verdict": check.verdict,
-            "failures": [asdict(failure) for failure in check.failures],
-            "agreements": [asdict(a) | {"judged": a.judged, "within": a.within} for a in check.agreements],
-        }
-        write_text(target, json.dumps(data, indent=1, allow_nan=False) + "\n")
+        write_text(target, json.dumps(_data(check), indent=1, allow_nan=False) + "\n")
         return
     from validation.plots.cross_check import cross_check_figure
     from validation.plots.style import save

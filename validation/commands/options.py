@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -49,6 +50,7 @@ Settings = Annotated[
         "--set 'lubricant.viscosity=8 mPa*s'.",
     ),
 ]
+Json = Annotated[bool, typer.Option("--json", help="Print the numbers as JSON (SI units) and nothing else.")]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite what is there already.")]
 ForceFolder = Annotated[
     bool, typer.Option("--force", help="Replace what this command wrote into that folder earlier.")
@@ -70,23 +72,32 @@ def gear_pair(
     ParameterError : everything that a parameter file could be refused for, and a --set without '='
     """
     from lumped import load_gear_pair
-    from lumped.errors import refuse
+    from lumped.errors import ParameterError, refuse
 
     changes: dict[str, Any] = {}
+    options: dict[str, str] = {}
     for item in settings or []:
         path, separator, text = item.partition("=")
         if not separator or not path.strip():
             raise refuse("--set", item, "FIELD=VALUE", "For example --set mesh.damping_ratio=0.03.")
         changes[path.strip()] = value_of(text.strip())
-    for path, text_or_none in (
-        ("operating.pinion_speed", speed),
-        ("operating.pinion_torque", torque),
-        ("friction.law", law),
+        options[path.strip()] = f"--set {path.strip()}"
+    for option, path, text_or_none in (
+        ("--speed", "operating.pinion_speed", speed),
+        ("--torque", "operating.pinion_torque", torque),
+        ("--law", "friction.law", law),
     ):
         if text_or_none is not None:
             changes[path] = value_of(text_or_none)
+            options[path] = option
     pair = load_gear_pair(source)
-    return pair.with_(changes) if changes else pair
+    if not changes:
+        return pair
+    try:
+        return pair.with_(changes)
+    except ParameterError as error:
+        problems = [replace(p, field=options.get(p.field, p.field)) for p in error.problems]
+        raise ParameterError(problems, error.source.removesuffix(" varied")) from None
 
 
 def value_of(text: str) -> Any:

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import guarded, note, progress_bar, stderr, stdout, table
+from validation.commands.terminal import guarded, note, print_json, progress_bar, stderr, stdout, table
 
 Model = Literal["lumped", "multibody"]
 Fidelity = Literal["exact", "linear"]
@@ -36,6 +36,7 @@ def simulate(
     torque: opt.Torque = None,
     law: opt.Law = None,
     settings: opt.Settings = None,
+    as_json: opt.Json = False,
     force: opt.Force = False,
 ) -> None:
     """Simulate a gear pair: transmission error, tooth loads, friction and motions in time.
@@ -81,20 +82,32 @@ def simulate(
     g = gear_pair.geometry
     last = result.isel(time=slice(-samples, None))
     load = last["normal_load"].to_numpy()[last["contact"].to_numpy() > 0]
-    shown = table(f"{gear_pair.name}, last mesh cycle", "quantity", ">value")
     dte = last["dte"].to_numpy()
     static = gear_pair.operating.pinion_torque / g.base_radius_pinion
-    for name, value in {
-        "transmission error, peak to peak": quantity(float(dte.max() - dte.min()), "m"),
-        "transmission error, mean": quantity(float(dte.mean()), "m"),
-        "largest load of a tooth pair": quantity(float(load.max()), "N"),
-        "smallest load of a tooth pair": quantity(float(load.min()), "N"),
-        "largest load over static load": number(float(load.max()) / static),
-        "mesh efficiency": f"{number(100.0 * float(result.attrs['mesh_efficiency']))} %",
-        "brake torque that holds the speed": quantity(float(result.attrs["brake_torque"]), "N m", 6),
-    }.items():
-        shown.add_row(name, value)
-    stdout().print(shown)
+    numbers = {
+        "dte_peak_to_peak": float(dte.max() - dte.min()),
+        "dte_mean": float(dte.mean()),
+        "normal_load_max": float(load.max()),
+        "normal_load_min": float(load.min()),
+        "load_factor": float(load.max()) / static,
+        "mesh_efficiency": float(result.attrs["mesh_efficiency"]),
+        "brake_torque": float(result.attrs["brake_torque"]),
+    }
+    if as_json:
+        print_json({"gear_pair": gear_pair.name, "model": model} | numbers)
+    else:
+        shown = table(f"{gear_pair.name}, last mesh cycle", "quantity", ">value")
+        for name, value in {
+            "transmission error, peak to peak": quantity(numbers["dte_peak_to_peak"], "m"),
+            "transmission error, mean": quantity(numbers["dte_mean"], "m"),
+            "largest load of a tooth pair": quantity(numbers["normal_load_max"], "N"),
+            "smallest load of a tooth pair": quantity(numbers["normal_load_min"], "N"),
+            "largest load over static load": number(numbers["load_factor"]),
+            "mesh efficiency": f"{number(100.0 * numbers['mesh_efficiency'])} %",
+            "brake torque that holds the speed": quantity(numbers["brake_torque"], "N m", 6),
+        }.items():
+            shown.add_row(name, value)
+        stdout().print(shown)
     separation = contact_loss(gear_pair, g, last)
     if separation.state != "ok" and (model == "lumped" or fidelity == "linear"):
         note(

@@ -9,7 +9,7 @@ import typer
 
 from floquet.engine.propagators.registry import PROPAGATORS
 from validation.commands import options as opt
-from validation.commands.terminal import FAILED, guarded, stderr, stdout, table
+from validation.commands.terminal import FAILED, guarded, print_json, stderr, stdout, table
 
 if TYPE_CHECKING:
     import numpy as np
@@ -80,6 +80,7 @@ def stability(
     torque: opt.Torque = None,
     law: opt.Law = None,
     settings: opt.Settings = None,
+    as_json: opt.Json = False,
     force: opt.Force = False,
 ) -> None:
     """Decide whether the motion is stable, at the operating point and over a chart.
@@ -116,7 +117,13 @@ def stability(
     )
     request.check(view)
     found = gear_pair_multipliers(gear_pair)
-    _print_point(gear_pair, found)
+    if as_json:
+        radius = found.spectral_radius
+        point = {"verdict": found.verdict, "spectral_radius": radius, "error": found.error}
+        point |= {"certificate": found.certificate, "margin": 1.0 - radius}
+        print_json({"gear_pair": gear_pair.name} | point)
+    else:
+        _print_point(gear_pair, found)
     if targets or axes or tongues or view != "chart":
         show(view, request)
         for target in targets:

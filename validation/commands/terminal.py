@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import functools
+import inspect
+import json
 import traceback
 import unicodedata
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn, ParamSpec
 
 import typer
 from rich.console import Console
@@ -52,21 +56,45 @@ class PlainConsole(Console):
         super().print(*objects, **({"soft_wrap": unbroken} | options))
 
 
+#: Argument of a function -> the option that it comes from.
+_OPTIONS = {
+    "samples_per_cycle": "--samples",
+    **{name: f"--{name.replace('_', '-')}" for name in ("cycles", "tolerance", "workers", "case_seconds")},
+}
+_quiet: ContextVar[bool] = ContextVar("quiet", default=False)
+#: Option that every command has, see ``guarded``.
+Quiet = Annotated[
+    bool, typer.Option("--quiet", "-q", help="Print nothing but errors, and what --json prints.")
+]
+
+
 def stdout() -> Console:
     """Console for results; made anew so that a replaced stream is used."""
-    return PlainConsole()
+    return PlainConsole(quiet=_quiet.get())
 
 
 def stderr() -> Console:
     """Console for everything that is not the result."""
-    return PlainConsole(stderr=True)
+    return PlainConsole(stderr=True, quiet=_quiet.get())
+
+
+def print_json(data: Mapping[str, Any]) -> None:
+    """Print numbers for another program, as the only thing on stdout."""
+    typer.echo(json.dumps(data, indent=1, allow_nan=False))
 
 
 def guarded(command: Callable[P, None]) -> Callable[P, None]:
-    """Turn the errors of spurcheck into one message and an exit code, and its warnings into notes."""
+    """Turn errors into one message and an exit code, warnings into notes; add the option --quiet."""
 
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
+        silent = _quiet.set(bool(kwargs.pop("quiet", False)))
+        try:
+            answered(*args, **kwargs)
+        finally:
+            _quiet.reset(silent)
+
+    def answered(*args: P.args, **kwargs: P.kwargs) -> None:
         from lumped.errors import LawRangeWarning, NumericalError, ParameterError, StorageError
 
         told: set[str] = set()
@@ -83,7 +111,8 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
                 warnings.showwarning = show
                 command(*args, **kwargs)
         except ParameterError as error:
-            fail(str(error), REFUSED)
+            problems = [replace(p, field=_OPTIONS.get(p.field, p.field)) for p in error.problems]
+            fail(str(ParameterError(problems, error.source)), REFUSED)
         except (NumericalError, StorageError) as error:
             fail(str(error), NUMERICAL)
         except OSError as error:
@@ -105,10 +134,14 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
                 NUMERICAL,
             )
 
+    signature = inspect.signature(command, eval_str=True)
+    quiet = inspect.Parameter("quiet", inspect.Parameter.KEYWORD_ONLY, default=False, annotation=Quiet)
+    run.__signature__ = signature.replace(parameters=[*signature.parameters.values(), quiet])  # type: ignore[attr-defined]
+    run.__annotations__ = {**command.__annotations__, "quiet": Quiet}
     return run
 
 
-def conclude(verdict: str, target: Path | None, *, strict: bool) -> None:
+def conclude(verdict: str, target: Path | None, *, strict: bool, tell: bool = True) -> None:
     """End a cross-check: its verdict in words, the file that was written, and the exit code.
 
     Parameters
@@ -116,10 +149,12 @@ def conclude(verdict: str, target: Path | None, *, strict: bool) -> None:
     verdict : a key of ``validation.cross_check.judgement.MEANINGS``
     target : the file
     strict : fail on "explained" too
+    tell : print the verdict
     """
     from validation.cross_check.judgement import MEANINGS
 
-    stdout().print(f"[bold]{verdict}[/bold]: {MEANINGS[verdict]}", markup=True, soft_wrap=True)
+    if tell:
+        stdout().print(f"[bold]{verdict}[/bold]: {MEANINGS[verdict]}", markup=True, soft_wrap=True)
     if target is not None:
         stderr().print(f"wrote {target}", soft_wrap=True)
     if verdict == "not confirmed" or (strict and verdict != "confirmed"):
@@ -128,7 +163,9 @@ def conclude(verdict: str, target: Path | None, *, strict: bool) -> None:
 
 def fail(text: str, code: int) -> NoReturn:
     """End the command with one message and an exit code."""
-    stderr().print(f"[bold red]error:[/bold red] {escape(text)}", markup=True, soft_wrap=True)
+    PlainConsole(stderr=True).print(
+        f"[bold red]error:[/bold red] {escape(text)}", markup=True, soft_wrap=True
+    )
     raise typer.Exit(code)
 
 

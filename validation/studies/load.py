@@ -40,7 +40,11 @@ def load_study(source: str | Path | Mapping[str, Any] | Study, *, name: str = ""
         return _validated(parse_toml(source, name or "study"), name or "study", Path())
     path = file_path("study", source)
     text = read_text(path, MAX_FILE_BYTES, field="study", kind="TOML file")
-    return _validated(parse_toml(text, str(path)), str(path), path.parent)
+    data = parse_toml(text, str(path))
+    if "pinion" in data and "gear_pair" not in data:
+        action = "This is a gear pair: a study names it as gear_pair. For one pair: 'spurcheck report'."
+        raise refuse("study", path, "a study", action)
+    return _validated(data, str(path), path.parent)
 
 
 def _validated(data: dict[str, Any], source: str, folder: Path) -> Study:

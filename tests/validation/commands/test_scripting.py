@@ -1,0 +1,96 @@
+"""Can a script use the commands: JSON alone on stdout, silence, messages that name what was typed?"""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import lumped
+from validation.cli import app
+
+
+def run(*arguments):
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def test_simulate_prints_its_numbers():
+    result = run("simulate", "--json", "--cycles", 3, "--samples", 64)
+    numbers = json.loads(result.stdout)
+    last = lumped.simulate("nasa_28_28", 3, samples_per_cycle=64).isel(time=slice(-64, None))
+    assert numbers["dte_peak_to_peak"] == float(last.dte.max() - last.dte.min())
+    assert (result.exit_code, numbers["gear_pair"], numbers["model"]) == (0, "nasa_28_28", "lumped")
+
+
+def test_stability_and_crosscheck_print_their_verdicts():
+    stable = json.loads(run("stability", "--json").stdout)
+    assert (stable["verdict"], stable["margin"]) == ("stable", 1.0 - stable["spectral_radius"])
+    check = run("crosscheck", "--json", "--cycles", 6, "--samples", 64)
+    data = json.loads(check.stdout)
+    assert (data["verdict"] == "not confirmed") == (check.exit_code == 1)
+    assert data["agreements"]
+
+
+@pytest.mark.parametrize("command", [("simulate", "--cycles", 2), ("stability",)])
+def test_quiet_is_silent(command):
+    result = run(*command, "--quiet")
+    assert (result.exit_code, result.output) == (0, "")
+    assert json.loads(run(*command, "-q", "--json").output)
+    refused = run(*command, "-q", "--speed", -5)
+    assert refused.exit_code == 2
+    assert refused.stderr.startswith("error:")
+    assert run(*command).stdout, "silence ends with the command"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--speed", "-5"), "nasa_28_28: --speed = -5 rpm: allowed > 0 rpm"),
+        (("--torque", "80,5"), "--torque = '80,5'"),
+        (("--law", "VI"), "--law = VI: allowed one of none"),
+        (("--cycles", "0"), "error: --cycles = 0"),
+        (("--samples", "1"), "error: --samples = 1"),
+        (("--set", "pinion.teeth=2"), "--set pinion.teeth = 2"),
+        (("--set", "operating.torque=5"), "Did you mean 'pinion_torque' or 'brake_torque'?"),
+    ],
+)
+def test_a_refusal_names_the_option(arguments, message):
+    result = run("simulate", *arguments)
+    assert result.exit_code == 2
+    assert message in result.stderr
+
+
+def test_malformed_toml_shows_the_line(tmp_path):
+    path = tmp_path / "pair.toml"
+    path.write_text(lumped.load_gear_pair("nasa_28_28").to_toml().replace("module = 3.175", "module = 3,175"))
+    result = run("report", path, "-o", tmp_path / "report")
+    assert result.exit_code == 2
+    assert "Line 6 is malformed: module = 3,175" in result.stderr
+    assert "Decimals have a point" in result.stderr
+
+
+def test_a_file_of_another_kind_says_what_it_is(tmp_path):
+    study, pair = tmp_path / "study.toml", tmp_path / "pair.toml"
+    study.write_text('name = "s"\ngear_pair = "nasa_28_28"\nanalysis = "floquet"\n')
+    pair.write_text(lumped.load_gear_pair("nasa_28_28").to_toml())
+    assert (
+        "This is a study: run it with 'spurcheck sweep'" in run("report", study, "-o", tmp_path / "r").stderr
+    )
+    assert "This is a gear pair" in run("sweep", pair, "-o", tmp_path / "s").stderr
+
+
+def test_completion_is_offered():
+    result = run("--help")
+    assert "--install-completion" in result.output
+
+
+def test_the_study_of_the_readme_is_one(tmp_path, monkeypatch):
+    readme = Path(__file__).parents[3] / "README.md"
+    text = re.search(r"```toml\n(# study\.toml.*?)```", readme.read_text(encoding="utf-8"), re.DOTALL)[1]
+    (tmp_path / "study.toml").write_text(text)
+    (tmp_path / "mypair.toml").write_text(lumped.load_gear_pair("nasa_28_28").to_toml())
+    monkeypatch.chdir(tmp_path)
+    result = run("sweep", "study.toml", "--dry-run")
+    assert result.exit_code == 0, result.stderr
+    assert "15 cases" in result.stderr
