@@ -324,10 +324,10 @@ def contact_forces(
             state[RELIEF_SLOPE, i] = error_slope
             state[BY_P, i], state[BY_G, i], state[BY_L, i] = corners.by_p, corners.by_g, corners.by_length
             state[STIFFNESS, i], state[SLOPE, i] = stiffness_and_slope(table, xi)
-            state[NORMAL, i] = elastic_load(pressed, state[STIFFNESS, i], softening, p[NOMINAL_FORCE])
-            if not bound[i]:
-                state[NORMAL, i] = max(state[NORMAL, i], 0.0)
-        if coupled and pairs > 1:
+            if not coupled:
+                load = elastic_load(pressed, state[STIFFNESS, i], softening, p[NOMINAL_FORCE])
+                state[NORMAL, i] = load if bound[i] else max(load, 0.0)
+        if coupled:
             for i in range(pairs):
                 for j in range(i):
                     # The newest pair, furthest behind, comes first.
