@@ -11,6 +11,7 @@ Sources: docs/theory/contact_energy.md, "Mean powers"; Oh, Grosh and Barber, J. 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -52,7 +53,7 @@ class MeanPowers:
 
 
 def balance(solution: PeriodicSolution, *, paid: bool | None = None) -> dict[str, float]:
-    """Torques that hold the mean speed [N m], efficiency and, where all losses are paid, those [W]; by name.
+    """Torques that hold the mean speed [N m] and efficiency, by name.
 
     The paper's form balances moments: its brake torque and efficiency count sliding friction alone. The
     loaded form pays for every loss.
@@ -62,19 +63,33 @@ def balance(solution: PeriodicSolution, *, paid: bool | None = None) -> dict[str
     solution : periodic motion of the "absolute" system
     paid : whether every loss is paid; default in the loaded form
     """
-    if not (solution.system.pair.mesh.contact == "loaded" if paid is None else paid):
+    if not (pays(solution) if paid is None else paid):
         return solution.balance
     powers, g = mean_powers(solution), solution.system.pair.geometry
     return {
         "brake_torque": solution.brake_torque - powers.unpaid / g.omega_gear,
         "pinion_torque": solution.pinion_torque,
         "mesh_efficiency": powers.efficiency,
-        "power_sliding": powers.sliding,
-        "power_tooth_dampers": powers.tooth_dampers,
-        "power_bearings": powers.bearings,
     }
 
 
+def pays(solution: PeriodicSolution) -> bool:
+    """Whether the contact has an energy, so that the brake pays for every loss."""
+    return solution.system.pair.mesh.contact == "loaded"
+
+
+def power_attributes(solution: PeriodicSolution) -> dict[str, float]:
+    """Mean losses by place, and what of them nobody pays [W], as attributes of a result."""
+    powers = mean_powers(solution)
+    return {
+        "power_sliding": powers.sliding,
+        "power_tooth_dampers": powers.tooth_dampers,
+        "power_bearings": powers.bearings,
+        "power_unpaid": 0.0 if pays(solution) else powers.unpaid,
+    }
+
+
+@lru_cache(maxsize=4)
 def mean_powers(solution: PeriodicSolution) -> MeanPowers:
     """Mean powers of a periodic motion, by Gauss quadrature on the steps of its integration.
 

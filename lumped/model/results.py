@@ -120,6 +120,22 @@ def dataset(
     return labelled(time, response(system, time, states), attributes)
 
 
+def load_range(contact_form: str, load: FloatArray, contact: FloatArray) -> tuple[float, float]:
+    """Largest load of a tooth pair, and smallest load: negative where the teeth would separate [N].
+
+    In the paper's form every pair in contact must press. In the loaded form, where pairs begin and end their
+    contact gradually, all pairs together must.
+
+    Parameters
+    ----------
+    contact_form : ``mesh.contact`` of the pair
+    load, contact : (pairs, k) normal load [N], and whether the pair can touch
+    """
+    touching = load[contact > 0]
+    least = load.sum(axis=0) if contact_form == "loaded" else touching
+    return float(touching.max()), float(least.min())
+
+
 def response(system: LTVSystem, time: FloatArray, states: FloatArray) -> dict[str, FloatArray]:
     """Return the arrays of ``dataset`` by name, without labels; arguments as there."""
     g, s = system.pair.geometry, system.structure

@@ -102,7 +102,7 @@ def simulate(
         rtol=rtol,
         as_printed=tuple(as_printed),
     )
-    attributes |= powers.balance(balance) | {"model": "lumped"}
+    attributes |= powers.balance(balance) | powers.power_attributes(balance) | {"model": "lumped"}
     return dataset(system, time, states, attributes)
 
 
@@ -237,6 +237,8 @@ def steady_state(
     -------
     xarray.Dataset as of ``simulate`` over one cycle; the attributes carry ``brake_torque`` and
     ``pinion_torque`` [N m] that hold the mean speed, ``mesh_efficiency`` = T_g Omega_g / (T_p Omega_p),
+    the mean losses ``power_sliding``, ``power_tooth_dampers`` and ``power_bearings`` [W], ``power_unpaid``,
+    what of them the brake torque leaves out in the paper's form [W],
     ``error_estimate``, the relative error of the dynamic transmission error, and ``spectral_radius``, the
     largest modulus of the Floquet multipliers: above 1 the motion is unstable, and a pair leaves it
 
@@ -249,10 +251,14 @@ def steady_state(
     times = sample_times(system.period, samples_per_cycle)
     solution = periodic_solution(system, times)
     attributes = provenance(pair, samples_per_cycle=samples_per_cycle, as_printed=tuple(as_printed))
-    attributes |= powers.balance(solution) | {
-        "model": "lumped",
-        "closure": solution.closure,
-        "error_estimate": solution.error,
-        "spectral_radius": solution.spectral_radius,
-    }
+    attributes |= (
+        powers.balance(solution)
+        | powers.power_attributes(solution)
+        | {
+            "model": "lumped",
+            "closure": solution.closure,
+            "error_estimate": solution.error,
+            "spectral_radius": solution.spectral_radius,
+        }
+    )
     return dataset(system, times, solution.states, attributes)

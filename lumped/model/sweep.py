@@ -18,7 +18,7 @@ from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.mesh_elements import MeshElements, mesh_elements
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.powers import balance
-from lumped.model.results import provenance
+from lumped.model.results import load_range, provenance
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.path_of_contact import friction_path_function
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -48,7 +48,7 @@ def speed_sweep(
     Returns
     -------
     xarray.Dataset over ``speed`` [rpm]: peak-to-peak and root mean square (about the mean) of the
-    transmission error and the translations, largest and smallest normal load of a pair in contact,
+    transmission error and the translations, largest and smallest normal load (``results.load_range``),
     ``sliding_reversal``, largest distance from the pitch point at which a loaded pair slides against its
     nominal direction, mesh efficiency, and ``spectral_radius``, above 1 where the motion is unstable. A speed
     without periodic motion is NaN with ``periodic`` False.
@@ -87,8 +87,8 @@ def speed_sweep(
         for name in names:
             table[f"{name}_peak_to_peak"][j] = np.ptp(run[name])
             table[f"{name}_rms"][j] = np.std(run[name])
-        loads = run["normal_load"][run["contact"] > 0]
-        table["normal_load_max"][j], table["normal_load_min"][j] = loads.max(), loads.min()
+        found = load_range(pair.mesh.contact, run["normal_load"], run["contact"])
+        table["normal_load_max"][j], table["normal_load_min"][j] = found
         table["sliding_reversal"][j] = _reversal(run, pair.geometry.L_XP)
         table["mesh_efficiency"][j] = balance(solution)["mesh_efficiency"]
         table["spectral_radius"][j] = solution.spectral_radius

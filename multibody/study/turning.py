@@ -57,7 +57,7 @@ def turning_build(
     pair: AnyPair,
     cycles: int = 5,
     *,
-    atol: float = 1e-8,
+    atol: float = 1e-9,
 ) -> TurningBuild:
     """Run the exact model with bodies that turn in exudyn's nodes, and compare it with the usual build.
 

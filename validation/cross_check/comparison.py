@@ -372,22 +372,6 @@ def _unsettled(result: xr.Dataset, samples: int) -> float:
     return float(np.abs(last - before).max()) / max(float(np.ptp(last)), np.finfo(float).tiny)
 
 
-def must_be_papers_form(pair: GearPair) -> None:
-    """Refuse a pair in the loaded form, for which no limits are derived.
-
-    Raises
-    ------
-    ParameterError : ``mesh.contact`` is "loaded"
-    """
-    if pair.mesh.contact != "paper":
-        raise refuse(
-            "mesh.contact",
-            pair.mesh.contact,
-            "'paper' for a cross-check and a report",
-            "Its limits are not derived: compare lumped.steady_state with multibody.steady_state.",
-        )
-
-
 def _check(cycles: int, samples: int, fidelities: Sequence[str], quantities: Sequence[str]) -> None:
     whole_number("cycles", cycles, 6, 100_000)
     whole_number("samples_per_cycle", samples, 32, 65536)

@@ -8,6 +8,7 @@ from lumped import GearPair, load_gear_pair
 from lumped.friction import LAWS as ALL_LAWS
 from lumped.friction import mean_coefficient
 from lumped.path_of_contact import friction_path_function
+from lumped.schema.files import AnyPair
 
 #: Friction laws that the paper compares: name in parameter files -> its number and name there.
 LAWS = {name: law.title for name, law in ALL_LAWS.items() if law.in_paper}
@@ -35,6 +36,11 @@ FIGURE_2A = OperatingPoint(22.6, 1000.0)
 FIGURE_4 = OperatingPoint(56.5, 4875.0)
 FIGURE_7 = (OperatingPoint(79.1, 800.0), OperatingPoint(79.1, 4000.0))
 TORQUE_2B = FIGURE_2A.torque
+
+
+def papers_pair(pair: AnyPair) -> GearPair:
+    """The pair with what the paper assumes: contact from A to D by decree, flanks without relief."""
+    return load_gear_pair(pair).with_({"mesh.contact": "paper", "mesh.relief": "ignored"})
 
 
 def second_pair(pair: GearPair) -> GearPair:

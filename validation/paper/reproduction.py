@@ -8,7 +8,7 @@ from functools import cache
 import xarray as xr
 from matplotlib.figure import Figure
 
-from lumped import GearPair, load_gear_pair
+from lumped import GearPair
 from lumped.arguments import some_of
 from lumped.typing import Progress
 from validation.measurements import Measurement
@@ -17,6 +17,7 @@ from validation.paper.figures.figure2 import figure2
 from validation.paper.figures.figure3 import figure3
 from validation.paper.figures.figure7 import figure7
 from validation.paper.figures.law_figures import figure4, figure_of_motions, law_runs
+from validation.paper.operating_points import papers_pair
 from validation.paper.records import FigureRecord
 
 #: Number of a figure -> how it is drawn from its record.
@@ -57,7 +58,7 @@ def figure_records(
     NumericalError : a model fails; the text says what to try
     """
     some_of("figures", figures, DRAW, "Correct the number.")
-    gears = load_gear_pair("nasa_28_28") if pair is None else pair
+    gears = papers_pair("nasa_28_28" if pair is None else pair)
 
     @cache
     def of_laws() -> xr.Dataset:

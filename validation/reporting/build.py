@@ -15,7 +15,6 @@ from typing import Any
 from lumped import GearPair, load_gear_pair
 from lumped.arguments import file_path
 from lumped.typing import Progress
-from validation.cross_check.comparison import must_be_papers_form
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
 from validation.plots.style import save
@@ -94,7 +93,6 @@ def report(
     started = time.perf_counter()
     tell: Progress = progress or (lambda fraction, stage="", /: None)
     gear_pair = load_gear_pair(pair)
-    must_be_papers_form(gear_pair)
     target = file_path("out", out)
     earlier = None if compare is None else load_report(compare, quick=quick)
     if earlier is not None:

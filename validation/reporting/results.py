@@ -18,6 +18,7 @@ from lumped.path_of_contact import friction_profile
 from lumped.typing import Progress
 from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.reporting.paper_results import PaperResults, paper_results
+from validation.validity.contact_forms import ContactForms, contact_forms
 from validation.validity.flags import LOAD_NOISE, Flag, speed_drift, validity_flags
 from validation.verification import Check, enough_samples
 from validation.verification.reference_model import ReferenceModel, reference_model
@@ -149,6 +150,15 @@ class Results:
         """Cross-check against the multibody model."""
         stage = self.stage("cross-check against the multibody model")
         return crosscheck(self.pair, cycles=self.effort.cycles, progress=stage)
+
+    @cached_property
+    def forms(self) -> ContactForms | str:
+        """Both forms of the contact and the exact one; why they cannot be computed."""
+        self.stage("forms of the contact")
+        try:
+            return contact_forms(self.pair)
+        except NumericalError as error:
+            return str(error)
 
     @cached_property
     def multipliers(self) -> GearPairMultipliers:

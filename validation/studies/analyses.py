@@ -12,9 +12,11 @@ import xarray as xr
 from pydantic import Field, model_validator
 
 from floquet.gear.axes import GearVariation
+from lumped import GearPair
 from lumped.errors import FieldProblem, ParameterError
 from lumped.fields.section import Section
 from lumped.fields.units import Quantity
+from lumped.model.results import load_range
 from lumped.model.solution import steady_state
 
 AnalysisName = Literal["geometry", "lumped", "multibody", "floquet"]
@@ -121,7 +123,7 @@ def _geometry(variation: GearVariation, settings: Settings) -> Values:
 
 def _lumped(variation: GearVariation, settings: Settings) -> Values:
     run = steady_state(variation.pair, samples_per_cycle=settings.samples_per_cycle)
-    return _motion(run) | {
+    return _motion(variation.pair, run) | {
         "mesh_efficiency": run.attrs["mesh_efficiency"],
         "brake_torque": run.attrs["brake_torque"],
         "error_estimate": run.attrs["error_estimate"],
@@ -142,7 +144,7 @@ def _multibody(variation: GearVariation, settings: Settings) -> Values:
         **tolerance,
     )
     # The grid ends on the last cycle's end, which is the first sample of a cycle that is not there.
-    return _motion(run.isel(time=slice(-1 - settings.kept_cycles * samples, -1)))
+    return _motion(variation.pair, run.isel(time=slice(-1 - settings.kept_cycles * samples, -1)))
 
 
 def _floquet(variation: GearVariation, settings: Settings) -> Values:
@@ -158,15 +160,15 @@ def _floquet(variation: GearVariation, settings: Settings) -> Values:
     }
 
 
-def _motion(run: xr.Dataset) -> Values:
+def _motion(pair: GearPair, run: xr.Dataset) -> Values:
     """Extremes and means of a motion over whole mesh cycles."""
     values: Values = {}
     for name in ("dte", "x_p", "x_g", "y_p", "y_g"):
         samples = run[name].to_numpy()
         values[f"{name}_peak_to_peak"] = float(np.ptp(samples))
         values[f"{name}_rms"] = float(np.std(samples))
-    loads = run["normal_load"].to_numpy()[run["contact"].to_numpy() > 0]
-    values["normal_load_max"], values["normal_load_min"] = float(loads.max()), float(loads.min())
+    load, contact = run["normal_load"].to_numpy(), run["contact"].to_numpy()
+    values["normal_load_max"], values["normal_load_min"] = load_range(pair.mesh.contact, load, contact)
     values["friction_force_peak_to_peak"] = float(np.ptp(run["friction_force"].to_numpy().sum(axis=0)))
     values["friction_power_mean"] = float(run["friction_power"].to_numpy().sum(axis=0).mean())
     return values

@@ -19,6 +19,7 @@ from lumped.friction import LAWS
 from lumped.path_of_contact import contact_path, law_range_violations
 from lumped.ranges import RangeViolation
 from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.typing import BoolArray
 from validation.files.tables import read_table
 
 if TYPE_CHECKING:
@@ -129,9 +130,15 @@ def _zone(g: Geometry, position: float) -> str:
 
 
 def contact_loss(pair: GearPair, g: Geometry, motion: xr.Dataset) -> Flag:
-    """N_i >= 0 while in contact: the model glues teeth together that would separate."""
-    contact = motion["contact"].to_numpy() > 0
+    """N_i >= 0 while in contact: the model glues teeth together that would separate.
+
+    In the loaded form, where pairs begin and end their contact gradually, all pairs together must press.
+    """
+    contact: BoolArray = motion["contact"].to_numpy() > 0
     load = np.where(contact, motion["normal_load"].to_numpy(), np.inf)
+    if pair.mesh.contact == "loaded":
+        contact = np.atleast_2d(contact.any(axis=0))
+        load = np.atleast_2d(motion["normal_load"].to_numpy().sum(axis=0))
     lowest = float(load.min())
     static = pair.operating.pinion_torque / g.base_radius_pinion
     separated = load < -LOAD_NOISE * static
@@ -139,7 +146,8 @@ def contact_loss(pair: GearPair, g: Geometry, motion: xr.Dataset) -> Flag:
     place = _zone(g, float(motion["position"].to_numpy()[where]))
     share = separated.sum() / max(int(contact.sum()), 1)
     state: State = "violated" if separated.any() else "ok"
-    detail = f"lowest load {lowest:.4g} N ({lowest / static:.3g} of the static load) {place}"
+    of = " of all pairs together" if pair.mesh.contact == "loaded" else ""
+    detail = f"lowest load{of} {lowest:.4g} N ({lowest / static:.3g} of the static load) {place}"
     if separated.any():
         detail += f"; below zero over {100 * share:.3g} % of the time in contact"
     return flag("contact_loss", state, lowest, detail)

@@ -9,6 +9,7 @@ import numpy as np
 
 import lumped
 from lumped import GearPair
+from lumped.model.results import load_range
 from lumped.typing import FloatArray
 from validation.cross_check.agreement import (
     FIDELITIES,
@@ -100,7 +101,8 @@ def compare_point(pair: GearPair, samples: int) -> GridPoint:
 
     reference = lumped.steady_state(pair, samples_per_cycle=samples)
     static = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
-    load_min = float(reference["normal_load"].min()) / static
+    loads = reference["normal_load"].to_numpy(), reference["contact"].to_numpy()
+    load_min = min(load_range(pair.mesh.contact, *loads)[1], 0.0) / static
     if load_min < -LOAD_NOISE:
         return GridPoint(SEPARATED, load_min, spent())
     shift, predicted = contact_shift(pair, reference), finite_motion(pair, reference)

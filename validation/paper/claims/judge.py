@@ -7,11 +7,12 @@ from dataclasses import fields
 import numpy as np
 import xarray as xr
 
-from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.files import AnyPair
 from lumped.typing import Progress
 from validation.paper.claims import numbers as claim_numbers
 from validation.paper.claims.rules import RULES, ClaimRule, Numbers
 from validation.paper.claims.sensitivity import ASSUMPTIONS, SEED, Sensitivity, sample_assumptions
+from validation.paper.operating_points import papers_pair
 from validation.paper.records import Claim, ClaimsTable, ClaimVerdict, Number, Statement
 
 ACCURACY = "3 % error"
@@ -50,7 +51,7 @@ def claims(
     ------
     NumericalError : the pair has no periodic motion at an operating point of the paper
     """
-    pair = load_gear_pair(pair)
+    pair = papers_pair(pair)
     stated = claim_numbers.measure(pair)
     varied = sample_assumptions(pair, samples, progress=progress) if samples else None
     twin = {} if runs is None else twin_numbers(runs)

@@ -8,11 +8,13 @@ from __future__ import annotations
 import math
 
 from lumped.path_of_contact import contact_path
-from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.files import AnyPair
 from validation.paper.errata.film import film_errata
 from validation.paper.errata.laws import law_errata
 from validation.paper.errata.signs import sign_errata
 from validation.paper.errata.structure import erratum_5b, erratum_8
+from validation.paper.errata.unpaid import erratum_3
+from validation.paper.operating_points import papers_pair
 from validation.paper.records import ErrataChapter
 
 #: Coulomb friction of the sign errata: large enough to show, credible for a dry or boundary lubricated mesh.
@@ -44,7 +46,7 @@ def errata_chapter(pair: AnyPair) -> ErrataChapter:
     ------
     NumericalError : the pair has no periodic motion at its operating point
     """
-    pair = load_gear_pair(pair)
+    pair = papers_pair(pair)
     shown = pair.with_({"friction.law": "coulomb", "friction.coefficient": SHOWN_COEFFICIENT})
     (*first, ninth), histories = sign_errata(shown)
     return ErrataChapter(
@@ -56,6 +58,14 @@ def errata_chapter(pair: AnyPair) -> ErrataChapter:
             "friction of the sign errata": f"Coulomb, mu = {SHOWN_COEFFICIENT}",
             "composite roughness": f"{1e6 * contact_path(pair).composite_roughness:.4g} µm",
         },
-        errata=(*first, erratum_8(), ninth, erratum_5b(pair), *law_errata(pair), *film_errata(pair)),
+        errata=(
+            *first,
+            erratum_3(pair),
+            erratum_8(),
+            ninth,
+            erratum_5b(pair),
+            *law_errata(pair),
+            *film_errata(pair),
+        ),
         histories=histories,
     )

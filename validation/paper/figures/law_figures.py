@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from lumped.schema.files import AnyPair, load_gear_pair
-from validation.paper.operating_points import FIGURE_4, LAWS
+from lumped.schema.files import AnyPair
+from validation.paper.operating_points import FIGURE_4, LAWS, papers_pair
 from validation.paper.records import FigureRecord, Number
 from validation.paper.twins import SPAN, agreement, mesh_orders, quality, total, twins
 
@@ -19,7 +19,7 @@ def law_runs(pair: AnyPair, *, with_multibody: bool = True) -> xr.Dataset:
     pair : the gear pair, which the operating point of figure 4 is given to
     with_multibody : whether the multibody twin is computed too
     """
-    pair = load_gear_pair(pair)
+    pair = papers_pair(pair)
     at = FIGURE_4.of(pair)
     variants = {law: at.with_({"friction.law": law}) for law in LAWS}
     return twins(variants, with_multibody=with_multibody).rename(variant="law")

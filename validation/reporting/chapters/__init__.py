@@ -7,6 +7,7 @@ several of them say in ``validation.reporting.words``.
 from validation.reporting.chapter import Chapter
 from validation.reporting.chapters import (
     code_verification,
+    contact_forms,
     cross_check,
     errata,
     limitations,
@@ -39,6 +40,7 @@ CHAPTERS: tuple[Chapter, ...] = tuple(
         solution_verification,
         reference_model,
         cross_check,
+        contact_forms,
         stability,
         stability_margins,
         validity,

@@ -44,6 +44,9 @@ def write(results: Results) -> Content:
     dte, attrs, largest = motion["dte"], motion.attrs, _largest_load(results)
     friction = float(motion["friction_power"].sum("pair").mean())
     radius = f"largest multiplier {multipliers.spectral_radius:.4g}"
+    counted, unpaid = "friction losses only", "of bearings and tooth dampers, left out by the paper's brake"
+    if pair.mesh.contact == "loaded":
+        counted, unpaid = "all losses", "the brake pays for every loss"
     key_results = facts(
         "key_results",
         ("stability", "this periodic motion is", Badge(multipliers.verdict), "", radius),
@@ -56,8 +59,9 @@ def write(results: Results) -> Content:
             "mesh efficiency",
             float(attrs["mesh_efficiency"]),
             "",
-            "friction losses only" if lawful(results) else "do not rely on it: a law of nature does not hold",
+            counted if lawful(results) else "do not rely on it: a law of nature does not hold",
         ),
+        ("power_unpaid", "unpaid power", float(attrs["power_unpaid"]), "W", unpaid),
         ("brake_torque", "brake torque that holds the speed", attrs["brake_torque"], "N m"),
         ("friction_power", "mean friction power", friction, "W", "negative: it is lost"),
         ("error_estimate", "estimated relative error of the motion", float(attrs["error_estimate"])),

@@ -1,0 +1,115 @@
+"""How far the paper's contact is off the exact one, and what the loaded form gives for the same pair."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from validation.plots.contact_forms import contact_forms_figure, losses_over_speed_figure
+from validation.reporting.blocks import Answer, Badge, Block, Content, Picture, Quantity, Text, table_of
+from validation.reporting.chapter import Chapter
+from validation.reporting.results import Results
+from validation.reporting.words import contact_form
+from validation.validity.contact_forms import FORMS, PLACES, losses_over_speed
+
+#: Speeds of the figure of losses.
+_SPEEDS = 120
+
+
+def write(results: Results) -> Content:
+    """Write the chapter."""
+    found = results.forms
+    if isinstance(found, str):
+        return Content((Text(f"The exact contact has no motion to compare with: {found}"),))
+    statics = "its teeth touch from A to D by decree, with a stiffness that does not know its load"
+    blocks: list[Block] = [
+        Text(
+            f"{contact_form(results)} In the paper's form {statics}; the exact contact follows from the gap "
+            "of flanks and tip corners and from an elastic energy. The loaded form is linear about the "
+            "motion under the static load, in contact where that load closes the gap, beyond A and D too."
+        ),
+        Picture(
+            "contact_forms",
+            "Transmission error over one mesh cycle: both forms of the lumped model, and the exact contact "
+            "with all effects.",
+            partial(contact_forms_figure, results.pair, found),
+        ),
+        table_of(
+            "contact_forms",
+            "The same gear pair in both forms and with the exact contact.",
+            list(found.motions),
+            {
+                "form": ("model", lambda form: FORMS.get(form, "exact contact")),
+                "difference": (
+                    "largest difference from exact / peak to peak",
+                    lambda form: found.difference.get(form),
+                ),
+                "dte": (
+                    "transmission error, peak to peak",
+                    lambda form: Quantity(float(np.ptp(found.motions[form]["dte"].to_numpy())), "m"),
+                ),
+                "largest_load": (
+                    "largest load of a pair",
+                    lambda form: Quantity(float(found.motions[form]["normal_load"].max()), "N"),
+                ),
+                "brake_torque": (
+                    "brake torque",
+                    lambda form: Quantity(float(found.motions[form].attrs["brake_torque"]), "N m"),
+                ),
+            },
+            marked=lambda form: form == found.own,
+        ),
+        table_of(
+            "losses_by_place",
+            "Mean power lost by place.",
+            list(found.powers),
+            {
+                "form": ("model", FORMS.__getitem__),
+                **{
+                    place: (
+                        words,
+                        lambda form, place=place: (
+                            None  # type: ignore[misc]
+                            if place == "unpaid" and form == "loaded"
+                            else Quantity(float(getattr(found.powers[form], place)), "W")
+                        ),
+                    )
+                    for place, words in PLACES.items()
+                },
+                "lost": (
+                    "all, of the input",
+                    lambda form: 1.0 - found.powers[form].efficiency,
+                ),
+            },
+            marked=lambda form: form == found.own,
+            note="The paper's brake torque balances moments and so pays for sliding alone. What bearings and "
+            "tooth dampers turn to heat beside it is unpaid: a force N = k(ξ) δ has no potential, and feeds "
+            "in what the brake does not give (Oh, Grosh and Barber 2005). The loaded form's brake pays.",
+        ),
+    ]
+    data = {f"contact_{name}": motion for name, motion in found.motions.items()}
+    if results.effort.full:
+        stage = results.stage("losses over speed")
+        low, high = results.speeds
+        losses = losses_over_speed(results.pair, np.linspace(low, high, _SPEEDS), stage)
+        data["losses_over_speed"] = losses
+        blocks.append(
+            Picture(
+                "losses_over_speed",
+                "Losses over speed by place, in both forms.",
+                partial(losses_over_speed_figure, losses, results.operating_rpm),
+            )
+        )
+    return Content(tuple(blocks), data=data)
+
+
+def answer(results: Results) -> Answer:
+    """How far the form of the contact is off."""
+    if isinstance(results.forms, str):
+        return Answer("Is its contact right?", Badge("undecided"), results.forms)
+    state = "prediction" if results.forms.own == "loaded" else "warning"
+    return Answer("Is its contact right?", Badge(state, FORMS[results.forms.own]), contact_form(results))
+
+
+CHAPTER = Chapter("contact_forms", "The form of the contact", write, answer, seconds=4)

@@ -1,0 +1,112 @@
+"""The paper's contact and the loaded one of the same gear pair, against the exact contact with all effects.
+
+Both forms of the lumped model are judged by the same motion: that of the multibody model whose contact has an
+energy and follows from clearance. So the paper's form is not judged by a model that shares its contact.
+
+Sources: docs/theory/contact_energy.md.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+import lumped
+import multibody
+from lumped import GearPair
+from lumped.arguments import real_numbers
+from lumped.errors import NumericalError
+from lumped.labelling import labelled_dataset
+from lumped.model.periodic_system import periodic_system
+from lumped.model.powers import MeanPowers, mean_powers
+from lumped.model.steady import periodic_solution
+from lumped.typing import FloatArray, Progress
+
+#: Form -> what it is in words.
+FORMS = {"paper": "paper's form", "loaded": "loaded form"}
+#: Places of losses, attributes of ``MeanPowers`` -> words.
+PLACES = {"sliding": "sliding", "tooth_dampers": "tooth dampers", "bearings": "bearings", "unpaid": "unpaid"}
+
+
+@dataclass(frozen=True, eq=False)
+class ContactForms:
+    """One gear pair in both forms, and the exact contact.
+
+    Attributes
+    ----------
+    own : the form of the pair itself, a key of ``FORMS``
+    motions : form, and "exact" -> periodic motion at the same times
+    difference : form -> largest difference of the transmission error from the exact contact, over the peak to
+        peak of that
+    powers : form -> mean powers
+    """
+
+    own: str
+    motions: dict[str, xr.Dataset]
+    difference: dict[str, float]
+    powers: dict[str, MeanPowers]
+
+
+def contact_forms(pair: GearPair, samples: int = 256) -> ContactForms:
+    """Compare both forms with the exact contact, in periodic motion.
+
+    Parameters
+    ----------
+    pair : a validated gear pair, in either form
+    samples : times per mesh cycle
+
+    Raises
+    ------
+    NumericalError : a form has no such motion, or the exact contact none near it
+    """
+    pairs = {form: pair.with_({"mesh.contact": form}) for form in FORMS}
+    motions = {form: lumped.steady_state(of, samples_per_cycle=samples) for form, of in pairs.items()}
+    motions["exact"] = multibody.steady_state(pairs["loaded"], samples_per_cycle=samples)
+    exact = motions["exact"]["dte"].to_numpy()
+    swing = float(np.ptp(exact))
+    difference = {
+        form: float(np.abs(motions[form]["dte"].to_numpy() - exact).max()) / swing for form in FORMS
+    }
+    return ContactForms(pair.mesh.contact, motions, difference, {f: _powers(p) for f, p in pairs.items()})
+
+
+def losses_over_speed(pair: GearPair, speeds_rpm: FloatArray, progress: Progress | None = None) -> xr.Dataset:
+    """Mean losses by place over speed, in both forms.
+
+    Parameters
+    ----------
+    pair : a validated gear pair, in either form
+    speeds_rpm : pinion speeds [rpm]
+    progress : called with the finished fraction
+
+    Returns
+    -------
+    xarray.Dataset over ``form`` and ``speed`` [rpm]: the attributes of ``MeanPowers`` [W]; NaN where a form
+    has no periodic motion
+    """
+    speeds = real_numbers("speeds_rpm", speeds_rpm, 0.0, above=True, unit="rpm")
+    names = ("driving", *PLACES)
+    found = np.full((len(names), len(FORMS), speeds.size), np.nan)
+    for i, form in enumerate(FORMS):
+        for j, speed in enumerate(speeds):
+            try:
+                powers = _powers(pair.with_({"mesh.contact": form, "operating.pinion_speed": float(speed)}))
+            except NumericalError:
+                continue
+            found[:, i, j] = [getattr(powers, name) for name in names]
+            if progress is not None:
+                progress((i * speeds.size + j + 1) / (len(FORMS) * speeds.size))
+    return labelled_dataset(
+        {name: (("form", "speed"), found[k], "W", name.replace("_", " ")) for k, name in enumerate(names)},
+        {
+            "form": (list(FORMS), "1", "form of the contact"),
+            "speed": (speeds, "rpm", "pinion speed"),
+        },
+    )
+
+
+def _powers(pair: GearPair) -> MeanPowers:
+    system = periodic_system(pair, "absolute")
+    return mean_powers(periodic_solution(system, np.zeros(1), estimate_error=False))
