@@ -188,7 +188,7 @@ def test_printed_film_powers(pair):
 
 def test_the_chapter_has_every_row_with_numbers_and_text(chapter):
     rows = {e.equation for e in chapter.errata}
-    assert rows == {"1", "2", "7", "8", "9", "5b", "13b, 14", "16", "18", "19", "20", "21a, d"}
+    assert rows == {"1", "2", "3", "7", "8", "9", "5b", "13b, 14", "16", "18", "19", "20", "21a, d"}
     for erratum in chapter.errata:
         assert erratum.evidence, erratum.equation
         assert len(erratum.text) > 80, erratum.equation
@@ -243,6 +243,17 @@ def test_the_printed_film_puts_law_v_into_boundary_lubrication(chapter):
         assert value == pytest.approx(mean_coefficient(friction_path_function(own, law=law)), rel=1e-9)
     y = evidence(chapter, "21a, d", "law V: peak to peak of y_g")
     assert y.printed > 2.0 * y.repaired  # y goes with the coefficient
+
+
+def test_what_the_equations_leave_unpaid_is_what_bearings_and_tooth_dampers_take(chapter):
+    """Without friction nothing else takes power: the loss of the repaired efficiency, and of the books."""
+    (row,) = (e for e in chapter.errata if e.equation == "3")
+    found = {e.quantity: e for e in row.evidence}
+    assert found["efficiency without friction"].printed == pytest.approx(1.0, abs=1e-12)
+    assert 0.99 < found["efficiency without friction"].repaired < 0.9999
+    books = found["driving power less brake and all losses, without friction"]
+    assert books.printed < -10.0
+    assert abs(books.repaired) < 1e-5
 
 
 def test_every_row_says_what_it_does_to_motion_and_multipliers(chapter):

@@ -44,6 +44,7 @@ ASKED = [
     "solution_verification",
     "reference_model",
     "cross_check",
+    "contact_forms",
     "stability",
     "stability_margins",
     "validity",
