@@ -12,6 +12,7 @@ from lumped.errors import refuse
 from lumped.fields.section import Section
 from lumped.fields.units import Quantity, to_stated
 
+_MODULUS = "Steel has 206 GPa; write the unit where it is another one: '206000 MPa'."
 _SIZE = "Give the size as drawn; check the unit."
 
 
@@ -127,7 +128,7 @@ class Gear(Section):
     density: Annotated[float, Quantity("kg/m**3", at_least=10, at_most=30000)] = Field(
         7850.0, description="density, for the disc"
     )
-    youngs_modulus: Annotated[float, Quantity("GPa", at_least=1e-6, at_most=2000)] = Field(
+    youngs_modulus: Annotated[float, Quantity("GPa", at_least=1e-6, at_most=2000, action=_MODULUS)] = Field(
         206.0, description="Young's modulus"
     )
     poisson_ratio: Annotated[float, Quantity("1", at_least=0, below=0.5)] = Field(

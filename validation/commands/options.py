@@ -73,6 +73,8 @@ def gear_pair(
     """
     from lumped import load_gear_pair
     from lumped.errors import ParameterError, refuse
+    from validation.commands.terminal import note
+    from validation.validity.plausibility import doubts
 
     changes: dict[str, Any] = {}
     options: dict[str, str] = {}
@@ -91,13 +93,14 @@ def gear_pair(
             changes[path] = value_of(text_or_none)
             options[path] = option
     pair = load_gear_pair(source)
-    if not changes:
-        return pair
     try:
-        return pair.with_(changes)
+        pair = pair.with_(changes)
     except ParameterError as error:
         problems = [replace(p, field=options.get(p.field, p.field)) for p in error.problems]
         raise ParameterError(problems, error.source.removesuffix(" varied")) from None
+    for doubt in doubts(pair):
+        note(doubt)
+    return pair
 
 
 def value_of(text: str) -> Any:

@@ -1,0 +1,50 @@
+"""Is a value that hardly can be meant named with its likely cause, and a sensible one left alone?"""
+
+import pytest
+from typer.testing import CliRunner
+
+from lumped import load_gear_pair, preset_names
+from validation.cli import app
+from validation.validity.plausibility import doubts
+
+
+@pytest.mark.parametrize("name", preset_names())
+@pytest.mark.parametrize("speed", [0.2, 1.0, 2.0])
+def test_a_sensible_pair_raises_no_doubt(name, speed):
+    pair = load_gear_pair(name)
+    rpm = speed * pair.operating.pinion_speed.to("rpm")
+    assert doubts(pair.with_(operating__pinion_speed=rpm)) == ()
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"bearings.gear.loa_stiffness": 300}, "Given in N/um? Then write '300 N/um'."),
+        ({"pinion.youngs_modulus": "206 MPa"}, "pinion.youngs_modulus = 0.206 GPa is no material"),
+        ({"gear.youngs_modulus": 2000}, "gear.youngs_modulus = 2000 GPa is no material"),
+        ({"operating.pinion_torque": 56500}, "beyond any steel"),
+        ({"operating.pinion_torque": 4875, "operating.pinion_speed": 56.5}, "Speed and torque swapped?"),
+        ({"operating.pinion_torque": 56500}, "more than a tenth of the module"),
+        ({"mesh.backlash": "0.5 um"}, "the backs of the teeth would touch"),
+        ({"operating.pinion_speed": 1.45}, "Then write 1450."),
+        ({"friction.composite_roughness": 0.8}, "Delete it if the roughnesses are meant"),
+        ({"bearings.pinion.oloa_stiffness": 1e16}, "the multibody model needs"),
+        ({"pinion.face_width": 10}, "description is still that of nasa_28_28, but pinion.face_width differs"),
+    ],
+)
+def test_a_value_that_hardly_can_be_meant_is_named_with_its_cause(nasa_pair, changes, said):
+    found = doubts(nasa_pair.with_(changes))
+    assert any(said in one for one in found), found
+
+
+@pytest.fixture(scope="module")
+def nasa_pair():
+    return load_gear_pair("nasa_28_28")
+
+
+def test_commands_say_it_and_go_on():
+    result = CliRunner().invoke(
+        app, ["simulate", "--set", "friction.composite_roughness=0.8", "--cycles", "2"]
+    )
+    assert result.exit_code == 0
+    assert "note: friction.composite_roughness = 0.8 um is used for the film" in result.stderr

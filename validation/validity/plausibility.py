@@ -1,0 +1,152 @@
+"""Values that can exist but hardly can be meant, each with its likely cause. The computation goes on.
+
+Sources: a rolling contact of bearing steel is indented for good at about 4.2 GPa (ISO 76:2006).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from lumped.errors import ParameterError
+from lumped.model.bodies import bodies
+from lumped.path_of_contact.friction import contact_path
+from lumped.path_of_contact.stiffness import mesh_stiffness
+from lumped.schema.files import AnyPair, load_gear_pair, preset_names
+from lumped.schema.pair import GearPair, leaf_paths
+
+#: Hertzian pressure that no steel bears [Pa].
+_PRESSURE = 4.2e9
+#: Bearing stiffness below that of any gear shaft [N/m].
+_SOFT = 2e6
+#: Share of the module that a loaded mesh may give way.
+_GIVES_WAY = 0.1
+#: Oscillations of the fastest mode in a mesh cycle from which on the multibody model takes minutes a cycle.
+_OSCILLATIONS = 1000.0
+#: Speed below which a point that parts thousands is likelier than the speed [rpm].
+_SLOW = 5.0
+_DESIGN = ("basic_rack.", "pinion.", "gear.", "centre_distance")
+
+
+def doubts(pair: AnyPair) -> tuple[str, ...]:
+    """Return one sentence for each value that hardly can be meant: field, value, likely cause.
+
+    Parameters
+    ----------
+    pair : a gear pair
+    """
+    pair = load_gear_pair(pair)
+    return (
+        *_bearings(pair),
+        *_materials(pair),
+        *_load(pair),
+        *_speed(pair),
+        *_roughness(pair),
+        *_preset(pair),
+    )
+
+
+def _bearings(pair: GearPair) -> Iterator[str]:
+    for name in ("pinion", "gear"):
+        bearing = getattr(pair.bearings, name)
+        for field in ("loa_stiffness", "oloa_stiffness"):
+            stiffness = getattr(bearing, field)
+            if stiffness < _SOFT:
+                yield (
+                    f"bearings.{name}.{field} = {stiffness:g} N/m is softer than any gear shaft. "
+                    f"Given in N/um? Then write '{stiffness:g} N/um'."
+                )
+    fastest = math.sqrt(max(_squared_frequencies(pair)))
+    oscillations = fastest * pair.geometry.mesh_period / (2.0 * math.pi)
+    if oscillations > _OSCILLATIONS:
+        yield (
+            f"The fastest mode swings {oscillations:.2g} times in a mesh cycle: the multibody model needs "
+            f"some {30 * oscillations:.1g} evaluations a cycle. Check stiffness and speed."
+        )
+
+
+def _squared_frequencies(pair: GearPair) -> Iterator[float]:
+    """Squares of frequencies that bound those of the pair, of one spring and one body each [rad^2/s^2]."""
+    b, g = bodies(pair), pair.geometry
+    mesh = float(mesh_stiffness(pair).attrs["mean"])
+    for bearing, mass in ((pair.bearings.pinion, b.mass_pinion), (pair.bearings.gear, b.mass_gear)):
+        yield (bearing.loa_stiffness + mesh) / mass
+        yield bearing.oloa_stiffness / mass
+    yield mesh * (g.base_radius_pinion**2 / b.inertia_pinion + g.base_radius_gear**2 / b.inertia_gear)
+
+
+def _materials(pair: GearPair) -> Iterator[str]:
+    for name in ("pinion", "gear"):
+        modulus = getattr(pair, name).youngs_modulus * 1e-9
+        if not 0.5 <= modulus <= 800.0:
+            yield (
+                f"{name}.youngs_modulus = {modulus:g} GPa is no material of gears (steel 206, "
+                "plastics 1 to 10). Given in another unit? Write it: '206000 MPa'."
+            )
+
+
+def _load(pair: GearPair) -> Iterator[str]:
+    g, at = pair.geometry, pair.operating
+    force = at.pinion_torque / g.base_radius_pinion
+    path = contact_path(pair)
+    pressure = float(path.hertz_pressure(path.L_XP))  # type: ignore[arg-type]
+    give = force / float(mesh_stiffness(pair).attrs["mean"])
+    torque = f"operating.pinion_torque = {at.pinion_torque:g} N m"
+    if pressure > _PRESSURE:
+        yield f"{torque} presses the flanks with {pressure * 1e-9:.3g} GPa, beyond any steel. {_cause(pair)}"
+    if give > _GIVES_WAY * pair.basic_rack.module:
+        yield (
+            f"{torque} makes the teeth give way by {give * 1e3:.3g} mm, more than a tenth of the module. "
+            "Check torque, face width and Young's modulus, and their units."
+        )
+    elif 0.0 < g.normal_backlash < give:
+        yield (
+            f"{torque} makes the teeth give way by {give * 1e6:.3g} um, more than the backlash of "
+            f"{g.normal_backlash * 1e6:.3g} um: the backs of the teeth would touch. Check mesh.backlash."
+        )
+
+
+def _cause(pair: GearPair) -> str:
+    """Swapped speed and torque, where exchanging them makes sense of both; else the units."""
+    rpm, torque = pair.to_mapping()["operating"]["pinion_speed"], float(pair.operating.pinion_torque)
+    try:
+        swapped = pair.with_({"operating.pinion_speed": torque, "operating.pinion_torque": rpm})
+        path = contact_path(swapped)
+        fits = float(path.hertz_pressure(path.L_XP)) < 0.5 * _PRESSURE  # type: ignore[arg-type]
+    except (ParameterError, TypeError):
+        fits = False
+    return "Speed and torque swapped?" if fits else "Check torque, face width and module, and their units."
+
+
+def _speed(pair: GearPair) -> Iterator[str]:
+    rpm = pair.operating.pinion_speed * 30.0 / math.pi
+    if rpm < _SLOW:
+        yield f"operating.pinion_speed = {rpm:g} rpm: does a point part thousands? Then write {1e3 * rpm:g}."
+
+
+def _roughness(pair: GearPair) -> Iterator[str]:
+    given = pair.friction.composite_roughness
+    both = math.hypot(pair.pinion.roughness, pair.gear.roughness)
+    if given is not None and abs(given - both) > 0.05 * both:
+        yield (
+            f"friction.composite_roughness = {given * 1e6:.3g} um is used for the film, not the root sum "
+            f"square {both * 1e6:.3g} um of both roughnesses. Delete it if the roughnesses are meant."
+        )
+
+
+def _preset(pair: GearPair) -> Iterator[str]:
+    """The story of a preset above teeth that it does not have."""
+    values = leaf_paths(pair)
+    for preset in map(load_gear_pair, preset_names()):
+        if pair.description and pair.description == preset.description:
+            theirs = leaf_paths(preset)
+            changed = [
+                path
+                for path in {**theirs, **values}
+                if path.startswith(_DESIGN) and values.get(path) != theirs.get(path)
+            ]
+            if changed:
+                yield (
+                    f"description is still that of {preset.name}, but {', '.join(sorted(changed)[:3])} "
+                    f"{'differs' if len(changed) == 1 else 'differ'}: write your own name and description."
+                )
