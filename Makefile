@@ -16,7 +16,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 .PHONY: report test lint docs package-check clean
 
 report: $(VENV)/.ready
-	$(BIN)/spurcheck report --output $(OUT) --force
+	$(BIN)/spurcheck report --output $(OUT) --force || test $$? -eq 1
 	@echo "Open $(OUT)/index.html"
 
 test: $(VENV)/.ready-test

@@ -239,7 +239,8 @@ def steady_state(
     ``pinion_torque`` [N m] that hold the mean speed, ``mesh_efficiency`` = T_g Omega_g / (T_p Omega_p),
     the mean losses ``power_sliding``, ``power_tooth_dampers`` and ``power_bearings`` [W], ``power_unpaid``,
     what of them the brake torque leaves out in the paper's form [W],
-    ``error_estimate``, the relative error of the dynamic transmission error, and ``spectral_radius``, the
+    ``error_estimate``, the relative error of the dynamic transmission error, ``dte_peak_to_peak`` [m], its
+    peak to peak whatever the sampling (and so for the translations), and ``spectral_radius``, the
     largest modulus of the Floquet multipliers: above 1 the motion is unstable, and a pair leaves it
 
     Raises
@@ -261,4 +262,5 @@ def steady_state(
             "spectral_radius": solution.spectral_radius,
         }
     )
+    attributes |= {f"{name}_peak_to_peak": value for name, value in solution.peak_to_peak.items()}
     return dataset(system, times, solution.states, attributes)

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from lumped.arguments import whole_number
 from lumped.errors import NumericalError
+from lumped.model.equations import COORDINATES
+from lumped.model.extremes import peak_to_peak
 from lumped.model.periodic_system import LTVSystem, periodic_system
-from lumped.model.propagation import STAGES, step_maps
+from lumped.model.propagation import STAGES, STEP_ANGLE, fastest_frequency, step_maps
 from lumped.model.results import response
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -17,6 +20,8 @@ from lumped.typing import FloatArray
 #: A largest multiplier above this is an instability. Without damping it is 1, and steps and rounding move a
 #: defective multiplier by up to the root of their error, 1e-12.
 UNSTABLE = 1.0 + 1e-6
+#: Most times at which extremes are looked for, beside those asked for.
+_MOST_NODES = 16384
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +38,8 @@ class PeriodicSolution:
     error : estimate of the largest relative error of the dynamic transmission error; None where not asked for
     spectral_radius : largest modulus of the Floquet multipliers, the rigid rotation taken out; above 1 the
         motion is unstable, and a pair leaves it
+    peak_to_peak : variable -> its peak to peak over the whole cycle [m], with switches and extremes between
+        samples
     """
 
     system: LTVSystem
@@ -43,6 +50,7 @@ class PeriodicSolution:
     closure: float
     error: float | None
     spectral_radius: float
+    peak_to_peak: dict[str, float]
 
     @property
     def values(self) -> dict[str, FloatArray]:
@@ -81,7 +89,8 @@ def periodic_solution(
     NumericalError : the speed sits on a stability boundary, where no periodic motion exists
     """
     torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
-    maps = step_maps(system, torques, outputs=times)
+    outputs = _with_nodes(system, times)
+    maps = step_maps(system, torques, outputs=outputs)
     transition, forced = maps.over_all()
     initial, weights = balanced_start(system, transition, forced)
     states = maps.states(initial, weights)
@@ -90,7 +99,7 @@ def periodic_solution(
     result = states[at]
     error = None
     if estimate_error:
-        low = step_maps(system, torques, outputs=times, stages=STAGES - 1)
+        low = step_maps(system, torques, outputs=outputs, stages=STAGES - 1)
         other = low.states(*balanced_start(system, *low.over_all()))[at]
         dte, dte_low = result[:, :6] @ system.deflection, other[:, :6] @ system.deflection
         error = float(np.abs(dte - dte_low).max() / np.abs(dte).max())
@@ -103,6 +112,7 @@ def periodic_solution(
         closure=closure,
         error=error,
         spectral_radius=relative_spectral_radius(system, transition),
+        peak_to_peak=_peaks(system, maps.times, states),
     )
 
 
@@ -120,6 +130,21 @@ def periodic_cycle(pair: GearPair, samples: int) -> PeriodicSolution:
     """
     system = periodic_system(pair, "absolute")
     return periodic_solution(system, sample_times(system.period, samples), estimate_error=False)
+
+
+def _with_nodes(system: LTVSystem, times: FloatArray) -> FloatArray:
+    """The times with those that resolve the fastest vibration, and the switches, where accelerations jump."""
+    nodes = math.ceil(fastest_frequency(system) * system.period / STEP_ANGLE)
+    even = np.linspace(0.0, system.period, min(nodes, _MOST_NODES) + 1)
+    return np.union1d(np.union1d(times, even), system.cycle.edges)
+
+
+def _peaks(system: LTVSystem, times: FloatArray, states: FloatArray) -> dict[str, float]:
+    """Peak to peak of the transmission error and of the translations."""
+    to = {"dte": system.structure.deflection} | {
+        name: np.eye(6)[j] for j, name in enumerate(COORDINATES) if j > 1
+    }
+    return {name: peak_to_peak(times, states[:, :6] @ v, states[:, 6:] @ v) for name, v in to.items()}
 
 
 def _closure(system: LTVSystem, states: FloatArray) -> float:

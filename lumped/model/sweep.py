@@ -42,7 +42,7 @@ def speed_sweep(
     ----------
     pair : a validated gear pair; its speed is replaced
     speeds_rpm : pinion speeds [rpm], positive
-    samples_per_cycle : times per cycle at which extremes are taken
+    samples_per_cycle : times per cycle; peak to peak takes in extremes between them
     progress : called with the finished fraction
 
     Returns
@@ -85,7 +85,7 @@ def speed_sweep(
         periodic[j] = True
         run = solution.values
         for name in names:
-            table[f"{name}_peak_to_peak"][j] = np.ptp(run[name])
+            table[f"{name}_peak_to_peak"][j] = solution.peak_to_peak[name]
             table[f"{name}_rms"][j] = np.std(run[name])
         found = load_range(pair.mesh.contact, run["normal_load"], run["contact"])
         table["normal_load_max"][j], table["normal_load_min"][j] = found

@@ -15,6 +15,7 @@ import numpy as np
 
 from lumped.arguments import whole_number
 from lumped.labelling import labelled_dataset
+from lumped.model.extremes import cycle_peak_to_peak
 from lumped.model.results import provenance
 from lumped.model.sweep import running_speeds
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -82,7 +83,7 @@ def speed_sweep(
         # Whole cycles end at the phase they started with, so the deviations carry over as they are.
         state = to_lumped_state(q, v)
         dte, overlap = run["dte"].to_numpy(), run["overlap"].to_numpy()
-        table["dte_rms"][j], table["dte_peak_to_peak"][j] = np.std(dte), np.ptp(dte)
+        table["dte_rms"][j], table["dte_peak_to_peak"][j] = np.std(dte), cycle_peak_to_peak(run, "dte")
         table["overlap_min"][j], table["separated"][j] = overlap.min(), np.mean(overlap <= 0.0)
         table["back_side"][j] = np.mean(run["normal_load_back"].to_numpy().sum(0) > 0.0)
         if progress is not None:

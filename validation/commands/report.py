@@ -44,7 +44,6 @@ def report(
     tolerance: Annotated[
         float, typer.Option("--tolerance", help="With --compare: relative change of a number that passes.")
     ] = 1e-3,
-    strict: Annotated[bool, typer.Option("--strict", help="Exit 1 when any verdict fails.")] = False,
     speed: opt.Speed = None,
     torque: opt.Torque = None,
     law: opt.Law = None,
@@ -56,7 +55,8 @@ def report(
     One folder: index.html (opens in any browser, without network), report.json (every number),
     report.junit.xml (every verdict as a test case), summary.md, figures (PNG and SVG) and data (NetCDF). It
     says what the lumped model predicts, whether the multibody model agrees,
-    whether the motion is stable over speed, and where the model stops being valid.
+    whether the motion is stable over speed, and where the model stops being valid. The exit code is 1 when
+    any verdict fails.
 
     [bold]Examples[/bold]
 
@@ -87,11 +87,10 @@ def report(
     console.print(f"\nreport: {written.folder / 'index.html'} ({written.seconds:.0f} s)")
     if written.comparison is not None:
         _show_changes(written.comparison)
-    if strict:
-        for line in written.failures:
-            console.print(f"fails: {line}", markup=False)
+    for line in written.failures:
+        console.print(f"fails: {line}")
     changed = written.comparison is not None and written.comparison.regressions
-    if changed or (strict and written.failures):
+    if changed or written.failures:
         raise typer.Exit(FAILED)
 
 

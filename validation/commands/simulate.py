@@ -76,17 +76,18 @@ def simulate(
                 initial=initial,
                 progress=tell,
             )
+    from lumped.model.extremes import cycle_peak_to_peak
     from validation.reporting.formatting import number, quantity
     from validation.validity.flags import contact_loss
 
     g = gear_pair.geometry
-    last = result.isel(time=slice(-samples, None))
+    # A transient ends on the end of its last cycle, a periodic motion leaves its own out.
+    last = result.isel(time=slice(-samples - (not steady), None))
     load = last["normal_load"].to_numpy()[last["contact"].to_numpy() > 0]
-    dte = last["dte"].to_numpy()
     static = gear_pair.operating.pinion_torque / g.base_radius_pinion
     numbers = {
-        "dte_peak_to_peak": float(dte.max() - dte.min()),
-        "dte_mean": float(dte.mean()),
+        "dte_peak_to_peak": cycle_peak_to_peak(last, "dte", g.mesh_period if steady else None),
+        "dte_mean": float(last["dte"][:samples].mean()),
         "normal_load_max": float(load.max()),
         "normal_load_min": float(load.min()),
         "load_factor": float(load.max()) / static,
@@ -98,7 +99,7 @@ def simulate(
     else:
         shown = table(f"{gear_pair.name}, last mesh cycle", "quantity", ">value")
         for name, value in {
-            "transmission error, peak to peak": quantity(numbers["dte_peak_to_peak"], "m"),
+            "transmission error, peak to peak": quantity(numbers["dte_peak_to_peak"], "m", 3),
             "transmission error, mean": quantity(numbers["dte_mean"], "m"),
             "largest load of a tooth pair": quantity(numbers["normal_load_max"], "N"),
             "smallest load of a tooth pair": quantity(numbers["normal_load_min"], "N"),

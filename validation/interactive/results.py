@@ -16,6 +16,7 @@ from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError
 from lumped.friction import LAWS
 from lumped.labelling import Variable, labelled_dataset
 from lumped.model.averaged import modes
+from lumped.model.extremes import cycle_peak_to_peak
 from lumped.model.results import provenance
 from lumped.path_of_contact import law_range_violations
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -99,7 +100,7 @@ def compute(
     pair : the gear pair
     sampling : how finely
     multibody : motion of the multibody model at the operating point over whole mesh cycles (``dte`` and
-        ``y_p`` over ``time``), to be shown beside the lumped response; None: not shown
+        ``y_p`` with their rates over ``time``), to be shown beside the lumped response; None: not shown
     progress : called with the finished fraction and what is being done
 
     Raises
@@ -191,6 +192,6 @@ def _points(pair: GearPair, motion: xr.Dataset) -> xr.Dataset:
     variables: dict[str, Variable] = {}
     for name, variable in (("dte_peak_to_peak", "dte"), ("y_p_peak_to_peak", "y_p")):
         unit, text = _LABELS[name]
-        value = float(np.ptp(motion[variable].to_numpy()))
+        value = cycle_peak_to_peak(motion, variable)
         variables[f"multibody_{name}"] = ("multibody_speed", [value], unit, f"{text}, multibody model")
     return labelled_dataset(variables, {"multibody_speed": ([operating_rpm(pair)], "rpm", "pinion speed")})

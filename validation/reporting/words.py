@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from validation.cross_check.comparison import CrossCheck
 from validation.reporting.blocks import Text
 from validation.reporting.formatting import number, quantity
@@ -35,7 +33,7 @@ def sentence(results: Results) -> str:
 
 def span(results: Results) -> str:
     """Peak to peak of the transmission error."""
-    return quantity(float(np.ptp(results.motion["dte"].to_numpy())), "m", 3)
+    return quantity(results.motion.attrs["dte_peak_to_peak"], "m", 3)
 
 
 def efficiency(results: Results) -> str:

@@ -16,6 +16,7 @@ from lumped import GearPair
 from lumped.errors import FieldProblem, ParameterError
 from lumped.fields.section import Section
 from lumped.fields.units import Quantity
+from lumped.model.extremes import cycle_peak_to_peak
 from lumped.model.results import load_range
 from lumped.model.solution import steady_state
 
@@ -127,6 +128,7 @@ def _lumped(variation: GearVariation, settings: Settings) -> Values:
         "mesh_efficiency": run.attrs["mesh_efficiency"],
         "brake_torque": run.attrs["brake_torque"],
         "error_estimate": run.attrs["error_estimate"],
+        **{f"{name}_peak_to_peak": run.attrs[f"{name}_peak_to_peak"] for name in _MOTIONS},
     }
 
 
@@ -144,7 +146,10 @@ def _multibody(variation: GearVariation, settings: Settings) -> Values:
         **tolerance,
     )
     # The grid ends on the last cycle's end, which is the first sample of a cycle that is not there.
-    return _motion(variation.pair, run.isel(time=slice(-1 - settings.kept_cycles * samples, -1)))
+    first = -1 - settings.kept_cycles * samples
+    whole = run.isel(time=slice(first, None))
+    peaks = {f"{name}_peak_to_peak": cycle_peak_to_peak(whole, name) for name in _MOTIONS}
+    return _motion(variation.pair, run.isel(time=slice(first, -1))) | peaks
 
 
 def _floquet(variation: GearVariation, settings: Settings) -> Values:
@@ -161,12 +166,10 @@ def _floquet(variation: GearVariation, settings: Settings) -> Values:
 
 
 def _motion(pair: GearPair, run: xr.Dataset) -> Values:
-    """Extremes and means of a motion over whole mesh cycles."""
+    """Extremes and means of a motion over whole mesh cycles, but peak to peak of what moves."""
     values: Values = {}
-    for name in ("dte", "x_p", "x_g", "y_p", "y_g"):
-        samples = run[name].to_numpy()
-        values[f"{name}_peak_to_peak"] = float(np.ptp(samples))
-        values[f"{name}_rms"] = float(np.std(samples))
+    for name in _MOTIONS:
+        values[f"{name}_rms"] = float(np.std(run[name].to_numpy()))
     load, contact = run["normal_load"].to_numpy(), run["contact"].to_numpy()
     values["normal_load_max"], values["normal_load_min"] = load_range(pair.mesh.contact, load, contact)
     values["friction_force_peak_to_peak"] = float(np.ptp(run["friction_force"].to_numpy().sum(axis=0)))

@@ -213,12 +213,11 @@ def test_options_reach_the_report(asked, tmp_path):
 
 
 @pytest.mark.parametrize("bad", [(), ("validity: Torques balance: violated",)])
-@pytest.mark.parametrize("strict", [False, True])
-def test_only_strict_turns_a_failing_verdict_into_an_exit_code(asked, tmp_path, strict, bad):
+def test_a_report_with_a_failing_verdict_exits_1_and_names_it(asked, tmp_path, bad):
     asked["failures"] = bad
-    result = run("report", "-o", tmp_path / "out", *(["--strict"] if strict else []))
-    assert result.exit_code == (1 if strict and bad else 0)
-    assert ("Torques balance" in result.stdout) == bool(strict and bad)
+    result = run("report", "-o", tmp_path / "out")
+    assert result.exit_code == (1 if bad else 0)
+    assert ("fails: validity: Torques balance" in result.stdout) == bool(bad)
 
 
 @pytest.mark.parametrize("fails", [False, True])

@@ -50,7 +50,7 @@ def write(results: Results) -> Content:
     key_results = facts(
         "key_results",
         ("stability", "this periodic motion is", Badge(multipliers.verdict), "", radius),
-        ("dte_peak_to_peak", "transmission error, peak to peak", float(np.ptp(dte.to_numpy())), "m"),
+        ("dte_peak_to_peak", "transmission error, peak to peak", attrs["dte_peak_to_peak"], "m"),
         ("dte_mean", "transmission error, mean", float(dte.mean()), "m"),
         ("largest_load", "largest load of a tooth pair", largest, "N"),
         ("dynamic_factor", "that load over the static load", largest / results.static_load),
