@@ -57,7 +57,7 @@ def contact_form(results: Results) -> str:
     forms = results.forms
     if isinstance(forms, str):
         return ""
-    spans = {name: float(np.ptp(motion["dte"].to_numpy())) for name, motion in forms.motions.items()}
+    spans = forms.spans(results.geometry.mesh_period)
     off = {name: number(100 * value, 2) for name, value in forms.difference.items()}
     told = {name: quantity(value, "m", 3) for name, value in spans.items()}
     if forms.own == "loaded":

@@ -19,6 +19,7 @@ from lumped import GearPair
 from lumped.arguments import real_numbers
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset
+from lumped.model.extremes import cycle_peak_to_peak
 from lumped.model.periodic_system import periodic_system
 from lumped.model.powers import MeanPowers, mean_powers
 from lumped.model.steady import periodic_solution
@@ -47,6 +48,10 @@ class ContactForms:
     motions: dict[str, xr.Dataset]
     difference: dict[str, float]
     powers: dict[str, MeanPowers]
+
+    def spans(self, period: float) -> dict[str, float]:
+        """Peak to peak of each motion's transmission error [m], from the mesh period [s]."""
+        return {name: cycle_peak_to_peak(one, "dte", period) for name, one in self.motions.items()}
 
 
 def contact_forms(pair: GearPair, samples: int = 256) -> ContactForms:
