@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from lumped.arguments import of_type
 from lumped.errors import refuse
 from lumped.fields.text_file import parse_toml
+from lumped.fields.units import to_stated
 from lumped.schema.files import load_gear_pair
 from lumped.schema.pair import GearPair
 from validation.plots.campbell import campbell_figure
@@ -28,7 +29,7 @@ def _pair(result: xr.Dataset) -> GearPair:
 def _sweep(result: xr.Dataset) -> Figure:
     pair = _pair(result)
     load = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
-    return sweep_figure(result, pair.to_mapping()["operating"]["pinion_speed"], load)
+    return sweep_figure(result, to_stated(pair.operating.pinion_speed, "rpm"), load)
 
 
 def _axes(result: xr.Dataset, *others: str) -> list[str]:

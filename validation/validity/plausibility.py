@@ -108,7 +108,7 @@ def _load(pair: GearPair) -> Iterator[str]:
 
 def _cause(pair: GearPair) -> str:
     """Swapped speed and torque, where exchanging them makes sense of both; else the units."""
-    rpm, torque = pair.to_mapping()["operating"]["pinion_speed"], float(pair.operating.pinion_torque)
+    rpm, torque = pair.operating.pinion_speed * 30.0 / math.pi, float(pair.operating.pinion_torque)
     try:
         swapped = pair.with_({"operating.pinion_speed": torque, "operating.pinion_torque": rpm})
         path = contact_path(swapped)
