@@ -26,9 +26,9 @@ class Mesh(Section):
         "carries load at the mean torque; 'ignored': perfect involutes from A to D",
     )
     contact: Literal["paper", "loaded"] = Field(
-        "paper",
-        description="'paper': a pair touches from A to D; 'loaded': it touches where its gap closes under "
-        "the mean load, with its tangent stiffness there, and the shafts pay for all losses",
+        "loaded",
+        description="'loaded': a pair touches where its gap closes under the mean load, with its tangent "
+        "stiffness there, and the brake pays for every loss; 'paper': it touches from A to D at any load",
     )
     backlash: Annotated[float, Quantity("mm", at_least=0)] = Field(
         0.0, description="normal backlash by tooth thinning, beyond that of the centre distance"

@@ -39,7 +39,7 @@ _WHY = {
     "pressure_viscosity_s": "mineral oil",
     "law": f"law {LAWS['xu_kahraman'].title}, which knows load, speed, oil and roughness",
     "relief": "perfect involutes",
-    "contact": "tooth pairs touch from A to D",
+    "contact": "a tooth pair touches where the mean load closes its gap",
     "sharpness": "read by law IV alone",
     "maximum": "bounds law II near the pitch point",
     "thresholds": "read by law V alone",

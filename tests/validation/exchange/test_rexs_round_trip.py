@@ -65,6 +65,7 @@ def test_without_the_record_everything_that_rexs_can_say_comes_back(preset, tmp_
     beyond = (
         "bearings.",
         "mesh.damping_ratio",
+        "mesh.contact",
         "mesh.stiffness.",
         "lubricant.viscosity",
         "friction.composite_roughness",

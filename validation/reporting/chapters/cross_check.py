@@ -212,9 +212,10 @@ def _powers(check: CrossCheck) -> Table:
                 for model in check.powers
             },
         },
-        note="The change of stiffness and profile along the path is a source in the paper's equations: a "
-        "tooth pair enters with the deflection that others have made, and its stiffness appears under load. "
-        "The books close only with it.",
+        note="The change of stiffness and profile along the path is a source in the equations of the lumped "
+        "model: moving a loaded contact along its flank costs nothing there, and the books close only with "
+        "it. In the loaded form the exact contact has an energy; its brake pays for what the lumped "
+        "equations get for nothing.",
     )
 
 
