@@ -9,12 +9,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from lumped.arguments import one_of
-from lumped.errors import NumericalError, refuse
+from lumped.errors import refuse
+from lumped.fields.units import to_stated
 from lumped.friction import LAWS, mean_coefficient
 from lumped.labelling import Coordinate
-from lumped.model.averaged import Mode, modes
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.operating import LARGEST_SPEED
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -202,36 +203,32 @@ def operating_value(pair: GearPair, name: str) -> float:
     return gear_axis(name).own(pair)
 
 
-def speed_range(pair: GearPair, found: tuple[Mode, ...]) -> tuple[float, float]:
-    """Speeds [rpm] that charts and the report cover.
+def speed_range(pair: GearPair) -> tuple[float, float]:
+    """Pinion speeds [rpm] that charts, sweeps and margins cover: ``operating.speed_range``, or its default.
 
-    The upper end is past the operating speed by half and past the speed where the mesh frequency meets the
-    highest mode of the averaged pair, which is also the widest parametric resonance 2 omega/2 below its
-    first tongue.
+    The default runs from near zero to about twice the operating speed; its upper end has two digits.
     """
-    rpm = operating_rpm(pair)
-    top = max([1.5 * rpm, *(1.2 * mode.resonant_speed for mode in found)])
-    # Two digits are enough for the end of an axis.
-    digits = 10.0 ** (np.floor(np.log10(top)) - 1)
-    top = float(np.ceil(top / digits) * digits)
-    return min(0.05 * top, 0.5 * rpm), top
+    given = pair.operating.speed_range
+    if given is not None:
+        return to_stated(given[0], "rpm"), to_stated(given[1], "rpm")
+    top = 2.0 * operating_rpm(pair)
+    digit = 10.0 ** (np.floor(np.log10(top)) - 1)
+    top = min(float(np.ceil(top / digit * (1.0 - 1e-9)) * digit), LARGEST_SPEED)
+    return 0.05 * top, top
 
 
 def chart_axes(pair: GearPair, speeds: int, dampings: int) -> dict[str, FloatArray]:
     """Nodes of the stability chart: so many speeds [rpm] and mesh damping ratios."""
-    try:
-        found = modes(pair)
-    except NumericalError:
-        found = ()
     largest = min(max(0.08, 1.5 * pair.mesh.damping_ratio), 1.0)
     return {
-        "speed_rpm": with_point(np.linspace(*speed_range(pair, found), speeds), operating_rpm(pair)),
+        "speed_rpm": with_point(np.linspace(*speed_range(pair), speeds), operating_rpm(pair)),
         "damping_ratio": with_point(np.linspace(0.0, largest, dampings), pair.mesh.damping_ratio),
     }
 
 
 def with_point(values: FloatArray, point: float) -> FloatArray:
-    """Axis values with the node nearest to a point moved onto it."""
+    """Axis values with the node nearest to a point moved onto it, where the point is within the axis."""
     nodes = values.copy()
-    nodes[np.argmin(np.abs(nodes - point))] = point
+    if nodes.min() <= point <= nodes.max():
+        nodes[np.argmin(np.abs(nodes - point))] = point
     return nodes

@@ -28,6 +28,7 @@ from lumped.friction import mean_coefficient
 from lumped.labelling import labelled_dataset
 from lumped.path_of_contact import friction_path_function
 from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.operating import LARGEST_SPEED
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
@@ -44,6 +45,7 @@ _RTOL = 1e-8
 _THRESHOLD = 1e-9
 _LARGEST_DAMPING = 1.0  # what the schema allows for a mesh
 _SPEED_NODES = 400
+_PAST = 0.1  # how far past the highest line its tongue may reach
 _EDGE_ROWS, _EDGE_SPEEDS, _EDGE_ROUNDS = 25, 49, 14
 
 
@@ -87,6 +89,7 @@ class StabilityMargins:
     speed_range : range searched [rpm]
     friction_coefficient : constant coefficient that stands for the friction law here
     tongues : at zero mesh damping, by speed
+    above : the next tongue above the range, at zero mesh damping; None: there is none up to the highest line
     unstable_here : intervals (k, 2) [rpm] that are unstable at the given damping
     damping_at_speed : mesh damping ratio above which the operating speed is stable; None: it is at any
     law_difference : largest difference of the spectral radius between the friction law and the constant
@@ -98,6 +101,7 @@ class StabilityMargins:
     speed_range: tuple[float, float]
     friction_coefficient: float
     tongues: tuple[TongueMargin, ...]
+    above: TongueMargin | None
     unstable_here: FloatArray
     damping_at_speed: float | None
     law_difference: float | None
@@ -115,6 +119,13 @@ class StabilityMargins:
             return None
         inside = np.clip(self.rpm, *self.unstable_here.T)
         return float(inside[np.argmin(np.abs(inside - self.rpm))])
+
+    @property
+    def unstable_above(self) -> float | None:
+        """Where the next tongue above the range begins at the given damping [rpm]; None: it is closed."""
+        if self.above is None or self.above.critical_damping <= self.damping:
+            return None
+        return float(np.interp(self.damping, self.above.damping, self.above.left))
 
     @property
     def nearest(self) -> TongueMargin | None:
@@ -170,10 +181,25 @@ def stability_margins(pair: AnyPair, speed_rpm: tuple[float, float]) -> Stabilit
         speed_range=speed_range,
         friction_coefficient=coefficient,
         tongues=tongues,
+        above=_above(radius, held, lines, speed_range[1]),
         unstable_here=np.array([(i.lower, i.upper) for i in unstable(here)]),
         damping_at_speed=max((i.upper for i in at_speed), default=None),
         law_difference=_law_difference(pair, held, tongues),
     )
+
+
+def _above(radius: Radius, pair: GearPair, lines: FloatArray, high: float) -> TongueMargin | None:
+    """First tongue without mesh damping that begins above the range, searched up to the highest line."""
+    top = min((1.0 + _PAST) * float(lines.max()), LARGEST_SPEED)
+    if top <= high:
+        return None
+    nodes = seeded_nodes(lines, high, top, _SPEED_NODES)
+    found = unstable_intervals(lambda speeds: radius(speeds, 0.0), nodes, xtol=1e-8)
+    windows = _windows(found, (high, top))
+    for interval, window in zip(found, windows, strict=True):
+        if not interval.open_below:  # that one began within the range
+            return _tongue(radius, pair, interval, window)
+    return None
 
 
 def margins_dataset(margins: StabilityMargins) -> xr.Dataset:

@@ -12,6 +12,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from lumped.errors import MOST_PROBLEMS, FieldProblem, ParameterError, quoted, shown
+from lumped.fields.quantity_range import QuantityRange
 from lumped.fields.section import OneOf
 from lumped.fields.units import Quantity
 
@@ -181,6 +182,6 @@ def _whole_number(info: FieldInfo) -> str:
 
 
 def _description(info: FieldInfo) -> str:
-    quantity = next((m for m in info.metadata if isinstance(m, Quantity)), None)
+    quantity = next((m for m in info.metadata if isinstance(m, (Quantity, QuantityRange))), None)
     text = info.description or "a section of the parameter file"
     return f"{quantity.allowed} ({text})" if quantity else text

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BaseModel, ConfigDict, GetCoreSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
 
+from lumped.fields.quantity_range import QuantityRange
 from lumped.fields.units import Quantity, to_file
 
 
@@ -23,11 +24,11 @@ class Section(BaseModel):
         result: dict[str, Any] = {}
         for name, info in type(self).model_fields.items():
             value = getattr(self, name)
-            quantity = next((m for m in info.metadata if isinstance(m, Quantity)), None)
+            quantity = next((m for m in info.metadata if isinstance(m, (Quantity, QuantityRange))), None)
             if isinstance(value, Section):
                 result[name] = value.to_mapping()
             elif isinstance(value, tuple):
-                result[name] = list(value)
+                result[name] = [v if quantity is None else to_file(v, quantity.unit) for v in value]
             elif value is not None:
                 result[name] = value if quantity is None else to_file(value, quantity.unit)
         return result

@@ -18,9 +18,9 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, PlainSerializer, ValidationError, model_validator
 from pydantic.fields import FieldInfo
-from pydantic_core import PydanticCustomError
 
 from lumped.errors import FieldProblem, ParameterError
+from lumped.fields.quantity_range import QuantityRange
 from lumped.fields.refusals import field_of, translated, unknown_key
 from lumped.fields.section import Section, Text
 from lumped.fields.units import Quantity, to_stated
@@ -30,6 +30,7 @@ from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.schema.contact import Friction, Lubricant
 from lumped.schema.gear import BasicRack, Gear
 from lumped.schema.mesh import Mesh
+from lumped.schema.operating import OperatingPoint
 
 #: From a hair to a bearing that is rigid beside any tooth.
 _STIFFNESS = Quantity("N/m", at_least=1e-6, at_most=1e30)
@@ -57,46 +58,6 @@ class Bearings(Section):
 
     pinion: Bearing
     gear: Bearing
-
-
-_BRAKE = Quantity("N*m", above=0, at_most=1e9, action="Correct the value, or write 'balanced'.")
-
-
-def _brake(value: object) -> object:
-    if value == "balanced":
-        return value
-    try:
-        return _BRAKE.parse(value)
-    except PydanticCustomError as error:
-        context = error.context or {}
-        allowed = f"{context['allowed']} or 'balanced'"
-        raise PydanticCustomError(
-            "quantity", "{value}: allowed {allowed}", context | {"allowed": allowed}
-        ) from None
-
-
-class OperatingPoint(Section):
-    """Where the pair runs. The pinion drives, in its positive sense."""
-
-    pinion_speed: Annotated[
-        float,
-        Quantity(
-            "rpm",
-            above=0,
-            at_most=200000,
-            action="Give the running speed; the pinion drives in its positive sense.",
-        ),
-    ] = Field(description="nominal speed of the pinion")
-    pinion_torque: Annotated[float, Quantity("N*m", at_least=1e-9, at_most=1e9)] = Field(
-        description="torque driving the pinion"
-    )
-    brake_torque: Annotated[
-        Literal["balanced"] | float, BeforeValidator(_brake, json_schema_input_type=float | str)
-    ] = Field(
-        "balanced",
-        description="torque braking the gear [N*m], or 'balanced': no drift of the mean speed",
-        json_schema_extra={"unit": "N*m", "si_unit": "N*m"},
-    )
 
 
 #: Fields that a file may give in another form -> the field that is kept.
@@ -380,7 +341,7 @@ def stated_unit(path: str) -> str | None:
     """Return the stated unit of a field by dotted path, or None where the field has none."""
     info = field_at(path)
     for marker in info.metadata:
-        if isinstance(marker, Quantity):
+        if isinstance(marker, (Quantity, QuantityRange)):
             return marker.unit
     # A quantity that may also be a word has its unit in the JSON Schema alone.
     extra = info.json_schema_extra

@@ -17,6 +17,7 @@ def interactive(
     ),
     speed: opt.Speed = None,
     torque: opt.Torque = None,
+    speed_range: opt.Range = None,
     law: opt.Law = None,
     settings: opt.Settings = None,
     force: opt.Force = False,
@@ -37,7 +38,7 @@ def interactive(
 
     check_file(output, (".html",), force=force)
     data = check_file(output.with_suffix(".nc"), (".nc",), force=force)
-    gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
+    gear_pair = opt.gear_pair(pair, speed, torque, law, settings, speed_range)
     with progress_bar("interactive page") as tell:
         write_interactive_page(gear_pair, output, data=data, progress=tell)
     stderr().print(f"wrote {output} and {data}")

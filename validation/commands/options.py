@@ -34,6 +34,15 @@ Torque = Annotated[
     str | None,
     typer.Option("--torque", help="Pinion torque; a bare number is N m, or write the unit: '200 lbf*in'."),
 ]
+Range = Annotated[
+    str | None,
+    typer.Option(
+        "--range",
+        metavar="FROM..TO",
+        help="Pinion speeds to cover: 200..3000 (rpm) or '10..50 Hz'; default: from near zero to about twice "
+        "the operating speed.",
+    ),
+]
 Law = Annotated[
     str | None,
     typer.Option(
@@ -63,7 +72,12 @@ def output(help: str) -> Any:
 
 
 def gear_pair(
-    source: str, speed: str | None, torque: str | None, law: str | None, settings: list[str] | None
+    source: str,
+    speed: str | None,
+    torque: str | None,
+    law: str | None,
+    settings: list[str] | None,
+    speed_range: str | None = None,
 ) -> GearPair:
     """Load a gear pair and apply the overrides of the command line.
 
@@ -88,6 +102,7 @@ def gear_pair(
         ("--speed", "operating.pinion_speed", speed),
         ("--torque", "operating.pinion_torque", torque),
         ("--law", "friction.law", law),
+        ("--range", "operating.speed_range", speed_range),
     ):
         if text_or_none is not None:
             changes[path] = value_of(text_or_none)

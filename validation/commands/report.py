@@ -46,6 +46,7 @@ def report(
     ] = 1e-3,
     speed: opt.Speed = None,
     torque: opt.Torque = None,
+    speed_range: opt.Range = None,
     law: opt.Law = None,
     settings: opt.Settings = None,
     force: opt.ForceFolder = False,
@@ -62,7 +63,7 @@ def report(
 
     spurcheck report -o report
 
-    spurcheck report my_pair.toml --speed "3000 rpm" --torque "500 lbf*in" -o report_3000
+    spurcheck report my_pair.toml --speed "3000 rpm" --torque "500 lbf*in" --range 200..6000 -o report_3000
 
     spurcheck report my_pair.toml -o new --compare old/report.json --tolerance 0.01
     """
@@ -70,7 +71,7 @@ def report(
     from validation.reporting import report as write
 
     check_target(output, force=force)
-    gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
+    gear_pair = opt.gear_pair(pair, speed, torque, law, settings, speed_range)
     with progress_bar("report") as tell:
         written = write(
             gear_pair,

@@ -78,6 +78,7 @@ def stability(
     ] = False,
     speed: opt.Speed = None,
     torque: opt.Torque = None,
+    speed_range: opt.Range = None,
     law: opt.Law = None,
     settings: opt.Settings = None,
     as_json: opt.Json = False,
@@ -111,7 +112,7 @@ def stability(
     targets = [check_file(path, DATA_SUFFIXES + FIGURE_SUFFIXES, force=force) for path in output or []]
     grid = _grid(axes or [])
     speeds = None if operating_range is None else _range(operating_range)
-    gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
+    gear_pair = opt.gear_pair(pair, speed, torque, law, settings, speed_range)
     request = Request(
         gear_pair, grid, speeds, tongues, law_named(against, "--against").name, method, multipliers, targets
     )

@@ -169,6 +169,15 @@ def _traced(pair: GearPair, speeds: FloatArray) -> StabilityMargins:
     """Trace the tongues over a range of speeds, and print them by falling critical damping."""
     with progress_bar("tongues"):
         found = stability_margins(pair, (float(speeds.min()), float(speeds.max())))
+    low, high = found.speed_range
+    if (above := found.above) is not None:
+        stdout().print(
+            f"next tongue above the range, without mesh damping: {above.label}, {above.lower:.0f} to "
+            f"{above.upper:.0f} rpm, closed by a mesh damping ratio of {above.critical_damping:.6f}"
+        )
+    if not found.tongues:
+        stdout().print(f"no tongue from {low:g} to {high:g} rpm, even without mesh damping")
+        return found
     shown = table(
         "tongues without mesh damping, and what closes them (rpm; w: natural frequencies)",
         "tongue", ">from", ">to", ">multiplier", ">critical damping", ">closes at",

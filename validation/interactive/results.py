@@ -17,10 +17,11 @@ from lumped.friction import LAWS
 from lumped.labelling import Variable, labelled_dataset
 from lumped.model.averaged import modes
 from lumped.model.extremes import cycle_peak_to_peak
+from lumped.model.resolved_sweep import resolved_sweep
 from lumped.model.results import provenance
 from lumped.path_of_contact import law_range_violations
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.typing import FloatArray, Progress
+from lumped.typing import Progress
 from validation.interactive.slices import SLICES, Slices
 from validation.validity.map import STATES, validity_state
 
@@ -33,15 +34,17 @@ class Sampling:
     ----------
     speeds, dampings : nodes of the stability charts
     slices : values of their third parameter
-    sweep_speeds : of the response over speed
+    sweep_speeds : of the response over speed, at most
     """
 
     speeds: int = 101
     dampings: int = 17
     slices: int = 7
-    sweep_speeds: int = 61
+    sweep_speeds: int = 80
 
 
+#: Samples per mesh cycle of the response over speed.
+_SAMPLES = 96
 FINE = Sampling()
 
 
@@ -113,11 +116,6 @@ def compute(
         found = modes(pair)
     except NumericalError:  # an overdamped mode has no natural frequency
         found = ()
-    rpm = operating_rpm(pair)
-    # Resonances are wider the faster the pair runs, so steps grow with the root of speed.
-    low, high = speed_range(pair, found)
-    speeds = np.linspace(low**0.5, high**0.5, sampling.sweep_speeds) ** 2
-    speeds[np.argmin(np.abs(speeds - rpm))] = rpm
     grid = chart_axes(pair, sampling.speeds, sampling.dampings)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)  # the page says it beside the law
@@ -126,7 +124,9 @@ def compute(
             tell(0.6 * done / len(SLICES), "stability over a third parameter")
             stability[key] = make(pair, grid, sampling.slices)
         tell(0.6, "response of every friction law")
-        sweeps, missing = _law_sweeps(pair, speeds, lambda f: tell(0.6 + 0.4 * f, "response over speed"))
+        # Friction hardly moves a resonance: the speeds that resolve the pair's own law resolve every law.
+        own = resolved_sweep(pair, speed_range(pair), most=sampling.sweep_speeds, samples_per_cycle=_SAMPLES)
+        sweeps, missing = _law_sweeps(pair, own, lambda f: tell(0.6 + 0.4 * f, "response over speed"))
         notes = tuple("; ".join(map(str, law_range_violations(pair, law))) for law in sweeps)
         multipliers = gear_pair_multipliers(pair)
     laws = xr.DataArray(
@@ -146,25 +146,25 @@ def compute(
 
 
 def _law_sweeps(
-    pair: GearPair, speeds: FloatArray, tell: Callable[[float], None]
+    pair: GearPair, own: xr.Dataset, tell: Callable[[float], None]
 ) -> tuple[dict[str, xr.Dataset], dict[str, str]]:
-    """Response of every law that this pair admits, and the reason for every other."""
-    sweeps, missing = {}, {}
+    """Response of every law that this pair admits, at the speeds of its own; why others are missing."""
+    speeds = own["speed"].to_numpy()
+    sweeps, missing = {pair.friction.law: _response(pair, own)}, {}
     for done, law in enumerate(LAWS):
-        try:
-            sweeps[law] = _sweep(pair.with_({"friction.law": law}), speeds)
-        except (ParameterError, NumericalError) as error:
-            if law == pair.friction.law:
-                raise
-            missing[law] = str(error)
+        if law not in sweeps:
+            try:
+                at = pair.with_({"friction.law": law})
+                sweeps[law] = _response(at, lumped.speed_sweep(at, speeds, samples_per_cycle=_SAMPLES))
+            except (ParameterError, NumericalError) as error:
+                missing[law] = str(error)
         tell((done + 1) / len(LAWS))
-    return sweeps, missing
+    return {law: sweeps[law] for law in LAWS if law in sweeps}, missing
 
 
-def _sweep(pair: GearPair, speeds: FloatArray) -> xr.Dataset:
-    """Response with the pair's own law."""
+def _response(pair: GearPair, found: xr.Dataset) -> xr.Dataset:
+    """What the page shows of a sweep of this pair."""
     g = pair.geometry
-    found = lumped.speed_sweep(pair, speeds, samples_per_cycle=96)
     static = pair.operating.pinion_torque / g.base_radius_pinion
     lowest, reversal = found["normal_load_min"].to_numpy(), found["sliding_reversal"].to_numpy()
     lowest, reversal = lowest / static, reversal / g.base_pitch
@@ -172,7 +172,7 @@ def _sweep(pair: GearPair, speeds: FloatArray) -> xr.Dataset:
     values = {name: own[name] if name in own else found[name].to_numpy() for name in _LABELS}
     return labelled_dataset(
         {name: ("speed", array, *_LABELS[name]) for name, array in values.items()},
-        {"speed": (speeds, "rpm", "pinion speed")},
+        {"speed": (found["speed"].to_numpy(), "rpm", "pinion speed")},
     )
 
 

@@ -156,7 +156,10 @@ def path_axis(ax: Axes, g: Geometry, ends: FloatArray | None = None) -> None:
 
 
 def mark_operation(ax: Axes, place: float, words: str) -> None:
-    """Red line at the operating condition, named above the axes."""
+    """Red line at the operating condition, named above the axes; nothing when outside."""
+    low, high = sorted(ax.get_xlim())
+    if not low <= place <= high:
+        return
     ax.axvline(place, color=RED, linewidth=1.0)
     write_beside(ax, words, (place, 1.0), (0, 2), IN_X, ha="center", color=RED)
 

@@ -46,7 +46,8 @@ def sweep_figure(
     bottom.set(ylabel="tooth load over\nstatic load [-]", xlabel="pinion speed [rpm]")
     bottom.set_xlim(speed[0], speed[-1])
     mark_operation(top, operating_rpm, "operating point")
-    bottom.axvline(operating_rpm, color=RED, linewidth=1.0)
+    if speed[0] <= operating_rpm <= speed[-1]:
+        bottom.axvline(operating_rpm, color=RED, linewidth=1.0)
     for ax in (top, bottom):
         for place in resonances_rpm:
             if speed[0] <= place <= speed[-1]:

@@ -27,7 +27,7 @@ def validity_map_figure(data: xr.Dataset, point: tuple[float, float] | None = No
     Parameters
     ----------
     data : of ``validation.validity.map.validity_map``
-    point : operating point (rpm, N m); None: not marked
+    point : operating point (rpm, N m), marked where it is within; None: not marked
     """
     figure, axes = new_figure(1, 3, height=3.5, sharey=True)
     speed, torque = data["speed"].to_numpy(), data["torque"].to_numpy()
@@ -61,7 +61,7 @@ def validity_map_figure(data: xr.Dataset, point: tuple[float, float] | None = No
         )
         ax.set_title(title, fontsize=9.0)
         ax.set_xlabel("pinion speed [rpm]")
-        if point is not None:
+        if point is not None and speed[0] <= point[0] <= speed[-1]:
             ax.plot(*point, "o", markersize=7, markerfacecolor="white", markeredgecolor=BLACK)
     axes[0, 0].set_ylabel("pinion torque [N m]")
     return figure

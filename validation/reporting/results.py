@@ -14,8 +14,9 @@ from floquet.gear.margins import StabilityMargins, stability_margins
 from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
 from lumped import GearPair, Geometry, NumericalError, ParameterError
 from lumped.model.averaged import Mode, modes
+from lumped.model.resolved_sweep import resolved_sweep
 from lumped.path_of_contact import friction_profile
-from lumped.typing import Progress
+from lumped.typing import BoolArray, Progress
 from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.reporting.paper_results import PaperResults, paper_results
 from validation.validity.contact_forms import ContactForms, contact_forms
@@ -33,7 +34,7 @@ class Effort:
     ----------
     samples : per mesh cycle of the periodic motion; at least, with ``full``
     cycles : of the cross-check
-    sweep_speeds : of the response over speed
+    sweep_speeds : of the response over speed, at most
     chart_speeds, chart_dampings : nodes of the stability chart
     chart_rtol : accuracy of the monodromy matrices in the chart
     map_speeds, map_torques : points of the validity map
@@ -57,7 +58,7 @@ class Effort:
 
 
 FULL = Effort(512, 40, 240, 401, 81, 1e-8, 31, 9, full=True, paper=True, claim_samples=100)
-QUICK = Effort(128, 16, 24, 16, 4, 1e-6, 7, 3, full=False, paper=False, claim_samples=8)
+QUICK = Effort(128, 16, 48, 16, 4, 1e-6, 7, 3, full=False, paper=False, claim_samples=8)
 
 
 class Results:
@@ -127,23 +128,29 @@ class Results:
     @cached_property
     def speeds(self) -> tuple[float, float]:
         """Range of pinion speeds of everything over speed [rpm]."""
-        return speed_range(self.pair, self.modes)
+        return speed_range(self.pair)
 
     @cached_property
     def sweep(self) -> xr.Dataset:
         """Periodic motion over speed."""
-        return lumped.speed_sweep(
+        return resolved_sweep(
             self.pair,
-            np.linspace(*self.speeds, self.effort.sweep_speeds),
+            self.speeds,
+            most=self.effort.sweep_speeds,
             samples_per_cycle=128,
             progress=self.stage("response over speed"),
         )
 
     @property
     def separating_share(self) -> float:
-        """Share of the speeds of the sweep at which a tooth pair would have to pull."""
+        """Share of the range of speeds in which a tooth pair would have to pull."""
         low = self.sweep["normal_load_min"].to_numpy()  # NaN where there is no periodic motion
-        return float(np.mean(low < -LOAD_NOISE * self.static_load))
+        return self.share_of_range(low < -LOAD_NOISE * self.static_load)
+
+    def share_of_range(self, where: BoolArray) -> float:
+        """Share of the range of speeds taken by the speeds of the sweep that are marked."""
+        speed = self.sweep["speed"].to_numpy()
+        return float(np.trapezoid(where.astype(float), speed) / (speed[-1] - speed[0]))
 
     @cached_property
     def check(self) -> CrossCheck:

@@ -124,9 +124,11 @@ def stable_speeds(results: Results) -> str:
     """At which speeds of the range the motion is stable."""
     low, high = results.margins.speed_range
     reach = f"at all speeds from {low:.0f} to {high:.0f} rpm"
-    unstable = results.margins.unstable_here
+    unstable, above = results.margins.unstable_here, results.margins.unstable_above
     if not unstable.size:
-        return reach
+        return (
+            reach if above is None else f"{reach} (the first unstable speeds above: from {above:.5g} rpm on)"
+        )
     ranges = ", ".join(f"{a:.5g} to {b:.5g} rpm" for a, b in unstable[:3])
     more = f" and {len(unstable) - 3} more ranges" if len(unstable) > 3 else ""
     return f"{reach} but {ranges}{more}"

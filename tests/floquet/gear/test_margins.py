@@ -139,3 +139,35 @@ def test_a_range_without_a_tongue_has_no_margins_but_an_answer(pair) -> None:
     assert found.critical_damping == 0.0
     assert (found.nearest, found.nearest_unstable, found.law_difference) == (None, None, None)
     assert margins_dataset(found).sizes["tongue"] == 0
+
+
+def test_the_next_tongue_above_the_range_is_the_one_that_a_wider_search_finds() -> None:
+    pair = load_gear_pair("nasa_28_28").with_(mesh__relief="ignored")
+    wide = stability_margins(pair, (6000.0, 40000.0))
+    tongues = [t for t in wide.tongues if t.upper < 30000.0]
+    below, target = tongues[-2:]
+    narrow = stability_margins(pair, (6000.0, 0.5 * (below.upper + target.lower)))
+    assert narrow.above is not None
+    assert narrow.above.label == target.label
+    assert narrow.above.lower == pytest.approx(target.lower, rel=1e-7)
+    assert narrow.above.upper == pytest.approx(target.upper, rel=1e-7)
+    assert narrow.above.critical_damping == pytest.approx(target.critical_damping, rel=1e-5)
+    assert narrow.unstable_above is None  # 5 % of mesh damping close it
+    light = stability_margins(
+        pair.with_(mesh__damping_ratio=0.5 * target.critical_damping), narrow.speed_range
+    )
+    assert light.unstable_above is not None
+    assert target.lower < light.unstable_above < target.tip_speed
+    # A tongue that begins within the range is not the next one.
+    inside = stability_margins(pair, (6000.0, 0.5 * (below.lower + below.upper)))
+    assert inside.above is not None
+    assert inside.above.lower == pytest.approx(target.lower, rel=1e-7)
+    assert wide.above is None
+
+
+def test_the_search_above_stays_within_the_speeds_of_the_schema() -> None:
+    pair = load_gear_pair("nasa_28_28").with_(
+        operating__pinion_speed=150_000.0, bearings__pinion__loa_stiffness=1e12, mesh__damping_ratio=0.0
+    )
+    margins = stability_margins(pair, (100_000.0, 190_000.0))
+    assert margins.above is None or margins.above.upper <= 200_000.0

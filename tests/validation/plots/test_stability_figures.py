@@ -81,7 +81,7 @@ def test_no_label_of_a_tongue_covers_another() -> None:
         for x, label in lines
     )
     figure = tongues_figure(
-        StabilityMargins(5000.0, 0.02, (1000.0, 20000.0), 0.05, tongues, np.empty((0, 2)), None, None)
+        StabilityMargins(5000.0, 0.02, (1000.0, 20000.0), 0.05, tongues, None, np.empty((0, 2)), None, None)
     )
     FigureCanvasAgg(figure).draw()
     names = {pretty(t.label) for t in tongues}

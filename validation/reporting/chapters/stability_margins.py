@@ -16,7 +16,7 @@ def write(results: Results) -> Content:
     m = results.margins
     low, high = m.speed_range
     reach = f"{low:.5g} to {high:.5g} rpm"
-    nearest = m.nearest
+    nearest, above = m.nearest, m.above
     distances = facts(
         "distances",
         (
@@ -39,8 +39,18 @@ def write(results: Results) -> Content:
             None if nearest is None else Quantity(nearest.distance(m.rpm), "rpm"),
         ),
         (
+            "tongue_above",
+            "next tongue above the range, without mesh damping",
+            "none" if above is None else above.label.replace("w", "ω"),
+            "",
+            ""
+            if above is None
+            else f"{above.lower:.5g} to {above.upper:.5g} rpm, closed by a mesh damping "
+            f"ratio of {above.critical_damping:.3g}",
+        ),
+        (
             "critical_damping",
-            "mesh damping ratio that closes every tongue",
+            "mesh damping ratio that closes every tongue of the range",
             m.critical_damping,
             "",
             f"this pair has {m.damping:g}",

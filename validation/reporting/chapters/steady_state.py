@@ -127,8 +127,12 @@ def _over_speed(results: Results) -> list[Block]:
             ("speed_low", "lowest speed", float(speed[0]), "rpm"),
             ("speed_high", "highest speed", float(speed[-1]), "rpm"),
             ("speeds", "speeds computed", int(speed.size)),
-            ("share_separating", "share of the speeds with negative loads", results.separating_share),
-            ("share_unstable", "share of the speeds with an unstable motion", float(unstable.mean())),
+            ("share_separating", "share of the range with negative loads", results.separating_share),
+            (
+                "share_unstable",
+                "share of the range with an unstable motion",
+                results.share_of_range(unstable),
+            ),
             (
                 "speed_of_largest",
                 "speed of the largest transmission error",
