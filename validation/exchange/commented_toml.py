@@ -11,6 +11,7 @@ import tomli_w
 
 from lumped.errors import ParameterError
 from lumped.schema.pair import stated_unit
+from validation.exchange.rexs.said import DOUBTFUL
 
 _SECTION = re.compile(r"\[([\w.]+)\]$")
 _ENTRY = re.compile(r"(\w+) = ")
@@ -63,4 +64,6 @@ def _commented(line: str, path: str, sources: Mapping[str, str]) -> str:
     )
     if sources.get(path, "").startswith("assumed"):
         remarks.append("assumed")
+    if DOUBTFUL in sources.get(path, ""):
+        remarks.append("doubtful")
     return f"{line:<{_COLUMN}} # {', '.join(remarks)}" if remarks else line

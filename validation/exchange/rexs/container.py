@@ -42,8 +42,8 @@ def read_rexs(path: str | Path) -> RexsModel:
 
     Raises
     ------
-    ParameterError : no such file, too large, an archive that is hostile or has not exactly one model, not a
-        REXS model, or one before version 1.4
+    ParameterError : no such file, too large, an archive that is hostile or has not exactly one model, or not
+        a REXS model
     """
     path = file_path("path", path)
     data = read_bytes(path, MAX_BYTES, field="REXS file")
@@ -56,7 +56,6 @@ def read_rexs(path: str | Path) -> RexsModel:
         model = parse_xml(data, path.name)
     else:
         raise broken(path.name, "it is neither XML nor JSON nor a ZIP archive")
-    _check_version(model)
     return model
 
 
@@ -95,15 +94,6 @@ def _model_in(members: list[zipfile.ZipInfo], file: str) -> zipfile.ZipInfo:
     if len(found) != 1:
         raise broken(file, f"the archive has {len(found)} models instead of one")
     return found[0]
-
-
-def _check_version(model: RexsModel) -> None:
-    parts = model.version.split(".")
-    numbers = [int(p) for p in parts if p.isascii() and p.isdecimal() and len(p) < 6]
-    if len(numbers) != len(parts) or not numbers:
-        raise broken(model.file, f"its version is {shown(model.version)!r}")
-    if numbers < [1, 4]:
-        raise broken(model.file, f"its version is {shown(model.version)}; export it as version 1.4 or later")
 
 
 def form_of(path: Path) -> str:

@@ -5,12 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from lumped.errors import FieldProblem, ParameterError
+from lumped.errors import FieldProblem, ParameterError, shown
 from lumped.fields.units import to_stated
 from lumped.schema.files import load_gear_pair
 from lumped.schema.pair import GearPair
 from validation.exchange.rexs.assumptions import ASSUMED, completed, with_sources
 from validation.exchange.rexs.container import read_rexs
+from validation.exchange.rexs.doubts import find_doubts, without_contradiction
 from validation.exchange.rexs.gears import read_gears
 from validation.exchange.rexs.model import RexsModel
 from validation.exchange.rexs.operation import driving_first, read_operating_point, read_stage
@@ -26,15 +27,16 @@ def gear_pair_from_rexs(path: str | Path, stage: int | None = None) -> tuple[dic
 
     Parameters
     ----------
-    path : XML (.rexs), JSON (.rexsj) or ZIP (.rexsz, .zip), version 1.4 or later
+    path : XML (.rexs), JSON (.rexsj) or ZIP (.rexsz, .zip)
     stage : number of the stage as ``rexs_stages`` lists them, 1 the first; may be left out where only one
         can be modelled
 
     Returns
     -------
     mapping : nested parameters in file units, valid for ``load_gear_pair``; under ``sources`` every value has
-        its component and attribute in the file, or "assumed" where the file says nothing
-    notes : what was assumed, left out or chosen, in words
+        its component and attribute in the file, or "assumed" where the file says nothing; "doubtful" in it
+        names what in the file contradicts the value
+    notes : what was assumed, left out, chosen or is doubtful, in words
 
     Raises
     ------
@@ -61,7 +63,8 @@ def gear_pair_from_rexs(path: str | Path, stage: int | None = None) -> tuple[dic
         reference, _ = _standard(*_exported(record, model))
         pair = restored(said, pair, reference, record)
     if model.version not in VERSIONS:
-        said.note(f"the file is of REXS version {model.version}; versions {', '.join(VERSIONS)} were checked")
+        known = f"versions {', '.join(VERSIONS)} were checked"
+        said.note(f"the file is of REXS version {shown(model.version) or '(not given)'}; {known}")
     _note_assumptions(said, pair)
     return pair.to_mapping(), tuple(said.notes)
 
@@ -83,7 +86,8 @@ def _standard(model: RexsModel, picked: Stage) -> tuple[GearPair, Said]:
     read_operating_point(said, stage, pinion, gear)
     if said.problems:
         raise ParameterError(said.problems, model.file)
-    pair = _validated(said, picked)
+    pair = without_contradiction(said, lambda: _validated(said, picked))
+    find_doubts(said, stage, {"pinion": pinion, "gear": gear}, pair)
     read_reliefs(said, stage, {"pinion": pinion, "gear": gear}, pair.geometry)
     if said.problems:
         raise ParameterError(said.problems, model.file)
@@ -95,7 +99,7 @@ def _validated(said: Said, stage: Stage) -> GearPair:
     model = said.model
     name = (stage.name.strip() or Path(model.file).stem)[:80]
     written = f", written by {model.application[:200]}" if model.application else ""
-    description = f"stage {stage.number} of {model.file}{written}, REXS {model.version}"
+    description = f"stage {stage.number} of {model.file}{written}, REXS {shown(model.version)}"
     try:
         return load_gear_pair({"name": name, "description": description} | completed(said.values))
     except ParameterError as error:

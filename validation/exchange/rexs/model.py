@@ -135,4 +135,4 @@ def assembled(
 def broken(file: str, reason: str) -> ParameterError:
     """Build the refusal of a file that is no REXS model."""
     action = f"The file is refused: {reason}."
-    return refuse("REXS file", shown(file), "a REXS model, version 1.4 or later", action)
+    return refuse("REXS file", shown(file), "a REXS model", action)

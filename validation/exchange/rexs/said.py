@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,6 +15,8 @@ from validation.exchange.rexs.vocabulary import ATTRIBUTES, si_from_rexs
 
 #: Numbers beyond these are no measure of a gear in any unit, and products of them would overflow.
 _SMALLEST, _LARGEST = 1e-30, 1e30
+#: Joins the source of a value and why it is doubtful.
+DOUBTFUL = "; doubtful: "
 
 
 @dataclass(frozen=True)
@@ -110,6 +112,12 @@ class Said:
         """Add a note, once."""
         if text not in self.notes:
             self.notes.append(text)
+
+    def doubt(self, paths: Sequence[str], text: str) -> None:
+        """Mark the lines of some fields as doubtful, and note why."""
+        for path in paths:
+            self.sources[path] = f"{self.sources.get(path, 'assumed')}{DOUBTFUL}{text}"
+        self.note(f"doubtful: {', '.join(paths)}: {text}")
 
     def agreed(self, readings: list[Reading | None], what: str) -> Reading | None:
         """Return the one value that all places which have one agree on; a disagreement is a problem."""

@@ -6,13 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lumped.arguments import whole_number
-from lumped.errors import ParameterError, refuse
+from lumped.errors import FieldProblem, ParameterError, refuse, shown
 from lumped.fields.units import to_stated
 from validation.exchange.rexs.container import read_rexs
 from validation.exchange.rexs.model import Component, RexsModel, broken
 from validation.exchange.rexs.said import Said
 
-_STAGES = ("cylindrical_stage", "bevel_stage", "worm_stage")
 _GEARS = ("cylindrical_gear", "ring_gear", "bevel_gear", "worm_gear", "worm_wheel")
 #: Helix angles below this are what a program leaves of a zero [deg].
 _NO_HELIX = 1e-9
@@ -29,7 +28,7 @@ class Stage:
     name : as the file says
     kind : component type
     teeth : of its gears, where the file has them
-    reason : why spurcheck cannot model it, or ""
+    reason : what it is instead, and after "; " why spurcheck cannot model that; or ""
     """
 
     number: int
@@ -55,7 +54,7 @@ def rexs_stages(path: str | Path) -> list[Stage]:
 
     Parameters
     ----------
-    path : XML, JSON or ZIP form, version 1.4 or later
+    path : XML, JSON or ZIP form
 
     Raises
     ------
@@ -68,12 +67,18 @@ def stages_of(model: RexsModel) -> list[Stage]:
     """List the gear stages of a model."""
     said = Said(model)
     found = []
-    for number, component in enumerate(model.of_type(*_STAGES), 1):
+    for number, component in enumerate(_stage_components(model), 1):
         gears = gears_of(model, component)
         reason = _reason(said, component, gears)
         known = tuple(z for gear in gears if (z := _teeth(gear)) is not None)
         found.append(Stage(number, component.id, component.name, component.type, known, reason))
     return found
+
+
+def _stage_components(model: RexsModel) -> list[Component]:
+    """Gear stages of any kind; a planetary stage only where its parts are not in the file."""
+    stages = [c for c in model.components.values() if c.type.endswith("_stage")]
+    return [s for s in stages if not model.related(s, "assembly", "assembly", "part", "cylindrical_stage")]
 
 
 def gears_of(model: RexsModel, stage: Component) -> list[Component]:
@@ -99,21 +104,25 @@ def chosen(model: RexsModel, number: int | None) -> tuple[Stage, list[str]]:
     if number is not None:
         picked = stages[whole_number("stage", number, 1, len(stages)) - 1]
         if not picked.usable:
-            raise _unusable(model, str(picked.number), picked.reason)
+            raise _unusable(model, [picked])
         return picked, []
     usable = [stage for stage in stages if stage.usable]
     if len(usable) > 1:
         raise refuse("stage", "not given", f"one of {listed}", "Choose a stage by its number.")
     if not usable:
-        reason = stages[0].reason if len(stages) == 1 else f"no stage can be modelled: {listed}"
-        raise _unusable(model, "1" if len(stages) == 1 else "not given", reason)
+        raise _unusable(model, stages)
     notes = [] if len(stages) == 1 else [f"stage {usable[0].number} is the only spur stage of: {listed}"]
     return usable[0], notes
 
 
-def _unusable(model: RexsModel, number: str, reason: str) -> ParameterError:
-    wanted = "a cylindrical stage of two external spur gears"
-    return refuse("stage", number, wanted, f"{model.file}: {reason}.")
+def _unusable(model: RexsModel, stages: list[Stage]) -> ParameterError:
+    """Build the refusal; what the stage is stands in its first words."""
+    problems = []
+    for stage in stages:
+        kind, _, why = stage.reason.partition("; ")
+        wanted = "a cylindrical stage of two external spur gears"
+        problems.append(FieldProblem(f"stage {stage.number}", kind, wanted, f"{why[:1].upper()}{why[1:]}."))
+    return ParameterError(problems, model.file)
 
 
 def _teeth(gear: Component) -> int | None:
@@ -127,13 +136,14 @@ def _teeth(gear: Component) -> int | None:
 def _reason(said: Said, stage: Component, gears: list[Component]) -> str:
     """Why a stage cannot be modelled."""
     if stage.type != "cylindrical_stage":
-        return f"a {stage.type.replace('_', ' ')}; only cylindrical spur stages can be modelled"
+        return f"a {shown(stage.type.replace('_', ' '))}; only cylindrical spur stages can be modelled"
     if said.model.related(stage, "assembly", "part", "assembly", "planetary_stage"):
-        return "part of a planetary stage, whose planets share the load; one pair alone cannot stand for it"
+        return "a mesh of a planetary stage; the planets share the load, one pair alone cannot stand for it"
     if any(gear.type == "ring_gear" or (_teeth(gear) or 0) < 0 for gear in gears):
-        return "an internal gear; the model is of two external gears"
+        return "a stage with an internal gear; the model is of two external gears"
     if len(gears) != 2 or any(gear.type != "cylindrical_gear" for gear in gears):
-        return f"{len(gears)} gears in its 'stage' relation instead of two cylindrical gears"
+        kinds = " and ".join(shown(gear.type.replace("_", " ")) for gear in gears) or "no gear"
+        return f"a stage of {kinds}; its 'stage' relation has to name two cylindrical gears"
     for gear in gears:
         helix = said.number(gear, "helix_angle_reference_diameter")
         angle = 0.0 if helix is None else to_stated(helix.si, "deg")
