@@ -15,8 +15,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from lumped.model.propagation import step_maps
-from lumped.model.steady import PeriodicSolution, balanced_start
+from lumped.model.periodic_system import LTVSystem
+from lumped.model.propagation import step_edges
+from lumped.model.steady import PeriodicSolution, periodic_solution
 from lumped.typing import FloatArray
 
 #: Gauss nodes per step; a step turns the fastest mode by half a radian.
@@ -97,17 +98,28 @@ def mean_powers(solution: PeriodicSolution) -> MeanPowers:
     ----------
     solution : periodic motion of the "absolute" system
     """
-    system = solution.system
-    torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
-    maps = step_maps(system, torques)
-    h = np.diff(maps.edges)[:, None]
-    times = (maps.edges[:-1, None] + 0.5 * h * (1.0 + _NODES)).ravel()
-    weights = (0.5 * h * _WEIGHTS).ravel() / system.period
-    at_nodes = step_maps(system, torques, outputs=times)
-    states = at_nodes.states(*balanced_start(system, *maps.over_all()))
-    states = states[np.searchsorted(at_nodes.times, times - 1e-9 * float(h.min()))]
-    power = _powers(solution, times, states) @ weights
-    g = system.pair.geometry
+    times, weights = quadrature(solution.system)
+    return powers_at(periodic_solution(solution.system, times, estimate_error=False), weights)
+
+
+def quadrature(system: LTVSystem) -> tuple[FloatArray, FloatArray]:
+    """Gauss nodes in all steps of the integration over a mesh cycle [s], and their weights of a mean [-]."""
+    edges = step_edges(system)
+    h = np.diff(edges)[:, None]
+    times = (edges[:-1, None] + 0.5 * h * (1.0 + _NODES)).ravel()
+    return times, (0.5 * h * _WEIGHTS).ravel() / system.period
+
+
+def powers_at(solution: PeriodicSolution, weights: FloatArray) -> MeanPowers:
+    """Mean powers of a periodic motion at the nodes of ``quadrature``.
+
+    Parameters
+    ----------
+    solution : at those times
+    weights : of the nodes
+    """
+    power = _powers(solution, solution.time, solution.states) @ weights
+    g = solution.system.pair.geometry
     driving = solution.pinion_torque * g.omega_pinion
     moments = driving - solution.brake_torque * g.omega_gear
     return MeanPowers(

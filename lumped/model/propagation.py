@@ -122,6 +122,11 @@ def step_maps(
     return StepMaps(grid.edges, grid.times, maps)
 
 
+def step_edges(system: LTVSystem) -> FloatArray:
+    """Ends of the steps of a mesh cycle without outputs, 0 and the period included [s]."""
+    return _step_grid(system, np.empty(0), STEP_ANGLE).edges
+
+
 def _steps(
     system: LTVSystem, segment: IntArray, start: FloatArray, h: FloatArray, extra: FloatArray, stages: int
 ) -> FloatArray:

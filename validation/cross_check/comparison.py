@@ -248,6 +248,8 @@ def crosscheck(
         beyond = 0.0 if shifts is None else shifts.beyond / pair.geometry.base_pitch
         keep = off_switch_samples(pair, reference["time"].to_numpy(), beyond)
         keep[:first] = False
+        if fidelity == "exact" and predicted is not None:
+            keep &= predicted.clear(reference["time"].to_numpy())
         for quantity in quantities:
             if predicted is None or effects is None or fidelity == "linear":
                 limit = tolerance(quantity, fidelity, shift)

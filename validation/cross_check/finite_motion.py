@@ -58,7 +58,7 @@ from lumped.model.mesh_cycle import mesh_cycle
 from lumped.model.periodic_system import periodic_system
 from lumped.model.solution import initial_state
 from lumped.model.steady import periodic_solution, sample_times
-from lumped.typing import FloatArray
+from lumped.typing import BoolArray, FloatArray
 from validation.cross_check.loaded_motion import LoadedModel, PushedSystem
 from validation.cross_check.shifted_motion import ShiftedModel, Shifts
 
@@ -85,6 +85,7 @@ class FiniteMotion:
         nothing is predicted
     model : the lumped model with the effects that are predicted
     shifts : what the predicted motion moves; None where nothing is predicted
+    jumps : (n,) times in the mesh cycle near which a predicted load jumps (loaded form) [s]
     push : (6,) mean generalised forces of the teeth beside those of normal load and friction [N m, N]
     """
 
@@ -95,6 +96,15 @@ class FiniteMotion:
     model: ShiftedModel
     shifts: Shifts | None
     push: FloatArray
+    jumps: FloatArray
+
+    def clear(self, time: FloatArray) -> BoolArray:
+        """Which times [s] (k,) lie clear of the predicted jumps, by a step at which the motion is read."""
+        if not self.jumps.size:
+            return np.ones(time.size, dtype=np.bool_)
+        period = self.model.cycle.period
+        apart = np.abs(np.mod(time, period)[:, None] - self.jumps)
+        return np.asarray(np.minimum(apart, period - apart).min(axis=1) > period / _FINE)
 
     def over(self, quantity: str, length: int) -> FloatArray:
         """Change of a quantity over whole cycles cut to ``length`` times."""
@@ -151,11 +161,11 @@ def finite_motion(
         shifts, without = model.settle(None)
         if not without:
             still = {name: np.zeros(cycle[name].shape) for name in _CHANGED}
-            return FiniteMotion(still, 0.0, 0.0, False, model, None, np.zeros(6))
+            return FiniteMotion(still, 0.0, 0.0, False, model, None, np.zeros(6), np.empty(0))
         found = model.motion(shifts)
     motion, unmoved = model.response(found, fine), model.response(model.unmoved(), fine)
     changes = {name: (motion[name] - unmoved[name])[..., ::every] for name in _CHANGED}
-    push = np.zeros(6)
+    push, jumps = np.zeros(6), np.empty(0)
     if isinstance(found.system, PushedSystem):
-        push = found.system.forces(fine).mean(axis=0)
-    return FiniteMotion(changes, shifts.entry, shifts.exit, settled, model, shifts, push)
+        push, jumps = found.system.forces(fine).mean(axis=0), found.system.cycle.edges
+    return FiniteMotion(changes, shifts.entry, shifts.exit, settled, model, shifts, push, jumps)

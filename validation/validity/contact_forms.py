@@ -20,9 +20,9 @@ from lumped.arguments import real_numbers
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset
 from lumped.model.extremes import cycle_peak_to_peak
-from lumped.model.periodic_system import periodic_system
 from lumped.model.powers import MeanPowers, mean_powers
-from lumped.model.steady import periodic_solution
+from lumped.model.steady import periodic_cycle, periodic_solution
+from lumped.model.sweep import systems_over_speed
 from lumped.typing import FloatArray, Progress
 
 #: Form -> what it is in words.
@@ -74,7 +74,9 @@ def contact_forms(pair: GearPair, samples: int = 256) -> ContactForms:
     difference = {
         form: float(np.abs(motions[form]["dte"].to_numpy() - exact).max()) / swing for form in FORMS
     }
-    return ContactForms(pair.mesh.contact, motions, difference, {f: _powers(p) for f, p in pairs.items()})
+    solutions = {form: periodic_cycle(of, 8) for form, of in pairs.items()}
+    powers = {form: mean_powers(solution) for form, solution in solutions.items()}
+    return ContactForms(pair.mesh.contact, motions, difference, powers)
 
 
 def losses_over_speed(pair: GearPair, speeds_rpm: FloatArray, progress: Progress | None = None) -> xr.Dataset:
@@ -95,9 +97,10 @@ def losses_over_speed(pair: GearPair, speeds_rpm: FloatArray, progress: Progress
     names = ("driving", *PLACES)
     found = np.full((len(names), len(FORMS), speeds.size), np.nan)
     for i, form in enumerate(FORMS):
-        for j, speed in enumerate(speeds):
+        at = [pair.with_({"mesh.contact": form, "operating.pinion_speed": float(rpm)}) for rpm in speeds]
+        for j, system in enumerate(systems_over_speed(at)):
             try:
-                powers = _powers(pair.with_({"mesh.contact": form, "operating.pinion_speed": float(speed)}))
+                powers = mean_powers(periodic_solution(system, np.zeros(1), estimate_error=False))
             except NumericalError:
                 continue
             found[:, i, j] = [getattr(powers, name) for name in names]
@@ -110,8 +113,3 @@ def losses_over_speed(pair: GearPair, speeds_rpm: FloatArray, progress: Progress
             "speed": (speeds, "rpm", "pinion speed"),
         },
     )
-
-
-def _powers(pair: GearPair) -> MeanPowers:
-    system = periodic_system(pair, "absolute")
-    return mean_powers(periodic_solution(system, np.zeros(1), estimate_error=False))

@@ -17,6 +17,7 @@ from validation.cross_check.agreement import (
     agreement,
     contact_shift,
     off_switch_samples,
+    relative_size,
 )
 from validation.cross_check.exact_motion import BLUNT, periodic_motion
 from validation.cross_check.finite_motion import finite_motion
@@ -115,10 +116,16 @@ def compare_point(pair: GearPair, samples: int) -> GridPoint:
         foreseen = predicted
         if fidelity == "exact" and run.attrs["friction_velocity"] == BLUNT:  # a choice of the numerics
             foreseen = finite_motion(pair, reference, friction_velocity=BLUNT)
+        clear = keep & foreseen.clear(reference["time"].to_numpy()) if fidelity == "exact" else keep
+        histories = {quantity: reference[quantity].to_numpy()[..., clear] for quantity in QUANTITIES}
         for j, quantity in enumerate(QUANTITIES):
-            allowed = tolerance(quantity, fidelity, shift)
-            change = foreseen.over(quantity, keep.size) if fidelity == "exact" else 0.0
-            found = agreement(quantity, fidelity, run, reference, keep, allowed, change)
+            change: FloatArray | float = 0.0
+            size = 0.0
+            if fidelity == "exact":
+                change = foreseen.over(quantity, keep.size)
+                size = relative_size(change[..., clear], quantity, histories)
+            allowed = tolerance(quantity, fidelity, shift, size)
+            found = agreement(quantity, fidelity, run, reference, clear, allowed, change)
             values = found.judged, allowed.limit, found.relative_l2, found.maximum_over_span
             for table, value in zip(tables, values, strict=True):
                 table[i, j] = value

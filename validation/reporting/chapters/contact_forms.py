@@ -14,7 +14,7 @@ from validation.reporting.words import contact_form
 from validation.validity.contact_forms import FORMS, PLACES, losses_over_speed
 
 #: Speeds of the figure of losses.
-_SPEEDS = 120
+_SPEEDS = 80
 
 
 def write(results: Results) -> Content:
