@@ -85,7 +85,12 @@ class GearAxis:
         if bad.size:
             sign = ">" if self.open_low else ">="
             allowed = f"{sign} {self.low:g}" + ("" if np.isinf(self.high) else f" and <= {self.high:g}")
-            raise refuse(f"axes[{name!r}]", f"{bad[0]:g} {self.units}", allowed, "Correct the axis values.")
+            raise refuse(
+                f"axes[{name!r}]",
+                f"{bad[0]:g} {self.units}".removesuffix(" 1"),
+                allowed,
+                "Correct the axis values.",
+            )
 
 
 def _field(*paths: str) -> Callable[[GearVariation, float], GearVariation]:

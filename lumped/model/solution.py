@@ -219,7 +219,10 @@ def _integrate(
                 row += 1
         if solver.status == "finished":
             return values
-    raise NumericalError("More than 200000 steps in one segment of the mesh cycle: raise rtol or the speed.")
+    raise NumericalError(
+        f"More than {_MAX_STEPS_PER_SEGMENT} steps in one segment of the mesh cycle: raise speed or rtol, "
+        "or take the periodic motion (--steady, steady_state), which bears many vibrations in a mesh cycle."
+    )
 
 
 def steady_state(

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     import xarray as xr
     from matplotlib.figure import Figure
 
     from lumped import GearPair
+    from lumped.errors import ParameterError
 
 DEFAULT_PAIR = "nasa_28_28"
 
@@ -111,11 +112,18 @@ def gear_pair(
     try:
         pair = pair.with_(changes)
     except ParameterError as error:
-        problems = [replace(p, field=options.get(p.field, p.field)) for p in error.problems]
-        raise ParameterError(problems, error.source.removesuffix(" varied")) from None
+        raise by_option(error, options, error.source.removesuffix(" varied")) from None
     for doubt in doubts(pair):
         note(doubt)
     return pair
+
+
+def by_option(error: ParameterError, options: Mapping[str, str], source: str) -> ParameterError:
+    """Return a refusal that names the options where fields come from them, each problem of an option once."""
+    from lumped.errors import ParameterError
+
+    problems = [replace(p, field=options.get(p.field, p.field)) for p in error.problems]
+    return ParameterError(list(dict.fromkeys(problems)), source)
 
 
 def value_of(text: str) -> Any:

@@ -129,20 +129,25 @@ def _text_of_own(
     stem: str | None,
 ) -> tuple[str, str]:
     """Parameter file of a pair that the options describe, and a name for it."""
-    from lumped.errors import refuse
-    from validation.exchange.own_pair import own_pair_text
+    from lumped.errors import ParameterError, refuse
+    from validation.exchange.own_pair import fields_of, own_pair_text
 
     if teeth is None:
-        given = next(option for option, (_, value) in own.items() if value is not None)
-        raise refuse(given, own[given][1], "with --teeth", "Give --teeth PINION/GEAR too, or edit the file.")
+        first = next(option for option, (_, value) in own.items() if value is not None)
+        raise refuse(first, own[first][1], "with --teeth", "Give --teeth PINION/GEAR too, or edit the file.")
     if preset != opt.DEFAULT_PAIR or from_rexs is not None:
         raise refuse("--teeth", teeth, "without a preset or REXS file", "Leave one of them out.")
     for option in ("--module", "--face-width", "--speed", "--torque"):
         if own[option][1] is None:
             raise refuse(option, "missing", "a value beside --teeth", "Give it.")
     name = stem or f"pair_{re.sub('[^0-9]+', '_', teeth)}"
-    values = {path: opt.value_of(text) for path, text in own.values() if text is not None}
-    return own_pair_text(name, {"teeth": teeth} | values), name
+    given = {path: opt.value_of(text) for path, text in own.values() if text is not None}
+    options = {field: option for option, (path, _) in own.items() for field in fields_of(path)}
+    options |= dict.fromkeys(("pinion.teeth", "gear.teeth"), "--teeth")
+    try:
+        return own_pair_text(name, {"teeth": teeth} | given), name
+    except ParameterError as error:
+        raise opt.by_option(error, options, "") from None
 
 
 def _text_from_rexs(path: Path | None, stage: int | None) -> tuple[str, str]:

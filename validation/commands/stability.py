@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -46,7 +47,8 @@ def stability(
             "--axis",
             metavar="NAME=FROM:TO:COUNT",
             help="Axis: speed_rpm, damping_ratio (mesh), friction_coefficient, torque [N m], "
-            "stiffness_variation, contact_ratio, bearing_stiffness [N/m]. Give it twice for a chart. "
+            "stiffness_variation, contact_ratio, bearing_stiffness [N/m]; ends may carry a unit: "
+            "speed_rpm=10Hz:50Hz:9. Give it twice for a chart. "
             "Default of a chart: speed and damping ratio.",
         ),
     ] = None,
@@ -60,7 +62,9 @@ def stability(
     ] = False,
     operating_range: Annotated[
         str | None,
-        typer.Option("--operating-range", metavar="FROM:TO", help="Speeds of operation in rpm, marked."),
+        typer.Option(
+            "--operating-range", metavar="FROM:TO", help="Speeds of operation in rpm or '10Hz:50Hz', marked."
+        ),
     ] = None,
     against: Annotated[
         str, typer.Option("--against", metavar="LAW", help="View laws: the law to compare with.")
@@ -162,34 +166,53 @@ def _axis(text: str) -> tuple[str, NDArray[np.float64]]:
     """Name and values of an axis written NAME=FROM:TO:COUNT."""
     import numpy as np
 
-    from floquet.gear.axes import gear_axis
-    from lumped.errors import refuse
+    from floquet.gear.axes import GEAR_AXES
+    from lumped.errors import ParameterError, refuse
+    from lumped.fields.refusals import nearest
 
-    name, separator, values = text.partition("=")
+    name, separator, values = (part.strip() for part in text.partition("="))
+    allowed = f"NAME=FROM:TO:COUNT with different ends and a count from 2 to {_LARGEST_COUNT}"
+    wrong = refuse("--axis", text, allowed, "For example --axis speed_rpm=1000:20000:80.")
+    *ends, many = values.split(":")
+    if not separator or len(ends) != 2 or not many.strip().isdecimal():
+        raise wrong
+    if name not in GEAR_AXES:
+        advice = nearest(name, GEAR_AXES) or "Choose one of them."
+        raise refuse("--axis", name, "one of " + ", ".join(GEAR_AXES), advice)
+    low, high = sorted(_number("--axis", end, GEAR_AXES[name].units) for end in ends)
+    if low == high or not 2 <= int(many) <= _LARGEST_COUNT:
+        raise wrong
+    found = np.linspace(low, high, int(many))
     try:
-        first, last, many = values.split(":")
-        low, high, count = float(first), float(last), int(many)
-        good = separator == "=" and 2 <= count <= _LARGEST_COUNT and np.isfinite([low, high]).all()
-    except ValueError:
-        good = False
-    if not good or low == high:
-        allowed = f"NAME=FROM:TO:COUNT with different ends and a count from 2 to {_LARGEST_COUNT}"
-        raise refuse("--axis", text, allowed, "For example --axis speed_rpm=1000:20000:80.")
-    found = np.linspace(min(low, high), max(low, high), count)
-    gear_axis(name.strip()).check(name.strip(), found)
-    return name.strip(), found
+        GEAR_AXES[name].check(name, found)
+    except ParameterError as error:
+        raise opt.by_option(error, {f"axes[{name!r}]": f"--axis {name}"}, "") from None
+    return name, found
+
+
+def _number(option: str, text: str, unit: str) -> float:
+    """Number in a unit, of text that may carry another one of its kind."""
+    from lumped.errors import refuse
+    from lumped.fields.units import to_si, to_stated
+
+    stated = unit.replace(" ", "*")
+    try:
+        number = to_stated(to_si(opt.value_of(text.strip()), stated), stated)
+    except (ValueError, TypeError) as error:
+        raise refuse(option, text, f"a number in {unit}", f"{error}.") from None
+    if not math.isfinite(number):
+        raise refuse(option, text, f"a number in {unit}", "Correct it.")
+    return number
 
 
 def _range(text: str) -> tuple[float, float]:
     """Range of speeds [rpm] written FROM:TO."""
     from lumped.errors import refuse
 
-    try:
-        low, high = map(float, text.split(":"))
-        good = 0.0 < low < high < float("inf")
-    except ValueError:
-        good = False
-    if not good:
-        advice = "For example --operating-range 3000:8000."
-        raise refuse("--operating-range", text, "FROM:TO in rpm, 0 < FROM < TO", advice)
-    return low, high
+    ends = text.split(":")
+    if len(ends) == 2:
+        low, high = (_number("--operating-range", end, "rpm") for end in ends)
+        if 0.0 < low < high:
+            return low, high
+    advice = "For example --operating-range 3000:8000."
+    raise refuse("--operating-range", text, "FROM:TO in rpm, 0 < FROM < TO", advice)

@@ -59,6 +59,7 @@ class PlainConsole(Console):
 #: Argument of a function -> the option that it comes from.
 _OPTIONS = {
     "samples_per_cycle": "--samples",
+    "output": "--output",
     **{name: f"--{name.replace('_', '-')}" for name in ("cycles", "tolerance", "workers", "case_seconds")},
 }
 _quiet: ContextVar[bool] = ContextVar("quiet", default=False)

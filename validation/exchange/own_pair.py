@@ -87,15 +87,20 @@ def _values(given: Mapping[str, Any]) -> dict[str, Any]:
             found = _OIL.fullmatch(str(value))
             if found is None:
                 raise refuse("--oil", value, "an ISO viscosity grade", "For example --oil vg220.")
-            values["lubricant.viscosity_law.iso_vg"] = int(found[1])
-        elif path.startswith("bearings."):
-            which = [f"{gear}.{line}" for gear in ("pinion", "gear") for line in ("loa", "oloa")]
-            values |= {f"bearings.{one}_{path.removeprefix('bearings.')}": value for one in which}
-        elif path.startswith("gears."):
-            values |= {f"{gear}.{path.removeprefix('gears.')}": value for gear in ("pinion", "gear")}
+            values |= dict.fromkeys(fields_of(path), int(found[1]))
         else:
-            values[path] = value
+            values |= dict.fromkeys(fields_of(path), value)
     return values
+
+
+def fields_of(path: str) -> list[str]:
+    """Fields that one entry of ``own_pair_text`` sets."""
+    section, _, key = path.partition(".")
+    if path == "oil":
+        return ["lubricant.viscosity_law.iso_vg"]
+    if section == "bearings":
+        return [f"bearings.{gear}.{line}_{key}" for gear in ("pinion", "gear") for line in ("loa", "oloa")]
+    return [f"{gear}.{key}" for gear in ("pinion", "gear")] if section == "gears" else [path]
 
 
 def _why(path: str) -> str:

@@ -8,6 +8,7 @@ import xarray as xr
 from typer.testing import CliRunner
 
 from validation.cli import app
+from validation.commands.stability import _range
 
 SPEEDS = ("--axis", "speed_rpm=15000:18500:12")
 TONGUE = ("--law", "none", "--set", "mesh.damping_ratio=0.01")
@@ -160,8 +161,8 @@ def test_zones_of_one_degree_of_freedom(tmp_path):
     [
         (("--view", "moon"), "--view = moon"),
         (("--method", "euler"), "--method = euler"),
-        (("--axis", "speed_rpm=0:1000:5"), "axes['speed_rpm'] = 0 rpm: allowed > 0"),
-        (("--axis", "damping_ratio=0:2:5"), "axes['damping_ratio'] = 1.5 1: allowed >= 0 and <= 1"),
+        (("--axis", "speed_rpm=0:1000:5"), "--axis speed_rpm = 0 rpm: allowed > 0"),
+        (("--axis", "damping_ratio=0:2:5"), "--axis damping_ratio = 1.5: allowed >= 0 and <= 1"),
         (("--axis", "speed_rpm=1:2:6000"), "count from 2 to 5000"),
         ((*SPEEDS, *SPEEDS), "speed_rpm is given twice"),
         (("--operating-range", "5000"), "FROM:TO"),
@@ -186,3 +187,49 @@ def test_nothing_is_written_where_a_view_fails(tmp_path):
     assert "one or two axes" in refused(*three, "-o", tmp_path / "new.nc", "-o", tmp_path / "chart.png")
     assert [p.name for p in tmp_path.iterdir()] == ["chart.nc"]
     assert existing.read_text() == "mine"
+
+
+def test_ends_of_an_axis_may_carry_a_unit(tmp_path):
+    # 100 Hz = 6000 rpm; 30 rad/s = 900/pi rpm
+    for ends, first, last in (
+        ("100Hz:7000:3", 6000.0, 7000.0),
+        ("6000 rpm:700 rad/s:3", 6000.0, 21000.0 / np.pi),
+    ):
+        data = tmp_path / f"{first + last:.0f}.nc"
+        run("--law", "I", "--axis", f"speed_rpm={ends}", "--axis", "torque=20:200 lbf*in:2", "-o", data)
+        chart = opened(data)
+        assert chart["speed_rpm"].to_numpy()[[0, -1]] == pytest.approx([first, last], rel=1e-12)
+        # 200 lbf in = 200 * 4.4482216152605 N * 0.0254 m
+        assert chart["torque"].to_numpy() == pytest.approx([20.0, 22.596965805523342], rel=1e-12)
+
+
+def test_a_marked_range_may_carry_a_unit():
+    assert _range("50Hz:8000") == pytest.approx((3000.0, 8000.0), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("option", "first_words", "advice"),
+    [
+        (("--axis", "torqe=1:20:5"), "error: --axis = torqe:", "Did you mean 'torque'?"),
+        (("--axis", "speed=1:20:5"), "error: --axis = speed:", "Did you mean 'speed_rpm'?"),
+        (("--axis", "speed_rpm=1,5:20:5"), "error: --axis = 1,5:", "this is a decimal comma: write '1.5'"),
+        (("--axis", "speed_rpm=10 mm:20:5"), "error: --axis = 10 mm:", "is not a rotational speed"),
+        (("--axis", "torque=nan:20:5"), "error: --axis = nan:", "a number in N m"),
+        (
+            ("--operating-range", "3,000:8000"),
+            "error: --operating-range = 3,000:",
+            "decimal comma or part thousands",
+        ),
+        (("--operating-range", "8000:3000"), "error: --operating-range = 8000:3000:", "3000:8000"),
+        (("-o", "chart.txt"), "error: --output = chart.txt:", "The suffix chooses the format."),
+        (
+            ("-o", "no_folder/chart.nc"),
+            "error: --output = no_folder/chart.nc:",
+            "Make the folder no_folder first.",
+        ),
+    ],
+)
+def test_what_cannot_be_read_is_named_by_its_option_with_advice(option, first_words, advice):
+    message = refused(*option)
+    assert message.startswith(first_words)
+    assert advice in message

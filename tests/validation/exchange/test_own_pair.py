@@ -59,7 +59,7 @@ def test_a_missing_number_is_asked_for_by_its_option(missing):
         (["nasa_28_28"], None),
         (["fzg_c"], "--teeth"),
         (["--oil", "olive"], "--oil"),
-        (["--oil", "vg219"], "iso_vg"),
+        (["--oil", "vg219"], "--oil = 219"),
     ],
 )
 def test_what_does_not_go_together_is_refused(more, named, tmp_path):
@@ -77,3 +77,24 @@ def test_teeth_are_two_numbers():
     for text in ("19", "19-41", "a/b", ""):
         with pytest.raises(ParameterError, match="--teeth 19/41"):
             own_pair_text("x", {"teeth": text})
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "advice"),
+    [
+        ("--module", "2,5", "this is a decimal comma: write '2.5'"),
+        ("--face-width", "-3", ">= 0.01 mm"),
+        ("--speed", "0", "> 0 rpm"),
+        ("--torque", "80 nm", "is not a torque"),
+        ("--teeth", "2/41", "a whole number from 5 to 1000"),
+        ("--bearing-stiffness", "hard", "has no number"),
+        ("--bearing-damping", "-1", ">= 0"),
+        ("--law", "VI", "xu_kahraman"),
+        ("--oil", "vg219", "220"),
+    ],
+)
+def test_a_refused_value_is_named_once_by_its_option(option, value, advice):
+    result = init(option, value)
+    assert result.exit_code == 2
+    assert result.stderr.startswith(f"error: {option} = ")
+    assert advice in " ".join(result.stderr.split())
