@@ -30,7 +30,7 @@ def report(
         bool | None,
         typer.Option(
             "--paper/--no-paper",
-            help="Compare with the paper (default, unless --quick): figures, claims, errata.",
+            help="Compare with the paper: figures, claims, errata. Default for its gears, unless --quick.",
         ),
     ] = None,
     compare: Annotated[
@@ -54,7 +54,7 @@ def report(
     """Write the verification report of a gear pair.
 
     One folder: index.html (opens in any browser, without network), report.json (every number),
-    report.junit.xml (every verdict as a test case), summary.md, figures (PNG and SVG) and data (NetCDF). It
+    report.junit.xml (every verdict as a test case), summary.md, figures (SVG) and data (NetCDF). It
     says what the lumped model predicts, whether the multibody model agrees,
     whether the motion is stable over speed, and where the model stops being valid. The exit code is 1 when
     any verdict fails.

@@ -16,7 +16,6 @@ from validation.plots.style import (
     GREEN,
     GREY,
     RED,
-    legend,
     legend_above,
     new_figure,
     one_panel,
@@ -78,7 +77,7 @@ def sliding_power_figure(
     path_axis(left, g)
     right.axhline(100.0, color=GREY, linewidth=0.6)
     right.set(xlim=(0.0, 1.0), xlabel="time [mesh cycles]", ylabel="instantaneous efficiency [%]")
-    legend(right, loc="lower right")
+    legend_above(right, 2)
     return figure
 
 

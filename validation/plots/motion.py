@@ -100,7 +100,7 @@ def tooth_forces_figure(pair: GearPair, g: Geometry, motion: xr.Dataset) -> Figu
     mark_switches(axes[0, 0], marks)
     mark_switches(axes[1, 0], marks, letters=False)
     axes[1, 0].set(xlabel="time [mesh cycles]", xlim=(0.0, 1.0))
-    legend(axes[0, 0], loc="best")
+    legend_above(axes[0, 0], 4, letters=True)
     return figure
 
 
@@ -141,7 +141,7 @@ def orders_figure(orders: Mapping[str, MeshOrders]) -> Figure:
     for ax, (axis, label) in zip(axes[0], _PANELS, strict=True):
         chosen = {gear: orders[f"{axis}_{gear[0]}"] for gear in ("pinion", "gear")}
         _bars(ax, chosen, 0.38, f"{label}\namplitude")
-    legend(axes[0, 0], loc="upper right")
+    legend_above(axes[0, 0], 2)
     return figure
 
 

@@ -14,7 +14,7 @@ from validation.plots.style import (
     GREY,
     IN_Y,
     RED,
-    legend,
+    legend_above,
     look,
     new_figure,
     one_panel,
@@ -39,7 +39,7 @@ def path_figure(g: Geometry, profile: xr.Dataset, thresholds: tuple[float, ...])
     left.plot(xi, profile["entraining_velocity"], color=BLUE, linestyle=DASHES[0], label="entraining (sum)")
     left.plot(xi, profile["sliding_velocity"], color=RED, linestyle=DASHES[1], label="sliding")
     left.set(ylabel="velocity [m/s]", ylim=(0.0, None))
-    legend(left, loc="center left", bbox_to_anchor=(0.0, 0.72))
+    legend_above(left, 2, letters=True)
     film_parameter(right, profile, thresholds)
     for ax in (left, right):
         path_axis(ax, g, xi)
@@ -84,5 +84,5 @@ def friction_laws_figure(g: Geometry, profile: xr.Dataset, chosen: str) -> Figur
     ax.axhline(0.0, color=GREY, linewidth=0.6)
     path_axis(ax, g, 1e3 * xi)
     ax.set_ylabel("friction coefficient, signed [-]")
-    legend(ax, loc="upper left")
+    legend_above(ax, 3, letters=True)
     return figure

@@ -94,9 +94,11 @@ def legend(ax: Axes, **options: Any) -> None:
     ax.legend(**(settings | options))
 
 
-def legend_above(ax: Axes, columns: int) -> None:
-    """Add a legend in one row above the axes, where no curve can be."""
-    legend(ax, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, columnspacing=1.6)
+def legend_above(ax: Axes, columns: int, *, letters: bool = False) -> None:
+    """Add a legend above the axes, where no curve can be, and above the letters of events."""
+    pad = 1.7 if letters else 0.2
+    place: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "borderaxespad": pad}
+    legend(ax, **place, ncols=columns, columnspacing=1.6)
 
 
 def legend_outside(figure: Figure, handles: Sequence[Artist], columns: int) -> None:

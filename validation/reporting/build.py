@@ -17,6 +17,8 @@ from lumped.arguments import file_path
 from lumped.typing import Progress
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
+from validation.paper.subject import is_papers_pair
+from validation.plots.answer import first_figure
 from validation.plots.style import save
 from validation.reporting.baseline import load_report
 from validation.reporting.blocks import Answer, Picture, chapter_data, plain
@@ -25,13 +27,12 @@ from validation.reporting.chapters import CHAPTERS
 from validation.reporting.chapters.changes import changes
 from validation.reporting.compare import TOLERANCE, Comparison
 from validation.reporting.compare import compare as compare_reports
-from validation.reporting.interactive import write_interactive
 from validation.reporting.judged import failures
 from validation.reporting.junit import junit
 from validation.reporting.page import render
 from validation.reporting.results import FULL, QUICK, Results
 from validation.reporting.summary import summary
-from validation.reporting.words import sentence
+from validation.reporting.words import headline, sentence
 
 
 @dataclass(frozen=True)
@@ -70,8 +71,8 @@ def report(
     """Write the verification report of a gear pair into a folder.
 
     The folder gets ``index.html`` (self-contained: it needs no network and no other file),
-    ``interactive.html`` (charts to explore), ``report.json`` (every number shown), ``report.junit.xml``
-    (every verdict as a test case), ``summary.md``, ``figures/`` (PNG and SVG) and ``data/`` (NetCDF and the
+    ``report.json`` (every number shown), ``report.junit.xml``
+    (every verdict as a test case), ``summary.md``, ``figures/`` (SVG) and ``data/`` (NetCDF and the
     parameter file). It is written whole or not at all.
 
     Parameters
@@ -80,7 +81,8 @@ def report(
     out : folder, new or empty
     force : replace an earlier report in that folder
     quick : coarser sampling and no verification, for a first look
-    paper : compare with the paper (its figures, claims and errata) for this pair; default: unless quick
+    paper : compare with the paper (its figures, claims and errata) for this pair; default: where the
+        paper is about these gears, unless quick
     compare : report.json of an earlier report, or its folder; the report then has a chapter of changes
     tolerance : relative change of a number that passes in this comparison
     progress : called with the finished fraction and what is being done
@@ -98,9 +100,11 @@ def report(
     if earlier is not None:
         compare_reports(earlier, earlier, tolerance=tolerance)  # refuses a tolerance before any work
     with whole_folder(target, force=force) as folder:
-        effort = replace(QUICK if quick else FULL, paper=not quick if paper is None else paper)
+        if paper is None:
+            paper = not quick and is_papers_pair(gear_pair)
+        effort = replace(QUICK if quick else FULL, paper=paper)
         results = Results(gear_pair, effort)
-        chapters = written(results, CHAPTERS, lambda f, stage="", /: tell(0.75 * f, stage))
+        chapters = written(results, CHAPTERS, lambda f, stage="", /: tell(0.85 * f, stage))
         computed = time.perf_counter()
         comparison = None
         if earlier is not None:
@@ -108,11 +112,12 @@ def report(
                 earlier, document(results, chapters, quick=quick), tolerance=tolerance
             )
             chapters += written(results, (changes(comparison),))
-        images = _draw(chapters, folder / "figures", lambda f, stage="", /: tell(0.75 + 0.22 * f, stage))
-        tell(0.97, "page and data")
+        first = answer_figure(results)
+        pictures = (first, *_pictures(chapters))
+        images = _draw(pictures, folder / "figures", lambda f, stage="", /: tell(0.85 + 0.12 * f, stage))
+        tell(0.97, "data")
         _write_data(results, chapters, folder / "data")
         data = document(results, chapters, quick=quick)
-        data["interactive_page"] = write_interactive(results, folder)
         seconds = {"compute": computed - started, "all": time.perf_counter() - started}
         data["timestamps"] = {
             "created": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -121,7 +126,7 @@ def report(
         }
         for name, text in {
             "report.json": json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n",
-            "index.html": render(gear_pair, answers(results, chapters), chapters, images, data),
+            "index.html": render(gear_pair, first, answers(results, chapters), chapters, images, data),
             "report.junit.xml": junit(data, comparison),
             "summary.md": summary(data, comparison),
         }.items():
@@ -177,6 +182,7 @@ def document(results: Results, chapters: tuple[Written, ...], *, quick: bool) ->
         "gear_pair": results.pair.name,
         "description": results.pair.description,
         "quick": quick,
+        "headline": headline(results),
         "verdict": sentence(results),
         "answers": [
             {"question": a.question, "verdict": plain(a.badge), "text": a.text, "chapter": key}
@@ -187,17 +193,35 @@ def document(results: Results, chapters: tuple[Written, ...], *, quick: bool) ->
     }
 
 
-def _draw(chapters: tuple[Written, ...], folder: Path, tell: Progress) -> dict[str, str]:
-    """Write all figures; return their SVG as data URIs by key."""
+def answer_figure(results: Results) -> Picture:
+    """The one figure of the first page: the answer in time and over speed."""
+    check = results.check
+    return Picture(
+        "answer",
+        "Transmission error over one mesh cycle by both models, and its peak to peak over pinion speed.",
+        partial(
+            first_figure,
+            check.lumped,
+            check.multibody["exact"],
+            results.geometry.mesh_period,
+            results.sweep,
+            results.operating_rpm,
+            results.static_load,
+        ),
+    )
+
+
+def _pictures(chapters: tuple[Written, ...]) -> tuple[Picture, ...]:
+    return tuple(block for _, content in chapters for block in content.blocks if isinstance(block, Picture))
+
+
+def _draw(pictures: tuple[Picture, ...], folder: Path, tell: Progress) -> dict[str, str]:
+    """Write all figures; return them as data URIs by key."""
     folder.mkdir()
-    pictures = [block for _, content in chapters for block in content.blocks if isinstance(block, Picture)]
     images: dict[str, str] = {}
     for done, picture in enumerate(pictures, 1):
-        figure = picture.draw()
         path = folder / f"{picture.key}.svg"
-        save(figure, path)
-        figure.set_layout_engine("none")  # placed by the first drawing: the second need not place again
-        save(figure, path.with_suffix(".png"))
+        save(picture.draw(), path)
         images[picture.key] = (
             f"data:image/svg+xml;base64,{base64.b64encode(path.read_bytes()).decode('ascii')}"
         )

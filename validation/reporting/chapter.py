@@ -19,6 +19,8 @@ class Chapter:
     title : heading
     write : computes what the chapter alone needs and writes it; None where the report leaves the chapter out
     answer : to one of the questions at the top of the report, if the chapter decides it
+    front : keys of the blocks for the reader who decides, with the text before the first of them; the rest
+        of the chapter, or all of it, is evidence
     seconds : about how long that takes in a full report, for the progress bar [s]
     """
 
@@ -26,6 +28,7 @@ class Chapter:
     title: str
     write: Callable[[Results], Content | None]
     answer: Callable[[Results], Answer] | None = None
+    front: tuple[str, ...] = ()
     seconds: float = 0.1
 
 

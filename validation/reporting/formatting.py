@@ -14,6 +14,11 @@ _PREFIXED = frozenset({"m", "N", "Pa", "N/m", "W", "s", "Hz", "m/s", "N s/m"})
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p"}
 
 
+def digits(error: float, most: int = 3) -> int:
+    """Significant digits that a relative error allows: it stays below half a unit of the last one."""
+    return most if error <= 0.0 else max(1, min(most, math.floor(1.0 - math.log10(2.0 * error))))
+
+
 def number(value: float, digits: int = 4) -> str:
     """A number with significant digits; powers of ten outside 0.001 to 99999."""
     if not math.isfinite(value):
@@ -32,9 +37,9 @@ def number(value: float, digits: int = 4) -> str:
 
 def quantity(value: float, unit: str, digits: int = 4) -> str:
     """A number in SI with its unit, prefixed where that is usual."""
-    if unit == "1":
+    if unit == "1" or value == 0.0:  # nothing has no unit that a reader would miss
         return number(value, digits)
-    if unit in _PREFIXED and value != 0.0 and math.isfinite(value):
+    if unit in _PREFIXED and math.isfinite(value):
         exponent = 3 * math.floor(math.log10(abs(value)) / 3)
         exponent = min(max(exponent, -12), 9)
         scaled = value / 10.0**exponent

@@ -21,7 +21,7 @@ from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.reporting.paper_results import PaperResults, paper_results
 from validation.validity.contact_forms import ContactForms, contact_forms
 from validation.validity.flags import LOAD_NOISE, Flag, speed_drift, validity_flags
-from validation.verification import Check, enough_samples
+from validation.verification import Check
 from validation.verification.reference_model import ReferenceModel, reference_model
 from validation.verification.stability_routes import StabilityRoutes, stability_routes
 
@@ -32,7 +32,7 @@ class Effort:
 
     Attributes
     ----------
-    samples : per mesh cycle of the periodic motion; at least, with ``full``
+    samples : per mesh cycle of the periodic motion
     cycles : of the cross-check
     sweep_speeds : of the response over speed, at most
     chart_speeds, chart_dampings : nodes of the stability chart
@@ -57,7 +57,7 @@ class Effort:
     claim_samples: int
 
 
-FULL = Effort(512, 40, 240, 401, 81, 1e-8, 31, 9, full=True, paper=True, claim_samples=100)
+FULL = Effort(512, 12, 240, 161, 33, 1e-8, 15, 5, full=True, paper=True, claim_samples=100)
 QUICK = Effort(128, 16, 48, 16, 4, 1e-6, 7, 3, full=False, paper=False, claim_samples=8)
 
 
@@ -101,16 +101,10 @@ class Results:
         return self.pair.operating.pinion_torque / self.geometry.base_radius_pinion
 
     @cached_property
-    def samples(self) -> int:
-        """Samples per mesh cycle of the periodic motion."""
-        effort = self.effort
-        return enough_samples(self.pair, effort.samples) if effort.full else effort.samples
-
-    @cached_property
     def motion(self) -> xr.Dataset:
         """Periodic motion at the operating point."""
         self.stage("periodic motion")
-        return lumped.steady_state(self.pair, samples_per_cycle=self.samples)
+        return lumped.steady_state(self.pair, samples_per_cycle=self.effort.samples)
 
     @cached_property
     def profile(self) -> xr.Dataset:

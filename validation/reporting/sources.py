@@ -6,10 +6,12 @@ from functools import cache
 
 from lumped import GearPair, load_gear_pair
 from lumped.schema.files import preset_names
-from lumped.schema.pair import leaf_paths
+from lumped.schema.pair import field_at, leaf_paths
 
 #: Source of a value that the parameter file leaves to the schema.
 DEFAULT = "default of the schema"
+#: Source of a value that the file gives without one.
+GIVEN = "given without a source"
 
 
 def sources(pair: GearPair) -> dict[str, str]:
@@ -24,23 +26,28 @@ def source_of(pair: GearPair, path: str) -> str:
     assumed, for all the file says.
     """
     source = _stated(pair, path)
+    if is_assumed(source):
+        return source
     presets = [preset for preset in _presets() if _stated(preset, path) == source]
     value = leaf_paths(pair).get(path)
-    if is_assumed(source) or not presets or any(leaf_paths(p).get(path) == value for p in presets):
+    if not presets or any(leaf_paths(p).get(path) == value for p in presets):
         return source
     return f"assumed; the source in the file is that of {presets[0].name} for another value"
 
 
 def is_assumed(source: str) -> bool:
     """Whether a source says that nobody measured or published the value for this pair."""
-    return "assumed" in source.lower() or source == DEFAULT
+    return "assumed" in source.lower() or source in (DEFAULT, GIVEN)
 
 
 def _stated(pair: GearPair, path: str) -> str:
     sources = dict(pair.sources)
     parts = path.split(".")
     prefixes = (".".join(parts[:length]) for length in range(len(parts), 0, -1))
-    return next((sources[prefix] for prefix in prefixes if prefix in sources), DEFAULT)
+    stated = next((sources[prefix] for prefix in prefixes if prefix in sources), None)
+    if stated is None:
+        return DEFAULT if leaf_paths(pair).get(path) == field_at(path).default else GIVEN
+    return stated
 
 
 @cache

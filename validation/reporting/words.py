@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from validation.cross_check.comparison import CrossCheck
 from validation.reporting.blocks import Text
-from validation.reporting.formatting import number, quantity
+from validation.reporting.formatting import digits, number, quantity
 from validation.reporting.results import Results
 
 #: Short names of the quantities that the models are compared by.
@@ -19,37 +19,101 @@ NAMES = {
 }
 
 
+#: Largest difference of the transmission error from exact contact, over its peak to peak, that the first
+#: words pass over.
+_CONTACT_LIMIT = 0.1
+
+
+def headline(results: Results) -> str:
+    """The first words of the report: whether the prediction can be relied on, and every reason against it."""
+    if wrong := objections(results):
+        return f"Do not rely on this prediction: {'; '.join(wrong)}."
+    here = f"At {results.operating_rpm:.5g} rpm and {results.pair.operating.pinion_torque:.4g} N m"
+    forms = results.forms
+    if not isinstance(forms, str) and forms.difference[forms.own] > _CONTACT_LIMIT:
+        exact = quantity(forms.spans(results.geometry.mesh_period)["exact"], "m", 3)
+        return (
+            f"{here} the equations are solved right, but their contact is too simple: with contact that "
+            f"follows the load the transmission error is {exact} peak to peak, not {span(results)}."
+        )
+    near = [f"“{flag.name.lower()}” is near its limit" for flag in results.flags if flag.state != "ok"]
+    return f"{here} the prediction holds{', with care: ' if near else ''}{'; '.join(near)}."
+
+
 def sentence(results: Results) -> str:
-    """The report in one paragraph: what is wrong comes first."""
-    wrong = objections(results)
-    return (
-        (f"Do not rely on this prediction: {'; '.join(wrong)}. " if wrong else "")
-        + f"At {results.operating_rpm:.5g} rpm and {results.pair.operating.pinion_torque:.4g} N m the lumped "
-        f"model {'computes' if wrong else 'predicts'} a transmission error of {span(results)} peak to peak"
-        f" and {efficiency(results)}. {_agreement(results.check)} The motion is "
-        f"{_stability(results)} {validity(results)} {contact_form(results)}".rstrip()
+    """The report in one paragraph: the first words, then what the model predicts and why that may be used."""
+    told = (headline, motion, agreement, stability, validity)
+    return " ".join(one(results) for one in told)
+
+
+def motion(results: Results) -> str:
+    """What the model computes, in the digits that its sampling allows."""
+    load, error = largest_load(results)
+    factor = number(load / results.static_load, digits(error / load))
+    numbers = (
+        f"transmission error {span(results)} peak to peak, tooth load up to {factor} times the static load, "
+        f"{efficiency(results)}."
     )
+    if objections(results):
+        return f"Computed, but not what a gear pair would show: {numbers}"
+    return numbers[0].upper() + numbers[1:]
+
+
+def largest_load(results: Results) -> tuple[float, float]:
+    """Largest normal load of a tooth pair in contact, and how much of it half the samples miss [N]."""
+    loads = results.motion["normal_load"].where(results.motion["contact"] > 0)
+    largest = float(loads.max())
+    return largest, largest - float(loads[..., ::2].max())
 
 
 def span(results: Results) -> str:
-    """Peak to peak of the transmission error."""
-    return quantity(results.motion.attrs["dte_peak_to_peak"], "m", 3)
+    """Peak to peak of the transmission error, in digits that its error allows."""
+    attrs = results.motion.attrs
+    return quantity(attrs["dte_peak_to_peak"], "m", digits(float(attrs["error_estimate"])))
 
 
 def efficiency(results: Results) -> str:
-    """Mesh efficiency in percent; in the paper's form its sliding loss and what it leaves unpaid."""
+    """Loss of the mesh in percent; none where a law of nature does not hold."""
     if not lawful(results):
         return "no mesh efficiency, because a law of nature does not hold"
     attrs = results.motion.attrs
     if results.pair.mesh.contact == "loaded":
-        return f"a mesh efficiency of {100 * float(attrs['mesh_efficiency']):.2f}\u00a0%, all losses counted"
+        return f"mesh efficiency {100 * float(attrs['mesh_efficiency']):.2f}\u00a0%, all losses counted"
     driving = results.pair.operating.pinion_torque * results.geometry.omega_pinion
-    lost = 100 * float(attrs["power_sliding"]) / driving
-    unpaid = quantity(float(attrs["power_unpaid"]), "W", 2)
+    return f"{number(100 * float(attrs['power_sliding']) / driving, 2)}\u00a0% of the power lost in sliding"
+
+
+def agreement(results: Results) -> str:
+    """Whether the multibody model agrees, and by how much its transmission error differs."""
+    check = results.check
+    if check.verdict == "not confirmed":
+        return f"A second, independent model does not confirm it: {failed_checks(check)}."
+    exact = check.of("exact")
+    dte = next((a for a in exact if a.quantity == "dte"), exact[0])
+    same = "with the same contact " if check.pair.mesh.contact == "paper" else ""
+    if objections(results):
+        return (
+            f"A second model {same}computes the same motion: the equations are solved right, "
+            "which does not mean that a gear pair moves so."
+        )
+    left = _percent(check.worst("exact").remainder_l2)
     return (
-        f"a sliding loss of {lost:.2f}\u00a0% of the input; {unpaid} of what its bearings and tooth "
-        "dampers take is unpaid"
+        f"A second, independent model {same}agrees: its transmission error differs by "
+        f"{_percent(dte.relative_l2)}, and at most {left} of any motion is unexplained."
     )
+
+
+def stability(results: Results) -> str:
+    """Whether the motion is stable here, and at which other speeds."""
+    found, routes = results.multipliers, results.routes
+    doubt = "" if isinstance(routes, str) or routes.agree else ", which a second route does not confirm"
+    radius, certain = found.spectral_radius, digits(found.error / found.spectral_radius)
+    left = number(100 * radius, min(certain, 2))
+    here = {
+        "stable": f"A disturbance of this motion fades to {left}\u00a0% in a mesh cycle",
+        "unstable": f"A disturbance of this motion grows {number(radius, certain)} times in a mesh cycle",
+    }.get(found.verdict, "Whether a disturbance of this motion fades cannot be decided")
+    return f"{here}{doubt}; stable is the computed motion {stable_speeds(results)}."
 
 
 def contact_form(results: Results) -> str:
@@ -112,14 +176,6 @@ def cautions(results: Results) -> tuple[Text, ...]:
     return tuple(map(Text, found))
 
 
-def _stability(results: Results) -> str:
-    verdict = results.multipliers.verdict
-    here = "stable here and" if verdict == "stable" else f"{verdict} here and stable"
-    routes = results.routes
-    doubt = "" if isinstance(routes, str) or routes.agree else ", which a second route does not confirm"
-    return f"{here} {stable_speeds(results)}{doubt}."
-
-
 def stable_speeds(results: Results) -> str:
     """At which speeds of the range the motion is stable."""
     low, high = results.margins.speed_range
@@ -136,30 +192,17 @@ def stable_speeds(results: Results) -> str:
 
 def validity(results: Results) -> str:
     """Which assumptions hold here, and over how much of the speed range teeth stay in contact."""
-    raised = [flag for flag in results.flags if flag.state != "ok"]
-    words = {"warning": "near a limit", "violated": "violated"}
-    text = "The model's assumptions hold here"
-    if raised:
-        listed = (f"{flag.name.lower()} ({words[flag.state]})" for flag in raised)
-        text = f"Of the model's assumptions, these are in question here: {', '.join(listed)}"
+    states = {"warning": "near its limit", "violated": "violated"}
+    raised = [f"{flag.name.lower()} ({states[flag.state]})" for flag in results.flags if flag.state != "ok"]
+    text = f"Of {len(results.flags)} checked assumptions "
+    text += f"all hold but: {', '.join(raised)}" if raised else "all hold here"
     share, (low, high) = results.separating_share, results.margins.speed_range
     if not share:
         return f"{text}."
     return (
-        f"{text}; at {100 * share:.2g} % of the speeds from {low:.0f} to {high:.0f} rpm teeth would "
-        "separate, and neither motion nor stability there is as computed."
+        f"{text}; from {low:.0f} to {high:.0f} rpm teeth would separate at {100 * share:.2g}\u00a0% of the "
+        "speeds, where nothing is as computed."
     )
-
-
-def _agreement(check: CrossCheck) -> str:
-    if check.verdict == "not confirmed":
-        return f"The cross-check does not confirm it: {failed_checks(check)}."
-    confirms = {
-        "confirmed": "confirms it",
-        "explained": "shows a larger difference than expected, which finite motions account for",
-    }[check.verdict]
-    same = " with the same contact" if check.pair.mesh.contact == "paper" else ""
-    return f"The independent multibody model{same} {confirms}. {finite_motions(check)}"
 
 
 def failed_checks(check: CrossCheck, most: int = 3) -> str:

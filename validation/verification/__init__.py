@@ -3,14 +3,13 @@
 from validation.verification.checks import Check, OrderCheck, Refinement
 from validation.verification.closed_forms import order_checks
 from validation.verification.code import code_checks
-from validation.verification.solution import enough_samples, refinements
+from validation.verification.solution import refinements
 
 __all__ = [
     "Check",
     "OrderCheck",
     "Refinement",
     "code_checks",
-    "enough_samples",
     "order_checks",
     "refinements",
 ]

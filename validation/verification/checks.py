@@ -168,4 +168,3 @@ def refinement(key: str, levels: Sequence[Level], **numbers: object) -> Refineme
 
 
 #: Relative error of a peak to peak that is read off samples: half a unit of the third digit, the last shown.
-SAMPLING_LIMIT = float(_STATED["refinement"]["sampling"]["limit"])

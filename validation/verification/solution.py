@@ -19,9 +19,8 @@ from lumped.model.propagation import STAGES, STEP_ANGLE, step_maps
 from lumped.model.steady import periodic_cycle
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
-from validation.verification.checks import SAMPLING_LIMIT, Level, Refinement, refinement
+from validation.verification.checks import Level, Refinement, refinement
 
-_MOST_SAMPLES = 8192
 _SAMPLES = 64
 _CYCLES = 4
 
@@ -44,28 +43,8 @@ def refinements(pair: AnyPair, samples: int) -> tuple[Refinement, ...]:
     return (_stages(pair), _sampling(pair, samples), *others)
 
 
-def enough_samples(pair: AnyPair, samples: int) -> int:
-    """Samples per mesh cycle at which the peak to peak of the transmission error is within its limit.
-
-    A peak between two samples is missed by up to its curvature, one at a switch by more. The number is
-    doubled until four times as many change the peak to peak by less than half of ``SAMPLING_LIMIT``.
-
-    Parameters
-    ----------
-    pair : the gear pair
-    samples : to start from
-    """
-    pair = load_gear_pair(pair)
-    while samples < _MOST_SAMPLES:
-        coarse, fine = (_span(pair, count) for count in (samples, 4 * samples))
-        if abs(coarse / fine - 1.0) < 0.5 * SAMPLING_LIMIT:
-            break
-        samples *= 2
-    return samples
-
-
 def _span(pair: GearPair, samples: int) -> float:
-    return float(np.ptp(periodic_cycle(pair, samples).values["dte"]))
+    return periodic_cycle(pair, samples).peak_to_peak["dte"]
 
 
 def _periodic_state(system: LTVSystem, stages: int) -> FloatArray:

@@ -16,7 +16,7 @@ import multibody
 from lumped import NumericalError
 from multibody.contact.effects import CAUSES
 from validation.reporting import causes
-from validation.reporting.blocks import Fact, Table, plain
+from validation.reporting.blocks import Fact, Picture, Table, plain
 from validation.reporting.build import document as document_of
 from validation.reporting.build import written
 from validation.reporting.chapters import (
@@ -29,35 +29,62 @@ from validation.reporting.chapters import (
     stability,
 )
 from validation.reporting.compare import compare
+from validation.reporting.page import layers, numbered
 from validation.reporting.results import FULL, QUICK
 from validation.reporting.words import finite_motions, sentence
 from validation.verification import code_checks, order_checks, refinements
 
 ASKED = [
-    "scope",
-    "parameters",
-    "path_of_contact",
-    "mesh_physics",
     "steady_state",
-    "losses",
-    "code_verification",
-    "solution_verification",
-    "reference_model",
     "cross_check",
     "contact_forms",
     "stability",
     "stability_margins",
     "validity",
     "validity_map",
+    "losses",
+    "parameters",
+    "limitations",
+    "scope",
+    "path_of_contact",
+    "mesh_physics",
+    "code_verification",
+    "solution_verification",
+    "reference_model",
     "paper",
     "errata",
-    "limitations",
     "provenance",
+    "glossary",
 ]
 
 
 def test_the_report_has_every_chapter_a_verifier_asks_for(chapters):
     assert list(chapters) == ASKED
+
+
+def test_every_block_is_in_one_layer_and_figures_and_tables_are_counted_through(chapters):
+    by_key = {chapter.key: chapter for chapter in CHAPTERS}
+    front, evidence = layers(tuple((by_key[key], content) for key, content in chapters.items()))
+    shown = [id(block) for part in (*front, *evidence) for block in part.blocks]
+    assert sorted(shown) == sorted(id(block) for content in chapters.values() for block in content.blocks)
+    # What decides comes first; what only an examiner reads does not.
+    assert [part.chapter.key for part in front] == ASKED[:9]
+    keys = {block.key for part in front for block in part.blocks if isinstance(block, Table | Picture)}
+    assert {"speed_sweep", "flags", "stability_chart", "efficiency_by_law"} <= keys
+    assert not {"metrics", "orders", "parameters", "multipliers_table", "closed_forms"} & keys
+    assert len({part.anchor for part in (*front, *evidence)}) == len(front) + len(evidence)
+    for kind, first in ((Picture, 2), (Table, 1)):  # figure 1 is that of the first page
+        blocks = [b for part in (*front, *evidence) for b in part.blocks if isinstance(b, kind)]
+        counted = [numbered((*front, *evidence))[id(block)] for block in blocks]
+        assert counted == list(range(first, first + len(blocks)))
+
+
+def test_every_name_of_a_front_block_exists(chapters):
+    for chapter in CHAPTERS:
+        keys = {getattr(block, "key", None) for block in chapters[chapter.key].blocks}
+        missing = set(chapter.front) - keys
+        # A preset has no parameters of its own; without damping there may be no tongue.
+        assert missing <= {"given", "tongues_table"}, chapter.key
 
 
 def test_a_chapter_imports_no_other_chapter():
@@ -82,7 +109,7 @@ def test_a_pair_that_the_paper_does_not_suit_gets_the_reason_instead(computed):
     (text,) = paper.CHAPTER.write(refused).blocks
     assert text.text.endswith("with this gear pair: No periodic motion at 4875 rpm.")
     keys = [chapter.key for chapter, _ in written(refused, CHAPTERS[-4:])]
-    assert keys == ["paper", "limitations", "provenance"]
+    assert keys == ["paper", "provenance", "glossary"]
 
 
 def table_of(content, key):

@@ -6,7 +6,7 @@ import pytest
 
 from validation.faults.catalogue import FAULTS
 from validation.faults.rewriting import applied
-from validation.reporting.build import answers, document, written
+from validation.reporting.build import answer_figure, answers, document, written
 from validation.reporting.chapters import CHAPTERS
 from validation.reporting.judged import failures
 from validation.reporting.page import render
@@ -24,8 +24,9 @@ def report(request, pair, sharing, no_twin):
         chapters = written(results, CHAPTERS)
         data = document(results, chapters, quick=True)
     figures = {key: "" for chapter in data["chapters"].values() for key in chapter.get("figures", [])}
-    stamped = data | {"interactive_page": None, "timestamps": {"created": "", "seconds": {"all": 0.0}}}
-    page = render(wide, answers(results, chapters), chapters, figures, stamped)
+    stamped = data | {"timestamps": {"created": "", "seconds": {"all": 0.0}}}
+    figures["answer"] = ""
+    page = render(wide, answer_figure(results), answers(results, chapters), chapters, figures, stamped)
     return data, re.sub(r"\s+", " ", re.sub(r"<[^>]+>", " ", page))
 
 
@@ -33,7 +34,7 @@ def test_the_headline_says_do_not_rely_and_states_no_efficiency(report):
     data, _ = report
     assert data["verdict"].startswith("Do not rely on this prediction: the cross-check does not confirm it")
     assert "no mesh efficiency, because a law of nature does not hold" in data["verdict"]
-    assert "the lumped model predicts" not in data["verdict"]
+    assert "the prediction holds" not in data["verdict"]
     assert "a second route does not confirm" in data["verdict"]
 
 

@@ -13,7 +13,7 @@ from lumped import ParameterError
 from validation import reporting
 from validation.files.folder import whole_folder
 from validation.reporting import build
-from validation.reporting.blocks import Answer, Badge, Content, Fact, Facts, Quantity, Table
+from validation.reporting.blocks import Answer, Badge, Content, Fact, Facts, Picture, Quantity, Table
 from validation.reporting.chapter import Chapter
 from validation.reporting.chapters import provenance
 from validation.reporting.page import render
@@ -28,20 +28,11 @@ def hostile(pair):
 
 @pytest.fixture(scope="module")
 def written(hostile, sharing, tmp_path_factory):
-    """A report whose long results are those of another one of the same numbers; PNG files are stubs."""
+    """A report whose long results are those of another one of the same numbers."""
     out = tmp_path_factory.mktemp("reports") / "new" / "report"
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(build, "Results", lambda pair, _: sharing(pair))
-        patch.setattr(build, "save", _save)
         return reporting.report(hostile, out, quick=True)
-
-
-def _save(figure, path, save=build.save):
-    """SVG as it is; of PNG, which hold nothing that SVG do not, one."""
-    if path.suffix == ".svg" or path.stem == "transmission_error":
-        save(figure, path)
-    else:
-        path.touch()
 
 
 def _data(folder):
@@ -77,7 +68,7 @@ def test_the_folder_holds_page_numbers_figures_and_data(written):
     data = _data(written.folder)
     figures = [key for chapter in data["chapters"].values() for key in chapter.get("figures", [])]
     assert len(figures) >= 12
-    assert {f"figures/{key}{suffix}" for key in figures for suffix in (".png", ".svg")} <= names
+    assert {f"figures/{key}.svg" for key in ("answer", *figures)} <= names
 
 
 def test_the_parameter_file_in_the_folder_reproduces_the_pair(written, hostile):
@@ -88,9 +79,7 @@ def test_the_page_needs_neither_network_nor_scripts(page, written):
     assert "script" not in page.tags
     assert "link" not in page.tags
     others = [link for link in page.links if not link.startswith(("#", "data:"))]
-    assert others == ["interactive.html"]
-    assert (written.folder / "interactive.html").is_file()
-    assert (written.folder / "data" / "interactive.nc").is_file()
+    assert others == []
     assert all(link[1:] in page.ids for link in page.links if link.startswith("#"))
 
 
@@ -106,7 +95,10 @@ def test_report_json_is_strict_and_says_what_the_page_says(written, page):
     data = json.loads((written.folder / "report.json").read_text(encoding="utf-8"), parse_constant=refuse)
     assert data["verdict"] == written.sentence
     text = "".join(page.text)
-    assert data["verdict"] in text
+    assert data["headline"] in text
+    for answer in data["answers"]:
+        assert answer["text"] in text
+        assert answer["text"] in data["verdict"]
     for chapter in data["chapters"].values():
         assert chapter["title"] in text
     steady = data["chapters"]["steady_state"]["key_results"]
@@ -125,15 +117,13 @@ def again(written, hostile, tmp_path_factory):
     folder = tmp_path_factory.mktemp("again")
     (folder / "earlier.json").write_text(json.dumps(earlier))
     told = []
-    draw, places = build._draw, ("path_of_contact", "losses")
+    draw, places = build._draw, ("answer", "path_of_contact", "film", "sliding_power")
 
-    def some(chapters, *rest):
-        return defaultdict(str, draw(tuple(c for c in chapters if c[0].key in places), *rest))
+    def some(pictures, *rest):
+        return defaultdict(str, draw(tuple(p for p in pictures if p.key in places), *rest))
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(build, "save", _save)
         patch.setattr(build, "_draw", some)  # every kind of figure is drawn by the same style
-        patch.setattr(build, "write_interactive", lambda *_: "interactive.html")
         made = reporting.report(
             hostile,
             folder / "report",
@@ -232,9 +222,9 @@ def test_numbers_stand_to_the_right_under_their_heading_gaps_included(pair):
     facts = Facts("f", (Fact("h", "hash", "0" * 64), Fact("w", "word", "ok")))
     made = (Chapter("c", "C", lambda _: None), Content((table, facts)))
     timestamps = {"created": "2020-01-01", "seconds": {"all": 1.0}}
-    data = {"quick": False, "verdict": "It holds.", "interactive_page": None, "timestamps": timestamps}
+    data = {"quick": False, "headline": "It holds.", "timestamps": timestamps}
     answers = {"c": Answer("Is it good?", Badge("ok"), "Yes.")}
-    text = render(pair, answers, (made,), {}, data)
+    text = render(pair, Picture("f", "", lambda: None), answers, (made,), {"f": ""}, data)
     assert re.findall(r"<th scope=\"col\"([^>]*)>", text) == ["", ' class="number"']
     assert text.count('<td class="number">') == 3
     assert text.count('<div class="long">') == 1

@@ -9,7 +9,6 @@ from validation.verification import (
     OrderCheck,
     Refinement,
     code_checks,
-    enough_samples,
     order_checks,
     refinements,
 )
@@ -38,17 +37,10 @@ def test_refining_brings_every_solution_down_to_its_limit(pair):
     assert all(fine < 0.1 * coarse for coarse, fine in itertools.pairwise(errors))
 
 
-def test_samples_are_raised_until_the_peak_is_read_to_three_digits():
-    # Law and stiffness of this pair put the peak at a switch: 512 samples miss it by 1.5e-3.
-    pair = lumped.load_gear_pair("fzg_c")
-    coarse = next(s for s in refinements(pair, 512) if s.key == "sampling")
-    assert coarse.error > coarse.limit == 5e-4
-    assert not coarse.passes
-    samples = enough_samples(pair, 512)
-    assert samples > 512
-    fine = next(s for s in refinements(pair, samples) if s.key == "sampling")
-    assert fine.passes
-    assert enough_samples(lumped.load_gear_pair("nasa_28_28"), 512) == 512
+def test_the_peak_is_read_to_three_digits_whatever_the_sampling():
+    # Law and stiffness of this pair put the peak at a switch: the largest of 512 samples misses it by 1.5e-3.
+    study = next(s for s in refinements(lumped.load_gear_pair("fzg_c"), 64) if s.key == "sampling")
+    assert max(level.error for level in study.levels) < study.limit == 5e-4
 
 
 def test_numbers_that_are_not_finite_never_pass():

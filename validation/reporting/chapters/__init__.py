@@ -1,4 +1,5 @@
-"""The chapters of the report, one module each, in their order: a module writes ``CHAPTER``.
+"""The chapters of the report, one module each, in their order: first those that the reader who
+decides begins with, then evidence. A module writes ``CHAPTER``.
 
 A chapter imports no other chapter. What several of them compute is in ``validation.reporting.results``, what
 several of them say in ``validation.reporting.words``.
@@ -10,6 +11,7 @@ from validation.reporting.chapters import (
     contact_forms,
     cross_check,
     errata,
+    glossary,
     limitations,
     losses,
     mesh_physics,
@@ -30,24 +32,25 @@ from validation.reporting.chapters import (
 CHAPTERS: tuple[Chapter, ...] = tuple(
     module.CHAPTER
     for module in (
-        scope,
-        parameters,
-        path_of_contact,
-        mesh_physics,
         steady_state,
-        losses,
-        code_verification,
-        solution_verification,
-        reference_model,
         cross_check,
         contact_forms,
         stability,
         stability_margins,
         validity,
         validity_map,
+        losses,
+        parameters,
+        limitations,
+        scope,
+        path_of_contact,
+        mesh_physics,
+        code_verification,
+        solution_verification,
+        reference_model,
         paper,
         errata,
-        limitations,
         provenance,
+        glossary,
     )
 )

@@ -7,14 +7,14 @@ from functools import partial
 import numpy as np
 
 from validation.plots.contact_forms import contact_forms_figure, losses_over_speed_figure
-from validation.reporting.blocks import Answer, Badge, Block, Content, Picture, Quantity, Text, table_of
+from validation.reporting.blocks import Block, Content, Picture, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 from validation.reporting.words import contact_form
 from validation.validity.contact_forms import FORMS, PLACES, losses_over_speed
 
 #: Speeds of the figure of losses.
-_SPEEDS = 80
+_SPEEDS = 31
 
 
 def write(results: Results) -> Content:
@@ -105,12 +105,4 @@ def write(results: Results) -> Content:
     return Content(tuple(blocks), data=data)
 
 
-def answer(results: Results) -> Answer:
-    """How far the form of the contact is off."""
-    if isinstance(results.forms, str):
-        return Answer("Is its contact right?", Badge("undecided"), results.forms)
-    state = "prediction" if results.forms.own == "loaded" else "warning"
-    return Answer("Is its contact right?", Badge(state, FORMS[results.forms.own]), contact_form(results))
-
-
-CHAPTER = Chapter("contact_forms", "The form of the contact", write, answer, seconds=4)
+CHAPTER = Chapter("contact_forms", "The form of the contact", write, front=("contact_forms",), seconds=4)

@@ -33,7 +33,7 @@ from validation.reporting.causes import attribution, causes, meshing_teeth
 from validation.reporting.chapter import Chapter
 from validation.reporting.formatting import number
 from validation.reporting.results import Results
-from validation.reporting.words import NAMES, cautions, failed_checks, finite_motions, same_equations
+from validation.reporting.words import NAMES, agreement, cautions, finite_motions, same_equations
 
 _SHOWN = ("dte", "x_p", "y_p", "normal_load", "friction_force")
 _CAPTIONS = {
@@ -55,7 +55,8 @@ def write(results: Results) -> Content:
         *cautions(results),
         Text(
             f"The verdict is “{check.verdict}”: {MEANINGS[check.verdict]}. The linear model starts from the "
-            f"lumped periodic motion and is compared over {check.cycles} mesh cycles. {_exact_motion(check)}"
+            f"lumped periodic motion and is compared over {check.cycles} mesh cycles. {_exact_motion(check)} "
+            f"{same_equations(check)} {finite_motions(check)}"
         ),
         meshing_teeth(results),
         *_judged(check),
@@ -352,11 +353,14 @@ def _orders(check: CrossCheck) -> Table:
 
 def answer(results: Results) -> Answer:
     """Whether the multibody model confirms the lumped model."""
-    check = results.check
-    text = f"{same_equations(check)} {finite_motions(check)}"
-    if check.failures:
-        text = f"{failed_checks(check)}. {same_equations(check)}"
-    return Answer("Does the independent model agree?", Badge(check.verdict), text)
+    return Answer("Does the independent model agree?", Badge(results.check.verdict), agreement(results))
 
 
-CHAPTER = Chapter("cross_check", "Cross-check against the multibody model", write, answer, seconds=10)
+CHAPTER = Chapter(
+    "cross_check",
+    "Cross-check against the multibody model",
+    write,
+    answer,
+    ("verdicts", "cross_check_dte"),
+    seconds=10,
+)

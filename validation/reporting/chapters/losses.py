@@ -190,4 +190,4 @@ def losses_by_law(pair: GearPair, motion: xr.Dataset, profile: xr.Dataset, *, qu
     return table
 
 
-CHAPTER = Chapter("losses", "Losses and film", write, seconds=2)
+CHAPTER = Chapter("losses", "Losses and film", write, front=("efficiency_by_law", "losses"), seconds=2)

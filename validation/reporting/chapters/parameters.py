@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
-from lumped import bodies, mesh_elements
-from lumped.schema.pair import leaf_paths, stated_unit
+from lumped import GearPair, bodies, load_gear_pair, mesh_elements
+from lumped.friction import LAWS
+from lumped.schema.files import preset_names
+from lumped.schema.pair import field_at, leaf_paths, stated_unit
 from lumped.stiffness.body import body_twist
 from validation.reporting.blocks import Badge, Cell, Content, Text, facts, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 from validation.reporting.sources import is_assumed, sources
+
+Columns = dict[str, tuple[str, Callable[[str], Cell]]]
 
 
 def write(results: Results) -> Content:
@@ -21,17 +25,18 @@ def write(results: Results) -> Content:
     pair, g = results.pair, results.geometry
     values, stated = leaf_paths(pair), sources(pair)
     assumed = {path for path, source in stated.items() if is_assumed(source)}
+    columns: Columns = {
+        "field": ("field", lambda path: path),
+        "value": ("value", lambda path: _shown(values[path])),
+        "unit": ("unit", lambda path: _unit(path, values[path])),
+        "source": ("source", lambda path: stated[path]),
+        "assumed": ("", lambda path: Badge("warning", "assumed") if path in assumed else ""),
+    }
     table = table_of(
         "parameters",
         f"Parameters of {pair.name}. {len(assumed)} of {len(stated)} values are assumed.",
         list(stated),
-        {
-            "field": ("field", lambda path: path),
-            "value": ("value", lambda path: _shown(values[path])),
-            "unit": ("unit", lambda path: _unit(path, values[path])),
-            "source": ("source", lambda path: stated[path]),
-            "assumed": ("", lambda path: Badge("warning", "assumed") if path in assumed else ""),
-        },
+        columns,
         marked=lambda path: path in assumed,
     )
     b = bodies(pair)
@@ -75,7 +80,34 @@ def write(results: Results) -> Content:
         ),
         *_twist(results),
     )
-    return Content((table, Text("What follows from the parameters:"), derived))
+    reference, like = _reference(pair)
+    own = [path for path in stated if path not in reference or reference[path] != values[path]]
+    given = table_of(
+        "given",
+        f"The {len(own)} parameters that differ from {like} or add to it; "
+        f"the evidence has all {len(stated)}.",
+        own,
+        columns,
+        marked=lambda path: path in assumed,
+    )
+    key_parameters = facts(
+        "key_parameters",
+        ("teeth", "teeth", f"{pair.pinion.teeth} / {pair.gear.teeth}"),
+        ("speed", "pinion speed", results.operating_rpm, "rpm"),
+        ("torque", "pinion torque", pair.operating.pinion_torque, "N m"),
+        ("mesh_frequency", "mesh frequency", g.mesh_frequency, "Hz"),
+        ("contact_ratio", "contact ratio", g.contact_ratio),
+        ("law", "friction law", LAWS[pair.friction.law].title),
+    )
+    front = (key_parameters, given) if own else (key_parameters, Text(f"All parameters are those of {like}."))
+    return Content((*front, table, Text("What follows from the parameters:"), derived))
+
+
+def _reference(pair: GearPair) -> tuple[dict[str, Any], str]:
+    """Values that a reader can look up elsewhere, and where: the preset of this name, or the defaults."""
+    if pair.name in preset_names():
+        return leaf_paths(load_gear_pair(pair.name)), f"the preset {pair.name}"
+    return {path: field_at(path).default for path in leaf_paths(pair)}, "the schema's defaults"
 
 
 def _twist(results: Results) -> Iterator[tuple[str, str, float, str, str]]:
@@ -112,4 +144,4 @@ def unit_text(unit: str) -> str:
     return {"um": "µm", "deg": "°", "degC": "°C"}.get(text, text)
 
 
-CHAPTER = Chapter("parameters", "Parameters", write)
+CHAPTER = Chapter("parameters", "Parameters", write, front=("key_parameters", "given"))

@@ -25,7 +25,7 @@ def write(results: Results) -> Content:
         "made_from",
         ("parameters_sha256", "SHA-256 of the parameters", parameters_hash(results.pair)),
         ("source_sha256", "SHA-256 of the program's source", source_hash()),
-        ("samples", "samples per mesh cycle", results.samples),
+        ("samples", "samples per mesh cycle", results.effort.samples),
         ("cycles", "mesh cycles of the cross-check", effort.cycles),
         ("sweep_speeds", "speeds of the response", effort.sweep_speeds),
         ("chart_nodes", "nodes of the stability chart", effort.chart_speeds * effort.chart_dampings),
@@ -43,7 +43,7 @@ def write(results: Results) -> Content:
     )
     text = Text(
         "The same parameters and software give the same report.json, byte for byte, apart from its "
-        "timestamps block. The folder beside this page holds every figure (figures/, PNG and SVG), the data "
+        "timestamps block. The folder beside this page holds every figure (figures/, SVG), the data "
         "behind them (data/, NetCDF) and the parameter file that reproduces the report "
         "(data/parameters.toml)."
     )

@@ -13,7 +13,7 @@ def write(results: Results) -> Content | None:
     if not results.effort.full:
         return None
     results.stage("solution verification")
-    return content(refinements(results.pair, results.samples))
+    return content(refinements(results.pair, results.effort.samples))
 
 
 def content(studies: tuple[Refinement, ...]) -> Content:

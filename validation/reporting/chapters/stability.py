@@ -9,6 +9,7 @@ from floquet.gear.axes import chart_axes
 from floquet.gear.chart import stability_chart
 from validation.plots.multipliers import multipliers_figure
 from validation.plots.tongues import tongue_chart_figure
+from validation.reporting import words
 from validation.reporting.blocks import (
     Answer,
     Badge,
@@ -24,7 +25,6 @@ from validation.reporting.blocks import (
 from validation.reporting.chapter import Chapter
 from validation.reporting.checks import check_table
 from validation.reporting.results import Results
-from validation.reporting.words import stable_speeds
 
 
 def write(results: Results) -> Content:
@@ -174,12 +174,7 @@ def _badge(results: Results) -> Badge:
 
 def answer(results: Results) -> Answer:
     """Whether the periodic motion is stable at the operating point, and at which other speeds."""
-    found = results.multipliers
-    text = (
-        f"Largest multiplier {found.spectral_radius:.4f} at the operating point; stable "
-        f"{stable_speeds(results)} at the given damping."
-    )
-    return Answer("Is the motion stable?", _badge(results), text)
+    return Answer("Is the motion stable?", _badge(results), words.stability(results))
 
 
-CHAPTER = Chapter("stability", "Stability", write, answer, seconds=3)
+CHAPTER = Chapter("stability", "Stability", write, answer, ("stability_chart",), seconds=3)

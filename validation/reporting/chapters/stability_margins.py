@@ -121,4 +121,4 @@ def write(results: Results) -> Content:
     return Content(tuple(blocks))
 
 
-CHAPTER = Chapter("stability_margins", "Stability margins", write)
+CHAPTER = Chapter("stability_margins", "Stability margins", write, front=("distances", "tongues_table"))

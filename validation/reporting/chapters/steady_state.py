@@ -18,6 +18,7 @@ from validation.plots.motion import (
     transmission_error_figure,
 )
 from validation.plots.sweep import sweep_figure
+from validation.reporting import words
 from validation.reporting.blocks import (
     Answer,
     Badge,
@@ -31,9 +32,8 @@ from validation.reporting.blocks import (
     table_of,
 )
 from validation.reporting.chapter import Chapter
-from validation.reporting.formatting import number
 from validation.reporting.results import Results
-from validation.reporting.words import cautions, efficiency, lawful, objections, span
+from validation.reporting.words import cautions, largest_load, lawful, objections
 
 _ORDERS = 10
 
@@ -41,7 +41,7 @@ _ORDERS = 10
 def write(results: Results) -> Content:
     """Write the chapter."""
     pair, g, motion, multipliers = results.pair, results.geometry, results.motion, results.multipliers
-    dte, attrs, largest = motion["dte"], motion.attrs, _largest_load(results)
+    dte, attrs, largest = motion["dte"], motion.attrs, largest_load(results)[0]
     friction = float(motion["friction_power"].sum("pair").mean())
     radius = f"largest multiplier {multipliers.spectral_radius:.4g}"
     counted, unpaid = "friction losses only", "of bearings and tooth dampers, left out by the paper's brake"
@@ -67,7 +67,7 @@ def write(results: Results) -> Content:
         ("error_estimate", "estimated relative error of the motion", float(attrs["error_estimate"])),
     )
     names = ("dte", "x_p", "x_g", "y_p", "y_g")
-    found = {name: mesh_orders(motion[name].to_numpy(), results.samples, _ORDERS) for name in names}
+    found = {name: mesh_orders(motion[name].to_numpy(), results.effort.samples, _ORDERS) for name in names}
     orders = Table(
         "mesh_orders",
         "Amplitudes by mesh order.",
@@ -195,24 +195,12 @@ def off_line_modes(pair: GearPair, modes: tuple[Mode, ...]) -> frozenset[int]:
     return frozenset(found)
 
 
-def _largest_load(results: Results) -> float:
-    """Largest normal load of a tooth pair in contact [N]."""
-    motion = results.motion
-    return float(motion["normal_load"].where(motion["contact"] > 0).max())
-
-
 def answer(results: Results) -> Answer:
-    """What the model predicts, after the reasons not to rely on it."""
-    text = (
-        f"Transmission error {span(results)} peak to peak, tooth loads up to "
-        f"{number(_largest_load(results) / results.static_load, 3)} times the static load, "
-        f"{efficiency(results)}."
-    )
-    badge = Badge("prediction")
-    if wrong := objections(results):
-        badge = Badge("violated", "not reliable")
-        text = f"Not to be relied on: {'; '.join(wrong)}. {text}"
-    return Answer("What does the model predict?", badge, text)
+    """What the model predicts, or that it is not to be relied on."""
+    badge = Badge("violated", "not reliable") if objections(results) else Badge("prediction")
+    return Answer("What does the model predict?", badge, words.motion(results))
 
 
-CHAPTER = Chapter("steady_state", "Periodic motion", write, answer, seconds=3)
+CHAPTER = Chapter(
+    "steady_state", "Periodic motion", write, answer, ("key_results", "speed_sweep", "over_speed"), seconds=3
+)

@@ -94,4 +94,4 @@ def _valid(speed: FloatArray, valid: BoolArray) -> str:
     return ", ".join(f"{span} rpm" for span in speed_spans(speed, valid)) or "nowhere"
 
 
-CHAPTER = Chapter("validity_map", "Validity over speed and torque", write, seconds=4)
+CHAPTER = Chapter("validity_map", "Validity over speed and torque", write, front=("validity_map",), seconds=4)
