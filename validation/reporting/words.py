@@ -29,15 +29,22 @@ def headline(results: Results) -> str:
     if wrong := objections(results):
         return f"Do not rely on this prediction: {'; '.join(wrong)}."
     here = f"At {results.operating_rpm:.5g} rpm and {results.pair.operating.pinion_torque:.4g} N m"
-    forms = results.forms
-    if not isinstance(forms, str) and forms.difference[forms.own] > _CONTACT_LIMIT:
-        exact = quantity(forms.spans(results.geometry.mesh_period)["exact"], "m", 3)
-        return (
-            f"{here} the equations are solved right, but their contact is too simple: with contact that "
-            f"follows the load the transmission error is {exact} peak to peak, not {span(results)}."
-        )
+    if off := contact_off(results):
+        return f"{here} the equations are solved right, but their contact is too simple: {off}."
     near = [f"“{flag.name.lower()}” is near its limit" for flag in results.flags if flag.state != "ok"]
     return f"{here} the prediction holds{', with care: ' if near else ''}{'; '.join(near)}."
+
+
+def contact_off(results: Results) -> str:
+    """How the transmission error changes with contact that follows the load; empty where that is little."""
+    forms = results.forms
+    if isinstance(forms, str) or forms.difference[forms.own] <= _CONTACT_LIMIT:
+        return ""
+    exact = quantity(forms.spans(results.geometry.mesh_period)["exact"], "m", 3)
+    return (
+        f"with contact that follows the load the transmission error is {exact} peak to peak, not "
+        f"{span(results)}, and in between up to {number(100 * forms.difference[forms.own], 2)}\u00a0% of that off"
+    )
 
 
 def sentence(results: Results) -> str:
@@ -194,7 +201,9 @@ def validity(results: Results) -> str:
     """Which assumptions hold here, and over how much of the speed range teeth stay in contact."""
     states = {"warning": "near its limit", "violated": "violated"}
     raised = [f"{flag.name.lower()} ({states[flag.state]})" for flag in results.flags if flag.state != "ok"]
-    text = f"Of {len(results.flags)} checked assumptions "
+    if contact_off(results):
+        raised.append("the contact follows the load (it does not)")
+    text = f"Of {len(results.flags) + 1} checked assumptions "
     text += f"all hold but: {', '.join(raised)}" if raised else "all hold here"
     share, (low, high) = results.separating_share, results.margins.speed_range
     if not share:

@@ -96,6 +96,10 @@ def test_report_json_is_strict_and_says_what_the_page_says(written, page):
     assert data["verdict"] == written.sentence
     text = "".join(page.text)
     assert data["headline"] in text
+    # The paper's contact is a third of the peak to peak off: the first words and the last answer both say so.
+    assert "their contact is too simple" in data["headline"]
+    assert "the contact follows the load (it does not)" in data["answers"][-1]["text"]
+    assert data["answers"][-1]["verdict"]["state"] == "warning"
     for answer in data["answers"]:
         assert answer["text"] in text
         assert answer["text"] in data["verdict"]

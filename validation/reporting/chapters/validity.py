@@ -5,6 +5,7 @@ from __future__ import annotations
 from validation.reporting.blocks import Answer, Badge, Content, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
+from validation.reporting.words import contact_off
 from validation.reporting.words import validity as words
 from validation.validity.flags import worst_state
 
@@ -38,7 +39,10 @@ def write(results: Results) -> Content:
 
 def answer(results: Results) -> Answer:
     """Whether the assumptions of the lumped model hold."""
-    return Answer("Is the model valid here?", Badge(worst_state(results.flags)), words(results))
+    state = worst_state(results.flags)
+    if state == "ok" and contact_off(results):
+        state = "warning"
+    return Answer("Is the model valid here?", Badge(state), words(results))
 
 
 CHAPTER = Chapter("validity", "Validity", write, answer, ("flags",))
