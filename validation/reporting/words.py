@@ -41,9 +41,10 @@ def contact_off(results: Results) -> str:
     if isinstance(forms, str) or forms.difference[forms.own] <= _CONTACT_LIMIT:
         return ""
     exact = quantity(forms.spans(results.geometry.mesh_period)["exact"], "m", 3)
+    most = number(100 * forms.difference[forms.own], 2)
     return (
         f"with contact that follows the load the transmission error is {exact} peak to peak, not "
-        f"{span(results)}, and in between up to {number(100 * forms.difference[forms.own], 2)}\u00a0% of that off"
+        f"{span(results)}, and in between up to {most}\u00a0% of that off"
     )
 
 
