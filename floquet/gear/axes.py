@@ -10,7 +10,7 @@ import numpy as np
 
 from lumped.arguments import one_of
 from lumped.errors import refuse
-from lumped.fields.units import to_stated
+from lumped.fields.units import SIValue, to_stated
 from lumped.friction import LAWS, mean_coefficient
 from lumped.labelling import Coordinate
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
@@ -115,20 +115,24 @@ def _contact_ratio(variation: GearVariation, value: float) -> GearVariation:
     """Set the contact ratio by both tip diameters; approach and recess keep their shares of the path.
 
     The path of contact ends where the tip circles cut the line of action: r_ap^2 = r_bp^2 + L_XD^2 and
-    r_ag^2 = r_bg^2 + (L_XY - L_XA)^2.
+    r_ag^2 = r_bg^2 + (L_XY - L_XA)^2. A relief moves with the end of the active flank and keeps its length.
     """
     pair = variation.pair
     g = pair.geometry
     factor = value / g.contact_ratio
     recess = g.L_XP + factor * (g.L_XD - g.L_XP)
     approach = g.L_XY - g.L_XP + factor * (g.L_XP - g.L_XA)
-    tips = {
-        "pinion": math.hypot(g.base_radius_pinion, recess),
-        "gear": math.hypot(g.base_radius_gear, approach),
-    }
-    changes: dict[str, float | None] = {}
-    for name, radius in tips.items():
-        changes |= {f"{name}.addendum": None, f"{name}.tip_diameter": 2e3 * radius}
+    later, earlier = recess - g.L_XD, approach - (g.L_XY - g.L_XA)
+    changes: dict[str, object] = {}
+    for name, gear, radius, flank, tip, root in (
+        ("pinion", pair.pinion, g.base_radius_pinion, recess, later, -earlier),
+        ("gear", pair.gear, g.base_radius_gear, approach, earlier, -later),
+    ):
+        changes |= {f"{name}.addendum": None, f"{name}.tip_diameter": 2e3 * math.hypot(radius, flank)}
+        for end, relief, moved in (("tip", gear.tip_relief, tip), ("root", gear.root_relief, root)):
+            if relief is not None:
+                start = relief.start_roll_angle + moved / radius
+                changes[f"{name}.{end}_relief.start_roll_angle"] = SIValue(start, "rad")
     return replace(variation, pair=pair.with_(changes))
 
 

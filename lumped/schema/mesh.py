@@ -21,9 +21,9 @@ class Mesh(Section):
         description="zeta in c_i = 2 zeta sqrt(k_i m_e)"
     )
     relief: Literal["ignored", "static"] = Field(
-        "ignored",
-        description="'static': tip and root relief enter as unloaded error, and a pair touches where it "
-        "carries load at the mean torque; 'ignored': perfect involutes from A to D",
+        "static",
+        description="'static': tip and root relief, where given, enter as unloaded error, and a pair touches "
+        "where it carries load at the mean torque; 'ignored': perfect involutes from A to D",
     )
     contact: Literal["paper", "loaded"] = Field(
         "loaded",

@@ -153,7 +153,8 @@ def prepare(
             state[6] += tables.motor[0, 1]
             state[7] += tables.motor[0, 1] * numbers.parameters[kn.OMEGA_G] / omega
     q, v = from_lumped_state(state)
-    deflection = numbers.torque_pinion / numbers.parameters[kn.RADIUS_P] / system.cycle.mean_stiffness
+    # With a brake near zero the mean torque that holds a relieved mesh may be below zero.
+    deflection = abs(numbers.torque_pinion) / numbers.parameters[kn.RADIUS_P] / system.cycle.mean_stiffness
     if fidelity == "exact" and deflection > _MOST_DEFLECTION * numbers.parameters[kn.PITCH]:
         raise refuse(
             "operating.pinion_torque",

@@ -81,7 +81,9 @@ def belongings(tmp_path_factory, root, blocks) -> Path:
     pair = lumped.load_gear_pair("nasa_28_28")
     (folder / "mypair.toml").write_text(pair.to_toml())
     (folder / "my_pair.toml").write_text(pair.to_toml())
-    write_rexs(pair, folder / "gearbox.rexs")
+    write_rexs(
+        lumped.load_gear_pair("fzg_c"), folder / "gearbox.rexs"
+    )  # a pair that the cross-check confirms
     write_state_space(pair, folder / "averaged.npz")
     (folder / "study-sweep").mkdir()
     for result in ("run.nc", "study-sweep/results.nc"):

@@ -80,7 +80,7 @@ motion = lumped.steady_state(pair, samples_per_cycle=64)
 assert abs(motion.mesh_stiffness.max() / 5e8 - 1.4) < 0.3
 assert 0.98 < motion.attrs["mesh_efficiency"] < 1.0
 assert floquet.gear_pair_multipliers(pair).spectral_radius < 1.0
-alone = lumped.load_gear_pair("nasa_28_28").with_(friction__law="rising")
+alone = lumped.load_gear_pair("nasa_28_28").with_(friction__law="rising", mesh__relief="ignored")
 check = crosscheck(alone, cycles=6, samples_per_cycle=32, twin=False)
 assert not check.failures, check.failures
 chapter = reference_model.CHAPTER.write(Results(alone, QUICK))

@@ -42,7 +42,8 @@ def figures(
     """Reproduce figures 2 to 7 of the paper.
 
     One folder: each figure as SVG and PNG, its data as NetCDF and CSV, and figures.json with captions and the
-    numbers read off. Speeds, torques and friction laws are the paper's; the gear pair is the one given.
+    numbers read off. Speeds, torques, friction laws and flanks (without relief, in contact from A to D) are
+    the paper's; the gear pair is the one given.
 
     [bold]Examples[/bold]
 
@@ -53,10 +54,11 @@ def figures(
     from validation.files.folder import FIGURES, check_target, whole_folder
     from validation.measurements import load_measurement
     from validation.paper import DRAW, figure_records
+    from validation.paper.operating_points import papers_pair
 
     check_target(output, force=force, kind=FIGURES)
     chosen = _chosen(only, tuple(DRAW))
-    gear_pair = opt.gear_pair(pair, None, None, None, settings)
+    gear_pair = papers_pair(opt.gear_pair(pair, None, None, None, settings))
     measurements = [load_measurement(path) for path in records or []]
     with (
         progress_bar("figures") as tell,

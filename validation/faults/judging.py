@@ -75,7 +75,9 @@ class Outcome:
 
 
 def pairs(fault: Fault | None = None, *, wrong: bool = False) -> Iterator[GearPair]:
-    """The default pair and its unlike twin, with what the fault needs.
+    """The default pair without relief, with which its teeth would part, and its unlike twin.
+
+    Both have what the fault needs.
 
     Parameters
     ----------
@@ -84,7 +86,7 @@ def pairs(fault: Fault | None = None, *, wrong: bool = False) -> Iterator[GearPa
     """
     own = {} if fault is None else dict(fault.on) | (dict(fault.input) if wrong else {})
     for changes in ({}, TWIN):
-        fields = {**changes, **own}
+        fields = {"mesh.relief": "ignored", **changes, **own}
         if changes and "mesh.relief" in own:
             fields |= {"pinion.tip_relief": _RELIEF, "gear.tip_relief": _RELIEF | {"amount": 10.0}}
         yield load_gear_pair(PAIR).with_(fields)

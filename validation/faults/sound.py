@@ -62,6 +62,7 @@ def _holds(pair: GearPair) -> bool:
 
 
 def _varied(base: GearPair, rng: random.Random) -> GearPair:
+    relief = "ignored"
     fields: dict[str, Any] = {
         "mesh.stiffness": rng.choice(_STIFFNESS),
         "mesh.damping_ratio": rng.uniform(0.02, 0.12),
@@ -83,7 +84,8 @@ def _varied(base: GearPair, rng: random.Random) -> GearPair:
         reliefs = {f"{gear}.tip_relief": None for gear in ("pinion", "gear")}
         fields |= {**shifts, **teeth, **lengths, **reliefs, "centre_distance": None}
     elif base.pinion.tip_relief is not None and rng.random() < 0.6:
-        fields["mesh.relief"] = "static"
+        relief = "static"
+    fields["mesh.relief"] = relief
     return base.with_(fields)
 
 

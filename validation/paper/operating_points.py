@@ -48,7 +48,7 @@ def second_pair(pair: GearPair) -> GearPair:
 
     For a first pair of 25/31 teeth the 28/28 pair takes this place.
     """
-    candidates = (load_gear_pair(name) for name in PAIRS_2A)
+    candidates = (papers_pair(name) for name in PAIRS_2A)
     other = next(c for c in candidates if c.pinion.teeth != pair.pinion.teeth)
     return other.with_(
         {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from lumped import GearPair
 from validation.cross_check.comparison import CrossCheck
 from validation.reporting.blocks import Text
 from validation.reporting.formatting import digits, number, quantity
@@ -62,6 +63,7 @@ def motion(results: Results) -> str:
         f"transmission error {span(results)} peak to peak, tooth load up to {factor} times the static load, "
         f"{efficiency(results)}."
     )
+    numbers += ignored_relief(results.pair)
     if objections(results):
         return f"Computed, but not what a gear pair would show: {numbers}"
     return numbers[0].upper() + numbers[1:]
@@ -72,6 +74,16 @@ def largest_load(results: Results) -> tuple[float, float]:
     loads = results.motion["normal_load"].where(results.motion["contact"] > 0)
     largest = float(loads.max())
     return largest, largest - float(loads[..., ::2].max())
+
+
+def ignored_relief(pair: GearPair) -> str:
+    """Sentence that relief is given and left out; nothing where it is not so."""
+    given = any(
+        r is not None for gear in (pair.pinion, pair.gear) for r in (gear.tip_relief, gear.root_relief)
+    )
+    if pair.mesh.relief == "static" or not given:
+        return ""
+    return " The relief of the flanks is given but ignored: everything here holds for involutes."
 
 
 def span(results: Results) -> str:

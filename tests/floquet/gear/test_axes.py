@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from floquet.gear.axes import chart_axes, operating_rpm, speed_range, with_point
+from floquet.gear.axes import chart_axes, operating_rpm, speed_range, vary, with_point
 from floquet.gear.chart import stability_chart
 from lumped import load_gear_pair
+from lumped.quasi_static.tooth_error import relief_error, relief_starts
 
 PAIR = load_gear_pair("nasa_28_28")
 
@@ -36,3 +37,18 @@ def test_the_operating_point_is_a_node_where_it_is_within():
     nodes = np.linspace(0.0, 10.0, 6)
     np.testing.assert_allclose(with_point(nodes, 4.9), [0.0, 2.0, 4.9, 6.0, 8.0, 10.0])
     np.testing.assert_allclose(with_point(nodes, 11.0), nodes)
+
+
+@pytest.mark.parametrize("ratio", [1.3, 1.9])
+def test_relief_keeps_its_length_where_the_contact_ratio_changes(ratio):
+    def reach(pair):
+        """Lengths of the relieved ends of the path at A and D, over which the amount is reached."""
+        g = pair.geometry
+        lower, upper = relief_starts(pair)
+        ends = relief_error(pair, np.array([g.L_XA, g.L_XD]))
+        return lower - g.L_XA, g.L_XD - upper, *ends
+
+    varied = vary(PAIR, {"contact_ratio": ratio}).pair
+    assert varied.geometry.contact_ratio == pytest.approx(ratio, rel=1e-12)
+    assert PAIR.mesh.relief == varied.mesh.relief == "static"
+    np.testing.assert_allclose(reach(varied), reach(PAIR), rtol=1e-10)

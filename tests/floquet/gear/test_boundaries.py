@@ -29,7 +29,9 @@ def nodes_beside(found: xr.Dataset, chart: xr.Dataset) -> tuple[int, int, int]:
 @pytest.fixture(scope="module")
 def pair():
     """The default pair with friction off and light mesh damping, so that tongues exist."""
-    return load_gear_pair("nasa_28_28").with_(friction__law="none", mesh__damping_ratio=0.002)
+    return load_gear_pair("nasa_28_28").with_(
+        mesh__relief="ignored", friction__law="none", mesh__damping_ratio=0.002
+    )
 
 
 def test_mathieu_tongues_end_on_the_characteristic_values(mathieu) -> None:
@@ -164,7 +166,9 @@ def test_damping_closes_tongues_and_absence_is_marked(pair) -> None:
 
 
 def test_friction_that_varies_with_speed_is_followed() -> None:
-    law = load_gear_pair("nasa_28_28").with_(friction__law="xu_kahraman", mesh__damping_ratio=0.005)
+    law = load_gear_pair("nasa_28_28").with_(
+        mesh__relief="ignored", friction__law="xu_kahraman", mesh__damping_ratio=0.005
+    )
     found = stability_boundaries(law, (15500.0, 18000.0), nodes=12, orders=2, xtol=1e-5)
     assert found.label.values.tolist() == ["2w3/2"]
     plain = stability_boundaries(law.with_(friction__law="none"), (15500.0, 18000.0))
@@ -190,7 +194,7 @@ def test_no_tongue_of_any_order_is_lost_at_low_speed_and_low_damping() -> None:
     # Tongues of orders up to 67 here, the thinnest a part in 3000 wide.
     changes = {"friction.law": "coulomb", "friction.coefficient": 0.05, "mesh.damping_ratio": 5e-4}
     changes |= {f"bearings.{gear}.loa_damping_ratio": 5e-4 for gear in ("pinion", "gear")}
-    pair = load_gear_pair("nasa_28_28").with_(changes)
+    pair = load_gear_pair("nasa_28_28").with_(changes, mesh__relief="ignored")
     ends = (500.0, 900.0)
     found = stability_boundaries(pair, ends, xtol=1e-6)
     assert found.complete
@@ -211,7 +215,7 @@ def test_no_tongue_of_any_order_is_lost_at_low_speed_and_low_damping() -> None:
 def test_search_says_when_damping_is_too_low_for_its_grid() -> None:
     undamped = {"mesh.damping_ratio": 0.0}
     undamped |= {f"bearings.{gear}.loa_damping_ratio": 0.0 for gear in ("pinion", "gear")}
-    pair = load_gear_pair("nasa_28_28").with_({"friction.law": "none", **undamped})
+    pair = load_gear_pair("nasa_28_28").with_({"mesh.relief": "ignored", "friction.law": "none", **undamped})
     _, complete = search_grid(gear_block(pair), 500.0, 20000.0)
     assert not complete
     # With damped bearings every mode decays: the grid is fine enough, and small.

@@ -15,7 +15,9 @@ from lumped.errors import NumericalError, ParameterError
 
 @pytest.fixture(scope="module")
 def pair():
-    return load_gear_pair("nasa_28_28").with_(friction__law="coulomb", friction__coefficient=0.05)
+    return load_gear_pair("nasa_28_28").with_(
+        mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.05
+    )
 
 
 def unit(matrix: list[list[float]]):

@@ -13,7 +13,9 @@ from lumped.model.powers import mean_powers
 from lumped.model.steady import periodic_solution
 from lumped.quasi_static.loaded_contact import StaticMesh, loaded_contact
 
-PAIR = lumped.load_gear_pair("nasa_28_28").with_(mesh__stiffness={"model": "energy"}, mesh__contact="loaded")
+PAIR = lumped.load_gear_pair("nasa_28_28").with_(
+    mesh__relief="ignored", mesh__stiffness={"model": "energy"}, mesh__contact="loaded"
+)
 FORMS = {
     "Hertz": PAIR,
     "linear": PAIR.with_(mesh__stiffness={"model": "energy", "hertz": "linear"}),
@@ -111,7 +113,9 @@ def test_corner_contact_grows_with_the_root_of_the_load():
 
 def test_what_the_papers_form_leaves_unpaid_has_a_closed_form():
     """Where k jumps from 0 at A and to 0 at D, k delta^2/2 comes and goes without work."""
-    pair = lumped.load_gear_pair("nasa_28_28").with_(friction={"law": "coulomb", "coefficient": 0.0})
+    pair = lumped.load_gear_pair("nasa_28_28").with_(
+        mesh__relief="ignored", friction={"law": "coulomb", "coefficient": 0.0}
+    )
     g, k = lumped.geometry(pair), float(mesh_elements(pair).stiffness(lumped.geometry(pair).L_XP))
     system = periodic_system(pair, "absolute")
     times = np.array([0.0, np.mod(g.contact_ratio, 1.0)]) * system.period
@@ -130,7 +134,11 @@ def test_what_the_papers_form_leaves_unpaid_has_a_closed_form():
 def test_losses_by_place_are_those_of_an_independent_program(rpm, sliding, dampers, bearings):
     """Per cent of the input, from a prototype that shares no code (docs/theory/contact_energy.md)."""
     powers = mean_powers(
-        solution(lumped.load_gear_pair("nasa_28_28").with_(operating__pinion_speed=float(rpm)))
+        solution(
+            lumped.load_gear_pair("nasa_28_28").with_(
+                mesh__relief="ignored", operating__pinion_speed=float(rpm)
+            )
+        )
     )
     found = np.array([powers.sliding, powers.tooth_dampers, powers.bearings]) / powers.driving * 100
     assert found == pytest.approx([sliding, dampers, bearings], abs=1.1e-3)

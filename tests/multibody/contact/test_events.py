@@ -14,7 +14,9 @@ from multibody.contact.events import ENTRY, EXIT, SLIDING, SWITCH, event_table, 
 from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import machine
 
-JUMPS = lumped.load_gear_pair("nasa_28_28").with_(friction__law="coulomb", friction__coefficient=0.05)
+JUMPS = lumped.load_gear_pair("nasa_28_28").with_(
+    mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.05
+)
 UNEQUAL = JUMPS.with_(
     gear__teeth=41, pinion__profile_shift=0.2, gear__profile_shift=0.1, centre_distance="110.5 mm"
 )

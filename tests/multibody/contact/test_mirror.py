@@ -26,6 +26,7 @@ def make(pinion_bearing, gear_bearing, bores):
         for axis, value in bearing.items()
     }
     return lumped.load_gear_pair("nasa_28_28").with_(
+        mesh__relief="ignored",
         friction__law="coulomb",
         friction__coefficient=0.08,
         operating__pinion_speed=2500,

@@ -22,7 +22,7 @@ from multibody.contact.machine import machine
 from multibody.run.model import build
 from multibody.run.setup import prepare
 
-PAIR = lumped.load_gear_pair("nasa_28_28")
+PAIR = lumped.load_gear_pair("nasa_28_28").with_(mesh__relief="ignored")
 
 
 def test_an_interrupt_inside_a_force_evaluation_comes_out_as_itself(monkeypatch):

@@ -10,7 +10,9 @@ import lumped
 import multibody
 from multibody.contact.effects import CAUSES, DEFAULT_EFFECTS, EFFECTS, active_effects, effect_flags
 
-JUMPS = lumped.load_gear_pair("nasa_28_28").with_(friction__law="coulomb", friction__coefficient=0.05)
+JUMPS = lumped.load_gear_pair("nasa_28_28").with_(
+    mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.05
+)
 SMOOTH = JUMPS.with_(mesh__stiffness={"model": "parabolic", "ramp_length": 3.0})
 
 

@@ -9,6 +9,7 @@ import lumped
 import multibody
 
 BASE = lumped.load_gear_pair("nasa_28_28").with_(
+    mesh__relief="ignored",
     friction__law="coulomb",
     friction__coefficient=0.05,
     operating__pinion_torque=56.5,

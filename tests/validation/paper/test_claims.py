@@ -19,7 +19,7 @@ from validation.paper.operating_points import FIGURE_4, FIGURE_7, LAWS
 
 @pytest.fixture(scope="module")
 def pair():
-    return load_gear_pair("nasa_28_28")
+    return load_gear_pair("nasa_28_28").with_(mesh__relief="ignored")
 
 
 @pytest.fixture(scope="module")

@@ -27,7 +27,9 @@ from validation.plots.tongues import tongue_chart_figure, tongues_figure
 
 @pytest.fixture(scope="module")
 def pair():
-    return load_gear_pair("nasa_28_28").with_(friction__law="none", mesh__damping_ratio=0.01)
+    return load_gear_pair("nasa_28_28").with_(
+        mesh__relief="ignored", friction__law="none", mesh__damping_ratio=0.01
+    )
 
 
 def texts(figure) -> set[str]:
@@ -158,7 +160,8 @@ def test_command_names_the_tongues(tmp_path) -> None:
     path = tmp_path / "chart.svg"
     result = CliRunner().invoke(
         app,
-        ["stability", "--tongues", "--law", "none", "--axis", "speed_rpm=15000:18500:36", "--axis",
+        ["stability", "--tongues", "--law", "none", "--set", "mesh.relief=ignored", "--axis",
+         "speed_rpm=15000:18500:36", "--axis",
          "damping_ratio=0:0.03:5", "-o", str(path)],
     )  # fmt: skip
     assert result.exit_code == 0, result.output

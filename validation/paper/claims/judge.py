@@ -19,7 +19,8 @@ ACCURACY = "3 % error"
 
 _TEXT = (
     "Each statement of the paper's results and conclusions is turned into one number with a stated "
-    "definition and a criterion. The criteria put numbers on words that the paper leaves open. The value "
+    "definition and a criterion. As the paper assumes, flanks are without relief, in contact from A to D. "
+    "The criteria put numbers on words that the paper leaves open. The value "
     "holds at the stated assumptions; the share says in how many samples of a Latin hypercube over "
     "everything the paper does not give the criterion is met. Samples whose motion is unstable or loses "
     "contact are left out of a claim on that motion. A verdict with a share between 10 and 90 % depends on "

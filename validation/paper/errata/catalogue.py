@@ -55,6 +55,7 @@ def errata_chapter(pair: AnyPair) -> ErrataChapter:
             "gear pair": pair.name,
             "pinion speed": f"{pair.operating.pinion_speed * 30.0 / math.pi:.6g} rpm",
             "pinion torque": f"{pair.operating.pinion_torque:.6g} N m",
+            "flanks and contact, as in the paper": "involutes without relief, in contact from A to D",
             "friction of the sign errata": f"Coulomb, mu = {SHOWN_COEFFICIENT}",
             "composite roughness": f"{1e6 * contact_path(pair).composite_roughness:.4g} µm",
         },

@@ -28,8 +28,9 @@ def write(results: Results) -> Content | None:
     blocks: list[Block] = [
         Text(
             f"{PAPER}. Figures 2 to 7 are computed with this gear pair at the paper's speeds, torques and "
-            "laws; lumped curves have their multibody twin. What the paper does not give (inertia, bearings, "
-            "roughness, oil) is this pair's."
+            "laws; lumped curves have their multibody twin. As the paper assumes, flanks have no relief and "
+            "are in contact from A to D. What the paper does not give (inertia, bearings, roughness, oil) is "
+            "this pair's."
         ),
         Text(f"Of {len(table.claims)} claims: {words}. {table.text}"),
         _claims(table),
