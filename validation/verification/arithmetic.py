@@ -12,6 +12,7 @@ from lumped.errors import NumericalError
 from lumped.gear_geometry.geometry import Geometry
 from lumped.losses import dynamic_losses, loss_factor, ohlendorf_of, quasi_static_losses
 from lumped.model.averaged import averaged_matrix, modes
+from lumped.model.mesh_elements import mesh_elements
 from lumped.model.periodic_system import periodic_system
 from lumped.quasi_static.load_sharing import share_load
 from validation.cross_check.metrics import mesh_orders
@@ -120,10 +121,13 @@ def _forces(pair: GearPair) -> Check:
     rows.append((float(np.abs(found - wanted).max()) / size + 1.0, 1.0))
     if pair.operating.brake_torque == "balanced":
         rows.append((float(motion.attrs["pinion_torque"]), pair.operating.pinion_torque))
-    # A pair is in contact from A to D; samples on either end may round to either side.
+    # A pair is in contact from A to D, in the loaded form where the static mesh has it; samples on either end
+    # may round to either side.
     g, place = pair.geometry, motion["position"].to_numpy()
-    clear = np.minimum(np.abs(place - g.L_XA), np.abs(place - g.L_XD)) > 1e-6 * g.base_pitch
-    wrong = (motion["contact"].to_numpy() > 0.0) != ((place > g.L_XA) & (place < g.L_XD))
+    loaded = pair.mesh.contact == "loaded"
+    low, high = mesh_elements(pair).stiffness.interval if loaded else (g.L_XA, g.L_XD)
+    clear = np.minimum(np.abs(place - low), np.abs(place - high)) > 1e-6 * g.base_pitch
+    wrong = (motion["contact"].to_numpy() > 0.0) != ((place > low) & (place < high))
     rows.append((1.0 + float((wrong & clear).sum()), 1.0))
     return rows_check("forces", rows)
 

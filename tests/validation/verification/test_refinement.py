@@ -16,7 +16,10 @@ from validation.verification.checks import Level
 
 
 def test_all_checks_pass_and_say_why_their_limit_is_what_it_is(pair):
-    for check in code_checks(pair):
+    loaded = pair.with_({"mesh.contact": "loaded", "mesh.stiffness": {"model": "energy"}})
+    of_loaded = {check.key: check for check in code_checks(loaded)}
+    assert {"static_mesh", "softening", "neighbours"} <= of_loaded.keys()
+    for check in (*code_checks(pair), *of_loaded.values()):
         assert check.passes, check
         assert check.exact
         assert check.reason

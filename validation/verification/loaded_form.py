@@ -1,0 +1,226 @@
+"""The contact of the statically loaded mesh once more, by the multibody model and by other routes.
+
+Both models read the stiffness of a pair, its softening by load and the coupling of neighbours; the loaded
+form solves the static mesh with them. Here that mesh is solved with the exact contact's kinematics, corner
+gaps and shared loads, and what is common to both models is worked out by a route of its own.
+
+Sources: docs/theory/contact_energy.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+from scipy.optimize import brentq
+
+from lumped import GearPair
+from lumped.gear_geometry.geometry import Wheel
+from lumped.model.mesh_elements import mesh_elements
+from lumped.path_of_contact import pair_stiffness
+from lumped.quasi_static.loaded_contact import FULL_DAMPING
+from lumped.stiffness.foundation import LOCAL_RATIO
+from lumped.typing import FloatArray
+from multibody.contact import kernels as kn
+from multibody.contact.effects import effect_flags
+from multibody.contact.elements import gradual, shared_loads, stiffness_at
+from multibody.contact.kinematics import corners_at
+from multibody.contact.machine import Machine, machine
+from validation.verification.checks import Check, rows_check
+
+_PLACES = 31
+#: Change of a compression for a tangent, over the approach.
+_STEP = 1e-4
+#: Of the ring: harmonics, nodes over the radius, nodes over a foot.
+_HARMONICS, _RADII, _FOOT = 150, 40, 40
+
+
+def loaded_form(pair: GearPair) -> Iterator[Check]:
+    """Static mesh, softening and neighbours of a pair, as far as it has them."""
+    if pair.mesh.contact == "loaded":
+        yield _static_mesh(pair)
+    softening = pair.mesh.stiffness.softening(pair)
+    if softening > 0.0:
+        yield _softening(pair, softening)
+    if pair.mesh.stiffness.neighbours(pair):
+        yield _neighbours(pair)
+
+
+@dataclass(frozen=True)
+class _Equilibrium:
+    """A pair in the static mesh: approach [m], load [N], tangent [N/m], damping [N s/m], compression [m]."""
+
+    approach: float
+    load: float
+    tangent: float
+    damping: float
+    pressed: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Mesh:
+    """The exact contact's mesh under the mean load, the gears held square to the nominal line of action."""
+
+    machine: Machine
+
+    @cached_property
+    def force(self) -> float:
+        return float(self.machine.torque_pinion / self.machine.parameters[kn.RADIUS_P])
+
+    @cached_property
+    def longer(self) -> float:
+        return float(self.force * (1.0 / self.machine.bearing_stiffness[:, 0]).sum())
+
+    def pressed(self, places: FloatArray, delta: float) -> FloatArray:
+        """Approach less relief and corner gaps of pairs at places (pairs,) [m]."""
+        p = self.machine.parameters
+        half, length = 0.5 * (delta + self.longer), p[kn.L_XY] + self.longer
+        found = np.empty(places.size)
+        for i, xi in enumerate(places):
+            arms = xi + half, p[kn.L_XY] - xi + half
+            corners = corners_at(*arms, length, p[kn.TIP_P], p[kn.TIP_G], p[kn.RADIUS_P], p[kn.RADIUS_G])
+            relief, _ = kn.relief_at(p, min(max(xi, p[kn.L_XA]), p[kn.L_XD]))
+            found[i] = delta - relief - corners.gap
+        return found
+
+    def loads(self, places: FloatArray, pressed: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Loads of pairs, the one behind first, and what their neighbours leave of their compressions."""
+        p, n = self.machine.parameters, places.size
+        stiffness = np.array([stiffness_at(self.machine.table, xi) for xi in places])
+        coupling, loads = np.zeros((n, n)), np.zeros(n)
+        for i in range(n):
+            for j in range(i):
+                coupling[i, j] = coupling[j, i] = kn.coupling_at(p, i - j, places[j])[0]
+        law = p[kn.SOFTENING], p[kn.NOMINAL_FORCE]
+        shared_loads(n, pressed, stiffness, np.zeros(n, np.bool_), coupling, *law, loads)
+        return loads, pressed - coupling @ loads
+
+    def at(self, xi: float) -> _Equilibrium:
+        """The pair at xi in equilibrium."""
+        p, reach = self.machine.parameters, 0.4 * self.machine.parameters[kn.PITCH]
+        places = xi + p[kn.PITCH] * np.arange(-4, 5)
+        near = (places > p[kn.L_XA] - reach) & (places < p[kn.L_XD] + reach)
+        own, places = int(np.flatnonzero(near & (places == xi))[0] - np.flatnonzero(near)[0]), places[near]
+
+        def missing(delta: float) -> float:
+            return float(self.loads(places, self.pressed(places, delta))[0].sum() - self.force)
+
+        delta = float(brentq(missing, 0.0, 1e-3, xtol=1e-17, rtol=1e-14))
+        pressed = self.pressed(places, delta)
+        loads, left = self.loads(places, pressed)
+        more, less = (self.loads(places, pressed + s * _STEP * delta)[0] for s in (1.0, -1.0))
+        share = gradual(float(loads[own]) / (FULL_DAMPING * self.force))
+        damping = p[kn.DAMPING] * np.sqrt(stiffness_at(self.machine.table, xi)) * share
+        tangent = (more - less)[own] / (2.0 * _STEP * delta)
+        return _Equilibrium(delta, float(loads[own]), float(tangent), float(damping), float(left[own]))
+
+
+def _static_mesh(pair: GearPair) -> Check:
+    mesh, elements = _Mesh(machine(pair, effect_flags(None, "loaded"))), mesh_elements(pair)
+    low, high = elements.stiffness.interval
+    places = low + (high - low) * (np.arange(_PLACES) + 0.5) / _PLACES
+    places = places[np.abs(places[:, None] - elements.stiffness.switches).min(axis=1) > 1e-5 * (high - low)]
+    found = [mesh.at(float(xi)) for xi in places]
+    own = {
+        "stiffness": np.array([one.tangent for one in found]),
+        "error": np.array([one.approach - one.load / one.tangent for one in found]),
+        "damping": np.array([one.damping for one in found]),
+    }
+    delta, rows = found[0].approach, []
+    for name, values in own.items():
+        scale = delta if name == "error" else max(float(values.max()), 1e-300)
+        rows.append(np.stack([getattr(elements, name)(places), values], axis=1) / scale + 1.0)
+    # Contact begins and ends where nothing is left of a pair's compression.
+    ends = [mesh.at(xi).pressed for xi in (low, high)]
+    rows.append(np.array([(1.0 + one / delta, 1.0) for one in ends]))
+    return rows_check("static_mesh", np.concatenate(rows))
+
+
+def _softening(pair: GearPair, softening: float) -> Check:
+    """From the curves at two torques: 1/k(T) = 1/k(T_0) - D ln(T/T_0)."""
+    torque, places = pair.operating.pinion_torque, np.linspace(*pair_stiffness(pair).interval, 5)[1:-1]
+    twice = pair.with_({"operating.pinion_torque": 2.0 * torque})
+    found = (1.0 / pair_stiffness(pair)(places) - 1.0 / pair_stiffness(twice)(places)) / np.log(2.0)
+    return rows_check("softening", np.stack([np.full(places.size, softening), found], axis=1))
+
+
+def _neighbours(pair: GearPair) -> Check:
+    """From the ring solved by collocation over the radius, tractions and motions summed over the feet."""
+    g, rows = pair.geometry, []
+    for apart, function in enumerate(pair.mesh.stiffness.neighbours(pair), 1):
+        low, high = function.interval
+        places = low + (high - low) * np.array([0.3, 0.8])
+        total = np.zeros(places.size)
+        near = (
+            places,
+            g.L_XY - places - apart * g.base_pitch,
+        )  # contact lengths of the tooth nearer its root
+        for wheel, gear, lengths in zip(pair.wheels, (pair.pinion, pair.gear), near, strict=True):
+            angle = 2.0 * np.pi * apart / wheel.tooth.teeth
+            feet = _feet(wheel.tooth.root_half_angle, angle, gear.poisson_ratio)
+            root, tip = (_foot_loads(wheel, lengths + s * g.base_pitch) for s in (0, apart))
+            total += np.sum(tip * (feet @ root), axis=0) / gear.youngs_modulus / g.face_width
+        rows.append(np.stack([function(places), total], axis=1))
+    return rows_check("neighbours", np.concatenate(rows))
+
+
+def _foot_loads(wheel: Wheel, length: FloatArray) -> FloatArray:
+    """Force across and along the centre line, and couple, that balance a unit load, (3, n); root radius 1."""
+    tooth = wheel.tooth
+    angle, half = length / tooth.base_radius - tooth.base_half_angle, tooth.root_half_angle
+    moment = -tooth.base_radius / tooth.root_radius  # about the centre of the gear
+    across = -np.cos(angle)
+    return np.stack([across, -np.sin(angle), moment - across * np.sin(half) / half])
+
+
+def _feet(half: float, apart: float, poisson: float) -> FloatArray:
+    """Motions of a foot (rows) by unit loads at one ``apart`` behind it (columns); E, radius and width 1."""
+    x, weight = np.polynomial.legendre.leggauss(_FOOT)
+    x, weight = half * x, half * weight
+    # Radial and tangential traction of unit loads: across, along, and a couple of forces along.
+    couple = np.sin(x) / (half - np.sin(half) * np.cos(half))
+    radial = np.array([np.sin(x) / (2 * half), np.cos(x) / (2 * half), -couple * np.cos(x)]) * weight
+    across = np.array([np.cos(x) / (2 * half), -np.sin(x) / (2 * half), couple * np.sin(x)]) * weight
+    found = np.zeros((3, 3))
+    for n, ring in enumerate(_rings(poisson)):
+        share = 1.0 / np.pi if n else 0.5 / np.pi
+        even = share * np.array([radial @ np.cos(n * x), across @ np.sin(n * x)])
+        odd = share * np.array([radial @ np.sin(n * x), -across @ np.cos(n * x)])
+        (up, turn), (up_odd, turn_odd) = ring @ even, ring @ odd
+        there = n * (x + apart)
+        moved = np.outer(np.cos(there), up) + np.outer(np.sin(there), up_odd)
+        turned = np.outer(np.sin(there), turn) - np.outer(np.cos(there), turn_odd)
+        found += radial @ moved + across @ turned
+    return found
+
+
+@lru_cache(maxsize=4)
+def _rings(poisson: float) -> FloatArray:
+    """Radial and tangential motion of the rim by tractions of order n = 0, 1, ... on it; (n, 2, 2).
+
+    Equilibrium of plane stress in polar coordinates by Chebyshev collocation over ln(r); u_r and the radial
+    traction go with cos(n x), u_t and the tangential one with sin(n x). The twist, n = 0, is left out.
+    """
+    m = _RADII
+    node = np.cos(np.pi * np.arange(m) / (m - 1))  # 1 at the rim
+    c = np.where((np.arange(m) == 0) | (np.arange(m) == m - 1), 2.0, 1.0) * (-1.0) ** np.arange(m)
+    d = np.outer(c, 1.0 / c) / (node[:, None] - node + np.eye(m))
+    d = (d - np.diag(d.sum(axis=1))) * 2.0 / np.log(LOCAL_RATIO)
+    one, zero, plane, shear = np.eye(m), np.zeros((m, m)), 1.0 / (1.0 - poisson**2), 0.5 / (1.0 + poisson)
+    found = np.zeros((_HARMONICS + 1, 2, 2))
+    for n in range(_HARMONICS + 1):
+        hoop = np.hstack([one, n * one])  # r times the strains, of (u_r, u_t)
+        stretch, slip = np.hstack([d, zero]), np.hstack([-n * one, d - one])
+        radial, around = plane * (stretch + poisson * hoop), plane * (hoop + poisson * stretch)
+        tangential = shear * slip
+        # r^2 times equilibrium, with r d/dr(s/r) = (d - 1) s of s, r times a stress.
+        rows = np.vstack([d @ radial + n * tangential - around, d @ tangential - n * around + tangential])
+        rows[0], rows[m] = radial[0], tangential[0]
+        rows[m - 1], rows[2 * m - 1] = np.eye(2 * m)[[m - 1, 2 * m - 1]]
+        right = np.zeros((2 * m, 2))
+        right[0, 0] = right[m, 1] = 1.0
+        found[n] = np.linalg.solve(rows, right)[[0, m]]
+    found[0, :, 1] = found[0, 1] = 0.0
+    return found
