@@ -9,6 +9,7 @@ from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.solution import simulate, steady_state
 from lumped.model.sweep import speed_sweep
 from lumped.path_function import PathFunction
+from lumped.path_of_contact.plane_compliance import plane_compliance
 from lumped.path_of_contact.stiffness import mesh_stiffness, stiffness_components
 from lumped.quasi_static import optimal_relief, static_transmission_error
 from lumped.schema.files import geometry, json_schema, load_gear_pair, preset_names
@@ -36,6 +37,7 @@ __all__ = [
     "mesh_stiffness",
     "optimal_relief",
     "periodic_system",
+    "plane_compliance",
     "preset_names",
     "simulate",
     "speed_sweep",

@@ -3,6 +3,7 @@
 from lumped.path_of_contact.friction import contact_path, friction_path_function, law_range_violations
 from lumped.path_of_contact.friction_profile import friction_profile
 from lumped.path_of_contact.iso_comparison import iso_comparison
+from lumped.path_of_contact.plane_compliance import plane_compliance
 from lumped.path_of_contact.stiffness import mesh_stiffness, pair_stiffness, stiffness_components
 
 __all__ = [
@@ -13,5 +14,6 @@ __all__ = [
     "law_range_violations",
     "mesh_stiffness",
     "pair_stiffness",
+    "plane_compliance",
     "stiffness_components",
 ]

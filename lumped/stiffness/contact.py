@@ -69,3 +69,20 @@ def local_compliance(half_width: FloatArray, depth: FloatArray, modulus: float, 
     """
     shape = np.log(2.0 * depth / half_width) - poisson / (2.0 * (1.0 - poisson))
     return np.asarray(2.0 * (1.0 - poisson**2) / (math.pi * modulus) * shape, dtype=np.float64)
+
+
+def softening(modulus: tuple[float, float], poisson: tuple[float, float]) -> float:
+    """Fall of ``local_compliance`` of both teeth with the logarithm of the load, times face width [m^2/N].
+
+    The half width grows as the root of the load, so D = sum (1 - nu^2)/(pi E), at every position.
+
+    Parameters
+    ----------
+    modulus, poisson : E [Pa] and nu [-] of both gears
+
+    Examples
+    --------
+    >>> f"{softening((206e9, 206e9), (0.3, 0.3)):.4e}"
+    '2.8122e-12'
+    """
+    return sum((1.0 - nu**2) / e for e, nu in zip(modulus, poisson, strict=True)) / math.pi

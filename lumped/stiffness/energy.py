@@ -12,11 +12,8 @@ so that its stiffness is an upper estimate in double contact; the loaded form ta
 
 from __future__ import annotations
 
-import math
 from typing import Literal
 
-import numpy as np
-from numpy.polynomial import Chebyshev
 from pydantic import Field
 
 from lumped.path_function import PathFunction
@@ -24,16 +21,12 @@ from lumped.ranges import RangeViolation, range_violations
 from lumped.stiffness import iso6336
 from lumped.stiffness.base import MeshingPair, StiffnessModel
 from lumped.stiffness.body import thin_rims
+from lumped.stiffness.contact import softening
 from lumped.stiffness.foundation import HALF_ANGLE
 from lumped.stiffness.neighbours import neighbour_compliances
 from lumped.stiffness.pair_compliance import Contact, pair_compliance
 from lumped.stiffness.ramp import RampLength, ramped
-from lumped.typing import FloatArray
-
-#: Fit error of k over its largest value.
-_FIT_TOLERANCE = 1e-10
-#: Terms of the Chebyshev series of k over the path of contact that are tried.
-_SERIES = (64, 128)
+from lumped.stiffness.series import fitted_series
 
 
 def energy_curve(pair: MeshingPair, hertz: Contact = "weber_banaschek") -> PathFunction:
@@ -44,18 +37,8 @@ def energy_curve(pair: MeshingPair, hertz: Contact = "weber_banaschek") -> PathF
     pair : the gear pair
     hertz : contact compliance, as in ``pair_compliance``
     """
-    low, high = pair.geometry.L_XA, pair.geometry.L_XD
-
-    def stiffness(xi: FloatArray) -> FloatArray:
-        return pair_compliance(pair, xi, hertz=hertz).stiffness
-
-    # Stiffness is analytic over the path, so its Chebyshev series from a few dozen evaluations stands for it.
-    for terms in _SERIES:
-        series = Chebyshev.interpolate(stiffness, terms - 1, (low, high))
-        tolerance = _FIT_TOLERANCE * float(np.abs(series.linspace(terms)[1]).max())
-        if np.abs(series.coef[-terms // 8 :]).max() <= 0.1 * tolerance:
-            return PathFunction.fit(series, (low, high), tolerance=tolerance)
-    return PathFunction.fit(stiffness, (low, high), tolerance=tolerance)
+    ends = pair.geometry.L_XA, pair.geometry.L_XD
+    return fitted_series(lambda xi: pair_compliance(pair, xi, hertz=hertz).stiffness, ends)
 
 
 def foundation_violations(pair: MeshingPair) -> tuple[RangeViolation, ...]:
@@ -96,15 +79,14 @@ class EnergyStiffness(StiffnessModel):
         return neighbour_compliances(pair) if self.scale == "none" else ()
 
     def softening(self, pair: MeshingPair) -> float:
-        """D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N].
+        """D in 1/k(T) = 1/k(T_0) - D ln(T/T_0), of Weber and Banaschek's contact [m/N].
 
-        Weber and Banaschek's contact depends on the load by -2 (1 - nu^2)/(pi E b) ln(a) per tooth, and its
-        half width a grows as the root of the load, so D = sum (1 - nu^2)/(pi E b) over both teeth, at every
-        position. The linearised contact does not depend on the load; curves that are scaled or ramped
-        keep the operating torque.
+        The linearised contact does not depend on the load; curves that are scaled or ramped keep the
+        operating torque.
         """
         changed = self.scale != "none" or self.ramp_length > 0.0
         if self.hertz != "weber_banaschek" or changed:
             return 0.0
-        plane = sum((1.0 - g.poisson_ratio**2) / g.youngs_modulus for g in (pair.pinion, pair.gear))
-        return plane / (math.pi * pair.geometry.face_width)
+        moduli = (pair.pinion.youngs_modulus, pair.gear.youngs_modulus)
+        ratios = (pair.pinion.poisson_ratio, pair.gear.poisson_ratio)
+        return softening(moduli, ratios) / pair.geometry.face_width

@@ -10,7 +10,8 @@ series solve the ring exactly. Derivation: docs/theory/contact_energy.md, "Neigh
 from __future__ import annotations
 
 import math
-from functools import lru_cache
+from collections.abc import Callable
+from functools import lru_cache, partial
 
 import numpy as np
 from numpy.polynomial import Chebyshev, Polynomial
@@ -24,7 +25,7 @@ from lumped.typing import FloatArray
 #: Harmonics of the ring; the terms fall as the third power of their order.
 _HARMONICS = 1000
 #: Pairs are coupled this fraction of a base pitch beyond A and D too.
-_REACH = 0.45
+REACH = 0.45
 
 
 def neighbour_compliances(pair: MeshingPair) -> tuple[PathFunction, ...]:
@@ -36,19 +37,33 @@ def neighbour_compliances(pair: MeshingPair) -> tuple[PathFunction, ...]:
     w_m(xi) with the pair behind at xi and the one ahead at xi + m p_b [m/N]
     """
     g = pair.geometry
-    low, high = g.L_XA - _REACH * g.base_pitch, g.L_XD + _REACH * g.base_pitch
+
+    def moved(apart: int, xi: FloatArray) -> FloatArray:
+        distance = apart * g.base_pitch
+        pinion = _moved(pair.wheels[0], pair.pinion, xi, apart, distance)
+        gear = _moved(pair.wheels[1], pair.gear, g.L_XY - xi - distance, apart, distance)
+        return (pinion + gear) / g.face_width
+
+    return coupled_pairs(pair, moved)
+
+
+def coupled_pairs(
+    pair: MeshingPair, moved: Callable[[int, FloatArray], FloatArray]
+) -> tuple[PathFunction, ...]:
+    """Functions w_m(xi) for all m, as in ``neighbour_compliances``.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    moved : (m, xi) -> w_m [m/N], smooth; xi (n,) reaches beyond A and D
+    """
+    g = pair.geometry
+    low, high = g.L_XA - REACH * g.base_pitch, g.L_XD + REACH * g.base_pitch
     found = []
     for apart in range(1, math.floor((high - low) / g.base_pitch) + 1):
-        distance = apart * g.base_pitch
-
-        def compliance(xi: FloatArray, apart: int = apart, distance: float = distance) -> FloatArray:
-            pinion = _moved(pair.wheels[0], pair.pinion, xi, apart, distance)
-            gear = _moved(pair.wheels[1], pair.gear, g.L_XY - xi - distance, apart, distance)
-            return (pinion + gear) / g.face_width
-
         # Analytic and nearly constant: one polynomial for the whole path.
-        ends = (low, high - distance)
-        series = Chebyshev.interpolate(compliance, FIT_DEGREE, ends).convert(kind=Polynomial)
+        ends = (low, high - apart * g.base_pitch)
+        series = Chebyshev.interpolate(partial(moved, apart), FIT_DEGREE, ends).convert(kind=Polynomial)
         powers = np.asarray(series(Polynomial([low, 1.0])).coef, dtype=np.float64)
         found.append(PathFunction(np.array(ends), powers[::-1, None], np.empty(0)))
     return tuple(found)

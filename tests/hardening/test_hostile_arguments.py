@@ -48,6 +48,7 @@ CALLS = {
     averaged_state_space: ({"pair": PAIR}, "form"),
     lumped.mesh_stiffness: ({"pair": PAIR}, "samples"),
     lumped.stiffness_components: ({"pair": PAIR}, "points"),
+    lumped.plane_compliance: ({"pair": PAIR}, "plane support phases"),
     lumped.static_transmission_error: ({"pair": PAIR}, "torques phases"),
     lumped.optimal_relief: ({"pair": PAIR}, "torque"),
     quasi_static.relief_map: ({"pair": PAIR, "amounts": 1e-5, "lengths": 1e-3}, "amounts lengths"),

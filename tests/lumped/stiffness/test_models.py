@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lumped import ParameterError, geometry, load_gear_pair
+from lumped import ParameterError, geometry, load_gear_pair, plane_compliance
 from lumped.path_of_contact import pair_stiffness
 from lumped.stiffness import MODELS, iso6336
 from lumped.stiffness.parabolic import iso_end_ratio, parabola
@@ -146,3 +146,27 @@ def test_square_root_of_the_ramp_is_smooth():
     root = np.sqrt(k(LOW + s * ramp))
     # sqrt(RAMP) = 3 s^2 - 2 s^3
     assert root == pytest.approx(np.sqrt(PEAK) * (3 * s**2 - 2 * s**3), rel=1e-6)
+
+
+def test_finite_elements_are_the_plane_compliance_at_any_torque():
+    pair = with_model(model="finite_elements")
+    xi = np.linspace(*pair_stiffness(pair).interval, 9)[1:-1]
+    k, (w, *_) = pair_stiffness(pair)(xi), pair.mesh.stiffness.neighbours(pair)
+    found = plane_compliance(pair, phases=3)
+    both = found.position.values[0]
+    assert found.compliance.values[0] == pytest.approx(
+        np.array(
+            [
+                [1.0 / pair_stiffness(pair)(both[0]), w(both[0])],
+                [w(both[0]), 1.0 / pair_stiffness(pair)(both[1])],
+            ]
+        ),
+        rel=1e-6,  # w is one polynomial over a path that reaches beyond the flanks
+    )
+    # The contact widens with the root of the load: 1/k falls by D ln T.
+    twice = pair.with_(operating__pinion_torque=2.0 * pair.operating.pinion_torque)
+    softening = pair.mesh.stiffness.softening(pair)
+    assert 1.0 / pair_stiffness(twice)(xi) == pytest.approx(1.0 / k - softening * np.log(2.0), rel=1e-9)
+    # Twice as wide under the same load per width.
+    wide = pair.with_(pinion__face_width=12.7, gear__face_width=12.7, operating__pinion_torque="113 N m")
+    assert pair_stiffness(wide)(xi) == pytest.approx(2.0 * k, rel=1e-9)

@@ -1,0 +1,141 @@
+"""How far the flanks of one gear give way under loads, as functions of where the loads are."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import ArrayLike
+
+from lumped.elasticity.cache import kept
+from lumped.elasticity.ring import Support, compliances
+from lumped.elasticity.sector import Sector, sector, stations
+from lumped.errors import NumericalError
+from lumped.gear_geometry.tooth_profile import ToothProfile
+from lumped.typing import FloatArray
+
+#: Elements at the surface of the mesh, and of the coarser one that shows its error [modules].
+_FINE, _COARSE = 0.2, 0.3
+#: Loads along the flank, and terms in each direction that neighbours, which hardly feel the place, are given.
+_LOADS, _TERMS = 14, 4
+#: Nearer than this to the edge of the tip the half plane of the load ends [modules].
+_EDGE = 0.05
+#: Nearer than this to the base circle the flank is too curved for it [modules].
+_BASE = 0.25
+#: A gear without a bore: root over bore radius. Its free body does not feel so small a hole.
+_SOLID = 10.0
+
+
+@dataclass(frozen=True)
+class PlaneGear:
+    """What the deflection of a gear depends on; lengths in modules.
+
+    Attributes
+    ----------
+    profile : the tooth, of module 1
+    tip : radius [modules]
+    bore : radius [modules], 0 for a solid gear
+    poisson : nu of plane stress, nu/(1 - nu) for plane strain
+    support : "free": the load is balanced by the gear's own inertia, and motions are counted from its mean
+    one;
+        "clamped": the bore is held
+    reach : number of teeth ahead whose motion is wanted
+    """
+
+    profile: ToothProfile
+    tip: float
+    bore: float
+    poisson: float
+    support: Support
+    reach: int
+
+
+@dataclass(frozen=True, eq=False)
+class FlankCompliance:
+    """Compliances of a gear along the line of action, times E (plane strain: E/(1 - nu^2)) and face width
+    [-].
+
+    Attributes
+    ----------
+    interval : lengths along the base tangent between which loads were computed [modules]
+    own : (n,) Chebyshev coefficients of the smooth part u_c of the deflection under a unit load; with a
+        Hertzian pressure of half width a [modules] in its place the point moves by
+        u_c + (2 ln(2/a) - nu)/pi, nu of plane stress
+    cross : (reach, k, k) coefficients of the motion of the tooth m + 1 ahead, over the lengths of load and
+    point
+    rough : (n,) the same as ``own`` from a coarser mesh
+    """
+
+    interval: tuple[float, float]
+    own: FloatArray
+    cross: FloatArray
+    rough: FloatArray
+
+    def deflection(self, length: ArrayLike) -> FloatArray:
+        """u_c at lengths along the base tangent, any shape [-]."""
+        return np.asarray(chebyshev.chebval(self._at(length), self.own), dtype=np.float64)
+
+    def error(self, length: ArrayLike) -> FloatArray:
+        """By how much a coarser mesh differs at lengths along the base tangent, any shape [-]."""
+        return np.asarray(abs(chebyshev.chebval(self._at(length), self.own - self.rough)), dtype=np.float64)
+
+    def moved(self, apart: int, loaded: ArrayLike, length: ArrayLike) -> FloatArray:
+        """Motion of the tooth ``apart`` pitches ahead of a loaded one, at lengths of the same shape [-]."""
+        found = chebyshev.chebval2d(self._at(loaded), self._at(length), self.cross[apart - 1])
+        return np.asarray(found, dtype=np.float64)
+
+    def _at(self, length: ArrayLike) -> FloatArray:
+        low, high = self.interval
+        return (2.0 * np.asarray(length) - low - high) / (high - low)
+
+
+@lru_cache(maxsize=64)
+def flank_compliance(gear: PlaneGear) -> FlankCompliance:
+    """Compliances of a gear over the usable length of its flanks, from two meshes.
+
+    Parameters
+    ----------
+    gear : what they depend on
+
+    Raises
+    ------
+    NumericalError : the teeth cannot be meshed
+    """
+    profile = gear.profile
+    bore = gear.bore or profile.root_radius / _SOLID
+    tip_length = math.sqrt(gear.tip**2 - profile.base_radius**2)
+    low = max(profile.form_length, _BASE)
+    high = tip_length - _EDGE * profile.base_radius / tip_length
+    fine, coarse = (_mesh(profile, gear.tip, bore, size) for size in (_FINE, _COARSE))
+    numbers = np.array([low, high, gear.poisson, profile.teeth, gear.reach, _LOADS, _TERMS, _COARSE])
+
+    def compute() -> dict[str, FloatArray]:
+        at = 0.5 * (low + high) + 0.5 * (high - low) * chebyshev.chebpts1(_LOADS)
+        first, second = (
+            compliances(mesh, gear.poisson, profile.teeth, at, gear.reach, gear.support)
+            for mesh in (fine, coarse)
+        )
+        nodes = chebyshev.chebpts1(_LOADS)
+        own, rough = (chebyshev.chebfit(nodes, np.diag(each[0]), _LOADS - 1) for each in (first, second))
+        basis = np.linalg.pinv(chebyshev.chebvander(nodes, _TERMS - 1))
+        # Rows of the matrices are points, columns loads.
+        cross = np.einsum("li,mji,kj->mlk", basis, first[1:], basis)
+        return {"own": own, "cross": cross, "rough": rough}
+
+    found = kept(fine.nodes.tobytes() + gear.support.encode() + numbers.tobytes(), compute)
+    return FlankCompliance((low, high), found["own"], found["cross"], found["rough"])
+
+
+def _mesh(profile: ToothProfile, tip: float, bore: float, size: float) -> Sector:
+    mesh = sector(profile, tip, bore, stations(profile, tip, bore, size))
+    corners = mesh.nodes[mesh.elements[:, [0, 6, 8, 2]]]  # round the element
+    turn = np.roll(corners, -1, axis=1) - corners
+    before = np.roll(turn, 1, axis=1)
+    if not (before[..., 0] * turn[..., 1] - before[..., 1] * turn[..., 0] > 0.0).all():
+        raise NumericalError(
+            f"The finite elements of the gear with {profile.teeth} teeth fold over: tooth or rim is too thin."
+        )
+    return mesh

@@ -1,0 +1,199 @@
+"""A whole gear out of equal pitches: each is condensed to its two cuts, and the ring is closed.
+
+All pitches are the same finite-element model turned about the axis, so one is factored, and 2^k of them in a
+row are condensed by joining k times (J. S. Przemieniecki, Theory of Matrix Structural Analysis (1968),
+chapter 9). Freedoms on a cut are radial and tangential, the same for the pitches on both sides.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import splu
+
+from lumped.elasticity.elements import assembled
+from lumped.elasticity.load import flank_load
+from lumped.elasticity.sector import Sector
+from lumped.typing import FloatArray
+
+#: What holds the gear: nothing (its own inertia balances the load, motions are counted from the mean one), or
+#: its bore.
+Support = Literal["free", "clamped"]
+
+
+@dataclass(frozen=True)
+class Chain:
+    """Pitches in a row, condensed to the cuts at their ends.
+
+    Attributes
+    ----------
+    stiffness : (2 r, 2 r) of the cut behind, then of that ahead
+    loads : (2 r, c) on the cuts by unit values of c loads
+    work : (c, c) work of the loads on the motions that they cause with both cuts held
+    """
+
+    stiffness: FloatArray
+    loads: FloatArray
+    work: FloatArray
+
+
+def compliances(
+    mesh: Sector,
+    poisson: float,
+    teeth: int,
+    lengths: FloatArray,
+    reach: int,
+    support: Support,
+    radii: tuple[float, float] | None = None,
+) -> FloatArray:
+    """Motion of points on the flanks by unit loads on tooth 0, both along the line of action.
+
+    Young's modulus and thickness are 1, lengths in modules.
+
+    Parameters
+    ----------
+    mesh, poisson, teeth : one pitch, nu of plane stress, number of teeth
+    lengths : (n,) of loads and points along the base tangent [modules]
+    reach : number of teeth ahead whose motion is wanted
+    support : "free" or "clamped", see ``Support``
+    radii : of the cut-off, see ``flank_load``
+
+    Returns
+    -------
+    (reach + 1, n, n) for the teeth 0, 1, ...: motion of the point, by the load. On tooth 0 only the smooth
+    part u_c of the motion, see ``flank_load``; it means something on the diagonal
+    """
+    options = () if radii is None else (radii,)
+    applied, read, taken = (
+        np.stack(each, axis=-1)
+        for each in zip(*(flank_load(mesh, poisson, length, *options) for length in lengths), strict=True)
+    )
+    matrix, heavy = assembled(mesh.nodes, mesh.elements, poisson)
+    pitch, count = 2.0 * math.pi / teeth, lengths.size
+    one = _condensed(mesh, matrix, np.concatenate([applied, read, heavy], axis=1), pitch, support)
+    body = slice(2 * count, 2 * count + 3)
+    rest = Chain(one.stiffness, one.loads[:, body], one.work[body, body])
+    left = teeth - 1 - reach
+    # Columns: loads of tooth 0, points of the teeth 0 to reach, three accelerations of the whole gear.
+    cut = one.stiffness.shape[0] // 2
+    cuts = reach + 2 if left else reach + 1
+    columns = count * (reach + 2) + 3
+    total, work = np.zeros((cuts, cut, cuts, cut)), np.zeros((columns, columns))
+    loads = np.zeros((cuts, cut, columns))
+
+    def add(chain: Chain, chosen: np.ndarray, behind: int, ahead: int, turn: float) -> None:
+        turned = np.eye(chosen.size)
+        turned[-3:, -3:] = _turn(turn)
+        ends = [behind, ahead % cuts]
+        stiffness = chain.stiffness.reshape(2, cut, 2, cut)
+        forces = (chain.loads @ turned).reshape(2, cut, -1)
+        for i, row in enumerate(ends):
+            loads[row][:, chosen] += forces[i]
+            for j, column in enumerate(ends):
+                total[row, :, column] += stiffness[i, :, j]
+        work[np.ix_(chosen, chosen)] += turned.T @ chain.work @ turned
+
+    last = np.arange(columns - 3, columns)
+    for tooth in range(reach + 1):
+        points = np.arange(count * (tooth + 1), count * (tooth + 2))
+        used = np.arange(count, 2 * count + 3) if tooth else np.arange(2 * count + 3)
+        chosen = np.concatenate([points, last] if tooth else [np.arange(count), points, last])
+        part = Chain(one.stiffness, one.loads[:, used], one.work[np.ix_(used, used)])
+        add(part, chosen, tooth, tooth + 1, tooth * pitch)
+    if left:
+        add(_row(rest, left, pitch), last, reach + 1, 0, (reach + 1) * pitch)
+
+    stiffness, forces = total.reshape(cuts * cut, -1), loads.reshape(cuts * cut, -1)
+    kept = np.ones(len(stiffness), dtype=bool)
+    balance = np.eye(columns)
+    resultants = np.zeros((3, columns))
+    if support == "free":
+        rigid = np.zeros((len(applied), 3))
+        rigid[::2, 0] = rigid[1::2, 1] = 1.0
+        rigid[::2, 2], rigid[1::2, 2] = -mesh.nodes[:, 1], mesh.nodes[:, 0]
+        own = rigid.T @ heavy
+        mass = teeth * np.array([own[0, 0], own[0, 0], own[2, 2]])
+        resultants[:, :count] = rigid.T @ applied
+        for tooth in range(reach + 1):
+            at = slice(count * (tooth + 1), count * (tooth + 2))
+            resultants[:, at] = _turn(tooth * pitch).T @ rigid.T @ read
+        resultants /= mass[:, None]
+        balance[-3:] -= resultants
+        kept[[0, 1, cut - 1]] = False  # three pins: the balanced gear does not feel them
+    moved = np.linalg.solve(stiffness[np.ix_(kept, kept)], forces[kept])
+    found = balance.T @ (work + forces[kept].T @ moved) @ balance
+    points = found[count:-3, :count] - resultants[:, count:-3].T @ taken
+    return np.asarray(points.reshape(reach + 1, count, count))
+
+
+def _turn(angle: float) -> FloatArray:
+    """Accelerations (along x, along y, about 0) in axes turned by an angle; (3, 3)."""
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def _condensed(
+    mesh: Sector, matrix: sparse.csc_array, loads: FloatArray, pitch: float, support: Support
+) -> Chain:
+    """One pitch; its bore held where ``support`` says so."""
+    held = set(mesh.bore.tolist()) if support == "clamped" else set()
+    cuts = [np.array([node for node in cut if node not in held]) for cut in (mesh.behind, mesh.ahead)]
+    outer = np.concatenate([np.stack([2 * cut, 2 * cut + 1], -1).ravel() for cut in cuts])
+    inner = np.ones(len(loads), dtype=bool)
+    inner[outer] = False
+    for node in held:
+        inner[2 * node : 2 * node + 2] = False
+    polar = np.zeros((outer.size, outer.size))
+    half = outer.size // 2
+    for first, angle in ((0, -0.5 * pitch), (half, 0.5 * pitch)):
+        c, s = math.cos(angle), math.sin(angle)
+        for k in range(first, first + half, 2):
+            polar[k : k + 2, k : k + 2] = [[c, -s], [s, c]]
+    inside = np.flatnonzero(inner)
+    border = matrix[inside][:, outer] @ polar
+    factor = splu(matrix[inside][:, inside], permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+    by_border, by_loads = np.split(
+        factor.solve(np.concatenate([border, loads[inside]], axis=1)), [outer.size], 1
+    )
+    return Chain(
+        polar.T @ matrix[outer][:, outer] @ polar - border.T @ by_border,
+        polar.T @ loads[outer] - border.T @ by_loads,
+        loads[inside].T @ by_loads,
+    )
+
+
+def _joined(a: Chain, b: Chain, turn: float) -> Chain:
+    """Two chains of accelerations in a row, the second turned against the first."""
+    half = len(a.stiffness) // 2
+    t = _turn(turn)
+    b = Chain(b.stiffness, b.loads @ t, t.T @ b.work @ t)
+    middle = a.stiffness[half:, half:] + b.stiffness[:half, :half]
+    pulled = np.concatenate([a.stiffness[half:, :half], b.stiffness[:half, half:]], axis=1)
+    force = a.loads[half:] + b.loads[:half]
+    by_ends, by_force = np.split(
+        np.linalg.solve(middle, np.concatenate([pulled, force], axis=1)), [2 * half], 1
+    )
+    ends = np.zeros_like(a.stiffness)
+    ends[:half, :half], ends[half:, half:] = a.stiffness[:half, :half], b.stiffness[half:, half:]
+    return Chain(
+        ends - pulled.T @ by_ends,
+        np.concatenate([a.loads[:half], b.loads[half:]]) - pulled.T @ by_force,
+        a.work + b.work + force.T @ by_force,
+    )
+
+
+def _row(one: Chain, count: int, pitch: float) -> Chain:
+    """Equal pitches in a row."""
+    found, found_count, power, power_count = None, 0, one, 1
+    while True:
+        if count & power_count:
+            found = power if found is None else _joined(found, power, found_count * pitch)
+            found_count += power_count
+        if found_count == count:
+            assert found is not None
+            return found
+        power, power_count = _joined(power, power, power_count * pitch), 2 * power_count

@@ -1,0 +1,90 @@
+"""Is a gear's compliance accurate to what its second mesh says, and is it kept safely?"""
+
+import math
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from lumped import NumericalError
+from lumped.elasticity import gear as module
+from lumped.elasticity.cache import kept
+from lumped.elasticity.gear import PlaneGear, flank_compliance
+from lumped.elasticity.ring import compliances
+from lumped.gear_geometry.tooth_profile import ToothProfile
+
+from .conftest import NU, meshed
+
+
+def test_error_falls_with_the_mesh_and_the_estimate_covers_it():
+    teeth = 28
+    profile = ToothProfile(teeth, 1.0, math.radians(20.0), 0.0, 1.25, 0.38)
+    bore = profile.root_radius / 3.0
+    at = np.array([2.4, 4.8, 6.6])
+    own = {
+        size: np.diag(compliances(meshed(profile, 0.0, bore, size), NU, teeth, at, 1, "free")[0])
+        for size in (0.4, 0.2, 0.1)
+    }
+    steps = abs(own[0.4] - own[0.2]), abs(own[0.2] - own[0.1])
+    # Quadratic elements: order 3 to 4 where the fields are smooth, less by the curvature under the load.
+    assert np.log2(steps[0].sum() / steps[1].sum()) > 2.0
+    found = flank_compliance(PlaneGear(profile, 15.0, bore, NU, "free", 1))
+    off = abs(found.deflection(at) - own[0.1])
+    assert np.all(off < found.error(at))
+    assert np.all(found.error(at) < 4e-3 * own[0.1])
+
+
+def test_teeth_that_cannot_be_meshed_are_refused():
+    profile = ToothProfile(28, 1.0, math.radians(20.0), 0.0, 1.25, 0.38)
+    with pytest.raises(NumericalError, match="fold"):
+        # A tip so far out that the flanks have crossed.
+        flank_compliance(PlaneGear(profile, 18.0, 4.0, NU, "free", 1))
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setattr("lumped.elasticity.cache.user_cache_path", lambda *_, **__: tmp_path)
+    return tmp_path / "elasticity"
+
+
+def test_results_are_kept_whole_or_not_at_all(folder):
+    calls = []
+
+    def compute():
+        calls.append(None)
+        return {"a": np.arange(3.0), "b": np.array(2.0)}
+
+    def asked(inputs=b"gear"):
+        found = kept(inputs, compute)
+        assert found["a"].tolist() == [0.0, 1.0, 2.0]
+        assert found["b"] == 2.0
+        return len(calls)
+
+    with ThreadPoolExecutor(4) as pool:  # side by side
+        list(pool.map(lambda _: asked(), range(8)))
+    (file,) = folder.iterdir()
+    calls.clear()
+    assert asked() == 0
+    assert asked(b"another gear") == 1
+    whole = file.read_bytes()
+    for number, broken in enumerate((b"", whole[:-40], whole[:200] + b"?" + whole[201:], b"no file"), 2):
+        file.write_bytes(broken)
+        assert asked() == number
+    assert asked() == number
+    for path in folder.iterdir():
+        path.unlink()
+    folder.rmdir()
+    folder.write_text("no folder")
+    assert asked() == number + 1
+
+
+def test_a_changed_tooth_is_another_result(folder, monkeypatch):
+    count = []
+    monkeypatch.setattr(module, "compliances", lambda *a: count.append(1) or compliances(*a))
+    profile = ToothProfile(12, 1.0, math.radians(20.0), 0.3, 1.25, 0.38)
+    gear = PlaneGear(profile, 7.2, 1.0, NU, "clamped", 1)
+    for one in (gear, replace(gear, support="free"), replace(gear, profile=replace(profile, fillet=0.3))):
+        flank_compliance.__wrapped__(one)
+        flank_compliance.__wrapped__(one)
+    assert len(count) == 3 * 2

@@ -1,0 +1,92 @@
+"""Are the compliances of a mesh those of an independent computation, in the frames that it was made in?"""
+
+import math
+
+import numpy as np
+import pytest
+
+from lumped import ParameterError, load_gear_pair, plane_compliance
+from lumped.stiffness.elastic_teeth import alone, elastic_teeth, hertz_half_width
+from lumped.stiffness.neighbours import neighbour_compliances
+
+NEAR, FAR = 0.003, 0.008  # of a mesh with half as many freedoms, between few loads; of other end positions
+
+
+@pytest.fixture(scope="module")
+def free(nasa):
+    return plane_compliance(nasa)
+
+
+def test_stiffness_is_that_of_another_program(nasa, free):
+    # Another mesh, other elements and loads, seven teeth on a ring: 1.187, 1.164, 1.093 of ISO 6336-1.
+    found = free.attrs
+    assert found["largest_alone"] / found["iso_single"] == pytest.approx(1.187, rel=NEAR)
+    assert found["mean_alone"] / found["iso_mean"] == pytest.approx(1.164, rel=FAR)
+    assert found["mean"] / found["iso_mean"] == pytest.approx(1.093, rel=FAR)
+    assert found["relative_error"] < 2e-3
+
+
+def test_the_matrix_is_symmetric_and_makes_the_mesh_stiffness(nasa, free):
+    matrix, both = free.compliance.values, free.compliance.values[:, 1, 1] > 0.0
+    assert np.array_equal(matrix, matrix.transpose(0, 2, 1))
+    (a, w), (_, d) = np.moveaxis(matrix[both], 0, -1)
+    assert free.mesh_stiffness.values[both] == pytest.approx((a + d - 2.0 * w) / (a * d - w * w), rel=1e-12)
+    assert free.mesh_stiffness_alone.values[both] == pytest.approx(1.0 / a + 1.0 / d, rel=1e-12)
+    assert free.mesh_stiffness.values[~both] == pytest.approx(1.0 / matrix[~both, 0, 0], rel=1e-12)
+    # Equal gears: the cycle reads the same backwards from the pitch point.
+    g = nasa.geometry
+    xi = np.linspace(g.L_XA, g.L_XD, 7)
+    k = 1.0 / alone(nasa, elastic_teeth(nasa), xi)
+    assert k == pytest.approx(k[::-1], rel=1e-9)
+
+
+def test_neighbours_move_as_the_fourier_ring_says(nasa):
+    # The ring of the foundation, clamped at a quarter of the root circle and less its twist.
+    teeth = elastic_teeth(nasa, support="untwisted", bore=4.0)
+    g = nasa.geometry
+    (ring,) = neighbour_compliances(nasa)[:1]
+    xi = np.linspace(g.L_XA, g.L_XD - g.base_pitch, 5)
+    moved = sum(
+        tooth.moved(1, behind, ahead)
+        for tooth, behind, ahead in (
+            (teeth[0], xi, xi + g.base_pitch),
+            (teeth[1], g.L_XY - xi - g.base_pitch, g.L_XY - xi),
+        )
+    )
+    assert moved / g.face_width == pytest.approx(ring(xi), rel=0.01)
+
+
+def test_in_plane_strain_the_contact_is_part_of_the_plane_solution(nasa):
+    # (u_c + (2 ln(2/a) + 1 - (1 + nu'))/pi)/E', nu' = nu/(1 - nu): no depth is left in it.
+    teeth = elastic_teeth(nasa, plane="strain")
+    g = nasa.geometry
+    xi, module = np.array([0.4 * g.L_XA + 0.6 * g.L_XD]), nasa.basic_rack.module
+    a, nu = hertz_half_width(nasa, xi) / module, 0.3 / 0.7
+    plane = sum(
+        (tooth.flank.deflection(at / module) + (2.0 * np.log(2.0 / a) - nu) / math.pi) / tooth.modulus
+        for tooth, at in zip(teeth, (xi, g.L_XY - xi), strict=True)
+    )
+    assert alone(nasa, teeth, xi) * g.face_width == pytest.approx(plane, rel=1e-12)
+
+
+def test_a_bore_moves_the_clamped_gear_only(nasa, free):
+    bored = nasa.with_(pinion__bore=15.0, gear__bore=15.0)
+    means = {
+        support: plane_compliance(bored, support=support, phases=16).attrs["mean_alone"]
+        / free.attrs["iso_mean"]
+        for support in ("free", "clamped", "untwisted")
+    }
+    # The other program: 0.616 and 1.068; free as without a bore.
+    assert means["free"] == pytest.approx(free.attrs["mean_alone"] / free.attrs["iso_mean"], rel=0.01)
+    assert means["clamped"] == pytest.approx(0.616, rel=FAR)
+    assert means["untwisted"] == pytest.approx(1.068, rel=FAR)
+
+
+def test_a_solid_gear_has_no_bore_to_be_held_at():
+    with pytest.raises(ParameterError, match="no bore"):
+        plane_compliance("nasa_28_28", support="clamped")
+
+
+def test_a_thin_rim_is_named():
+    pair = load_gear_pair("nasa_28_28").with_(gear__bore=50.0)
+    assert any("rim of the gear" in text for text in plane_compliance(pair, phases=2).attrs["range_warnings"])
