@@ -14,14 +14,28 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from numpy.polynomial.legendre import leggauss
+from numpy.polynomial.polynomial import polyder, polyval
 
-from lumped.model.periodic_system import LTVSystem
-from lumped.model.propagation import step_edges
-from lumped.model.steady import PeriodicSolution, periodic_solution
-from lumped.typing import FloatArray
+from lumped.model.steady import PeriodicSolution
+from lumped.typing import FloatArray, IntArray
 
-#: Gauss nodes per step; a step turns the fastest mode by half a radian.
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(3)
+#: Gauss nodes and weights in an interval from 0 to 1.
+_NODES, _WEIGHTS = 0.5 * np.array(leggauss(3)) + np.array([[0.5], [0.0]])
+#: Hermite's quintics of values, first and second derivatives at 0, then at 1; powers of s, lowest first.
+_HERMITE = np.array(
+    [
+        [1.0, 0.0, 0.0, -10.0, 15.0, -6.0],
+        [0.0, 1.0, 0.0, -6.0, 8.0, -3.0],
+        [0.0, 0.0, 0.5, -1.5, 1.5, -0.5],
+        [0.0, 0.0, 0.0, 10.0, -15.0, 6.0],
+        [0.0, 0.0, 0.0, -4.0, 7.0, -3.0],
+        [0.0, 0.0, 0.0, 0.5, -1.0, 0.5],
+    ]
+)
+#: Values and slopes of these at the Gauss nodes, (nodes, 6).
+_QUINTIC = polyval(_NODES, _HERMITE.T).T
+_RATES = polyval(_NODES, polyder(_HERMITE.T)).T
 
 
 @dataclass(frozen=True)
@@ -92,33 +106,14 @@ def power_attributes(solution: PeriodicSolution) -> dict[str, float]:
 
 @lru_cache(maxsize=4)
 def mean_powers(solution: PeriodicSolution) -> MeanPowers:
-    """Mean powers of a periodic motion, by Gauss quadrature on the steps of its integration.
+    """Mean powers of a periodic motion, by Gauss quadrature in the intervals of its integration.
 
     Parameters
     ----------
     solution : periodic motion of the "absolute" system
     """
-    times, weights = quadrature(solution.system)
-    return powers_at(periodic_solution(solution.system, times, estimate_error=False), weights)
-
-
-def quadrature(system: LTVSystem) -> tuple[FloatArray, FloatArray]:
-    """Gauss nodes in all steps of the integration over a mesh cycle [s], and their weights of a mean [-]."""
-    edges = step_edges(system)
-    h = np.diff(edges)[:, None]
-    times = (edges[:-1, None] + 0.5 * h * (1.0 + _NODES)).ravel()
-    return times, (0.5 * h * _WEIGHTS).ravel() / system.period
-
-
-def powers_at(solution: PeriodicSolution, weights: FloatArray) -> MeanPowers:
-    """Mean powers of a periodic motion at the nodes of ``quadrature``.
-
-    Parameters
-    ----------
-    solution : at those times
-    weights : of the nodes
-    """
-    power = _powers(solution, solution.time, solution.states) @ weights
+    times, states, weights = _between(solution)
+    power = _powers(solution, times, states) @ weights
     g = solution.system.pair.geometry
     driving = solution.pinion_torque * g.omega_pinion
     moments = driving - solution.brake_torque * g.omega_gear
@@ -129,6 +124,39 @@ def powers_at(solution: PeriodicSolution, weights: FloatArray) -> MeanPowers:
         bearings=float(power[2]),
         unpaid=float(power.sum() - moments),
     )
+
+
+def _between(solution: PeriodicSolution) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Gauss nodes inside the intervals of the integration [s], states there, and weights of a mean [-].
+
+    Inside an interval, in which the fastest vibration turns by half a radian, the motion is the quintic that
+    has its displacements, rates and accelerations at both ends: the losses err by some
+    1e-7 of themselves (5e-5 at 3 rpm, where the number of intervals is bounded).
+    """
+    time, states = solution.cycle_time, solution.cycle_states
+    low, high, z, v = states[:-1], states[1:], slice(0, 6), slice(6, 12)
+    h = np.diff(time)
+    segment = np.searchsorted(solution.system.cycle.edges, time[:-1] + 0.5 * h) - 1
+    first = _accelerations(solution, time[:-1], low, segment)
+    last = _accelerations(solution, time[1:], high, segment)
+    h = h[:, None]
+    ends = np.stack([low[:, z], h * low[:, v], h**2 * first, high[:, z], h * high[:, v], h**2 * last])
+    inside = np.einsum("nj,jkm->knm", _QUINTIC, ends), np.einsum("nj,jkm->knm", _RATES, ends) / h[:, None]
+    times = (time[:-1, None] + h * _NODES).ravel()
+    return times, np.concatenate(inside, axis=2).reshape(-1, 12), (h * _WEIGHTS).ravel() / time[-1]
+
+
+def _accelerations(
+    solution: PeriodicSolution, times: FloatArray, states: FloatArray, segment: IntArray
+) -> FloatArray:
+    """Accelerations (k, 6) at states (k, 12), as limits from inside the smooth segments."""
+    system, m = solution.system, 6
+    gain = system.gain(times, segment)
+    found = states @ system.constant[m:].T + gain.error
+    found += gain.stiffness * (states[:, :m] @ system.deflection)[:, None]
+    found += gain.damping * (states[:, m:] @ system.deflection)[:, None]
+    torques = solution.pinion_torque * system.torque_pinion + solution.brake_torque * system.torque_gear
+    return np.asarray(found + torques[m:], dtype=np.float64)
 
 
 def _powers(solution: PeriodicSolution, times: FloatArray, states: FloatArray) -> FloatArray:

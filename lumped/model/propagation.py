@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from lumped.typing import FloatArray, IntArray
 #: (4!)^4 / (9 (8!)^3) = 5.6e-10, so a step of 0.5 rad errs by about 1e-12.
 STEP_ANGLE = 0.5
 STAGES = 4
+#: Rounding of times over the period.
+_ROUNDING = 1e-15
 #: Steps solved together, a bound on memory.
 _BLOCK = 1024
 #: Most steps of a mesh cycle: some ten seconds of work.
@@ -69,6 +72,7 @@ def _merged(maps: FloatArray, group: IntArray) -> FloatArray:
     return maps
 
 
+@lru_cache(maxsize=4)
 def fastest_frequency(system: LTVSystem) -> float:
     """Bound on the fastest natural frequency over the cycle [rad/s].
 
@@ -122,11 +126,6 @@ def step_maps(
     return StepMaps(grid.edges, grid.times, maps)
 
 
-def step_edges(system: LTVSystem) -> FloatArray:
-    """Ends of the steps of a mesh cycle without outputs, 0 and the period included [s]."""
-    return _step_grid(system, np.empty(0), STEP_ANGLE).edges
-
-
 def _steps(
     system: LTVSystem, segment: IntArray, start: FloatArray, h: FloatArray, extra: FloatArray, stages: int
 ) -> FloatArray:
@@ -142,7 +141,11 @@ def _steps(
     only, so each step solves s equations instead of s m, for all unit states and forcings together.
     """
     m, k = system.size // 2, h.size
-    lengths, which = np.unique(h, return_inverse=True)
+    # Lengths that differ by the rounding of times are one: few are left where outputs are evenly spaced.
+    _, first, which = np.unique(
+        np.round(h / (_ROUNDING * system.period)), return_index=True, return_inverse=True
+    )
+    lengths = h[first]
     gauss = gauss_tableau(stages)
     fixed = [part[which] for part in _without_mesh(system, lengths, extra, gauss)]
     free_end, free_p, by_feedback, start_deflection, by_p = fixed

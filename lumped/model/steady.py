@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,6 +39,8 @@ class PeriodicSolution:
         motion is unstable, and a pair leaves it
     peak_to_peak : variable -> its peak to peak over the whole cycle [m], with switches and extremes between
         samples
+    cycle_time, cycle_states : (n,) [s], 0, the period and all switches included, and (n, 12): close enough to
+        resolve the fastest vibration
     """
 
     system: LTVSystem
@@ -51,6 +52,8 @@ class PeriodicSolution:
     error: float | None
     spectral_radius: float
     peak_to_peak: dict[str, float]
+    cycle_time: FloatArray
+    cycle_states: FloatArray
 
     @property
     def values(self) -> dict[str, FloatArray]:
@@ -113,6 +116,8 @@ def periodic_solution(
         error=error,
         spectral_radius=relative_spectral_radius(system, transition),
         peak_to_peak=_peaks(system, maps.times, states),
+        cycle_time=maps.times,
+        cycle_states=states,
     )
 
 
@@ -133,10 +138,17 @@ def periodic_cycle(pair: GearPair, samples: int) -> PeriodicSolution:
 
 
 def _with_nodes(system: LTVSystem, times: FloatArray) -> FloatArray:
-    """The times with those that resolve the fastest vibration, and the switches, where accelerations jump."""
-    nodes = math.ceil(fastest_frequency(system) * system.period / STEP_ANGLE)
-    even = np.linspace(0.0, system.period, min(nodes, _MOST_NODES) + 1)
-    return np.union1d(np.union1d(times, even), system.cycle.edges)
+    """The times, the ends of the pieces of the laws, and equal parts of each gap between these.
+
+    The fastest vibration turns by half a radian at most in a part.
+    """
+    marks = np.union1d(times, system.cycle.breaks)
+    largest = max(STEP_ANGLE / fastest_frequency(system), system.period / _MOST_NODES)
+    gaps = np.diff(marks)
+    parts = np.maximum(1.0, np.ceil(gaps / largest * (1.0 - 1e-9))).astype(np.int64)
+    of = np.repeat(np.arange(gaps.size), parts)
+    number = np.arange(of.size) - (np.cumsum(parts) - parts)[of]
+    return np.append(marks[of] + number * (gaps / parts)[of], marks[-1])
 
 
 def _peaks(system: LTVSystem, times: FloatArray, states: FloatArray) -> dict[str, float]:

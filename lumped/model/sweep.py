@@ -17,9 +17,9 @@ from lumped.labelling import labelled_dataset
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.mesh_elements import MeshElements, mesh_elements
 from lumped.model.periodic_system import LTVSystem, periodic_system
-from lumped.model.powers import powers_at, quadrature
+from lumped.model.powers import balance
 from lumped.model.results import load_range, provenance
-from lumped.model.steady import PeriodicSolution, periodic_solution, sample_times
+from lumped.model.steady import periodic_solution, sample_times
 from lumped.path_of_contact import friction_path_function
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -72,31 +72,25 @@ def speed_sweep(
             "spectral_radius",
         )
     }
-    periodic, paid = np.zeros(speeds.size, dtype=bool), pair.mesh.contact == "loaded"
+    periodic = np.zeros(speeds.size, dtype=bool)
     for j, system in enumerate(systems_over_speed(pairs)):
         times = sample_times(system.period, samples_per_cycle)
         try:
-            nodes, weights = quadrature(system) if paid else (times, times)
-            every = np.union1d(times, nodes)
-            solution = periodic_solution(system, every, estimate_error=False)
+            solution = periodic_solution(system, times, estimate_error=False)
         except NumericalError:
             continue
         finally:
             if progress is not None:
                 progress((j + 1) / speeds.size)
         periodic[j] = True
-        run = _at(solution, times).values
+        run = solution.values
         for name in names:
             table[f"{name}_peak_to_peak"][j] = solution.peak_to_peak[name]
             table[f"{name}_rms"][j] = np.std(run[name])
         found = load_range(pair.mesh.contact, run["normal_load"], run["contact"])
         table["normal_load_max"][j], table["normal_load_min"][j] = found
         table["sliding_reversal"][j] = _reversal(run, pair.geometry.L_XP)
-        table["mesh_efficiency"][j] = (
-            powers_at(_at(solution, nodes), weights).efficiency
-            if paid
-            else solution.balance["mesh_efficiency"]
-        )
+        table["mesh_efficiency"][j] = balance(solution)["mesh_efficiency"]
         table["spectral_radius"][j] = solution.spectral_radius
     variables = {name: ("speed", values, *_label(name)) for name, values in table.items()}
     return labelled_dataset(
@@ -104,11 +98,6 @@ def speed_sweep(
         {"speed": (speeds, "rpm", "pinion speed")},
         provenance(pair) | {"model": "lumped"},
     )
-
-
-def _at(solution: PeriodicSolution, times: FloatArray) -> PeriodicSolution:
-    """The solution at some of its times."""
-    return replace(solution, time=times, states=solution.states[np.searchsorted(solution.time, times)])
 
 
 def _label(name: str) -> tuple[str, str]:

@@ -14,6 +14,12 @@ from lumped.model.periodic_system import MeshGain
 from lumped.model.propagation import fastest_frequency, step_maps
 
 
+class System(SimpleNamespace):
+    """A system is one by itself, as an ``LTVSystem`` is."""
+
+    __hash__ = object.__hash__
+
+
 def system_of(constant, gain, deflection, edges):
     """What ``step_maps`` needs of a system, for equations that are not a gear pair's."""
     size = constant.shape[0]
@@ -25,7 +31,7 @@ def system_of(constant, gain, deflection, edges):
         a[:, size // 2 :] += lower
         return a
 
-    return SimpleNamespace(
+    return System(
         size=size,
         period=float(edges[-1]),
         cycle=SimpleNamespace(edges=np.asarray(edges, dtype=float), breaks=np.asarray(edges, dtype=float)),
