@@ -24,9 +24,14 @@ from .gear.margins import stability_margins as stability_margins
 from .gear.multipliers import GearPairMultipliers as GearPairMultipliers
 from .gear.multipliers import gear_pair_multipliers as gear_pair_multipliers
 from .gear.multipliers import gear_pair_system as gear_pair_system
+from .gear.orbit import GearOrbit as GearOrbit
+from .gear.orbit import long_run as long_run
+from .gear.orbit import periodic_orbit as periodic_orbit
 from .gear.paths import multiplier_paths as multiplier_paths
 from .gear.reference import extended_monodromy as extended_monodromy
 from .gear.reference import stress_test as stress_test
+from .gear.response import ResponseBranches as ResponseBranches
+from .gear.response import response_branches as response_branches
 from .gear.sensitivity import gear_sensitivities as gear_sensitivities
 from .gear.tongues import label_regions as label_regions
 from .rank_one.batch import FastMonodromy as FastMonodromy

@@ -96,7 +96,7 @@ NO_GEARS = {
 }
 
 
-@pytest.mark.parametrize("folder", ["engine", "rank_one"])
+@pytest.mark.parametrize("folder", ["engine", "rank_one", "orbits"])
 def test_general_folders_of_floquet_know_no_gears(folder: str) -> None:
     for path in sorted((ROOT / "floquet" / folder).rglob("*.py")):
         gears = {name for name in imported(path) if name.startswith(("lumped", "floquet.gear"))} - NO_GEARS

@@ -1,0 +1,1 @@
+"""Periodic motions of systems that are linear between events. No code about gears."""

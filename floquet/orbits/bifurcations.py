@@ -1,0 +1,145 @@
+"""Where stability or the number of periodic motions changes along a branch, and where an event appears.
+
+Sources: docs/theory/orbits.md, "Bifurcations"; Kuznetsov, Elements of applied bifurcation theory, 2004, ch.
+10.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scipy.optimize import brentq
+
+from floquet.orbits.branch import Continuation, Path
+from floquet.orbits.orbit import Orbit
+from lumped.errors import NumericalError
+from lumped.typing import FloatArray
+
+Kind = Literal["fold", "period doubling", "Neimark-Sacker", "grazing"]
+_Test = Callable[[Orbit, FloatArray], float]
+#: A test function this much below its values around is zero there; else it jumps, at a corner.
+_ZERO = 1e-5
+#: Inside a tongue the linear system has motions of any amplitude at one speed: a branch that neither turns.
+_ROUNDING = 1e-11
+
+
+@dataclass(frozen=True, eq=False)
+class Bifurcation:
+    """A point on a branch.
+
+    Attributes
+    ----------
+    kind : "fold": two motions meet; "period doubling": a multiplier is -1; "Neimark-Sacker": a complex pair
+        has modulus 1, the motion begins to beat; "grazing": a contact begins to part or to strike
+    orbit : the motion there
+    place : where it is on the branch: the index of the orbit before it, and the part of the way to the next
+    sharp : whether the test function vanishes there; not so at a corner, where a contact begins to strike and
+        the multipliers jump
+    """
+
+    kind: Kind
+    orbit: Orbit
+    place: float
+    sharp: bool
+
+
+def with_bifurcations(path: Path, found: list[Bifurcation]) -> list[Orbit]:
+    """The orbits of a path with those of its bifurcations in their places, so that folds are among them."""
+    places = [
+        *((float(j), orbit) for j, orbit in enumerate(path.orbits)),
+        *((b.place, b.orbit) for b in found),
+    ]
+    return [orbit for _, orbit in sorted(places, key=lambda item: item[0])]
+
+
+def bifurcations(along: Continuation, path: Path) -> list[Bifurcation]:
+    """Return the bifurcations between the points of a path in order, each refined."""
+    found = []
+    for j in range(len(path.orbits) - 1):
+        points = [_refined(along, path, j, kind, test) for kind, test in _tests(path, j)]
+        found += [point for point in points if point.kind != "Neimark-Sacker" or _turns(point.orbit)]
+    return found
+
+
+def doubling_direction(along: Continuation, orbit: Orbit) -> FloatArray:
+    """Scaled tangent at which the branch of twice the cycles leaves a period doubling."""
+    values, vectors = np.linalg.eig(orbit.monodromy)
+    vector = np.real(vectors[:, int(np.argmin(np.abs(values + 1.0)))])
+    tangent = np.zeros(along.scale.size)
+    tangent[: orbit.system.size] = vector / along.scale[: orbit.system.size]
+    return np.asarray(tangent / np.linalg.norm(tangent))
+
+
+def _tests(path: Path, j: int) -> list[tuple[Kind, _Test]]:
+    """What happens between points j and j + 1, with a function that changes its sign there."""
+    one, two = ends = [(path.orbits[i], path.tangents[i]) for i in (j, j + 1)]
+    tests: list[tuple[Kind, _Test]] = [("fold", _speed_along), ("period doubling", _doubling)]
+    if abs(_unstable_pairs(one[0]) - _unstable_pairs(two[0])) == 2:
+        rank = min(int(np.sum(np.abs(orbit.multipliers) > 1.0)) for orbit, _ in ends)
+        tests.append(("Neimark-Sacker", lambda o, _: float(np.abs(o.multipliers[rank])) - 1.0))
+    found = [
+        (kind, test)
+        for kind, test in tests
+        if test(*one) * test(*two) < 0.0 and min(abs(test(*one)), abs(test(*two))) > _ROUNDING
+    ]
+    if one[0].parts != two[0].parts:
+        found.append(("grazing", lambda o, _: 1.0 if o.parts else -1.0))
+    elif one[0].strikes != two[0].strikes:
+        found.append(("grazing", lambda o, _: 1.0 if o.strikes else -1.0))
+    return found
+
+
+def _speed_along(orbit: Orbit, tangent: FloatArray) -> float:
+    return float(tangent[-1])
+
+
+def _doubling(orbit: Orbit, tangent: FloatArray) -> float:
+    """det(Phi + I), each factor scaled to one or less."""
+    mu = orbit.multipliers
+    return float(np.real(np.prod((1.0 + mu) / (1.0 + np.abs(mu)))))
+
+
+def _unstable_pairs(orbit: Orbit) -> int:
+    """Number of complex multipliers outside the unit circle."""
+    mu = orbit.multipliers
+    return int(np.sum((np.abs(mu) > 1.0) & (mu.imag != 0.0)))
+
+
+def _turns(orbit: Orbit) -> bool:
+    """Whether the multiplier nearest to the unit circle is complex; a pair may have met on the real axis."""
+    mu = orbit.multipliers
+    return bool(abs(mu[int(np.argmin(np.abs(np.abs(mu) - 1.0)))].imag) > _ZERO)
+
+
+def _refined(along: Continuation, path: Path, j: int, kind: Kind, test: _Test) -> Bifurcation:
+    """Where the test changes its sign between points j and j + 1."""
+    last = {
+        float(part): (path.orbits[j + part], test(path.orbits[j + part], path.tangents[j + part]))
+        for part in (0, 1)
+    }
+    around = max(abs(value) for _, value in last.values())
+
+    def value(part: float) -> float:
+        if part not in last:
+            _, orbit, turned, _ = along.correct(_between(path, j, part), path.tangents[j])
+            last[part] = orbit, test(orbit, turned)
+        return last[part][1]
+
+    try:
+        part = float(brentq(value, 0.0, 1.0, xtol=1e-13, rtol=1e-14, maxiter=80))
+    except (NumericalError, RuntimeError):
+        part = min(last, key=lambda at: abs(last[at][1]))
+    sharp = kind != "grazing" and abs(value(part)) <= _ZERO * around
+    return Bifurcation(kind, last[part][0], j + part, sharp)
+
+
+def _between(path: Path, j: int, part: float) -> FloatArray:
+    """A point of the cubic through two neighbours with their tangents."""
+    X, Y, t = path.X[j], path.X[j + 1], part
+    length = float(np.linalg.norm(Y - X))
+    a, b = path.tangents[j] * length, path.tangents[j + 1] * length
+    cubic = (2 * t**3 - 3 * t**2 + 1) * X + (t**3 - 2 * t**2 + t) * a
+    return np.asarray(cubic + (3 * t**2 - 2 * t**3) * Y + (t**3 - t**2) * b)

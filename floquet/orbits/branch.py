@@ -1,0 +1,261 @@
+"""Branches of periodic motions over the speed by pseudo-arclength continuation.
+
+Sources: docs/theory/orbits.md, "Branches"; Keller, Numerical solution of bifurcation and nonlinear eigenvalue
+problems, 1977.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from floquet.orbits.orbit import CLOSED_TO, Orbit, closure, one_pass
+from floquet.orbits.system import ContactSystem
+from lumped.errors import NumericalError
+from lumped.typing import FloatArray
+
+End = Literal["range", "amplitude", "closed", "doubling", "lost", "points"]
+
+_FIRST_STEP, _LEAST_STEP, _LARGEST_STEP = 0.02, 1e-7, 0.2
+_CORNER_STEP = 2e-4
+_MOST_CORRECTIONS = 8
+#: Relative change of T by which coefficients that depend on it are differenced.
+_PERIOD_STEP = 1e-5
+#: Least cosine between the tangents of neighbours.
+_BEND = 0.95
+#: Phase rates are about this many times the displacements.
+_RATE = 10.0
+
+
+@dataclass(frozen=True)
+class Family:
+    """A system over its period.
+
+    Attributes
+    ----------
+    at : T [s] -> the system
+    constant : whether the coefficients over the phase are the same at all periods
+    """
+
+    at: Callable[[float], ContactSystem]
+    constant: bool
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Where a branch ends, and the sizes that make its unknowns comparable.
+
+    Attributes
+    ----------
+    slowest, fastest : range of 1/T [1/s]
+    length : size of displacements
+    parameter : size of the free parameter
+    amplitude : largest motion of the output from its mean that is followed
+    points : most orbits in a direction
+    """
+
+    slowest: float
+    fastest: float
+    length: float
+    parameter: float
+    amplitude: float
+    points: int = 4000
+
+
+@dataclass(eq=False)
+class Path:
+    """Points of a branch in one direction.
+
+    Attributes
+    ----------
+    X : scaled unknowns of each
+    orbits : the motions
+    tangents : unit vectors along the branch, (X's size,)
+    end : why it ends
+    """
+
+    X: list[FloatArray]
+    orbits: list[Orbit]
+    tangents: list[FloatArray]
+    end: End = "points"
+
+    def append(self, X: FloatArray, orbit: Orbit, tangent: FloatArray) -> None:
+        self.X.append(X)
+        self.orbits.append(orbit)
+        self.tangents.append(tangent)
+
+    def drop_last(self) -> None:
+        self.X.pop()
+        self.orbits.pop()
+        self.tangents.pop()
+
+
+class Continuation:
+    """Follows orbits of n cycles in (x, p, 1/T), scaled so that each is of order one.
+
+    Parameters
+    ----------
+    family : the system over its period
+    n : cycles
+    limits : where to end
+    """
+
+    def __init__(self, family: Family, n: int, limits: Limits) -> None:
+        self.family, self.n, self.limits = family, n, limits
+        system = family.at(1.0 / limits.slowest)
+        self.size, self.balanced = system.size, system.balanced
+        state = np.repeat([limits.length, _RATE * limits.length], self.size // 2)
+        extra = [limits.parameter] if self.balanced else []
+        self.scale = np.concatenate([state, extra, [(limits.fastest - limits.slowest) / 20.0]])
+        self._rows = np.concatenate([state, state[-1:] if self.balanced else []])
+        # Derivatives come by the start, T and the parameter; the unknowns end with 1/T.
+        self._columns = [*range(self.size), *([self.size + 1] if self.balanced else []), self.size]
+
+    def unknowns(self, orbit: Orbit) -> FloatArray:
+        """The scaled vector X of an orbit."""
+        extra = [orbit.parameter] if self.balanced else []
+        return np.asarray(np.concatenate([orbit.start, extra, [1.0 / orbit.period]]) / self.scale)
+
+    def evaluate(self, X: FloatArray) -> tuple[FloatArray, FloatArray, Orbit]:
+        """Scaled residual F, its derivative by X, and the motion, an orbit where F vanishes."""
+        values = X * self.scale
+        if not values[-1] > 0.0:
+            raise NumericalError("the branch left for negative speeds.")
+        x, T = values[: self.size], 1.0 / float(values[-1])
+        parameter = float(values[self.size]) if self.balanced else 0.0
+        system = self.family.at(T)
+        r, J, run = one_pass(system, x, T, self.n, parameter)
+        if not self.family.constant:
+            J[:, self.size] += self._by_coefficients(x, T, parameter)
+        J[:, self.size] *= -T * T
+        J = J[:, self._columns] * self.scale / self._rows[:, None]
+        return r / self._rows, J, Orbit(system, T, self.n, parameter, run)
+
+    def _by_coefficients(self, x: FloatArray, T: float, parameter: float) -> FloatArray:
+        """What T does to the residual through coefficients that depend on it."""
+        ends = []
+        for sign in (1.0, -1.0):
+            run = self.family.at(T * (1.0 + sign * _PERIOD_STEP)).run(x, T, self.n, parameter)
+            ends.append(np.concatenate([run.end, run.accumulated]))
+        return np.asarray((ends[0] - ends[1]) / (2.0 * _PERIOD_STEP * T))
+
+    def correct(self, X: FloatArray, border: FloatArray) -> tuple[FloatArray, Orbit, FloatArray, int]:
+        """Newton's method in the plane through X across the border -> X, orbit, tangent, iterations.
+
+        Raises
+        ------
+        NumericalError : it does not settle
+        """
+        plane = float(border @ X)
+        right = np.zeros((X.size, 2))
+        right[-1, 1] = 1.0
+        for iteration in range(_MOST_CORRECTIONS):
+            F, J, orbit = self.evaluate(X)
+            right[:-1, 0], right[-1, 0] = -F, plane - border @ X
+            try:
+                step, tangent = np.linalg.solve(np.vstack([J, border]), right).T
+            except np.linalg.LinAlgError as error:
+                raise NumericalError("the branch has no tangent there.") from error
+            if closure(orbit.run) < CLOSED_TO:
+                return X, orbit, tangent / np.linalg.norm(tangent), iteration
+            if not np.abs(step).max() < 10.0:
+                break
+            X = X + step
+        raise NumericalError("Newton's method did not settle on the branch.")
+
+    def follow(self, orbit: Orbit, direction: float = 1.0, tangent: FloatArray | None = None) -> Path:
+        """Orbits from one on until an end of the limits.
+
+        Parameters
+        ----------
+        orbit : where to start
+        direction : +1 towards higher speeds, -1 towards lower
+        tangent : along which to start instead, where the orbit is a bifurcation
+        """
+        X = self.unknowns(orbit)
+        if tangent is None:
+            border = np.zeros(X.size)
+            border[-1] = direction
+            X, orbit, tangent, _ = self.correct(X, border)
+        path = Path([X], [orbit], [tangent])
+        step, doubled = _FIRST_STEP, None
+        while len(path.orbits) < self.limits.points:
+            X, tangent = path.X[-1], path.tangents[-1]
+            try:
+                new, orbit, turned, iterations = self.correct(X + step * tangent, tangent)
+                good = float(turned @ tangent) > _BEND and float(np.linalg.norm(new - X)) < 2.0 * step
+            except NumericalError:
+                good = False
+            if not good:
+                step *= 0.5
+                if step < _LEAST_STEP:
+                    if not self._pass_corner(path):
+                        path.end = "lost"
+                        break
+                    step = _CORNER_STEP
+                continue
+            path.append(new, orbit, turned)
+            apart = self._apart(orbit)
+            if apart is not None:
+                doubled = apart if doubled is None else doubled
+                if float(apart @ doubled) <= 0.0:  # the last one lies behind the motion of half the cycles
+                    path.drop_last()
+                    path.end = "doubling"
+                    break
+            end = self._end(path, step)
+            if end is not None:
+                path.end = end
+                break
+            if iterations <= 3:
+                step = min(1.5 * step, _LARGEST_STEP)
+            elif iterations > 5:
+                step *= 0.6
+        return path
+
+    def _apart(self, orbit: Orbit) -> FloatArray | None:
+        """Scaled distance between the halves of a motion of an even number of cycles."""
+        if self.n % 2:
+            return None
+        return np.asarray((orbit.run.states[self.n // 2] - orbit.start) / self.scale[: self.size])
+
+    def _end(self, path: Path, step: float) -> End | None:
+        run, rate = path.orbits[-1].run, 1.0 / path.orbits[-1].period
+        if not self.limits.slowest <= rate <= self.limits.fastest:
+            return "range"
+        if max(run.most - run.mean, run.mean - run.least) > self.limits.amplitude:
+            return "amplitude"
+        return "closed" if len(path.X) > 10 and self._returns(path, step) else None
+
+    def _returns(self, path: Path, step: float) -> bool:
+        """Whether the next step comes to the first orbit again, started in any of its cycles."""
+        for start in path.orbits[0].shifted():
+            first = path.X[0].copy()
+            first[: self.size] = start / self.scale[: self.size]
+            back = first - path.X[-1]
+            if float(np.linalg.norm(back)) < step and float(back @ path.tangents[-1]) > 0.0:
+                return True
+        return False
+
+    def _pass_corner(self, path: Path) -> bool:
+        """Where an event makes the branch turn sharply: go on along the tangent of the motion just beyond."""
+        X, tangent = path.X[-1], path.tangents[-1]
+        try:
+            _, J, _ = self.evaluate(X + 100.0 * _LEAST_STEP * tangent)
+        except NumericalError:
+            return False
+        null = np.linalg.svd(J)[2][-1]
+        came = path.X[-2] - X if len(path.X) > 1 else -tangent
+        for way in (null, -null):
+            try:
+                new, orbit, turned, _ = self.correct(X + _CORNER_STEP * way, way)
+            except NumericalError:
+                continue
+            went = new - X
+            back = float(went @ came) > 0.999 * float(np.linalg.norm(went) * np.linalg.norm(came))
+            if not back and float(turned @ way) > 0.0:
+                path.append(new, orbit, turned)
+                return True
+        return False

@@ -1,0 +1,164 @@
+"""What a motion settles to: a periodic motion, beats or chaos.
+
+Sources: docs/theory/orbits.md, "Motions that do not repeat"; Lyapunov exponent by re-normalised tangent
+vectors: Benettin, Galgani, Giorgilli and Strelcyn, Meccanica 15 (1980) 9.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from floquet.orbits.orbit import Orbit, find_orbit, primitive, state_scale
+from floquet.orbits.system import ContactSystem, Run
+from lumped.errors import NumericalError
+from lumped.typing import FloatArray
+
+Settled = Literal["periodic", "beats", "chaos", "grows"]
+
+_RECURS = 1e-6
+_NEAR = 0.3
+#: A run that has not settled goes on for twice as long, so many times in all.
+_TURNS = 4
+_BLOCKS = 8
+#: Largest exponent per cycle that counts as zero; quasi-periodic motions come to it as the inverse of the
+#: length.
+_ZERO_EXPONENT = 5e-3
+
+
+@dataclass(frozen=True, eq=False)
+class LongRun:
+    """What a run has settled to.
+
+    Attributes
+    ----------
+    kind : "periodic", "beats" (quasi-periodic), "chaos", or "grows" beyond the amplitude of interest
+    orbit : the periodic motion, where it is one
+    exponent, uncertainty : largest Lyapunov exponent per cycle and its standard error; NaN for a periodic
+        motion, whose multipliers say more
+    rms, least, most : of the output over the last cycles, rms less its mean
+    cycles : how many these are
+    end : (2m,) state at the end
+    parameter : the free parameter, found with the last periodic motion that was looked for
+    """
+
+    kind: Settled
+    orbit: Orbit | None
+    exponent: float
+    uncertainty: float
+    rms: float
+    least: float
+    most: float
+    cycles: int
+    end: FloatArray
+    parameter: float
+
+
+def long_run(
+    system: ContactSystem,
+    start: FloatArray,
+    period: float,
+    parameter: float = 0.0,
+    *,
+    settle: int = 400,
+    observe: int = 800,
+    most_cycles: int = 8,
+    amplitude: float = np.inf,
+) -> LongRun:
+    """Let a motion settle and say what it is.
+
+    First it is compared with itself after 1 to n cycles, then Newton's method looks for a stable motion of 1
+    to n cycles near it, since near a bifurcation settling takes long; what is left has its Lyapunov exponent
+    measured.
+
+    Parameters
+    ----------
+    system : the system
+    start : (2m,) displacements and phase rates
+    period : T [s]
+    parameter : the free parameter during the run
+    settle : cycles before it is looked at for the first time
+    observe : cycles over which exponents and means are taken
+    most_cycles : largest n
+    amplitude : largest motion of the output from its mean that is looked at
+    """
+    state = start
+    for turn in range(_TURNS):
+        try:
+            settled = system.run(state, period, settle << turn, parameter)
+            seen = system.run(settled.end, period, 8 * most_cycles, parameter, samples=np.zeros(1))
+        except NumericalError:
+            return _grown(start, parameter)
+        if max(seen.most - seen.mean, seen.mean - seen.least) > amplitude:
+            return _grown(seen.end, parameter)
+        orbit = _periodic(system, seen, period, parameter, most_cycles)
+        if orbit is not None:
+            run, nan = orbit.run, float("nan")
+            return LongRun(
+                "periodic", orbit, nan, nan, run.rms, run.least, run.most, orbit.n, seen.end, orbit.parameter
+            )
+        state = seen.end
+    exponent, uncertainty = lyapunov_exponent(system, state, period, parameter, observe)
+    kind: Settled = "chaos" if exponent > max(3.0 * uncertainty, _ZERO_EXPONENT) else "beats"
+    last = system.run(state, period, observe, parameter)
+    return LongRun(
+        kind, None, exponent, uncertainty, last.rms, last.least, last.most, observe, last.end, parameter
+    )
+
+
+def _periodic(
+    system: ContactSystem, seen: Run, period: float, parameter: float, most_cycles: int
+) -> Orbit | None:
+    """The stable periodic motion that a run has come to or comes near to."""
+    scale = state_scale(seen.end)
+    recurs = [
+        n for n in range(1, most_cycles + 1) if (np.abs(seen.states[-n] - seen.end) <= _RECURS * scale).all()
+    ]
+    for n in recurs[:1] or range(1, most_cycles + 1):
+        try:
+            orbit = primitive(find_orbit(system, seen.end, period, n, parameter))
+        except NumericalError:
+            continue
+        if orbit.stable and (recurs or _near(orbit, seen)):
+            return orbit
+    return None
+
+
+def _near(orbit: Orbit, seen: Run) -> bool:
+    """Whether a motion may be the one that a run is settling to: its extremes are near."""
+    room = _NEAR * (seen.most - seen.least)
+    return abs(orbit.run.least - seen.least) < room and abs(orbit.run.most - seen.most) < room
+
+
+def _grown(end: FloatArray, parameter: float) -> LongRun:
+    nan = float("nan")
+    return LongRun("grows", None, nan, nan, nan, nan, nan, 0, end, parameter)
+
+
+def lyapunov_exponent(
+    system: ContactSystem, start: FloatArray, period: float, parameter: float = 0.0, cycles: int = 800
+) -> tuple[float, float]:
+    """Largest Lyapunov exponent per cycle and its standard error by blocks of the run.
+
+    Parameters
+    ----------
+    system : the system
+    start : (2m,) on the motion
+    period : T [s]
+    parameter : the free parameter
+    cycles : how many; the first eighth turns the vector into its direction and is not counted
+    """
+    scale = state_scale(start)
+    vector = 1.0 / (1.0 + 0.6180339887 * np.arange(start.size))
+    growth = np.empty(cycles)
+    x = start
+    for j in range(cycles):
+        run = system.run(x, period, 1, parameter, derivatives=True)
+        vector = (run.derivative[: start.size, : start.size] @ (vector * scale)) / scale
+        length = float(np.linalg.norm(vector))
+        growth[j], vector, x = np.log(length), vector / length, run.end
+    counted = growth[cycles // _BLOCKS :]
+    blocks = np.array([block.mean() for block in np.array_split(counted, _BLOCKS - 1)])
+    return float(counted.mean()), float(blocks.std(ddof=1) / np.sqrt(blocks.size))

@@ -1,0 +1,129 @@
+"""Are motions beyond contact loss what a closed fact, a symmetry or the linear model says?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import floquet
+import lumped
+from floquet.gear.unilateral import unilateral_family, unilateral_system
+from lumped import NumericalError, ParameterError
+
+
+@pytest.fixture(scope="module")
+def frictionless():
+    return lumped.load_gear_pair("nasa_28_28").with_(
+        mesh__damping_ratio=0.05, mesh__relief="ignored", friction__law="none"
+    )
+
+
+def at(pair, rpm):
+    return pair.with_({"operating.pinion_speed": rpm})
+
+
+@pytest.mark.parametrize("brake", ["balanced", 56.0])
+def test_where_contact_holds_it_is_the_linear_motion(brake):
+    """With friction that depends on speed, and with either torque as the unknown."""
+    pair = lumped.load_gear_pair("nasa_28_28").with_(mesh__relief="ignored", operating__brake_torque=brake)
+    pair = at(pair, 12000.0)
+    orbit, linear = floquet.periodic_orbit(pair), lumped.steady_state(pair, samples_per_cycle=256)
+    assert not orbit.parts
+    span = float(np.ptp(linear.dte.values))
+    assert orbit.motion.dte.values == pytest.approx(linear.dte.values[:256], abs=1e-11 * span)
+    assert orbit.motion.normal_load.values.sum(axis=1) == pytest.approx(
+        linear.normal_load.sum("pair").values[:256], rel=1e-9
+    )
+    multipliers = floquet.monodromy(floquet.gear_pair_system(pair, "feedback")).multipliers
+    assert orbit.spectral_radius == pytest.approx(np.abs(multipliers).max(), abs=1e-9)
+    torque = linear.attrs["brake_torque" if brake == "balanced" else "pinion_torque"]
+    assert orbit.balanced_torque == pytest.approx(torque, rel=1e-10)
+
+
+def test_without_clearance_motions_are_proportional_to_the_torque(frictionless):
+    """Gaps and impacts included: the model is homogeneous, so multipliers stay."""
+    pair = at(frictionless, 8000.0)
+    one = floquet.periodic_orbit(pair)
+    two = floquet.periodic_orbit(pair.with_(operating__pinion_torque=3.0 * 56.5))
+    assert one.parts
+    assert one.spectral_radius == pytest.approx(two.spectral_radius, rel=1e-9)
+    assert two.dte_rms == pytest.approx(3.0 * one.dte_rms, rel=1e-9)
+    assert one.events[:, 1:] == pytest.approx(two.events[:, 1:])
+
+
+def test_slow_motion_with_relief_is_the_static_transmission_error():
+    """Clearance decides about contact itself; the static model knows which pairs touch."""
+    pair = lumped.load_gear_pair("nasa_28_28").with_(mesh__relief="static", friction__law="none")
+    pair = pair.with_({"operating.pinion_speed": 50.0, "mesh.damping_ratio": 0.05})
+    static = lumped.static_transmission_error(pair)
+    values = static["static_te"].values if "static_te" in static else static["transmission_error"].values
+    assert floquet.periodic_orbit(pair).dte_rms == pytest.approx(np.std(values), rel=2e-3)
+
+
+@pytest.fixture(scope="module")
+def branches(frictionless):
+    return floquet.response_branches(frictionless, (8400.0, 19500.0), (1, 2), seeds=0)
+
+
+def test_one_switch_in_contact_repeats_as_two_cycles_at_twice_the_speed(branches):
+    """A motion that meets one jump of the stiffness in contact does not see to which cycle it belongs."""
+    found = [b for b in branches.bifurcations if b.sharp]
+    for kind in ("fold", "period doubling"):
+        single = max((b for b in found if (b.n, b.kind) == (1, kind)), key=lambda b: b.dte_rms)
+        double = [b for b in found if (b.n, b.kind) == (2, kind)]
+        nearest = min(double, key=lambda b: abs(b.speed_rpm - 2.0 * single.speed_rpm))
+        assert nearest.speed_rpm == pytest.approx(2.0 * single.speed_rpm, rel=1e-9)
+        assert nearest.dte_rms == pytest.approx(single.dte_rms, rel=1e-8)
+
+
+def test_all_motions_at_a_speed_and_their_stability(branches):
+    """Between the folds there are three motions of one cycle, the middle one unstable."""
+    folds = sorted(b.speed_rpm for b in branches.bifurcations if b.kind == "fold" and b.n == 1)
+    assert len(folds) == 2
+    inside, outside = (
+        [o for o in branches.at(rpm) if o.n == 1] for rpm in (np.mean(folds), folds[1] + 300.0)
+    )
+    assert len(inside) == 3
+    assert len(outside) == 1
+    assert not sorted(inside, key=lambda o: o.dte_rms)[1].stable
+    again = floquet.periodic_orbit(inside[0].pair, start=inside[0].states[0])
+    assert again.dte_rms == pytest.approx(inside[0].dte_rms, rel=1e-9)
+    table = branches.dataset
+    assert table.sizes["point"] == sum(len(branch.orbits) for branch in branches.branches)
+    assert {"m", "rpm", "N", "1"} >= {table[name].attrs["units"] for name in table}
+
+
+def test_between_the_neimark_sacker_points_the_run_beats(branches, frictionless):
+    points = sorted(b.speed_rpm for b in branches.bifurcations if b.kind == "Neimark-Sacker" and b.n == 1)
+    assert len(points) == 2
+    run = floquet.long_run(at(frictionless, np.mean(points)), settle_cycles=50, cycles=400)
+    assert run.kind == "beats"
+    assert abs(run.exponent) < 3.0 * run.uncertainty + 5e-3
+    settled = floquet.long_run(at(frictionless, points[1] + 700.0), settle_cycles=50)
+    assert settled.kind == "periodic"
+    assert settled.orbit.stable
+
+
+@pytest.mark.parametrize(
+    "law", ["coulomb", "smoothed_coulomb", "benedict_kelley", "xu_kahraman", "composite"]
+)
+def test_friction_over_speed_is_that_fitted_at_each_speed(law):
+    pair = lumped.load_gear_pair("nasa_28_28").with_(friction__law=law)
+    family = unilateral_family(pair, 1000.0, 21000.0)
+    there = at(pair, 7890.0)
+    T = there.geometry.mesh_period
+    state = np.array([3e-6, 1e-6, -1e-6, 1e-5, 2e-5, 0.0])
+    one, two = (s.run(state, T, 1, 56.0, derivatives=True) for s in (family.at(T), unilateral_system(there)))
+    assert one.end == pytest.approx(two.end, rel=1e-10)
+    assert one.derivative == pytest.approx(two.derivative, rel=1e-9, abs=1e-9 * np.abs(two.derivative).max())
+
+
+def test_what_is_no_start_or_range_is_refused(frictionless):
+    with pytest.raises(ParameterError, match="6 states"):
+        floquet.periodic_orbit(frictionless, start=[1.0, 2.0])
+    with pytest.raises(ParameterError, match="slowest and fastest"):
+        floquet.response_branches(frictionless, (3000.0, 1000.0))
+    with pytest.raises(ParameterError, match="periods"):
+        floquet.response_branches(frictionless, (1000.0, 3000.0), (0,))
+    with pytest.raises(NumericalError, match="no motion of 3 cycles"):
+        floquet.periodic_orbit(at(frictionless, 8600.0), 3, start=[1e-4, 0, 0, 0, 0, 0])

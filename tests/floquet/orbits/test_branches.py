@@ -1,0 +1,81 @@
+"""Are orbits, multipliers and bifurcations of simple systems those that are known?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from floquet.orbits.branch import Family, Limits
+from floquet.orbits.long_run import long_run, lyapunov_exponent
+from floquet.orbits.orbit import find_orbit
+from floquet.orbits.response import find_response
+from lumped import NumericalError
+
+LIMITS = Limits(slowest=0.1, fastest=1.0, length=1.0, parameter=1.0, amplitude=50.0)
+
+
+def meissner_map(T, e=0.4, damping=0.1):
+    """Monodromy matrix of the oscillator that never leaves contact, in closed form, by (z, z')."""
+    half = [expm(0.5 * T * np.array([[0.0, 1.0], [-(1.0 + s * e), -damping]])) for s in (1.0, -1.0)]
+    return half[1] @ half[0]
+
+
+def test_where_contact_holds_the_multipliers_are_meissners(meissner):
+    T = 4.0
+    orbit = find_orbit(meissner(), np.array([1.0, 0.0]), T)
+    assert not orbit.parts
+    expected = np.linalg.eigvals(meissner_map(T))
+    assert np.sort_complex(orbit.multipliers) == pytest.approx(np.sort_complex(expected), abs=1e-12)
+    assert orbit.error < 1e-10
+
+
+def start(T):
+    return np.array([1.0, 0.0]), 0.0
+
+
+def test_the_doubling_of_the_bouncing_meissner_oscillator_is_the_tongue(meissner):
+    """While contact holds, a period doubling is where the trace of the closed map is -1 - det."""
+    system = meissner(e=0.6, damping=0.1)
+    found = find_response(Family(lambda T: system, True), LIMITS, start, periods=(1, 2), seeds=3)
+    doublings = [
+        1.0 / b.orbit.period
+        for branch in found.branches
+        for b in branch.bifurcations
+        if branch.n == 1 and b.kind == "period doubling" and not b.orbit.parts
+    ]
+    assert doublings
+    for rate in doublings:
+        M = meissner_map(1.0 / rate, e=0.6)
+        assert np.linalg.det(M + np.eye(2)) == pytest.approx(0.0, abs=1e-10)
+    # Inside the tongue, where no motion that holds contact is stable, the doubled one bounces and is stable.
+    T = 1.0 / (max(doublings) - 0.005)
+    assert not any(o.stable for o in found.at(T) if not o.parts)
+    assert any(o.stable and o.parts and o.n == 2 for o in found.at(T))
+
+
+def test_a_fold_ends_the_jump_of_the_bouncing_resonance(meissner):
+    """At speeds beyond a fold no motion of its branch is left, and at the fold a multiplier is 1."""
+    system = meissner(e=0.3, damping=0.3)
+    found = find_response(Family(lambda T: system, True), LIMITS, start, periods=(1,), seeds=0)
+    folds = [b for branch in found.branches for b in branch.bifurcations if b.kind == "fold" and b.sharp]
+    assert len(folds) == 2
+    for fold in folds:
+        assert np.abs(fold.orbit.multipliers - 1.0).min() < 1e-6
+        rate = 1.0 / fold.orbit.period
+        counts = [len(found.at(1.0 / (rate * (1.0 + off)))) for off in (-1e-4, 1e-4)]
+        assert abs(counts[0] - counts[1]) == 2
+    with pytest.raises(NumericalError, match="no motion of 3 cycles"):
+        find_orbit(system, np.array([-1e6, -1e6]), 5.0, 3)
+
+
+def test_a_long_run_tells_chaos_from_a_periodic_motion(meissner):
+    """The exponent of a periodic motion is the log of its largest multiplier, whatever the contact does."""
+    system = meissner(e=0.4, damping=0.1)
+    orbit = find_orbit(system, np.array([1.0, 0.0]), 4.0)
+    exponent, _ = lyapunov_exponent(system, orbit.start, 4.0, cycles=200)
+    assert exponent == pytest.approx(np.log(orbit.spectral_radius), abs=2e-2)
+    run = long_run(system, 1.3 * orbit.start, 4.0)
+    assert run.kind == "periodic"
+    assert run.orbit is not None
+    assert run.orbit.start == pytest.approx(orbit.start, abs=1e-8)

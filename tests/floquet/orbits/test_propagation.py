@@ -1,0 +1,132 @@
+"""Do states, events and derivatives agree with closed solutions, differences and another integrator?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from floquet.orbits.kernel import CLOSED, GAP
+from floquet.orbits.system import Contact, ContactSystem
+from lumped import NumericalError, ParameterError
+
+GRAVITY, STIFFNESS = 9.0, 400.0
+
+
+def bounce_time(v0):
+    """Time of flight and of contact of a mass that leaves the spring at speed v0."""
+    omega = np.sqrt(STIFFNESS)
+    return 2.0 * v0 / GRAVITY, (2.0 * np.pi - 2.0 * np.arctan2(v0 * omega, GRAVITY)) / omega
+
+
+def test_a_bouncing_mass_returns_after_the_time_of_flight_and_contact(bouncer):
+    """Parabola and sine arc in turn, both in closed form; energy is kept."""
+    flight, contact = bounce_time(2.0)
+    T = flight + contact
+    run = bouncer().run(np.array([0.0, -2.0 * T]), T, 3, logged=10, derivatives=True)
+    assert run.end == pytest.approx([0.0, -2.0 * T], rel=1e-12, abs=1e-12)
+    assert run.events[:5, 2].tolist() == [CLOSED, GAP, CLOSED, GAP, CLOSED]
+    # After half of the flight the mass is v0^2/2g above the spring.
+    assert run.least == pytest.approx(-(2.0**2) / (2.0 * GRAVITY), rel=1e-12)
+    # The end over the start speed: the return time moves by dT/dv0, during which the mass falls on.
+    step = 1e-6
+    shift = (sum(bounce_time(2.0 + step)) - sum(bounce_time(2.0 - step))) / (2.0 * step)
+    one = bouncer().run(np.array([0.0, -2.0 * T]), T, 1, derivatives=True)
+    # The mass is still on its way for that long, at speed v0 and falling at g.
+    assert one.derivative[0, 1] * T == pytest.approx(-2.0 * shift, rel=1e-8)
+    assert one.derivative[1, 1] == pytest.approx(1.0 + GRAVITY * shift, rel=1e-8)
+    assert np.linalg.det(one.derivative[:2, :2]) == pytest.approx(1.0, rel=1e-11)  # Liouville
+
+
+def test_derivatives_are_those_of_differences(gearlike):
+    """Through gaps, strikes, recovering contacts, clearances that move, and both damped."""
+    x, T, p = np.array([0.4, -0.2, 1.0, -2.5]), 5.0, 0.3
+    run = gearlike.run(x, T, 3, p, derivatives=True, logged=100)
+    kinds = set(run.events[:, 2])
+    assert kinds == {0.0, 1.0, 2.0}, "the motion does not meet every kind of event"
+    step = 1e-6
+
+    def end(x, T, p):
+        run = gearlike.run(x, T, 3, p)
+        return np.concatenate([run.end, run.accumulated])
+
+    columns = [(end(x + step * e, T, p) - end(x - step * e, T, p)) / (2 * step) for e in np.eye(4)]
+    columns += [(end(x, T + step, p) - end(x, T - step, p)) / (2 * step)]
+    columns += [(end(x, T, p + step) - end(x, T, p - step)) / (2 * step)]
+    assert run.derivative == pytest.approx(np.array(columns).T, rel=1e-7, abs=1e-7 * np.abs(columns).max())
+
+
+def by_solve_ivp(s, x, T, cycles, p):
+    """The same motion by DOP853, cut at phases of jumps and, by its dense output, at events."""
+    u = np.array([1.0, -1.0])
+    k = np.array([[3.0, 1.0, -0.5], [2.5, -1.0, 0.3]])
+
+    def field(t, y, piece):
+        local = t - [0.0, 0.45][piece]
+        z, v = y[:2], y[2:4]
+        acceleration = T**2 * (s.force + p * np.array(s.parameter_force) - s.stiffness @ z)
+        acceleration = acceleration - T * s.damping @ v
+        stiffness = k[piece] @ local ** np.arange(3)
+        contacts = [(0.1 * local, 0.1, stiffness, 0.2, np.array([-1 + 0.1 * local, 0.8 + 0.05 * local, 0.3]))]
+        if piece == 1:
+            contacts += [(0.05 - 0.2 * local, -0.2, 0.5 * stiffness, 0.1, np.array([-0.9, 0.7, -0.2]))]
+        for e, slope, ki, ci, a in contacts:
+            d, rate = u @ z - e, (u @ v - slope) / T
+            load = ki * d + ci * rate
+            if d > 0.0 and load > 0.0:
+                acceleration = acceleration + T**2 * a * load
+        return np.concatenate([v, acceleration])
+
+    y = np.concatenate([x, [0.0]])
+    for _ in range(cycles):
+        for piece, (low, high) in enumerate([(0.0, 0.45), (0.45, 1.0)]):
+            y = solve_ivp(
+                field, (low, high), y, method="DOP853", rtol=1e-10, atol=1e-12, args=(piece,), max_step=2e-3
+            ).y[:, -1]
+    return y
+
+
+def test_another_integrator_comes_to_the_same_state(gearlike):
+    """DOP853 with short steps across the events, where it loses digits."""
+    gearlike_start = np.array([0.4, -0.2, 1.0, -2.5])
+    run = gearlike.run(gearlike_start, 5.0, 1, 0.3)
+    other = by_solve_ivp(gearlike, gearlike_start, 5.0, 1, 0.3)
+    assert np.concatenate([run.end, run.accumulated]) == pytest.approx(other, abs=2e-7)
+
+
+def test_the_error_falls_with_the_order(gearlike):
+    x = np.array([0.4, -0.2, 1.0, -2.5])
+    exact = gearlike.run(x, 5.0, 2, 0.3, order=24).end
+    errors = [np.abs(gearlike.run(x, 5.0, 2, 0.3, order=order).end - exact).max() for order in (6, 12, 18)]
+    assert max(errors) < 1e-10  # the last terms control the step, whatever the order
+    assert errors[2] < 2e-12
+
+
+def test_means_and_samples_are_those_of_the_motion(bouncer):
+    """Mean and mean square over a bounce against the closed motion."""
+    flight, contact = bounce_time(2.0)
+    T = flight + contact
+    run = bouncer().run(np.array([0.0, -2.0 * T]), T, 1, samples=np.linspace(0.0, 1.0, 2000, endpoint=False))
+    t = run.phases * T
+    omega, rest = np.sqrt(STIFFNESS), GRAVITY / STIFFNESS
+    inside = t - flight
+    closed = rest * (1.0 - np.cos(omega * inside)) + 2.0 / omega * np.sin(omega * inside)
+    motion = np.where(t < flight, -2.0 * t + 0.5 * GRAVITY * t**2, closed)
+    assert run.states[:, 0] == pytest.approx(motion, abs=1e-12)
+    assert run.loads[:, 0] == pytest.approx(np.where(t < flight, 0.0, STIFFNESS * closed), abs=1e-9)
+    flown = -(2.0**3) / (1.5 * GRAVITY**2)  # integral of the parabola: -2 v0^3/(3 g^2)
+    pressed = rest * contact - rest / omega * np.sin(omega * contact)
+    pressed += 2.0 / STIFFNESS * (1.0 - np.cos(omega * contact))
+    assert run.mean * T == pytest.approx(flown + pressed, rel=1e-12)
+    assert run.largest_load == pytest.approx(GRAVITY + np.hypot(GRAVITY, 2.0 * STIFFNESS / omega), rel=1e-12)
+
+
+def test_endless_growth_and_wrong_shapes_are_refused(bouncer):
+    with pytest.raises(NumericalError, match="beyond all numbers"):
+        ContactSystem([[-1e6]], [[0.0]], [0.0], (Contact([1.0], [-1.0], 1.0),), [0.0, 1.0], [1.0]).run(
+            np.array([1.0, 0.0]), 1.0, 100
+        )
+    with pytest.raises(ParameterError, match="phases"):
+        ContactSystem([[1.0]], [[0.0]], [0.0], (Contact([1.0], [-1.0], 1.0),), [0.0, 0.7], [1.0])
+    with pytest.raises(ParameterError, match="stiffness"):
+        ContactSystem([[1.0]], [[0.0, 1.0]], [0.0], (Contact([1.0], [-1.0], 1.0),), [0.0, 1.0], [1.0])
