@@ -85,7 +85,8 @@ def shared_loads(
                 loads[i] = load
         if change <= _SETTLED * total:
             break
-    tangents[:] = alone
+    for i in range(loads.size):  # to assign whole arrays takes the compiler two seconds
+        tangents[i] = alone[i]
     for _ in range(most):
         change = total = 0.0
         for i in range(loads.size):
@@ -181,8 +182,9 @@ def middle_loads(
             tangents,
             np.zeros(loads.size),
         )
-        pressed = compression[i, middle] - np.dot(coupling[i, middle], loads)
-        found[i] = loads[middle], tangents[middle], pressed
+        found[i, 0], found[i, 1], found[i, 2] = loads[middle], tangents[middle], compression[i, middle]
+        for j in range(loads.size):
+            found[i, 2] -= coupling[i, middle, j] * loads[j]
     return found
 
 

@@ -111,18 +111,26 @@ def scratch_for(problem: Problem) -> Piece:
     """Allocate the scratch of one thread."""
     m = problem.v.size
     dw, dd = problem.w.shape[2], problem.wd.shape[2]
-    v = np.zeros(3)
-    v[:m] = problem.v
+    v, omega = np.zeros(3), 0.0
+    lean, C_size = np.zeros(m), 0.0
+    for q in range(m):  # loops, for each array expression takes the compiler half a second
+        v[q] = problem.v[q]
+        lean[q] = problem.v[q] / problem.omega[q]
+        omega = max(omega, problem.omega[q])
+        for p in range(m):
+            C_size += problem.C[q, p] ** 2
+    sizes, unit = np.zeros(4), np.zeros((LANES, LANES))
+    sizes[0], sizes[1] = norm(lean), norm(problem.v)
+    sizes[2], sizes[3] = omega + math.sqrt(C_size), norm(problem.reference) * sizes[0]
+    for i in range(LANES):
+        unit[i, i] = 1.0
     return Piece(
         np.zeros((dw, LANES)), np.zeros((dd, LANES)), np.zeros((dw, LANES)), np.zeros((dd, LANES)),
         np.zeros(2, dtype=np.int64), np.zeros(max(dw, dd)), powers_of_radii(max(dw, dd)),
         np.zeros((MAX_TERMS + 2, 3, LANES)),
         np.zeros((MAX_TERMS + 2, LANES)), np.zeros((MAX_TERMS + 2, LANES)),
         v, np.zeros((3, 3)), np.zeros(3), np.zeros(3),
-        np.array([norm(problem.v / problem.omega), norm(problem.v),
-                  problem.omega.max() + norm(problem.C.ravel()),
-                  norm(problem.reference) * norm(problem.v / problem.omega)]),
-        np.zeros((4, 2 * m, LANES)), np.eye(LANES),
+        sizes, np.zeros((4, 2 * m, LANES)), unit,
     )  # fmt: skip
 
 

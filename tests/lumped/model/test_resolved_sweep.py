@@ -12,12 +12,12 @@ from lumped.model.resolved_sweep import resolved_sweep
 PAIR = load_gear_pair("fzg_c").with_(
     bearings__pinion__loa_damping_ratio=0.01, bearings__gear__loa_damping_ratio=0.01
 )
-ENDS = (220.0, 4400.0)
+ENDS = (1500.0, 3500.0)
 
 
 @pytest.fixture(scope="module")
 def reference():
-    return speed_sweep(PAIR, np.linspace(*ENDS, 700), samples_per_cycle=64)
+    return speed_sweep(PAIR, np.linspace(*ENDS, 200), samples_per_cycle=64)
 
 
 def distance(reference, sweep, name="dte_peak_to_peak"):
@@ -28,12 +28,12 @@ def distance(reference, sweep, name="dte_peak_to_peak"):
 
 
 def test_lines_follow_the_curve_better_than_even_steps(reference):
-    found = resolved_sweep(PAIR, ENDS, most=240, samples_per_cycle=64)
+    found = resolved_sweep(PAIR, ENDS, most=80, samples_per_cycle=64)
     speed = found["speed"].to_numpy()
     even = speed_sweep(PAIR, np.linspace(*ENDS, speed.size), samples_per_cycle=64)
-    assert distance(reference, found) < 0.02
-    assert distance(reference, found) < 0.75 * distance(reference, even)
-    assert distance(reference, found, "normal_load_max") < 0.02
+    assert distance(reference, found) < 0.01
+    assert distance(reference, found) < 0.3 * distance(reference, even)
+    assert distance(reference, found, "normal_load_max") < 0.01
 
 
 def test_it_is_a_sweep_over_the_range_with_the_operating_speed():
