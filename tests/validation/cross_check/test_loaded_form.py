@@ -28,16 +28,19 @@ RELIEF = EQUAL.with_(mesh__relief="static")
 QUICK = {"cycles": 6, "samples_per_cycle": 64}
 
 
-@pytest.mark.parametrize("pair", [EQUAL, UNEQUAL], ids=["equal", "unequal"])
+EVERY = {"tip_contact", "rotation_phase", "moving_line", "path_work"}
+
+
 @pytest.mark.parametrize(
-    "effects",
+    ("pair", "effects"),
     [
-        {"tip_contact"},
-        {"tip_contact", "path_work"},
-        {"tip_contact", "rotation_phase", "moving_line"},
-        {"tip_contact", "rotation_phase", "moving_line", "path_work"},
+        (UNEQUAL, {"tip_contact"}),
+        (UNEQUAL, {"tip_contact", "path_work"}),
+        (UNEQUAL, {"tip_contact", "rotation_phase", "moving_line"}),
+        (UNEQUAL, EVERY),
+        (EQUAL, EVERY),
     ],
-    ids=["contact", "path", "motion", "all"],
+    ids=["contact", "path", "motion", "all", "all, equal"],
 )
 def test_the_exact_contact_is_met_from_the_lumped_model_alone(pair, effects):
     """Without friction; the motion is read at 4096 times a cycle and settles to some 1e-9 m.
@@ -62,25 +65,29 @@ def test_the_exact_contact_is_met_from_the_lumped_model_alone(pair, effects):
         assert np.linalg.norm(left) < 0.03 * np.linalg.norm(change), name
 
 
+@pytest.fixture(scope="module")
+def equal():
+    """The cross-check of the equal pair, with that of its twin."""
+    return crosscheck(EQUAL, **QUICK)
+
+
 @pytest.mark.parametrize("pair", [EQUAL, UNEQUAL, RELIEF], ids=["equal", "unequal", "relief"])
-def test_a_sound_pair_is_confirmed(pair):
-    check = crosscheck(pair, **QUICK, twin=False)
+def test_a_sound_pair_is_confirmed(pair, equal):
+    check = equal if pair is EQUAL else crosscheck(pair, **QUICK, twin=False)
     assert check.verdict == "confirmed", check.failures
     dte = next(a for a in check.of("exact") if a.quantity == "dte")
     # The prediction leaves a twentieth of its limit, so that a fault has no room.
     assert dte.remainder_l2 < 0.25 * dte.tolerance.limit
 
 
-def test_the_twin_of_a_loaded_pair_is_checked_too():
-    check = crosscheck(EQUAL, **QUICK)
-    assert check.twin is not None
-    assert check.twin.pair.mesh.contact == "loaded"
-    assert check.verdict == "confirmed", check.failures
+def test_the_twin_of_a_loaded_pair_is_checked_too(equal):
+    assert equal.twin is not None
+    assert equal.twin.pair.mesh.contact == "loaded"
+    assert equal.twin.verdict == "confirmed", equal.failures
 
 
-def test_the_brake_pays_for_every_loss_in_both_models():
-    check = crosscheck(EQUAL, **QUICK, twin=False)
-    exact = check.powers["exact"]
+def test_the_brake_pays_for_every_loss_in_both_models(equal):
+    exact = equal.powers["exact"]
     assert abs(exact["mesh_stiffness"]) < 1e-8 * exact["driving"]
     lost = exact["friction"] + exact["bearings"] + exact["mesh_damping"]
     assert exact["driving"] - exact["braking"] == pytest.approx(lost, rel=1e-5)
