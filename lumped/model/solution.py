@@ -18,6 +18,7 @@ from lumped.errors import NumericalError, refuse
 from lumped.model import kernels, powers
 from lumped.model.equations import COORDINATES
 from lumped.model.periodic_system import LTVSystem, periodic_system
+from lumped.model.propagation import fastest_frequency
 from lumped.model.results import dataset, provenance
 from lumped.model.steady import PeriodicSolution, periodic_solution, sample_times
 from lumped.path_function import PathFunction
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
 
 Initial = Literal["static", "periodic"]
 _MAX_STEPS_PER_SEGMENT = 200_000
+#: Largest angle of the fastest vibration in a mesh cycle of a transient [rad]: some seconds of work a cycle.
+_MOST_ANGLE = 5e4
 
 
 def simulate(
@@ -65,7 +68,7 @@ def simulate(
 
     Raises
     ------
-    ParameterError : arguments out of range
+    ParameterError : arguments out of range, or a speed so low that a cycle would take minutes
     NumericalError : the integration fails or is not finite
     """
     pair = load_gear_pair(pair)
@@ -73,6 +76,7 @@ def simulate(
     rtol = real_number("rtol", rtol, 1e-13, 1e-2)
     system = periodic_system(pair, "absolute", as_printed=as_printed)
     grid = sample_times(system.period, samples_per_cycle)
+    _refuse_slow(system)
     # The torques that hold the mean speed are those of the repaired equations: a printed sign then shows up
     # as a drift instead of being balanced away.
     repaired = system if not as_printed else periodic_system(pair, "absolute", cycle=system.cycle)
@@ -223,6 +227,16 @@ def _integrate(
         f"More than {_MAX_STEPS_PER_SEGMENT} steps in one segment of the mesh cycle: raise speed or rtol, "
         "or take the periodic motion (--steady, steady_state), which bears many vibrations in a mesh cycle."
     )
+
+
+def _refuse_slow(system: LTVSystem) -> None:
+    """Raise a ParameterError where a mesh cycle holds too many vibrations for a transient."""
+    angle, rpm = fastest_frequency(system) * system.period, system.pair.operating.pinion_speed * 30.0 / np.pi
+    if angle > _MOST_ANGLE:
+        turns = f"the fastest mode swings {angle / (2.0 * np.pi):.2g} times in a mesh cycle"
+        least = f"at least {1.05 * rpm * angle / _MOST_ANGLE:.2g} rpm, because {turns}"
+        action = "Raise it, or take the periodic motion (--steady, steady_state)."
+        raise refuse("operating.pinion_speed", f"{rpm:g} rpm", least, action)
 
 
 def steady_state(

@@ -184,6 +184,7 @@ def document(results: Results, chapters: tuple[Written, ...], *, quick: bool) ->
         "quick": quick,
         "headline": headline(results),
         "verdict": sentence(results),
+        "doubts": list(results.doubts),
         "answers": [
             {"question": a.question, "verdict": plain(a.badge), "text": a.text, "chapter": key}
             for key, a in answers(results, chapters).items()

@@ -51,7 +51,11 @@ def render(
     return template.render(
         pair=pair,
         answer_figure=answer_figure,
-        tone=max((a.badge.tone for a in answers.values()), key=_TONES.index),
+        tone=max(
+            *(a.badge.tone for a in answers.values()),
+            "fair" if data["doubts"] else "plain",
+            key=_TONES.index,
+        ),
         answers=answers,
         front=front,
         evidence=evidence,

@@ -21,6 +21,7 @@ from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.reporting.paper_results import PaperResults, paper_results
 from validation.validity.contact_forms import ContactForms, contact_forms
 from validation.validity.flags import LOAD_NOISE, Flag, speed_drift, validity_flags
+from validation.validity.plausibility import doubts
 from validation.verification import Check
 from validation.verification.reference_model import ReferenceModel, reference_model
 from validation.verification.stability_routes import StabilityRoutes, stability_routes
@@ -134,6 +135,11 @@ class Results:
             samples_per_cycle=128,
             progress=self.stage("response over speed"),
         )
+
+    @cached_property
+    def doubts(self) -> tuple[str, ...]:
+        """Sentences on given values that hardly can be meant."""
+        return doubts(self.pair)
 
     @property
     def separating_share(self) -> float:

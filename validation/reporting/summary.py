@@ -21,6 +21,8 @@ def summary(document: Mapping[str, Any], comparison: Comparison | None = None) -
     comparison : with an earlier report
     """
     lines = [f"# Verification report: {_text(document['gear_pair'])}", "", _text(document["verdict"]), ""]
+    if document["doubts"]:
+        lines += [*(f"- Check: {_text(doubt)}" for doubt in document["doubts"]), ""]
     lines += ["| question | verdict | answer |", "|---|---|---|"]
     lines += [
         f"| {_text(a['question'])} | **{_text(a['verdict']['text'])}** | {_text(a['text'])} |"

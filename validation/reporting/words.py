@@ -33,6 +33,7 @@ def headline(results: Results) -> str:
     if off := contact_off(results):
         return f"{here} the equations are solved right, but their contact is too simple: {off}."
     near = [f"“{flag.name.lower()}” is near its limit" for flag in results.flags if flag.state != "ok"]
+    near += ["check the values named below"] if results.doubts else []
     return f"{here} the prediction holds{', with care: ' if near else ''}{'; '.join(near)}."
 
 

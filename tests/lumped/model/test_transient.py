@@ -182,3 +182,7 @@ class TestArguments:
     def test_numpy_numbers_are_numbers(self, nasa):
         run = simulate(nasa, np.int64(1), samples_per_cycle=np.int32(8), rtol=np.float64(1e-4))
         assert run.sizes["time"] == 9
+
+    def test_a_speed_at_which_a_cycle_would_take_minutes_is_refused_before_work(self, nasa):
+        with pytest.raises(ParameterError, match=r"pinion_speed = 0\.5 rpm: allowed at least .* swings"):
+            simulate(nasa.with_(operating__pinion_speed=0.5))

@@ -29,6 +29,7 @@ def document():
         "gear_pair": "pair",
         "quick": False,
         "verdict": "It holds.",
+        "doubts": [],
         "answers": [
             {"question": "Stable?", "verdict": state("stable"), "text": "yes", "chapter": "stability"},
         ],
@@ -287,6 +288,7 @@ def test_an_earlier_chapter_of_changes_is_no_result(document):
 def test_markdown_shows_hostile_text_as_text(document):
     document["gear_pair"] = HOSTILE
     document["answers"][0]["text"] = HOSTILE
+    document["doubts"] = [HOSTILE]
     new = copy.deepcopy(document)
     new["chapters"]["stability"]["margins"]["radius"]["value"] = 0.9
     text = summary(new, compare(document, new))

@@ -226,12 +226,14 @@ def test_numbers_stand_to_the_right_under_their_heading_gaps_included(pair):
     facts = Facts("f", (Fact("h", "hash", "0" * 64), Fact("w", "word", "ok")))
     made = (Chapter("c", "C", lambda _: None), Content((table, facts)))
     timestamps = {"created": "2020-01-01", "seconds": {"all": 1.0}}
-    data = {"quick": False, "headline": "It holds.", "timestamps": timestamps}
+    data = {"quick": False, "headline": "It holds.", "doubts": ["Is it 5?"], "timestamps": timestamps}
     answers = {"c": Answer("Is it good?", Badge("ok"), "Yes.")}
     text = render(pair, Picture("f", "", lambda: None), answers, (made,), {"f": ""}, data)
     assert re.findall(r"<th scope=\"col\"([^>]*)>", text) == ["", ' class="number"']
     assert text.count('<td class="number">') == 3
     assert text.count('<div class="long">') == 1
+    assert '<p class="verdict fair">' in text  # a doubt on a given value stands under the first words
+    assert "<li>Is it 5?</li>" in text
 
 
 def test_the_source_hash_sees_every_package(tmp_path, monkeypatch):
