@@ -24,7 +24,6 @@ def missing_labels(figure: Figure) -> list[str]:
     Insets show part of the axes they lie in and need none; of shared axes one label is enough.
     """
     found = []
-    figure.draw_without_rendering()
     insets = {child for axes in figure.axes for child in axes.child_axes}
     for index, axes in enumerate(figure.axes):
         for axis, name in ((axes.xaxis, "x"), (axes.yaxis, "y")):
@@ -43,15 +42,15 @@ def missing_labels(figure: Figure) -> list[str]:
 
 @pytest.fixture(autouse=True, scope="session")
 def labelled_figures():
-    """Check every figure as it is saved."""
+    """Check every figure when it is saved: then it has been drawn, so that its ticks are known."""
     save, seen = Figure.savefig, weakref.WeakSet()
 
     def checked(figure, *args, **options):
+        save(figure, *args, **options)
         if figure not in seen:  # a figure is often saved twice, as SVG and as PNG
             found = missing_labels(figure)
             assert not found, (args, found)
             seen.add(figure)
-        return save(figure, *args, **options)
 
     Figure.savefig = checked
     yield

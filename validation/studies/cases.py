@@ -9,7 +9,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
-from scipy.stats import qmc
 
 from floquet.gear.axes import GEAR_AXES, GearVariation
 from lumped.schema.pair import GearPair
@@ -49,6 +48,8 @@ class CaseList:
     @cached_property
     def _shares(self) -> FloatArray:
         """Samples (n, d) of the unit cube, without the sensitivity blocks AB; (n, 2 d) with them."""
+        from scipy.stats import qmc  # takes a third of a second, and a grid has no use for it
+
         design, d = self.study.design, len(self.study.axes)
         columns = 2 * d if design.sensitivity else d
         kind: Any = qmc.LatinHypercube if design.method == "latin_hypercube" else qmc.Sobol

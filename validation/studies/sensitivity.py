@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from scipy import stats
 
 from lumped.typing import FloatArray
 from validation.studies.cases import CaseList
@@ -66,6 +65,8 @@ def indices(values: FloatArray, axes: int, seed: int) -> dict[str, FloatArray]:
     axes : number of axes
     seed : of the bootstrap
     """
+    from scipy import stats  # takes a third of a second, and most studies have no use for it
+
     names = ("sobol_first", "sobol_total")
     found = {
         f"{name}{end}": np.full((len(values), axes), np.nan)

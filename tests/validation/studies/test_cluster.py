@@ -29,9 +29,9 @@ pytestmark = [
 
 @pytest.fixture(scope="module")
 def cluster():
-    """Three worker processes behind a scheduler on TCP."""
+    """Two worker processes behind a scheduler on TCP."""
     with distributed.LocalCluster(
-        n_workers=3,
+        n_workers=2,
         threads_per_worker=1,
         processes=True,
         protocol="tcp",
@@ -109,10 +109,24 @@ def test_a_result_lost_before_it_is_fetched_ends_its_future(tmp_path, cluster, m
     assert isinstance(error, pebble.ProcessExpired)
 
 
-def test_a_lost_scheduler_stops_the_sweep_and_nothing_is_lost(study, tmp_path, undisturbed):
+def test_time_limits_hold_on_threads_and_a_lost_scheduler_loses_nothing(
+    study, make_study, tmp_path, undisturbed
+):
     cluster = distributed.LocalCluster(
-        n_workers=1, threads_per_worker=1, dashboard_address=":0", silence_logs=50
+        n_workers=1, threads_per_worker=2, protocol="tcp", dashboard_address=":0", silence_logs=50
     )
+    # 100000 mesh cycles of the multibody model take minutes.
+    endless = make_study(
+        analysis="multibody",
+        outputs=["dte_rms"],
+        settings={"cycles": 100_000},
+        axes=[{"field": "operating.pinion_speed", "values": [2000, 3000]}],
+    )
+    address = cluster.scheduler_address
+    summary = run_sweep(endless, tmp_path / "endless", scheduler=address, case_seconds=1.0)
+    assert dict(summary.statuses) == {Status.TIME_LIMIT: 2}
+    plain = run_sweep(study, tmp_path / "plain", scheduler=address, case_seconds=60.0)
+    assert plain.results.read_bytes() == undisturbed
     computed = []
 
     def lose(done, total, failed):
@@ -121,7 +135,7 @@ def test_a_lost_scheduler_stops_the_sweep_and_nothing_is_lost(study, tmp_path, u
             cluster.close()
 
     with pytest.raises(SweepStopped, match="--resume"):
-        run_sweep(study, tmp_path / "out", scheduler=cluster.scheduler_address, progress=lose)
+        run_sweep(study, tmp_path / "out", scheduler=address, progress=lose)
     summary = run_sweep(study, tmp_path / "out", resume=True, workers=2)
     assert summary.before >= computed[2]
     assert summary.results.read_bytes() == undisturbed
@@ -220,24 +234,6 @@ def test_no_scheduler_is_refused(study, tmp_path, monkeypatch):
             run_sweep(study, tmp_path / "out", scheduler=address)
     # One left half made would print a traceback when the interpreter ends, after 40 s.
     assert all(client.status == "closed" for client in distributed.Client._instances)
-
-
-def test_the_time_limit_holds_on_threads_of_a_worker(study, make_study, tmp_path, undisturbed):
-    # 100000 mesh cycles of the multibody model take minutes.
-    endless = make_study(
-        analysis="multibody",
-        outputs=["dte_rms"],
-        settings={"cycles": 100_000},
-        axes=[{"field": "operating.pinion_speed", "values": [2000, 3000]}],
-    )
-    with distributed.LocalCluster(
-        n_workers=1, threads_per_worker=2, protocol="tcp", dashboard_address=":0", silence_logs=50
-    ) as cluster:
-        address = cluster.scheduler_address
-        summary = run_sweep(endless, tmp_path / "endless", scheduler=address, case_seconds=1.0)
-        assert dict(summary.statuses) == {Status.TIME_LIMIT: 2}
-        plain = run_sweep(study, tmp_path / "plain", scheduler=address, case_seconds=60.0)
-    assert plain.results.read_bytes() == undisturbed
 
 
 # The last test of the module, for the scheduler is gone then.
