@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _SAMPLES = 128
+#: The shares that are stated err by as much.
+_RTOL = 1e-7
 _QUANTITIES = ("dte", "x_p", "y_p", "theta_p")
 _KINDS = {"alone": "this cause alone", "without": "all causes but this"}
 
@@ -47,7 +49,7 @@ def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Datase
     pair = load_gear_pair(pair)
 
     def motion(effects: set[str]) -> xr.Dataset:
-        return steady_state(pair, effects=effects, samples_per_cycle=_SAMPLES)
+        return steady_state(pair, effects=effects, samples_per_cycle=_SAMPLES, rtol=_RTOL)
 
     every = set(DEFAULT_EFFECTS)
     groups = {cause: {name for name in EFFECTS if EFFECTS[name].cause == cause} for cause in CAUSES}

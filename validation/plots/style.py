@@ -202,5 +202,12 @@ def save(figure: Figure, path: Path) -> None:
     suffix = path.suffix.lower().removeprefix(".")
     dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None, "ModDate": None}}
     metadata: dict[str, Any] = dates.get(suffix, {"Software": None})
+    layout = figure.get_layout_engine()
     with whole_file(path) as temporary, mpl.rc_context(_RC):
-        figure.savefig(temporary, format=suffix, dpi=_PNG_DPI, metadata=metadata)
+        if layout is not None:  # laid out once: savefig draws the whole figure for it before it draws
+            layout.execute(figure)
+            figure.set_layout_engine("none")
+        try:
+            figure.savefig(temporary, format=suffix, dpi=_PNG_DPI, metadata=metadata)
+        finally:
+            figure.set_layout_engine(layout)

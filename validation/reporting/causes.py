@@ -34,7 +34,12 @@ def meshing_teeth(results: Results) -> Picture:
 
 
 def attribution(pair: GearPair) -> xr.Dataset | None:
-    """Effects of finite motions one by one; None where the exact model has no periodic motion nearby."""
+    """Effects of finite motions one by one; None where the exact model has no periodic motion nearby.
+
+    None in the loaded form too: its contact itself is made of such effects, and none of them acts alone.
+    """
+    if pair.mesh.contact == "loaded":
+        return None
     try:
         return multibody.attribution(pair)
     except NumericalError:

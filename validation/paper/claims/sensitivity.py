@@ -6,7 +6,6 @@ import warnings
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import qmc
 
 from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError, bodies
 from lumped.arguments import whole_number
@@ -144,6 +143,8 @@ def sample_assumptions(
     """
     samples = whole_number("samples", samples, 8, 100_000, "Use 100 for shares to 5 %.")
     seed = whole_number("seed", seed, 0, 2**63 - 1)
+    from scipy.stats import qmc  # half a second that only this needs
+
     quantiles = qmc.LatinHypercube(len(ASSUMPTIONS), rng=np.random.default_rng(seed)).random(samples)
     rows: list[dict[str, float]] = []
     kept: list[FloatArray] = []
