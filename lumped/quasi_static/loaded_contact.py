@@ -13,7 +13,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -38,6 +38,8 @@ _TOLERANCE, _LENGTH = 1e-10, 2e-17
 _ANY_SPEED = 1000.0
 #: Below this share of the mean load Hertz's contact is held linear, see ``ContactLaw``.
 LEAST_LOAD = 1e-3
+#: A ramp ends without stiffness; so much of the largest one is left, below the fit error of every law.
+_LEAST_STIFFNESS = 1e-11
 #: The damper is whole where a pair carries this share of the mean load.
 FULL_DAMPING = 1.0 / 15.0
 
@@ -67,9 +69,18 @@ class ContactLaw:
         return LEAST_LOAD * self.nominal
 
     def held(self, xi: FloatArray) -> FloatArray:
-        """K at positions of any shape, held beyond the ends of its path [N/m]."""
+        """K at positions of any shape, held beyond the ends of its path; never quite zero [N/m]."""
         low, high = self.stiffness.interval
-        return self.stiffness(np.clip(xi, low, np.nextafter(high, low)))
+        found = self.stiffness(np.clip(xi, low, np.nextafter(high, low)))
+        return np.maximum(found, _LEAST_STIFFNESS * self.largest)
+
+    @cached_property
+    def largest(self) -> float:
+        """Largest k at the breaks and halfway between [N/m]."""
+        breaks = self.stiffness.breaks[:-1]
+        return float(
+            self.stiffness(np.concatenate([breaks, breaks + 0.5 * np.diff(self.stiffness.breaks)])).max()
+        )
 
 
 class StaticPair(NamedTuple):

@@ -178,8 +178,8 @@ def agreement(
     if metrics.is_constant(b):
         companion = reference[_COMPANION.get(quantity, quantity)].to_numpy()
         scale = max(float(np.abs(companion).max()), np.finfo(float).tiny)
-        rms = float(np.sqrt(np.mean((a - b) ** 2))) / scale
-        l2 = remainder = rms
+        l2 = rms = float(np.sqrt(np.mean((a - b) ** 2))) / scale
+        remainder = float(np.sqrt(np.mean((a - change - b) ** 2))) / scale
         largest = float(np.abs(a - b).max()) / scale
         shift = float(a.mean() - b.mean()) / scale
     else:

@@ -20,13 +20,14 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--seed", default="0", help="text that chooses the sample or the sound pairs")
     parser.add_argument("--sound", type=int, metavar="N", help="cross-check N random sound pairs instead")
     parser.add_argument("--relief", action="store_true", help="only sound pairs whose tip relief acts")
+    parser.add_argument("--loaded", action="store_true", help="sound pairs in the loaded form")
     parser.add_argument(
         "--thorough", action="store_true", help="ask every part, also after the first that sees it"
     )
     parser.add_argument("-o", "--output", type=Path, help="rows as .json")
     given = parser.parse_args(arguments)
     if given.sound is not None:
-        return sound_pairs(given.sound, given.seed, given.output, relief=given.relief)
+        return sound_pairs(given.sound, given.seed, given.output, relief=given.relief, loaded=given.loaded)
     if unknown := [key for key in given.keys if key not in FAULTS]:
         parser.error(f"no such fault: {', '.join(unknown)}")
     chosen = [FAULTS[key] for key in given.keys] or list(FAULTS.values())

@@ -30,7 +30,7 @@ _STIFFNESS = (
 )
 
 
-def drawn(count: int, seed: str, *, relief: bool = False) -> Iterator[GearPair]:
+def drawn(count: int, seed: str, *, relief: bool = False, loaded: bool = False) -> Iterator[GearPair]:
     """Random variations of the presets that exist: gears, bearings, teeth, law, relief, speed and load.
 
     Parameters
@@ -39,6 +39,7 @@ def drawn(count: int, seed: str, *, relief: bool = False) -> Iterator[GearPair]:
     seed : text that the numbers come from
     relief : whether only pairs are taken whose tip relief acts; among all they are rare, because many of them
         let their teeth separate
+    loaded : whether the pairs are in the loaded form; else they are in the paper's
     """
     rng = random.Random(seed)
     names, found = sorted(preset_names()), 0
@@ -47,6 +48,7 @@ def drawn(count: int, seed: str, *, relief: bool = False) -> Iterator[GearPair]:
     while found < count:
         try:
             pair = _varied(load_gear_pair(names[found % len(names)]), rng)
+            pair = pair.with_({"mesh.contact": "loaded" if loaded else "paper"})
             if (relief and pair.mesh.relief != "static") or not _holds(pair):
                 continue
         except (ParameterError, NumericalError):
@@ -89,16 +91,18 @@ def _varied(base: GearPair, rng: random.Random) -> GearPair:
     return base.with_(fields)
 
 
-def sound_pairs(count: int, seed: str, output: Path | None = None, *, relief: bool = False) -> int:
+def sound_pairs(
+    count: int, seed: str, output: Path | None = None, *, relief: bool = False, loaded: bool = False
+) -> int:
     """Cross-check random sound pairs and print every one that is not confirmed; 1 where there is any.
 
     Parameters
     ----------
-    count, seed, relief : as ``drawn``
+    count, seed, relief, loaded : as ``drawn``
     output : rows as .json, added to those that the file has
     """
     rows: list[dict[str, Any]] = []
-    for number, pair in enumerate(drawn(count, seed, relief=relief)):
+    for number, pair in enumerate(drawn(count, seed, relief=relief, loaded=loaded)):
         rows.append(_row(pair, f"{seed}/{number}"))
         if rows[-1]["verdict"] != "confirmed":
             print(rows[-1], flush=True)

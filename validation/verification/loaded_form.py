@@ -34,18 +34,19 @@ _PLACES = 31
 #: Change of a compression for a tangent, over the approach.
 _STEP = 1e-4
 #: Of the ring: harmonics, nodes over the radius, nodes over a foot.
-_HARMONICS, _RADII, _FOOT = 150, 40, 40
+_HARMONICS, _RADII, _FOOT = 400, 48, 40
 
 
 def loaded_form(pair: GearPair) -> Iterator[Check]:
     """Static mesh, softening and neighbours of a pair, as far as it has them."""
     if pair.mesh.contact == "loaded":
         yield _static_mesh(pair)
-    softening = pair.mesh.stiffness.softening(pair)
-    if softening > 0.0:
-        yield _softening(pair, softening)
-    if pair.mesh.stiffness.neighbours(pair):
-        yield _neighbours(pair)
+    if pair.mesh.stiffness.model == "energy":
+        softening = pair.mesh.stiffness.softening(pair)
+        if softening > 0.0:
+            yield _softening(pair, softening)
+        if pair.mesh.stiffness.neighbours(pair):
+            yield _neighbours(pair)
 
 
 @dataclass(frozen=True)
@@ -122,6 +123,8 @@ def _static_mesh(pair: GearPair) -> Check:
     low, high = elements.stiffness.interval
     places = low + (high - low) * (np.arange(_PLACES) + 0.5) / _PLACES
     places = places[np.abs(places[:, None] - elements.stiffness.switches).min(axis=1) > 1e-5 * (high - low)]
+    # At the end of a ramp neither load nor tangent is left.
+    places = places[elements.stiffness(places) > 1e-6 * float(elements.stiffness(places).max())]
     found = [mesh.at(float(xi)) for xi in places]
     own = {
         "stiffness": np.array([one.tangent for one in found]),

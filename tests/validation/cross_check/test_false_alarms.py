@@ -59,6 +59,11 @@ PAIRS = {
         | RECTANGULAR
         | running(1165.6, 171.4, "composite", **{"lubricant.viscosity": 20.84}),
     ),
+    "loaded, without friction: y moves by corners and path work alone; a ramp ends without stiffness": (
+        "high_contact_ratio_29_47",
+        {"mesh.stiffness": {"model": "parabolic", "ramp_length": 0.5}, "mesh.contact": "loaded"}
+        | running(3071.6, 43.9, "none"),
+    ),
     "friction holds the teeth": (
         "fzg_c",
         bearings(0.632, 0.627, 5.0, 9.14)
