@@ -23,7 +23,7 @@ from lumped.typing import FloatArray
 #: Radii between which chi falls [modules].
 NEAR, FAR = 0.15, 1.1
 #: Gauss points along an edge and a side of an element where the load is spread.
-_POINTS = 6
+_POINTS = 4
 
 
 def flank_load(

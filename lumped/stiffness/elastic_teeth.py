@@ -2,8 +2,8 @@
 
 The deflection of a tooth under a line load, less the half plane around the load, comes from the finite
 elements (``lumped.elasticity``); what a Hertzian pressure adds down to the tooth's centre line is Weber and
-Banaschek's (``contact.local_compliance``, plane strain). In plane strain their sum is the plane solution
-itself.
+Banaschek's contact, in plane strain. In plane strain their sum is the plane solution itself. No formula is
+shared with the energy method, so that each can judge the other.
 
 The angles and displacements of the model are the mean ones of the gear bodies. So a gear is free here: its
 load is balanced by its own inertia, and the deflection counts from its mean motion. What lies between mean
@@ -22,7 +22,6 @@ from lumped.elasticity.gear import FlankCompliance, PlaneGear, flank_compliance
 from lumped.errors import refuse
 from lumped.gear_geometry.geometry import Wheel
 from lumped.stiffness.base import Material, MeshingPair
-from lumped.stiffness.foundation import torsional_stiffness
 from lumped.stiffness.neighbours import REACH
 from lumped.typing import FloatArray
 
@@ -118,7 +117,9 @@ def elastic_teeth(
         )
         twist = 0.0
         if support == "untwisted":
-            twist = tooth.base_radius**2 / torsional_stiffness(tooth.root_radius, radius, 1.0, nu)
+            # Lame's ring, G = 1/(2 (1 + nu)).
+            inverse = (radius**-2 - tooth.root_radius**-2) / (2.0 * math.pi)
+            twist = tooth.base_radius**2 * (1.0 + nu) * inverse
         found.append(ElasticTooth(wheel, material, plane, flank_compliance(blank), twist))
     return found[0], found[1]
 

@@ -121,3 +121,24 @@ def energy_mesh_figure(energy: xr.Dataset) -> Figure:
     ax.set(xlabel="time [mesh cycles after a pair was at A]", ylabel=f"mesh stiffness [{unit}]")
     legend(ax, loc="upper right", ncols=3)
     return figure
+
+
+def tooth_stiffness_figure(g: Geometry, curves: xr.Dataset) -> Figure:
+    """Stiffness of a tooth pair alone over the path of contact by several ways.
+
+    Parameters
+    ----------
+    g : geometry of the pair
+    curves : ``curves`` of ``validation.verification.tooth_stiffness.ToothStiffness``
+    """
+    figure, ax = one_panel(2.8)
+    stiffness = curves["stiffness"]
+    factor, unit = scaled(stiffness.to_numpy(), unit="N/m")
+    styles = zip((BLACK, GREY, BLUE, RED), ("-", "-", "--", "-."), strict=True)
+    for name, (colour, dashes) in zip(map(str, curves["way"].to_numpy()), styles, strict=True):
+        k = stiffness.sel(way=name).to_numpy() / factor
+        ax.plot(curves["position"].to_numpy() * 1e3, k, color=colour, linestyle=dashes, label=name)
+    path_axis(ax, g)
+    ax.set(ylim=(0.0, None), ylabel=f"stiffness [{unit}]")
+    legend(ax, loc="lower center", ncols=2)
+    return figure

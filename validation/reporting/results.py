@@ -25,6 +25,7 @@ from validation.validity.plausibility import doubts
 from validation.verification import Check
 from validation.verification.reference_model import ReferenceModel, reference_model
 from validation.verification.stability_routes import StabilityRoutes, stability_routes
+from validation.verification.tooth_stiffness import ToothStiffness, tooth_stiffness
 
 
 @dataclass(frozen=True)
@@ -187,11 +188,20 @@ class Results:
         self.stage("checks of the multibody model")
         return reference_model(self.pair, self.static_load)
 
+    @cached_property
+    def tooth_stiffness(self) -> ToothStiffness | str:
+        """Tooth stiffness beside plane elasticity; why it cannot be computed."""
+        self.stage("tooth stiffness by elasticity")
+        try:
+            return tooth_stiffness(self.pair)
+        except (NumericalError, ParameterError) as error:
+            return str(error)
+
     @property
     def checks(self) -> tuple[Check, ...]:
-        """Checks of the multibody model and of the multipliers, which every report has."""
-        routes = self.routes
-        return (*self.reference.checks, *(() if isinstance(routes, str) else routes.checks))
+        """Checks of multibody model, multipliers and tooth stiffness, which every report has."""
+        others = (found for found in (self.routes, self.tooth_stiffness) if not isinstance(found, str))
+        return (*self.reference.checks, *(check for found in others for check in found.checks))
 
     @cached_property
     def margins(self) -> StabilityMargins:

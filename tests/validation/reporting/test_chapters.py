@@ -48,6 +48,7 @@ ASKED = [
     "scope",
     "path_of_contact",
     "mesh_physics",
+    "tooth_stiffness",
     "code_verification",
     "solution_verification",
     "reference_model",

@@ -25,6 +25,7 @@ from validation.reporting.chapters import (
     stability,
     stability_margins,
     steady_state,
+    tooth_stiffness,
     validity,
     validity_map,
 )
@@ -45,6 +46,7 @@ CHAPTERS: tuple[Chapter, ...] = tuple(
         scope,
         path_of_contact,
         mesh_physics,
+        tooth_stiffness,
         code_verification,
         solution_verification,
         reference_model,

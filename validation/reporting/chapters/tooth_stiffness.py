@@ -1,0 +1,66 @@
+"""Tooth stiffness: every way to k beside plane elasticity of the same gears."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from validation.plots.stiffness import tooth_stiffness_figure
+from validation.reporting.blocks import Badge, Block, Content, Picture, Quantity, Text, table_of
+from validation.reporting.chapter import Chapter
+from validation.reporting.checks import check_table
+from validation.reporting.results import Results
+from validation.verification.tooth_stiffness import PLAUSIBLE, ToothStiffness
+
+
+def write(results: Results) -> Content:
+    """Write the chapter."""
+    found = results.tooth_stiffness
+    if isinstance(found, str):
+        text = f"The stiffness of the teeth cannot be compared with plane elasticity for this pair: {found}"
+        return Content((Text(text),), Badge("undecided"))
+    passed = sum(check.passes for check in found.checks)
+    blocks: list[Block] = [
+        Text(
+            "Both models take the stiffness of the teeth from one place, so their agreement says nothing "
+            "about it. Plane finite elements of both whole gears share the outline of the teeth with the "
+            f"other ways and no formula. {passed} of {len(found.checks)} checks pass. {_own(found)}"
+        ),
+        check_table("checks", "Formulas for the tooth stiffness against plane elasticity.", found.checks),
+        Picture(
+            "tooth_stiffness",
+            "Stiffness of a tooth pair alone over the path of contact, by plane elasticity and by formulas.",
+            partial(tooth_stiffness_figure, results.geometry, found.curves),
+        ),
+        table_of(
+            "ways",
+            "Stiffness of the teeth by every way.",
+            found.ways,
+            {
+                "name": ("way", lambda w: w.name),
+                "counted": ("deflections count from", lambda w: w.counted),
+                "largest": ("largest of a pair", lambda w: Quantity(w.largest, "N/m")),
+                "mean": ("mean of the mesh", lambda w: Quantity(w.mean, "N/m")),
+                "single_ratio": ("largest over c' b", lambda w: w.single_ratio),
+                "mean_ratio": ("mean over c_γ b", lambda w: w.mean_ratio),
+                "elastic_ratio": ("largest over elastic, ring", lambda w: w.elastic_ratio),
+            },
+            marked=lambda w: w.counted == "",
+            note=f"Error of the finite elements, from two meshes: {100.0 * found.error:.2g} %. Bodies are in "
+            "plane stress; in plane strain k is 3 to 6 % larger.",
+        ),
+    ]
+    if found.warnings:
+        blocks.append(Text("Rims for which the support decides, not k of a free gear:", found.warnings))
+    badge = "not confirmed" if not found.passes else "confirmed" if found.plausible else "warning"
+    return Content(tuple(blocks), Badge(badge), {"tooth_stiffness": found.curves})
+
+
+def _own(found: ToothStiffness) -> str:
+    low, high = PLAUSIBLE
+    text = f"The stiffness of this report is {found.own:.2f} times the elastic one on the same ring"
+    if found.plausible:
+        return f"{text}, within {low:g} to {high:g}."
+    return f"{text}, outside {low:g} to {high:g}: no usual gear pair is so; check the stiffness given."
+
+
+CHAPTER = Chapter("tooth_stiffness", "Tooth stiffness", write, seconds=1)
