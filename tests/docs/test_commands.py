@@ -18,6 +18,8 @@ from typer.testing import CliRunner
 import lumped
 from validation.cli import app
 from validation.exchange import write_results, write_rexs, write_state_space
+from validation.interactive import write_interactive_page
+from validation.interactive.results import Sampling
 from validation.measurements import MeasurementSpec
 
 #: Commands that take longer than a few seconds or need a cluster: only their arguments are checked. That
@@ -31,6 +33,8 @@ SMALL = {
 AXES_OF_VIEW = {"chart": SMALL, "laws": SMALL, "campbell": ["speed_rpm"], "boundaries": ["speed_rpm"]}
 #: Commands that are meant to be refused.
 REFUSED = re.compile(r"centre_distance=80$")
+#: What makes an interactive page small: tests/validation/interactive judges it.
+COARSE = Sampling(speeds=5, dampings=2, slices=2, sweep_speeds=3)
 COMMAND = get_command(app)
 CLUSTER = "docs/how_to/cluster.md"
 
@@ -107,6 +111,7 @@ def test_a_page_works_from_top_to_bottom(page, blocks, root, tmp_path, monkeypat
         return
     shutil.copytree(belongings, tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(write_interactive_page.__kwdefaults__, "sampling", COARSE)
     session: dict[str, object] = {}
     for block in blocks(page):
         if block.language == "sh":

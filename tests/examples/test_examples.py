@@ -1,5 +1,8 @@
 """Does every example run, draw labelled axes, and show the fact it is there for?"""
 
+import functools
+
+import distributed
 import numpy as np
 import pytest
 import xarray as xr
@@ -200,8 +203,11 @@ def test_15_the_true_coefficient_lies_in_its_interval(example):
     assert found.standard_error < 0.01 * result.truth
 
 
-def test_16_the_cluster_gives_the_file_of_one_process(example, tmp_path):
+def test_16_the_cluster_gives_the_file_of_one_process(example, tmp_path, monkeypatch):
     module = example(16)
+    # Workers in this process: tests/validation/studies/test_cluster.py starts processes, and kills them.
+    local = functools.partial(distributed.LocalCluster, processes=False)
+    monkeypatch.setattr(distributed, "LocalCluster", local)
     result = module.compute()
     labelled(module.draw(result))
     run_sweep(load_study(module.STUDY), tmp_path / "alone", workers=0)

@@ -143,10 +143,10 @@ def test_a_range_without_a_tongue_has_no_margins_but_an_answer(pair) -> None:
 
 def test_the_next_tongue_above_the_range_is_the_one_that_a_wider_search_finds() -> None:
     pair = load_gear_pair("nasa_28_28").with_(mesh__relief="ignored")
-    wide = stability_margins(pair, (6000.0, 40000.0))
+    wide = stability_margins(pair, (15000.0, 40000.0))
     tongues = [t for t in wide.tongues if t.upper < 30000.0]
     below, target = tongues[-2:]
-    narrow = stability_margins(pair, (6000.0, 0.5 * (below.upper + target.lower)))
+    narrow = stability_margins(pair, (15000.0, 0.5 * (below.upper + target.lower)))
     assert narrow.above is not None
     assert narrow.above.label == target.label
     assert narrow.above.lower == pytest.approx(target.lower, rel=1e-7)
@@ -159,7 +159,7 @@ def test_the_next_tongue_above_the_range_is_the_one_that_a_wider_search_finds() 
     assert light.unstable_above is not None
     assert target.lower < light.unstable_above < target.tip_speed
     # A tongue that begins within the range is not the next one.
-    inside = stability_margins(pair, (6000.0, 0.5 * (below.lower + below.upper)))
+    inside = stability_margins(pair, (15000.0, 0.5 * (below.lower + below.upper)))
     assert inside.above is not None
     assert inside.above.lower == pytest.approx(target.lower, rel=1e-7)
     assert wide.above is None
