@@ -194,4 +194,6 @@ def _forces(axes: Axes, now: xr.Dataset, largest: tuple[float, float], longest: 
         Line2D([], [], color=_FRICTION, linewidth=1.8, label=f"friction on the gear, {how}"),
         Line2D([], [], label="line of action", **_LINE),
     ]
-    axes.legend(handles=handles, loc="lower right", fontsize=8, framealpha=0.9)
+    axes.legend(
+        handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3, fontsize=8, frameon=False
+    )

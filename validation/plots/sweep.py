@@ -39,9 +39,10 @@ def sweep_figure(
     low = sweep["normal_load_min"].to_numpy() / static_load
     bottom.plot(speed, sweep["normal_load_max"].to_numpy() / static_load, color=BLUE, label="largest")
     bottom.plot(speed, low, color=LINES[2], linestyle="--", label="smallest")
-    with np.errstate(invalid="ignore"):
+    apart = np.nan_to_num(low) < 0.0
+    if apart.any():
         shade = {"color": RED, "alpha": 0.3, "linewidth": 0, "label": "teeth separate: not valid"}
-        bottom.fill_between(speed, low, 0.0, where=low < 0.0, **shade)
+        bottom.fill_between(speed, low, 0.0, where=apart, **shade)
     bottom.axhline(0.0, color=GREY, linewidth=0.6)
     bottom.set(ylabel="tooth load over\nstatic load [-]", xlabel="pinion speed [rpm]")
     bottom.set_xlim(speed[0], speed[-1])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -47,6 +48,9 @@ def validity_map_figure(data: xr.Dataset, point: tuple[float, float] | None = No
         shading: Any = {"cmap": ListedColormap(list(colours)), "norm": norm, "shading": "nearest"}
         ax.pcolormesh(speed, torque, values, **shading, rasterized=True)
         ax.set_yscale("log")
+        ax.set_yticks(_round_numbers(torque[0], torque[-1]))
+        ax.yaxis.set_major_formatter("{x:g}")
+        ax.minorticks_off()
         ax.grid(False)
         present = [k for k in range(4) if (values == k).any()]
         handles: list[Artist] = [
@@ -65,3 +69,9 @@ def validity_map_figure(data: xr.Dataset, point: tuple[float, float] | None = No
             ax.plot(*point, "o", markersize=7, markerfacecolor="white", markeredgecolor=BLACK)
     axes[0, 0].set_ylabel("pinion torque [N m]")
     return figure
+
+
+def _round_numbers(low: float, high: float) -> list[float]:
+    """1, 2, 5, 10, 20 ... within a range."""
+    decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+    return [n * 10.0**d for d in decades for n in (1, 2, 5) if low <= n * 10.0**d <= high]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 from validation.reporting.blocks import Badge, Cell, Quantity
 
@@ -10,6 +11,8 @@ _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _MINUS = "\u2212"
 #: A number and its unit stay on one line.
 _SPACE = "\u00a0"
+#: Mantissa and exponent of a number as a computer writes it.
+_EXPONENT = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e(-\d+|\+\d{2,})(?!\w)")
 _PREFIXED = frozenset({"m", "N", "Pa", "N/m", "W", "s", "Hz", "m/s", "N s/m"})
 _PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p"}
 
@@ -64,4 +67,18 @@ def cell(value: Cell, digits: int = 4) -> str:
         return number(value, digits)
     if isinstance(value, int):
         return str(value).replace("-", _MINUS)
-    return str(value)
+    return prose(str(value))
+
+
+def prose(text: str) -> str:
+    """Text in which numbers as a computer writes them (9.43e-03) are as people write them."""
+    return _EXPONENT.sub(_plain, text)
+
+
+def _plain(match: re.Match[str]) -> str:
+    mantissa, exponent = match[1], int(match[2])
+    if -3 <= exponent <= 4:
+        places = max(len(mantissa.partition(".")[2]) - exponent, 0)
+        return f"{float(match[0]):.{places}f}"
+    factor = "" if mantissa == "1" else f"{mantissa}{_SPACE}×{_SPACE}"
+    return f"{factor}10{str(exponent).translate(_SUPERSCRIPT)}"

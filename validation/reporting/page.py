@@ -11,7 +11,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from lumped import GearPair
 from validation.reporting.blocks import Answer, Badge, Block, Facts, Picture, Quantity, Table, Text
 from validation.reporting.chapter import Chapter, Written
-from validation.reporting.formatting import cell
+from validation.reporting.formatting import cell, prose
 
 
 def render(
@@ -41,6 +41,7 @@ def render(
         lstrip_blocks=True,
     )
     environment.filters["cell"] = cell
+    environment.filters["prose"] = prose
     environment.filters["kind"] = _kind
     environment.filters["id"] = id
     environment.filters["numeric_columns"] = _numeric_columns

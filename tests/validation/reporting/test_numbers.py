@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from validation.reporting.blocks import Badge, Quantity, plain
 from validation.reporting.chapters.parameters import unit_text
-from validation.reporting.formatting import cell, number, quantity
+from validation.reporting.formatting import cell, number, prose, quantity
 
 NBSP = "\u00a0"
 
@@ -69,3 +69,16 @@ def test_cells():
 )
 def test_units_of_the_parameter_file_are_printed_as_units(unit, text):
     assert unit_text(unit) == text
+
+
+@pytest.mark.parametrize(
+    ("text", "read"),
+    [
+        ("a shift of 9.43e-03 of a pitch", "a shift of 0.00943 of a pitch"),
+        ("at most 1.71e+00, 2.88e-01", "at most 1.71, 0.288"),
+        ("rtol 1e-7, error 4.4e-09;", f"rtol 10⁻⁷, error 4.4{NBSP}×{NBSP}10⁻⁹;"),
+        ("modulus(206e9, 0.3), 1e3e-05x, v1.2e-05", "modulus(206e9, 0.3), 1e3e-05x, v1.2e-05"),
+    ],
+)
+def test_numbers_inside_a_text_are_written_as_people_do(text, read):
+    assert prose(text) == read
