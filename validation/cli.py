@@ -18,6 +18,7 @@ from validation.commands.interactive import interactive
 from validation.commands.measurement import measurement
 from validation.commands.parameter_files import init, presets, schema
 from validation.commands.report import report
+from validation.commands.response import response
 from validation.commands.reversal import reversal
 from validation.commands.simulate import simulate
 from validation.commands.stability import stability
@@ -73,6 +74,7 @@ COMMANDS = (
     crosscheck,
     reversal,
     stability,
+    response,
     interactive,
     sweep,
     figures,

@@ -8,15 +8,18 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from floquet.gear.axes import operating_rpm, speed_range
 from floquet.gear.orbit import MOST_CYCLES, GearOrbit, largest_motion, start_of, static_deflection
+from floquet.gear.orbit import long_run as settled_run
 from floquet.gear.unilateral import unilateral_family
 from floquet.orbits.bifurcations import Bifurcation, Kind
 from floquet.orbits.branch import Limits
+from floquet.orbits.long_run import Settled, long_run
 from floquet.orbits.response import Branch, Response, find_response
 from lumped.arguments import real_array, whole_number
 from lumped.errors import refuse
@@ -27,6 +30,27 @@ from lumped.typing import Progress
 
 if TYPE_CHECKING:
     import xarray as xr
+
+#: Part of the speed behind a bifurcation where a run shows what happens there.
+_BEYOND = 1e-3
+_SETTLE = 400
+#: Change of the root mean square that is a jump.
+_JUMP = 0.1
+#: A bifurcation has a multiplier of modulus one but for rounding: it belongs to the stable motions before it.
+_MARGINAL = 1.0 + 1e-6
+#: Part of the range that counts as a gap between stable motions.
+_GAP = 5e-4
+_JUMP_COLUMNS = (
+    ("speed_rpm", "rpm", "where a stable motion ends"),
+    ("rising", "1", "on running up"),
+    ("dte_rms", "m", "dynamic transmission error before, rms"),
+    ("dte_rms_after", "m", "dynamic transmission error after, rms"),
+    ("largest_load", "N", "largest normal load before"),
+    ("largest_load_after", "N", "largest normal load after"),
+    ("n", "1", "mesh cycles before"),
+    ("n_after", "1", "mesh cycles after, 0 where it does not repeat"),
+    ("after", "1", "motion after"),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +73,54 @@ class GearBifurcation:
     sharp: bool
 
 
+@dataclass(frozen=True)
+class Jump:
+    """A stable motion that ends as the speed rises or falls, and what the pair does right behind.
+
+    Attributes
+    ----------
+    speed_rpm : where the motion loses its stability [rpm]
+    rising : whether on running up
+    dte_rms, largest_load : before, of the motion that ends [m], [N]
+    n : its mesh cycles
+    dte_rms_after, largest_load_after : behind; NaN where the motion grows beyond what is followed
+    after : "periodic", "beats", "chaos" or "grows"
+    n_after : mesh cycles of the periodic motion behind, else 0
+    """
+
+    speed_rpm: float
+    rising: bool
+    dte_rms: float
+    largest_load: float
+    n: int
+    dte_rms_after: float
+    largest_load_after: float
+    after: Settled
+    n_after: int
+
+
+@dataclass(frozen=True)
+class Restless:
+    """Speeds at which no stable periodic motion was found, and what a run does in the middle of them.
+
+    Attributes
+    ----------
+    low_rpm, high_rpm : [rpm]
+    kind : "beats", "chaos" or "grows"; "periodic" where the motion has more cycles than were looked for
+    n : mesh cycles of that, else 0
+    dte_rms : of the run [m]
+    exponent, uncertainty : Lyapunov exponent per mesh cycle and its standard error
+    """
+
+    low_rpm: float
+    high_rpm: float
+    kind: Settled
+    n: int
+    dte_rms: float
+    exponent: float
+    uncertainty: float
+
+
 @dataclass(frozen=True, eq=False)
 class ResponseBranches:
     """Periodic motions of a gear pair over speed.
@@ -56,10 +128,12 @@ class ResponseBranches:
     Attributes
     ----------
     pair : the gear pair
+    speeds_rpm : slowest and fastest speed [rpm]
     response : what the search found, over the period
     """
 
     pair: GearPair
+    speeds_rpm: tuple[float, float]
     response: Response = field(repr=False)
 
     @property
@@ -87,8 +161,71 @@ class ResponseBranches:
         return [GearOrbit(there, orbit) for orbit in self.response.at(there.geometry.mesh_period)]
 
     @cached_property
+    def jumps(self) -> tuple[Jump, ...]:
+        """Where the root mean square changes at once by a tenth or more, on running up and down.
+
+        At every place where a branch loses stability a run is started from the last motion, 0.1 % of the
+        speed further on.
+        """
+        places = (self._jump(branch, b) for branch in self.branches for b in branch.bifurcations)
+        return tuple(sorted((jump for jump in places if jump is not None), key=lambda jump: jump.speed_rpm))
+
+    def _jump(self, branch: Branch, b: Bifurcation) -> Jump | None:
+        at = branch.orbits.index(b.orbit)
+        if b.kind == "grazing" or not 0 < at < len(branch.orbits) - 1:
+            return None
+        sides = (branch.orbits[at - 1], branch.orbits[at + 1])
+        stable = [orbit.stable for orbit in sides]
+        if stable[0] == stable[1]:
+            return None
+        before = sides[stable.index(True)]
+        rising = before.period > b.orbit.period
+        period = b.orbit.period * (1.0 - _BEYOND if rising else 1.0 + _BEYOND)
+        run = long_run(
+            branch.family.at(period), b.orbit.start, period, b.orbit.parameter,
+            settle=_SETTLE, amplitude=largest_motion(self.pair),
+        )  # fmt: skip
+        if abs(run.rms - b.orbit.run.rms) < _JUMP * b.orbit.run.rms:
+            return None
+        return Jump(
+            speed_rpm=self._cycle_at_1_rpm / b.orbit.period,
+            rising=rising,
+            dte_rms=b.orbit.run.rms,
+            largest_load=b.orbit.run.largest_load,
+            n=branch.n,
+            dte_rms_after=run.rms,
+            largest_load_after=run.largest_load,
+            after=run.kind,
+            n_after=run.orbit.n if run.orbit else 0,
+        )
+
+    @cached_property
+    def restless(self) -> tuple[Restless, ...]:
+        """Speeds without a stable periodic motion among those that were found."""
+        low, high = self.speeds_rpm
+        calm = sorted(
+            tuple(sorted(self._cycle_at_1_rpm / orbit.period for orbit in two))
+            for branch in self.branches
+            for two in pairwise(branch.orbits)
+            if max(orbit.spectral_radius for orbit in two) < _MARGINAL
+        )
+        found, reached = [], low
+        for start, end in [*calm, (high, high)]:
+            if start - reached > _GAP * (high - low):
+                found.append(self._restless(reached, start))
+            reached = max(reached, end)
+        return tuple(found)
+
+    def _restless(self, low: float, high: float) -> Restless:
+        there = self.pair.with_({"operating.pinion_speed": 0.5 * (low + high)})
+        run = settled_run(there)
+        return Restless(
+            low, high, run.kind, run.orbit.n if run.orbit else 0, run.rms, run.exponent, run.uncertainty
+        )
+
+    @cached_property
     def dataset(self) -> xr.Dataset:
-        """All orbits in a row, ``branch`` saying which belong together."""
+        """All orbits in a row, ``branch`` saying which belong together, and all jumps."""
         rows = [(j, o) for j, branch in enumerate(self.branches) for o in branch.orbits]
         orbits = [o for _, o in rows]
 
@@ -111,11 +248,19 @@ class ResponseBranches:
                 "spectral_radius": column(
                     [o.spectral_radius for o in orbits], "1", "spectral radius over n cycles"
                 ),
-                "stable": column([o.stable for o in orbits], "1", "stable"),
+                "stable": column([o.spectral_radius < _MARGINAL for o in orbits], "1", "stable"),
                 "parts": column([o.parts for o in orbits], "1", "teeth part"),
+            }
+            | {
+                f"jump_{name}": ("jump", [getattr(jump, name) for jump in self.jumps], unit, text)
+                for name, unit, text in _JUMP_COLUMNS
             },
-            {"point": (np.arange(len(rows)), "1", "orbit")},
-            {"model": "unilateral lumped"},
+            {
+                "point": (np.arange(len(rows)), "1", "orbit"),
+                "jump": (np.arange(len(self.jumps)), "1", "jump"),
+            },
+            {"model": "unilateral lumped", "speed_low_rpm": self.speeds_rpm[0]}
+            | {"speed_high_rpm": self.speeds_rpm[1], "operating_rpm": operating_rpm(self.pair)},
         )
 
 
@@ -157,7 +302,7 @@ def response_branches(
         seeds=seeds,
         progress=progress,
     )
-    return ResponseBranches(pair, response)
+    return ResponseBranches(pair, (low, high), response)
 
 
 def _rpm(pair: GearPair, period: float) -> float:

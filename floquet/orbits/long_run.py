@@ -38,22 +38,26 @@ class LongRun:
     orbit : the periodic motion, where it is one
     exponent, uncertainty : largest Lyapunov exponent per cycle and its standard error; NaN for a periodic
         motion, whose multipliers say more
-    rms, least, most : of the output over the last cycles, rms less its mean
-    cycles : how many these are
-    end : (2m,) state at the end
-    parameter : the free parameter, found with the last periodic motion that was looked for
+    run : the last cycles, with means, extremes and the state at the end; None where it grows
+    parameter : the free parameter, found with the periodic motion where it is one
     """
 
     kind: Settled
     orbit: Orbit | None
     exponent: float
     uncertainty: float
-    rms: float
-    least: float
-    most: float
-    cycles: int
-    end: FloatArray
+    run: Run | None
     parameter: float
+
+    @property
+    def rms(self) -> float:
+        """Of the output less its mean; NaN where the motion grows."""
+        return float("nan") if self.run is None else self.run.rms
+
+    @property
+    def largest_load(self) -> float:
+        """Of all contacts; NaN where the motion grows."""
+        return float("nan") if self.run is None else self.run.largest_load
 
 
 def long_run(
@@ -90,22 +94,17 @@ def long_run(
             settled = system.run(state, period, settle << turn, parameter)
             seen = system.run(settled.end, period, 8 * most_cycles, parameter, samples=np.zeros(1))
         except NumericalError:
-            return _grown(start, parameter)
+            return _grown(parameter)
         if max(seen.most - seen.mean, seen.mean - seen.least) > amplitude:
-            return _grown(seen.end, parameter)
+            return _grown(parameter)
         orbit = _periodic(system, seen, period, parameter, most_cycles)
         if orbit is not None:
-            run, nan = orbit.run, float("nan")
-            return LongRun(
-                "periodic", orbit, nan, nan, run.rms, run.least, run.most, orbit.n, seen.end, orbit.parameter
-            )
+            return LongRun("periodic", orbit, float("nan"), float("nan"), orbit.run, orbit.parameter)
         state = seen.end
     exponent, uncertainty = lyapunov_exponent(system, state, period, parameter, observe)
     kind: Settled = "chaos" if exponent > max(3.0 * uncertainty, _ZERO_EXPONENT) else "beats"
     last = system.run(state, period, observe, parameter)
-    return LongRun(
-        kind, None, exponent, uncertainty, last.rms, last.least, last.most, observe, last.end, parameter
-    )
+    return LongRun(kind, None, exponent, uncertainty, last, parameter)
 
 
 def _periodic(
@@ -132,9 +131,8 @@ def _near(orbit: Orbit, seen: Run) -> bool:
     return abs(orbit.run.least - seen.least) < room and abs(orbit.run.most - seen.most) < room
 
 
-def _grown(end: FloatArray, parameter: float) -> LongRun:
-    nan = float("nan")
-    return LongRun("grows", None, nan, nan, nan, nan, nan, 0, end, parameter)
+def _grown(parameter: float) -> LongRun:
+    return LongRun("grows", None, float("nan"), float("nan"), None, parameter)
 
 
 def lyapunov_exponent(

@@ -28,8 +28,11 @@ Start = Callable[[float], tuple[FloatArray, float]]
 _STARTS = 24
 _SETTLE = 60
 _SUBHARMONICS = 10
-#: How hard isolated motions are looked for: phase rates of a kick, in lengths.
-_KICKS = (-40.0, 80.0)
+#: Starts apart from all motions, two a speed: displacements and phase rates in lengths, by an additive
+#: recurrence that fills the square evenly (Roberts 2018), the same at every run.
+_APART = 2
+_FILL = np.array([0.7548776662466927, 0.5698402909980532])
+_SPREAD = np.array([[-8.0, 5.0], [-40.0, 40.0]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +115,7 @@ def find_response(
 
     Branches of one cycle are looked for from the motion while all contacts hold, at 24 speeds; those of
     twice the cycles leave period doublings; isolated ones start from runs that settled, at ``seeds`` speeds,
-    on running up, on running down and from two kicks.
+    on running up, on running down and from two starts apart.
 
     Parameters
     ----------
@@ -138,11 +141,13 @@ def find_response(
         for j, rate in enumerate(way):
             run = search.settle(1.0 / float(rate), state)
             settled.append((1.0 / float(rate), run))
-            state = None if run.kind == "grows" else run.end
+            state = None if run.run is None else run.run.end
             report(0.5 + 0.15 * (k + (j + 1) / seeds))
     for j, rate in enumerate(rates):
-        for kick in _KICKS:
-            settled.append((1.0 / float(rate), search.settle(1.0 / float(rate), None, kick)))
+        for k in range(_APART):
+            place = np.mod(0.5 + (_APART * j + k) * _FILL, 1.0)
+            apart = _SPREAD[:, 0] + place * np.diff(_SPREAD, axis=1)[:, 0]
+            settled.append((1.0 / float(rate), search.settle(1.0 / float(rate), None, apart)))
         report(0.8 + 0.2 * (j + 1) / seeds)
     search.doublings()
     report(1.0)
@@ -175,20 +180,43 @@ class _Search:
             return
         self.both_ways(orbit)
 
-    def settle(self, period: float, state: FloatArray | None, kick: float = 0.0) -> LongRun:
+    def settle(self, period: float, state: FloatArray | None, apart: FloatArray | None = None) -> LongRun:
         """Let a run settle, and follow the motion it comes to where it is new."""
         held, parameter = self.start(period)
         state = held if state is None else state
-        if kick:
+        if apart is not None:
             state = state.copy()
-            state[state.size // 2] += kick * self.limits.length
+            state[[0, state.size // 2]] += apart * self.limits.length
         run = long_run(
             self.family.at(period), state, period, parameter,
             settle=_SETTLE, observe=400, amplitude=self.limits.amplitude,
         )  # fmt: skip
-        if run.orbit is not None and run.orbit.n in self.periods:
-            self.both_ways(run.orbit)
+        if run.orbit is not None:
+            self.from_settled(run.orbit)
+        elif run.run is not None:
+            self.near_beats(run.run.end, period, run.parameter)
         return run
+
+    def near_beats(self, state: FloatArray, period: float, parameter: float) -> None:
+        """Look for motions, mostly unstable there, to which beats or chaos come near."""
+        for n in sorted(self.periods - {1}):
+            try:
+                orbit = find_orbit(self.family.at(period), state, period, n, parameter)
+            except NumericalError:
+                continue
+            if primitive(orbit) is orbit:
+                self.both_ways(orbit)
+
+    def from_settled(self, orbit: Orbit) -> None:
+        """Follow a stable motion, or the one that it has doubled from where it has too many cycles."""
+        for n in sorted((n for n in self.periods if orbit.n % n == 0), reverse=True):
+            try:
+                relative = find_orbit(orbit.system, orbit.start, orbit.period, n, orbit.parameter)
+            except NumericalError:
+                continue
+            if primitive(relative) is relative:
+                self.both_ways(relative)
+            return
 
     def subharmonics(self) -> None:
         """Look for motions of n cycles in those of one cycle at 1/n of the speed.
@@ -233,7 +261,13 @@ class _Search:
         self.add(along, path, down.end)
 
     def add(self, along: Continuation, path: Path, first_end: End) -> None:
-        """Keep a path as a branch."""
+        """Keep a path as a branch, unless it turns out to be one that is known.
+
+        Near a fold `known` may miss a motion, but not at all places of a branch.
+        """
+        inner = [path.orbits[part * len(path.orbits) // 4] for part in (1, 2, 3)]
+        if sum(self.known(orbit) for orbit in inner) > 1:
+            return
         found = bifurcations(along, path)
         orbits = tuple(with_bifurcations(path, found))
         self.branches.append(Branch(self.family, along.n, orbits, tuple(found), (first_end, path.end)))
@@ -258,7 +292,5 @@ class _Search:
         try:
             path = along.follow(twice, tangent=doubling_direction(along, single))
         except NumericalError:
-            return
-        if len(path.orbits) < 3 or self.known(path.orbits[len(path.orbits) // 2]):
             return
         self.add(along, path, "doubling")

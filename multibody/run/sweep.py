@@ -34,6 +34,7 @@ _VARIABLES = {
     "overlap_min": ("m", "smallest overlap of the driving flanks; negative: the teeth separate"),
     "separated": ("1", "share of time in which no driving flanks touch"),
     "back_side": ("1", "share of time in which the back sides touch"),
+    "unsettled": ("1", "change of the root mean square from the first to the second half, relative"),
 }
 
 
@@ -63,7 +64,8 @@ def speed_sweep(
 
     Returns
     -------
-    xarray.Dataset over ``speed`` [rpm], in the order of the sweep
+    xarray.Dataset over ``speed`` [rpm], in the order of the sweep. ``unsettled`` says where ``settle`` was
+    too short, as near the boundary of stability, or where the motion beats.
 
     Raises
     ------
@@ -82,10 +84,13 @@ def speed_sweep(
         run, q, v = record(setup, settle + cycles, samples_per_cycle, first_cycle=settle)
         # Whole cycles end at the phase they started with, so the deviations carry over as they are.
         state = to_lumped_state(q, v)
-        dte, overlap = run["dte"].to_numpy(), run["overlap"].to_numpy()
+        # The last sample is the first of a next cycle: means over whole cycles are without it.
+        dte, overlap = run["dte"].to_numpy()[:-1], run["overlap"].to_numpy()[:-1]
         table["dte_rms"][j], table["dte_peak_to_peak"][j] = np.std(dte), cycle_peak_to_peak(run, "dte")
         table["overlap_min"][j], table["separated"][j] = overlap.min(), np.mean(overlap <= 0.0)
-        table["back_side"][j] = np.mean(run["normal_load_back"].to_numpy().sum(0) > 0.0)
+        table["back_side"][j] = np.mean(run["normal_load_back"].to_numpy()[:, :-1].sum(0) > 0.0)
+        halves = [np.std(half) for half in np.split(dte, [cycles // 2 * samples_per_cycle]) if half.size]
+        table["unsettled"][j] = abs(halves[-1] - halves[0]) / np.std(dte)
         if progress is not None:
             progress((j + 1) / speeds.size)
     return labelled_dataset(

@@ -16,6 +16,7 @@ from lumped.schema.pair import GearPair
 from validation.plots.campbell import campbell_figure
 from validation.plots.motion import history_figure
 from validation.plots.multipliers import multiplier_paths_figure
+from validation.plots.response import response_figure
 from validation.plots.stability import friction_effect_figure, stability_figure, stability_line_figure
 from validation.plots.sweep import sweep_figure
 from validation.plots.tongues import boundaries_figure
@@ -56,6 +57,7 @@ def _effect(result: xr.Dataset) -> Figure:
 
 #: Variable that only one kind of result has -> its figure.
 _FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
+    "branch": lambda result: response_figure(result),
     "dte": lambda result: history_figure(_pair(result).geometry, result),
     "dte_peak_to_peak": _sweep,
     "growth_change": _effect,

@@ -127,3 +127,16 @@ def test_what_is_no_start_or_range_is_refused(frictionless):
         floquet.response_branches(frictionless, (1000.0, 3000.0), (0,))
     with pytest.raises(NumericalError, match="no motion of 3 cycles"):
         floquet.periodic_orbit(at(frictionless, 8600.0), 3, start=[1e-4, 0, 0, 0, 0, 0])
+
+
+def test_a_jump_leads_from_one_branch_to_another(branches):
+    """On running down the pair falls onto the small motion, which ends at the fold on running up."""
+    (down,) = [j for j in branches.jumps if not j.rising and j.speed_rpm < 10000.0]
+    (up,) = [j for j in branches.jumps if j.rising and j.n == 1]
+    low = min(o.dte_rms for o in branches.at(down.speed_rpm * 0.999) if o.stable)
+    # The run behind the jump is at T 0.1 % longer, this one at a speed 0.1 % lower.
+    assert down.dte_rms_after == pytest.approx(low, rel=1e-5)
+    assert down.dte_rms > 5.0 * down.dte_rms_after
+    assert up.speed_rpm == pytest.approx(
+        max(b.speed_rpm for b in branches.bifurcations if b.kind == "fold" and b.n == 1)
+    )

@@ -1,0 +1,53 @@
+"""Does the command say where the pair jumps, and does the figure show it?"""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+import floquet
+import lumped
+from validation.cli import app
+from validation.plots.of_result import plot
+from validation.plots.response import response_figure
+
+PAIR = ["nasa_28_28", "--range", "12000..14000", "--law", "none", "--set", "mesh.relief=ignored"]
+SETTINGS = {
+    "mesh.relief": "ignored",
+    "friction.law": "none",
+    "operating.speed_range": ["12000 rpm", "14000 rpm"],
+}
+
+
+def test_the_command_prints_the_jump_to_the_beats():
+    """On running up the pair jumps at the fold to beats; speeds without a stable motion are named."""
+    done = CliRunner().invoke(app, ["response", *PAIR, "--periods", "1", "--seeds", "0", "--json"])
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)
+    (fold,) = [b for b in found["bifurcations"] if b["kind"] == "fold"]
+    (jump,) = [j for j in found["jumps"] if j["rising"]]
+    assert jump["speed_rpm"] == pytest.approx(fold["speed_rpm"])
+    assert jump["after"] == "beats"
+    assert jump["dte_rms_after"] > 1.5 * jump["dte_rms"]
+    (restless,) = found["restless"]
+    assert restless["low_rpm"] == pytest.approx(fold["speed_rpm"])
+    assert restless["kind"] == "beats"
+
+
+def test_the_figure_shows_branches_jumps_and_the_operating_range(tmp_path):
+    found = floquet.response_branches(
+        lumped.load_gear_pair("nasa_28_28").with_(SETTINGS), periods=[1], seeds=0
+    )
+    figure = response_figure(found.dataset)
+    top, bottom = figure.axes
+    stable = [line for line in top.lines if line.get_linestyle() == "-"]
+    assert len(stable) >= 2
+    assert len(top.lines) > len(stable)
+    (arrow,) = [text for text in top.texts if text.arrow_patch is not None]
+    (jump,) = found.jumps
+    assert arrow.xy == pytest.approx((jump.speed_rpm, 1e6 * jump.dte_rms_after))
+    assert top.get_xlim() == pytest.approx((12000.0, 14000.0))
+    assert len(bottom.lines) > 2
+    assert len(plot(found.dataset).axes) == 2
