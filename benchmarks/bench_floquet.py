@@ -96,6 +96,27 @@ def charts(size: int) -> float:
     return first
 
 
+def forms(size: int) -> None:
+    """Charts in both forms of contact, of energy stiffness; the paper's form is the base of the ratio."""
+    base = math.nan
+    for form in ("paper", "loaded"):
+        pair = PAIR.with_({"mesh.stiffness": {"model": "energy"}, "mesh.contact": form})
+        energy_chart(pair, size)()
+        seconds = min(cpu(energy_chart(pair, size))[1] for _ in range(3))
+        base = seconds if math.isnan(base) else base
+        row(
+            f"chart {size} x {size}, energy stiffness, {form} form",
+            f"{CORES * size**2 / seconds:.0f} points/s",
+            f"{seconds / size**2 * 1e6:.1f} us/point, {seconds / base:.2f} of the paper's form",
+        )
+
+
+def energy_chart(pair: GearPair, size: int) -> Callable[[], Any]:
+    """A chart over speed and damping by the direct route."""
+    axes = {"speed_rpm": np.linspace(*SPEEDS, size), "damping_ratio": np.linspace(0.0, 0.1, size)}
+    return lambda: stability_chart(pair, axes, rtol=1e-8, method="taylor", store="radius")
+
+
 def by_turning(points: int) -> None:
     """Cost of the direct route over omega_max T_m."""
     block = gear_block(PAIR, rtol=1e-10)
@@ -236,6 +257,7 @@ def main() -> None:
     row("what", "result", f"{CORES} cores, {os.uname().machine}")
     row("-" * 58, "-" * 22, "---")
     per_point = charts(arguments.size)
+    forms(arguments.size // 2)
     by_turning(4000)
     baselines(per_point, 6)
     processes()

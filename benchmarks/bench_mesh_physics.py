@@ -1,4 +1,4 @@
-"""How fast are tooth stiffness, Harris map, relief optimum and losses?
+"""How fast are tooth stiffness, Harris map, relief optimum, losses, and periodic motion in both forms?
 
     pytest benchmarks/bench_mesh_physics.py
 
@@ -142,3 +142,21 @@ def test_losses_quasi_static(benchmark, pair):
 def test_losses_of_all_laws_with_periodic_motion(benchmark, pair):
     found = benchmark.pedantic(lambda: losses_of_laws(pair), rounds=3, iterations=1, warmup_rounds=1)
     assert found.sizes["law"] == 5
+
+
+@pytest.mark.benchmark(group="periodic motion, 128 times: the paper's form is the baseline")
+@pytest.mark.parametrize("form", ["paper", "loaded"])
+def test_steady_state(benchmark, pair, form):
+    one = pair.with_(mesh__contact=form)
+    assert benchmark(lambda: lumped.steady_state(one, samples_per_cycle=128)).sizes["time"] == 128
+
+
+@pytest.mark.benchmark(group="sweep over 40 speeds, losses by place: the paper's form is the baseline")
+@pytest.mark.parametrize("form", ["paper", "loaded"])
+def test_speed_sweep(benchmark, pair, form):
+    one = pair.with_(mesh__contact=form)
+    speeds = np.linspace(500.0, 12000.0, 40)
+    found = benchmark.pedantic(
+        lambda: lumped.speed_sweep(one, speeds), rounds=5, iterations=1, warmup_rounds=1
+    )
+    assert bool(found["periodic"].all())

@@ -30,6 +30,7 @@ GROUPS: Mapping[str, tuple[Fault, ...]] = {
         "geometry",
         "bodies",
         "teeth",
+        "contact",
         "integration",
         "stability",
         "multibody model",
