@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from lumped import GearPair
 from validation.cross_check.comparison import CrossCheck
+from validation.cross_check.judgement import Judgement
 from validation.reporting.blocks import Text
 from validation.reporting.formatting import digits, number, quantity
 from validation.reporting.results import Results
@@ -19,6 +20,9 @@ NAMES = {
     "friction_force": "friction force",
 }
 
+
+#: Kind of a check that compares motions -> what its value is.
+_DIFFERENCES = {"linear": "off with the same equations", "remainder": "off beyond what is understood"}
 
 #: Largest difference of the transmission error from exact contact, over its peak to peak, that the first
 #: words pass over.
@@ -96,7 +100,7 @@ def span(results: Results) -> str:
 def efficiency(results: Results) -> str:
     """Loss of the mesh in percent; none where a law of nature does not hold."""
     if not lawful(results):
-        return "no mesh efficiency, because a law of nature does not hold"
+        return f"no mesh efficiency, because {unlawful(results)}"
     attrs = results.motion.attrs
     if results.pair.mesh.contact == "loaded":
         return f"mesh efficiency {100 * float(attrs['mesh_efficiency']):.2f}\u00a0%, all losses counted"
@@ -159,8 +163,16 @@ def contact_form(results: Results) -> str:
 
 
 def lawful(results: Results) -> bool:
-    """Whether the laws of nature hold in both models."""
+    """Whether the laws of nature hold in both models, and their powers agree."""
     return all(j.within for j in results.check.nature)
+
+
+def unlawful(results: Results) -> str:
+    """What of ``lawful`` does not hold."""
+    broken = [j.check for j in results.check.nature if not j.within]
+    if all(check.startswith("nature: power ") for check in broken):
+        return "the powers of both models differ"
+    return "a law of nature does not hold"
 
 
 def objections(results: Results) -> list[str]:
@@ -231,9 +243,20 @@ def validity(results: Results) -> str:
 def failed_checks(check: CrossCheck, most: int = 3) -> str:
     """The first checks that fail, with value and limit."""
     failed = check.failures
-    told = [f"{j.check} {number(j.value, 2)}, limit {number(j.limit, 2)}" for j in failed[:most]]
+    told = [_failed(j) for j in failed[:most]]
     more = [f"and {len(failed) - most} more"] if len(failed) > most else []
     return "; ".join(told + more)
+
+
+def _failed(judgement: Judgement) -> str:
+    """One check that fails; a difference of the motions in words."""
+    value, limit = judgement.value, judgement.limit
+    check = judgement.check.removeprefix("twin: ")
+    kind, _, quantity_name = check.partition(": ")
+    if kind not in _DIFFERENCES or quantity_name not in NAMES:
+        return f"{judgement.check} {number(value, 2)}, limit {number(limit, 2)}"
+    of = " of its unlike twin" if check != judgement.check else ""
+    return f"{NAMES[quantity_name]}{of} {_percent(value)} {_DIFFERENCES[kind]}, limit {_percent(limit)}"
 
 
 def same_equations(check: CrossCheck) -> str:

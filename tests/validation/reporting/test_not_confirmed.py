@@ -35,6 +35,7 @@ def test_the_headline_says_do_not_rely_and_states_no_efficiency(report):
     assert data["verdict"].startswith("Do not rely on this prediction: the cross-check does not confirm it")
     assert "no mesh efficiency, because a law of nature does not hold" in data["verdict"]
     assert "the prediction holds" not in data["verdict"]
+    assert re.search(r"transmission error \S+\s% off with the same equations, limit", data["verdict"])
     assert "a second route does not confirm" in data["verdict"]
 
 

@@ -33,7 +33,7 @@ from validation.reporting.blocks import (
 )
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
-from validation.reporting.words import cautions, largest_load, lawful, objections
+from validation.reporting.words import cautions, largest_load, lawful, objections, unlawful
 
 _ORDERS = 10
 
@@ -59,7 +59,7 @@ def write(results: Results) -> Content:
             "mesh efficiency",
             float(attrs["mesh_efficiency"]),
             "",
-            counted if lawful(results) else "do not rely on it: a law of nature does not hold",
+            counted if lawful(results) else f"do not rely on it: {unlawful(results)}",
         ),
         ("power_unpaid", "unpaid power", float(attrs["power_unpaid"]), "W", unpaid),
         ("brake_torque", "brake torque that holds the speed", attrs["brake_torque"], "N m"),
