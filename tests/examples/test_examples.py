@@ -59,7 +59,7 @@ def test_04_the_printed_sign_speeds_the_pair_up(example):
     moment = float((steady["position"] * steady["friction_force"]).sum("pair").mean())
     expected = 2.0 * moment / (body.inertia_pinion + body.inertia_gear)
     assert abs(module.drift(result["repaired"])) < 1e-6 * expected
-    # First order in the friction coefficient: the forces themselves change by some 5 %.
+    # First order in the friction coefficient: the forces themselves change by some 7 %.
     assert module.drift(result["printed"]) == pytest.approx(expected, rel=0.1)
 
 
@@ -107,7 +107,7 @@ def test_08_two_pairs_share_by_halves_in_the_middle_and_deflection_lengthens_the
     # Beyond its ends the path's gap opens with the square of the distance, so the contact grows as the root
     # of the deflection: twice from 28.25 to 113 N m, as far as 1/256 pitch and a softening contact let see.
     longer = result["contact_ratio"] - result.attrs["contact_ratio"]
-    assert float(longer.sel(torque=113.0) / longer.sel(torque=28.25)) == pytest.approx(2.0, rel=0.1)
+    assert float(longer.sel(torque=113.0) / longer.sel(torque=28.25)) == pytest.approx(2.0, rel=0.06)
 
 
 def test_09_relief_shows_without_load_and_vanishes_at_its_torque(example):

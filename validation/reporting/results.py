@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 import xarray as xr
@@ -26,6 +28,8 @@ from validation.verification import Check
 from validation.verification.reference_model import ReferenceModel, reference_model
 from validation.verification.stability_routes import StabilityRoutes, stability_routes
 from validation.verification.tooth_stiffness import ToothStiffness, tooth_stiffness
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -163,10 +167,7 @@ class Results:
     def forms(self) -> ContactForms | str:
         """Both forms of the contact and the exact one; why they cannot be computed."""
         self.stage("forms of the contact")
-        try:
-            return contact_forms(self.pair)
-        except NumericalError as error:
-            return str(error)
+        return _or_why_not(contact_forms, self.pair)
 
     @cached_property
     def multipliers(self) -> GearPairMultipliers:
@@ -177,10 +178,7 @@ class Results:
     def routes(self) -> StabilityRoutes | str:
         """Floquet multipliers by two routes; why the second one cannot be computed."""
         self.stage("multipliers by the multibody model")
-        try:
-            return stability_routes(self.pair)
-        except NumericalError as error:
-            return str(error)
+        return _or_why_not(stability_routes, self.pair)
 
     @cached_property
     def reference(self) -> ReferenceModel:
@@ -225,3 +223,11 @@ class Results:
             return paper_results(self.pair, self.effort.claim_samples, stage)
         except (NumericalError, ParameterError) as error:
             return str(error)
+
+
+def _or_why_not(compute: Callable[[GearPair], T], pair: GearPair) -> T | str:
+    """What is computed of the pair, or the text of why it cannot be."""
+    try:
+        return compute(pair)
+    except NumericalError as error:
+        return str(error)

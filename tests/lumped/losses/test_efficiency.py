@@ -123,8 +123,8 @@ def test_slow_dynamic_solution_is_quasi_static():
         static = quasi_static_losses(pair).attrs["mesh_efficiency"]
         differences.append((1 - dynamic) / (1 - static) - 1)
     assert abs(differences[0]) < 0.05 * 0.02
-    # proportional to mu; the remainder of vibration after tooth entry is a few per cent of the difference
-    assert differences[0] / differences[1] == pytest.approx(2.0, rel=0.15)
+    # proportional to mu; the remainder of vibration after tooth entry is a per cent of the difference
+    assert differences[0] / differences[1] == pytest.approx(2.0, rel=0.02)
 
 
 def test_dynamic_loss_closes_the_power_balance():
@@ -140,10 +140,10 @@ def test_dynamic_loss_closes_the_power_balance():
 
 
 def test_dynamic_efficiency_lies_near_the_closed_form():
-    # At 4875 rpm the loads of the 28/28 pair vibrate; its loss stays within ten per cent of mu H_v
+    # At 4875 rpm the loads of the 28/28 pair vibrate; its loss is 3 % above mu H_v
     pair = coulomb("nasa_28_28", 0.05)
     loss = 1 - steady_state(pair, samples_per_cycle=8).attrs["mesh_efficiency"]
-    assert loss == pytest.approx(0.05 * ohlendorf_of(pair), rel=0.1)
+    assert loss == pytest.approx(0.05 * ohlendorf_of(pair), rel=0.05)
 
 
 def test_power_along_the_path_is_the_power_over_the_cycle():

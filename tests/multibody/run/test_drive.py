@@ -43,9 +43,9 @@ def test_motor_behind_a_spring_holds_the_speed_against_a_wrong_brake():
     run = multibody.simulate(PAIR, 80, initial="periodic", drive=drive, samples_per_cycle=32)
     assert abs(last_mean(run, "theta_p_dot", 20)) < 1e-3 * OMEGA
     # The spring carries the excess: the pinion lags by dT/k behind the motor (equal gears, so dT on either
-    # side).
+    # side). What still swings after 60 cycles is a per cent of it.
     lag = float(run["theta_p"][0]) - last_mean(run, "theta_p", 20)
-    assert lag == pytest.approx(excess / stiffness, rel=0.15)
+    assert lag == pytest.approx(excess / stiffness, rel=0.03)
 
 
 def test_run_up_follows_the_ramp():

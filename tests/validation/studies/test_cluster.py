@@ -18,7 +18,7 @@ from validation.studies import Status, SweepStopped, dispatch, pools, run_sweep
 from validation.studies import cluster as cluster_pool
 from validation.studies.provenance import provenance
 
-distributed = pytest.importorskip("distributed")
+distributed = pytest.importorskip("distributed", reason="needs distributed (extra: cluster)")
 pytestmark = [
     pytest.mark.slow,
     # The cluster's own event loop and sockets may outlive it by a moment.

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-pytest.importorskip("flint")
+pytest.importorskip("flint", reason="needs python-flint (extra: test)")
 sys.path.insert(0, str(Path(__file__).parent))
 
 from balls import exact_multipliers, worst_ratio
