@@ -42,7 +42,7 @@ def write(results: Results) -> Content:
                 "mean": ("mean of the mesh", lambda w: Quantity(w.mean, "N/m")),
                 "single_ratio": ("largest over c' b", lambda w: w.single_ratio),
                 "mean_ratio": ("mean over c_γ b", lambda w: w.mean_ratio),
-                "elastic_ratio": ("largest over elastic, ring", lambda w: w.elastic_ratio),
+                "elastic_ratio": ("mean over elastic, ring", lambda w: w.elastic_ratio),
             },
             marked=lambda w: w.counted == "",
             note=f"Error of the finite elements, from two meshes: {100.0 * found.error:.2g} %. Bodies are in "
