@@ -4,22 +4,19 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
-
-from pydantic_core import PydanticCustomError, core_schema
+from typing import TYPE_CHECKING
 
 from lumped.errors import shown
-from lumped.fields.units import UNITS, Quantity
+from lumped.fields.units import UNITS, Quantity, Read
 
 if TYPE_CHECKING:
-    from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
     from pydantic.json_schema import JsonSchemaValue
 
 _NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*")
 
 
 @dataclass(frozen=True)
-class QuantityRange:
+class QuantityRange(Read):
     """Annotation of a field that holds the lower and the upper end of a range, or None.
 
     Attributes
@@ -47,28 +44,13 @@ class QuantityRange:
             return None
         ends = _ends(value) if isinstance(value, str) else value
         if not isinstance(ends, (list, tuple)) or len(ends) != 2:
-            raise self._refusal(value)
+            raise self._refusal(shown(value), self.action)
         low, high = (self.end.parse(end) for end in ends)
         if low is None or high is None or low >= high:
-            raise self._refusal(value)
+            raise self._refusal(shown(value), self.action)
         return low, high
 
-    def _refusal(self, value: object) -> PydanticCustomError:
-        return PydanticCustomError(
-            "quantity",
-            "{value}: allowed {allowed}. {action}",
-            {"value": shown(value), "allowed": self.allowed, "action": self.action},
-        )
-
-    def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
-    ) -> core_schema.CoreSchema:
-        """Validate by ``parse``."""
-        return core_schema.no_info_plain_validator_function(self.parse)
-
-    def __get_pydantic_json_schema__(
-        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
-    ) -> JsonSchemaValue:
+    def json_schema(self) -> JsonSchemaValue:
         """Two ends, or text."""
         ends = {"type": "array", "items": self.end.json_schema(), "minItems": 2, "maxItems": 2}
         text = {"type": "string", "examples": ["200..3000"]}

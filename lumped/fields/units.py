@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import operator
 import re
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import Decimal, DivisionByZero, InvalidOperation, Overflow
@@ -186,8 +187,44 @@ def to_stated(value: float, unit: str) -> float:
     return float(number - _ZERO_CELSIUS if unit == "degC" else number / UNITS[unit][1])
 
 
+class Read(ABC):
+    """Annotation of a field whose value is read by ``parse``."""
+
+    @property
+    @abstractmethod
+    def allowed(self) -> str:
+        """What is allowed, as text."""
+
+    @abstractmethod
+    def parse(self, value: object) -> Any:
+        """Read what a user writes into SI, or raise pydantic's error."""
+
+    @abstractmethod
+    def json_schema(self) -> JsonSchemaValue:
+        """JSON Schema of what a user writes."""
+
+    def _refusal(self, value: str, action: str) -> PydanticCustomError:
+        return PydanticCustomError(
+            "quantity",
+            "{value}: allowed {allowed}. {action}",
+            {"value": value, "allowed": self.allowed, "action": action},
+        )
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        """Validate by ``parse`` alone."""
+        return core_schema.no_info_plain_validator_function(self.parse)
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """What ``json_schema`` says."""
+        return self.json_schema()
+
+
 @dataclass(frozen=True)
-class Quantity:
+class Quantity(Read):
     """Annotation of a float field: its stated unit and allowed range, both as a user writes them.
 
     Attributes
@@ -246,25 +283,6 @@ class Quantity:
         if not all(holds(si, to_si(bound, self.unit)) for _, _, bound, holds in self._bounds):
             raise self._refusal(text, self.action)
         return si if self.unit == "1" else SIValue(si, UNITS[self.unit][0])
-
-    def _refusal(self, value: str, action: str) -> PydanticCustomError:
-        return PydanticCustomError(
-            "quantity",
-            "{value}: allowed {allowed}. {action}",
-            {"value": value, "allowed": self.allowed, "action": action},
-        )
-
-    def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
-    ) -> core_schema.CoreSchema:
-        """Validate by ``parse``, then as a plain float."""
-        return core_schema.no_info_plain_validator_function(self.parse)
-
-    def __get_pydantic_json_schema__(
-        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
-    ) -> JsonSchemaValue:
-        """Number in the stated unit with its bounds, or a string with a unit."""
-        return self.json_schema()
 
     def json_schema(self) -> JsonSchemaValue:
         """JSON Schema of the quantity: a number in the stated unit with its bounds, or text with a unit."""
