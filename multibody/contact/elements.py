@@ -16,6 +16,8 @@ from multibody.contact.compiled import compiled
 _LINEAR_BELOW = 1e-3
 #: Newton's steps for the load of Hertz's contact, of which six are the most needed.
 _MOST_STEPS = 20
+#: Newton's steps double the digits: behind one of this size, relative, nothing but rounding is left.
+_LAST_STEP = 1e-9
 
 
 @compiled
@@ -82,7 +84,7 @@ def elastic_load(pressed: float, stiffness: float, softening: float, nominal: fl
         secant, tangent = compliances(load, stiffness, softening, nominal)
         step = (load * secant - pressed) / tangent
         load -= step
-        if abs(step) <= 1e-15 * load:
+        if abs(step) <= _LAST_STEP * load:
             break
     return load
 
@@ -171,7 +173,7 @@ def shared_loads(
                     loads[i] -= rest[i]
                     step += abs(rest[i])
                     total += abs(loads[i])
-            if step <= 1e-15 * total:
+            if step <= _LAST_STEP * total:
                 break
         settled = True
         for i in range(count):
