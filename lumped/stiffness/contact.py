@@ -83,6 +83,6 @@ def softening(modulus: tuple[float, float], poisson: tuple[float, float]) -> flo
     Examples
     --------
     >>> f"{softening((206e9, 206e9), (0.3, 0.3)):.4e}"
-    '2.8122e-12'
+    '2.8123e-12'
     """
     return sum((1.0 - nu**2) / e for e, nu in zip(modulus, poisson, strict=True)) / math.pi
