@@ -14,8 +14,10 @@ import lumped
 from floquet.gear.axes import operating_rpm, speed_range
 from floquet.gear.margins import StabilityMargins, stability_margins
 from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
+from floquet.gear.orbit import GearOrbit, periodic_orbit
 from lumped import GearPair, Geometry, NumericalError, ParameterError
 from lumped.model.averaged import Mode, modes
+from lumped.model.extremes import cycle_peak_to_peak
 from lumped.model.resolved_sweep import resolved_sweep
 from lumped.path_of_contact import friction_profile
 from lumped.typing import BoolArray, Progress
@@ -65,6 +67,22 @@ class Effort:
 
 FULL = Effort(512, 8, 240, 121, 25, 1e-6, 15, 5, full=True, paper=True, claim_samples=100)
 QUICK = Effort(128, 16, 48, 16, 4, 1e-6, 7, 3, full=False, paper=False, claim_samples=8)
+
+
+@dataclass(frozen=True, eq=False)
+class Parting:
+    """What the pair does where the linear motion needs teeth that pull.
+
+    Attributes
+    ----------
+    orbit : the same equations with teeth that push only
+    exact : the last cycle of the multibody model
+    exact_peak_to_peak : its transmission error [m]
+    """
+
+    orbit: GearOrbit
+    exact: xr.Dataset
+    exact_peak_to_peak: float
 
 
 class Results:
@@ -162,6 +180,20 @@ class Results:
         """Cross-check against the multibody model."""
         stage = self.stage("cross-check against the multibody model")
         return crosscheck(self.pair, cycles=self.effort.cycles, progress=stage)
+
+    @cached_property
+    def parting(self) -> Parting | str | None:
+        """The motion of teeth that push only; None where the linear one keeps contact; why there is none."""
+        loads = self.motion["normal_load"].where(self.motion["contact"] > 0)
+        if float(loads.min()) >= -LOAD_NOISE * self.static_load:
+            return None
+        try:
+            orbit = periodic_orbit(self.pair)
+        except NumericalError as error:
+            return str(error)
+        run = self.check.multibody["exact"]
+        exact = run.sel(time=slice(float(run["time"][-1]) - 1.000001 * self.geometry.mesh_period, None))
+        return Parting(orbit, exact, cycle_peak_to_peak(exact, "dte"))
 
     @cached_property
     def forms(self) -> ContactForms | str:

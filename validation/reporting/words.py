@@ -70,8 +70,22 @@ def motion(results: Results) -> str:
     )
     numbers += ignored_relief(results.pair)
     if objections(results):
-        return f"Computed, but not what a gear pair would show: {numbers}"
+        told = f"Computed, but not what a gear pair would show: {numbers}"
+        return f"{told} {parted(results)}".rstrip()
     return numbers[0].upper() + numbers[1:]
+
+
+def parted(results: Results) -> str:
+    """What the pair does instead where the linear motion needs teeth that pull; empty where it does not."""
+    found = results.parting
+    if found is None or isinstance(found, str):
+        return ""
+    low, high = found.orbit.dte_range
+    off = abs(high - low - found.exact_peak_to_peak) / found.exact_peak_to_peak
+    return (
+        f"With teeth that push and never pull the same equations give {quantity(high - low, 'm', 3)} peak to "
+        f"peak, {number(100 * off, 2)}\u00a0% off the multibody model."
+    )
 
 
 def largest_load(results: Results) -> tuple[float, float]:
@@ -138,7 +152,7 @@ def stability(results: Results) -> str:
         "stable": f"A disturbance of this motion fades to {left}\u00a0% in a mesh cycle",
         "unstable": f"A disturbance of this motion grows {number(radius, certain)} times in a mesh cycle",
     }.get(found.verdict, "Whether a disturbance of this motion fades cannot be decided")
-    return f"{here}{doubt}; stable is the computed motion {stable_speeds(results)}."
+    return f"{here}{doubt}; the computed motion is stable {stable_speeds(results)}."
 
 
 def contact_form(results: Results) -> str:

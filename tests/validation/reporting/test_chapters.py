@@ -81,7 +81,10 @@ def test_every_block_is_in_one_layer_and_figures_and_tables_are_counted_through(
 
 
 def test_every_name_of_a_front_block_exists(chapters):
+    assert {chapter.key for chapter in CHAPTERS} - set(chapters) == {"contact_loss"}  # no teeth part
     for chapter in CHAPTERS:
+        if chapter.key not in chapters:
+            continue
         keys = {getattr(block, "key", None) for block in chapters[chapter.key].blocks}
         missing = set(chapter.front) - keys
         # A preset has no parameters of its own; without damping there may be no tongue.

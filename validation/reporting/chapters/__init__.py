@@ -9,6 +9,7 @@ from validation.reporting.chapter import Chapter
 from validation.reporting.chapters import (
     code_verification,
     contact_forms,
+    contact_loss,
     cross_check,
     errata,
     glossary,
@@ -35,6 +36,7 @@ CHAPTERS: tuple[Chapter, ...] = tuple(
     for module in (
         steady_state,
         cross_check,
+        contact_loss,
         contact_forms,
         stability,
         stability_margins,
