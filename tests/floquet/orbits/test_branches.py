@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from floquet.orbits.branch import Family, Limits
+from floquet.orbits.bifurcations import doubling_direction
+from floquet.orbits.branch import Continuation, Family, Limits
 from floquet.orbits.long_run import long_run, lyapunov_exponent
 from floquet.orbits.orbit import find_orbit
 from floquet.orbits.response import find_response
@@ -48,6 +49,12 @@ def test_the_doubling_of_the_bouncing_meissner_oscillator_is_the_tongue(meissner
     for rate in doublings:
         M = meissner_map(1.0 / rate, e=0.6)
         assert np.linalg.det(M + np.eye(2)) == pytest.approx(0.0, abs=1e-10)
+    along = Continuation(Family(lambda T: system, True), 1, LIMITS)
+    for branch in found.branches:
+        for b in branch.bifurcations:
+            if branch.n == 1 and b.kind == "period doubling":
+                way = doubling_direction(along, b.orbit)[:2] * along.scale[:2]
+                assert b.orbit.monodromy @ way == pytest.approx(-way, abs=1e-6 * np.abs(way).max())
     # Inside the tongue, where no motion that holds contact is stable, the doubled one bounces and is stable.
     T = 1.0 / (max(doublings) - 0.005)
     assert not any(o.stable for o in found.at(T) if not o.parts)

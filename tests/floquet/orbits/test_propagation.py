@@ -56,6 +56,20 @@ def test_derivatives_are_those_of_differences(gearlike):
     assert run.derivative == pytest.approx(np.array(columns).T, rel=1e-7, abs=1e-7 * np.abs(columns).max())
 
 
+def test_a_contact_that_opens_under_its_dampers_load_jumps_back():
+    """Where the damper sees another rate than that of the gap, its load goes at once."""
+    contact = Contact([1.0], [-1.0], 1.0, 1.0, clearance=[[0.0, 0.3]], clearance_rate=0.0)
+    system = ContactSystem([[0.0]], [[0.0]], [0.0], (contact,), [0.0, 1.0], [1.0])
+    x, T, step = np.array([0.05, 0.1]), 1.0, 1e-6
+    run = system.run(x, T, 1, derivatives=True, logged=4)
+    assert run.events[:, 2].tolist() == [GAP]
+    columns = [
+        (system.run(x + step * e, T, 1).end - system.run(x - step * e, T, 1).end) / (2 * step)
+        for e in np.eye(2)
+    ]
+    assert run.derivative[:2, :2] == pytest.approx(np.array(columns).T, rel=1e-7)
+
+
 def by_solve_ivp(s, x, T, cycles, p):
     """The same motion by DOP853, cut at phases of jumps and, by its dense output, at events."""
     u = np.array([1.0, -1.0])
