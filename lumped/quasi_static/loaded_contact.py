@@ -24,6 +24,7 @@ from lumped.path_function import PathFunction
 from lumped.path_of_contact import pair_stiffness
 from lumped.quasi_static.intervals import positive_intervals, restricted
 from lumped.quasi_static.kernels import approaches, gaps_at, middle_loads
+from lumped.quasi_static.load_sharing import coupled
 from lumped.quasi_static.tooth_error import relief_error, relief_starts
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
@@ -222,14 +223,7 @@ class StaticMesh:
         place : the pair behind first
         near : whether a pair is followed
         """
-        pairs = place.shape[1]
-        found = np.zeros((*place.shape, pairs))
-        for apart, moved in enumerate(self.neighbours, 1):
-            for behind in range(pairs - apart):
-                both = near[:, behind] & near[:, behind + apart]
-                values = np.where(both, moved(place[:, behind]), 0.0)
-                found[:, behind, behind + apart] = found[:, behind + apart, behind] = values
-        return found
+        return coupled(self.neighbours, place, near)
 
 
 def loaded_contact(pair: GearPair) -> LoadedContact:

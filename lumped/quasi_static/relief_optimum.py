@@ -108,7 +108,7 @@ def optimal_relief(pair: AnyPair, *, torque: float | None = None) -> OptimalReli
     """
     pair = load_gear_pair(pair)
     g, bare, force = _prepared(pair, torque)
-    plain = share_load(bare.stiffness, bare.error, force).transmission_error
+    plain = share_load(bare.stiffness, bare.error, force, bare.coupling).transmission_error
     scale, path = float(plain.max() - min(bare.error.min(), 0.0)), g.L_XD - g.L_XA
     amounts, lengths = np.linspace(0.0, 2.0 * scale, 41), np.linspace(0.02, 0.6, 40) * path
     grid = np.stack([_peak_to_peak(bare, g, force, amounts, float(one)) for one in lengths], axis=1)
@@ -175,4 +175,5 @@ def _peak_to_peak(
     xi = np.clip(mesh.xi, g.L_XA, g.L_XD)
     form = np.maximum((xi - g.L_XD) / length + 1.0, 0.0) + np.maximum((g.L_XA - xi) / length + 1.0, 0.0)
     error = mesh.error + amounts[:, None, None] * form
-    return np.asarray(np.ptp(share_load(mesh.stiffness, error, force).transmission_error, axis=1))
+    found = share_load(mesh.stiffness, error, force, mesh.coupling).transmission_error
+    return np.asarray(np.ptp(found, axis=1))

@@ -17,7 +17,7 @@ from lumped.arguments import real_numbers, whole_number
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset
 from lumped.path_of_contact import pair_stiffness
-from lumped.quasi_static.load_sharing import share_load
+from lumped.quasi_static.load_sharing import coupled, share_load
 from lumped.quasi_static.tooth_error import corner_gap, relief_error
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -45,6 +45,8 @@ class MeshPositions:
     xi : (k, pairs) positions from X [m]
     stiffness : (k, pairs) k_i, that of the nearest end of the path for a pair outside [N/m]
     error : (k, pairs) e_i, infinite where a pair cannot touch [m]
+    coupling : (k, pairs, pairs) w_ij by which the load of a pair moves another, zero where pairs stand alone
+        [m/N]
     """
 
     phase: FloatArray
@@ -52,6 +54,7 @@ class MeshPositions:
     xi: FloatArray
     stiffness: FloatArray
     error: FloatArray
+    coupling: FloatArray
 
 
 def mesh_positions(pair: AnyPair, *, phases: int = 256, extended: bool = True) -> MeshPositions:
@@ -79,7 +82,16 @@ def mesh_positions(pair: AnyPair, *, phases: int = 256, extended: bool = True) -
     e = corner_gap(g, xi) + relief_error(pair, np.clip(xi, g.L_XA, g.L_XD))
     margin = reach * g.base_pitch + inside
     apart = (xi < g.L_XA - margin) | (xi > g.L_XD + margin)
-    return MeshPositions(phase, ahead, xi, np.where(apart, 0.0, k), np.where(apart, np.inf, e))
+    # As in the dynamics: in the paper's form pairs stand alone.
+    neighbours = pair.mesh.stiffness.neighbours(pair) if pair.mesh.contact == "loaded" else ()
+    return MeshPositions(
+        phase,
+        ahead,
+        xi,
+        np.where(apart, 0.0, k),
+        np.where(apart, np.inf, e),
+        coupled(neighbours, xi, ~apart),
+    )
 
 
 def static_transmission_error(
@@ -91,9 +103,10 @@ def static_transmission_error(
 ) -> xr.Dataset:
     """Quasi-static meshing of a gear pair: a Harris map and the load of every tooth pair.
 
-    At each position the rigid approach delta and the loads satisfy sum_i k_i max(delta - e_i, 0) = T/r_bp.
-    The energy stiffness with Weber and Banaschek's contact is taken at each torque; other stiffness does not
-    depend on it.
+    At each position the rigid approach delta and the loads N_i = k_i max(delta - e_i - sum_j w_ij N_j, 0)
+    satisfy sum_i N_i = T/r_bp; w_ij is how far pairs move each other, where the stiffness model knows it and
+    the mesh is in the loaded form. Stiffness with Weber and Banaschek's contact is taken at each torque;
+    other stiffness does not depend on it.
 
     Parameters
     ----------
@@ -119,7 +132,7 @@ def static_transmission_error(
     mesh = mesh_positions(pair, phases=phases, extended=extended)
     force = torque / g.base_radius_pinion
     stiffness = _at_torques(mesh.stiffness, torque, pair)
-    result = share_load(stiffness, mesh.error, force[:, None])
+    result = share_load(stiffness, mesh.error, force[:, None], mesh.coupling)
     _check_reach(mesh, result.load, g.L_XA, g.L_XD, g.base_pitch)
     te = result.transmission_error
     share = result.load / np.where(force > 0.0, force, np.inf)[:, None, None]  # no load, no share

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from lumped import ParameterError, load_gear_pair, plane_compliance
+from lumped.quasi_static import static_transmission_error
+from lumped.quasi_static.loaded_contact import StaticMesh
 from lumped.stiffness.elastic_teeth import alone, elastic_teeth, hertz_half_width
 from lumped.stiffness.neighbours import neighbour_compliances
 
@@ -38,6 +40,30 @@ def test_the_matrix_is_symmetric_and_makes_the_mesh_stiffness(nasa, free):
     xi = np.linspace(g.L_XA, g.L_XD, 7)
     k = 1.0 / alone(nasa, elastic_teeth(nasa), xi)
     assert k == pytest.approx(k[::-1], rel=1e-9)
+
+
+def test_the_transmission_error_takes_the_whole_matrix(nasa, free):
+    pair = nasa.with_(
+        mesh__stiffness={"model": "finite_elements"},
+        mesh__contact="loaded",
+        mesh__relief="ignored",
+        pinion__tip_relief=None,
+        gear__tip_relief=None,
+    )
+    force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
+    phases = 2 * free.sizes["phase"]
+    found = static_transmission_error(pair, extended=False, phases=phases).transmission_error.values[0, 1::2]
+    assert force / found == pytest.approx(free.mesh_stiffness.values, rel=1e-9)
+    apart = static_transmission_error(pair.with_(mesh__contact="paper"), extended=False, phases=phases)
+    alone = free.mesh_stiffness_alone.values
+    assert force / apart.transmission_error.values[0, 1::2] == pytest.approx(alone, rel=1e-9)
+    # The loaded form, where no tip corner touches: one pair is the same; of two that share evenly each
+    # contact is softer by D ln 2, as it is taken at half the load.
+    mesh, one = StaticMesh(pair), free.compliance.values[:, 1, 1] == 0.0
+    alone, evenly = (int(np.flatnonzero(row)[row.sum() // 2]) for row in (one, ~one))
+    approach = mesh.approach(free.position.values[[alone, evenly], 0])
+    softer = np.log(2.0) * mesh.law.softening / free.compliance.values[evenly, 0].sum()
+    assert approach / found[[alone, evenly]] == pytest.approx([1.0, 1.0 + softer], rel=1e-4)
 
 
 def test_neighbours_move_as_the_fourier_ring_says(nasa):
