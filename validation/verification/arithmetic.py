@@ -142,9 +142,17 @@ def _averaged(pair: GearPair) -> Check:
 
 
 def _sharing() -> Check:
-    """Three springs of unequal stiffness and error, solved by hand: the third stays apart."""
+    """Three springs of unequal stiffness and error, solved by hand: the third stays apart.
+
+    Then two that move each other by 1e-9 m/N: late by 1 um the second helps, by 4.5 um it is pushed away.
+    """
     found = share_load([2e8, 1e8, 3e8], [0.0, 2e-6, 1.0], 1000.0)
     delta = (1000.0 + 1e8 * 2e-6) / 3e8
     rows = [(float(found.transmission_error), delta), (float(found.load[0]), 2e8 * delta)]
     rows += [(float(found.load[1]), 1e8 * delta - 200.0)]
+    coupling = [[0.0, 1e-9], [1e-9, 0.0]]
+    late = [[0.0, 1e-6], [0.0, 4.5e-6]]
+    found = share_load([2e8, 1e8], late, [1000.0, 1000.0], coupling)
+    rows += list(zip(found.load.ravel().tolist(), [1e4 / 13.0, 3e3 / 13.0, 1000.0, 0.0], strict=True))
+    rows += list(zip(found.transmission_error.tolist(), [53e-6 / 13.0, 5e-6], strict=True))
     return rows_check("load_sharing", rows)
