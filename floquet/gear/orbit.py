@@ -13,14 +13,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from floquet.gear.axes import operating_rpm
-from floquet.gear.unilateral import unilateral_system
+from floquet.gear.unilateral import ContactForm, contact_cycle, unilateral_system
 from floquet.orbits import long_run as runs
 from floquet.orbits.orbit import Orbit, find_orbit
+from floquet.orbits.system import Run
 from lumped.arguments import real_array, whole_number
 from lumped.errors import NumericalError, refuse
-from lumped.labelling import Variable, labelled_dataset
+from lumped.labelling import Variable
+from lumped.model.bodies import bodies
 from lumped.model.mesh_cycle import mesh_cycle
 from lumped.model.periodic_system import periodic_system
+from lumped.model.results import labelled, response
 from lumped.model.steady import periodic_solution
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -31,6 +34,8 @@ if TYPE_CHECKING:
 
 MOST_CYCLES = 64
 _SAMPLES = 256
+#: Coordinates with y_p and y_g.
+_WHOLE = 5
 #: Motions are followed to this many static deflections beyond twice the backlash, where back sides strike.
 _LARGEST = 30.0
 
@@ -42,7 +47,7 @@ class GearOrbit:
     Attributes
     ----------
     pair : the gear pair at this speed
-    orbit : the motion in (q, x_p, x_g) and their phase rates
+    orbit : the motion in (q, x_p, x_g) and their phase rates; with y_p, y_g where the back sides may strike
     """
 
     pair: GearPair
@@ -85,7 +90,7 @@ class GearOrbit:
 
     @property
     def multipliers(self) -> ComplexArray:
-        """(6,) Floquet multipliers over n cycles, largest first."""
+        """(6,) Floquet multipliers over n cycles, largest first; (10,) with the back sides."""
         return self.orbit.multipliers
 
     @property
@@ -110,7 +115,7 @@ class GearOrbit:
 
     @property
     def reaches_back_side(self) -> bool:
-        """Whether the back sides of the teeth would touch, which the model does not have."""
+        """Whether the back sides of the teeth strike, which the motion has only with ``back_side``."""
         return self.orbit.run.least < -self.pair.geometry.normal_backlash
 
     @property
@@ -119,44 +124,73 @@ class GearOrbit:
         return np.asarray(self.orbit.run.events * [self.orbit.period, 1.0, 1.0])
 
     @cached_property
+    def whole(self) -> Orbit:
+        """The motion with y_p and y_g, which friction alone drives where no back sides strike."""
+        o = self.orbit
+        if o.start.size == 2 * _WHOLE:
+            return o
+        return find_orbit(
+            unilateral_system(self.pair, form="relative"), _wide(o.start), o.period, o.n, o.parameter
+        )
+
+    @cached_property
     def motion(self) -> xr.Dataset:
-        """The motion over its n cycles: dte, q, x_p, x_g, their rates and the normal loads over ``time``."""
-        o, g = self.orbit, self.pair.geometry
-        run = o.system.run(o.start, o.period, o.n, o.parameter, samples=np.arange(_SAMPLES) / _SAMPLES)
-        z, rates = run.states[:, :3], run.states[:, 3:] / o.period
-        output = np.array([1.0, 1.0, -1.0])
-        names = ("q", "x_p", "x_g")
-        texts = (
-            "rotation along the line of action",
-            "pinion centre, line of action",
-            "gear centre, line of action",
-        )
-        table: dict[str, Variable] = {
-            "dte": ("time", z @ output, "m", "dynamic transmission error"),
-            "dte_dot": ("time", rates @ output, "m/s", "rate of the dynamic transmission error"),
-            "normal_load": (("time", "pair"), run.loads, "N", "normal load of each tooth pair"),
+        """The motion over its n cycles, with the variables of ``lumped.steady_state``, and in addition
+
+        normal_load_back : normal load on the back sides of the teeth, of all pairs [N]
+
+        The rigid rotation of the gear train is left out.
+        """
+        run, period = self._samples, self.orbit.period
+        drive = contact_cycle(self.pair).offsets.size
+        system = periodic_system(self.pair, "absolute", cycle=contact_cycle(self.pair))
+        values = response(system, run.phases * period, self.states, run.loads[:, :drive].T)
+        values["contact"] = (values["normal_load"] > 0.0).astype(float)
+        back: Variable = ("time", run.loads[:, drive:].sum(axis=1), "N", "normal load on the back sides")
+        attributes = {
+            "speed_rpm": self.speed_rpm,
+            "n": self.n,
+            "stable": int(self.stable),
+            "dte_rms": self.dte_rms,
+            "dte_peak_to_peak": float(np.diff(self.dte_range)[0]),
         }
-        for j, (name, text) in enumerate(zip(names, texts, strict=True)):
-            table[name] = ("time", z[:, j], "m", text)
-            table[f"{name}_dot"] = ("time", rates[:, j], "m/s", f"rate of {text}")
-        pairs = (mesh_cycle(self.pair).offsets - g.L_XA) / g.base_pitch
-        return labelled_dataset(
-            table,
-            {
-                "time": (run.phases * o.period, "s", "time from pair n at A"),
-                "pair": (np.round(pairs).astype(int), "1", "tooth pair, pitches ahead of pair n"),
-            },
-            {"speed_rpm": self.speed_rpm, "n": self.n, "stable": int(self.stable)},
+        return labelled(run.phases * period, values, attributes, {"normal_load_back": back})
+
+    @cached_property
+    def states(self) -> FloatArray:
+        """(k, 12) states as ``lumped.simulate`` has them, at 256 times of each cycle; the first is at t = 0.
+
+        The rigid rotation of the gear train is left out.
+        """
+        run = self._samples
+        return np.hstack([run.states[:, :_WHOLE], run.states[:, _WHOLE:] / self.orbit.period]) @ np.kron(
+            np.eye(2), _to_absolute(self.pair)
         )
 
-    @property
-    def states(self) -> FloatArray:
-        """(k, 6) q, x_p, x_g [m] and their rates [m/s] at 256 times of each cycle; the first is at t = 0."""
-        names = ("q", "x_p", "x_g", "q_dot", "x_p_dot", "x_g_dot")
-        return np.stack([self.motion[name].values for name in names], axis=1)
+    @cached_property
+    def _samples(self) -> Run:
+        o = self.whole
+        return o.system.run(o.start, o.period, o.n, o.parameter, samples=np.arange(_SAMPLES) / _SAMPLES)
 
 
-def periodic_orbit(pair: AnyPair, n: int = 1, start: ArrayLike | GearOrbit | None = None) -> GearOrbit:
+def _to_absolute(pair: GearPair) -> FloatArray:
+    """(5, 6) the six displacements of the lumped model by (q, x_p, x_g, y_p, y_g), without rigid rotation."""
+    g, b = pair.geometry, bodies(pair)
+    rotations = np.array(
+        [
+            [g.base_radius_pinion, -g.base_radius_gear],
+            [b.inertia_pinion / g.base_radius_pinion, b.inertia_gear / g.base_radius_gear],
+        ]
+    )
+    table = np.zeros((_WHOLE, 6))
+    table[0, :2] = np.linalg.inv(rotations)[:, 0]
+    table[1:, 2:] = np.eye(4)
+    return table
+
+
+def periodic_orbit(
+    pair: AnyPair, n: int = 1, start: ArrayLike | GearOrbit | None = None, *, back_side: bool = False
+) -> GearOrbit:
     """One periodic motion of the gear pair whose teeth push and never pull.
 
     Where contact holds it is that of ``lumped.steady_state``. Where teeth part several motions may exist at
@@ -166,8 +200,9 @@ def periodic_orbit(pair: AnyPair, n: int = 1, start: ArrayLike | GearOrbit | Non
     ----------
     pair : the gear pair
     n : mesh cycles after which the motion repeats, 1 to 64
-    start : 6 states q, x_p, x_g [m] and rates [m/s] at t = 0, or another motion, from which Newton's method
-        starts; None: the motion of the linear model
+    start : 12 states at t = 0 as ``lumped.simulate`` takes them, or another motion, from which Newton's
+        method starts; None: the motion of the linear model
+    back_side : whether the back sides of the teeth touch after the backlash
 
     Raises
     ------
@@ -176,32 +211,39 @@ def periodic_orbit(pair: AnyPair, n: int = 1, start: ArrayLike | GearOrbit | Non
     """
     pair = load_gear_pair(pair)
     n = whole_number("n", n, 1, MOST_CYCLES)
-    state, parameter = start_of(pair, start)
-    return GearOrbit(
-        pair, find_orbit(unilateral_system(pair), state, pair.geometry.mesh_period, n, parameter)
-    )
+    form = form_with(back_side=back_side)
+    state, parameter = start_of(pair, start, form)
+    system = unilateral_system(pair, form=form)
+    return GearOrbit(pair, find_orbit(system, state, pair.geometry.mesh_period, n, parameter))
 
 
 def long_run(
-    pair: AnyPair, start: ArrayLike | GearOrbit | None = None, *, settle_cycles: int = 400, cycles: int = 800
+    pair: AnyPair,
+    start: ArrayLike | GearOrbit | None = None,
+    *,
+    settle_cycles: int = 400,
+    cycles: int = 800,
+    back_side: bool = False,
 ) -> runs.LongRun:
     """Say what a run of the unilateral gear pair settles to: a periodic motion, beats or chaos.
 
     Parameters
     ----------
     pair : the gear pair
-    start : 6 states or a motion as in ``periodic_orbit``; None: the motion of the linear model
+    start : 12 states or a motion as in ``periodic_orbit``; None: the motion of the linear model
     settle_cycles : mesh cycles before it is looked at
     cycles : mesh cycles of the observation, over which the Lyapunov exponent is a mean
+    back_side : whether the back sides of the teeth touch after the backlash
 
     Raises
     ------
     ParameterError : a start that is no state
     """
     pair = load_gear_pair(pair)
-    state, parameter = start_of(pair, start)
+    form = form_with(back_side=back_side)
+    state, parameter = start_of(pair, start, form)
     return runs.long_run(
-        unilateral_system(pair),
+        unilateral_system(pair, form=form),
         state,
         pair.geometry.mesh_period,
         parameter,
@@ -209,6 +251,11 @@ def long_run(
         observe=whole_number("cycles", cycles, 64, 1_000_000),
         amplitude=largest_motion(pair),
     )
+
+
+def form_with(*, back_side: bool) -> ContactForm:
+    """The fewest coordinates that hold the motion."""
+    return "back_side" if back_side else "feedback"
 
 
 def static_deflection(pair: GearPair) -> float:
@@ -221,33 +268,39 @@ def largest_motion(pair: GearPair) -> float:
     return 2.0 * pair.geometry.normal_backlash + _LARGEST * static_deflection(pair)
 
 
-def start_of(pair: GearPair, start: ArrayLike | GearOrbit | None) -> tuple[FloatArray, float]:
-    """State (6,) with phase rates, and the balanced torque, to start from."""
+def start_of(
+    pair: GearPair, start: ArrayLike | GearOrbit | None, form: ContactForm = "feedback"
+) -> tuple[FloatArray, float]:
+    """Coordinates of the form with phase rates, and the balanced torque, to start from."""
     period = pair.geometry.mesh_period
     if isinstance(start, GearOrbit):
         # Displacements and phase rates of a neighbouring speed are nearer than its rates.
-        return start.orbit.start, start.orbit.parameter
-    given = pair.operating.brake_torque != "balanced"
-    g = pair.geometry
-    nominal = (
-        pair.operating.pinion_torque
-        if given
-        else pair.operating.pinion_torque * g.omega_pinion / g.omega_gear
-    )
+        return _of_form(_wide(start.orbit.start), form), start.orbit.parameter
+    g, operating = pair.geometry, pair.operating
+    given = operating.brake_torque != "balanced"
+    torque = operating.pinion_torque * (1.0 if given else g.omega_pinion / g.omega_gear)
+    states = np.zeros(12)
     if start is not None:
-        state = real_array("start", start)
-        if state.shape != (6,):
-            raise refuse(
-                "start", f"shape {state.shape}", "6 states: q, x_p, x_g and their rates", "Give them in SI."
-            )
-        return np.concatenate([state[:3], state[3:] * period]), nominal
-    system = periodic_system(pair, "absolute")
-    try:
-        linear = periodic_solution(system, np.zeros(1), estimate_error=False)
-    except NumericalError:
-        return np.array([static_deflection(pair), 0.0, 0.0, 0.0, 0.0, 0.0]), nominal
-    reduction = np.zeros((3, 6))
-    reduction[0, :2] = g.base_radius_pinion, -g.base_radius_gear
-    reduction[1, 2] = reduction[2, 3] = 1.0
-    z, rates = reduction @ linear.states[0, :6], reduction @ linear.states[0, 6:]
-    return np.concatenate([z, rates * period]), linear.pinion_torque if given else linear.brake_torque
+        states = real_array("start", start)
+        if states.shape != (12,):
+            allowed = "12 states as lumped.simulate takes them"
+            raise refuse("start", f"shape {states.shape}", allowed, "Give them in SI.")
+    else:
+        try:
+            linear = periodic_solution(periodic_system(pair, "absolute"), np.zeros(1), estimate_error=False)
+            states, torque = linear.states[0], linear.pinion_torque if given else linear.brake_torque
+        except NumericalError:
+            states[2] = static_deflection(pair)
+    reduction = periodic_system(pair, "relative").reduction
+    wide = np.concatenate([reduction @ states[:6], reduction @ states[6:] * period])
+    return _of_form(wide, form), torque
+
+
+def _of_form(wide: FloatArray, form: ContactForm) -> FloatArray:
+    """A start in five coordinates, those of the form kept."""
+    return wide[[0, 1, 2, 5, 6, 7]] if form == "feedback" else wide
+
+
+def _wide(start: FloatArray) -> FloatArray:
+    """(10,) a start in five coordinates; y_p and y_g at rest where it has none."""
+    return np.pad(start.reshape(2, -1), ((0, 0), (0, _WHOLE - start.size // 2))).ravel()

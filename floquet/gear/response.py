@@ -14,7 +14,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from floquet.gear.axes import operating_rpm, speed_range
-from floquet.gear.orbit import MOST_CYCLES, GearOrbit, largest_motion, start_of, static_deflection
+from floquet.gear.orbit import (
+    MOST_CYCLES,
+    GearOrbit,
+    form_with,
+    largest_motion,
+    start_of,
+    static_deflection,
+)
 from floquet.gear.orbit import long_run as settled_run
 from floquet.gear.unilateral import unilateral_family
 from floquet.orbits.bifurcations import Bifurcation, Kind
@@ -129,11 +136,13 @@ class ResponseBranches:
     ----------
     pair : the gear pair
     speeds_rpm : slowest and fastest speed [rpm]
+    back_side : whether the back sides of the teeth touch
     response : what the search found, over the period
     """
 
     pair: GearPair
     speeds_rpm: tuple[float, float]
+    back_side: bool
     response: Response = field(repr=False)
 
     @property
@@ -218,7 +227,7 @@ class ResponseBranches:
 
     def _restless(self, low: float, high: float) -> Restless:
         there = self.pair.with_({"operating.pinion_speed": 0.5 * (low + high)})
-        run = settled_run(there)
+        run = settled_run(there, back_side=self.back_side)
         return Restless(
             low, high, run.kind, run.orbit.n if run.orbit else 0, run.rms, run.exponent, run.uncertainty
         )
@@ -270,6 +279,7 @@ def response_branches(
     periods: Collection[int] = (1, 2, 3),
     *,
     seeds: int = 40,
+    back_side: bool = False,
     progress: Progress | None = None,
 ) -> ResponseBranches:
     """Branches of periodic motions over speed, stable and unstable, with their bifurcations.
@@ -284,6 +294,8 @@ def response_branches(
     speeds : slowest and fastest pinion speed [rpm]; None: ``operating.speed_range``
     periods : mesh cycles after which motions repeat
     seeds : speeds at which runs settle, to find isolated branches
+    back_side : whether the back sides of the teeth touch after the backlash; motions that need it say so
+        without it (``GearOrbit.reaches_back_side``)
     progress : called with the finished fraction
 
     Raises
@@ -294,15 +306,16 @@ def response_branches(
     low, high = _speeds(pair, speeds)
     wanted = sorted({whole_number("periods", n, 1, MOST_CYCLES) for n in periods})
     seeds = whole_number("seeds", seeds, 0, 10_000)
+    form = form_with(back_side=back_side)
     response = find_response(
-        unilateral_family(pair, low, high),
+        unilateral_family(pair, low, high, form),
         _limits(pair, low, high),
-        lambda period: start_of(pair.with_({"operating.pinion_speed": _rpm(pair, period)}), None),
+        lambda period: start_of(pair.with_({"operating.pinion_speed": _rpm(pair, period)}), None, form),
         periods=wanted,
         seeds=seeds,
         progress=progress,
     )
-    return ResponseBranches(pair, (low, high), response)
+    return ResponseBranches(pair, (low, high), back_side, response)
 
 
 def _rpm(pair: GearPair, period: float) -> float:

@@ -5,8 +5,9 @@ Sources: docs/theory/orbits.md, "Gear pair".
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +16,7 @@ from floquet.gear.axes import GearVariation, operating_rpm
 from floquet.gear.friction_over_speed import FrictionFamily, depends_on_speed, friction_families
 from floquet.orbits.branch import Family
 from floquet.orbits.system import Contact, ContactSystem
+from lumped.gear_geometry.involute import tooth_half_angle
 from lumped.model.bodies import bodies
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.model.mesh_elements import mesh_elements
@@ -26,11 +28,17 @@ from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
+ContactForm = Literal["feedback", "relative", "back_side"]
+
 _SPEEDS = 33
+#: Pieces shorter than this part of a cycle are none.
+_SAME = 1e-13
 
 
-def unilateral_system(pair: AnyPair, friction: PathFunction | None = None) -> ContactSystem:
-    """Return (q, x_p, x_g) of a gear pair with one unilateral contact for each tooth pair.
+def unilateral_system(
+    pair: AnyPair, friction: PathFunction | None = None, form: ContactForm = "feedback"
+) -> ContactSystem:
+    """Return a gear pair with one unilateral contact for each tooth pair.
 
     A contact carries k (delta - e) + c (delta' - e') where the flanks overlap and that is positive, as the
     multibody effect ``contact_loss``. Relief is clearance e; static loads cut nothing. Friction acts with its
@@ -44,61 +52,31 @@ def unilateral_system(pair: AnyPair, friction: PathFunction | None = None) -> Co
     ----------
     pair : the gear pair
     friction : mu(xi) in place of that of the pair's law
+    form : "feedback": (q, x_p, x_g), whose motion decides that of y; "relative": (q, x_p, x_g, y_p, y_g);
+        "back_side": the same, and the back sides of the teeth touch after the backlash, with the laws of the
+        driving flanks
 
     Raises
     ------
     ParameterError : a law refuses its parameters
     """
     pair = load_gear_pair(pair)
-    cycle = _cycle(pair)
+    cycle = contact_cycle(pair)
     if friction is not None:
         cycle = MeshCycle(cycle.geometry, replace(cycle.elements, friction=friction))
-    base = periodic_system(pair, "feedback", cycle=cycle)
+    base = periodic_system(pair, "feedback" if form == "feedback" else "relative", cycle=cycle)
     s, g = base.structure, pair.geometry
-    elements = cycle.elements
-    phases = cycle.breaks / cycle.period
-    middles = 0.5 * (phases[:-1] + phases[1:])
-    start = phases[:-1] * g.base_pitch
-
-    def law(function: PathFunction, offset: float) -> FloatArray:
-        return _over_phase(function, offset + start, offset + g.base_pitch * middles, g.base_pitch)
-
-    # Acceleration per unit load and per unit friction force, of (q, x_p, x_g) and of r_bg theta_g.
+    # Acceleration per unit generalised force, of the coordinates and of r_bg theta_g.
     rows = np.vstack([base.reduction, [0.0, g.base_radius_gear, 0.0, 0.0, 0.0, 0.0]]) / s.mass
-    normal, arm = rows @ s.normal, rows @ s.friction_arm
-    zeta, mass = pair.mesh.damping_ratio, bodies(pair).effective_mass
-    contacts = []
-    for offset in cycle.offsets:
-        place = offset + g.base_pitch * middles
-        k, c, e = (law(f, offset) for f in (elements.stiffness, elements.damping, elements.error))
-        mu = law(elements.friction, offset)
-        xi = np.stack([offset + start, np.full(start.size, g.base_pitch)], axis=1)
-        acceleration = arm[:, 0, None] * mu[:, None, :]
-        acceleration = np.pad(acceleration, ((0, 0), (0, 0), (0, 1)))
-        acceleration[:, :, :-1] += arm[:, 1, None] * (mu * xi[:, :1])[:, None, :]
-        acceleration[:, :, 1:] += arm[:, 1, None] * (mu * xi[:, 1:])[:, None, :]
-        acceleration[:, :, 0] += normal
-        sign: tuple[npt.ArrayLike, npt.ArrayLike] | None
-        if zeta == 0.0:
-            sign = (1.0, 0.0)
-        elif pair.mesh.contact == "paper":  # k/c = c/(4 zeta^2 m_e)
-            sign = (c / (4.0 * zeta**2 * mass), 1.0)
-        else:
-            sign = None
-        contacts.append(
-            Contact(
-                direction=base.deflection,
-                acceleration=acceleration,
-                stiffness=k,
-                damping=c,
-                clearance=e,
-                clearance_rate=None
-                if elements.gap is None
-                else g.base_pitch * law(elements.error_slope, offset),
-                sign=sign,
-                present=(place >= cycle.start) & (place <= cycle.end),
-            )
-        )
+    phases = cycle.breaks / cycle.period
+    flanks = [_Flank(rows @ s.normal, rows @ s.friction_arm, base.deflection, 0.0, cycle.offsets, 1.0)]
+    if form == "back_side":
+        coast = _coast_flank(pair, cycle, rows)
+        passes = np.mod((coast.offsets[0] - g.L_XA) / g.base_pitch - cycle.break_phases, 1.0)
+        passes = np.sort(passes[(passes > _SAME) & (passes < 1.0 - _SAME)])
+        phases = np.union1d(phases, passes)
+        phases = phases[np.append(True, np.diff(phases) > _SAME)]
+        flanks.append(coast)
     given = pair.operating.brake_torque != "balanced"
     lift = np.linalg.pinv(base.reduction)
     torques = rows[:, :2] * [1.0, -1.0]
@@ -109,14 +87,102 @@ def unilateral_system(pair: AnyPair, friction: PathFunction | None = None) -> Co
         stiffness=rows @ np.diag(s.stiffness) @ lift,
         damping=rows @ np.diag(s.damping) @ lift,
         force=known,
-        contacts=tuple(contacts),
+        contacts=tuple(
+            _contact(pair, cycle, phases, flank, offset) for flank in flanks for offset in flank.offsets
+        ),
         phases=phases,
         output=base.deflection,
         parameter_force=torques[:, 0 if given else 1],
     )
 
 
-def unilateral_family(pair: AnyPair, slowest_rpm: float, fastest_rpm: float) -> Family:
+@dataclass(frozen=True)
+class _Flank:
+    """One side of the teeth.
+
+    Attributes
+    ----------
+    normal : (n,) acceleration per unit load
+    arm : (n, 2) acceleration per unit friction force, arm[:, 0] + arm[:, 1] xi
+    direction : (m,) the overlap is direction . z - clearance - e
+    clearance : [m]
+    offsets : (I,) places xi at t = 0 of all pairs that can touch in the cycle [m]
+    way : +1 where contacts run from A to D, -1 from D to A
+    """
+
+    normal: FloatArray
+    arm: FloatArray
+    direction: FloatArray
+    clearance: float
+    offsets: FloatArray
+    way: float
+
+
+def _coast_flank(pair: GearPair, cycle: MeshCycle, rows: FloatArray) -> _Flank:
+    """The back sides: their line of action is the mirror image of the driving one in the line of centres."""
+    g, rack = pair.geometry, pair.basic_rack
+    r_p, r_g = g.base_radius_pinion, g.base_radius_gear
+    # The line of action makes the angle pi - 2 alpha_w with that of the driving flanks.
+    angle = np.pi - 2.0 * g.operating_pressure_angle
+    x, y = np.cos(angle), np.sin(angle)
+    normal = np.array([r_p, -r_g, -x, x, -y, y])
+    arm = np.array([[0.0, 1.0], [-g.L_XY, 1.0], [y, 0.0], [-y, 0.0], [-x, 0.0], [x, 0.0]])
+    thickness = (
+        2.0 * r_p * tooth_half_angle(pair.pinion.teeth, pair.pinion.profile_shift, rack.pressure_angle, 0.0)
+    )
+    thickness -= 0.5 * pair.mesh.backlash
+    place = thickness + 2.0 * r_p * g.operating_pressure_angle - g.L_XA + 0.5 * g.normal_backlash
+    pitch = g.base_pitch
+    first = np.ceil((cycle.start - place) / pitch)
+    last = np.floor((cycle.end + pitch - place) / pitch)
+    return _Flank(
+        rows @ normal,
+        rows @ arm,
+        np.array([-1.0, x, -x, y, -y]),
+        g.normal_backlash,
+        place + np.arange(first, last + 1) * pitch,
+        -1.0,
+    )
+
+
+def _contact(pair: GearPair, cycle: MeshCycle, phases: FloatArray, flank: _Flank, offset: float) -> Contact:
+    """One tooth pair, whose element laws are polynomials of the phase."""
+    elements, pitch = cycle.elements, flank.way * pair.geometry.base_pitch
+    start, inside = offset + pitch * phases[:-1], offset + 0.5 * pitch * (phases[:-1] + phases[1:])
+
+    def law(function: PathFunction) -> FloatArray:
+        return _over_phase(function, start, inside, pitch)
+
+    k, c, e = (law(f) for f in (elements.stiffness, elements.damping, elements.error))
+    mu = flank.way * law(elements.friction)  # the sliding of the back sides is the other way
+    rate = None if elements.gap is None else pitch * law(elements.error_slope)
+    e[:, 0] += flank.clearance
+    xi = np.stack([start, np.full(start.size, pitch)], axis=1)
+    acceleration = np.pad(flank.arm[:, 0, None] * mu[:, None, :], ((0, 0), (0, 0), (0, 1)))
+    acceleration[:, :, :-1] += flank.arm[:, 1, None] * (mu * xi[:, :1])[:, None, :]
+    acceleration[:, :, 1:] += flank.arm[:, 1, None] * (mu * xi[:, 1:])[:, None, :]
+    acceleration[:, :, 0] += flank.normal
+    zeta = pair.mesh.damping_ratio
+    sign: tuple[npt.ArrayLike, npt.ArrayLike] | None = None
+    if zeta == 0.0:
+        sign = (1.0, 0.0)
+    elif pair.mesh.contact == "paper":  # k/c = c/(4 zeta^2 m_e)
+        sign = (c / (4.0 * zeta**2 * bodies(pair).effective_mass), 1.0)
+    return Contact(
+        direction=flank.direction,
+        acceleration=acceleration,
+        stiffness=k,
+        damping=c,
+        clearance=e,
+        clearance_rate=rate,
+        sign=sign,
+        present=(inside >= cycle.start) & (inside <= cycle.end),
+    )
+
+
+def unilateral_family(
+    pair: AnyPair, slowest_rpm: float, fastest_rpm: float, form: ContactForm = "feedback"
+) -> Family:
     """Return the unilateral system over its period, for speeds of a range.
 
     Where friction depends on speed, its law is a weighted sum of two functions of the position wherever it
@@ -126,13 +192,14 @@ def unilateral_family(pair: AnyPair, slowest_rpm: float, fastest_rpm: float) -> 
     ----------
     pair : the gear pair
     slowest_rpm, fastest_rpm : speeds of the pinion [rpm]
+    form : as ``unilateral_system``
     """
     pair = load_gear_pair(pair)
     if not depends_on_speed(pair):
-        system = unilateral_system(pair)
+        system = unilateral_system(pair, form=form)
         return Family(lambda period: system, constant=True)
     speeds = np.linspace(slowest_rpm, fastest_rpm, _SPEEDS)
-    families = [_Parts(pair, family) for family in friction_families(GearVariation(pair), speeds)]
+    families = [_Parts(pair, family, form) for family in friction_families(GearVariation(pair), speeds)]
     cycle_at_1_rpm = pair.geometry.mesh_period * operating_rpm(pair)
 
     @lru_cache(maxsize=16)
@@ -142,7 +209,7 @@ def unilateral_family(pair: AnyPair, slowest_rpm: float, fastest_rpm: float) -> 
             system = family.at(rpm)
             if system is not None:
                 return system
-        return unilateral_system(pair.with_({"operating.pinion_speed": rpm}))
+        return unilateral_system(pair.with_({"operating.pinion_speed": rpm}), form=form)
 
     return Family(at, constant=False)
 
@@ -150,15 +217,18 @@ def unilateral_family(pair: AnyPair, slowest_rpm: float, fastest_rpm: float) -> 
 class _Parts:
     """The system of a family of speeds, as a sum of what is without friction and of its one or two parts."""
 
-    def __init__(self, pair: GearPair, family: FrictionFamily) -> None:
+    def __init__(self, pair: GearPair, family: FrictionFamily, form: ContactForm) -> None:
         self.family = family
         there = pair.with_({"operating.pinion_speed": family.speed_rpm})
         mu = friction_path_function(there, interval=mesh_cycle(there).elements.stiffness.interval)
         steady = _signed(mu, pair.geometry.L_XP, family.level or 0.0)
         parts = [mu] if family.level is None else [_plus(mu, steady, -1.0), steady]
         # Zero times the law, so that all have the same pieces.
-        self.without = unilateral_system(there, _plus(parts[0].scaled(0.0), steady, 0.0))
-        systems = [self.without, *(unilateral_system(there, _plus(part, steady, 0.0)) for part in parts)]
+        self.without = unilateral_system(there, _plus(parts[0].scaled(0.0), steady, 0.0), form)
+        systems = [
+            self.without,
+            *(unilateral_system(there, _plus(part, steady, 0.0), form) for part in parts),
+        ]
         width = max(system.acceleration.shape[-1] for system in systems)
         rows = [_widened(system.acceleration, width) for system in systems]
         self.base, self.each = rows[0], [row - rows[0] for row in rows[1:]]
@@ -195,7 +265,7 @@ def _plus(one: PathFunction, other: PathFunction, factor: float) -> PathFunction
     return PathFunction(one.breaks, rows, np.union1d(one.switches, other.switches))
 
 
-def _cycle(pair: GearPair) -> MeshCycle:
+def contact_cycle(pair: GearPair) -> MeshCycle:
     """The mesh cycle with clearance for relief; the linear model has the stiffness that statics leave."""
     if pair.mesh.contact == "loaded" or pair.mesh.relief == "ignored":
         return MeshCycle(pair.geometry, mesh_elements(pair))

@@ -164,8 +164,8 @@ def find_orbit(
             break
         try:
             step = np.linalg.solve(J[:, unknowns] / rows[:, None], -r / rows)
-        except np.linalg.LinAlgError as error:
-            raise NumericalError("Newton's method met a singular map. Start elsewhere.") from error
+        except np.linalg.LinAlgError:
+            break
         x = x + step[:size]
         parameter += float(step[size]) if system.balanced else 0.0
     raise NumericalError(

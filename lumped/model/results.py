@@ -136,13 +136,20 @@ def load_range(contact_form: str, load: FloatArray, contact: FloatArray) -> tupl
     return float(touching.max()), float(least.min())
 
 
-def response(system: LTVSystem, time: FloatArray, states: FloatArray) -> dict[str, FloatArray]:
-    """Return the arrays of ``dataset`` by name, without labels; arguments as there."""
+def response(
+    system: LTVSystem, time: FloatArray, states: FloatArray, normal_load: FloatArray | None = None
+) -> dict[str, FloatArray]:
+    """Return the arrays of ``dataset`` by name, without labels; arguments as there.
+
+    ``normal_load`` (pairs, k) [N] replaces what the linear model's teeth carry, where they may part.
+    """
     g, s = system.pair.geometry, system.structure
     z, rates = states[:, :6], states[:, 6:]
     dte, dte_dot = z @ s.deflection, rates @ s.deflection
     pairs = system.cycle.sample(time)
-    normal = pairs.stiffness * (dte - pairs.error) + pairs.damping * (dte_dot - pairs.error_rate)
+    normal = normal_load
+    if normal is None:
+        normal = pairs.stiffness * (dte - pairs.error) + pairs.damping * (dte_dot - pairs.error_rate)
     friction = pairs.friction * normal
     arm_g = g.L_XY - pairs.position
     sliding = (

@@ -34,6 +34,9 @@ def response(
     multibody: Annotated[
         int, typer.Option(help="Speeds of multibody sweeps up and down, drawn as points; some seconds each.")
     ] = 0,
+    back_side: Annotated[
+        bool, typer.Option("--back-side", help="Also let the back sides of the teeth touch; takes longer.")
+    ] = False,
     torque: opt.Torque = None,
     speed_range: opt.Range = None,
     law: opt.Law = None,
@@ -60,7 +63,9 @@ def response(
     whole_number("--periods", periods, 1, 8)
     whole_number("--multibody", multibody, 0, 1000)
     with progress_bar("branches") as tell:
-        found = floquet.response_branches(gear_pair, None, range(1, periods + 1), seeds=seeds, progress=tell)
+        found = floquet.response_branches(
+            gear_pair, None, range(1, periods + 1), seeds=seeds, back_side=back_side, progress=tell
+        )
     if as_json:
         print_json(
             {
@@ -73,8 +78,8 @@ def response(
         )
     else:
         _print(gear_pair, found)
-    if any(o.reaches_back_side for o in found.at(_operating(gear_pair))):
-        note("a motion at the operating speed is larger than the backlash: the back sides strike there.")
+    if not back_side and any(o.reaches_back_side for o in found.at(_operating(gear_pair))):
+        note("a motion at the operating speed is larger than the backlash: try --back-side.")
     if target is not None:
         from validation.plots.response import response_figure
 

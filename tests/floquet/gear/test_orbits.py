@@ -31,7 +31,10 @@ def test_where_contact_holds_it_is_the_linear_motion(brake):
     assert not orbit.parts
     span = float(np.ptp(linear.dte.values))
     assert orbit.motion.dte.values == pytest.approx(linear.dte.values[:256], abs=1e-11 * span)
-    assert orbit.motion.normal_load.values.sum(axis=1) == pytest.approx(
+    for name in ("y_p", "y_g", "bearing_force_y_g", "friction_force"):
+        own, wanted = orbit.motion[name].values, linear[name].values[..., :256]
+        assert own == pytest.approx(wanted, abs=1e-9 * np.ptp(wanted)), name
+    assert orbit.motion.normal_load.sum("pair").values == pytest.approx(
         linear.normal_load.sum("pair").values[:256], rel=1e-9
     )
     multipliers = floquet.monodromy(floquet.gear_pair_system(pair, "feedback")).multipliers
@@ -119,14 +122,14 @@ def test_friction_over_speed_is_that_fitted_at_each_speed(law):
 
 
 def test_what_is_no_start_or_range_is_refused(frictionless):
-    with pytest.raises(ParameterError, match="6 states"):
+    with pytest.raises(ParameterError, match="12 states"):
         floquet.periodic_orbit(frictionless, start=[1.0, 2.0])
     with pytest.raises(ParameterError, match="slowest and fastest"):
         floquet.response_branches(frictionless, (3000.0, 1000.0))
     with pytest.raises(ParameterError, match="periods"):
         floquet.response_branches(frictionless, (1000.0, 3000.0), (0,))
     with pytest.raises(NumericalError, match="no motion of 3 cycles"):
-        floquet.periodic_orbit(at(frictionless, 8600.0), 3, start=[1e-4, 0, 0, 0, 0, 0])
+        floquet.periodic_orbit(at(frictionless, 8600.0), 3, start=np.eye(12)[0] * 2.4e-3)
 
 
 def test_a_jump_leads_from_one_branch_to_another(branches):
@@ -140,3 +143,16 @@ def test_a_jump_leads_from_one_branch_to_another(branches):
     assert up.speed_rpm == pytest.approx(
         max(b.speed_rpm for b in branches.bifurcations if b.kind == "fold" and b.n == 1)
     )
+
+
+def test_with_back_sides_a_motion_larger_than_the_backlash_is_another(frictionless):
+    """It strikes both flanks; a motion within the backlash is the same with and without them."""
+    small = floquet.periodic_orbit(at(frictionless, 8000.0), back_side=True)
+    assert small.dte_rms == pytest.approx(floquet.periodic_orbit(small.pair).dte_rms, rel=1e-9)
+    assert small.multipliers.size == 10
+    # At 10000 rpm both gears can be thrown from flank to flank (docs/theory/orbits.md).
+    start = np.zeros(12)
+    start[[0, 6]] = np.array([5e-4, 3.0]) / small.pair.geometry.base_radius_pinion
+    run = floquet.long_run(at(frictionless, 10000.0), start, settle_cycles=100, cycles=64, back_side=True)
+    assert run.kind == "periodic"
+    assert run.run.least < -small.pair.geometry.normal_backlash

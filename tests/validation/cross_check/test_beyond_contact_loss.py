@@ -8,6 +8,7 @@ import pytest
 import floquet
 import lumped
 import multibody
+from floquet.gear.unilateral import unilateral_system
 
 
 @pytest.fixture(scope="module")
@@ -26,17 +27,7 @@ def test_the_multibody_model_stays_on_the_periodic_motion(pair_beyond):
     pair = pair_beyond
     orbit = floquet.periodic_orbit(pair)
     assert orbit.parts
-    g, b = pair.geometry, lumped.bodies(pair)
-    # q = r_bp theta_p - r_bg theta_g, and no angular momentum in the rotation of both.
-    to_angles = np.linalg.inv(
-        [
-            [g.base_radius_pinion, -g.base_radius_gear],
-            [b.inertia_pinion / g.base_radius_pinion, b.inertia_gear / g.base_radius_gear],
-        ]
-    )[:, 0]
-    q, x_p, x_g, q_dot, x_p_dot, x_g_dot = orbit.states[0]
-    start = [*(to_angles * q), x_p, x_g, 0, 0, *(to_angles * q_dot), x_p_dot, x_g_dot, 0, 0]
-    run = multibody.simulate(pair, 3, initial=start, effects=["contact_loss"], rtol=1e-11)
+    run = multibody.simulate(pair, 3, initial=orbit.states[0], effects=["contact_loss"], rtol=1e-11)
     expected = np.append(np.tile(orbit.motion.dte.values, 3), orbit.motion.dte.values[0])
     # 1e-9 of the span measured: the multibody run is good to its tolerance times the cycles.
     assert run.dte.values == pytest.approx(expected, abs=1e-8 * np.ptp(expected))
@@ -58,3 +49,27 @@ def test_the_multibody_sweep_measures_the_mean_over_whole_cycles(pair_beyond):
     )
     assert float(sweep["dte_rms"][0]) == pytest.approx(orbit.dte_rms, rel=1e-5)
     assert float(sweep["unsettled"][0]) < 1e-5
+
+
+@pytest.mark.parametrize("name", ["nasa_28_28", "fzg_c"])
+def test_back_sides_strike_as_in_the_multibody_model(name):
+    """There the mirror image of the drive flanks, from body angles; here laws of the phase. With friction."""
+    pair = lumped.load_gear_pair(name).with_(mesh__relief="ignored", mesh__damping_ratio=0.05)
+    backlash, period = pair.geometry.normal_backlash, pair.geometry.mesh_period
+    start = np.zeros(12)
+    start[2] = 3.0 * backlash  # the pinion presses deep and is thrown onto the back side
+    run = multibody.simulate(
+        pair, 3, initial=start, effects=["contact_loss"], rtol=1e-11, samples_per_cycle=64
+    )
+    state = np.zeros(10)
+    state[1] = start[2]
+    own = unilateral_system(pair, form="back_side").run(
+        state, period, 3, run.attrs["brake_torque"], samples=np.arange(64) / 64
+    )
+    for j, variable in enumerate(("x_p", "x_g", "y_p", "y_g"), 1):
+        wanted = run[variable].values[:-1]
+        assert own.states[:, j] == pytest.approx(wanted, abs=1e-8 * np.ptp(wanted)), variable
+    back = run.normal_load_back.sum("pair").values[:-1]
+    drive = run.sizes["pair"]
+    assert back.max() > 1000.0
+    assert own.loads[:, drive:].sum(axis=1) == pytest.approx(back, abs=1e-6 * back.max())
