@@ -91,9 +91,10 @@ def friction_path_function(
     path, name = contact_path(pair), _name(pair, law)
     settings: FrictionSettings = pair.friction
     if interval not in (None, (path.L_XA, path.L_XD)):
-        if law_named(name).coefficient:  # mu_avg stays the mean from A to D
+        longer = replace(path, L_XA=interval[0], L_XD=interval[1])
+        if _reads_average(law_named(name), longer, settings):  # mu_avg stays the mean from A to D
             settings = pair.friction.model_copy(update={"coefficient": average_coefficient(path, settings)})
-        path = replace(path, L_XA=interval[0], L_XD=interval[1])
+        path = longer
     function = fit_law(path, settings, name)
     warn_violations(violations_of(path, pair.friction, name))
     return function
@@ -111,6 +112,14 @@ def law_range_violations(pair: AnyPair, law: str | None = None) -> tuple[RangeVi
     """
     pair = load_gear_pair(pair)
     return violations_of(contact_path(pair), pair.friction, _name(pair, law))
+
+
+def _reads_average(law: FrictionLaw, path: ContactPath, settings: FrictionSettings) -> bool:
+    """Whether mu_avg acts somewhere on a path, of a law made of others in one that is in force there."""
+    if law.parts is None:
+        return law.coefficient
+    parts = law.parts(_positions(path), path, settings)
+    return any(part.coefficient and bool(inside.any()) for part, inside in parts)
 
 
 def _name(pair: GearPair, law: str | None) -> str:

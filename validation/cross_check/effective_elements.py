@@ -113,7 +113,7 @@ def reversed_within(law: PathFunction, first: float, last: float) -> PathFunctio
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """Straight lines that stand for laws along the path, each through two inner places of its piece.
+    """Pieces in which straight lines stand for laws along the path, each through two inner places.
 
     So a jump at a node stays outside.
 
@@ -149,6 +149,14 @@ class Lines:
         start = near - 0.25 * width * slope
         jump = np.abs(start[1:] - (start + slope * width)[:-1]) > _JUMP * np.abs(near).max()
         return PathFunction(self.nodes, np.stack([slope, start]), self.nodes[1:-1][jump])
+
+    def bent_through(self, values: FloatArray, middle: FloatArray) -> PathFunction:
+        """Parabolas through these values and those halfway (n,): their slope is right at the nodes."""
+        near, far = values
+        width = np.diff(self.nodes)
+        slope, bend = 2.0 * (far - near) / width, 8.0 * (near - 2.0 * middle + far) / width**2
+        start = middle - 0.5 * width * slope + 0.25 * width**2 * bend
+        return PathFunction(self.nodes, np.stack([bend, slope - width * bend, start]), np.empty(0))
 
 
 def _from(law: PathFunction, place: float) -> FloatArray:

@@ -140,13 +140,15 @@ class LoadedModel(ShiftedModel):
         slope = (far - near) / (2.0 * _BESIDE)
         # Half of what a pair and its neighbours move each other counts at either.
         places, followed = self._neighbours(shifts.place, shifts.place)
-        others = np.where(followed, np.interp(places, shifts.place, shifts.load), 0.0)
+        others = np.where(followed, np.interp(places, shifts.place, shifts.elastic), 0.0)
         actual = np.interp(places, shifts.place, at)
         behind, ahead = (
             mesh.coupling(actual + s, followed)[:, followed.shape[1] // 2] for s in (-_BESIDE, _BESIDE)
         )
         moved = ((ahead - behind) / (2.0 * _BESIDE) * others).sum(axis=1)
-        return np.asarray(shifts.load * (relief + 0.5 * moved) - 0.5 * slope * (shifts.load / k) ** 2)
+        # The damper presses on the relief, but stores nothing.
+        stored = 0.5 * slope * (shifts.elastic / k) ** 2 - 0.5 * moved * shifts.elastic
+        return np.asarray(shifts.load * relief - stored)
 
     def _neighbours(self, at: FloatArray, place: FloatArray) -> tuple[FloatArray, BoolArray]:
         """Places of a pair at (n,) and of its neighbours, (n, pairs) [m], and whether they are followed."""
@@ -166,6 +168,10 @@ class LoadedModel(ShiftedModel):
         scale = 2.0 * self.pair.mesh.damping_ratio * np.sqrt(bodies(self.pair).effective_mass)
         full = FULL_DAMPING * mesh.force
 
+        def own_gap(at: FloatArray) -> FloatArray:
+            actual, delta, more = (np.interp(at, place, v) for v in (stands_at, overlap, longer))
+            return mesh.gap(actual, 0.5 * (delta + more), more)
+
         def state(at: FloatArray) -> dict[str, FloatArray]:
             places, near = self._neighbours(at, place)
             actual, delta, more = (np.interp(places, place, v) for v in (stands_at, overlap, longer))
@@ -173,19 +179,19 @@ class LoadedModel(ShiftedModel):
             gap = mesh.gap(actual.ravel(), 0.5 * (delta + more).ravel(), more.ravel()).reshape(near.shape)
             load, tangent, pressed = mesh.together(actual, delta - gap, near)
             actual, delta, gap = actual[:, middle], delta[:, middle], gap[:, middle]
-            engaged = np.clip(load / full, 0.0, 1.0)
+            engaged, secant = np.clip(load / full, 0.0, 1.0), law.held(actual)
             return {
                 "gap": gap,
                 "compression": delta - gap,
-                "pressed": pressed,
+                "pressing": secant * pressed,
                 "load": load,
                 "stiffness": tangent,
                 "error": delta - load / np.where(tangent > 0.0, tangent, np.inf),
-                "damping": scale * np.sqrt(law.held(actual)) * engaged**2 * (3.0 - 2.0 * engaged),
+                "damping": scale * np.sqrt(secant) * engaged**2 * (3.0 - 2.0 * engaged),
             }
 
         found, speed = state(place), g.base_pitch / self.cycle.period
-        touching = found["pressed"]
+        touching = found["pressing"]  # as a force, as below: its zero is found by interpolation
         # A pair lets go where its flanks part, and where its damper would pull more than they press.
         if "tip_contact" in self.effects:
             pressing = found["damping"] * np.gradient(found["compression"], place) * speed
@@ -210,5 +216,5 @@ class LoadedModel(ShiftedModel):
             damping=fitted("damping"),
             friction=self.cycle.elements.friction,
             error=fitted("error"),
-            gap=fitted("gap"),
+            gap=lines.bent_through(values["gap"].reshape(2, -1), own_gap(lines.inner.mean(axis=0))),
         )

@@ -55,7 +55,7 @@ class Shifts:
     rolling : (k,) sum of the rolling velocities there [m/s]
     arm_pinion, arm_gear : (k,) distances of the contact from both tangent points there
     overlap, longer : (k,) overlap of the flanks, and by how much the line of action is longer than nominal
-    load : (k,) normal load there [N]
+    load, elastic : (k,) normal load there, and without its damper [N]
     """
 
     entry: float
@@ -70,6 +70,7 @@ class Shifts:
     overlap: FloatArray
     longer: FloatArray
     load: FloatArray
+    elastic: FloatArray
 
     def thinned(self, every: int) -> Shifts:
         """The same at every so-many-th place."""
@@ -92,7 +93,7 @@ class Motion:
     times : (n,) times in the mesh cycle [s]
     states : (n, 12) lumped states
     place, at : (k,) nominal places of one tooth pair along its whole path [m], and the time of each
-    load : (k,) its normal load there [N]
+    load, elastic : (k,) its normal load there, and without its damper [N]
     """
 
     system: LTVSystem
@@ -101,6 +102,7 @@ class Motion:
     place: FloatArray
     at: NDArray[np.int64]
     load: FloatArray
+    elastic: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,9 +197,9 @@ class ShiftedModel:
         inside = slice(int(np.searchsorted(place, low)), int(np.searchsorted(place, high)) + 1)
         place, at = place[inside], at[inside]
         overlap, rate = states[at, :6] @ system.deflection, states[at, 6:] @ system.deflection
-        load = e.stiffness(place) * (overlap - e.error(place))
-        load += e.damping(place) * (rate - e.error_slope(place) * speed)
-        found = Motion(system, times, states, place, at, load)
+        elastic = e.stiffness(place) * (overlap - e.error(place))
+        load = elastic + e.damping(place) * (rate - e.error_slope(place) * speed)
+        found = Motion(system, times, states, place, at, load, elastic)
         if line is not None:
             return self._on_turned_line(found, line)
         return self._on_turned_line(found, self.turns(found)) if "moving_line" in self.effects else found
@@ -257,6 +259,7 @@ class ShiftedModel:
             overlap=(motion.system.deflection @ z)[at],
             longer=longer[at],
             load=motion.load,
+            elastic=motion.elastic,
         )
 
     def held(self, motion: Motion) -> bool:

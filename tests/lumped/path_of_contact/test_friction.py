@@ -119,6 +119,15 @@ def test_average_of_coulomb_is_benedict_kelleys(pair):
     np.testing.assert_allclose(mu, [-average, average], rtol=1e-5)
 
 
+@pytest.mark.parametrize("law", ["coulomb", "smoothed_coulomb", "composite"])
+def test_the_average_is_that_of_the_nominal_path_also_where_contact_is_longer(pair, law):
+    slow = pair.with_(operating__pinion_speed=500)  # boundary lubrication: law V is law IV
+    low, high = friction_path_function(slow, law=law).interval
+    longer = friction_path_function(slow, law=law, interval=(low - 5e-4, high + 3e-4))
+    xi = np.linspace(low, high, 51)[1:-1]
+    np.testing.assert_allclose(longer(xi), direct(slow, law, xi), atol=FIT, rtol=0)
+
+
 def test_given_coefficient_replaces_the_average(pair):
     g = geometry(pair)
     fixed = pair.with_(friction__coefficient=0.07)

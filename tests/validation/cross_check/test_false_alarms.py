@@ -64,6 +64,15 @@ PAIRS = {
         {"mesh.stiffness": {"model": "parabolic", "ramp_length": 0.5}, "mesh.contact": "loaded"}
         | running(3071.6, 43.9, "none"),
     ),
+    "loaded, a ramp: the damper's load pushes along the path only where there is relief": (
+        "nasa_art_25_31",
+        gears(46, 36, 0.26478, 0.18977)
+        | bearings(7.576, 0.7392, 2.381, 3.059)
+        | {"mesh.stiffness": {"model": "parabolic", "ramp_length": 0.5}, "mesh.contact": "loaded"}
+        | running(
+            3439.4, 56.96, "xu_kahraman", **{"lubricant.viscosity": 35.25, "mesh.damping_ratio": 0.098}
+        ),
+    ),
     "friction holds the teeth": (
         "fzg_c",
         bearings(0.632, 0.627, 5.0, 9.14)

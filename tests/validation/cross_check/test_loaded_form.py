@@ -14,6 +14,7 @@ from lumped.quasi_static import loaded_contact
 from lumped.quasi_static.loaded_contact import StaticMesh
 from validation.cross_check import loaded_motion
 from validation.cross_check.comparison import crosscheck
+from validation.cross_check.effective_elements import Lines
 from validation.cross_check.finite_motion import finite_motion
 from validation.cross_check.loaded_motion import LoadedModel
 
@@ -63,6 +64,16 @@ def test_the_exact_contact_is_met_from_the_lumped_model_alone(pair, effects):
         assert np.abs(change).max() > least * swing, name
         assert np.abs(left).max() < 2e-3 * swing, name
         assert np.linalg.norm(left) < 0.03 * np.linalg.norm(change), name
+
+
+def test_the_damper_reads_the_slope_of_the_gap_at_its_place_and_not_beside_it():
+    """Lines through the gap of a corner, b^2, have the slope of half a step further on."""
+    nodes = np.linspace(0.0, 1.0, 9)
+    lines = Lines.between((0.0, 1.0), np.empty(0), nodes, nodes)
+    values = lines.inner**2
+    slope = lines.bent_through(values, lines.inner.mean(axis=0) ** 2).derivative()
+    np.testing.assert_allclose(slope(nodes[:-1]), 2.0 * nodes[:-1], atol=1e-14)
+    np.testing.assert_allclose(lines.through(values).derivative()(nodes[:-1]), 2.0 * nodes[:-1] + 0.125)
 
 
 @pytest.fixture(scope="module")
