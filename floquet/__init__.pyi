@@ -20,6 +20,8 @@ from .gear.chart import stability_chart as stability_chart
 from .gear.coulomb_zones import CoulombGearPair as CoulombGearPair
 from .gear.coulomb_zones import stability_zones as stability_zones
 from .gear.friction_effect import friction_effect as friction_effect
+from .gear.jump_map import JUMP_AXES as JUMP_AXES
+from .gear.jump_map import jump_map as jump_map
 from .gear.margins import stability_margins as stability_margins
 from .gear.multipliers import GearPairMultipliers as GearPairMultipliers
 from .gear.multipliers import gear_pair_multipliers as gear_pair_multipliers

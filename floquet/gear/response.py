@@ -23,11 +23,11 @@ from floquet.gear.orbit import (
     static_deflection,
 )
 from floquet.gear.orbit import long_run as settled_run
-from floquet.gear.unilateral import unilateral_family
+from floquet.gear.unilateral import ContactForm, unilateral_family
 from floquet.orbits.bifurcations import Bifurcation, Kind
 from floquet.orbits.branch import Limits
 from floquet.orbits.long_run import Settled, long_run
-from floquet.orbits.response import Branch, Response, find_response
+from floquet.orbits.response import Branch, Member, Response, find_response
 from lumped.arguments import real_array, whole_number
 from lumped.errors import refuse
 from lumped.labelling import Variable, labelled_dataset
@@ -42,9 +42,9 @@ if TYPE_CHECKING:
 _BEYOND = 1e-3
 _SETTLE = 400
 #: Change of the root mean square that is a jump.
-_JUMP = 0.1
+JUMP = 0.1
 #: A bifurcation has a multiplier of modulus one but for rounding: it belongs to the stable motions before it.
-_MARGINAL = 1.0 + 1e-6
+MARGINAL = 1.0 + 1e-6
 #: Part of the range that counts as a gap between stable motions.
 _GAP = 5e-4
 _JUMP_COLUMNS = (
@@ -180,21 +180,15 @@ class ResponseBranches:
         return tuple(sorted((jump for jump in places if jump is not None), key=lambda jump: jump.speed_rpm))
 
     def _jump(self, branch: Branch, b: Bifurcation) -> Jump | None:
-        at = branch.orbits.index(b.orbit)
-        if b.kind == "grazing" or not 0 < at < len(branch.orbits) - 1:
+        behind = period_behind(branch, b)
+        if behind is None:
             return None
-        sides = (branch.orbits[at - 1], branch.orbits[at + 1])
-        stable = [orbit.stable for orbit in sides]
-        if stable[0] == stable[1]:
-            return None
-        before = sides[stable.index(True)]
-        rising = before.period > b.orbit.period
-        period = b.orbit.period * (1.0 - _BEYOND if rising else 1.0 + _BEYOND)
+        rising, period = behind < b.orbit.period, behind
         run = long_run(
             branch.family.at(period), b.orbit.start, period, b.orbit.parameter,
             settle=_SETTLE, amplitude=largest_motion(self.pair),
         )  # fmt: skip
-        if abs(run.rms - b.orbit.run.rms) < _JUMP * b.orbit.run.rms:
+        if abs(run.rms - b.orbit.run.rms) < JUMP * b.orbit.run.rms:
             return None
         return Jump(
             speed_rpm=self._cycle_at_1_rpm / b.orbit.period,
@@ -216,7 +210,7 @@ class ResponseBranches:
             tuple(sorted(self._cycle_at_1_rpm / orbit.period for orbit in two))
             for branch in self.branches
             for two in pairwise(branch.orbits)
-            if max(orbit.spectral_radius for orbit in two) < _MARGINAL
+            if max(orbit.spectral_radius for orbit in two) < MARGINAL
         )
         found, reached = [], low
         for start, end in [*calm, (high, high)]:
@@ -257,7 +251,7 @@ class ResponseBranches:
                 "spectral_radius": column(
                     [o.spectral_radius for o in orbits], "1", "spectral radius over n cycles"
                 ),
-                "stable": column([o.spectral_radius < _MARGINAL for o in orbits], "1", "stable"),
+                "stable": column([o.spectral_radius < MARGINAL for o in orbits], "1", "stable"),
                 "parts": column([o.parts for o in orbits], "1", "teeth part"),
             }
             | {
@@ -303,26 +297,60 @@ def response_branches(
     ParameterError : speeds that are no range
     """
     pair = load_gear_pair(pair)
-    low, high = _speeds(pair, speeds)
+    low, high = checked_speeds(pair, speeds)
     wanted = sorted({whole_number("periods", n, 1, MOST_CYCLES) for n in periods})
     seeds = whole_number("seeds", seeds, 0, 10_000)
-    form = form_with(back_side=back_side)
+    found = member(pair, low, high, form_with(back_side=back_side))
     response = find_response(
-        unilateral_family(pair, low, high, form),
-        _limits(pair, low, high),
-        lambda period: start_of(pair.with_({"operating.pinion_speed": _rpm(pair, period)}), None, form),
-        periods=wanted,
-        seeds=seeds,
-        progress=progress,
+        found.family, found.limits, found.start, periods=wanted, seeds=seeds, progress=progress
     )
     return ResponseBranches(pair, (low, high), back_side, response)
 
 
-def _rpm(pair: GearPair, period: float) -> float:
-    return pair.geometry.mesh_period * operating_rpm(pair) / period
+def period_behind(branch: Branch, b: Bifurcation) -> float | None:
+    """T 0.1 % of the speed behind a place where a branch loses its stability; None where it does not."""
+    at = branch.orbits.index(b.orbit)
+    if b.kind == "grazing" or not 0 < at < len(branch.orbits) - 1:
+        return None
+    sides = (branch.orbits[at - 1], branch.orbits[at + 1])
+    stable = [orbit.stable for orbit in sides]
+    if stable[0] == stable[1]:
+        return None
+    rising = sides[stable.index(True)].period > b.orbit.period
+    return b.orbit.period * (1.0 - _BEYOND if rising else 1.0 + _BEYOND)
 
 
-def _speeds(pair: GearPair, speeds: tuple[float, float] | None) -> tuple[float, float]:
+def member(pair: GearPair, low: float, high: float, form: ContactForm = "feedback") -> Member:
+    """What the search for branches needs of a gear pair, for speeds of a range.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    low, high : slowest and fastest speed [rpm]
+    form : as ``unilateral_system``
+    """
+    length, cycle = static_deflection(pair), pair.geometry.mesh_period * operating_rpm(pair)
+    limits = Limits(
+        slowest=low / cycle,
+        fastest=high / cycle,
+        length=length,
+        parameter=pair.operating.pinion_torque,
+        amplitude=largest_motion(pair),
+    )
+    return Member(
+        unilateral_family(pair, low, high, form),
+        limits,
+        lambda period: start_of(pair.with_({"operating.pinion_speed": cycle / period}), None, form),
+    )
+
+
+def checked_speeds(pair: GearPair, speeds: tuple[float, float] | None) -> tuple[float, float]:
+    """Slowest and fastest speed [rpm]; None: those of the pair.
+
+    Raises
+    ------
+    ParameterError : speeds that are no range
+    """
     given = np.atleast_1d(real_array("speeds", speed_range(pair) if speeds is None else speeds))
     if given.size != 2 or not 0.0 < given[0] < given[1]:
         raise refuse(
@@ -331,14 +359,3 @@ def _speeds(pair: GearPair, speeds: tuple[float, float] | None) -> tuple[float, 
     for rpm in given:
         pair.with_({"operating.pinion_speed": float(rpm)})
     return float(given[0]), float(given[1])
-
-
-def _limits(pair: GearPair, low: float, high: float) -> Limits:
-    length, cycle = static_deflection(pair), pair.geometry.mesh_period * operating_rpm(pair)
-    return Limits(
-        slowest=low / cycle,
-        fastest=high / cycle,
-        length=length,
-        parameter=pair.operating.pinion_torque,
-        amplitude=largest_motion(pair),
-    )

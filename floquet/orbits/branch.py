@@ -119,8 +119,13 @@ class Continuation:
         extra = [orbit.parameter] if self.balanced else []
         return np.asarray(np.concatenate([orbit.start, extra, [1.0 / orbit.period]]) / self.scale)
 
-    def evaluate(self, X: FloatArray) -> tuple[FloatArray, FloatArray, Orbit]:
-        """Scaled residual F, its derivative by X, and the motion, an orbit where F vanishes."""
+    def evaluate(
+        self, X: FloatArray, by_coefficients: FloatArray | None = None
+    ) -> tuple[FloatArray, FloatArray, Orbit]:
+        """Scaled residual F, its derivative by X, and the motion, an orbit where F vanishes.
+
+        ``by_coefficients`` is what `by_coefficients` gave nearby, where it need not be computed again.
+        """
         values = X * self.scale
         if not values[-1] > 0.0:
             raise NumericalError("the branch left for negative speeds.")
@@ -129,14 +134,16 @@ class Continuation:
         system = self.family.at(T)
         r, J, run = one_pass(system, x, T, self.n, parameter)
         if not self.family.constant:
-            J[:, self.size] += self._by_coefficients(x, T, parameter)
+            J[:, self.size] += self.by_coefficients(X) if by_coefficients is None else by_coefficients
         J[:, self.size] *= -T * T
         J = J[:, self._columns] * self.scale / self._rows[:, None]
         return r / self._rows, J, Orbit(system, T, self.n, parameter, run)
 
-    def _by_coefficients(self, x: FloatArray, T: float, parameter: float) -> FloatArray:
+    def by_coefficients(self, X: FloatArray) -> FloatArray:
         """What T does to the residual through coefficients that depend on it."""
-        ends = []
+        values, ends = X * self.scale, []
+        x, T = values[: self.size], 1.0 / float(values[-1])
+        parameter = float(values[self.size]) if self.balanced else 0.0
         for sign in (1.0, -1.0):
             run = self.family.at(T * (1.0 + sign * _PERIOD_STEP)).run(x, T, self.n, parameter)
             ends.append(np.concatenate([run.end, run.accumulated]))
@@ -152,8 +159,10 @@ class Continuation:
         plane = float(border @ X)
         right = np.zeros((X.size, 2))
         right[-1, 1] = 1.0
+        # Two runs more: once for all iterations, which it hardly changes on the way to the branch.
+        by_coefficients = None if self.family.constant else self.by_coefficients(X)
         for iteration in range(_MOST_CORRECTIONS):
-            F, J, orbit = self.evaluate(X)
+            F, J, orbit = self.evaluate(X, by_coefficients)
             right[:-1, 0], right[-1, 0] = -F, plane - border @ X
             try:
                 step, tangent = np.linalg.solve(np.vstack([J, border]), right).T

@@ -5,7 +5,7 @@ Sources: docs/theory/orbits.md, "Branches".
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +28,8 @@ Start = Callable[[float], tuple[FloatArray, float]]
 _STARTS = 24
 _SETTLE = 60
 _SUBHARMONICS = 10
+#: Motions of each branch of a neighbour from which Newton's method starts.
+_NEIGHBOURS = 6
 #: Starts apart from all motions, two a speed: displacements and phase rates in lengths, by an additive
 #: recurrence that fills the square evenly (Roberts 2018), the same at every run.
 _APART = 2
@@ -127,31 +129,60 @@ def find_response(
     progress : called with the finished fraction
     """
     search = _Search(family, limits, start, set(periods))
-    report = progress or (lambda done: None)
-    for j, rate in enumerate(np.linspace(limits.fastest, limits.slowest, _STARTS)):
-        search.from_start(1.0 / float(rate))
-        report(0.4 * (j + 1) / _STARTS)
-    search.doublings()
-    search.subharmonics()
-    report(0.5)
-    settled: list[tuple[float, LongRun]] = []
-    rates = np.linspace(limits.slowest, limits.fastest, seeds)
-    for k, way in enumerate((rates, rates[::-1])):
-        state: FloatArray | None = None
-        for j, rate in enumerate(way):
-            run = search.settle(1.0 / float(rate), state)
-            settled.append((1.0 / float(rate), run))
-            state = None if run.run is None else run.run.end
-            report(0.5 + 0.15 * (k + (j + 1) / seeds))
-    for j, rate in enumerate(rates):
-        for k in range(_APART):
-            place = np.mod(0.5 + (_APART * j + k) * _FILL, 1.0)
-            apart = _SPREAD[:, 0] + place * np.diff(_SPREAD, axis=1)[:, 0]
-            settled.append((1.0 / float(rate), search.settle(1.0 / float(rate), None, apart)))
-        report(0.8 + 0.2 * (j + 1) / seeds)
-    search.doublings()
-    report(1.0)
-    return Response(tuple(search.branches), tuple(settled))
+    search.explore(seeds, progress)
+    return search.response
+
+
+@dataclass(frozen=True)
+class Member:
+    """A system of a stack: what `find_response` takes.
+
+    Attributes
+    ----------
+    family : the system over its period
+    limits : range of speeds, sizes and amplitude
+    start : from where to look for the first motions
+    """
+
+    family: Family
+    limits: Limits
+    start: Start
+
+
+def find_stack(
+    members: Sequence[Member],
+    *,
+    periods: Collection[int] = (1, 2),
+    seeds: int = 0,
+    progress: Progress | None = None,
+) -> list[Response]:
+    """Return the branches of several systems, each near the one before it, as over a second parameter.
+
+    Each is looked at by itself as in `find_response`, and from motions of its neighbours on both sides, so
+    that an isolated branch is found wherever it exists once one member has shown it.
+
+    Parameters
+    ----------
+    members : the systems, of neighbouring values of the parameter
+    periods : numbers of cycles of the motions wanted
+    seeds : speeds at which runs settle, for each
+    progress : called with the finished fraction
+    """
+    searches: list[_Search] = []
+    for j, member in enumerate(members):
+        search = _Search(member.family, member.limits, member.start, set(periods))
+        if searches:
+            search.from_neighbour(searches[-1])
+        search.explore(seeds)
+        searches.append(search)
+        if progress is not None:
+            progress((j + 1) / (len(members) + 1))
+    for search, behind in zip(searches[-2::-1], searches[:0:-1], strict=True):
+        search.from_neighbour(behind)
+        search.doublings()
+    if progress is not None:
+        progress(1.0)
+    return [search.response for search in searches]
 
 
 class _Search:
@@ -160,7 +191,52 @@ class _Search:
     def __init__(self, family: Family, limits: Limits, start: Start, periods: set[int]) -> None:
         self.family, self.limits, self.start, self.periods = family, limits, start, periods
         self.branches: list[Branch] = []
+        self.settled: list[tuple[float, LongRun]] = []
         self._done: set[int] = set()
+
+    @property
+    def response(self) -> Response:
+        return Response(tuple(self.branches), tuple(self.settled))
+
+    def explore(self, seeds: int, progress: Progress | None = None) -> None:
+        """Look everywhere: see `find_response`."""
+        limits, report = self.limits, progress or (lambda done: None)
+        for j, rate in enumerate(np.linspace(limits.fastest, limits.slowest, _STARTS)):
+            self.from_start(1.0 / float(rate))
+            report(0.4 * (j + 1) / _STARTS)
+        self.doublings()
+        self.subharmonics()
+        report(0.5)
+        rates = np.linspace(limits.slowest, limits.fastest, seeds)
+        for k, way in enumerate((rates, rates[::-1])):
+            state: FloatArray | None = None
+            for j, rate in enumerate(way):
+                run = self.settle(1.0 / float(rate), state)
+                state = None if run.run is None else run.run.end
+                report(0.5 + 0.15 * (k + (j + 1) / seeds))
+        for j, rate in enumerate(rates):
+            for k in range(_APART):
+                place = np.mod(0.5 + (_APART * j + k) * _FILL, 1.0)
+                apart = _SPREAD[:, 0] + place * np.diff(_SPREAD, axis=1)[:, 0]
+                self.settle(1.0 / float(rate), None, apart)
+            report(0.8 + 0.2 * (j + 1) / seeds)
+        self.doublings()
+        report(1.0)
+
+    def from_neighbour(self, other: _Search) -> None:
+        """Look for the branches of a neighbouring system, lengths in proportion."""
+        for branch in list(other.branches):
+            for part in range(_NEIGHBOURS):
+                orbit = branch.orbits[(2 * part + 1) * len(branch.orbits) // (2 * _NEIGHBOURS)]
+                start = orbit.start * (self.limits.length / other.limits.length)
+                parameter = orbit.parameter * self.limits.parameter / other.limits.parameter
+                system = self.family.at(orbit.period)
+                try:
+                    found = find_orbit(system, start, orbit.period, orbit.n, parameter)
+                except NumericalError:
+                    continue
+                if primitive(found) is found:
+                    self.both_ways(found)
 
     def known(self, orbit: Orbit) -> bool:
         """Whether a motion lies on a branch that was found."""
@@ -195,6 +271,7 @@ class _Search:
             self.from_settled(run.orbit)
         elif run.run is not None:
             self.near_beats(run.run.end, period, run.parameter)
+        self.settled.append((period, run))
         return run
 
     def near_beats(self, state: FloatArray, period: float, parameter: float) -> None:

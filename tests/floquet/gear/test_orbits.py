@@ -156,3 +156,53 @@ def test_with_back_sides_a_motion_larger_than_the_backlash_is_another(frictionle
     run = floquet.long_run(at(frictionless, 10000.0), start, settle_cycles=100, cycles=64, back_side=True)
     assert run.kind == "periodic"
     assert run.run.least < -small.pair.geometry.normal_backlash
+
+
+@pytest.fixture(scope="module")
+def over_torque(frictionless):
+    axes = {"speed_rpm": np.linspace(8400.0, 19500.0, 75), "torque": [30.0, 90.0]}
+    return floquet.jump_map(frictionless, axes)
+
+
+def test_without_clearance_the_jump_map_does_not_depend_on_torque(over_torque):
+    """The model is homogeneous: the same motions at the same speeds, in proportion to the torque."""
+    one, two = (over_torque.isel(torque=j) for j in (0, 1))
+    assert one["motions"].to_numpy() == pytest.approx(two["motions"].to_numpy())
+    assert one["contact_kept"].to_numpy() == pytest.approx(two["contact_kept"].to_numpy())
+    # Interpolated along a branch whose motions need not be at the same speeds; beats are other runs.
+    calm = one["motions"].to_numpy() > 0
+    for name in ("dte_rms_smallest", "dte_rms_largest", "largest_load"):
+        assert two[name].to_numpy()[calm] == pytest.approx(3.0 * one[name].to_numpy()[calm], rel=1e-3)
+    speeds = [over_torque["jump_speed_rpm"][over_torque["jump_torque"] == t] for t in (30.0, 90.0)]
+    assert speeds[0].to_numpy() == pytest.approx(speeds[1].to_numpy(), rel=1e-9)
+
+
+def test_a_jump_map_has_the_motions_and_jumps_of_the_branches(over_torque, branches, frictionless):
+    row = over_torque.isel(torque=1)
+    for j in (6, 20, 36, 70):  # one motion, two, beats, two of which one repeats after two cycles
+        found = [o for o in branches.at(float(row["speed_rpm"][j])) if o.stable]
+        assert int(row["motions"][j]) == len(found)
+        if found:
+            sizes = [o.dte_rms * 90.0 / 56.5 for o in found]
+            assert float(row["dte_rms_smallest"][j]) == pytest.approx(min(sizes), rel=1e-4)
+            assert float(row["dte_rms_largest"][j]) == pytest.approx(max(sizes), rel=1e-4)
+    jumps = over_torque["jump_speed_rpm"][over_torque["jump_torque"] == 90.0].to_numpy()
+    assert jumps == pytest.approx([jump.speed_rpm for jump in branches.jumps], rel=1e-9)
+    # Where there is one motion, it keeps contact just where the linear one needs no pull.
+    one = row["motions"].to_numpy() == 1
+    pull = lumped.speed_sweep(frictionless, row["speed_rpm"].to_numpy())["normal_load_min"].to_numpy() < 0.0
+    assert row["contact_kept"].to_numpy()[one].tolist() == (~pull[one]).tolist()
+    assert 0 < pull[one].sum() < one.sum()
+
+
+def test_what_a_jump_map_cannot_vary_is_refused(frictionless):
+    speeds = [1000.0, 2000.0]
+    for axes, text in (
+        ({"speed_rpm": speeds}, "speed_rpm and one of torque"),
+        ({"speed_rpm": speeds, "contact_ratio": [1.5]}, "speed_rpm and one of torque"),
+        ({"speed_rpm": speeds, "damping_ratio": [1.5]}, "damping_ratio"),
+        ({"speed_rpm": speeds, "tip_relief": [10.0]}, "tip relief that acts"),
+        ({"speed_rpm": [1000.0], "torque": [10.0]}, "two or more"),
+    ):
+        with pytest.raises(ParameterError, match=text):
+            floquet.jump_map(frictionless, axes)

@@ -1,0 +1,323 @@
+"""Where a gear pair can jump, over speed and torque, damping or tip relief.
+
+Sources: docs/theory/orbits.md, "Jump maps".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from floquet.engine.chart import Axes, checked_axes
+from floquet.gear.axes import GEAR_AXES, GearAxis, GearVariation, operating_rpm
+from floquet.gear.response import JUMP, MARGINAL, member, period_behind
+from floquet.orbits.orbit import Orbit
+from floquet.orbits.response import Branch, Member, Response, find_stack
+from lumped.arguments import whole_number
+from lumped.errors import NumericalError, refuse
+from lumped.fields.units import SIValue, to_stated
+from lumped.labelling import Variable, labelled_dataset
+from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.pair import GearPair
+from lumped.typing import BoolArray, FloatArray, IntArray, Progress
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from floquet.orbits.system import Run
+
+#: Points between two motions of a branch, by the monotone cubic through all.
+_BETWEEN = 6
+#: Cycles for which a run settles and is looked at where no stable motion is found.
+_SETTLE, _OBSERVE = 40, 60
+#: Cycles for which a run settles behind a place where a motion loses its stability.
+_BEHIND = 300
+_LARGEST = 1_000_000
+
+
+def _with_relief(variation: GearVariation, micrometres: float) -> GearVariation:
+    amount = SIValue(1e-6 * micrometres, "m")
+    changes = {f"{name}.tip_relief.amount": amount for name in _relieved(variation.pair)}
+    return replace(variation, pair=variation.pair.with_(changes))
+
+
+def _relieved(pair: GearPair) -> list[str]:
+    """Gears with tip relief that acts.
+
+    Raises
+    ------
+    ParameterError : there are none
+    """
+    found = [name for name in ("pinion", "gear") if getattr(pair, name).tip_relief is not None]
+    if pair.mesh.relief == "ignored" or not found:
+        raise refuse(
+            "axes['tip_relief']",
+            "a pair whose relief is ignored" if found else "a pair without tip relief",
+            "a pair with tip relief that acts",
+            'Give pinion.tip_relief or gear.tip_relief, and mesh.relief = "static".',
+        )
+    return found
+
+
+def _own_relief(pair: GearPair) -> float:
+    return to_stated(max(getattr(pair, name).tip_relief.amount for name in _relieved(pair)), "um")
+
+
+#: What a jump map varies beside the speed. Tip relief is the amount, of all gears of the pair that have it.
+JUMP_AXES: Mapping[str, GearAxis] = {
+    "torque": GEAR_AXES["torque"],
+    "damping_ratio": GEAR_AXES["damping_ratio"],
+    "tip_relief": GearAxis("um", "amount of tip relief", _with_relief, _own_relief, 0.0, 1000.0),
+}
+
+
+def jump_map(
+    pair: AnyPair,
+    axes: Axes,
+    periods: Collection[int] = (1, 2),
+    *,
+    seeds: int = 0,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Map of the motions of a gear pair whose teeth may part, and of its jumps, over speed and one more axis.
+
+    For each value of the second axis all branches over speed are followed, from the motions of the linear
+    model and from those of neighbouring values. Between the motions on a branch the numbers are interpolated
+    (monotone cubics along the branch); folds and other bifurcations are among these motions.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    axes : name -> values, "speed_rpm" and one of `JUMP_AXES`: torque [N m], damping_ratio (mesh) or
+        tip_relief, the amount [um], of all gears that have it; at most a million points
+    periods : mesh cycles after which motions repeat
+    seeds : speeds at which runs settle for each value, to find isolated branches
+    progress : told the finished fraction
+
+    Returns
+    -------
+    xarray.Dataset over the second axis and speed_rpm: ``motions``, the number of stable periodic motions;
+    ``contact_kept`` in all of them; ``dte_rms_smallest``, ``dte_rms_largest`` of them and ``largest_load``.
+    Where ``motions`` is 0, at beats, chaos or motions of more cycles, they are those of a run; NaN where it
+    grows beyond twice the backlash and 30 static deflections. Over ``jump``: the places where a stable motion
+    ends and the root mean square changes at once by a tenth or more, as `ResponseBranches.jumps`.
+
+    Raises
+    ------
+    ParameterError : unknown axis, values outside its range, too many points, a pair without tip relief
+    """
+    pair = load_gear_pair(pair)
+    name, grid = _checked(pair, axes)
+    wanted = sorted({whole_number("periods", n, 1, 64) for n in periods})
+    seeds = whole_number("seeds", seeds, 0, 10_000)
+    speeds, values = (np.sort(grid[key]) for key in ("speed_rpm", name))
+    pairs = [JUMP_AXES[name].apply(GearVariation(pair), float(value)).pair for value in values]
+    members = [member(one, float(speeds[0]), float(speeds[-1])) for one in pairs]
+    cycle = pair.geometry.mesh_period * operating_rpm(pair)
+
+    def report(done: float, text: str = "", /) -> None:
+        if progress is not None:
+            progress(done)
+
+    stack = find_stack(
+        members, periods=wanted, seeds=seeds, progress=lambda done, text="", /: report(0.8 * done)
+    )
+    rows, jumps = list[_Row](), list[tuple[float, _Jump]]()
+    for j, (one, response, value) in enumerate(zip(members, stack, values, strict=True)):
+        rows.append(_row(one, response, speeds, cycle))
+        jumps += [(float(value), jump) for jump in _jumps(one, response, cycle)]
+        report(0.8 + 0.2 * (j + 1) / values.size)
+    dataset = _dataset(name, values, speeds, rows, jumps)
+    dataset.attrs.update(
+        title=f"jump map of {pair.name}",
+        model="unilateral lumped",
+        friction_law=pair.friction.law,
+        operating_rpm=operating_rpm(pair),
+        operating_value=JUMP_AXES[name].own(pair),
+    )
+    return dataset.sel({name: grid[name], "speed_rpm": grid["speed_rpm"]})
+
+
+def _checked(pair: GearPair, axes: Axes) -> tuple[str, dict[str, FloatArray]]:
+    """Name of the second axis, and the values of both."""
+    grid = checked_axes(axes)
+    others = [name for name in grid if name != "speed_rpm"]
+    if len(grid) != 2 or len(others) != 1 or others[0] not in JUMP_AXES:
+        raise refuse(
+            "axes", ", ".join(grid), f"speed_rpm and one of {', '.join(JUMP_AXES)}", "Give these two."
+        )
+    name = others[0]
+    if name == "tip_relief":
+        _relieved(pair)
+    JUMP_AXES[name].check(name, grid[name])
+    GEAR_AXES["speed_rpm"].check("speed_rpm", grid["speed_rpm"])
+    if grid["speed_rpm"].size < 2:
+        raise refuse("axes['speed_rpm']", "one speed", "two or more", "Branches are followed over speed.")
+    if grid[name].size * grid["speed_rpm"].size > _LARGEST:
+        points = grid[name].size * grid["speed_rpm"].size
+        raise refuse("points of the map", points, f"at most {_LARGEST}", "Give the axes smaller counts.")
+    for rpm in (grid["speed_rpm"].min(), grid["speed_rpm"].max()):
+        pair.with_({"operating.pinion_speed": float(rpm)})
+    return name, grid
+
+
+class _Row(NamedTuple):
+    """Over the speeds, for one value of the second axis."""
+
+    motions: IntArray
+    kept: BoolArray
+    smallest: FloatArray
+    largest: FloatArray
+    load: FloatArray
+
+
+def _row(one: Member, response: Response, speeds: FloatArray, cycle: float) -> _Row:
+    count = speeds.size
+    row = _Row(
+        np.zeros(count, dtype=int), np.ones(count, dtype=bool),
+        np.full(count, np.inf), np.full(count, -np.inf), np.full(count, -np.inf),
+    )  # fmt: skip
+    for branch in response.branches:
+        _add(row, branch, speeds, cycle)
+    empty = np.flatnonzero(row.motions == 0)
+    if empty.size:
+        for group in np.split(empty, np.flatnonzero(np.diff(empty) > 1) + 1):
+            _run_through(row, group, one, response, speeds, cycle)
+    return row
+
+
+def _add(row: _Row, branch: Branch, speeds: FloatArray, cycle: float) -> None:
+    """Enter the stable motions of a branch at the speeds."""
+    orbits = branch.orbits
+    starts = np.array([orbit.start for orbit in orbits])
+    places = np.column_stack([starts / np.abs(starts).max(axis=0), cycle * branch.rates / np.ptp(speeds)])
+    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(places, axis=0), axis=1))])
+    apart = np.concatenate([[True], np.diff(s) > 1e-12 * s[-1]])
+    table = np.array([(cycle / o.period, o.run.rms, o.run.largest_load) for o in orbits])[apart]
+    s, kept = s[apart], [orbit for orbit, new in zip(orbits, apart, strict=True) if new]
+    if s.size < 2:
+        return
+    fine = np.interp(np.arange(_BETWEEN * (s.size - 1) + 1) / _BETWEEN, np.arange(s.size), s)
+    speed, rms, load = PchipInterpolator(s, table)(fine).T
+    radius = np.array([orbit.spectral_radius for orbit in kept])
+    stable = np.repeat(np.maximum(radius[:-1], radius[1:]) < MARGINAL, _BETWEEN)
+    parts = np.repeat(_parts(branch, kept), _BETWEEN)
+    way = np.where(stable, np.sign(np.diff(speed)), 0.0)
+    for piece in np.split(np.arange(way.size), np.flatnonzero(np.diff(way)) + 1):
+        if way[piece[0]] == 0.0:
+            continue
+        points = np.arange(piece[0], piece[-1] + 2)
+        if way[piece[0]] < 0.0:
+            points, piece = points[::-1], piece[::-1]
+        low, high = np.searchsorted(speeds, speed[points[[0, -1]]])
+        here = slice(low, high)
+        if low == high:
+            continue
+        row.motions[here] += 1
+        values = np.interp(speeds[here], speed[points], rms[points])
+        row.smallest[here] = np.minimum(row.smallest[here], values)
+        row.largest[here] = np.maximum(row.largest[here], values)
+        row.load[here] = np.maximum(row.load[here], np.interp(speeds[here], speed[points], load[points]))
+        between = np.searchsorted(speed[points], speeds[here], side="right") - 1
+        row.kept[here] &= ~parts[piece][np.clip(between, 0, piece.size - 1)]
+
+
+def _parts(branch: Branch, orbits: list[Orbit]) -> BoolArray:
+    """Whether teeth part between each motion and the next; at grazing itself rounding decides."""
+    grazing = {id(b.orbit) for b in branch.bifurcations if b.kind == "grazing"}
+    parts = np.array([orbit.parts and id(orbit) not in grazing for orbit in orbits])
+    return np.asarray(parts[:-1] | parts[1:])
+
+
+def _run_through(
+    row: _Row, group: IntArray, one: Member, response: Response, speeds: FloatArray, cycle: float
+) -> None:
+    """Where no stable motion is found, enter what a run does that goes on from speed to speed."""
+    first = cycle / float(speeds[group[0]])
+    calm = [o for b in response.branches for o in b.orbits if o.spectral_radius < MARGINAL]
+    if calm:
+        nearest = min(calm, key=lambda orbit: abs(orbit.period - first))
+        state, parameter = nearest.start, nearest.parameter
+    else:
+        state, parameter = one.start(first)
+    settle = _BEHIND
+    for j in group:
+        period = cycle / float(speeds[j])
+        run = _observed(one, state, period, parameter, settle)
+        if run is None:
+            row.smallest[j] = row.largest[j] = row.load[j] = np.nan
+            row.kept[j] = False
+            continue
+        row.smallest[j] = row.largest[j] = run.rms
+        row.load[j], row.kept[j] = run.largest_load, not run.events.size
+        state, settle = run.end, _SETTLE
+
+
+def _observed(one: Member, start: FloatArray, period: float, parameter: float, settle: int) -> Run | None:
+    """What a run does after it has settled; None where it grows beyond what is followed."""
+    system = one.family.at(period)
+    try:
+        settled = system.run(start, period, settle, parameter)
+        run = system.run(settled.end, period, _OBSERVE, parameter, logged=1)
+    except NumericalError:
+        return None
+    return None if max(run.most - run.mean, run.mean - run.least) > one.limits.amplitude else run
+
+
+class _Jump(NamedTuple):
+    speed_rpm: float
+    rising: bool
+    dte_rms: float
+    dte_rms_after: float
+    n: int
+
+
+def _jumps(one: Member, response: Response, cycle: float) -> list[_Jump]:
+    """Where the root mean square changes at once on running up or down."""
+    found = []
+    for branch in response.branches:
+        for b in branch.bifurcations:
+            behind, before = period_behind(branch, b), b.orbit.run.rms
+            if behind is None:
+                continue
+            run = _observed(one, b.orbit.start, behind, b.orbit.parameter, _BEHIND)
+            if run is None or abs(run.rms - before) >= JUMP * before:
+                after = np.nan if run is None else run.rms
+                rising = behind < b.orbit.period
+                found.append(_Jump(cycle / b.orbit.period, rising, before, after, branch.n))
+    return sorted(found)
+
+
+def _dataset(
+    name: str, values: FloatArray, speeds: FloatArray, rows: list[_Row], jumps: list[tuple[float, _Jump]]
+) -> xr.Dataset:
+    axis, both = JUMP_AXES[name], (name, "speed_rpm")
+    table: dict[str, Variable] = {
+        "motions": (both, np.array([row.motions for row in rows]), "1", "stable periodic motions"),
+        "contact_kept": (both, np.array([row.kept for row in rows]), "1", "contact kept in all motions"),
+        "dte_rms_smallest": (
+            both, np.array([row.smallest for row in rows]), "m", "smallest dynamic transmission error, rms",
+        ),
+        "dte_rms_largest": (
+            both, np.array([row.largest for row in rows]), "m", "largest dynamic transmission error, rms",
+        ),
+        "largest_load": (both, np.array([row.load for row in rows]), "N", "largest normal load"),
+        f"jump_{name}": ("jump", [value for value, _ in jumps], axis.units, axis.long_name),
+        "jump_speed_rpm": ("jump", [j.speed_rpm for _, j in jumps], "rpm", "where a stable motion ends"),
+        "jump_rising": ("jump", [j.rising for _, j in jumps], "1", "on running up"),
+        "jump_dte_rms": ("jump", [j.dte_rms for _, j in jumps], "m", "rms before the jump"),
+        "jump_dte_rms_after": ("jump", [j.dte_rms_after for _, j in jumps], "m", "rms behind the jump"),
+        "jump_n": ("jump", [j.n for _, j in jumps], "1", "mesh cycles of the motion before"),
+    }  # fmt: skip
+    return labelled_dataset(
+        table,
+        {
+            name: (values, axis.units, axis.long_name),
+            "speed_rpm": (speeds, "rpm", "pinion speed"),
+            "jump": (np.arange(len(jumps)), "1", "jump"),
+        },
+    )
