@@ -129,7 +129,8 @@ class ContactSystem:
             raise refuse("phases", phases, "increasing from 0 to 1", "Give phases, not times.")
         K, C, F = (np.ascontiguousarray(x, dtype=float) for x in (self.stiffness, self.damping, self.force))
         n, m = K.shape
-        H = np.zeros(n) if self.parameter_force is None else np.asarray(self.parameter_force, dtype=float)
+        H = np.zeros(n) if self.parameter_force is None else self.parameter_force
+        H = np.ascontiguousarray(H, dtype=float)  # another layout would be another compilation
         for name, value in (("stiffness", K), ("damping", C), ("force", F), ("phases", phases)):
             object.__setattr__(self, name, value)
         if C.shape != (n, m) or F.shape != (n,) or H.shape != (n,) or n not in (m, m + 1):

@@ -229,6 +229,8 @@ def contact_state(
     m = model.machine
     wrenches, contacts = np.empty((times.size, 6)), np.zeros((times.size, 2 * MAX_PAIRS, kn.N_RECORD))
     p, flags = model.parameters, model.flags
+    # Another layout of the arrays would be another compilation.
+    times, q, v = (np.ascontiguousarray(x, dtype=float) for x in (times, q, v))
     counts = tooth_forces_over(times, q, v, p, flags, m.table, wrenches, contacts)
     return wrenches, contacts, counts
 

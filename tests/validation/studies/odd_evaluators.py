@@ -9,6 +9,8 @@ import signal
 import time
 from pathlib import Path
 
+from validation.studies import evaluate
+
 
 class Odd:
     """An evaluator that does something odd in one case.
@@ -67,3 +69,11 @@ class Odd:
     def prints(self):
         print("progress of a library", flush=True)
         os.write(1, b"and of its compiled part")
+
+
+class Orphan(Odd):
+    """An odd evaluator; the worker that loads it waits half a second for whoever ends a late case."""
+
+    def __setstate__(self, state):
+        self.__dict__.update(state)
+        evaluate._ORPHAN_SECONDS = 0.5

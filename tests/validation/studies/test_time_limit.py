@@ -60,12 +60,12 @@ def test_a_process_ends_without_its_parent_in_the_middle_of_a_case(sweep, tmp_pa
     patch = f"""
 import sys; sys.path.insert(0, {os.path.dirname(__file__)!r})
 from types import SimpleNamespace
-from odd_evaluators import Odd
+from odd_evaluators import Orphan
 from validation.studies import runner
 from validation.studies.cases import CaseList, StudyEvaluator
 def odd(study):
     (values,) = CaseList(study).values([3])
-    return Odd(StudyEvaluator.of(study), "compiled_loop", values, {str(note)!r})
+    return Orphan(StudyEvaluator.of(study), "compiled_loop", values, {str(note)!r})
 limited = run = runner.run_sweep
 runner.StudyEvaluator = SimpleNamespace(of=odd)
 import validation.studies
