@@ -108,11 +108,13 @@ def test_the_worst_state_wins(pair):
 
 
 def test_a_stiffness_model_outside_its_fit_is_said():
-    # 16 teeth: half a tooth on the root circle spans 0.188 rad, fitted up to 0.12 rad (Sainsot et al. 2004).
-    wide = lumped.load_gear_pair("fzg_c").with_(mesh__stiffness={"model": "energy"})
+    # 340 teeth: half a tooth on the root circle spans 0.009 rad, fitted from 0.01 rad (Sainsot et al. 2004).
+    wide = lumped.load_gear_pair("nasa_28_28").with_(
+        gear__teeth=340, centre_distance=None, mesh__stiffness={"model": "energy"}
+    )
     flag = validity.stiffness_ranges(wide)
-    assert (flag.state, flag.value) == ("warning", 2.0)
-    assert "fillet foundation of the pinion" in flag.detail
+    assert (flag.state, flag.value) == ("warning", 1.0)
+    assert "fillet foundation of the gear" in flag.detail
     assert flag.action
     # A constant given by the user stands on no fit.
     own = wide.with_(mesh__stiffness={"model": "rectangular", "pair_stiffness": 3e8})
