@@ -84,6 +84,12 @@ EFFECTS: dict[str, Effect] = {
         "contact_energy",
         default=False,
     ),
+    "clearance": Effect(
+        kn.CLEARANCE,
+        "relief is clearance: teeth touch where their flanks meet, not where statics say",
+        "contact_energy",
+        default=False,
+    ),
     "contact_law": Effect(
         kn.CONTACT_LAW,
         "the contact of a tooth pair grows stiffer with its own momentary load, by Weber and Banaschek",

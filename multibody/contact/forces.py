@@ -23,7 +23,7 @@ def tooth_forces(
 ) -> int:
     """Wrench and contact records of one state; arguments and result as ``kernels.contact_forces``."""
     if flags & LINEAR:
-        return linear_forces(t, q, v, p, table, wrench, contacts)
+        return linear_forces(t, q, v, p, flags, table, wrench, contacts)
     return contact_forces(t, q, v, p, flags, table, wrench, contacts)
 
 

@@ -43,7 +43,7 @@ from multibody.contact.kinematics import (
 
 # Bits of the effect switches, and of the linear mesh, which has none of the effects.
 ROTATION_PHASE, MOVING_LINE, SLIDING, ENTRY_SHIFT, CONTACT_LOSS, BACK_SIDE, LINEAR = 1, 2, 4, 8, 16, 32, 64
-FRICTION_LOAD, PATH_WORK, TIP_CONTACT, CONTACT_LAW, NEIGHBOURS = 128, 256, 512, 1024, 2048
+FRICTION_LOAD, PATH_WORK, TIP_CONTACT, CONTACT_LAW, NEIGHBOURS, CLEARANCE = 128, 256, 512, 1024, 2048, 4096
 
 # Places in the parameter vector. Lengths in m, angles in rad, speeds in rad/s.
 (

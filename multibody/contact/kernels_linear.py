@@ -21,6 +21,7 @@ def linear_forces(
     q: FloatArray,
     v: FloatArray,
     p: FloatArray,
+    flags: int,
     table: FloatArray,
     wrench: FloatArray,
     contacts: FloatArray,
@@ -28,7 +29,8 @@ def linear_forces(
     """Generalised forces on (x_p, y_p, phi_p, x_g, y_g, phi_g); arguments as ``kernels.contact_forces``.
 
     The recorded sliding velocity does not act on the friction. With phi_p = -theta_p and phi_g = theta_g the
-    overlap is the dynamic transmission error delta = r_bp theta_p - r_bg theta_g + x_p - x_g.
+    overlap is the dynamic transmission error delta = r_bp theta_p - r_bg theta_g + x_p - x_g. Of the flags
+    ``CONTACT_LOSS`` acts: a pair loads where its flanks overlap and that pushes. There are no back sides.
     """
     wrench[:] = 0.0
     rp, rg, pitch = p[kn.RADIUS_P], p[kn.RADIUS_G], p[kn.PITCH]
@@ -56,6 +58,8 @@ def linear_forces(
             damping = p[kn.DAMPING] * math.sqrt(max(stiffness, 0.0))
         pressed, pressing = delta - error, rate - slope * speed
         normal = stiffness * pressed + damping * pressing
+        if flags & kn.CONTACT_LOSS and (pressed <= 0.0 or normal < 0.0):
+            stiffness = damping = normal = 0.0
         friction = mu * normal
         wrench[0] -= normal
         wrench[1] += friction

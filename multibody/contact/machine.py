@@ -105,11 +105,13 @@ def machine(pair: GearPair, flags: int = 0) -> Machine:
     Parameters
     ----------
     pair : validated gear pair
-    flags : effect switches of ``kernels``; with ``TIP_CONTACT`` the stiffness holds wherever teeth touch,
-        else relief takes it off where the lumped model sees no contact
+    flags : effect switches of ``kernels``; with ``TIP_CONTACT`` or ``CLEARANCE``, and where teeth of the
+        linear mesh may part, the stiffness holds wherever teeth touch; else relief takes it off where the
+        lumped model sees no contact
     """
     drawn, loaded = circles(pair), pair.mesh.contact == "loaded"
-    whole = loaded or flags & kn.TIP_CONTACT
+    parts = flags & kn.LINEAR and flags & kn.CONTACT_LOSS
+    whole = loaded or parts or flags & (kn.TIP_CONTACT | kn.CLEARANCE)
     stiffness = pair_stiffness(pair) if whole else mesh_elements(pair).stiffness
     r_p, r_g, pitch, l_xy = drawn.base_pinion, drawn.base_gear, drawn.pitch, drawn.tangent
     tip_p, tip_g = drawn.reach_pinion, drawn.reach_gear

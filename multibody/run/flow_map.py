@@ -15,7 +15,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from lumped.arguments import whole_number
 from lumped.errors import NumericalError
 from lumped.model.propagation import step_maps
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -124,12 +126,18 @@ class Orbit:
     closure: float
 
 
-def find_orbit(setup: Setup) -> Orbit:
+def find_orbit(setup: Setup, cycles: int = 1, *, near_lumped: bool = True) -> Orbit:
     """Periodic motion near the initial state of ``setup``, with the brake torque as unknown.
 
     Broyden's method starts from the monodromy matrix of the lumped model. That differs from the multibody
-    model's by a few per cent, and by much where friction holds the teeth for a time. Each step runs one mesh
-    cycle and corrects the matrix along the way it went; the motion found does not depend on the matrix.
+    model's by a few per cent, and by much where friction holds the teeth for a time. Each step runs the
+    cycles and corrects the matrix along the way it went; the motion found does not depend on the matrix.
+
+    Parameters
+    ----------
+    setup : model ready to run
+    cycles : mesh cycles after which the motion repeats
+    near_lumped : False where the lumped model has no such motion: then the matrix is that of differences
 
     References
     ----------
@@ -142,14 +150,23 @@ def find_orbit(setup: Setup) -> Orbit:
     """
     scale = _scale(setup)
     state, machine = to_lumped_state(setup.q, setup.v), setup.machine
-    system = setup.system
-    maps = step_maps(system, np.stack([system.torque_pinion, system.torque_gear], axis=1))
-    transition, forced = maps.over_all()
-    matrix = _bordered(transition, forced[:, 2], machine, scale)
-    best, age = Orbit(state, machine, Flow(setup, machine), np.inf), 0
+    if near_lumped:
+        system = setup.system
+        maps = step_maps(system, np.stack([system.torque_pinion, system.torque_gear], axis=1))
+        transition, forced = maps.over_all()
+        by_torque = forced[:, 2]
+    else:
+        flow = Flow(setup, machine, cycles)
+        transition = _differences(flow, state, scale * _STEP["exact"])
+        more = replace(machine, torque_gear=machine.torque_gear * (1.0 + _STEP["exact"]))
+        by_torque = (Flow(setup, more, cycles)(state) - flow(state)) / (
+            more.torque_gear - machine.torque_gear
+        )
+    matrix = _bordered(transition, by_torque, machine, scale)
+    best, age = Orbit(state, machine, Flow(setup, machine, cycles), np.inf), 0
     change = np.zeros(13)
     for step in range(_ITERATIONS + 1):
-        flow = Flow(setup, machine)
+        flow = Flow(setup, machine, cycles)
         mismatch = np.append((flow(state) - state) / scale, 0.0)
         closure = float(np.abs(mismatch).max())
         if closure < best.closure:
@@ -163,9 +180,9 @@ def find_orbit(setup: Setup) -> Orbit:
         machine = replace(machine, torque_gear=machine.torque_gear * (1.0 + float(change[12])))
     if not best.closure < _ACCEPTED:
         raise NumericalError(
-            f"No periodic multibody motion near the lumped one (mismatch {best.closure:.1e}): the pair may "
-            "separate or sit on a stability boundary. Change the speed or the torque, or run "
-            "multibody.simulate."
+            f"No periodic multibody motion near the {'lumped one' if near_lumped else 'start'} (mismatch "
+            f"{best.closure:.1e}): the pair may separate or sit on a stability boundary. Change the speed or "
+            "the torque, or run multibody.simulate."
         )
     return best
 
@@ -175,33 +192,41 @@ def steady_state(
     *,
     fidelity: Fidelity = "exact",
     samples_per_cycle: int = 512,
+    initial: ArrayLike | None = None,
+    cycles: int = 1,
     effects: Collection[str] | Mapping[str, bool] | None = None,
     rtol: float = 1e-9,
     friction_velocity: float | None = None,
 ) -> xr.Dataset:
-    """Periodic motion over one mesh cycle, without settling: the counterpart of ``lumped.steady_state``.
+    """Periodic motion, stable or not, without settling: the counterpart of ``lumped.steady_state``.
 
     Parameters
     ----------
     pair : a validated gear pair
     fidelity, effects, rtol, friction_velocity : as ``multibody.simulate``
     samples_per_cycle : output times in [0, T_m)
+    initial : 12 states near which the motion is looked for, as ``lumped.simulate`` takes them; None: those of
+        the lumped motion. Where teeth part several motions may exist
+    cycles : mesh cycles after which the motion repeats, 1 to 64
 
     Returns
     -------
-    xarray.Dataset as of ``multibody.simulate`` over one cycle; the attributes ``brake_torque`` and
+    xarray.Dataset as of ``multibody.simulate`` over these cycles; the attributes ``brake_torque`` and
     ``mesh_efficiency`` are those that hold the mean speed of this model, ``closure`` the relative mismatch
-    after the cycle
+    after the cycles
 
     Raises
     ------
-    NumericalError : no periodic motion is found near the lumped one
+    NumericalError : no periodic motion is found near the start
     """
     pair = load_gear_pair(pair)
-    setup = prepare(pair, fidelity, "periodic", effects, rtol, friction_velocity)
-    orbit = find_orbit(setup)
+    cycles = whole_number("cycles", cycles, 1, 64)
+    setup = prepare(
+        pair, fidelity, "periodic" if initial is None else initial, effects, rtol, friction_velocity
+    )
+    orbit = find_orbit(setup, cycles, near_lumped=initial is None and cycles == 1)
     q, v = from_lumped_state(orbit.state)
-    run, _, _ = record(replace(orbit.flow.setup, q=q, v=v), 1, samples_per_cycle)
+    run, _, _ = record(replace(orbit.flow.setup, q=q, v=v), cycles, samples_per_cycle)
     m, p = orbit.machine, orbit.machine.parameters
     run.attrs |= {
         "brake_torque": m.torque_gear,
@@ -212,12 +237,12 @@ def steady_state(
 
 
 class Flow:
-    """State (12,) -> state after one mesh cycle."""
+    """State (12,) -> state after whole mesh cycles."""
 
-    def __init__(self, setup: Setup, machine: Machine) -> None:
+    def __init__(self, setup: Setup, machine: Machine, cycles: int = 1) -> None:
         model = build(machine, setup.model.flags, setup.model.budget.limit)
         self.setup = replace(setup, model=model)
-        self.edges = setup.edges(1)
+        self.edges = setup.edges(cycles)
 
     def __call__(self, state: FloatArray) -> FloatArray:
         q, v = from_lumped_state(state)

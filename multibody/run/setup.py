@@ -19,7 +19,7 @@ from lumped.model.steady import periodic_solution
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
-from multibody.contact.effects import active_effects, effect_flags
+from multibody.contact.effects import EFFECTS, active_effects, effect_flags
 from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import Machine, loaded_phase, machine
 from multibody.contact.reversal import friction_velocity as choose_friction_velocity
@@ -82,7 +82,7 @@ class Setup:
     @property
     def position_is_nominal(self) -> bool:
         """Whether contact positions depend on time alone, so that the switches are known beforehand."""
-        return self.model.flags in (0, kn.LINEAR)
+        return bool(self.model.flags & kn.LINEAR) or not self.model.flags
 
     def edges(self, cycles: int) -> FloatArray:
         """Ends of the integration intervals [s]: at the switches where those are known, else whole cycles."""
@@ -124,9 +124,12 @@ def prepare(
         raise refuse("drive", shown(drive), "a multibody.Drive", "Leave it out for constant torques.")
     flags = effect_flags(effects, pair.mesh.contact) or (kn.LINEAR if pair.mesh.contact == "loaded" else 0)
     if fidelity == "linear":
-        if flags and effects is not None and len(effects):
-            raise refuse("effects", shown(effects), "none at fidelity 'linear'", "Use fidelity='exact'.")
-        flags = kn.LINEAR
+        if effects is None:
+            flags = 0
+        if flags & ~(kn.LINEAR | EFFECTS["contact_loss"].bits):
+            allowed = "at most contact_loss at fidelity 'linear'"
+            raise refuse("effects", shown(effects), allowed, "Use fidelity='exact'.")
+        flags |= kn.LINEAR
     numbers = machine(pair, flags)
     call_limit = _call_limit(numbers)
     system = periodic_system(pair, "absolute")

@@ -49,7 +49,8 @@ def simulate(
     samples_per_cycle : output times per mesh cycle; the grid ends on the last cycle's end
     initial : "static", "periodic" or 12 states, as for ``lumped.simulate``
     effects : finite-motion effects that act at fidelity "exact", see ``multibody.EFFECTS``: a collection of
-        names, or a mapping name -> bool in which names left out act; default all
+        names, or a mapping name -> bool in which names left out act; default all. At fidelity "linear" only
+        "contact_loss", the lumped equations with teeth that push and never pull
     rtol : relative tolerance of the integration
     friction_velocity : sliding velocity over which friction changes its sign (tanh) [m/s]; 0 changes at
         once; None chooses, and the attribute ``friction_velocity_reason`` says why (see

@@ -165,7 +165,7 @@ def test_the_flag_of_the_linear_mesh_chooses_its_own_core(rng):
         records = np.zeros((2 * kin.MAX_PAIRS, kn.N_RECORD))
         for wrench, flags in zip(found, (kn.LINEAR, 0), strict=True):
             tooth_forces(t, q, v, p, flags, table, wrench, records)
-        linear_forces(t, q, v, p, table, linear, records)
+        linear_forces(t, q, v, p, kn.LINEAR, table, linear, records)
         np.testing.assert_array_equal(found[0], linear)
         np.testing.assert_allclose(found[1], linear, rtol=1e-9, atol=1e-9 * np.abs(linear).max())
         different += not np.array_equal(found[1], linear)

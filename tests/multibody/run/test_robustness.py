@@ -149,7 +149,7 @@ def test_nothing_is_written_to_the_console(capfd):
         ({"drive": multibody.Drive(pinion_torque=5.0)}, "drive.pinion_torque"),
         ({"drive": multibody.Drive(brake_torque=(["much"], [1.0]))}, "drive.brake_torque"),
         ({"drive": multibody.Drive(pinion_torque=([0.0, 1.0], [1.0, np.nan]))}, "drive.pinion_torque"),
-        ({"effects": {"contact_loss"}, "fidelity": "linear"}, "effects"),
+        ({"effects": {"entry_shift"}, "fidelity": "linear"}, "effects"),
         ({"friction_velocity": -1.0}, "friction_velocity"),
         ({"friction_velocity": float("nan")}, "friction_velocity"),
     ],

@@ -77,6 +77,7 @@ MADE_UP = {
     "friction_load": 30.0,
     "path_work": 40.0,
     "tip_contact": 50.0,
+    "clearance": 60.0,
     "neighbours": 0.5,
     "contact_law": 70.0,
 }

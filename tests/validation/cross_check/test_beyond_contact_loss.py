@@ -9,6 +9,7 @@ import floquet
 import lumped
 import multibody
 from floquet.gear.unilateral import unilateral_system
+from lumped import ParameterError
 
 
 @pytest.fixture(scope="module")
@@ -33,6 +34,46 @@ def test_the_multibody_model_stays_on_the_periodic_motion(pair_beyond):
     assert run.dte.values == pytest.approx(expected, abs=1e-8 * np.ptp(expected))
     loads = run.normal_load.sum("pair").values[:256]
     assert loads == pytest.approx(orbit.motion.normal_load.sum("pair").values, abs=1e-6 * loads.max())
+
+
+@pytest.mark.parametrize("effects", ["loaded", "paper", "paper, exact kernel"])
+def test_the_multibody_model_has_the_same_periodic_motion(effects):
+    """With relief as clearance, friction and y; it finds the motion by Broyden's method from its own runs."""
+    contact, _, kernel = effects.partition(", ")
+    pair = lumped.load_gear_pair("nasa_28_28").with_(mesh__contact=contact)
+    orbit = floquet.periodic_orbit(pair)
+    assert orbit.parts
+    run = multibody.steady_state(
+        pair,
+        fidelity="exact" if kernel else "linear",
+        effects=["contact_loss", "clearance"] if kernel else ["contact_loss"],
+        initial=orbit.states[0],
+        samples_per_cycle=256,
+    )
+    for name in ("dte", "x_p", "x_g", "y_p", "y_g", "bearing_force_y_p"):
+        own = orbit.motion[name].values
+        assert run[name].values == pytest.approx(own, abs=1e-6 * np.ptp(own)), name
+    loads = orbit.motion.normal_load.values
+    assert run.normal_load.values == pytest.approx(loads, abs=1e-6 * loads.max())
+    assert run.attrs["brake_torque"] == pytest.approx(orbit.balanced_torque, rel=1e-6)
+
+
+def test_motions_of_two_cycles_are_found_too(pair_beyond):
+    """An unstable one, to which no run comes; it is that of one cycle at half the speed."""
+    start = np.zeros(12)
+    start[0] = 1e-4 / pair_beyond.geometry.base_radius_pinion
+    single = floquet.periodic_orbit(pair_beyond.with_({"operating.pinion_speed": 9500.0}), start=start)
+    pair = pair_beyond.with_({"operating.pinion_speed": 19000.0})
+    orbit = floquet.periodic_orbit(pair, 2, single.states[0])
+    assert orbit.spectral_radius == pytest.approx(single.spectral_radius, rel=1e-6)
+    assert not orbit.stable
+    run = multibody.steady_state(
+        pair, fidelity="linear", effects=["contact_loss"], initial=orbit.states[0], cycles=2
+    )
+    own = orbit.motion.dte.values
+    assert run.dte.values[::2] == pytest.approx(own, abs=1e-6 * np.ptp(own))
+    with pytest.raises(ParameterError, match="at most contact_loss"):
+        multibody.steady_state(pair, fidelity="linear", effects=["entry_shift"])
 
 
 def test_the_multibody_sweep_measures_the_mean_over_whole_cycles(pair_beyond):
