@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
+import numba
 import numpy as np
 from numpy.polynomial import chebyshev, polynomial
 from numpy.typing import ArrayLike, NDArray
@@ -85,10 +86,8 @@ class PathFunction:
 
     def __call__(self, xi: ArrayLike) -> FloatArray:
         """Values at positions xi [m], any shape; zero outside the interval, right-continuous at switches."""
-        values = PPoly.construct_fast(self.coefficients, self.breaks, extrapolate=False)(
-            np.asarray(xi, dtype=float)
-        )
-        return np.asarray(np.nan_to_num(values, nan=0.0), dtype=np.float64)
+        at = np.asarray(xi, dtype=float)
+        return _evaluated(self.breaks, self.coefficients, at.ravel()).reshape(at.shape)
 
     def derivative(self) -> PathFunction:
         """The piecewise derivative df/dxi."""
@@ -171,6 +170,33 @@ class PathFunction:
         order = np.argsort(start)
         powers = series[order] @ _TO_POWERS / half[order, None] ** np.arange(FIT_DEGREE + 1)
         return cls(np.append(start[order], breaks[-1]), powers.T[::-1], np.asarray(switches))
+
+
+@numba.njit(cache=True)
+def _evaluated(breaks: FloatArray, coefficients: FloatArray, xi: FloatArray) -> FloatArray:
+    """Values (k,) at positions (k,); neighbours mostly lie on the same piece, which is tried first."""
+    values = np.zeros(xi.size)
+    last = breaks.size - 1
+    piece = 0
+    for i in range(xi.size):
+        x = xi[i]
+        if not breaks[0] <= x <= breaks[last]:
+            continue
+        if not (breaks[piece] <= x and (x < breaks[piece + 1] or piece == last - 1)):
+            low, high = 0, last
+            while high - low > 1:
+                middle = (low + high) // 2
+                if x >= breaks[middle]:
+                    low = middle
+                else:
+                    high = middle
+            piece = low
+        local = x - breaks[piece]
+        value = coefficients[0, piece]
+        for power in range(1, coefficients.shape[0]):
+            value = value * local + coefficients[power, piece]
+        values[i] = value
+    return values
 
 
 def shifted(coefficients: Array, by: ArrayLike) -> Array:

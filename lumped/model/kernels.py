@@ -1,11 +1,11 @@
-"""Compiled evaluation of path functions and of the equations of motion as forces."""
+"""Compiled evaluation of path functions and of the equations of motion as forces; chains of affine maps."""
 
 from __future__ import annotations
 
 import numba
 import numpy as np
 
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, IntArray
 
 
 @numba.njit(cache=True)
@@ -93,3 +93,149 @@ def state_rate(
     for j in range(6):
         rate[6 + j] /= mass[j]
     return rate
+
+
+@numba.njit(cache=True)
+def gauss_steps(
+    which: IntArray,
+    free_end: FloatArray,
+    free_p: FloatArray,
+    by_feedback: FloatArray,
+    start: FloatArray,
+    by_p: FloatArray,
+    stiffness: FloatArray,
+    damping: FloatArray,
+    error: FloatArray,
+) -> FloatArray:
+    """Maps (k, 2m, 2m + columns) of Gauss steps, see ``lumped.model.propagation``.
+
+    Parameters
+    ----------
+    which : (k,) length of each step, a row of the next five
+    free_end, free_p, by_feedback, start, by_p : of ``_without_mesh``
+    stiffness, damping, error : (k, s, m) gains of the mesh at the stages
+    """
+    k, stages, m = stiffness.shape
+    rows, columns = stages + 2 * m, free_end.shape[2]
+    maps = np.empty((k, 2 * m, columns))
+    to, fixed = np.empty((rows, 2 * stages)), np.empty(rows)
+    matrix, p = np.empty((stages, stages)), np.empty((stages, columns))
+    inner = np.empty((2 * stages, columns))
+    for j in range(k):
+        of = which[j]
+        fixed[:] = 0.0
+        for stage in range(stages):
+            for row in range(rows):
+                by_k, by_c, by_e = 0.0, 0.0, 0.0
+                for i in range(m):
+                    factor = by_feedback[of, stage, row, i]
+                    by_k += factor * stiffness[j, stage, i]
+                    by_c += factor * damping[j, stage, i]
+                    by_e += factor * error[j, stage, i]
+                to[row, stage], to[row, stages + stage] = by_k, by_c
+                fixed[row] += by_e
+        for row in range(stages):
+            p[row] = free_p[of, row]
+            p[row, 2 * m] += fixed[row]
+            matrix[row] = 0.0
+            matrix[row, row] = 1.0
+            for i in range(2 * stages):
+                factor = to[row, i]
+                for column in range(columns):
+                    p[row, column] += factor * start[of, i, column]
+                for column in range(stages):
+                    matrix[row, column] -= factor * by_p[of, i, column]
+        _solve(matrix, p)
+        for row in range(2 * stages):
+            inner[row] = start[of, row]
+            for i in range(stages):
+                factor = by_p[of, row, i]
+                for column in range(columns):
+                    inner[row, column] += factor * p[i, column]
+        for row in range(2 * m):
+            maps[j, row] = free_end[of, row]
+            maps[j, row, 2 * m] += fixed[stages + row]
+            for i in range(2 * stages):
+                factor = to[stages + row, i]
+                for column in range(columns):
+                    maps[j, row, column] += factor * inner[i, column]
+    return maps
+
+
+@numba.njit(cache=True)
+def _solve(matrix: FloatArray, right: FloatArray) -> None:
+    """Solve matrix (s, s) x = right (s, columns) in place, by elimination with pivots."""
+    size, columns = right.shape
+    for i in range(size):
+        pivot = i
+        for row in range(i + 1, size):
+            if abs(matrix[row, i]) > abs(matrix[pivot, i]):
+                pivot = row
+        if pivot != i:
+            for column in range(size):
+                matrix[i, column], matrix[pivot, column] = matrix[pivot, column], matrix[i, column]
+            for column in range(columns):
+                right[i, column], right[pivot, column] = right[pivot, column], right[i, column]
+        for row in range(i + 1, size):
+            factor = matrix[row, i] / matrix[i, i]
+            for column in range(i, size):
+                matrix[row, column] -= factor * matrix[i, column]
+            for column in range(columns):
+                right[row, column] -= factor * right[i, column]
+    for i in range(size - 1, -1, -1):
+        for column in range(columns):
+            value = right[i, column]
+            for row in range(i + 1, size):
+                value -= matrix[i, row] * right[row, column]
+            right[i, column] = value / matrix[i, i]
+
+
+@numba.njit(cache=True)
+def states_along(maps: FloatArray, initial: FloatArray, weights: FloatArray) -> FloatArray:
+    """States (k + 1, n) from x(0) (n,) by k affine maps (k, n, n + columns), forcings weighted (columns,)."""
+    k, n, width = maps.shape
+    x = np.empty((k + 1, n))
+    x[0] = initial
+    for j in range(k):
+        for row in range(n):
+            value = 0.0
+            for column in range(n):
+                value += maps[j, row, column] * x[j, column]
+            for column in range(n, width):
+                value += maps[j, row, column] * weights[column - n]
+            x[j + 1, row] = value
+    return x
+
+
+@numba.njit(cache=True)
+def chained(maps: FloatArray, group: IntArray) -> FloatArray:
+    """Affine maps (k, n, n + columns) of which consecutive ones of the same group (k,), 0, 1, ..., are one.
+
+    Products of as many maps each are made one, so that rounding grows with the logarithm of their number.
+    """
+    k, n, width = maps.shape
+    found = np.empty((group[k - 1] + 1, n, width))
+    most = int(np.log2(k)) + 2
+    waiting, doubled = np.empty((most, n, width)), np.empty(most, dtype=np.int64)
+    product = np.empty((n, width))
+    held = 0
+    for j in range(k):
+        waiting[held], doubled[held] = maps[j], 0
+        held += 1
+        last = j == k - 1 or group[j + 1] != group[j]
+        while held > 1 and (last or doubled[held - 1] == doubled[held - 2]):
+            before, after = waiting[held - 2], waiting[held - 1]
+            for row in range(n):
+                for column in range(width):
+                    product[row, column] = after[row, column] if column >= n else 0.0
+                for inner in range(n):
+                    factor = after[row, inner]
+                    for column in range(width):
+                        product[row, column] += factor * before[inner, column]
+            before[:] = product
+            held -= 1
+            doubled[held - 1] += 1
+        if last:
+            found[group[j]] = waiting[0]
+            held = 0
+    return found

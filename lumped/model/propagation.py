@@ -9,6 +9,7 @@ import numpy as np
 
 from lumped.errors import NumericalError
 from lumped.gauss_legendre import gauss_tableau
+from lumped.model.kernels import chained, gauss_steps, states_along
 from lumped.model.periodic_system import LTVSystem
 from lumped.typing import FloatArray, IntArray
 
@@ -42,34 +43,18 @@ class StepMaps:
 
     def over_all(self) -> tuple[FloatArray, FloatArray]:
         """Map over all steps: transition (n, n) and forced (n, columns)."""
-        whole = _merged(self.maps, np.zeros(self.maps.shape[0], dtype=np.int64))[0]
+        whole = chained(self.maps, np.zeros(self.maps.shape[0], dtype=np.int64))[0]
         n = whole.shape[0]
         return whole[:, :n], whole[:, n:]
 
     def states(self, initial: FloatArray, weights: FloatArray) -> FloatArray:
         """States (intervals + 1, n) at ``times`` from x(0) and the weight (columns,) of each forcing."""
-        n = initial.size
-        x = np.empty((self.times.size, n))
-        x[0] = initial
-        forced = self.maps[..., n:] @ weights
-        for j, phi in enumerate(self.maps[..., :n]):
-            x[j + 1] = phi @ x[j] + forced[j]
-        return x
+        return states_along(self.maps, initial, weights)
 
 
 def _merged(maps: FloatArray, group: IntArray) -> FloatArray:
     """Maps of which consecutive ones of the same group (k,), numbered 0, 1, ..., are made one."""
-    n = maps.shape[1]
-    while group.size > group[-1] + 1:  # neighbours are merged two by two
-        rank = np.arange(group.size) - np.searchsorted(group, group)
-        first = rank % 2 == 0
-        later = np.flatnonzero(~first)
-        merged = maps[later, :, :n] @ maps[later - 1]
-        merged[..., n:] += maps[later, :, n:]
-        maps = maps.copy()
-        maps[later - 1] = merged
-        maps, group = maps[first], group[first]
-    return maps
+    return maps if group.size == group[-1] + 1 else chained(maps, group)
 
 
 @lru_cache(maxsize=4)
@@ -118,7 +103,7 @@ def step_maps(
         group = grid.interval[block]
         parts.append(_merged(maps, group - group[0]))
         groups.append(np.unique(group))
-    maps = _merged(np.concatenate(parts), np.concatenate(groups))
+    maps = _merged(np.concatenate(parts), np.concatenate(groups)) if len(parts) > 1 else parts[0]
     if not np.isfinite(maps).all():
         raise NumericalError(
             "The mesh cycle could not be integrated: check stiffness and inertia for extremes."
@@ -147,21 +132,11 @@ def _steps(
     )
     lengths = h[first]
     gauss = gauss_tableau(stages)
-    fixed = [part[which] for part in _without_mesh(system, lengths, extra, gauss)]
-    free_end, free_p, by_feedback, start_deflection, by_p = fixed
+    fixed = _without_mesh(system, lengths, extra, gauss)
     times = (start[:, None] + h[:, None] * gauss[2]).ravel()
     gain = system.gain(times, np.repeat(segment, stages))
-    weights = np.stack([gain.stiffness, gain.damping, gain.error], axis=-1).reshape(k, stages, m, 3)
-    driven = by_feedback @ weights  # (k, stages, stages + 2m, 3)
-    by_deflection = driven[..., :2].transpose(0, 2, 3, 1).reshape(k, -1, 2 * stages)
-    error = driven[..., 2].sum(axis=1)
-    to_p, to_end = by_deflection[:, :stages], by_deflection[:, stages:]
-    right = free_p + to_p @ start_deflection
-    right[..., 2 * m] += error[:, :stages]
-    p = np.linalg.solve(np.eye(stages) - to_p @ by_p, right)
-    maps: FloatArray = free_end + to_end @ (start_deflection + by_p @ p)
-    maps[..., 2 * m] += error[:, stages:]
-    return maps
+    gains = (values.reshape(k, stages, m) for values in (gain.stiffness, gain.damping, gain.error))
+    return gauss_steps(which, *fixed, *gains)
 
 
 def _without_mesh(

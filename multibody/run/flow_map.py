@@ -102,7 +102,8 @@ def monodromy(
     pair = load_gear_pair(pair)
     setup = prepare(pair, fidelity, "periodic", effects, _RTOL)
     orbit = find_orbit(setup)
-    full = _differences(orbit.flow, orbit.state, _scale(setup) * _STEP[fidelity])
+    end = orbit.flow(orbit.state) if fidelity == "linear" else None
+    full = _differences(orbit.flow, orbit.state, _scale(setup) * _STEP[fidelity], end)
     read, lift = _relative(orbit.machine)
     torque = orbit.machine.torque_gear
     return FlowMap(read @ full @ lift, full, read, lift, orbit.state, torque, orbit.closure)
@@ -256,13 +257,15 @@ def _scale(setup: Setup) -> FloatArray:
     return np.concatenate([lengths, lengths * 2 * np.pi / setup.machine.period])
 
 
-def _differences(flow: Flow, state: FloatArray, steps: FloatArray) -> FloatArray:
+def _differences(flow: Flow, state: FloatArray, steps: FloatArray, end: FloatArray | None) -> FloatArray:
+    """Columns of the map: differences to ``end``, where a linear model arrives, else central ones."""
     columns = []
     for i, h in enumerate(steps):
         ahead, behind = state.copy(), state.copy()
         ahead[i] += h
         behind[i] -= h
-        columns.append((flow(ahead) - flow(behind)) / (2.0 * h))
+        change = (flow(ahead) - flow(behind)) / 2.0 if end is None else flow(ahead) - end
+        columns.append(change / h)
     return np.stack(columns, axis=1)
 
 

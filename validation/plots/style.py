@@ -204,9 +204,9 @@ def save(figure: Figure, path: Path) -> None:
     metadata: dict[str, Any] = dates.get(suffix, {"Software": None})
     layout = figure.get_layout_engine()
     with whole_file(path) as temporary, mpl.rc_context(_RC):
-        if layout is not None:  # laid out once: savefig draws the whole figure for it before it draws
+        if layout is not None:  # laid out once: with any engine, even "none", savefig draws everything twice
             layout.execute(figure)
-            figure.set_layout_engine("none")
+            figure.set_layout_engine(None)
         try:
             figure.savefig(temporary, format=suffix, dpi=_PNG_DPI, metadata=metadata)
         finally:
