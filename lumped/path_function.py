@@ -11,14 +11,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TypeVar
 
-import numba
 import numpy as np
 from numpy.polynomial import chebyshev, polynomial
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PPoly
 
+from lumped.compiler import Compiler
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 
@@ -172,7 +173,7 @@ class PathFunction:
         return cls(np.append(start[order], breaks[-1]), powers.T[::-1], np.asarray(switches))
 
 
-@numba.njit(cache=True)
+@Compiler([Path(__file__)])
 def _evaluated(breaks: FloatArray, coefficients: FloatArray, xi: FloatArray) -> FloatArray:
     """Values (k,) at positions (k,); neighbours mostly lie on the same piece, which is tried first."""
     values = np.zeros(xi.size)

@@ -49,7 +49,8 @@ class StepMaps:
 
     def states(self, initial: FloatArray, weights: FloatArray) -> FloatArray:
         """States (intervals + 1, n) at ``times`` from x(0) and the weight (columns,) of each forcing."""
-        return states_along(self.maps, initial, weights)
+        found: FloatArray = states_along(self.maps, initial, weights)
+        return found
 
 
 def _merged(maps: FloatArray, group: IntArray) -> FloatArray:
@@ -136,7 +137,8 @@ def _steps(
     times = (start[:, None] + h[:, None] * gauss[2]).ravel()
     gain = system.gain(times, np.repeat(segment, stages))
     gains = (values.reshape(k, stages, m) for values in (gain.stiffness, gain.damping, gain.error))
-    return gauss_steps(which, *fixed, *gains)
+    maps: FloatArray = gauss_steps(which, *fixed, *gains)
+    return maps
 
 
 def _without_mesh(

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 #: Relative tolerance of the runs whose differences make the map.
-_RTOL = 1e-10
+_RTOL = {"linear": 1e-9, "exact": 1e-10}
 #: Perturbation over the static deflection: large for the linear level, where size does not matter; at the
 #: exact level central differences err by its square times the nonlinearity, and by rtol over it.
 _STEP = {"linear": 1.0, "exact": 1e-3}
@@ -100,7 +100,7 @@ def monodromy(
     NumericalError : no periodic motion is found near the lumped one
     """
     pair = load_gear_pair(pair)
-    setup = prepare(pair, fidelity, "periodic", effects, _RTOL)
+    setup = prepare(pair, fidelity, "periodic", effects, _RTOL[fidelity])
     orbit = find_orbit(setup)
     end = orbit.flow(orbit.state) if fidelity == "linear" else None
     full = _differences(orbit.flow, orbit.state, _scale(setup) * _STEP[fidelity], end)

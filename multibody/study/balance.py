@@ -165,14 +165,15 @@ def _powers(model: ExudynModel, t: FloatArray, q: FloatArray, v: FloatArray) -> 
     powers[:, 0], powers[:, 1] = m.torque_pinion * omega_p, m.torque_gear * omega_g
     powers[:, 2] = v[:, [0, 1, 3, 4]] ** 2 @ m.bearing_damping.ravel()
     _, contacts, counts = contact_state(model, t, q, v)
-    for i in range(t.size):
-        c = contacts[i, : counts[i]]
-        powers[i, 3] = c[:, kn.FRICTION_FORCE] @ c[:, kn.SLIDE]
-        if model.drive is not None:
-            powers[i, [0, 1, 6]] += _drive_powers(model, model.drive, t[i], q[i], v[i])
-        powers[i, 4] = (c[:, kn.LOAD] - c[:, kn.ELASTIC]) @ c[:, kn.OVERLAP_RATE]
-        if not model.flags & kn.PATH_WORK:
-            powers[i, 5] = c[:, kn.PATH] @ c[:, kn.PATH_RATE]
+    contacts[np.arange(contacts.shape[1]) >= counts[:, None]] = 0.0
+    c = np.moveaxis(contacts, -1, 0)
+    powers[:, 3] = (c[kn.FRICTION_FORCE] * c[kn.SLIDE]).sum(axis=1)
+    powers[:, 4] = ((c[kn.LOAD] - c[kn.ELASTIC]) * c[kn.OVERLAP_RATE]).sum(axis=1)
+    if not model.flags & kn.PATH_WORK:
+        powers[:, 5] = (c[kn.PATH] * c[kn.PATH_RATE]).sum(axis=1)
+    if model.drive is not None:
+        for i, at in enumerate(t):
+            powers[i, [0, 1, 6]] += _drive_powers(model, model.drive, at, q[i], v[i])
     return powers
 
 

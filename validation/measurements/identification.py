@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from lumped.arguments import one_of, real_number
 from lumped.errors import NumericalError, refuse
@@ -121,7 +121,7 @@ def identify_friction(
     estimate = estimate_parameters(samples, count)
     covariance, lags = sandwich(samples, estimate)
     error = float(np.sqrt(covariance[0, 0]))
-    reach = float(student.ppf(0.5 + 0.5 * LEVEL, samples.friction.size - count)) * error
+    reach = float(stdtrit(samples.friction.size - count, 0.5 + 0.5 * LEVEL)) * error
     beta = float(estimate[0])
     mean = 1.0 if law is None else mean_coefficient(friction_path_function(prediction.pair, law=law))
     return Identification(

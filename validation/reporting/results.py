@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TypeVar
 
 import numpy as np
@@ -199,7 +199,11 @@ class Results:
     def forms(self) -> ContactForms | str:
         """Both forms of the contact and the exact one; why they cannot be computed."""
         self.stage("forms of the contact")
-        return _or_why_not(contact_forms, self.pair)
+        check, exact = self.check, None
+        samples = check.lumped.attrs["samples_per_cycle"]
+        if self.pair.mesh.contact == "loaded" and check.periodic:
+            exact = check.multibody["exact"].isel(time=slice(samples))
+        return _or_why_not(partial(contact_forms, samples=samples, exact=exact), self.pair)
 
     @cached_property
     def multipliers(self) -> GearPairMultipliers:

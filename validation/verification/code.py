@@ -28,7 +28,7 @@ from validation.verification.published import published_checks
 from validation.verification.stability_routes import fit_bound
 from validation.verification.written_twice import written_twice
 
-_CYCLES = 3
+_CYCLES = 2
 
 
 def code_checks(pair: AnyPair) -> tuple[Check, ...]:

@@ -22,7 +22,7 @@ from lumped.typing import FloatArray
 from validation.verification.checks import Level, Refinement, refinement
 
 _SAMPLES = 64
-_CYCLES = 4
+_CYCLES = 2
 
 
 def refinements(pair: AnyPair, samples: int) -> tuple[Refinement, ...]:
