@@ -257,7 +257,9 @@ def _scale(setup: Setup) -> FloatArray:
     return np.concatenate([lengths, lengths * 2 * np.pi / setup.machine.period])
 
 
-def _differences(flow: Flow, state: FloatArray, steps: FloatArray, end: FloatArray | None) -> FloatArray:
+def _differences(
+    flow: Flow, state: FloatArray, steps: FloatArray, end: FloatArray | None = None
+) -> FloatArray:
     """Columns of the map: differences to ``end``, where a linear model arrives, else central ones."""
     columns = []
     for i, h in enumerate(steps):

@@ -200,7 +200,7 @@ class Results:
         """Both forms of the contact and the exact one; why they cannot be computed."""
         self.stage("forms of the contact")
         check, exact = self.check, None
-        samples = check.lumped.attrs["samples_per_cycle"]
+        samples = check.lumped.sizes["time"] // check.cycles
         if self.pair.mesh.contact == "loaded" and check.periodic:
             exact = check.multibody["exact"].isel(time=slice(samples))
         return _or_why_not(partial(contact_forms, samples=samples, exact=exact), self.pair)
