@@ -22,6 +22,8 @@ from .gear.coulomb_zones import stability_zones as stability_zones
 from .gear.friction_effect import friction_effect as friction_effect
 from .gear.jump_map import JUMP_AXES as JUMP_AXES
 from .gear.jump_map import jump_map as jump_map
+from .gear.jump_removal import JumpRemoval as JumpRemoval
+from .gear.jump_removal import jumps_removed_by as jumps_removed_by
 from .gear.margins import stability_margins as stability_margins
 from .gear.multipliers import GearPairMultipliers as GearPairMultipliers
 from .gear.multipliers import gear_pair_multipliers as gear_pair_multipliers

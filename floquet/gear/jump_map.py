@@ -17,7 +17,7 @@ from floquet.gear.axes import GEAR_AXES, GearAxis, GearVariation, operating_rpm
 from floquet.gear.response import JUMP, MARGINAL, member, period_behind
 from floquet.orbits.orbit import Orbit
 from floquet.orbits.response import Branch, Member, Response, find_stack
-from lumped.arguments import whole_number
+from lumped.arguments import one_of, whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.fields.units import SIValue, to_stated
 from lumped.labelling import Variable, labelled_dataset
@@ -151,8 +151,7 @@ def _checked(pair: GearPair, axes: Axes) -> tuple[str, dict[str, FloatArray]]:
             "axes", ", ".join(grid), f"speed_rpm and one of {', '.join(JUMP_AXES)}", "Give these two."
         )
     name = others[0]
-    if name == "tip_relief":
-        _relieved(pair)
+    checked_axis(pair, name)
     JUMP_AXES[name].check(name, grid[name])
     GEAR_AXES["speed_rpm"].check("speed_rpm", grid["speed_rpm"])
     if grid["speed_rpm"].size < 2:
@@ -163,6 +162,17 @@ def _checked(pair: GearPair, axes: Axes) -> tuple[str, dict[str, FloatArray]]:
     for rpm in (grid["speed_rpm"].min(), grid["speed_rpm"].max()):
         pair.with_({"operating.pinion_speed": float(rpm)})
     return name, grid
+
+
+def checked_axis(pair: GearPair, name: str) -> None:
+    """Refuse an axis that does not exist, or that the pair does not have.
+
+    Raises
+    ------
+    ParameterError : unknown name, or a pair without tip relief
+    """
+    one_of("axis", name, JUMP_AXES)
+    JUMP_AXES[name].own(pair)
 
 
 class _Row(NamedTuple):
