@@ -15,6 +15,7 @@ import numpy as np
 import xarray as xr
 
 from lumped.errors import ParameterError, StorageError, refuse
+from validation.files.netcdf4 import write_netcdf4
 
 #: Longest name of a MATLAB variable.
 _LONGEST_NAME = 63
@@ -110,14 +111,9 @@ def _write_netcdf(result: xr.Dataset, path: Path) -> None:
     for name, variable in result.variables.items():
         if variable.dtype == bool:  # NetCDF has no booleans
             ready[name] = variable.astype(np.int8)
-    encoding = {
-        str(name): {"zlib": True, "complevel": 4}
-        for name, variable in ready.data_vars.items()
-        if variable.ndim and variable.dtype.kind == "f"
-    }
     # HDF5 ends the process where a disk is full: it writes to memory, and only Python to the disk.
     content = io.BytesIO()
-    ready.to_netcdf(content, engine="h5netcdf", encoding=encoding)
+    write_netcdf4(ready, content)
     path.write_bytes(content.getbuffer())
 
 
