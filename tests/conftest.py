@@ -1,16 +1,47 @@
-"""Whatever test saves a figure, its axes carry labels, with units where they show numbers."""
+"""The order of the tests; and whatever test saves a figure, its axes carry labels, with units for numbers."""
 
 import re
 import weakref
+from pathlib import Path
 
 import pytest
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 
+#: What takes long, as two workers begin: the first half and the second. Each compiles other kernels, which
+#: the other one finds compiled later; short tests come last, for they leave nobody waiting for one long test.
+LONG = (
+    (
+        "floquet/orbits", "floquet/gear", "floquet/rank_one", "validation/reporting", "examples",
+        "docs", "validation/commands", "validation/interactive", "validation/paper", "packaging",
+    ),
+    (
+        "multibody", "validation/cross_check", "validation/studies", "validation/files", "validation/faults",
+        "validation/verification", "lumped/quasi_static", "lumped/model", "lumped/friction",
+    ),
+)  # fmt: skip
 #: A unit in brackets, or a count that is its own unit.
 UNIT = re.compile(r"\[[^\]]+\]|\b(mesh cycles|mesh order|revolutions)\b")
 #: What a number on an axis may look like: 1, -2.5, 10^3 in mathematical text, 5e-4.
 NUMBER = re.compile(r"[-−+0-9.e\s×{}$^\\]*|.*mathdefault.*")
+
+
+def pytest_collection_modifyitems(items):
+    """Put ``LONG`` at the beginning of both halves of the tests: a worker gets one half, and takes from the
+    end of the other's when it is done.
+    """
+    root = Path(__file__).parent
+    ranks = {name: (half, place) for half, names in enumerate(LONG) for place, name in enumerate(names)}
+
+    def rank(item):
+        folder = item.path.relative_to(root).parent
+        names = (str(Path(*folder.parts[:depth])) for depth in range(len(folder.parts), 0, -1))
+        return next((ranks[name] for name in names if name in ranks), (2, 0))
+
+    ordered = sorted(items, key=rank)
+    first, second, short = ([item for item in ordered if rank(item)[0] == part] for part in range(3))
+    cut = max(0, len(items) // 2 - len(first))
+    items[:] = first + short[:cut] + second + short[cut:]
 
 
 def _shown(axis: Axis) -> list[str]:
