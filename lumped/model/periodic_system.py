@@ -50,7 +50,8 @@ class LTVSystem:
         "feedback" (q, x_p, x_g: the 6 states that decide stability)
     coordinates : names of z, (m,)
     cycle : mesh cycle with positions, switch times and coefficients of the tooth pairs
-    constant : (2m, 2m) part of A that does not depend on time
+    constant : (2m, 2m) part of A that does not depend on time: bearings, each on one coordinate, so that
+        its blocks are diagonal
     torque_pinion, torque_gear : (2m,) b per unit T_p and per unit T_g
     deflection : (m,) u with dynamic transmission error u . z
     reduction : (m, 6) rows that make z of the six coordinates

@@ -117,8 +117,9 @@ def _steps(
 ) -> FloatArray:
     """Maps (k, 2m, 2m + columns) of Gauss steps of lengths h (k,) from the times ``start``.
 
-    In x = (z, v) with z' = v only the stage accelerations W_i are unknown. With A's constant part (K, C), the
-    deflections delta = u.z and delta' = u.v at the stages and the feedback (g_k, g_c, g_0) of the mesh,
+    In x = (z, v) with z' = v only the stage accelerations W_i are unknown. A's constant part (K, C) is
+    diagonal, for a bearing acts on one coordinate. With the deflections delta = u.z and delta' = u.v at the
+    stages and the feedback (g_k, g_c, g_0) of the mesh,
 
         W_i = K (z + h c_i v + h^2 (a a)_ij W_j) + C (v + h a_ij W_j) + f + n_i,
         n_i = g_k,i delta_i + g_c,i delta'_i + g_0,i.
@@ -146,6 +147,8 @@ def _without_mesh(
 ) -> tuple[FloatArray, ...]:
     """What ``_steps`` needs of step lengths h (k,); columns are unit states and forcings, s stages.
 
+    Without the mesh each coordinate is a problem of its own, of s equations.
+
     Returns
     -------
     end (k, 2m, columns) and p (k, s, columns) without feedback; what p, then the end take from the feedback
@@ -154,27 +157,40 @@ def _without_mesh(
     """
     a, b, c = gauss
     s, m, k, u = c.size, system.size // 2, h.size, system.deflection
-    h = h[:, None, None]
-    stiffness, damping = system.constant[m:, :m], system.constant[m:, m:]
-    left = np.eye(s * m) - h**2 * np.kron(a @ a, stiffness) - h * np.kron(a, damping)
-    states = np.hstack([np.tile(stiffness, (s, 1)), np.tile(damping, (s, 1))])
+    stiffness, damping = np.diag(system.constant[m:, :m]), np.diag(system.constant[m:, m:])
     forces = np.column_stack([system.torque_pinion * system.pinion_torque, extra])[m:]
-    right = np.concatenate([np.tile(states, (k, 1, 1)), np.tile(forces, (k, s, 1))], axis=2)
-    right[..., m : 2 * m] += h * np.kron(c[:, None], stiffness)
-    inverse = np.linalg.inv(left)
-    stage_p = np.kron(np.eye(s), u)
-    to_end = np.concatenate([h**2 * np.kron(b @ a, np.eye(m)), h * np.kron(b, np.eye(m))], axis=1)
+    h = h[:, None, None, None]
+    left = np.eye(s) - h**2 * stiffness[:, None, None] * (a @ a) - h * damping[:, None, None] * a
+    inverse = np.linalg.inv(left)  # (k, m, s, s)
+    # Accelerations at the stages by z and by v at the start, and by a unit force: (k, m, s, 3)
+    right = np.zeros((k, m, s, 3))
+    right[..., 0] = stiffness[:, None]
+    right[..., 1] = h[..., 0] * stiffness[:, None] * c + damping[:, None]
+    right[..., 2] = 1.0
     accelerations = inverse @ right
-    end = to_end @ accelerations
+    to_end = np.stack([h[:, 0, 0] ** 2 * (b @ a), h[:, 0, 0] * b], axis=1)  # (k, 2, s)
+    ends = np.einsum("kds,kmsx->kdmx", to_end, accelerations)
+    h = h[..., 0]
+    diagonal = np.arange(m)
+    end = np.zeros((k, 2, m, 2 * m + forces.shape[1]))
+    end[:, :, diagonal, diagonal] = ends[..., 0]
+    end[:, :, diagonal, m + diagonal] = ends[..., 1]
+    end[..., 2 * m :] = ends[..., 2, None] * forces
+    end = end.reshape(k, 2 * m, -1)
     end[:, :, : 2 * m] += np.eye(2 * m)
     end[:, :m, m : 2 * m] += h * np.eye(m)
-    start = np.zeros((k, 2 * s, right.shape[2]))
+    moved = (u[:, None, None] * accelerations).swapaxes(1, 2)  # (k, s, m, 3)
+    p = np.concatenate([moved[..., 0], moved[..., 1], moved[..., 2] @ forces], axis=2)
+    start = np.zeros((k, 2 * s, p.shape[2]))
     start[:, :s, :m] = start[:, s:, m : 2 * m] = u
     start[:, :s, m : 2 * m] = h * np.multiply.outer(c, u)
-    by_feedback = np.concatenate([stage_p @ inverse, to_end @ inverse], axis=1)
-    by_feedback = np.ascontiguousarray(by_feedback.reshape(k, s + 2 * m, s, m).swapaxes(1, 2))
+    by_feedback = np.zeros((k, s, s + 2 * m, m))
+    by_feedback[:, :, :s] = (u[:, None, None] * inverse).transpose(0, 3, 2, 1)
+    moves = to_end[:, None] @ inverse  # (k, m, 2, s)
+    by_feedback[:, :, s + diagonal, diagonal] = moves[:, :, 0].swapaxes(1, 2)
+    by_feedback[:, :, s + m + diagonal, diagonal] = moves[:, :, 1].swapaxes(1, 2)
     by_p = np.concatenate([h**2 * (a @ a), h * a], axis=1)
-    return end, stage_p @ accelerations, by_feedback, start, by_p
+    return end, p, by_feedback, start, by_p
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,8 +211,7 @@ def _step_grid(system: LTVSystem, outputs: FloatArray, step_angle: float) -> _St
     marks = np.union1d(system.cycle.breaks, outputs)
     # Marks that differ by rounding are one, and a switch stays where it is exactly.
     close = np.flatnonzero(np.diff(marks) < 1e-13 * period)
-    drop = [j if marks[j + 1] in switches else j + 1 for j in close]
-    marks = np.delete(marks, drop)
+    marks = np.delete(marks, np.where(np.isin(marks[close + 1], switches), close, close + 1))
     largest = step_angle / fastest_frequency(system)
     pieces = np.maximum(1.0, np.ceil(np.diff(marks) / largest))
     if not pieces.sum() <= _MAX_STEPS:

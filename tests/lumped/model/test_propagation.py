@@ -96,23 +96,24 @@ def test_tableau_meets_the_simplifying_assumptions(stages):
 
 def test_constant_coefficients_give_the_matrix_exponential():
     rng = np.random.default_rng(3)
-    lower = -np.hstack([np.diag([40.0, 90.0, 10.0]) + rng.normal(size=(3, 3)), 0.3 * np.eye(3)])
+    lower = -np.hstack([np.diag([40.0, 90.0, 10.0]), np.diag([0.3, 0.2, 0.4])])
     a = np.vstack([np.hstack([np.zeros((3, 3)), np.eye(3)]), lower])
     force = np.concatenate([np.zeros(3), rng.normal(size=3)])
-    constant = system_of(a, lambda t: (np.zeros((t.size, 3)),) * 3, np.zeros(3), [0.0, 2.0])
-    constant.torque_pinion, constant.pinion_torque = 0.5 * force, 2.0
-    # The same matrix with one column of its stiffness and of its damping as feedback of a coordinate.
-    split = a.copy()
-    split[3:, 1] = split[3:, 4] = 0.0
+    alone = system_of(a, lambda t: (np.zeros((t.size, 3)),) * 3, np.zeros(3), [0.0, 2.0])
+    alone.torque_pinion, alone.pinion_torque = 0.5 * force, 2.0
+    # The same with one deflection and its rate fed back to all coordinates, which couples them.
+    deflection, by_k, by_c = (rng.normal(size=3) for _ in range(3))
+    coupled = a.copy()
+    coupled[3:] += np.hstack([np.outer(by_k, deflection), np.outer(0.1 * by_c, deflection)])
 
     def gain(t):
-        return tuple(np.repeat(v[None], t.size, axis=0) for v in (a[3:, 1], a[3:, 4], force[3:]))
+        return tuple(np.repeat(v[None], t.size, axis=0) for v in (by_k, 0.1 * by_c, force[3:]))
 
-    feedback = system_of(split, gain, [0.0, 1.0, 0.0], [0.0, 2.0])
-    augmented = np.zeros((7, 7))
-    augmented[:6, :6], augmented[:6, 6] = 2.0 * a, 2.0 * force
-    exact = expm(augmented)[:6]
-    for system in (constant, feedback):
+    feedback = system_of(a, gain, deflection, [0.0, 2.0])
+    for system, matrix in ((alone, a), (feedback, coupled)):
+        augmented = np.zeros((7, 7))
+        augmented[:6, :6], augmented[:6, 6] = 2.0 * matrix, 2.0 * force
+        exact = expm(augmented)[:6]
         found = np.hstack(step_maps(system, np.zeros((6, 0)), step_angle=0.4).over_all())
         # Order 8 at 0.4 rad a step: 1e-12 a step, about 50 steps.
         np.testing.assert_allclose(found, exact, atol=1e-9 * np.abs(exact).max())
