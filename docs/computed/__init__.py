@@ -25,6 +25,7 @@ def writers() -> Mapping[str, Callable[[], str]]:
     from computed import (
         agreement,
         diagrams,
+        elasticity,
         errata,
         faults,
         figures,
@@ -48,6 +49,7 @@ def writers() -> Mapping[str, Callable[[], str]]:
             interface,
             diagrams,
             figures,
+            elasticity,
         )
         for name, function in module.FILES.items()
     }

@@ -105,11 +105,11 @@ def flank_compliance(gear: PlaneGear) -> FlankCompliance:
     NumericalError : the teeth cannot be meshed
     """
     profile = gear.profile
-    bore = gear.bore or profile.root_radius / _SOLID
+    bore = bore_radius(gear)
     tip_length = math.sqrt(gear.tip**2 - profile.base_radius**2)
     low = max(profile.form_length, _BASE)
     high = tip_length - _EDGE * profile.base_radius / tip_length
-    fine, coarse = (_mesh(profile, gear.tip, bore, size) for size in (_FINE, _COARSE))
+    fine, coarse = (meshed(profile, gear.tip, bore, size) for size in (_FINE, _COARSE))
     numbers = np.array([low, high, gear.poisson, profile.teeth, gear.reach, _LOADS, _TERMS, _COARSE])
 
     def compute() -> dict[str, FloatArray]:
@@ -129,7 +129,18 @@ def flank_compliance(gear: PlaneGear) -> FlankCompliance:
     return FlankCompliance((low, high), found["own"], found["cross"], found["rough"])
 
 
-def _mesh(profile: ToothProfile, tip: float, bore: float, size: float) -> Sector:
+def bore_radius(gear: PlaneGear) -> float:
+    """Radius of the bore that is meshed [modules]."""
+    return gear.bore or gear.profile.root_radius / _SOLID
+
+
+def meshed(profile: ToothProfile, tip: float, bore: float, size: float) -> Sector:
+    """One pitch of a gear with elements of a size at the surface [modules].
+
+    Raises
+    ------
+    NumericalError : the teeth cannot be meshed
+    """
     mesh = sector(profile, tip, bore, stations(profile, tip, bore, size))
     corners = mesh.nodes[mesh.elements[:, [0, 6, 8, 2]]]  # round the element
     turn = np.roll(corners, -1, axis=1) - corners

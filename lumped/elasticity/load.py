@@ -46,9 +46,7 @@ def flank_load(
     edge, shapes, point, normal = mesh.edge_at(length)
     reading = np.zeros(2 * len(mesh.nodes))
     reading[2 * edge], reading[2 * edge + 1] = shapes * normal[0], shapes * normal[1]
-    across = math.atan2(*mesh.nodes[mesh.ahead[-1]][::-1]) - math.atan2(*point[::-1])
-    near, far = radii
-    far = min(far, 0.99 * math.hypot(*point) * math.sin(across))
+    near, far = radii[0], outer_radius(mesh, point, radii[1])
     distance = np.hypot(*(mesh.nodes - point).T)
     load = np.zeros_like(reading)
 
@@ -56,7 +54,7 @@ def flank_load(
     s, w = np.polynomial.legendre.leggauss(_POINTS)
     values, slopes = line_shapes(s)
     at, along = (np.einsum("pk,ekc->epc", each, mesh.nodes[edges]) for each in (values, slopes))
-    _, stress, chi, _ = _flamant(at - point, normal, poisson, near, far)
+    _, stress, chi, _ = flamant(at - point, normal, poisson, near, far)
     outward = np.stack([along[..., 1], -along[..., 0]], axis=-1)  # times the length of the edge
     traction = (chi * w)[..., None] * np.einsum("epcd,epd->epc", stress, outward)
     _add(load, edges, -np.einsum("epc,pk->ekc", traction, values))
@@ -66,7 +64,7 @@ def flank_load(
     corners = mesh.nodes[elements]
     gradient, determinant = gradients(corners, slope)
     at = np.einsum("pk,ekc->epc", square, corners)
-    moved, stress, chi, fall = _flamant(at - point, normal, poisson, near, far)
+    moved, stress, chi, fall = flamant(at - point, normal, poisson, near, far)
     area = determinant * weight
     force = np.einsum("epcd,epd,ep->epc", stress, fall, area)
     tensor = np.einsum("epc,epd->epcd", fall, moved)
@@ -91,12 +89,18 @@ def flank_load(
     return load, reading, np.einsum("ep,epc,epck,ep->k", chi, moved, motions, area)
 
 
+def outer_radius(mesh: Sector, point: FloatArray, far: float) -> float:
+    """Where chi is zero around a point: at ``far``, or before the cut to the next pitch [modules]."""
+    across = math.atan2(*mesh.nodes[mesh.ahead[-1]][::-1]) - math.atan2(*point[::-1])
+    return min(far, 0.99 * math.hypot(*point) * math.sin(across))
+
+
 def _add(load: FloatArray, nodes: np.ndarray, values: FloatArray) -> None:
     for axis in (0, 1):
         np.add.at(load, 2 * nodes + axis, values[..., axis])
 
 
-def _flamant(
+def flamant(
     off: FloatArray, normal: FloatArray, poisson: float, near: float, far: float
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Flamant's displacement (..., 2) and stress (..., 2, 2), chi (...) and its gradient (..., 2).

@@ -212,3 +212,19 @@ def test_16_the_cluster_gives_the_file_of_one_process(example, tmp_path, monkeyp
     labelled(module.draw(result))
     run_sweep(load_study(module.STUDY), tmp_path / "alone", workers=0)
     xr.testing.assert_identical(result, read_results(tmp_path / "alone").load())
+
+
+def test_18_neighbours_and_a_thin_rim_soften(example):
+    module = example(18)
+    result = module.compute()
+    module.draw(result)
+    (solid, alone), (bored, _), (thin, _) = result["mean_over_iso"].values
+    assert 0.5 * solid < thin < 0.75 * solid
+    assert 0.95 * solid < bored < solid < alone
+    # The higher loaded tooth's fillet under tension carries more than the middle of the tooth at its foot.
+    field = result.attrs["fields"]["solid"]
+    x, y = 1e3 * field.nodes.T
+    fillet = (np.hypot(x + 4.5, y - 40.5) < 1.0) | (np.hypot(x + 12.0, y - 39.0) < 1.0)
+    middle = np.hypot(x + 8.9, y - 40.5) < 1.0
+    stress = field.von_mises
+    assert stress[fillet].max() > 3.0 * stress[middle].max()

@@ -24,6 +24,7 @@ from validation.cross_check.ledger import losses, quadrature
 from validation.verification.arithmetic import arithmetic
 from validation.verification.checks import Check, check
 from validation.verification.closed_forms import closed_forms
+from validation.verification.elastic_load import elastic_load
 from validation.verification.published import published_checks
 from validation.verification.stability_routes import fit_bound
 from validation.verification.written_twice import written_twice
@@ -42,6 +43,7 @@ def code_checks(pair: AnyPair) -> tuple[Check, ...]:
     return (
         *published_checks(pair),
         *closed_forms(),
+        elastic_load(),
         *written_twice(pair),
         *arithmetic(pair),
         _block_form(pair),

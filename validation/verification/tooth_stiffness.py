@@ -11,7 +11,7 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,19 +21,21 @@ from lumped.labelling import labelled_dataset
 from lumped.path_of_contact import pair_stiffness
 from lumped.stiffness import iso6336
 from lumped.stiffness.body import thin_rims
+from lumped.stiffness.contact import contact_half_width
 from lumped.stiffness.elastic_teeth import (
     ElasticTooth,
     Plane,
     Support,
     alone,
     elastic_teeth,
+    hertz_half_width,
     pair_error,
     together,
 )
 from lumped.stiffness.energy import energy_curve
 from lumped.stiffness.neighbours import neighbour_compliances
 from lumped.typing import FloatArray
-from validation.verification.checks import Check, check
+from validation.verification.checks import Check, check, rows_check
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -177,6 +179,7 @@ def tooth_stiffness(pair: GearPair) -> ToothStiffness:
             _standard(pair, iso[1], xi),
             *_unheld(pair, float(unheld.mean() / elastic.mean())),
             _neighbours(pair, ring),
+            _contact(pair, elastic_free, xi),
             *_read(pair, read.mean(), float(own.mean()), xi),
         ),
         error=float(pair_error(pair, ring, xi).max()),
@@ -234,6 +237,23 @@ def _neighbours(pair: GearPair, ring: tuple[ElasticTooth, ElasticTooth]) -> Chec
     by_fourier = neighbour_compliances(pair)[0](place)[0]
     ratio = float(together(pair, ring, 1, place)[0] / by_fourier)
     return check("neighbours_elastic", abs(ratio - 1.0), ratio=f"{ratio:.3f}")
+
+
+def _contact(pair: GearPair, teeth: tuple[ElasticTooth, ElasticTooth], xi: FloatArray) -> Check:
+    """In plane strain no depth is left: u_c + (2 ln(2/a) - nu')/pi over E', with the other formula for a."""
+    g, bodies = pair.geometry, (pair.pinion, pair.gear)
+    load = pair.operating.pinion_torque / (g.base_radius_pinion * g.face_width)
+    moduli = bodies[0].youngs_modulus, bodies[1].youngs_modulus
+    ratios = bodies[0].poisson_ratio, bodies[1].poisson_ratio
+    half = contact_half_width(load, xi * (g.L_XY - xi) / g.L_XY, moduli, ratios)
+    rows = []
+    for tooth, length, modulus, nu in zip(teeth, (xi, g.L_XY - xi), moduli, ratios, strict=True):
+        module = tooth.wheel.tooth.module
+        whole = tooth.flank.deflection(length / module)
+        whole = whole + (2.0 * np.log(2.0 * module / half) - nu / (1.0 - nu)) / math.pi
+        found = replace(tooth, plane="strain").compliance(length, hertz_half_width(pair, xi))
+        rows.append(np.stack([found * modulus / (1.0 - nu**2), whole], axis=-1))
+    return rows_check("contact_elastic", np.concatenate(rows))
 
 
 def _read(pair: GearPair, mean: float, sampled: float, xi: FloatArray) -> Iterator[Check]:

@@ -7,7 +7,10 @@ from lumped import load_gear_pair, plane_compliance, preset_names
 from validation.verification import tooth_stiffness as module
 from validation.verification.tooth_stiffness import tooth_stiffness
 
-KEYS = ["energy_elastic", "standard_elastic", "free_elastic", "neighbours_elastic", "stiffness_read"]
+KEYS = [
+    *("energy_elastic", "standard_elastic", "free_elastic", "neighbours_elastic", "contact_elastic"),
+    "stiffness_read",
+]
 
 
 def failing(found):
@@ -33,6 +36,7 @@ def test_each_way_is_seen_to_be_wrong(pair, monkeypatch):
         (lambda whole: lambda p: 0.85 * whole(p), module.iso6336, "mean_of", "standard_elastic"),
         (lambda whole: lambda p: whole(p).scaled(1.01), module, "pair_stiffness", "stiffness_read"),
         (lambda whole: lambda *a: 1.1 * whole(*a), module, "together", "neighbours_elastic"),
+        (lambda whole: lambda *a: 1.1 * whole(*a), module, "hertz_half_width", "contact_elastic"),
     ):
         with monkeypatch.context() as change:
             change.setattr(target, name, fault(getattr(target, name)))

@@ -30,6 +30,7 @@ GROUPS: Mapping[str, tuple[Fault, ...]] = {
         "geometry",
         "bodies",
         "teeth",
+        "elasticity",
         "contact",
         "integration",
         "stability",
