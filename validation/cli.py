@@ -106,7 +106,7 @@ def main() -> None:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     _open_streams()
     interrupt_once()  # to the end of the process: an impatient Ctrl-C prints no traceback
-    app()
+    app(prog_name="spurcheck")
 
 
 if __name__ == "__main__":
