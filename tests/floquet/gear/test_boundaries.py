@@ -12,7 +12,7 @@ from floquet.engine.intervals import seeded_nodes, unstable_intervals
 from floquet.engine.tongues import Tongue
 from floquet.gear.axes import vary
 from floquet.gear.boundaries import label_variation, search_grid
-from lumped import load_gear_pair, preset_names
+from lumped import load_gear_pair
 from lumped.errors import ParameterError
 
 
@@ -109,7 +109,7 @@ def test_radius_is_one_on_every_boundary(pair) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("preset", preset_names())
+@pytest.mark.parametrize("preset", ["nasa_28_28", "high_contact_ratio_29_47", "fzg_c"])
 def test_no_unstable_node_of_a_dense_chart_is_missed(preset: str) -> None:
     pair = load_gear_pair(preset).with_(friction__law="coulomb", friction__coefficient=0.05)
     axes = {"damping_ratio": [0.002, 0.006, 0.02]}
@@ -133,7 +133,8 @@ def test_no_unstable_node_of_a_dense_chart_is_missed(preset: str) -> None:
     ],
 )
 def test_boundaries_over_every_axis_are_those_of_the_chart(pair, name: str, values, law: str) -> None:
-    here = pair.with_(friction__law=law)
+    given = 0.05 if law == "coulomb" else None  # averaging law II anew at every speed is most of the work
+    here = pair.with_(friction__law=law, friction__coefficient=given)
     found = stability_boundaries(here, (13000.0, 19500.0), {name: values}, nodes=60, orders=2, xtol=1e-5)
     speeds = np.linspace(13000.0, 19500.0, 120)
     unstable, *beside = nodes_beside(found, stability_chart(here, {name: values, "speed_rpm": speeds}))

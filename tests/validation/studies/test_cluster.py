@@ -166,7 +166,8 @@ def test_a_scheduler_that_stands_still_stops_the_sweep(study, tmp_path, schedule
 
     def freeze(done, total, failed):
         if thaw.ident is None:
-            monkeypatch.setattr(pools, "GIVEN_UP_SECONDS", 2.0)
+            monkeypatch.setattr(pools, "GIVEN_UP_SECONDS", 0.5)
+            monkeypatch.setattr(cluster_pool, "_ANSWER_SECONDS", 0.3)
             process.send_signal(signal.SIGSTOP)  # its connections stay open
             thaw.start()  # so that a client that waits for ever fails this test instead of hanging it
 
