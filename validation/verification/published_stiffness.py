@@ -1,8 +1,8 @@
 """Published stiffness of spur gear teeth beside plane elasticity of the same gears; nothing is fitted to it.
 
 Sources: ISO 6336-1:2019, eqs (82) to (93); DIN 3990-1:1987, mean values of steel gears; the finite elements
-of another program, https://github.com/git-akai/gearcalc, work/contact-model.md, section 2.4; F. H. A. S. Dias,
-G. C. Silva and D. S. Chui, J. Braz. Soc. Mech. Sci. Eng. 46 (2024) 10.
+of another program, https://github.com/git-akai/gearcalc, work/contact-model.md, section 2.4; F. H. A. S.
+Dias, G. C. Silva and D. S. Chui, J. Braz. Soc. Mech. Sci. Eng. 46 (2024) 10.
 """
 
 from __future__ import annotations
