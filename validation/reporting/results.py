@@ -226,10 +226,7 @@ class Results:
     def tooth_stiffness(self) -> ToothStiffness | str:
         """Tooth stiffness beside plane elasticity; why it cannot be computed."""
         self.stage("tooth stiffness by elasticity")
-        try:
-            return tooth_stiffness(self.pair)
-        except (NumericalError, ParameterError) as error:
-            return str(error)
+        return _or_why_not(tooth_stiffness, self.pair)
 
     @property
     def checks(self) -> tuple[Check, ...]:
@@ -254,16 +251,13 @@ class Results:
         """The paper with this gear pair; why it does not suit the pair; None where it was not asked for."""
         if not self.effort.paper:
             return None
-        stage = self.stage("comparison with the paper")
-        try:
-            return paper_results(self.pair, self.effort.claim_samples, stage)
-        except (NumericalError, ParameterError) as error:
-            return str(error)
+        samples, stage = self.effort.claim_samples, self.stage("comparison with the paper")
+        return _or_why_not(partial(paper_results, samples=samples, progress=stage), self.pair)
 
 
 def _or_why_not(compute: Callable[[GearPair], T], pair: GearPair) -> T | str:
     """What is computed of the pair, or the text of why it cannot be."""
     try:
         return compute(pair)
-    except NumericalError as error:
+    except (NumericalError, ParameterError) as error:
         return str(error)

@@ -90,14 +90,14 @@ def test_what_is_written_keeps_the_ranges_choices_and_relations_of_the_database(
 
 @pytest.mark.parametrize("version", WRITTEN)
 def test_the_xml_form_fits_the_published_schema(preset, tmp_path, version):
-    xmlschema = pytest.importorskip("xmlschema")
+    xmlschema = pytest.importorskip("xmlschema", reason="needs xmlschema, which no extra installs")
     schema = xmlschema.XMLSchema(FOLDER / "rexs-file.xsd")
     schema.validate(write_rexs(preset, tmp_path / "pair.rexs", version))
 
 
 @pytest.mark.parametrize("version", WRITTEN)
 def test_the_json_form_fits_the_published_schema(preset, tmp_path, version):
-    jsonschema = pytest.importorskip("jsonschema")
+    jsonschema = pytest.importorskip("jsonschema", reason="needs jsonschema, which no extra installs")
     schema = json.loads((FOLDER / "rexs-schema.json").read_text(encoding="utf-8"))
     path = write_rexs(preset, tmp_path / "pair.rexsj", version)
     jsonschema.validate(json.loads(path.read_text(encoding="utf-8-sig")), schema)

@@ -1,13 +1,13 @@
 """A disk that takes no more: one message with the path, exit code 3, and nothing left behind."""
 
 import os
+import signal
 import subprocess
 import sys
 
 import pytest
 
 resource = pytest.importorskip("resource", reason="limits of a process are POSIX")
-signal = pytest.importorskip("signal")
 
 
 def limited():
