@@ -117,6 +117,38 @@ def stored_energy(
 
 
 @compiled
+def two_loads(
+    pressed: tuple[float, float],
+    stiffness: tuple[float, float],
+    coupling: float,
+    softening: float,
+    nominal: float,
+) -> tuple[float, float]:
+    """Loads of two tooth pairs that touch and move each other [N]; arguments as ``shared_loads``.
+
+    Newton's steps from the loads of linear springs.
+    """
+    first, second = 1.0 / stiffness[0], 1.0 / stiffness[1]
+    determinant = first * second - coupling * coupling
+    one = (second * pressed[0] - coupling * pressed[1]) / determinant
+    other = (first * pressed[1] - coupling * pressed[0]) / determinant
+    if softening == 0.0:
+        return one, other
+    for _ in range(_MOST_STEPS):
+        secant, first = compliances(one, stiffness[0], softening, nominal)
+        rest_one = one * secant + coupling * other - pressed[0]
+        secant, second = compliances(other, stiffness[1], softening, nominal)
+        rest_other = other * secant + coupling * one - pressed[1]
+        determinant = first * second - coupling * coupling
+        step_one = (second * rest_one - coupling * rest_other) / determinant
+        step_other = (first * rest_other - coupling * rest_one) / determinant
+        one, other = one - step_one, other - step_other
+        if abs(step_one) + abs(step_other) <= _LAST_STEP * (abs(one) + abs(other)):
+            break
+    return one, other
+
+
+@compiled
 def shared_loads(
     count: int,
     pressed: FloatArray,
@@ -147,7 +179,21 @@ def shared_loads(
         loads[i] = stiffness[i] * pressed[i] if touch[i] else 0.0
     matrix, rest = np.empty((count, count)), np.empty(count)
     for _ in range(2 * count + 1):
-        for _ in range(_MOST_STEPS):
+        number, one, other = 0, 0, 0
+        for i in range(count):
+            if touch[i]:
+                number, one, other = number + 1, other, i
+        if number == 1:
+            loads[other] = elastic_load(pressed[other], stiffness[other], softening, nominal)
+        elif number == 2:
+            loads[one], loads[other] = two_loads(
+                (pressed[one], pressed[other]),
+                (stiffness[one], stiffness[other]),
+                coupling[one, other],
+                softening,
+                nominal,
+            )
+        for _ in range(_MOST_STEPS if number > 2 else 0):
             for i in range(count):
                 secant, tangent = 1.0, 1.0
                 if touch[i]:

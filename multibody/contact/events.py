@@ -17,13 +17,22 @@ from lumped.path_function import PathFunction
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.compiled import compiled
+from multibody.contact.elements import compliances
 from multibody.contact.kernels import mesh_position, relief_at
-from multibody.contact.kinematics import DRIVE, corner_reach, sliding_velocity, wrap
+from multibody.contact.kinematics import (
+    DRIVE,
+    corner_gap,
+    corner_reach,
+    overlap_rate,
+    sliding_velocity,
+    wrap,
+)
 
 #: Kinds of events, the first column of an event table; the second is the place xi [m] of the last two.
 ENTRY, EXIT, SWITCH, SLIDING = 0.0, 1.0, 2.0, 3.0
-#: First and last touch of tip corners, beyond the path of contact.
-FIRST_TOUCH, LAST_TOUCH = 4.0, 5.0
+#: First touch of a tip corner before the path of contact, where its damper lets one behind it go, and last
+#: touch; of letting go the second column is the stiffness there [N/m].
+FIRST_TOUCH, LET_GO, LAST_TOUCH = 4.0, 5.0, 6.0
 #: Length of an ordinary step over the base pitch. Where the jumps of a law and its first two derivatives come
 #: to less than this share of its largest value within a step, nothing happens.
 _STEP, _NEGLIGIBLE = 0.005, 1e-6
@@ -41,6 +50,7 @@ def event_table(
     pitch: float,
     *,
     corners: bool = False,
+    alone: bool = True,
 ) -> FloatArray:
     """Rows (kind, place) of what makes the force jump or bend once per mesh cycle, (n, 2).
 
@@ -51,6 +61,7 @@ def event_table(
     friction : (kind, place) of the jumps and kinks of the friction law
     pitch : base pitch [m]
     corners : whether tip corners touch beyond the path of contact
+    alone : whether the load of a pair moves no other; else the touches of corners are not foreseen
     """
     step = _STEP * pitch
     sizes = {
@@ -60,12 +71,15 @@ def event_table(
     largest = [place for place in sorted(sizes, key=lambda at: -sizes[at]) if sizes[place] > _NEGLIGIBLE]
     rows = [*friction, *((SWITCH, place) for place in {*bends, *largest[:_MOST_SWITCHES]})]
     low, high = stiffness.interval
-    if stiffness(
-        [low + step, high - step]
-    ).any():  # the damping, as sqrt(k), bends also where k starts from 0
+    inside = np.array([low + step, high - step])
+    if stiffness(inside).any():  # the damping, as sqrt(k), bends also where k starts from 0
         rows += [(ENTRY, 0.0), (EXIT, 0.0)]
-        if corners:
-            rows += [(FIRST_TOUCH, 0.0), (LAST_TOUCH, 0.0), (SWITCH, low), (SWITCH, high)]
+    if corners:
+        ends = stiffness(np.array([low, np.nextafter(high, low)]))
+        rows += [(FIRST_TOUCH, 0.0), (LET_GO, float(ends[1])), (LAST_TOUCH, 0.0)] if alone else []
+        least = _NEGLIGIBLE * float(np.abs(stiffness(stiffness.breaks[:-1])).max())
+        bent = np.abs(stiffness(inside) - ends) > least  # beyond, k keeps its value, and so does a relief
+        rows += [(SWITCH, at) for at, one in zip((low, high), bent, strict=True) if one or bends]
     return np.array(rows, dtype=float).reshape(-1, 2)
 
 
@@ -88,6 +102,54 @@ def _change(law: PathFunction, j: int, step: float) -> float:
 
 
 @compiled
+def let_go(
+    gap: float,
+    stiffness: float,
+    ex: float,
+    ey: float,
+    length: float,
+    v: FloatArray,
+    p: FloatArray,
+    flags: int,
+) -> float:
+    """How far beyond D the pinion's tip corner lets go: its damper would pull as much as it presses [m].
+
+    Where the compression falls at the rate u that is where the load is c u, or with the share x^2 (3 - 2 x)
+    of a damper that acts gradually, at the load x N_f, where c u x (3 - 2 x) = N_f.
+
+    Parameters
+    ----------
+    gap : approach of the flanks [m]
+    stiffness : of the pair [N/m]
+    ex, ey, length : line of action
+    v, p, flags : as ``kernels.contact_forces``
+    """
+    rp, rg, tip = p[kn.RADIUS_P], p[kn.RADIUS_G], p[kn.TIP_P]
+    vx, vy = v[0] - v[3], v[1] - v[4]
+    omega_p, omega_g = v[2] - p[kn.OMEGA_P], v[5] + p[kn.OMEGA_G]
+    turning = lengthening = 0.0
+    if flags & kn.MOVING_LINE:
+        turning = (ey * vx - ex * vy) / length
+        lengthening = (rp + rg) * turning - (ex * vx + ey * vy)
+    full = kn.GRADUAL * p[kn.NOMINAL_FORCE]
+    damping = p[kn.DAMPING] * math.sqrt(max(stiffness, 0.0))
+    softening = p[kn.SOFTENING] if flags & kn.CONTACT_LAW else 0.0
+    closing = overlap_rate(ex, ey, vx, vy, omega_p, omega_g, rp, rg, DRIVE)
+    beyond = corner_reach(gap, tip, length, rp, rg)
+    for _ in range(_MOST_ITERATIONS):
+        _, by_p, by_length = corner_gap(beyond, tip, length, rp, rg)
+        pull = damping * (by_p * rp * (turning - omega_p) + by_length * lengthening - closing)
+        if not 9.0 * pull > 8.0 * full:
+            break
+        load = pull if pull > full else 0.25 * (3.0 + math.sqrt(9.0 - 8.0 * full / pull)) * full
+        left = gap - load * compliances(load, stiffness, softening, p[kn.NOMINAL_FORCE])[0]
+        before, beyond = beyond, corner_reach(left, tip, length, rp, rg)
+        if abs(beyond - before) < _SHARP * p[kn.PITCH]:
+            break
+    return float(beyond)
+
+
+@compiled
 def distance(
     kind: float, place: float, t: float, q: FloatArray, v: FloatArray, p: FloatArray, flags: int
 ) -> float:
@@ -99,9 +161,11 @@ def distance(
     """
     ex, ey, length, delta, rho, xi = mesh_position(t, q, p, flags, DRIVE)
     shifted = flags & (kn.ENTRY_SHIFT | kn.TIP_CONTACT)
-    if kind in (EXIT, LAST_TOUCH):
+    if kind in (EXIT, LET_GO, LAST_TOUCH):
         beyond = 0.0
-        if kind == LAST_TOUCH:
+        if kind == LET_GO:
+            beyond = let_go(delta - relief_at(p, p[kn.L_XD])[0], place, ex, ey, length, v, p, flags)
+        elif kind == LAST_TOUCH:
             gap = delta - relief_at(p, p[kn.L_XD])[0]
             beyond = corner_reach(gap, p[kn.TIP_P], length, p[kn.RADIUS_P], p[kn.RADIUS_G])
         return float(p[kn.TIP_P] if shifted else p[kn.L_XD]) + beyond - rho
@@ -130,8 +194,8 @@ def time_to_event(
     flags: int,
     events: FloatArray,
     near: float,
-) -> float:
-    """Time to the next event [s], infinite when there is none.
+) -> tuple[float, float]:
+    """Time to the next event [s] and its kind; infinite when there is none.
 
     Parameters
     ----------
@@ -149,13 +213,14 @@ def time_to_event(
         if d < way:
             way, which = d, i
     wait = way / speed
+    kind = float(events[which, 0]) if events.shape[0] else ENTRY
     if not wait < near:
-        return wait
+        return wait, kind
     for _ in range(_MOST_ITERATIONS):
         later, moving = q + wait * (v + 0.5 * wait * a), v + wait * a
-        d = distance(events[which, 0], events[which, 1], t + wait, later, moving, p, flags)
+        d = distance(kind, events[which, 1], t + wait, later, moving, p, flags)
         change = wrap(d, pitch) / speed
         wait += change
         if abs(change) * speed < _SHARP * pitch:
             break
-    return max(wait, 0.0)
+    return max(wait, 0.0), kind

@@ -92,7 +92,7 @@ N_STATE = 10
 _REACH = 0.4
 #: Where teeth touch beyond their tips the damper takes hold gradually: it is whole at this share of the mean
 #: load. Acting at once it would make the load jump by c times the speed of approach at the first touch.
-_GRADUAL = 1.0 / 15.0
+GRADUAL = 1.0 / 15.0
 
 
 @compiled
@@ -359,7 +359,7 @@ def contact_forces(
             arm_g = length - arm_p
             damping = p[DAMPING] * math.sqrt(max(stiffness, 0.0))
             if flags & TIP_CONTACT:
-                damping *= gradual(elastic / (_GRADUAL * p[NOMINAL_FORCE]))
+                damping *= gradual(elastic / (GRADUAL * p[NOMINAL_FORCE]))
             stored, stored_slope = stored_energy(
                 elastic, stiffness, state[SLOPE, i], softening, p[NOMINAL_FORCE]
             )

@@ -167,7 +167,14 @@ def machine(pair: GearPair, flags: int = 0) -> Machine:
         ahead=math.floor((tip_p - l_xa) / pitch),
         period=pitch / (omega_p * r_p),
         switches=switches,
-        events=event_table(stiffness, starts, friction, pitch, corners=bool(flags & kn.TIP_CONTACT)),
+        events=event_table(
+            stiffness,
+            starts,
+            friction,
+            pitch,
+            corners=bool(flags & kn.TIP_CONTACT),
+            alone=not (flags & kn.NEIGHBOURS and p[kn.COUPLED] > 0.0),
+        ),
     )
 
 

@@ -2,8 +2,9 @@
 
 Each interval ends where the nominal element laws switch (linear) or at the end of a mesh cycle (exact). The
 latter is cut further where the motion itself will make the contact force jump or bend
-(``multibody.contact.events``): the integrator stops just before, one Taylor step leads across, and the
-integrator starts again. Between the integrator's own steps the state is a quintic Hermite polynomial through
+(``multibody.contact.events``): the integrator stops before, a few steps of the same method without exudyn
+(``multibody.run.bridge``) and a Taylor step lead across, and the integrator starts again. Between the
+integrator's own steps the state is a quintic Hermite polynomial through
 coordinates, velocities and accelerations; its error, of sixth order in the step, stays below the
 integrator's, of fifth.
 """
@@ -21,7 +22,8 @@ import numpy as np
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
-from multibody.contact.events import time_to_event
+from multibody.contact.events import SLIDING, time_to_event
+from multibody.run.bridge import bridge
 from multibody.run.model import ExudynModel, accelerations
 
 #: Smallest step over the mesh cycle. A floor that is not tiny hangs where friction changes sign: the step
@@ -33,6 +35,11 @@ _FIRST_STEP = 1e-4
 _MOST_EVENTS = 64
 #: A Taylor polynomial of second order foretells vibration over this share of a swing of the fastest mode.
 _NEAR = 0.2
+#: Further ahead the nominal speed tells the time of an event, which vibration shifts by less than this; much
+#: more where sliding turns, which depends on rates.
+_FAR, _FAR_SLIDING = 0.04, 0.15
+#: So many ordinary steps are taken without exudyn.
+_BRIDGED = 3.0
 #: exudyn takes an interval as finished so long before its end [s].
 _EXUDYN_END = 1e-10
 
@@ -158,7 +165,7 @@ def _interval(
         model.budget.reason = "not finite"
         raise _failure(model, start, stop)
     for _ in range(_MOST_EVENTS if locate else 0):
-        wait = time_to_event(t, q, v, a, model.parameters, model.flags, m.events, _NEAR * swing)
+        wait, kind = time_to_event(t, q, v, a, model.parameters, model.flags, m.events, _NEAR * swing)
         if wait < close:
             beyond = t + wait + 1e-12 * m.period + 1e-15 * t
             if not beyond < stop:
@@ -167,16 +174,42 @@ def _interval(
         else:
             # Stop short of it by what vibration may shift it: the third order of the Taylor polynomial.
             ahead = wait / swing
-            short = max(0.5 * ahead**3, 0.5 * close / swing) if ahead < _NEAR else 0.15
+            short = max(0.5 * ahead**3, 0.5 * close / swing)
+            if ahead >= _NEAR:
+                short = _FAR_SLIDING if kind == SLIDING else _FAR
             until = t + wait - swing * min(0.5 * ahead, short)
             if not until < stop:  # or no event at all
                 break
-            part = _run(model, s, q, v, t, until, step)
-            step = _middle_step(part, step)
+            part, step = _towards(model, s, q, v, a, t, until, step)
         parts.append(part)
         t, q, v, a = float(part.times[-1]), part.q[-1], part.v[-1], part.a[-1]
-    part = _run(model, s, q, v, t, stop, step)
-    return Segment.joined([*parts, part]), _middle_step(part, step)
+    part, step = _towards(model, s, q, v, a, t, stop, step)
+    return Segment.joined([*parts, part]), step
+
+
+def _towards(
+    model: ExudynModel,
+    s: exu.SimulationSettings,
+    q: FloatArray,
+    v: FloatArray,
+    a: FloatArray,
+    start: float,
+    stop: float,
+    step: float,
+) -> tuple[Segment, float]:
+    """Integrate over a time without events; returns it and a step size to go on with."""
+    if stop - start <= _BRIDGED * step and model.drive is None:
+        times = np.linspace(start, stop, int(np.ceil((stop - start) / step)) + 1)
+        states = np.empty((3, times.size, 6))
+        states[:, 0] = q, v, a
+        m, ti = model.machine, s.timeIntegration
+        rtol, atol = ti.relativeTolerance, ti.absoluteTolerance
+        model.budget.calls += 6 * (times.size - 1)
+        rows = states[0], states[1], states[2]
+        if bridge(times, *rows, model.parameters, model.flags, m.table, m.bodies, rtol, atol):
+            return Segment(times, *rows), step
+    part = _run(model, s, q, v, start, stop, step)
+    return part, _middle_step(part, step)
 
 
 def _middle_step(part: Segment, default: float) -> float:
