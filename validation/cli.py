@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import inspect
 import io
 import os
@@ -104,6 +105,8 @@ def main() -> None:
     """Entry point of the installed command."""
     # Before numpy is imported: the matrices are small, threads inside BLAS only wait for each other.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    # Results live to the end: to search them for cycles as often as Python does takes a 25th of a report.
+    gc.set_threshold(100_000)
     _open_streams()
     interrupt_once()  # to the end of the process: an impatient Ctrl-C prints no traceback
     app(prog_name="spurcheck")

@@ -1,24 +1,8 @@
-"""Reproduction of the paper: figures 2 to 7, claims with verdicts, errata by computation."""
+"""Reproduction of the paper: figures 2 to 7, claims with verdicts, errata by computation.
 
-from validation.paper.claims.judge import claims
-from validation.paper.errata.catalogue import errata_chapter
-from validation.paper.figures.law_figures import law_runs
-from validation.paper.plots import draw_errata
-from validation.paper.records import PAPER, Claim, ClaimsTable, ErrataChapter, Erratum, Evidence, FigureRecord
-from validation.paper.reproduction import DRAW, figure_records
+Names are imported on first use; ``__init__.pyi`` lists them with their homes.
+"""
 
-__all__ = [
-    "DRAW",
-    "PAPER",
-    "Claim",
-    "ClaimsTable",
-    "ErrataChapter",
-    "Erratum",
-    "Evidence",
-    "FigureRecord",
-    "claims",
-    "draw_errata",
-    "errata_chapter",
-    "figure_records",
-    "law_runs",
-]
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -7,15 +7,7 @@ from dataclasses import dataclass
 
 from lumped import GearPair, LawRangeWarning
 from lumped.typing import Progress
-from validation.paper import (
-    ClaimsTable,
-    ErrataChapter,
-    FigureRecord,
-    claims,
-    errata_chapter,
-    figure_records,
-    law_runs,
-)
+from validation.paper.records import ClaimsTable, ErrataChapter, FigureRecord
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +32,8 @@ def paper_results(pair: GearPair, samples: int, progress: Progress) -> PaperResu
     ------
     NumericalError : a model fails at an operating point of the paper
     """
+    from validation.paper import claims, errata_chapter, figure_records, law_runs  # most reports do without
+
     with warnings.catch_warnings():
         # Laws are taken to the paper's operating points whether they suit them or not: that is what it did.
         warnings.simplefilter("ignore", LawRangeWarning)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from functools import partial
 
-from validation.paper import draw_errata
 from validation.reporting.blocks import Badge, Block, Content, Fact, Facts, Picture, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.paper_results import PaperResults
@@ -16,6 +15,8 @@ def write(results: Results) -> Content | None:
     """Write the chapter; None where the comparison with the paper was not asked for."""
     if not isinstance(results.paper, PaperResults):
         return None
+    from validation.paper import draw_errata  # most reports do without the paper
+
     chapter = results.paper.errata
     blocks: list[Block] = [
         *cautions(results),

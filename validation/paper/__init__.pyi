@@ -1,0 +1,13 @@
+from .claims.judge import claims as claims
+from .errata.catalogue import errata_chapter as errata_chapter
+from .figures.law_figures import law_runs as law_runs
+from .plots import draw_errata as draw_errata
+from .records import PAPER as PAPER
+from .records import Claim as Claim
+from .records import ClaimsTable as ClaimsTable
+from .records import ErrataChapter as ErrataChapter
+from .records import Erratum as Erratum
+from .records import Evidence as Evidence
+from .records import FigureRecord as FigureRecord
+from .reproduction import DRAW as DRAW
+from .reproduction import figure_records as figure_records
