@@ -168,7 +168,7 @@ def _foot(profile: ToothProfile) -> float:
     bottom, joint = profile.fillet_range
 
     def excess(roll: float) -> float:
-        at = np.array([roll - 1e-6, roll + 1e-6])
+        at = roll + np.array([-5e-5, 5e-5]) * (joint - bottom)
         u, h, _ = profile.fillet_points(at)
         return float(abs(h[1] - h[0]) - abs(u[1] - u[0]))
 

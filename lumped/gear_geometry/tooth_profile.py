@@ -17,6 +17,9 @@ from scipy.optimize import brentq
 from lumped.gear_geometry.involute import tooth_half_angle
 from lumped.typing import FloatArray
 
+#: The centre of the rack's tip circle is at least so far from the pitch line [modules].
+_OFF = 1e-6
+
 
 @dataclass(frozen=True)
 class ToothProfile:
@@ -55,7 +58,9 @@ class ToothProfile:
         flat = self.dedendum - self.fillet
         half_width = self.module * (0.25 * math.pi - flat * math.tan(self.pressure_angle))
         half_width -= radius / math.cos(self.pressure_angle)
-        return radius, half_width, self.module * (self.dedendum - self.profile_shift) - radius
+        down = self.module * (self.dedendum - self.profile_shift) - radius
+        # On the pitch line the whole tip would be cut at one roll angle.
+        return radius, half_width, down if abs(down) > _OFF * self.module else _OFF * self.module
 
     @property
     def fillet_rolls(self) -> tuple[float, float]:
@@ -69,7 +74,8 @@ class ToothProfile:
 
         The rack's pitch line rolls on the reference circle. The envelope of the tip circle has its normal
         through the pitch point, so the cut point lies on the line from the pitch point through the tip
-        circle's centre.
+        circle's centre: beyond the centre, or before it where a large profile shift lifts it over the pitch
+        line.
 
         Parameters
         ----------
@@ -82,7 +88,7 @@ class ToothProfile:
         """
         radius, half_width, down = self.rack_tip
         along = half_width - self.reference_radius * roll
-        stretch = 1.0 + radius / np.hypot(along, down)
+        stretch = 1.0 + math.copysign(radius, down) / np.hypot(along, down)
         return along * stretch, self.reference_radius - down * stretch
 
     @cached_property
@@ -190,7 +196,7 @@ class ToothProfile:
         radius, half_width, down = self.rack_tip
         r = self.reference_radius
         along = half_width - r * roll
-        distance = np.hypot(along, down)
+        distance, radius = np.hypot(along, down), math.copysign(radius, down)
         stretch, stretch_rate = 1.0 + radius / distance, radius * along * r / distance**3
         x_rate, y_rate = -r * stretch + along * stretch_rate, -down * stretch_rate
         turn = roll - math.pi / self.teeth

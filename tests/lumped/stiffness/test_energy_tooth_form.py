@@ -10,6 +10,7 @@ from lumped.gear_geometry.tooth_profile import ToothProfile
 
 MODULE = 3e-3
 GEARS = [(28, 0.0, 20.0, 0.38), (12, 0.0, 20.0, 0.38), (16, 0.18, 20.0, 0.2), (60, -0.2, 25.0, 0.3)]
+GEARS += [(40, 0.95, 20.0, 0.38)]  # the rack's tip circle has its centre above the pitch line
 ROUNDING = 1e-12  # of lengths and angles of order one module or one radian, a few operations each
 
 
