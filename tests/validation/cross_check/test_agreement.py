@@ -35,9 +35,16 @@ def test_both_models_return_the_same_table():
 
 
 @pytest.mark.parametrize(
-    "law", ["coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "composite"]
+    ("law", "stiffness"),
+    [
+        ("coulomb", "rectangular"),
+        ("coulomb", "parabolic"),
+        ("benedict_kelley", "parabolic"),
+        ("xu_kahraman", "rectangular"),
+        ("smoothed_coulomb", "parabolic"),
+        ("composite", "rectangular"),
+    ],
 )
-@pytest.mark.parametrize("stiffness", ["rectangular", "parabolic"])
 def test_linear_level_solves_the_lumped_equations(law, stiffness):
     """Two assemblies and two integrators of one set of equations."""
     pair = BASE.with_(friction__law=law, mesh__stiffness={"model": stiffness})
@@ -56,28 +63,6 @@ def test_all_effects_off_equals_lumped_to_integration_tolerance(options):
     )
     for name in ("dte", "x_p", "x_g", "y_p", "y_g", "theta_p", "theta_g", "normal_load"):
         assert difference(run, reference, name) < 1e-8
-
-
-@pytest.mark.slow
-def test_finite_motion_scales_with_torque():
-    """Deflections are proportional to torque, what they do to the geometry to its square.
-
-    So the difference over the peak to peak falls fourfold with a quarter of the torque, within 5 %. Teeth
-    that may not pull are left out: whether a load is negative does not depend on the size of the torque.
-    The friction coefficient is a constant, because the laws II and III depend on torque themselves.
-    """
-    effects = {"contact_loss": False}
-    values: dict[str, list[float]] = {}
-    for torque in (56.5, 56.5 / 4, 56.5 / 16):
-        pair = SMOOTH.with_(operating__pinion_torque=torque)
-        run = multibody.simulate(pair, 20, initial="periodic", effects=effects, rtol=1e-9)
-        reference = lumped.simulate(pair, 20, initial="periodic")
-        for name in ("dte", "x_p", "y_p"):
-            values.setdefault(name, []).append(difference(run, reference, name))
-    for name, (first, second, third) in values.items():
-        assert first / second == pytest.approx(4, rel=0.05), name
-        assert second / third == pytest.approx(4, rel=0.05), name
-    assert 1e-3 < values["dte"][0] < 1e-2
 
 
 @pytest.mark.parametrize("effect", sorted(multibody.EFFECTS))
@@ -100,18 +85,22 @@ def test_each_effect_acts(effect):
 
 @pytest.mark.slow
 def test_order_in_torque_is_two():
-    """Absolute differences grow with the square of the torque: slope 2 over T ... T/64, smooth stiffness.
+    """Deflections are proportional to torque, what they do to the geometry to its square.
 
-    Measured: 1.989 (dte), 1.989 (x_p), 1.990 (y_p).
+    So absolute differences have slope 2 over T ... T/64. Teeth that may not pull are left out: whether a load
+    is negative does not depend on the size of the torque. The friction coefficient is a constant, because
+    laws II and III depend on torque themselves. Measured: 1.989 (dte), 1.989 (x_p), 1.990 (y_p).
     """
-    torques = 56.5 / 2.0 ** np.arange(7)
-    sizes = {name: np.empty(7) for name in ("dte", "x_p", "y_p")}
+    torques = 56.5 / 4.0 ** np.arange(4)
+    sizes = {name: np.empty(4) for name in ("dte", "x_p", "y_p")}
     for j, torque in enumerate(torques):
         pair = SMOOTH.with_(operating__pinion_torque=float(torque))
         run = multibody.steady_state(pair, samples_per_cycle=128, effects={"contact_loss": False})
         reference = lumped.steady_state(pair, samples_per_cycle=128)
         for name, values in sizes.items():
             values[j] = np.abs(run[name] - reference[name]).max()
+        if j == 0:
+            assert 1e-3 < difference(run, reference, "dte") < 1e-2
     for name, values in sizes.items():
         order = np.polyfit(np.log(torques), np.log(values), 1)[0]
         assert order == pytest.approx(2.0, abs=0.05), name
