@@ -16,6 +16,7 @@ from validation.commands.crosscheck import crosscheck
 from validation.commands.export import export
 from validation.commands.figures import figures
 from validation.commands.interactive import interactive
+from validation.commands.jumps import jumps
 from validation.commands.measurement import measurement
 from validation.commands.parameter_files import init, presets, schema
 from validation.commands.report import report
@@ -76,6 +77,7 @@ COMMANDS = (
     reversal,
     stability,
     response,
+    jumps,
     interactive,
     sweep,
     figures,

@@ -37,6 +37,8 @@ _SETTLE, _OBSERVE = 40, 60
 #: Cycles for which a run settles behind a place where a motion loses its stability.
 _BEHIND = 300
 _LARGEST = 1_000_000
+#: Of the largest load: rounding.
+_NO_LOAD = 1e-9
 
 
 def _with_relief(variation: GearVariation, micrometres: float) -> GearVariation:
@@ -101,7 +103,8 @@ def jump_map(
     Returns
     -------
     xarray.Dataset over the second axis and speed_rpm: ``motions``, the number of stable periodic motions;
-    ``contact_kept`` in all of them; ``dte_rms_smallest``, ``dte_rms_largest`` of them and ``largest_load``.
+    ``contact_kept``, whether in all of them some tooth pair carries load at every moment;
+    ``dte_rms_smallest``, ``dte_rms_largest`` of them and ``largest_load``.
     Where ``motions`` is 0, at beats, chaos or motions of more cycles, they are those of a run; NaN where it
     grows beyond twice the backlash and 30 static deflections. Over ``jump``: the places where a stable motion
     ends and the root mean square changes at once by a tenth or more, as `ResponseBranches.jumps`.
@@ -164,14 +167,14 @@ def _checked(pair: GearPair, axes: Axes) -> tuple[str, dict[str, FloatArray]]:
     return name, grid
 
 
-def checked_axis(pair: GearPair, name: str) -> None:
+def checked_axis(pair: GearPair, name: str, field: str = "axis") -> None:
     """Refuse an axis that does not exist, or that the pair does not have.
 
     Raises
     ------
     ParameterError : unknown name, or a pair without tip relief
     """
-    one_of("axis", name, JUMP_AXES)
+    one_of(field, name, JUMP_AXES)
     JUMP_AXES[name].own(pair)
 
 
@@ -237,10 +240,15 @@ def _add(row: _Row, branch: Branch, speeds: FloatArray, cycle: float) -> None:
 
 
 def _parts(branch: Branch, orbits: list[Orbit]) -> BoolArray:
-    """Whether teeth part between each motion and the next; at grazing itself rounding decides."""
+    """Whether all teeth part between each motion and the next; at grazing itself rounding decides."""
     grazing = {id(b.orbit) for b in branch.bifurcations if b.kind == "grazing"}
-    parts = np.array([orbit.parts and id(orbit) not in grazing for orbit in orbits])
+    parts = np.array([_part(orbit.run) and id(orbit) not in grazing for orbit in orbits])
     return np.asarray(parts[:-1] | parts[1:])
+
+
+def _part(run: Run) -> bool:
+    """Whether there is a moment at which no tooth pair carries load."""
+    return run.least_load <= _NO_LOAD * run.largest_load
 
 
 def _run_through(
@@ -263,7 +271,7 @@ def _run_through(
             row.kept[j] = False
             continue
         row.smallest[j] = row.largest[j] = run.rms
-        row.load[j], row.kept[j] = run.largest_load, not run.events.size
+        row.load[j], row.kept[j] = run.largest_load, not _part(run)
         state, settle = run.end, _SETTLE
 
 
@@ -272,7 +280,7 @@ def _observed(one: Member, start: FloatArray, period: float, parameter: float, s
     system = one.family.at(period)
     try:
         settled = system.run(start, period, settle, parameter)
-        run = system.run(settled.end, period, _OBSERVE, parameter, logged=1)
+        run = system.run(settled.end, period, _OBSERVE, parameter)
     except NumericalError:
         return None
     return None if max(run.most - run.mean, run.mean - run.least) > one.limits.amplitude else run
@@ -308,7 +316,7 @@ def _dataset(
     axis, both = JUMP_AXES[name], (name, "speed_rpm")
     table: dict[str, Variable] = {
         "motions": (both, np.array([row.motions for row in rows]), "1", "stable periodic motions"),
-        "contact_kept": (both, np.array([row.kept for row in rows]), "1", "contact kept in all motions"),
+        "contact_kept": (both, np.array([row.kept for row in rows]), "1", "always some tooth load"),
         "dte_rms_smallest": (
             both, np.array([row.smallest for row in rows]), "m", "smallest dynamic transmission error, rms",
         ),

@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 #: Part of the speed behind a bifurcation where a run shows what happens there.
 _BEYOND = 1e-3
 _SETTLE = 400
+_CORNER = 1e-6
 #: Change of the root mean square that is a jump.
 JUMP = 0.1
 #: A bifurcation has a multiplier of modulus one but for rounding: it belongs to the stable motions before it.
@@ -316,7 +317,13 @@ def period_behind(branch: Branch, b: Bifurcation) -> float | None:
     stable = [orbit.stable for orbit in sides]
     if stable[0] == stable[1]:
         return None
-    rising = sides[stable.index(True)].period > b.orbit.period
+    way = 1 if stable[1] else -1
+    # A corner is not the extreme of the speed to the last digit.
+    calm = (o.period / b.orbit.period for o in branch.orbits[at + way :: way])
+    ratio = next((ratio for ratio in calm if abs(ratio - 1.0) > _CORNER), 1.0)
+    if ratio == 1.0:
+        return None
+    rising = ratio > 1.0
     return b.orbit.period * (1.0 - _BEYOND if rising else 1.0 + _BEYOND)
 
 

@@ -154,8 +154,8 @@ def propagate(
     sampled : (cycles S, 2m), out
     loads : (cycles S, I), out: loads of the contacts
     log : (L, 3), out: phase in cycles, contact, new state of each event; later ones are only counted
-    totals : (5,), out: integrals of y and y^2 over the phase, smallest and largest y, largest load;
-        y = output . z
+    totals : (6,), out: integrals of y and y^2 over the phase, smallest and largest y, largest load of a
+        contact, smallest load of all together; y = output . z
     final : (m + n, 1 or 2m + 3), out: z and v at the end, v of the accumulated rows among them, from 0
 
     Returns
@@ -189,7 +189,7 @@ def propagate(
             z[0, i, 1 + i] = 1.0
             v[0, i, 1 + m + i] = 1.0
     totals[:] = 0.0
-    totals[2], totals[3] = math.inf, -math.inf
+    totals[2], totals[3], totals[5] = math.inf, -math.inf, math.inf
     events = 0
     for cycle in range(cycles):
         at = 0
@@ -263,9 +263,13 @@ def propagate(
                         series[j] += output[p] * z[j, p, 0]
                 low, high = extremes(series, step)
                 totals[2], totals[3] = min(totals[2], low), max(totals[3], high)
+                series[:] = 0.0
                 for i in range(contacts):
                     if state[i] == CLOSED:
                         totals[4] = max(totals[4], extremes(load[i, :, 0], step)[1] / (T * T))
+                        for j in range(order):
+                            series[j] += load[i, j, 0]
+                totals[5] = min(totals[5], extremes(series, step)[0] / (T * T))
                 # Samples in [tau, tau + step).
                 last = tau + step
                 while at < samples.size and samples[at] < last:

@@ -64,7 +64,8 @@ class Run:
     derivatives : (m + n, 2m + 2) of (end, accumulated) by start, T and the parameter; None where not asked
         for
     mean, mean_square, least, most : of the output over the phase
-    largest_load : of all contacts
+    largest_load : of one contact
+    least_load : of all contacts together
     events : (E, 3) phase in cycles, contact and its new state (0 gap, 1 recovering, 2 closed)
     phases : (S,) of the samples in cycles
     states : (S, 2m)
@@ -80,6 +81,7 @@ class Run:
     least: float
     most: float
     largest_load: float
+    least_load: float
     events: FloatArray
     phases: FloatArray
     states: FloatArray
@@ -216,7 +218,7 @@ class ContactSystem:
         samples = np.empty(0) if samples is None else np.ascontiguousarray(samples, dtype=float)
         contacts = len(self.contacts)
         states, loads = np.zeros((cycles * samples.size, 2 * m)), np.zeros((cycles * samples.size, contacts))
-        log, totals = np.zeros((logged, 3)), np.zeros(5)
+        log, totals = np.zeros((logged, 3)), np.zeros(6)
         final = np.zeros((m + n, 2 * m + 3 if derivatives else 1))
         start = np.ascontiguousarray(start, dtype=float)
         arguments: tuple[Any, ...] = (
@@ -240,6 +242,7 @@ class ContactSystem:
             least=float(totals[2]),
             most=float(totals[3]),
             largest_load=float(totals[4]),
+            least_load=float(totals[5]),
             events=log[: min(count, logged)],
             phases=(np.arange(cycles)[:, None] + samples).ravel(),
             states=states,

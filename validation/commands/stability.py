@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,6 +9,7 @@ import typer
 
 from floquet.engine.propagators.registry import PROPAGATORS
 from validation.commands import options as opt
+from validation.commands.axes import axis_values, number_in
 from validation.commands.terminal import FAILED, guarded, print_json, stderr, stdout, table
 
 if TYPE_CHECKING:
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
     from floquet.gear.multipliers import GearPairMultipliers
     from lumped import GearPair
-
-_LARGEST_COUNT = 5000
 
 
 @guarded
@@ -151,58 +149,16 @@ def _print_point(pair: GearPair, found: GearPairMultipliers) -> None:
 
 def _grid(texts: list[str]) -> dict[str, NDArray[np.float64]]:
     """Axes by name; refuses a name that comes twice."""
+    from floquet.gear.axes import GEAR_AXES
     from lumped.errors import refuse
 
     grid: dict[str, NDArray[np.float64]] = {}
     for text in texts:
-        name, values = _axis(text)
+        name, values = axis_values(text, GEAR_AXES)
         if name in grid:
             raise refuse("--axis", text, "an axis that is not there yet", f"{name} is given twice.")
         grid[name] = values
     return grid
-
-
-def _axis(text: str) -> tuple[str, NDArray[np.float64]]:
-    """Name and values of an axis written NAME=FROM:TO:COUNT."""
-    import numpy as np
-
-    from floquet.gear.axes import GEAR_AXES
-    from lumped.errors import ParameterError, refuse
-    from lumped.fields.refusals import nearest
-
-    name, separator, values = (part.strip() for part in text.partition("="))
-    allowed = f"NAME=FROM:TO:COUNT with different ends and a count from 2 to {_LARGEST_COUNT}"
-    wrong = refuse("--axis", text, allowed, "For example --axis speed_rpm=1000:20000:80.")
-    *ends, many = values.split(":")
-    if not separator or len(ends) != 2 or not many.strip().isdecimal():
-        raise wrong
-    if name not in GEAR_AXES:
-        advice = nearest(name, GEAR_AXES) or "Choose one of them."
-        raise refuse("--axis", name, "one of " + ", ".join(GEAR_AXES), advice)
-    low, high = sorted(_number("--axis", end, GEAR_AXES[name].units) for end in ends)
-    if low == high or not 2 <= int(many) <= _LARGEST_COUNT:
-        raise wrong
-    found = np.linspace(low, high, int(many))
-    try:
-        GEAR_AXES[name].check(name, found)
-    except ParameterError as error:
-        raise opt.by_option(error, {f"axes[{name!r}]": f"--axis {name}"}, "") from None
-    return name, found
-
-
-def _number(option: str, text: str, unit: str) -> float:
-    """Number in a unit, of text that may carry another one of its kind."""
-    from lumped.errors import refuse
-    from lumped.fields.units import to_si, to_stated
-
-    stated = unit.replace(" ", "*")
-    try:
-        number = to_stated(to_si(opt.value_of(text.strip()), stated), stated)
-    except (ValueError, TypeError) as error:
-        raise refuse(option, text, f"a number in {unit}", f"{error}.") from None
-    if not math.isfinite(number):
-        raise refuse(option, text, f"a number in {unit}", "Correct it.")
-    return number
 
 
 def _range(text: str) -> tuple[float, float]:
@@ -211,7 +167,7 @@ def _range(text: str) -> tuple[float, float]:
 
     ends = text.split(":")
     if len(ends) == 2:
-        low, high = (_number("--operating-range", end, "rpm") for end in ends)
+        low, high = (number_in("--operating-range", end, "rpm") for end in ends)
         if 0.0 < low < high:
             return low, high
     advice = "For example --operating-range 3000:8000."

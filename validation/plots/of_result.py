@@ -14,6 +14,7 @@ from lumped.fields.units import to_stated
 from lumped.schema.files import load_gear_pair
 from lumped.schema.pair import GearPair
 from validation.plots.campbell import campbell_figure
+from validation.plots.jumps import jump_map_figure
 from validation.plots.motion import history_figure
 from validation.plots.multipliers import multiplier_paths_figure
 from validation.plots.response import response_figure
@@ -57,6 +58,7 @@ def _effect(result: xr.Dataset) -> Figure:
 
 #: Variable that only one kind of result has -> its figure.
 _FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
+    "contact_kept": jump_map_figure,
     "branch": lambda result: response_figure(result),
     "dte": lambda result: history_figure(_pair(result).geometry, result),
     "dte_peak_to_peak": _sweep,
