@@ -75,7 +75,7 @@ EFFECTS: dict[str, Effect] = {
     "path_work": Effect(
         kn.PATH_WORK,
         "bent teeth turn the contact normal: the shafts pay for what the teeth store",
-        "contact_energy",
+        "path_work",
         default=False,
     ),
     "tip_contact": Effect(
@@ -110,8 +110,9 @@ CAUSES: dict[str, str] = {
     "sliding_velocity": "friction follows the actual sliding and rolling velocities",
     "entry_shift": "teeth enter and leave where the deflected flanks cross the tip circles",
     "contact_loss": "teeth push but never pull",
-    "friction_load": "friction law at the momentary load of each pair (no finite motion, not part of all)",
-    "contact_energy": "contact that follows from an elastic energy and from clearance (not part of all)",
+    "friction_load": "friction law at the momentary load of each pair",
+    "contact_energy": "contact that follows from clearance and the load of each pair",
+    "path_work": "bent teeth turn the contact normal: the shafts pay for what the teeth store",
 }
 #: Effects that act where none are named: all finite motions.
 DEFAULT_EFFECTS: tuple[str, ...] = tuple(name for name, effect in EFFECTS.items() if effect.default)
@@ -124,8 +125,8 @@ def default_effects(contact: str) -> tuple[str, ...]:
     ----------
     contact : ``mesh.contact`` of the pair: "paper", or "loaded" whose contact has an energy
     """
-    energy = contact == "loaded"
-    return tuple(name for name, e in EFFECTS.items() if e.default or (energy and e.cause == "contact_energy"))
+    energy = ("contact_energy", "path_work") if contact == "loaded" else ()
+    return tuple(name for name, e in EFFECTS.items() if e.default or e.cause in energy)
 
 
 def effect_flags(effects: Collection[str] | Mapping[str, bool] | None, contact: str = "paper") -> int:

@@ -13,7 +13,7 @@ from lumped.labelling import labelled_dataset
 from lumped.model.results import provenance
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import Progress
-from multibody.contact.effects import CAUSES, DEFAULT_EFFECTS, EFFECTS
+from multibody.contact.effects import CAUSES, EFFECTS, default_effects
 from multibody.run.flow_map import steady_state
 
 if TYPE_CHECKING:
@@ -42,33 +42,45 @@ def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Datase
     xarray.Dataset over ``cause`` and ``quantity``: ``alone``, the largest change when only this cause acts,
     and ``without``, the largest change when all causes but this one act; both over the peak to peak of the
     motion without any, so they are shares of the difference from the lumped model. Cause "all" is the whole
-    difference: all finite motions, so not the cause "friction_load", whose ``without`` is NaN. The attribute
-    ``largest`` names the finite motion that changes the transmission error most. A quantity that does not
-    move without effects (y_p without friction) is NaN.
+    difference: the effects that act by default. ``without`` is NaN for what is no part of it, as the cause
+    "friction_load". The attribute ``largest`` names the part that changes the transmission error most. A
+    quantity that does not move without effects (y_p without friction) is NaN.
+
+    In the loaded form the exact contact itself is the cause "contact_energy", and all others act on it: their
+    ``alone`` is the change of the motion that it makes. Its own ``without`` is NaN, and there is no cause
+    "entry_shift", because contact then begins by clearance.
     """
     pair = load_gear_pair(pair)
 
     def motion(effects: set[str]) -> xr.Dataset:
         return steady_state(pair, effects=effects, samples_per_cycle=_SAMPLES, rtol=_RTOL)
 
-    every = set(DEFAULT_EFFECTS)
+    every = set(default_effects(pair.mesh.contact))
     groups = {cause: {name for name in EFFECTS if EFFECTS[name].cause == cause} for cause in CAUSES}
+    held: set[str] = set()
+    if pair.mesh.contact == "loaded":
+        held = groups["contact_energy"] | groups.pop("entry_shift")
     groups["all"] = every
     base = motion(set())
+    contact = motion(held) if held else base
     table = {kind: np.full((len(groups), len(_QUANTITIES)), np.nan) for kind in _KINDS}
-    for row, own in enumerate(groups.values()):
-        for kind, effects in (("alone", own), ("without", every - own)):
-            if kind == "without" and not own <= every:
-                continue  # it is no part of the whole
-            run = motion(effects)
+    for row, (cause, own) in enumerate(groups.items()):
+        itself = own <= held and bool(held)
+        for kind, effects, start in (
+            ("alone", held | own, base if itself or cause == "all" else contact),
+            ("without", every - own, base),
+        ):
+            if kind == "without" and (itself or not own <= every):
+                continue  # there is no exact contact without it, or it is no part of the whole
+            run = contact if effects == held else motion(effects)
             for column, name in enumerate(_QUANTITIES):
                 swing = float(np.ptp(base[name].to_numpy()))
-                change = float(np.abs(run[name] - base[name]).max())
+                change = float(np.abs(run[name] - start[name]).max())
                 table[kind][row, column] = change / swing if swing > 0.0 else np.nan
         if progress is not None:
             progress((row + 1) / len(groups))
     causes = list(groups)
-    motions = [cause for cause in CAUSES if groups[cause] <= every]
+    parts = [cause for cause in causes[:-1] if groups[cause] <= every]
     return labelled_dataset(
         {
             kind: (("cause", "quantity"), table[kind], "1", f"largest change over peak to peak, {text}")
@@ -79,5 +91,9 @@ def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Datase
             "quantity": (list(_QUANTITIES), "1", "quantity that changes"),
         },
         provenance(pair, samples_per_cycle=_SAMPLES)
-        | {"largest": max(motions, key=lambda cause: table["alone"][causes.index(cause), 0])},
+        | {
+            "largest": max(parts, key=lambda cause: table["alone"][causes.index(cause), 0]),
+            "parts": ", ".join(parts),
+            "contact": pair.mesh.contact,
+        },
     )

@@ -14,7 +14,7 @@ from multibody.study.pictures import gear_picture
 from validation.reporting.blocks import Block, Picture, Rows, Table, Text
 from validation.reporting.results import Results
 
-_CAUSES = CAUSES | {"all": "all finite motions"}
+_CAUSES = CAUSES | {"all": "all together"}
 _QUANTITIES = {"dte": "transmission error", "x_p": "pinion x", "y_p": "pinion y"}
 
 
@@ -34,12 +34,7 @@ def meshing_teeth(results: Results) -> Picture:
 
 
 def attribution(pair: GearPair) -> xr.Dataset | None:
-    """Effects of finite motions one by one; None where the exact model has no periodic motion nearby.
-
-    None in the loaded form too: its contact itself is made of such effects, and none of them acts alone.
-    """
-    if pair.mesh.contact == "loaded":
-        return None
+    """Effects of the exact model one by one; None where it has no periodic motion nearby."""
     try:
         return multibody.attribution(pair)
     except NumericalError:
@@ -51,7 +46,10 @@ def causes(found: xr.Dataset | None) -> list[Block]:
     if found is None:
         return []
     rows: Rows = []
-    for cause, text in _CAUSES.items():
+    parts, loaded = str(found.attrs["parts"]).split(", "), found.attrs["contact"] == "loaded"
+    listed = [str(cause) for cause in found["cause"].values]
+    for cause in listed:
+        text = _CAUSES[cause] + ("" if cause in (*parts, "all") else " (not part of all)")
         at = found.sel(cause=cause)
         values = [
             float(at[kind].sel(quantity=quantity))
@@ -64,13 +62,15 @@ def causes(found: xr.Dataset | None) -> list[Block]:
     largest = _CAUSES[str(found.attrs["largest"])]
     return [
         Text(
-            "Why the models differ: the exact model's finite-motion effects, each alone and all but each, in "
-            "periodic motion with the brake torque that balances it. With all of them off it solves the "
-            f"lumped equations. Alone, this one changes the transmission error most: {largest}."
+            "Why the models differ: the exact model's effects, each alone and all but each, in periodic "
+            "motion with the brake torque that balances it. With all of them off it solves the lumped "
+            "equations. "
+            + ("The exact contact acts in every row; what the others change, they change of it. " * loaded)
+            + f"Alone, this one changes the transmission error most: {largest}."
         ),
         Table(
             "causes",
-            "Largest change of the motion by finite-motion effects, over its peak to peak.",
+            "Largest change of the motion by the exact model's effects, over its peak to peak.",
             {
                 "cause": "effect",
                 **{
@@ -80,9 +80,12 @@ def causes(found: xr.Dataset | None) -> list[Block]:
                 },
             },
             tuple(rows),
-            frozenset([list(_CAUSES).index(str(found.attrs["largest"]))]),
-            note="Effects act together: where neither of two alone does much, both may. Teeth enter late by "
-            "half of their deflection if only entry shifts, and by half of the whole wind-up, bearings "
-            "included, if the contact moves as well.",
+            frozenset([listed.index(str(found.attrs["largest"]))]),
+            note="Effects act together: where neither of two alone does much, both may."
+            + (
+                " Teeth enter late by half of their deflection if only entry shifts, and by half of the "
+                "whole wind-up, bearings included, if the contact moves as well."
+            )
+            * (not loaded),
         ),
     ]

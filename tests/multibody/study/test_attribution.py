@@ -8,7 +8,14 @@ import xarray as xr
 
 import lumped
 import multibody
-from multibody.contact.effects import CAUSES, DEFAULT_EFFECTS, EFFECTS, active_effects, effect_flags
+from multibody.contact.effects import (
+    CAUSES,
+    DEFAULT_EFFECTS,
+    EFFECTS,
+    active_effects,
+    default_effects,
+    effect_flags,
+)
 
 JUMPS = lumped.load_gear_pair("nasa_28_28").with_(
     mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.05
@@ -92,12 +99,29 @@ def test_changes_alone_and_without_are_told_apart(monkeypatch):
         return xr.Dataset(dict.fromkeys(("dte", "x_p", "y_p", "theta_p"), ("time", values)))
 
     monkeypatch.setattr("multibody.study.causes.steady_state", motion)
+    loaded = multibody.attribution(JUMPS.with_(mesh__contact="loaded")).sel(quantity="x_p")
+    every = sum(MADE_UP[name] for name in default_effects("loaded"))
+    held = MADE_UP["entry_shift"] + sum(
+        MADE_UP[name] for name, effect in EFFECTS.items() if effect.cause == "contact_energy"
+    )
+    assert "entry_shift" not in loaded["cause"]
+    for cause, alone, without in (
+        ("contact_energy", held, np.nan),  # without it there is no exact contact
+        ("contact_position", 3.0, every - 3.0),
+        ("path_work", 40.0, every - 40.0),
+        ("friction_load", 30.0, np.nan),
+        ("all", every, 0.0),
+    ):
+        at = loaded.sel(cause=cause)
+        expected = np.array([alone, without]) / 10.0
+        np.testing.assert_allclose([at["alone"], at["without"]], expected, err_msg=cause)
+    assert loaded.attrs["largest"] == "contact_energy"
     found = multibody.attribution(JUMPS).sel(quantity="x_p")
     total = sum(MADE_UP[name] for name in DEFAULT_EFFECTS)
     for cause in CAUSES:
         own = sum(MADE_UP[name] for name, effect in EFFECTS.items() if effect.cause == cause)
         assert float(found["alone"].sel(cause=cause)) == pytest.approx(abs(own) / 10.0), cause
-        if cause in ("friction_load", "contact_energy"):  # no part of the whole difference
+        if cause in ("friction_load", "contact_energy", "path_work"):  # no part of the whole difference
             assert np.isnan(found["without"].sel(cause=cause))
             continue
         assert float(found["without"].sel(cause=cause)) == pytest.approx(abs(total - own) / 10.0), cause

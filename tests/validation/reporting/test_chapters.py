@@ -274,7 +274,7 @@ def attributed():
     return xr.Dataset(
         {"alone": (("cause", "quantity"), values), "without": (("cause", "quantity"), 100.0 * values)},
         coords={"cause": [*CAUSES, "all"], "quantity": ["dte", "x_p", "y_p", "theta_p"]},
-        attrs={"largest": "entry_shift"},
+        attrs={"largest": "entry_shift", "parts": "entry_shift, sliding_velocity", "contact": "paper"},
     )
 
 
@@ -291,6 +291,7 @@ def test_the_table_has_every_cause_and_its_numbers(attributed):
     everything = dict(zip(keys, map(plain, table.rows[-1]), strict=True))
     assert everything["dte_without"] is None  # all but all is the lumped motion: nothing to state
     assert dict(zip(keys, table.rows[0], strict=True))["y_p_alone"] is None
+    assert [str(row[0]).endswith("(not part of all)") for row in table.rows[1:4]] == [False, False, True]
 
 
 def test_the_picture_shows_a_loaded_instant_of_the_exact_model(pair, check):
