@@ -59,7 +59,7 @@ def test_harris_map_has_the_curves_and_the_optimum_at_the_design_torque(coulomb)
     # Constant stiffness and perfect flanks, extended contact included: nearly linear between two torques.
     assert float(at) == pytest.approx(float(curve["peak_to_peak"]), rel=1e-3)
     # The map's grid has the optimum on a node.
-    assert float(found.relief["peak_to_peak"].min()) == pytest.approx(found.optimum.peak_to_peak, abs=1e-9)
+    assert float(found.relief["peak_to_peak"].min()) == pytest.approx(found.optimum.peak_to_peak, rel=1e-9)
 
 
 def test_a_pair_that_a_method_refuses_says_why():
