@@ -12,12 +12,13 @@ from matplotlib.figure import Figure
 #: the other one finds compiled later; short tests come last, for they leave nobody waiting for one long test.
 LONG = (
     (
-        "floquet/orbits", "floquet/gear", "floquet/rank_one", "validation/reporting", "examples",
-        "docs", "validation/commands", "validation/interactive", "validation/paper", "packaging",
+        "floquet/orbits", "floquet/gear", "floquet/rank_one", "validation/reporting", "examples", "docs",
+        "validation/commands", "validation/interactive", "packaging", "validation/verification",
+        "validation/paper", "lumped/friction",
     ),
     (
         "multibody", "validation/cross_check", "validation/studies", "validation/files", "validation/faults",
-        "validation/verification", "lumped/quasi_static", "lumped/model", "lumped/friction",
+        "lumped/quasi_static", "lumped/model",
     ),
 )  # fmt: skip
 #: A unit in brackets, or a count that is its own unit.
