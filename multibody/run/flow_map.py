@@ -12,12 +12,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lumped.arguments import whole_number
+from lumped.arguments import one_of, whole_number
 from lumped.errors import NumericalError
 from lumped.model.propagation import step_maps
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -100,6 +100,7 @@ def monodromy(
     NumericalError : no periodic motion is found near the lumped one
     """
     pair = load_gear_pair(pair)
+    one_of("fidelity", fidelity, get_args(Fidelity))
     setup = prepare(pair, fidelity, "periodic", effects, _RTOL[fidelity])
     orbit = find_orbit(setup)
     end = orbit.flow(orbit.state) if fidelity == "linear" else None
