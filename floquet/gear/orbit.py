@@ -21,7 +21,8 @@ from lumped.arguments import real_array, whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import Variable
 from lumped.model.bodies import bodies
-from lumped.model.mesh_cycle import mesh_cycle
+from lumped.model.equations import COORDINATES
+from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.model.periodic_system import periodic_system
 from lumped.model.results import labelled, response
 from lumped.model.steady import periodic_solution
@@ -89,6 +90,12 @@ class GearOrbit:
         return self.orbit.parameter
 
     @property
+    def brake_torque(self) -> float:
+        """T_g, found or given [N m]."""
+        given = self.pair.operating.brake_torque
+        return self.balanced_torque if given == "balanced" else float(given)
+
+    @property
     def multipliers(self) -> ComplexArray:
         """(6,) Floquet multipliers over n cycles, largest first; (10,) with the back sides."""
         return self.orbit.multipliers
@@ -135,57 +142,90 @@ class GearOrbit:
 
     @cached_property
     def motion(self) -> xr.Dataset:
-        """The motion over its n cycles, with the variables of ``lumped.steady_state``, and in addition
+        """``sampled`` at 256 times of each cycle."""
+        return self.sampled(_SAMPLES)
+
+    @property
+    def states(self) -> FloatArray:
+        """(k, 12) states of ``motion``, as ``lumped.simulate`` takes them; the first is at t = 0."""
+        names = [*COORDINATES, *(f"{name}_dot" for name in COORDINATES)]
+        return np.stack([self.motion[name].to_numpy() for name in names], axis=1)
+
+    def sampled(self, samples_per_cycle: int) -> xr.Dataset:
+        """The motion at even times, with the variables of ``lumped.steady_state``, and in addition
 
         normal_load_back : normal load on the back sides of the teeth, of all pairs [N]
-
-        The rigid rotation of the gear train is left out.
         """
-        run, period = self._samples, self.orbit.period
-        drive = contact_cycle(self.pair).offsets.size
-        system = periodic_system(self.pair, "absolute", cycle=contact_cycle(self.pair))
-        values = response(system, run.phases * period, self.states, run.loads[:, :drive].T)
+        o, cycle = self.whole, contact_cycle(self.pair)
+        phases = np.arange(samples_per_cycle) / samples_per_cycle
+        run = o.system.run(o.start, o.period, o.n, o.parameter, samples=phases)
+        states = absolute_states(self.pair, cycle, o, run)
+        system = periodic_system(self.pair, "absolute", cycle=cycle)
+        time, drive = run.phases * o.period, cycle.offsets.size
+        values = response(system, time, states, run.loads[:, :drive].T)
         values["contact"] = (values["normal_load"] > 0.0).astype(float)
         back: Variable = ("time", run.loads[:, drive:].sum(axis=1), "N", "normal load on the back sides")
         attributes = {
             "speed_rpm": self.speed_rpm,
             "n": self.n,
             "stable": int(self.stable),
+            "brake_torque": self.brake_torque,
             "dte_rms": self.dte_rms,
             "dte_peak_to_peak": float(np.diff(self.dte_range)[0]),
         }
-        return labelled(run.phases * period, values, attributes, {"normal_load_back": back})
-
-    @cached_property
-    def states(self) -> FloatArray:
-        """(k, 12) states as ``lumped.simulate`` has them, at 256 times of each cycle; the first is at t = 0.
-
-        The rigid rotation of the gear train is left out.
-        """
-        run = self._samples
-        return np.hstack([run.states[:, :_WHOLE], run.states[:, _WHOLE:] / self.orbit.period]) @ np.kron(
-            np.eye(2), _to_absolute(self.pair)
-        )
-
-    @cached_property
-    def _samples(self) -> Run:
-        o = self.whole
-        return o.system.run(o.start, o.period, o.n, o.parameter, samples=np.arange(_SAMPLES) / _SAMPLES)
+        return labelled(time, values, attributes, {"normal_load_back": back})
 
 
-def _to_absolute(pair: GearPair) -> FloatArray:
-    """(5, 6) the six displacements of the lumped model by (q, x_p, x_g, y_p, y_g), without rigid rotation."""
+def absolute_states(pair: GearPair, cycle: MeshCycle, orbit: Orbit, run: Run) -> FloatArray:
+    """(k, 12) states of the lumped model at the samples of a run of a whole orbit.
+
+    The rigid rotation J_p theta_p/r_bp + J_g theta_g/r_bg, which does not act back, follows from torques and
+    friction by the trapezoidal rule.
+
+    Parameters
+    ----------
+    pair, cycle : the pair, and the mesh cycle of the orbit's system
+    orbit : motion in (q, x_p, x_g, y_p, y_g)
+    run : its run with samples, the first of them at phase 0
+    """
     g, b = pair.geometry, bodies(pair)
-    rotations = np.array(
+    time = run.phases * orbit.period
+    torque_p, torque_g = pair.operating.pinion_torque, orbit.parameter
+    if pair.operating.brake_torque != "balanced":
+        torque_p, torque_g = orbit.parameter, float(pair.operating.brake_torque)
+    at = cycle.sample(time)
+    friction = at.friction * run.loads[:, : cycle.offsets.size].T
+    lever = (g.L_XY - at.position) / g.base_radius_gear - at.position / g.base_radius_pinion
+    push = (friction * lever).sum(axis=0) + torque_p / g.base_radius_pinion - torque_g / g.base_radius_gear
+    rate = _integral(time, push - _mean(time, push, orbit), orbit)
+    rate -= _mean(time, rate, orbit)
+    rigid = np.stack([_integral(time, rate, orbit), rate], axis=1)
+    to_rotations = np.linalg.inv(
         [
             [g.base_radius_pinion, -g.base_radius_gear],
             [b.inertia_pinion / g.base_radius_pinion, b.inertia_gear / g.base_radius_gear],
         ]
     )
-    table = np.zeros((_WHOLE, 6))
-    table[0, :2] = np.linalg.inv(rotations)[:, 0]
-    table[1:, 2:] = np.eye(4)
-    return table
+    states = np.empty((time.size, 12))
+    z = np.stack([run.states[:, :_WHOLE], run.states[:, _WHOLE:] / orbit.period], axis=1)
+    for half in range(2):
+        both = np.stack([z[:, half, 0], rigid[:, half]], axis=1)
+        states[:, 6 * half : 6 * half + 2] = both @ to_rotations.T
+        states[:, 6 * half + 2 : 6 * half + 6] = z[:, half, 1:]
+    return states
+
+
+def _integral(time: FloatArray, values: FloatArray, orbit: Orbit) -> FloatArray:
+    """Integral from the first time on of a history that repeats."""
+    steps = np.diff(time, append=orbit.n * orbit.period)
+    parts = 0.5 * steps * (values + np.roll(values, -1))
+    return np.concatenate([[0.0], np.cumsum(parts)[:-1]])
+
+
+def _mean(time: FloatArray, values: FloatArray, orbit: Orbit) -> float:
+    length = orbit.n * orbit.period
+    steps = np.diff(time, append=length)
+    return float(steps @ (values + np.roll(values, -1))) / (2.0 * length)
 
 
 def periodic_orbit(

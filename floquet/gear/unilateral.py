@@ -36,7 +36,7 @@ _SAME = 1e-13
 
 
 def unilateral_system(
-    pair: AnyPair, friction: PathFunction | None = None, form: ContactForm = "feedback"
+    pair: AnyPair, cycle: MeshCycle | None = None, form: ContactForm = "feedback"
 ) -> ContactSystem:
     """Return a gear pair with one unilateral contact for each tooth pair.
 
@@ -51,7 +51,7 @@ def unilateral_system(
     Parameters
     ----------
     pair : the gear pair
-    friction : mu(xi) in place of that of the pair's law
+    cycle : mesh cycle with other element laws; None: ``contact_cycle``
     form : "feedback": (q, x_p, x_g), whose motion decides that of y; "relative": (q, x_p, x_g, y_p, y_g);
         "back_side": the same, and the back sides of the teeth touch after the backlash, with the laws of the
         driving flanks
@@ -61,9 +61,7 @@ def unilateral_system(
     ParameterError : a law refuses its parameters
     """
     pair = load_gear_pair(pair)
-    cycle = contact_cycle(pair)
-    if friction is not None:
-        cycle = MeshCycle(cycle.geometry, replace(cycle.elements, friction=friction))
+    cycle = cycle or contact_cycle(pair)
     base = periodic_system(pair, "feedback" if form == "feedback" else "relative", cycle=cycle)
     s, g = base.structure, pair.geometry
     # Acceleration per unit generalised force, of the coordinates and of r_bg theta_g.
@@ -224,11 +222,14 @@ class _Parts:
         steady = _signed(mu, pair.geometry.L_XP, family.level or 0.0)
         parts = [mu] if family.level is None else [_plus(mu, steady, -1.0), steady]
         # Zero times the law, so that all have the same pieces.
-        self.without = unilateral_system(there, _plus(parts[0].scaled(0.0), steady, 0.0), form)
-        systems = [
-            self.without,
-            *(unilateral_system(there, _plus(part, steady, 0.0), form) for part in parts),
-        ]
+        cycle = contact_cycle(there)
+
+        def system(mu: PathFunction) -> ContactSystem:
+            elements = replace(cycle.elements, friction=_plus(mu, steady, 0.0))
+            return unilateral_system(there, MeshCycle(cycle.geometry, elements), form)
+
+        self.without = system(parts[0].scaled(0.0))
+        systems = [self.without, *map(system, parts)]
         width = max(system.acceleration.shape[-1] for system in systems)
         rows = [_widened(system.acceleration, width) for system in systems]
         self.base, self.each = rows[0], [row - rows[0] for row in rows[1:]]

@@ -107,11 +107,12 @@ def _sentences(found: GridSummary, result: xr.Dataset) -> list[str]:
     kept = f" ({resumed} points kept from before)" if resumed else ""
     return [
         f"{found.points} points in {seconds:.0f} s on {workers} processes{kept}, "
-        f"{float(result['seconds'].sum()):.0f} s of processor time: {found.compared} judged; not judged at "
-        f"fidelity exact, because beyond the lumped model: {found.separated} where its tooth loads turn "
-        f"negative and {found.sticking} where friction may hold the teeth; {found.failed} failed.",
+        f"{float(result['seconds'].sum()):.0f} s of processor time: {found.compared} judged, {found.parted} "
+        f"of them with loss of contact; not judged: {found.separated} where teeth that part have no stable "
+        f"motion of one mesh cycle, and at fidelity exact {found.sticking} where friction may hold the "
+        f"teeth; {found.failed} failed.",
         f"Linear: at most {found.linear:.2g} of the tolerance, at the {found.compared + found.sticking} "
-        "points where the teeth stay together.",
+        "points where both models ran.",
         f"Exact: the transmission error differs by up to {found.whole:.2g} (relative L2); after what finite "
         f"motions must change, predicted from the lumped model alone, {found.left:.2g} is left. "
         f"{found.outside} judged points have a quantity outside its tolerance; the largest use is "

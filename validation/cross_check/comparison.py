@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-import lumped
 import multibody
+from floquet.gear.orbit import GearOrbit
 from lumped import GearPair
 from lumped.arguments import some_of, whole_number
-from lumped.errors import NumericalError, SpurcheckError, refuse
+from lumped.errors import SpurcheckError, refuse
 from lumped.model.results import VARIABLES
 from lumped.model.steady import UNSTABLE, periodic_cycle
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -30,12 +30,20 @@ from validation.cross_check.agreement import (
     contact_shift,
     off_switch_samples,
 )
-from validation.cross_check.exact_motion import BLUNT, periodic_motion
+from validation.cross_check.compared_motions import (
+    BLUNT,
+    PARTED,
+    RTOL,
+    lumped_motion,
+    near_periodic,
+    repeated,
+)
 from validation.cross_check.finite_motion import FiniteMotion, finite_motion
 from validation.cross_check.first_order import Effects, first_order
 from validation.cross_check.judgement import MEANINGS, Judgement, Verdict, verdict_of
 from validation.cross_check.metrics import MeshOrders
-from validation.cross_check.nature import laws_of_nature
+from validation.cross_check.nature import laws_of_nature, laws_where_teeth_part
+from validation.cross_check.parted_motion import parted_orbit
 from validation.cross_check.tolerances import raw_tolerance, tolerance
 from validation.cross_check.twin import unlike_twin
 
@@ -53,15 +61,9 @@ __all__ = [
     "off_switch_samples",
 ]
 
-#: Tolerances of the integrations: far below the limits they are used to check.
-RTOL: Mapping[str, float] = {"lumped": 1e-10, "linear": 1e-10, "exact": 1e-8}
 #: Cycles at the end of a run over which the exact model is compared where it has no periodic motion.
 COMPARED_CYCLES = 4
 _ORDERS = 10
-#: Cycles over which the lumped integrator carries the periodic motion; a stable one repeats after them.
-_CARRIED_CYCLES = 6
-#: A cycle repeats the one before to this share of peak to peak, a hundredth of the limits of the comparison.
-_REPEATED = 1e-8
 #: Cycles of the unlike twin, and samples in each.
 _TWIN_CYCLES, _TWIN_SAMPLES = 6, 64
 
@@ -102,6 +104,8 @@ class CrossCheck:
         to peak: what is left of the transient; of a periodic motion, its relative mismatch after a cycle
     nature : laws of nature, checked on both models; empty unless both fidelities ran
     powers : model -> power of ``ledger.POWERS`` and "driving" -> mean over the mesh cycle [W]; likewise
+    orbit : the lumped motion with loss of contact that is compared; None where teeth push all the time, or
+        where no stable one of one mesh cycle is found
     twin : the same of a variation of the pair in which nothing is symmetric; None where it was not asked for
     """
 
@@ -119,6 +123,7 @@ class CrossCheck:
     unsettled: Mapping[Fidelity, float]
     nature: tuple[Judgement, ...]
     powers: Mapping[str, Mapping[str, float]]
+    orbit: GearOrbit | None = None
     twin: CrossCheck | None = None
 
     @property
@@ -178,7 +183,9 @@ def crosscheck(
     model's own periodic motion is compared, with the brake torque that balances its own losses: under the
     lumped one it would drift, and the phase with it. Where the lumped motion is unstable, or the exact model
     has no periodic motion near it, the end of a run from the lumped motion is compared. Samples on a switch
-    time are left out: they belong to either side.
+    time are left out: they belong to either side. Where the linear motion needs teeth that pull, the lumped
+    motion is the one with teeth that push only (``floquet.periodic_orbit``), and so are the equations of
+    "linear".
 
     Parameters
     ----------
@@ -211,9 +218,14 @@ def crosscheck(
 
         return tell
 
-    options = {"cycles": cycles, "samples_per_cycle": samples_per_cycle, "initial": "periodic"}
-    stable = periodic_cycle(pair, 32).spectral_radius <= UNSTABLE
-    reference = _reference(pair, cycles, samples_per_cycle, stable, part(0))
+    options = {"cycles": cycles, "samples_per_cycle": samples_per_cycle}
+    orbit = parted_orbit(pair)
+    if orbit is None:
+        stable = periodic_cycle(pair, 32).spectral_radius <= UNSTABLE
+        reference = lumped_motion(pair, cycles, samples_per_cycle, stable, part(0))
+    else:
+        stable = True
+        reference = repeated(orbit.sampled(samples_per_cycle), cycles)
     shift = contact_shift(pair, reference)
     last = reference.isel(time=slice(-samples_per_cycle - 1, -1))
     results: dict[Fidelity, xr.Dataset] = {}
@@ -222,19 +234,24 @@ def crosscheck(
     one: xr.Dataset | None = None
     for done, fidelity in enumerate(fidelities, 1):
         if fidelity == "exact":
-            predicted = finite_motion(pair, last)
-            one = _periodic(pair, samples_per_cycle, predicted.settled) if stable else None
+            predicted = finite_motion(pair, last, orbit=orbit)
+            if stable:
+                one = near_periodic(pair, fidelity, samples_per_cycle, predicted.settled, orbit)
             if one is not None and one.attrs["friction_velocity"] == BLUNT:  # a choice of the numerics
-                predicted = finite_motion(pair, last, friction_velocity=BLUNT)
+                predicted = finite_motion(pair, last, friction_velocity=BLUNT, orbit=orbit)
             effects = first_order(predicted)
-        if fidelity == "exact" and one is not None:
-            places = np.arange(reference.sizes["time"]) % samples_per_cycle
-            results[fidelity] = one.isel(time=places).assign_coords(time=reference["time"])
+        found = one
+        if fidelity == "linear" and orbit is not None:
+            found = near_periodic(pair, fidelity, samples_per_cycle, True, orbit)
+        if found is not None:
+            results[fidelity] = repeated(found, cycles)
             part(done)(1.0)
             continue
         results[fidelity] = multibody.simulate(
             pair,
             **options,  # type: ignore[arg-type]
+            initial="periodic" if orbit is None else orbit.states[0],
+            effects=None if orbit is None else PARTED[fidelity],
             fidelity=fidelity,
             rtol=RTOL[fidelity],
             progress=part(done),
@@ -274,7 +291,10 @@ def crosscheck(
     powers: Mapping[str, Mapping[str, float]] = {}
     if effects is not None and len(fidelities) == len(FIDELITIES):
         push = np.zeros(6) if predicted is None else predicted.push
-        checks, powers = laws_of_nature(pair, last, one, results, effects.powers, shift, push)
+        if orbit is None:
+            checks, powers = laws_of_nature(pair, last, one, results, effects.powers, shift, push)
+        else:
+            checks, powers = laws_where_teeth_part(pair, last, one, results, shift, push)
     unsettled = {f: _unsettled(r, samples_per_cycle) for f, r in results.items()}
     if one is not None:
         unsettled["exact"] = float(one.attrs["closure"])
@@ -293,6 +313,7 @@ def crosscheck(
         unsettled=unsettled,
         nature=checks,
         powers=powers,
+        orbit=orbit,
         twin=None if other is None else _check_twin(other, part(runs - 1)),
     )
 
@@ -303,50 +324,6 @@ def _check_twin(pair: GearPair, progress: Progress) -> CrossCheck | None:
     try:
         return crosscheck(pair, **options, twin=False, progress=progress)  # type: ignore[arg-type]
     except SpurcheckError:
-        return None
-
-
-def _reference(
-    pair: GearPair, cycles: int, samples: int, stable: bool, progress: Progress | None
-) -> xr.Dataset:
-    """The lumped motion from the periodic solution on.
-
-    A stable one repeats its last simulated cycle, if that repeats the one before: where mu(xi) is steep the
-    periodic solution itself may be off by some 1e-6, which the motion then forgets.
-    """
-    carried = min(cycles, _CARRIED_CYCLES) if stable else cycles
-    options = {"samples_per_cycle": samples, "initial": "periodic", "rtol": RTOL["lumped"]}
-    run = lumped.simulate(pair, carried, **options, progress=progress)  # type: ignore[arg-type]
-    if carried < cycles and not _repeats(run, samples):
-        carried, run = cycles, lumped.simulate(pair, cycles, **options, progress=progress)  # type: ignore[arg-type]
-    if carried == cycles:
-        return run
-    number = np.arange(cycles * samples + 1)
-    first = (carried - 1) * samples
-    last = first + (number - first) % samples
-    period = float(run["time"][-1]) / carried
-    time = period * (number // samples) + run["time"].to_numpy()[number % samples]
-    repeated = run.isel(time=np.where(number < carried * samples, number, last))
-    repeated = repeated.assign_coords(time=("time", time, run["time"].attrs))
-    repeated.attrs |= {"cycles": cycles}
-    return repeated
-
-
-def _repeats(run: xr.Dataset, samples: int) -> bool:
-    """Whether the last cycle is the one before, in every translation and the transmission error."""
-    least = 1e-6 * float(np.ptp(run["dte"].to_numpy()))  # what moves less is rounding
-    for name in ("dte", "x_p", "x_g", "y_p", "y_g"):
-        before, last = run[name].to_numpy()[-2 * samples - 1 : -1].reshape(2, samples)
-        if np.abs(last - before).max() > _REPEATED * max(float(np.ptp(last)), least):
-            return False
-    return True
-
-
-def _periodic(pair: GearPair, samples: int, passes: bool) -> xr.Dataset | None:
-    """The exact model's periodic motion; None where there is none near the lumped one."""
-    try:
-        return periodic_motion(pair, "exact", samples=samples, rtol=RTOL["exact"], passes=passes)
-    except NumericalError:
         return None
 
 

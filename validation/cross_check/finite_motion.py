@@ -52,6 +52,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
+from floquet.gear.orbit import GearOrbit
+from floquet.gear.unilateral import contact_cycle
 from lumped import GearPair
 from lumped.arguments import some_of
 from lumped.model.mesh_cycle import mesh_cycle
@@ -60,6 +62,7 @@ from lumped.model.solution import initial_state
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.typing import BoolArray, FloatArray
 from validation.cross_check.loaded_motion import LoadedModel, PushedSystem
+from validation.cross_check.parted_motion import PartedLoadedModel, PartedModel
 from validation.cross_check.shifted_motion import ShiftedModel, Shifts
 
 #: Times per mesh cycle at which the motion is read off: while it settles, and in the end at least.
@@ -118,6 +121,7 @@ def finite_motion(
     effects: Collection[str] | None = None,
     *,
     friction_velocity: float = 0.0,
+    orbit: GearOrbit | None = None,
 ) -> FiniteMotion:
     """Predict what finite motions change.
 
@@ -127,6 +131,7 @@ def finite_motion(
     cycle : lumped periodic motion at even times over one mesh cycle, the end left out
     effects : names out of ``PREDICTED``, as ``multibody.steady_state`` takes them; default all of them
     friction_velocity : sliding velocity over which friction changes its sign (tanh) [m/s]; 0 at once
+    orbit : the motion, of one mesh cycle, where teeth part
 
     Returns
     -------
@@ -139,15 +144,19 @@ def finite_motion(
     """
     known = PREDICTED[pair.mesh.contact]
     effects = known if effects is None else some_of("effects", effects, known, "Name predicted effects.")
-    nominal = mesh_cycle(pair)
+    nominal = mesh_cycle(pair) if orbit is None else contact_cycle(pair)
     system = periodic_system(pair, "absolute", cycle=nominal)
     balance = periodic_solution(system, np.zeros(1), estimate_error=False)
     every = -(-_FINE // cycle.sizes["time"])
     coarse = sample_times(nominal.period, _COARSE)
     fine = sample_times(nominal.period, every * cycle.sizes["time"])
     static = initial_state(system, "static", balance)
-    kind = LoadedModel if pair.mesh.contact == "loaded" else ShiftedModel
-    model = kind(pair, nominal, system, static, coarse, frozenset(effects), friction_velocity)
+    given = (pair, nominal, system, static, coarse, frozenset(effects), friction_velocity)
+    loaded = pair.mesh.contact == "loaded"
+    if orbit is None:
+        model: ShiftedModel = (LoadedModel if loaded else ShiftedModel)(*given)
+    else:
+        model = (PartedLoadedModel if loaded else PartedModel)(*given, orbit)
     shifts, settled = model.settle(None)
     if settled:
         model = replace(model, times=fine)

@@ -22,6 +22,9 @@ changes add, so by the triangle inequality no quantity changes by more than
 over the pieces of the zone from P - d to P + d. A piece is a sixteenth of the zone: friction that changes its
 sign more often than that in the zone moves less, because its pushes cancel. The friction force itself changes
 in its piece alone, by at most twice its size, and with the normal load.
+
+Where teeth part a motion with one effect alone may be another motion. There an effect counts by what it
+changes beside all others; what late entry changes then is the whole change.
 """
 
 from __future__ import annotations
@@ -44,6 +47,7 @@ from validation.cross_check.agreement import relative_size
 from validation.cross_check.effective_elements import reversed_within
 from validation.cross_check.finite_motion import PREDICTED, FiniteMotion
 from validation.cross_check.ledger import LOSSES, losses
+from validation.cross_check.parted_motion import PartedLoadedModel, PartedModel
 from validation.cross_check.shifted_motion import Motion, ShiftedModel, Shifts
 from validation.cross_check.tolerances import GROUPS
 
@@ -113,6 +117,8 @@ def first_order(predicted: FiniteMotion) -> Effects:
     -------
     Effects
     """
+    if isinstance(predicted.model, PartedModel | PartedLoadedModel):
+        return _where_teeth_part(predicted)
     cycle = predicted.model.cycle
     pitch = cycle.geometry.base_pitch
     every = replace(
@@ -195,6 +201,32 @@ def first_order(predicted: FiniteMotion) -> Effects:
     if shifts is not None and _jumps_beside(cycle.elements.friction, cycle.geometry.L_XP):
         read = pitch / predicted.model.times.size / max(size["sliding_velocity"], np.finfo(float).tiny)
     return Effects(relative, most, alone, powers, beyond, held, read)
+
+
+def _where_teeth_part(predicted: FiniteMotion) -> Effects:
+    """The same where teeth part: the motion with all effects less that without one of them."""
+    shifts = predicted.shifts
+    if shifts is None:
+        nothing = {name: dict.fromkeys(GROUPS, np.inf) for name in predicted.model.effects}
+        return Effects({}, nothing, {}, {}, 0.0, {}, 0.0)
+    times = sample_times(predicted.model.cycle.period, _TIMES)
+    model = replace(predicted.model, times=times)
+
+    def change(after: Motion, before: Motion) -> dict[str, float]:
+        one, other = model.response(after, times), model.response(before, times)
+        return {name: relative_size(one[name] - other[name], name, other) for name in GROUPS}
+
+    every = model.motion(shifts)
+    ends = "tip_contact" if "tip_contact" in model.effects else "entry_shift"
+    most = {ends: change(every, model.unmoved())}
+    for effect in sorted(model.effects - {ends}):
+        without = replace(
+            shifts,
+            stands_at=shifts.place if effect == "rotation_phase" else shifts.stands_at,
+            slides_as=shifts.stands_at if effect == "sliding_velocity" else shifts.slides_as,
+        )
+        most[effect] = change(every, replace(model, effects=model.effects - {effect}).motion(without))
+    return Effects({}, most, most, {}, 0.0, {}, 0.0)
 
 
 def _jumps_beside(law: PathFunction, pitch_point: float) -> bool:

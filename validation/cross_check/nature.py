@@ -20,7 +20,7 @@ from lumped.model.steady import PeriodicSolution, periodic_solution
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.machine import Machine, machine
-from validation.cross_check.agreement import Fidelity
+from validation.cross_check.agreement import FIDELITIES, Fidelity
 from validation.cross_check.judgement import Judgement
 from validation.cross_check.ledger import (
     LOSSES,
@@ -91,6 +91,36 @@ def laws_of_nature(
     return tuple(found), powers
 
 
+def laws_where_teeth_part(
+    pair: GearPair,
+    reference: xr.Dataset,
+    exact: xr.Dataset | None,
+    runs: Mapping[Fidelity, xr.Dataset],
+    shift: float,
+    push: FloatArray,
+) -> tuple[tuple[Judgement, ...], Mapping[str, Mapping[str, float]]]:
+    """The same of motions with loss of contact, without the powers of the lumped model."""
+    m = machine(pair)
+    force = reference["friction_force"].to_numpy()
+    moment = (force * reference["position"].to_numpy()).sum(axis=0)
+    # Force and moment may jump where teeth meet or part, once each in a cycle and more.
+    variation = {name: _varied(one) for name, one in (("moment", moment), ("force", force.sum(axis=0)))}
+    samples = reference.sizes["time"]
+    motions = {"lumped": reference} | {
+        name: runs[name].isel(time=slice(-samples - 1, -1)) for name in FIDELITIES if name in runs
+    }
+    found, powers = list[Judgement](), dict[str, Mapping[str, float]]()
+    for name, motion in motions.items():
+        allowed, beside = (shift, push) if name == "exact" else (0.0, np.zeros(6))
+        found.append(_friction(m, name, motion))
+        found += _action_and_reaction(m, name, motion)
+        found += _statics(m, name, motion, pair.operating.pinion_torque, allowed, variation, beside)
+    if exact is not None:
+        powers["exact"] = _exact_powers(pair, periodic_system(pair, "absolute"), exact, m.period)
+        found += _first_law("exact", powers["exact"])
+    return tuple(found), powers
+
+
 def nature_groups(checks: Sequence[Judgement]) -> tuple[Judgement, ...]:
     """Of each law and model the check that uses most of its limit, for a short table."""
     groups: dict[tuple[str, str], Judgement] = {}
@@ -120,6 +150,7 @@ def _exact_powers(pair: GearPair, system: LTVSystem, exact: xr.Dataset, period: 
         pair,
         1,
         initial=state,
+        effects=str(exact.attrs["effects"]).split(", "),
         rtol=1e-8,
         friction_velocity=float(exact.attrs["friction_velocity"]),
         drive=multibody.Drive(brake_torque=([0.0], [float(exact.attrs["brake_torque"])])),
@@ -245,7 +276,11 @@ def _variation(motion: PeriodicSolution) -> dict[str, float]:
     values = motion.values
     force = values["friction_force"]
     histories = {"moment": (force * values["position"]).sum(axis=0), "force": force.sum(axis=0)}
-    return {name: float(np.abs(np.diff(one, append=one[:1])).sum()) for name, one in histories.items()}
+    return {name: _varied(one) for name, one in histories.items()}
+
+
+def _varied(history: FloatArray) -> float:
+    return float(np.abs(np.diff(history, append=history[:1])).sum())
 
 
 def _first_law(name: str, powers: Mapping[str, float]) -> list[Judgement]:

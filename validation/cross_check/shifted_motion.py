@@ -94,6 +94,7 @@ class Motion:
     states : (n, 12) lumped states
     place, at : (k,) nominal places of one tooth pair along its whole path [m], and the time of each
     load, elastic : (k,) its normal load there, and without its damper [N]
+    loads : (pairs, n) normal loads over the times, where teeth may part; None: the law of the linear mesh [N]
     """
 
     system: LTVSystem
@@ -103,6 +104,7 @@ class Motion:
     at: NDArray[np.int64]
     load: FloatArray
     elastic: FloatArray
+    loads: FloatArray | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,7 +188,7 @@ class ShiftedModel:
         """
         system = self.nominal if shifts is None else self._system(shifts)
         times = self._with_jumps(system)
-        states = periodic_solution(system, times, estimate_error=False).states
+        states, loads = self._solved(system, times)
         g, e = self.cycle.geometry, system.cycle.elements
         # A pair passes its path in several cycles; each repeats the same motion.
         speed, (low, high) = g.base_pitch / self.cycle.period, self.reach
@@ -199,15 +201,23 @@ class ShiftedModel:
         overlap, rate = states[at, :6] @ system.deflection, states[at, 6:] @ system.deflection
         elastic = e.stiffness(place) * (overlap - e.error(place))
         load = elastic + e.damping(place) * (rate - e.error_slope(place) * speed)
-        found = Motion(system, times, states, place, at, load, elastic)
+        if loads is not None:
+            pair = np.rint((system.cycle.offsets[0] + times[at] * speed - place) / g.base_pitch).astype(int)
+            load = loads[np.clip(pair, 0, len(loads) - 1), at]
+        found = Motion(system, times, states, place, at, load, elastic, loads)
         if line is not None:
             return self._on_turned_line(found, line)
         return self._on_turned_line(found, self.turns(found)) if "moving_line" in self.effects else found
 
+    def _solved(self, system: LTVSystem, times: FloatArray) -> tuple[FloatArray, FloatArray | None]:
+        """States (n, 12) of the periodic motion, and the loads where the linear law does not give them."""
+        return periodic_solution(system, times, estimate_error=False).states, None
+
     def response(self, motion: Motion, times: FloatArray) -> dict[str, FloatArray]:
         """Variables of ``lumped.model.results.response`` at times of the motion, in the nominal slots."""
-        states = motion.states[np.searchsorted(motion.times, times)]
-        found = response(motion.system, times, states)
+        at = np.searchsorted(motion.times, times)
+        loads = None if motion.loads is None else motion.loads[:, at]
+        found = response(motion.system, times, motion.states[at], loads)
         offsets = motion.system.cycle.offsets
         if offsets.size == self.cycle.offsets.size:
             return found

@@ -76,13 +76,15 @@ class Parting:
     Attributes
     ----------
     orbit : the same equations with teeth that push only
-    exact : the last cycle of the multibody model
+    exact : a mesh cycle of the multibody model
     exact_peak_to_peak : its transmission error [m]
+    judged : whether the cross-check compares these two
     """
 
     orbit: GearOrbit
     exact: xr.Dataset
     exact_peak_to_peak: float
+    judged: bool
 
 
 class Results:
@@ -187,13 +189,14 @@ class Results:
         loads = self.motion["normal_load"].where(self.motion["contact"] > 0)
         if float(loads.min()) >= -LOAD_NOISE * self.static_load:
             return None
+        orbit = self.check.orbit
         try:
-            orbit = periodic_orbit(self.pair)
+            orbit = orbit or periodic_orbit(self.pair)
         except NumericalError as error:
             return str(error)
         run = self.check.multibody["exact"]
         exact = run.sel(time=slice(float(run["time"][-1]) - 1.000001 * self.geometry.mesh_period, None))
-        return Parting(orbit, exact, cycle_peak_to_peak(exact, "dte"))
+        return Parting(orbit, exact, cycle_peak_to_peak(exact, "dte"), self.check.orbit is not None)
 
     @cached_property
     def forms(self) -> ContactForms | str:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 import floquet
 import lumped
 import multibody
+from floquet.gear import unilateral
 from floquet.gear.unilateral import unilateral_system
 from lumped import ParameterError
+from validation.cross_check.comparison import crosscheck
 
 
 @pytest.fixture(scope="module")
@@ -114,3 +118,48 @@ def test_back_sides_strike_as_in_the_multibody_model(name):
     drive = run.sizes["pair"]
     assert back.max() > 1000.0
     assert own.loads[:, drive:].sum(axis=1) == pytest.approx(back, abs=1e-6 * back.max())
+
+
+@pytest.fixture(scope="module")
+def parted():
+    """Default pair: its relief makes the linear motion need teeth that pull."""
+    return crosscheck(lumped.load_gear_pair("nasa_28_28"), cycles=6, samples_per_cycle=64, twin=False)
+
+
+def test_the_cross_check_compares_the_motion_of_teeth_that_push(parted, pair_beyond):
+    """Finite motions are predicted there as well; what they leave is far below its limit."""
+    loaded = pair_beyond.with_({"mesh.contact": "loaded", "friction.law": "coulomb"})
+    loaded = loaded.with_({"operating.pinion_speed": 17000.0, "mesh.stiffness": {"model": "energy"}})
+    for check in (parted, crosscheck(loaded, cycles=6, samples_per_cycle=64, twin=False)):
+        assert check.orbit.parts
+        assert check.periodic
+        assert check.verdict == "confirmed"
+        assert max(a.judged for a in check.of("linear")) < 1e-6
+        dte = check.of("exact")[0]
+        assert dte.judged < 0.02 * dte.tolerance.limit
+        assert dte.predicted_l2 == pytest.approx(dte.relative_l2, rel=0.2)
+    assert (
+        crosscheck(
+            pair_beyond.with_({"operating.pinion_speed": 12000.0}), cycles=6, samples_per_cycle=32, twin=False
+        ).orbit
+        is None
+    )
+
+
+@pytest.mark.parametrize("fault", ["damper", "pull", "relief"])
+def test_wrong_rules_of_contact_are_not_confirmed(parted, monkeypatch, fault):
+    """In the lumped motion alone: 2 % of the damping, teeth that stick, relief 5 % off."""
+    true = unilateral._contact
+
+    def wrong(pair, cycle, *rest):
+        contact = true(pair, cycle, *rest)
+        if fault == "damper":
+            return dataclasses.replace(contact, damping=0.98 * contact.damping)
+        if fault == "pull":
+            return dataclasses.replace(contact, sign=(1.0, 0.0))
+        return dataclasses.replace(contact, clearance=0.95 * contact.clearance)
+
+    monkeypatch.setattr(unilateral, "_contact", wrong)
+    check = crosscheck(parted.pair, cycles=6, samples_per_cycle=64, twin=False)
+    assert check.verdict == "not confirmed"
+    assert any(j.check.startswith("linear") for j in check.failures)

@@ -8,6 +8,7 @@ import pytest
 import lumped
 import multibody
 from lumped import ParameterError
+from validation.cross_check import comparison
 from validation.cross_check.agreement import (
     QUANTITIES,
     agreement,
@@ -65,7 +66,8 @@ def test_an_exact_model_without_a_periodic_motion_of_its_own_is_run(pair, monkey
     assert found.multibody["exact"].attrs["brake_torque"] == found.lumped.attrs["brake_torque"]
 
 
-def test_an_unstable_motion_is_run_because_no_pair_stays_in_it(pair):
+def test_an_unstable_motion_is_run_because_no_pair_stays_in_it(pair, monkeypatch):
+    monkeypatch.setattr(comparison, "parted_orbit", lambda pair: None)  # as where it beats
     unstable = pair.with_({"operating.pinion_speed": 17000, "mesh.damping_ratio": 0.0})
     assert not crosscheck(unstable, cycles=6, samples_per_cycle=32, quantities=("dte",), twin=False).periodic
 

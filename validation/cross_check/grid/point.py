@@ -19,9 +19,10 @@ from validation.cross_check.agreement import (
     off_switch_samples,
     relative_size,
 )
-from validation.cross_check.exact_motion import BLUNT, periodic_motion
+from validation.cross_check.compared_motions import BLUNT, periodic_motion
 from validation.cross_check.finite_motion import finite_motion
 from validation.cross_check.metrics import maximum_over_span
+from validation.cross_check.parted_motion import parted_orbit
 from validation.cross_check.tolerances import tolerance
 from validation.validity.flags import LOAD_NOISE
 
@@ -51,7 +52,7 @@ class GridPoint:
     Attributes
     ----------
     status : ``COMPARED``, ``SEPARATED`` or ``STICKING``
-    load_min : smallest normal load of the lumped model over the static load
+    load_min : smallest normal load of the linear motion over the static load; negative: its teeth pull
     seconds : processor time
     expected : largest change of the transmission error that finite motions must make, over its peak to peak
     judged, limit : metric that the tolerance limits, and the tolerance
@@ -91,9 +92,9 @@ def compare_point(pair: GearPair, samples: int) -> GridPoint:
     Notes
     -----
     Which points are judged is decided by the lumped model alone, before the multibody model is looked at: the
-    teeth separate where a lumped load turns negative, and sliding may stick where the lumped motion and the
-    friction at its own sliding velocity do not settle or do not pass zero
-    (``validation.cross_check.finite_motion``).
+    lumped motion is that with teeth that push only where a lumped load turns negative, and teeth separate
+    where no stable one of one mesh cycle is found; sliding may stick where the lumped motion and the friction
+    at its own sliding velocity do not settle or do not pass zero (``validation.cross_check.finite_motion``).
     """
     started = time.process_time()
 
@@ -104,18 +105,24 @@ def compare_point(pair: GearPair, samples: int) -> GridPoint:
     static = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
     loads = reference["normal_load"].to_numpy(), reference["contact"].to_numpy()
     load_min = min(load_range(pair.mesh.contact, *loads)[1], 0.0) / static
+    orbit = None
     if load_min < -LOAD_NOISE:
-        return GridPoint(SEPARATED, load_min, spent())
-    shift, predicted = contact_shift(pair, reference), finite_motion(pair, reference)
+        orbit = parted_orbit(pair)
+        if orbit is None:
+            return GridPoint(SEPARATED, load_min, spent())
+        reference = orbit.sampled(samples)
+    shift, predicted = contact_shift(pair, reference), finite_motion(pair, reference, orbit=orbit)
     keep = off_switch_samples(pair, reference["time"].to_numpy())
     dte = reference["dte"].to_numpy()[keep]
     expected = maximum_over_span(dte + predicted.over("dte", keep.size)[keep], dte)
     tables = [_missing() for _ in range(4)]
     for i, fidelity in enumerate(FIDELITIES):
-        run = periodic_motion(pair, fidelity, samples=samples, rtol=_RTOL, passes=predicted.settled)
+        run = periodic_motion(
+            pair, fidelity, samples=samples, rtol=_RTOL, passes=predicted.settled, orbit=orbit
+        )
         foreseen = predicted
         if fidelity == "exact" and run.attrs["friction_velocity"] == BLUNT:  # a choice of the numerics
-            foreseen = finite_motion(pair, reference, friction_velocity=BLUNT)
+            foreseen = finite_motion(pair, reference, friction_velocity=BLUNT, orbit=orbit)
         clear = keep & foreseen.clear(reference["time"].to_numpy()) if fidelity == "exact" else keep
         histories = {quantity: reference[quantity].to_numpy()[..., clear] for quantity in QUANTITIES}
         for j, quantity in enumerate(QUANTITIES):

@@ -150,9 +150,10 @@ def crosscheck_grid(
         difference, limit : judged metric and its tolerance, see ``validation.cross_check.tolerances``
         total : relative L2 of the whole difference, before anything predicted is taken off
         largest : largest difference over the peak to peak of the lumped motion
-        status : "compared", "teeth separate" (the lumped model's loads turn negative, so it is not valid
-            there and nothing is compared), "sliding may stick" (see ``validation.cross_check.finite_motion``;
-            compared but not judged at fidelity "exact"), or why a model failed
+        status : "compared" (where the linear motion needs teeth that pull, with teeth that push only), "teeth
+            separate" (no such motion of one mesh cycle is stable, and nothing is compared), "sliding may
+            stick" (see ``validation.cross_check.finite_motion``; compared but not judged at fidelity
+            "exact"), or why a model failed
         load_min : smallest normal load of the lumped model over the static load
         expected : largest change of the DTE that finite motions must make, over its peak to peak
         ratio : DTE difference over that at the next lower torque, divided by the ratio of the torques: 1 by

@@ -1,0 +1,137 @@
+"""The motions that a cross-check compares, over whole mesh cycles."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+import lumped
+import multibody
+from floquet.gear.orbit import GearOrbit
+from lumped import GearPair
+from lumped.errors import NumericalError
+from lumped.typing import Progress
+from multibody.contact.machine import machine
+from multibody.contact.reversal import friction_velocity
+from validation.cross_check.agreement import Fidelity
+
+#: Tolerances of the integrations: far below the limits they are used to check.
+RTOL: Mapping[str, float] = {"lumped": 1e-10, "linear": 1e-10, "exact": 1e-8}
+#: Cycles over which the lumped integrator carries the periodic motion; a stable one repeats after them.
+_CARRIED_CYCLES = 6
+#: A cycle repeats the one before to this share of peak to peak, a hundredth of the limits of the comparison.
+_REPEATED = 1e-8
+#: Share of the default velocity over which friction changes its sign, where sliding does not stick: there a
+#: sharper change costs little. The default leaves twice the tolerance in y at the Kahraman-Blankenship pair.
+_SHARPER = 0.01
+#: Velocity for a motion that the integrator cannot follow with a sharper one [m/s].
+BLUNT = 0.01
+#: Effects where teeth part.
+PARTED: Mapping[Fidelity, Mapping[str, bool] | Sequence[str]] = {
+    "linear": ["contact_loss"],
+    "exact": {"clearance": True},
+}
+
+
+def periodic_motion(
+    pair: GearPair,
+    fidelity: Fidelity,
+    *,
+    samples: int,
+    rtol: float,
+    passes: bool,
+    orbit: GearOrbit | None = None,
+) -> xr.Dataset:
+    """Motion of the multibody model over one mesh cycle.
+
+    Where it cannot go on with sharp changes of the sign of friction they are blunter.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    fidelity, rtol : as ``multibody.steady_state``
+    samples : output times
+    passes : whether the teeth pass zero sliding without being held (``FiniteMotion.settled``)
+    orbit : lumped motion of teeth that part; then flanks touch where they meet, and so also with relief
+
+    Raises
+    ------
+    NumericalError : no periodic motion is found near the lumped one
+    """
+    sharp = _SHARPER * friction_velocity(machine(pair))[0] if passes else None
+
+    def motion(velocity: float | None) -> xr.Dataset:
+        return multibody.steady_state(
+            pair,
+            fidelity=fidelity,
+            samples_per_cycle=samples,
+            initial=None if orbit is None else orbit.states[0],
+            effects=None if orbit is None else PARTED[fidelity],
+            rtol=rtol,
+            friction_velocity=velocity,
+        )
+
+    try:
+        return motion(sharp)
+    except NumericalError:
+        return motion(BLUNT)
+
+
+def near_periodic(
+    pair: GearPair, fidelity: Fidelity, samples: int, passes: bool, orbit: GearOrbit | None
+) -> xr.Dataset | None:
+    """The same at the accuracy of the cross-check; None where there is none near the lumped one."""
+    try:
+        return periodic_motion(
+            pair, fidelity, samples=samples, rtol=RTOL[fidelity], passes=passes, orbit=orbit
+        )
+    except NumericalError:
+        return None
+
+
+def lumped_motion(
+    pair: GearPair, cycles: int, samples: int, stable: bool, progress: Progress | None
+) -> xr.Dataset:
+    """The lumped motion from the periodic solution on, over whole cycles.
+
+    A stable one repeats its last simulated cycle, if that repeats the one before: where mu(xi) is steep the
+    periodic solution itself may be off by some 1e-6, which the motion then forgets.
+    """
+    carried = min(cycles, _CARRIED_CYCLES) if stable else cycles
+    options = {"samples_per_cycle": samples, "initial": "periodic", "rtol": RTOL["lumped"]}
+    run = lumped.simulate(pair, carried, **options, progress=progress)  # type: ignore[arg-type]
+    if carried < cycles and not _repeats(run, samples):
+        carried, run = cycles, lumped.simulate(pair, cycles, **options, progress=progress)  # type: ignore[arg-type]
+    if carried == cycles:
+        return run
+    number = np.arange(cycles * samples + 1)
+    first = (carried - 1) * samples
+    last = first + (number - first) % samples
+    period = float(run["time"][-1]) / carried
+    time = period * (number // samples) + run["time"].to_numpy()[number % samples]
+    repeated = run.isel(time=np.where(number < carried * samples, number, last))
+    repeated = repeated.assign_coords(time=("time", time, run["time"].attrs))
+    repeated.attrs |= {"cycles": cycles}
+    return repeated
+
+
+def _repeats(run: xr.Dataset, samples: int) -> bool:
+    """Whether the last cycle is the one before, in every translation and the transmission error."""
+    least = 1e-6 * float(np.ptp(run["dte"].to_numpy()))  # what moves less is rounding
+    for name in ("dte", "x_p", "x_g", "y_p", "y_g"):
+        before, last = run[name].to_numpy()[-2 * samples - 1 : -1].reshape(2, samples)
+        if np.abs(last - before).max() > _REPEATED * max(float(np.ptp(last)), least):
+            return False
+    return True
+
+
+def repeated(cycle: xr.Dataset, cycles: int) -> xr.Dataset:
+    """A motion of one mesh cycle, its end left out, over several cycles, the last end included."""
+    samples, period = cycle.sizes["time"], float(cycle["time"][1]) * cycle.sizes["time"]
+    number = np.arange(cycles * samples + 1)
+    time = period * (number // samples) + cycle["time"].to_numpy()[number % samples]
+    repeated = cycle.isel(time=number % samples).assign_coords(time=("time", time, cycle["time"].attrs))
+    repeated.attrs |= {"cycles": cycles}
+    return repeated
