@@ -4,13 +4,15 @@ The jump at the primary resonance
 
 A lightly damped 50/50 pair answers differently when the speed rises and when it falls: falling, it keeps
 the large motion, in which teeth separate, to speeds at which a rising sweep has not met it. The linear
-model has one answer.
+model has one answer. Its equations with teeth that only push have both (grey), and unstable motions between
+(dotted).
 """
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+import floquet
 import lumped
 import multibody
 
@@ -26,14 +28,19 @@ def compute() -> xr.Dataset:
     down = multibody.speed_sweep(pair, speeds[::-1], **settings).sortby("speed")
     linear = lumped.speed_sweep(pair, speeds, samples_per_cycle=64)
     curves = {"rising": up["dte_rms"], "falling": down["dte_rms"], "linear": linear["dte_rms"]}
-    return xr.Dataset(curves | {"separated": up["separated"]})
+    branches = floquet.response_branches(pair, (2340.0, 2660.0), [1], seeds=0).dataset
+    followed = branches[["speed_rpm", "dte_rms", "stable", "branch"]]
+    return xr.merge([followed, xr.Dataset(curves | {"separated": up["separated"]})])
 
 
 def draw(result: xr.Dataset) -> Figure:
     """The three curves over speed."""
     figure = Figure(figsize=(7, 4), layout="constrained")
     axes = figure.add_subplot()
-    for name, style in (("rising", "o-"), ("falling", "s-"), ("linear", "--")):
+    for _, one in result[["speed_rpm", "dte_rms", "stable"]].groupby(result["branch"]):
+        for kept, style in ((one["stable"], "-"), (~one["stable"], ":")):
+            axes.plot(one["speed_rpm"], one["dte_rms"].where(kept) * 1e6, style, color="0.5")
+    for name, style in (("rising", "o"), ("falling", "s"), ("linear", "--")):
         axes.plot(result["speed"], result[name] * 1e6, style, markersize=4, label=name)
     axes.set(xlabel="pinion speed [rpm]", ylabel="transmission error, rms [µm]")
     axes.legend()
