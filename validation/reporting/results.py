@@ -15,6 +15,7 @@ from floquet.gear.axes import operating_rpm, speed_range
 from floquet.gear.margins import StabilityMargins, stability_margins
 from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
 from floquet.gear.orbit import GearOrbit, periodic_orbit
+from floquet.gear.response import ResponseBranches, response_branches
 from lumped import GearPair, Geometry, NumericalError, ParameterError
 from lumped.model.averaged import Mode, modes
 from lumped.model.extremes import cycle_peak_to_peak
@@ -32,6 +33,8 @@ from validation.verification.stability_routes import StabilityRoutes, stability_
 from validation.verification.tooth_stiffness import ToothStiffness, tooth_stiffness
 
 T = TypeVar("T")
+#: Speeds of the motions beyond contact loss, over the operating speed.
+_BRANCHES = (0.8, 1.25)
 
 
 @dataclass(frozen=True)
@@ -197,6 +200,19 @@ class Results:
         run = self.check.multibody["exact"]
         exact = run.sel(time=slice(float(run["time"][-1]) - 1.000001 * self.geometry.mesh_period, None))
         return Parting(orbit, exact, cycle_peak_to_peak(exact, "dte"), self.check.orbit is not None)
+
+    @cached_property
+    def branches(self) -> ResponseBranches | str | None:
+        """Motions of teeth that push only, about the operating speed; why there are none.
+
+        None where the linear model keeps contact at all speeds of the range, and in a quick report.
+        """
+        if not self.effort.full or not self.separating_share:
+            return None
+        low, high = (factor * self.operating_rpm for factor in _BRANCHES)
+        speeds = (max(low, self.speeds[0]), min(high, self.speeds[1]))
+        stage = self.stage("motions beyond contact loss")
+        return _or_why_not(lambda pair: response_branches(pair, speeds, seeds=0, progress=stage), self.pair)
 
     @cached_property
     def forms(self) -> ContactForms | str:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from lumped import GearPair
 from validation.cross_check.comparison import CrossCheck
 from validation.cross_check.judgement import Judgement
 from validation.reporting.blocks import Text
 from validation.reporting.formatting import digits, number, quantity
-from validation.reporting.results import Results
+from validation.reporting.results import Parting, Results
 
 #: Short names of the quantities that the models are compared by.
 NAMES = {
@@ -36,9 +38,22 @@ def headline(results: Results) -> str:
     here = f"At {results.operating_rpm:.5g} rpm and {results.pair.operating.pinion_torque:.4g} N m"
     if off := contact_off(results):
         return f"{here} the equations are solved right, but their contact is too simple: {off}."
-    near = [f"“{flag.name.lower()}” is near its limit" for flag in results.flags if flag.state != "ok"]
+    near = [f"“{flag.name.lower()}” is near its limit" for flag in results.flags if flag.state == "warning"]
     near += ["check the values named below"] if results.doubts else []
-    return f"{here} the prediction holds{', with care: ' if near else ''}{'; '.join(near)}."
+    care = f"{', with care: ' if near else ''}{'; '.join(near)}"
+    if confirmed_parting(results):
+        return (
+            f"{here} teeth part: the linear model does not hold, its equations with teeth that push only do"
+            f"{care}."
+        )
+    return f"{here} the prediction holds{care}."
+
+
+def confirmed_parting(results: Results) -> Parting | None:
+    """The motion of teeth that part, where the cross-check compares and does not refute it."""
+    found = results.parting
+    judged = isinstance(found, Parting) and found.judged and results.check.verdict != "not confirmed"
+    return found if judged and isinstance(found, Parting) else None
 
 
 def contact_off(results: Results) -> str:
@@ -62,6 +77,8 @@ def sentence(results: Results) -> str:
 
 def motion(results: Results) -> str:
     """What the model computes, in the digits that its sampling allows."""
+    if found := confirmed_parting(results):
+        return f"{with_loss_of_contact(results, found)}{ignored_relief(results.pair)}"
     load, error = largest_load(results)
     factor = number(load / results.static_load, digits(error / load))
     numbers = (
@@ -73,6 +90,40 @@ def motion(results: Results) -> str:
         told = f"Computed, but not what a gear pair would show: {numbers}"
         return f"{told} {parted(results)}".rstrip()
     return numbers[0].upper() + numbers[1:]
+
+
+def with_loss_of_contact(results: Results, found: Parting) -> str:
+    """What the equations with teeth that push only give."""
+    low, high = found.orbit.dte_range
+    driving = results.pair.operating.pinion_torque * results.geometry.omega_pinion
+    lost = -float(found.orbit.motion["friction_power"].sum("pair").mean()) / driving
+    return (
+        f"With teeth that push and never pull: transmission error {quantity(high - low, 'm', 3)} peak to "
+        f"peak, tooth load up to {number(found.orbit.largest_load / results.static_load, 3)} times the "
+        f"static load, {number(100 * lost, 2)}\u00a0% of the power lost in sliding. The linear model, whose "
+        f"teeth would pull, gives {span(results)}."
+    )
+
+
+def jumps(results: Results) -> str:
+    """At which speeds the pair jumps to another motion, and between which; empty where nothing is known."""
+    found = results.branches
+    if found is None or isinstance(found, str):
+        return ""
+    low, high = (f"{rpm:.0f}" for rpm in found.speeds_rpm)
+    if not found.jumps:
+        return f"From {low} to {high} rpm the pair does not jump to another motion."
+    most = max(
+        found.jumps, key=lambda jump: np.nan_to_num(abs(jump.dte_rms_after - jump.dte_rms), nan=np.inf)
+    )
+    more = f" and {len(found.jumps) - 1} more" if len(found.jumps) > 1 else ""
+    grows = not np.isfinite(most.dte_rms_after)
+    after = "beyond the backlash" if grows else f"to {quantity(most.dte_rms_after, 'm', 3)}"
+    return (
+        f"From {low} to {high} rpm it jumps at {number(most.speed_rpm, 4)} rpm on running "
+        f"{'up' if most.rising else 'down'}, from {quantity(most.dte_rms, 'm', 3)} {after} root mean square"
+        f"{more}."
+    )
 
 
 def parted(results: Results) -> str:
@@ -144,6 +195,11 @@ def agreement(results: Results) -> str:
 
 def stability(results: Results) -> str:
     """Whether the motion is stable here, and at which other speeds."""
+    if parting := confirmed_parting(results):
+        left = number(100 * parting.orbit.spectral_radius, 2)
+        return (
+            f"A disturbance of this motion fades to {left}\u00a0% in a mesh cycle. {jumps(results)}".rstrip()
+        )
     found, routes = results.multipliers, results.routes
     doubt = "" if isinstance(routes, str) or routes.agree else ", which a second route does not confirm"
     radius, certain = found.spectral_radius, digits(found.error / found.spectral_radius)
@@ -152,7 +208,8 @@ def stability(results: Results) -> str:
         "stable": f"A disturbance of this motion fades to {left}\u00a0% in a mesh cycle",
         "unstable": f"A disturbance of this motion grows {number(radius, certain)} times in a mesh cycle",
     }.get(found.verdict, "Whether a disturbance of this motion fades cannot be decided")
-    return f"{here}{doubt}; the computed motion is stable {stable_speeds(results)}."
+    over = f"{here}{doubt}; the computed motion is stable {stable_speeds(results)}."
+    return f"{over} {jumps(results)}".rstrip()
 
 
 def contact_form(results: Results) -> str:
@@ -191,12 +248,14 @@ def unlawful(results: Results) -> str:
 
 def objections(results: Results) -> list[str]:
     """Reasons why a gear pair would not show the predicted motion."""
-    verdict = results.multipliers.verdict
+    verdict, parts = results.multipliers.verdict, confirmed_parting(results)
+    if parts:  # the motion of the linear model is not the one that is predicted
+        verdict = "stable"
     found = [] if verdict == "stable" else [f"the periodic motion is {verdict}, so a pair would leave it"]
     found += [
         f"the assumption “{flag.name.lower()}” is violated"
         for flag in results.flags
-        if flag.state == "violated" and flag.key != "stability"
+        if flag.state == "violated" and flag.key not in ("stability", *(["contact_loss"] if parts else []))
     ]
     failed = [check.key for check in results.checks if not check.passes]
     if failed:
@@ -209,7 +268,12 @@ def objections(results: Results) -> list[str]:
 def cautions(results: Results) -> tuple[Text, ...]:
     """What a chapter on the periodic motion says first where that motion is not to be relied on."""
     stability, check, found = results.multipliers, results.check, []
-    if stability.verdict != "stable":
+    if confirmed_parting(results):
+        found.append(
+            "The numbers of the linear model in this chapter are those of teeth that would pull. What the "
+            "pair does is in the chapter “Where teeth part”."
+        )
+    elif stability.verdict != "stable":
         found.append(
             f"Warning: the periodic motion at the operating point is {stability.verdict} (largest multiplier "
             f"{stability.spectral_radius:.4g}). What follows is a solution of the equations that a gear pair "
@@ -250,7 +314,7 @@ def validity(results: Results) -> str:
         return f"{text}."
     return (
         f"{text}; from {low:.0f} to {high:.0f} rpm teeth would separate at {100 * share:.2g}\u00a0% of the "
-        "speeds, where nothing is as computed."
+        "speeds, where the linear model does not hold."
     )
 
 

@@ -2,18 +2,34 @@
 
 from __future__ import annotations
 
-from validation.reporting.blocks import Content, Quantity, Text, table_of
+from functools import partial
+
+import numpy as np
+
+from floquet.gear.jump_removal import jumps_removed_by
+from floquet.gear.response import ResponseBranches
+from validation.plots.response import response_figure
+from validation.reporting.blocks import Block, Content, Picture, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.formatting import number, quantity
 from validation.reporting.results import Results
-from validation.reporting.words import parted
+from validation.reporting.words import jumps, parted
+
+#: Most jumps of which it is looked for what removes them: some seconds each.
+_FEW = 4
+#: What a motion is that does not repeat.
+_MOTIONS = {"beats": "beats", "chaos": "chaos", "grows": "grows beyond the backlash"}
 
 
 def write(results: Results) -> Content | None:
-    """Write the chapter; nothing where all teeth that the linear model holds together push."""
+    """Write the chapter; nothing where all teeth that the linear model holds together push at all speeds."""
     found = results.parting
     if found is None:
-        return None
+        about = (
+            "At the operating speed all teeth push; at other speeds the linear model needs teeth that pull."
+        )
+        over_speed = _over_speed(results)
+        return Content((Text(about), *over_speed)) if over_speed else None
     if isinstance(found, str):
         return Content((Text(f"Teeth that may part have no periodic motion that was found: {found}"),))
     orbit, linear, exact = found.orbit, results.motion, found.exact
@@ -28,13 +44,17 @@ def write(results: Results) -> Content | None:
         "multibody model": (found.exact_peak_to_peak, float(exact["normal_load"].max()), 0.0),
     }  # fmt: skip
     stable = "a disturbance of it fades" if orbit.stable else "it is unstable: a pair leaves it"
-    blocks = (
+    blocks: list[Block] = [
         Text(
             "The motion of the linear model needs tooth pairs that pull by up to "
             f"{quantity(abs(float(loads.min())), 'N', 3)}. {parted(results)} Between losing and finding "
             "contact the motion is exact, and its multipliers say that "
-            f"{stable} (largest {number(orbit.spectral_radius, 3)} per mesh cycle). At which speeds the pair "
-            "jumps from one motion to another is told by the command spurcheck response."
+            f"{stable} (largest {number(orbit.spectral_radius, 3)} per mesh cycle). "
+            + (
+                "The cross-check compares this motion."
+                if found.judged
+                else "The cross-check compares motions of one mesh cycle that are stable; this one is not."
+            )
         ),
         table_of(
             "contact_loss",
@@ -47,8 +67,75 @@ def write(results: Results) -> Content | None:
                 "smallest_load": ("smallest load of a pair", lambda name: Quantity(rows[name][2], "N")),
             },
         ),
-    )
-    return Content(blocks)
+    ]
+    return Content((*blocks, *_over_speed(results)))
 
 
-CHAPTER = Chapter("contact_loss", "Where teeth part", write, front=("contact_loss",), seconds=1)
+def _over_speed(results: Results) -> list[Block]:
+    """Branches of motions about the operating speed, and the jumps between them."""
+    found = results.branches
+    if found is None:
+        return []
+    if isinstance(found, str):
+        return [Text(f"The motions over speed were not found: {found}")]
+    blocks: list[Block] = [
+        Picture(
+            "response",
+            "Motions with teeth that push only over speed, stable (solid) and unstable (dashed); arrows are "
+            "jumps. The linear model, dotted, holds its teeth together.",
+            partial(response_figure, found.dataset, results.sweep),
+        ),
+        Text(f"{jumps(results)} {_removed(results)}".strip()),
+    ]
+    if found.jumps:
+        blocks.append(
+            table_of(
+                "jumps",
+                "Speeds at which a stable motion ends, and the motion right behind.",
+                found.jumps,
+                {
+                    "speed": ("pinion speed", lambda jump: Quantity(jump.speed_rpm, "rpm")),
+                    "way": ("running", lambda jump: "up" if jump.rising else "down"),
+                    "before": ("rms before", lambda jump: Quantity(jump.dte_rms, "m")),
+                    "load_before": ("largest load before", lambda jump: Quantity(jump.largest_load, "N")),
+                    "after": ("rms after", lambda jump: _known(jump.dte_rms_after, "m")),
+                    "load_after": ("largest load after", lambda jump: _known(jump.largest_load_after, "N")),
+                    "kind": ("motion after", lambda jump: _MOTIONS.get(jump.after, _cycles(jump.n_after))),
+                },
+            )
+        )
+    return blocks
+
+
+def _known(value: float, unit: str) -> Quantity | None:
+    return Quantity(value, unit) if np.isfinite(value) else None
+
+
+def _cycles(n: int) -> str:
+    return "repeats each mesh cycle" if n == 1 else f"repeats after {n} mesh cycles"
+
+
+def _removed(results: Results) -> str:
+    """Which torque or damping leaves no jumps."""
+    found = results.branches
+    if not isinstance(found, ResponseBranches) or not found.jumps:
+        return ""
+    if len(found.jumps) > _FEW:
+        return "Which torque or damping removes them: spurcheck jumps."
+    told = []
+    for axis, name, unit in (
+        ("torque", "a torque", "N m"),
+        ("damping_ratio", "a damping ratio of the mesh", ""),
+    ):
+        for way in jumps_removed_by(found, axis):
+            if way.found:
+                value = quantity(way.value, unit, 3) if unit else number(way.value, 3)
+                told.append(f"{name} {'above' if way.direction == 'larger' else 'below'} {value}")
+    if not told:
+        return "No torque from a quarter to four times the given one and no such damping removes all folds."
+    return f"Stable motions have no folds here, and so do not end at once, with {' or '.join(told)}."
+
+
+CHAPTER = Chapter(
+    "contact_loss", "Where teeth part", write, front=("contact_loss", "response", "jumps"), seconds=10
+)

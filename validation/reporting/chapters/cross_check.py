@@ -54,8 +54,8 @@ def write(results: Results) -> Content:
     blocks: list[Block] = [
         *cautions(results),
         Text(
-            f"The verdict is “{check.verdict}”: {MEANINGS[check.verdict]}. The linear model starts from the "
-            f"lumped periodic motion and is compared over {check.cycles} mesh cycles. {_exact_motion(check)} "
+            f"The verdict is “{check.verdict}”: {MEANINGS[check.verdict]}. "
+            f"{_linear_motion(check)} {_exact_motion(check)} "
             f"{same_equations(check)} {finite_motions(check)}"
         ),
         meshing_teeth(results),
@@ -114,6 +114,18 @@ def write(results: Results) -> Content:
 
 def _brake_torque(run: xr.Dataset) -> Quantity:
     return Quantity(float(run.attrs["brake_torque"]), "N m")
+
+
+def _linear_motion(check: CrossCheck) -> str:
+    if check.orbit is not None:
+        return (
+            "Teeth part, so the lumped motion is the one with teeth that push only. The linear model has "
+            "such teeth as well, and is compared in its own periodic motion."
+        )
+    return (
+        "The linear model starts from the lumped periodic motion and is compared over "
+        f"{check.cycles} mesh cycles."
+    )
 
 
 def _exact_motion(check: CrossCheck) -> str:
@@ -263,12 +275,14 @@ def _effects(effects: Effects) -> Table:
         {
             "effect": ("effect", lambda at: EFFECT_WORDS[at[0]]),
             "quantity": ("quantity", lambda at: NAMES[at[1]]),
-            "size": ("displacement / base pitch", lambda at: effects.size[at[0]]),
+            "size": ("displacement / base pitch", lambda at: effects.size.get(at[0])),
             "alone": ("change alone", lambda at: effects.alone.get(at[0], {}).get(at[1])),
             "most": ("most", lambda at: effects.most[at[0]][at[1]]),
         },
         note="Of the turned line of action the displacement is its angle [rad]. An empty cell: no motion was "
-        "found with this effect, so friction may hold the teeth, and its most is allowed in what is left.",
+        "found with this effect, so friction may hold the teeth, and its most is allowed in what is left. "
+        "Where teeth part an effect has no displacement of its own and counts by what it changes beside all "
+        "others, late entry by the whole change.",
     )
 
 
