@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from lumped.model.steady import UNSTABLE
-from validation.plots.style import BLUE, GREY, RED, legend_above, mark_operation, new_figure, scaled
+from validation.plots.style import BLUE, GREEN, GREY, RED, legend_above, mark_operation, new_figure, scaled
 
 _WIDTH = 4.6
 
@@ -19,6 +19,7 @@ def first_figure(
     sweep: xr.Dataset,
     operating_rpm: float,
     static_load: float,
+    branches: xr.Dataset | None = None,
 ) -> Figure:
     """Transmission error of both models over the last mesh cycle, and its peak to peak over speed.
 
@@ -29,6 +30,7 @@ def first_figure(
     sweep : dataset of ``lumped.speed_sweep``
     operating_rpm : operating speed, marked [rpm]
     static_load : T_p/r_bp; where the smallest load is negative beside it, teeth separate [N]
+    branches : ``dataset`` of ``floquet.response_branches``, of which the stable motions are drawn
     """
     figure, axes = new_figure(2, 1, height=4.9)
     figure.set_figwidth(_WIDTH)
@@ -52,10 +54,16 @@ def first_figure(
     if wrong.any():
         look = {"color": GREY, "linewidth": 0.9, "linestyle": ":", "zorder": 1.5}
         bottom.plot(speed, values / factor, label="not as computed", **look)
+    if branches is not None:
+        for number in np.unique(branches["branch"]):
+            one = branches.isel(point=branches["branch"].to_numpy() == number)
+            stable = np.where(one["stable"], one["dte_peak_to_peak"] / factor, np.nan)
+            bottom.plot(one["speed_rpm"], stable, color=GREEN)
+        bottom.plot([], [], color=GREEN, label="teeth push only")
     bottom.set(xlabel="pinion speed [rpm]", ylabel=f"peak to peak [{unit}]", ylim=(0.0, None))
     bottom.set_xlim(speed[0], speed[-1])
     mark_operation(bottom, operating_rpm, "")
-    here = float(np.interp(operating_rpm, speed, values)) / factor
+    here = float(np.ptp(lumped["dte"].to_numpy()[last])) / factor
     bottom.plot([operating_rpm], [here], "o", color=RED, markersize=5, label="operating point")
-    legend_above(bottom, 3)
+    legend_above(bottom, 2 if branches is not None else 3)
     return figure

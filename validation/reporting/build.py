@@ -12,6 +12,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from floquet.gear.response import ResponseBranches
 from lumped import GearPair, load_gear_pair
 from lumped.arguments import file_path
 from lumped.typing import Progress
@@ -196,7 +197,7 @@ def document(results: Results, chapters: tuple[Written, ...], *, quick: bool) ->
 
 def answer_figure(results: Results) -> Picture:
     """The one figure of the first page: the answer in time and over speed."""
-    check = results.check
+    check, branches = results.check, results.branches
     return Picture(
         "answer",
         "Transmission error over one mesh cycle by both models, and its peak to peak over pinion speed.",
@@ -208,6 +209,7 @@ def answer_figure(results: Results) -> Picture:
             results.sweep,
             results.operating_rpm,
             results.static_load,
+            branches.dataset if isinstance(branches, ResponseBranches) else None,
         ),
     )
 

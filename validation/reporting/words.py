@@ -61,6 +61,15 @@ def contact_off(results: Results) -> str:
     forms = results.forms
     if isinstance(forms, str) or forms.difference[forms.own] <= _CONTACT_LIMIT:
         return ""
+    if found := confirmed_parting(results):
+        follows = forms.spans(results.geometry.mesh_period)["exact"]
+        low, high = found.orbit.dte_range
+        if abs(high - low - follows) <= _CONTACT_LIMIT * follows:
+            return ""
+        return (
+            f"with contact that follows the load the transmission error is {quantity(follows, 'm', 3)} peak "
+            f"to peak, not {quantity(high - low, 'm', 3)}"
+        )
     exact = quantity(forms.spans(results.geometry.mesh_period)["exact"], "m", 3)
     most = number(100 * forms.difference[forms.own], 2)
     return (
@@ -116,7 +125,7 @@ def jumps(results: Results) -> str:
     most = max(
         found.jumps, key=lambda jump: np.nan_to_num(abs(jump.dte_rms_after - jump.dte_rms), nan=np.inf)
     )
-    more = f" and {len(found.jumps) - 1} more" if len(found.jumps) > 1 else ""
+    more = f" (the largest of {len(found.jumps)} jumps)" if len(found.jumps) > 1 else ""
     grows = not np.isfinite(most.dte_rms_after)
     after = "beyond the backlash" if grows else f"to {quantity(most.dte_rms_after, 'm', 3)}"
     return (

@@ -69,4 +69,4 @@ def test_the_chapter_tells_jumps_and_what_removes_them(results, monkeypatch):
     text = " ".join(str(block) for block in content.blocks)
     assert "damping ratio of the mesh above 0.0547" in text
     assert "7723" in words.jumps(told) or "7596" in words.jumps(told)
-    assert "and 1 more" in words.jumps(told)
+    assert "the largest of 2 jumps" in words.jumps(told)
