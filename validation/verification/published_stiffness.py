@@ -1,8 +1,9 @@
 """Published stiffness of spur gear teeth beside plane elasticity of the same gears; nothing is fitted to it.
 
-Sources: ISO 6336-1:2019, eqs (82) to (93); DIN 3990-1:1987, mean values of steel gears; the finite elements
-of another program, https://github.com/git-akai/gearcalc, work/contact-model.md, section 2.4; F. H. A. S.
-Dias, G. C. Silva and D. S. Chui, J. Braz. Soc. Mech. Sci. Eng. 46 (2024) 10.
+Sources: ISO 6336-1:2019, eqs (82) to (93); DIN 3990-11, section 3.4.3.1, as a public program quotes it,
+https://github.com/hanslhansl/din3990, din3990/din3990_11.py; the finite elements of another program,
+https://github.com/git-akai/gearcalc, work/contact-model.md, section 2.4; F. H. A. S. Dias, G. C. Silva and
+D. S. Chui, J. Braz. Soc. Mech. Sci. Eng. 46 (2024) 10.
 """
 
 from __future__ import annotations
@@ -19,8 +20,8 @@ from lumped.stiffness.elastic_teeth import Plane, Support, alone, elastic_teeth
 #: Rim of pinion and gear of 17/43 teeth, module 1 mm, held at the bore [mm] -> c' at the pitch point by
 #: plane-strain finite elements of another program [N/(mm um)].
 RIMS = {(2.07, 5.79): 17.06, (3.63, 10.13): 14.61, (5.44, 15.19): 10.10, (2.70, 2.70): 17.53}
-#: DIN 3990-1: mean c' and c_gamma of steel gears of standard form [N/(mm um)].
-MEAN_VALUES = (14.0, 20.0)
+#: DIN 3990-11: the one c_gamma that it has for all gears [N/(mm um)].
+ONE_FOR_ALL = 20.0
 #: Largest approach of a pair alone by Dias, Silva and Chui for 27/35 teeth [m].
 DIAS = 43.881e-6
 _UNIT = 1e9  # N/(mm um) [N/m^2]
@@ -89,7 +90,7 @@ def published_stiffness() -> Iterator[Beside]:
         yield Beside(gears, "c′", "N/(mm µm)", "ISO 6336-1, from measurements", single, largest)
         yield Beside(gears, "c′", "N/(mm µm)", theory, single / iso6336.CORRECTION, largest)
         yield Beside(gears, "c_γ", "N/(mm µm)", "ISO 6336-1, from measurements", mean, total)
-        yield Beside(gears, "c_γ", "N/(mm µm)", "DIN 3990-1, mean of steel gears", MEAN_VALUES[1], total)
+        yield Beside(gears, "c_γ", "N/(mm µm)", "DIN 3990-11, one for all gears", ONE_FOR_ALL, total)
     pair = plain(
         basic_rack__module=3.0,
         pinion__teeth=27,

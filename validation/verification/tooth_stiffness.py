@@ -3,7 +3,7 @@
 Both models of the dynamics take k from one place, so their agreement says nothing about it. Plane finite
 elements of the gears share the outline of the teeth with the other ways to k and no formula.
 
-Sources: docs/theory/elasticity.md, "The gate".
+Sources: ISO 6336-1:2019, eqs. (82) to (93); docs/theory/elasticity.md, "The gate".
 """
 
 from __future__ import annotations
@@ -35,6 +35,7 @@ from lumped.stiffness.elastic_teeth import (
 from lumped.stiffness.energy import energy_curve
 from lumped.stiffness.neighbours import neighbour_compliances
 from lumped.typing import FloatArray
+from multibody.contact.drawing import circles
 from validation.verification.checks import Check, check, rows_check
 
 if TYPE_CHECKING:
@@ -176,6 +177,7 @@ def tooth_stiffness(pair: GearPair) -> ToothStiffness:
         allowed=_allowed(pair),
         checks=(
             *_energy(pair, float(np.mean(energy / elastic))),
+            _formulas(pair, iso),
             _standard(pair, iso[1], xi),
             *_unheld(pair, float(unheld.mean() / elastic.mean())),
             _neighbours(pair, ring),
@@ -194,6 +196,23 @@ def _energy(pair: GearPair, ratio: float) -> Iterator[Check]:
     poisson = 0.5 * (pair.pinion.poisson_ratio + pair.gear.poisson_ratio)
     expected = _EXPECTED + _PER_POISSON * (poisson - 0.3)
     yield check("energy_elastic", abs(ratio - expected), ratio=f"{ratio:.3f}", expected=f"{expected:.3f}")
+
+
+def _formulas(pair: GearPair, iso: tuple[float, float]) -> Check:
+    """The standard's c' b and c_gamma b, eqs. (82) to (93), once more from the drawing."""
+    gears = sorted((pair.pinion, pair.gear), key=lambda gear: (gear.teeth, -gear.profile_shift))
+    (z1, x1), (z2, x2) = ((gear.teeth, gear.profile_shift) for gear in gears)
+    q = 0.04723 + 0.15551 / z1 + 0.25791 / z2 - 0.00635 * x1 - 0.11654 * x1 / z1 - 0.00193 * x2
+    q += -0.24188 * x2 / z2 + 0.00529 * x1**2 + 0.00182 * x2**2
+    rack = pair.basic_rack
+    factor = 1.0 + 0.5 * (1.2 - rack.dedendum_coefficient)
+    factor *= 1.0 - 0.02 * (20.0 - math.degrees(rack.pressure_angle))
+    e1, e2 = pair.pinion.youngs_modulus, pair.gear.youngs_modulus
+    width = min(pair.pinion.face_width, pair.gear.face_width)
+    single = 0.8 * factor / q * 2.0 * e1 * e2 / (e1 + e2) / 206e9 * 1e9 * width
+    c = circles(pair)
+    contact_ratio = (c.reach_pinion - c.tangent + c.reach_gear) / c.pitch
+    return rows_check("iso6336", np.stack([iso, (single, single * (0.75 * contact_ratio + 0.25))], axis=-1))
 
 
 def _standard(pair: GearPair, mean: float, xi: FloatArray) -> Check:

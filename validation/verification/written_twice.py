@@ -17,7 +17,6 @@ from lumped.friction.registry import FRICTIONAL
 from lumped.model.mesh_elements import mesh_elements
 from lumped.path_of_contact import friction_path_function
 from lumped.quasi_static.tooth_error import relief_error
-from lumped.stiffness import iso6336
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.drawing import circles, masses
@@ -40,7 +39,6 @@ def written_twice(pair: GearPair) -> tuple[Check, ...]:
         _bodies(pair),
         *_damping(pair),
         _laws(pair),
-        _stiffness(pair),
         *_relief(pair),
         *loaded_form(pair),
     )
@@ -112,36 +110,6 @@ def _laws(pair: GearPair) -> Check:
         away[np.abs(xi[:, None] - np.append(law.switches, 0.0)).min(axis=1) < 1e-9] = 0.0
         worst = max(worst, float(away.max() / max(np.abs(own).max(), 1e-300)))
     return check("friction_laws", worst)
-
-
-def _stiffness(pair: GearPair) -> Check:
-    """The formulas of ISO 6336-1, eqs. (82) to (93), once more; and what the pair's curve makes of them."""
-    gears = sorted((pair.pinion, pair.gear), key=lambda gear: (gear.teeth, -gear.profile_shift))
-    (z1, x1), (z2, x2) = ((gear.teeth, gear.profile_shift) for gear in gears)
-    q = 0.04723 + 0.15551 / z1 + 0.25791 / z2 - 0.00635 * x1 - 0.11654 * x1 / z1 - 0.00193 * x2
-    q += -0.24188 * x2 / z2 + 0.00529 * x1**2 + 0.00182 * x2**2
-    rack = pair.basic_rack
-    factor = 1.0 + 0.5 * (1.2 - rack.dedendum_coefficient)
-    factor *= 1.0 - 0.02 * (20.0 - math.degrees(rack.pressure_angle))
-    e1, e2 = pair.pinion.youngs_modulus, pair.gear.youngs_modulus
-    width = min(pair.pinion.face_width, pair.gear.face_width)
-    single = 0.8 * factor / q * 2.0 * e1 * e2 / (e1 + e2) / 206e9 * 1e9 * width
-    c = circles(pair)
-    ratio = (c.reach_pinion - c.tangent + c.reach_gear) / c.pitch
-    mean = single * (0.75 * ratio + 0.25)
-    rows = [(iso6336.single_of(pair), single), (iso6336.mean_of(pair), mean)]
-    model = pair.mesh.stiffness
-    elements = mesh_elements(pair.with_({"mesh.relief": "ignored", "mesh.contact": "paper"}))
-    if model.model == "rectangular" and model.pair_stiffness is None:
-        rows.append((elements.stiffness.mean(), single))
-    if (
-        model.model == "parabolic"
-        and model.peak is None
-        and model.end_ratio is None
-        and not model.ramp_length
-    ):
-        rows.append((elements.stiffness.mean() * ratio, mean))
-    return rows_check("iso6336", rows)
 
 
 def _relief(pair: GearPair) -> Iterator[Check]:
