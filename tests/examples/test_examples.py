@@ -231,3 +231,14 @@ def test_18_neighbours_and_a_thin_rim_soften(example):
     middle = np.hypot(x + 8.9, y - 40.5) < 1.0
     stress = field.von_mises
     assert stress[fillet].max() > 2.0 * stress[middle].max()
+
+
+def test_19_only_torques_far_from_that_of_the_relief_jump(example):
+    module = example(19)
+    result = module.compute([25.0, 70.0, 136.0])
+    module.draw(result)
+    assert set(result["jump_torque"].to_numpy()) == {25.0, 136.0}
+    assert result["contact_kept"].all("speed_rpm").values.tolist() == [False, True, False]
+    # Above the relief's torque the large motion, in which teeth part, ends more than ten times the small one.
+    falling = result.sel(jump=(result["jump_torque"] == 136.0) & ~result["jump_rising"])
+    assert float((falling["jump_dte_rms"] / falling["jump_dte_rms_after"]).min()) > 10.0
