@@ -32,6 +32,7 @@ GROUPS: Mapping[str, tuple[Fault, ...]] = {
         "teeth",
         "elasticity",
         "contact",
+        "contact loss",
         "integration",
         "stability",
         "multibody model",
