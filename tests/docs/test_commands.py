@@ -34,7 +34,7 @@ AXES_OF_VIEW = {"chart": SMALL, "laws": SMALL, "campbell": ["speed_rpm"], "bound
 #: Commands that are meant to be refused.
 REFUSED = re.compile(r"centre_distance=80$")
 #: What makes an interactive page small: tests/validation/interactive judges it.
-COARSE = Sampling(speeds=5, dampings=2, slices=2, sweep_speeds=3)
+COARSE = Sampling(speeds=5, dampings=2, slices=2, sweep_speeds=3, branches=None)
 COMMAND = get_command(app)
 CLUSTER = "docs/how_to/cluster.md"
 

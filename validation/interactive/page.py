@@ -23,7 +23,7 @@ from validation.interactive.results import FINE, PageResults, Sampling, compute
 from validation.validity.map import STATES, speed_spans
 
 #: Parts of the page's own script, in this order.
-_SCRIPTS = ("data.js", "chart.js", "stability.js", "sweep.js", "start.js")
+_SCRIPTS = ("data.js", "chart.js", "stability.js", "branches.js", "sweep.js", "start.js")
 
 
 def write_interactive_page(
@@ -95,6 +95,8 @@ def render(results: PageResults, data_name: str) -> str:
         step=float(np.diff(next(iter(results.stability.values())).chart["speed_rpm"]).max()),
         unstable=unstable_speeds,
         response=_response_rows(results),
+        branches=_branch_rows(results.branches) if isinstance(results.branches, xr.Dataset) else [],
+        no_branches=results.branches if isinstance(results.branches, str) else "",
         missing={LAWS[law].long_name: reason for law, reason in results.missing.items()},
         data_name=data_name,
         policy="script-src " + " ".join(map(_hash, scripts)),
@@ -147,6 +149,26 @@ def _response_rows(results: PageResults) -> list[list[str]]:
     texts = [[_text(factor * v, digits) for v in values.to_numpy()] for values, factor, digits in columns]
     texts.append([STATES[state] for state in few["validity"].to_numpy()])
     return [list(row) for row in zip(*texts, strict=True)]
+
+
+def _branch_rows(data: xr.Dataset) -> list[list[str]]:
+    """Rows of a few motions of every branch, for readers without scripts."""
+    rows = []
+    for branch in np.unique(data["branch"]):
+        one = data.isel(orbit=data["branch"].to_numpy() == branch)
+        for i in range(0, one.sizes["orbit"], -(-one.sizes["orbit"] // 6)):
+            at = one.isel(orbit=i)
+            rows.append(
+                [
+                    _text(float(at["branch_speed_rpm"]), 5),
+                    _text(1e6 * float(at["branch_dte_peak_to_peak"]), 4),
+                    _text(float(at["branch_largest_load"]), 4),
+                    f"{float(at['branch_spectral_radius']):.6f}",
+                    str(int(at["branch_n"])),
+                    "stable" if at["branch_stable"] else "unstable",
+                ]
+            )
+    return rows
 
 
 def _text(value: float, digits: int) -> str:

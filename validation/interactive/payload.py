@@ -7,10 +7,12 @@ import json
 from typing import Any
 
 import numpy as np
+import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from floquet.gear.axes import operating_rpm
 from lumped.friction import LAWS
+from validation.interactive.branches import SAMPLES
 from validation.interactive.results import PageResults
 from validation.interactive.slices import Slices
 from validation.plots.labels import pretty
@@ -104,7 +106,30 @@ def _sweep(results: PageResults) -> dict[str, Any]:
             "speed": _numbers(points["multibody_speed"]),
             **{n: _numbers(1e6 * points[f"multibody_{v}"].to_numpy()) for n, v in micrometres.items()},
         },
+        "branches": _branches(results.branches) if isinstance(results.branches, xr.Dataset) else [],
     }
+
+
+def _branches(data: xr.Dataset) -> list[dict[str, Any]]:
+    """Branches in their order; ``waves`` holds the transmission error [um] of the orbits ``drawn``."""
+    found = []
+    for branch in np.unique(data["branch"]):
+        one = data.isel(orbit=data["branch"].to_numpy() == branch)
+        waves = data.isel(wave=np.isin(data["wave_orbit"], one["orbit"]))
+        n, first = int(one["branch_n"][0]), int(one["orbit"][0])
+        found.append(
+            {
+                "n": n,
+                "speed": _numbers(one["branch_speed_rpm"]),
+                "dte": _numbers(1e6 * one["branch_dte_peak_to_peak"].to_numpy()),
+                "load": _numbers(one["branch_largest_load"]),
+                "radius": _numbers(one["branch_spectral_radius"]),
+                "stable": one["branch_stable"].to_numpy().astype(int).tolist(),
+                "drawn": (waves["wave_orbit"].to_numpy() - first).tolist(),
+                "waves": [_numbers(1e6 * wave[: n * SAMPLES]) for wave in waves["wave_dte"].to_numpy()],
+            }
+        )
+    return found
 
 
 def _number(value: float) -> float | None:

@@ -22,7 +22,10 @@ from lumped.model.results import provenance
 from lumped.path_of_contact import law_range_violations
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import Progress
+from validation.interactive.branches import branch_dataset
 from validation.interactive.slices import SLICES, Slices
+from validation.validity.beyond_contact_loss import BRANCH_SPEEDS, branches_about_operation
+from validation.validity.flags import LOAD_NOISE
 from validation.validity.map import STATES, validity_state
 
 
@@ -35,16 +38,20 @@ class Sampling:
     speeds, dampings : nodes of the stability charts
     slices : values of their third parameter
     sweep_speeds : of the response over speed, at most
+    branches : slowest and fastest speed of the motions beyond contact loss, over the operating speed; None:
+        without them
     """
 
     speeds: int = 101
     dampings: int = 17
     slices: int = 7
     sweep_speeds: int = 80
+    branches: tuple[float, float] | None = BRANCH_SPEEDS
 
 
 #: Samples per mesh cycle of the response over speed.
 _SAMPLES = 96
+_BEYOND = "motions beyond contact loss"
 FINE = Sampling()
 
 
@@ -65,6 +72,8 @@ class PageResults:
     missing : law -> why it is not in the sweep
     resonances : speeds at which the mesh frequency meets a natural frequency of the averaged pair [rpm]
     multibody : one or more points of the multibody model over ``multibody_speed``, or None
+    branches : motions of teeth that push only, see ``branch_dataset``; why there are none; None where the
+        linear model keeps contact at all speeds
     """
 
     pair: GearPair
@@ -76,6 +85,7 @@ class PageResults:
     missing: dict[str, str]
     resonances: tuple[float, ...]
     multibody: xr.Dataset | None
+    branches: xr.Dataset | str | None
 
     def dataset(self) -> xr.Dataset:
         """Every number of the page; the charts carry ``_over_`` and their third parameter in their names."""
@@ -84,6 +94,7 @@ class PageResults:
             for key, slices in self.stability.items()
         ]
         parts += [self.sweep] + ([] if self.multibody is None else [self.multibody])
+        parts += [self.branches] if isinstance(self.branches, xr.Dataset) else []
         merged = xr.merge(parts, join="exact", combine_attrs="override")
         merged.attrs = provenance(self.pair) | {"title": f"interactive page of {self.pair.name}"}
         return merged
@@ -121,14 +132,17 @@ def compute(
         warnings.simplefilter("ignore", LawRangeWarning)  # the page says it beside the law
         stability = {}
         for done, (key, make) in enumerate(SLICES.items()):
-            tell(0.6 * done / len(SLICES), "stability over a third parameter")
+            tell(0.4 * done / len(SLICES), "stability over a third parameter")
             stability[key] = make(pair, grid, sampling.slices)
-        tell(0.6, "response of every friction law")
+        tell(0.4, "response of every friction law")
         # Friction hardly moves a resonance: the speeds that resolve the pair's own law resolve every law.
         own = resolved_sweep(pair, speed_range(pair), most=sampling.sweep_speeds, samples_per_cycle=_SAMPLES)
-        sweeps, missing = _law_sweeps(pair, own, lambda f: tell(0.6 + 0.4 * f, "response over speed"))
+        sweeps, missing = _law_sweeps(pair, own, lambda f: tell(0.4 + 0.2 * f, "response over speed"))
         notes = tuple("; ".join(map(str, law_range_violations(pair, law))) for law in sweeps)
         multipliers = gear_pair_multipliers(pair)
+        branches = _branches(
+            pair, sampling, sweeps[pair.friction.law], lambda f: tell(0.6 + 0.4 * f, _BEYOND)
+        )
     laws = xr.DataArray(
         np.array(list(sweeps), dtype=object), dims="law", name="law", attrs={"long_name": "friction law"}
     )
@@ -142,7 +156,18 @@ def compute(
         missing=missing,
         resonances=tuple(mode.resonant_speed for mode in found),
         multibody=None if multibody is None else _points(pair, multibody),
+        branches=branches,
     )
+
+
+def _branches(
+    pair: GearPair, sampling: Sampling, own: xr.Dataset, tell: Callable[[float], None]
+) -> xr.Dataset | str | None:
+    """Motions beyond contact loss where the linear model needs teeth that pull at some speed of its sweep."""
+    if sampling.branches is None or not bool((own["lowest_load"] < -LOAD_NOISE).any()):
+        return None
+    found = branches_about_operation(pair, sampling.branches, lambda fraction, _="", /: tell(fraction))
+    return found if isinstance(found, str) else branch_dataset(found)
 
 
 def _law_sweeps(

@@ -15,7 +15,7 @@ from floquet.gear.axes import operating_rpm, speed_range
 from floquet.gear.margins import StabilityMargins, stability_margins
 from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
 from floquet.gear.orbit import GearOrbit, periodic_orbit
-from floquet.gear.response import ResponseBranches, response_branches
+from floquet.gear.response import ResponseBranches
 from lumped import GearPair, Geometry, NumericalError, ParameterError
 from lumped.model.averaged import Mode, modes
 from lumped.model.extremes import cycle_peak_to_peak
@@ -24,6 +24,7 @@ from lumped.path_of_contact import friction_profile
 from lumped.typing import BoolArray, Progress
 from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.reporting.paper_results import PaperResults, paper_results
+from validation.validity.beyond_contact_loss import branches_about_operation
 from validation.validity.contact_forms import ContactForms, contact_forms
 from validation.validity.flags import LOAD_NOISE, Flag, speed_drift, validity_flags
 from validation.validity.plausibility import doubts
@@ -33,8 +34,6 @@ from validation.verification.stability_routes import StabilityRoutes, stability_
 from validation.verification.tooth_stiffness import ToothStiffness, tooth_stiffness
 
 T = TypeVar("T")
-#: Speeds of the motions beyond contact loss, over the operating speed.
-_BRANCHES = (0.8, 1.25)
 
 
 @dataclass(frozen=True)
@@ -209,10 +208,7 @@ class Results:
         """
         if not self.effort.full or not self.separating_share:
             return None
-        low, high = (factor * self.operating_rpm for factor in _BRANCHES)
-        speeds = (max(low, self.speeds[0]), min(high, self.speeds[1]))
-        stage = self.stage("motions beyond contact loss")
-        return _or_why_not(lambda pair: response_branches(pair, speeds, seeds=0, progress=stage), self.pair)
+        return branches_about_operation(self.pair, progress=self.stage("motions beyond contact loss"))
 
     @cached_property
     def forms(self) -> ContactForms | str:

@@ -137,6 +137,32 @@ def test_hover_over_the_response_shows_the_data_file(page, data):
         assert lines[1].replace("−", "-") == text.format(f"{value:.6g}")
 
 
+def test_hover_over_a_branch_shows_its_load_and_multiplier(page, data):
+    page.choose("law", list(data["law"].to_numpy()).index("xu_kahraman"))
+    page.drawn("sweep-plot", "1")
+    first = data.isel(orbit=0)
+    place = float(first["branch_speed_rpm"]), 1e6 * float(first["branch_dte_peak_to_peak"])
+    lines = page.hover("sweep-plot", *place)
+    speeds = [f"{v:.6g} rpm" for v in data["branch_speed_rpm"].to_numpy()]
+    assert lines[0] in speeds  # neighbours are less than a pixel apart
+    one = data.isel(orbit=speeds.index(lines[0]))
+    expected = [
+        lines[0],
+        f"{1e6 * float(one['branch_dte_peak_to_peak']):.6g} µm peak to peak",
+        f"largest tooth load {float(one['branch_largest_load']):.6g} N",
+        f"largest multiplier {float(one['branch_spectral_radius']):.6g}",
+        "repeats after 1 mesh cycle",
+        "stable",
+    ]
+    assert lines == expected
+    assert ", ".join(expected) in page.text("motion-text")
+    points = page.run("return document.querySelector('#motion-wave polyline').points.length")
+    assert points == 49  # 48 samples and the first one again
+    page.choose("law", 0)
+    assert page.drawn("sweep-plot", "plot.data.some(t => t.name?.startsWith('teeth push only'))") is False
+    assert page.run("return document.getElementById('motion').hidden") is True
+
+
 def test_flags_of_the_strip_are_those_of_the_data_file(page, data):
     """Law I has speeds where the teeth separate; the strip and the text say the same."""
     index = list(data["law"].to_numpy()).index("coulomb")

@@ -234,7 +234,7 @@ def test_without_scripts_the_page_is_its_tables(browser, written, data):
                 time.sleep(0.1)
         raise AssertionError("the document is read for ever")
 
-    assert len(nodes("noscript table")) == 3
+    assert len(nodes("noscript table")) == 4
     for selector in ("#stability", "#law"):
         with pytest.raises(WebDriverException, match="box model"):  # not displayed, so it has none
             command("DOM.getBoxModel", {"nodeId": nodes(selector)[0]})

@@ -13,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
+import floquet
 import lumped
 from floquet.gear.axes import vary
 from floquet.gear.chart import stability_chart
@@ -23,9 +24,10 @@ from validation.interactive import compute, page, write_interactive_page
 from validation.interactive import results as interactive_results
 from validation.interactive.payload import payload, script_json
 from validation.interactive.results import Sampling
+from validation.validity.beyond_contact_loss import branches_about_operation
 from validation.validity.map import validity_map
 
-TINY = Sampling(speeds=5, dampings=3, slices=2, sweep_speeds=4)
+TINY = Sampling(speeds=5, dampings=3, slices=2, sweep_speeds=4, branches=None)
 
 
 class _Page(HTMLParser):
@@ -106,6 +108,40 @@ def test_the_responses_are_those_of_the_models(data, pair):
             assert float(one["lowest_load"]) == pytest.approx(float(judged["lowest_load"]), rel=1e-8)
             assert float(one["reversal"]) == pytest.approx(float(judged["reversal"]), rel=1e-8)
             assert int(one["validity"]) == int(judged["state"])
+
+
+def test_the_page_has_the_motions_of_teeth_that_push_only(data, pair, text):
+    """Sampled by the 12 states of the model, a motion found anew at its speed is the one of the page."""
+    (shown,) = json.loads(_Page(text).scripts[0])["sweep"]["branches"]
+    for key, name, factor in (
+        ("speed", "speed_rpm", 1.0), ("dte", "dte_peak_to_peak", 1e6), ("load", "largest_load", 1.0),
+        ("radius", "spectral_radius", 1.0), ("stable", "stable", 1.0),
+    ):  # fmt: skip
+        assert shown[key] == [float(f"{factor * v:.6g}") for v in data[f"branch_{name}"].to_numpy()], name
+    assert shown["drawn"] == data["wave_orbit"].to_numpy().tolist()
+    at = int(shown["drawn"][7])
+    one = data.sel(orbit=at)
+    speed = {"operating.pinion_speed": float(one["branch_speed_rpm"])}
+    found = floquet.periodic_orbit(pair.with_(speed))
+    assert found.parts
+    wave = 1e6 * found.sampled(48)["dte"].to_numpy()
+    assert shown["waves"][7] == pytest.approx(wave, rel=1e-5)  # six digits shown
+    assert float(one["branch_largest_load"]) == pytest.approx(found.largest_load, rel=1e-6)
+    assert float(one["branch_spectral_radius"]) == pytest.approx(found.spectral_radius, rel=1e-6)
+    assert shown["n"] == found.n == 1
+
+
+def test_a_pair_without_such_motions_has_its_page_without_them(results, pair):
+    assert payload(results)["sweep"]["branches"] == []
+    assert "teeth that push only" not in _static(page.render(results, "x.nc"))
+    none = dataclasses.replace(results, branches=branches_about_operation(pair, (30.0, 40.0)))
+    assert payload(none)["sweep"]["branches"] == []
+    assert "No motions with teeth that push only: speeds" in _static(page.render(none, "x.nc"))
+
+
+def _static(text):
+    """What stands before the scripts."""
+    return text[: text.index("page-data")]
 
 
 def test_every_variable_of_the_data_file_has_a_unit_and_a_name(data):

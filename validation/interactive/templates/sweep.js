@@ -23,6 +23,7 @@ function sweepTraces(colours) {
         line: { color: colours.other, width: 1.5, dash: "dash" }, showlegend: key === "dte",
       });
     }
+    if (key === "dte") made.push(...branchTraces(colours));
     made.push({
       type: "scatter", mode: "lines", x, y: law[key], yaxis: axis, name: law.name, showlegend: key === "dte",
       line: { color: colours.curve, width: 2 }, hovertemplate: `%{x:.6~r} rpm<br>${VALUES[key]}<extra></extra>`,
@@ -59,14 +60,16 @@ function sweepTraces(colours) {
 function drawSweep() {
   const colours = theme(), x = sweep.speed, law = sweep.laws[now.law], plot = element("sweep-plot");
   const axes = Object.fromEntries(PANELS.map(({ key, axis, domain }) => {
-    const both = [...law[key], ...sweep.laws[sweep.own][key], ...(sweep.multibody?.[key] ?? [])].filter((v) => v !== null);
+    const both = [...law[key], ...sweep.laws[sweep.own][key], ...(sweep.multibody?.[key] ?? []),
+      ...(key === "dte" ? shownBranches() : []).flatMap((b) => b.dte)].filter((v) => v !== null);
     const low = Math.min(0, ...both), high = Math.max(...both);
     const span = high - low || 1;
     const range = [low && low - 0.06 * span, high + 0.08 * span];
     return [axis.replace("y", "yaxis"), axisStyle(colours, { domain, range, fixedrange: true })];
   }));
+  const traces = sweepTraces(colours), named = traces.filter(({ showlegend }) => showlegend).length;
   const layout = baseLayout(colours, {
-    ...axes, margin: { l: 74, r: 14, t: plot.clientWidth < 500 ? 78 : 62, b: 52 }, hovermode: "closest", hoverdistance: 30, showlegend: true,
+    ...axes, margin: { l: 74, r: 14, t: plot.clientWidth < 500 ? 40 + 19 * Math.max(named, 2) : 62, b: 52 }, hovermode: "closest", hoverdistance: 30, showlegend: true,
     legend: { orientation: "h", x: 0, yref: "container", y: 0.995, yanchor: "top", font: { size: 12 } },
     xaxis: speedAxis(colours, shown(plot, "xaxis", [x[0], x.at(-1)]), "y4"),
     yaxis4: axisStyle(colours, {
@@ -85,7 +88,7 @@ function drawSweep() {
       showarrow: false, xshift: 3, font: { size: 11, color: colours.bad },
     }],
   });
-  return Plotly.react(plot, sweepTraces(colours), layout, config);
+  return Plotly.react(plot, traces, layout, config);
 }
 
 function sweepText() {
@@ -106,6 +109,7 @@ function showSweep() {
   setRange(element("sweep-speed"), sweep.speed.length, now.speed, rpm(sweep.speed[now.speed]));
   element("sweep-text").textContent = sweepText();
   element("law-note").textContent = law.note && `Outside its fitted range at the operating point: ${law.note}.`;
+  showOrbit(orbitAt(sweep.speed[now.speed]));
   refreshSweep();
 }
 
@@ -137,5 +141,6 @@ async function startSweep() {
     "+": () => zoomBy(0.5), "-": () => zoomBy(2), 0: all,
   });
   redraw(plot, refreshSweep, all);
+  plot.on("plotly_hover", ({ points }) => { if (points[0].customdata) showOrbit(points[0].customdata.slice(0, 2)); });
   plot.on("plotly_click", ({ points }) => moveSweep({ speed: nearest(sweep.speed, points[0].x) }));
 }

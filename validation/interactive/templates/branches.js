@@ -1,0 +1,81 @@
+// Motions of teeth that push only, over the linear response of the pair's own law: an orbit is [branch, place].
+const shownBranches = () => (now.law === sweep.own ? sweep.branches : []);
+
+function orbitWords([b, i]) {
+  const branch = sweep.branches[b];
+  return [
+    rpm(branch.speed[i]), `${plain(branch.dte[i])} µm peak to peak`, `largest tooth load ${plain(branch.load[i])} N`,
+    `largest multiplier ${plain(branch.radius[i])}`, `repeats after ${branch.n} mesh cycle${branch.n > 1 ? "s" : ""}`,
+    branch.stable[i] ? "stable" : "unstable",
+  ];
+}
+
+// Two traces, stable and unstable; a piece between two orbits is stable where both are.
+function branchTraces(colours) {
+  const trace = (stable) => {
+    const x = [], y = [], customdata = [];
+    const add = (b, i) => {
+      const orbit = i === null ? null : [b, i, ...orbitWords([b, i])];
+      x.push(orbit && sweep.branches[b].speed[i]);
+      y.push(orbit && sweep.branches[b].dte[i]);
+      customdata.push(orbit);
+    };
+    shownBranches().forEach((branch, b) => {
+      let open = false;
+      for (let i = 0; i + 1 < branch.speed.length; i += 1) {
+        const here = Boolean(branch.stable[i] && branch.stable[i + 1]) === stable;
+        if (here && !open) add(b, i);
+        if (here) add(b, i + 1);
+        else if (open) add(b, null);
+        open = here;
+      }
+      if (open) add(b, null);
+    });
+    const lines = [2, 3, 4, 5, 6, 7].map((k) => `%{customdata[${k}]}`).join("<br>");
+    return {
+      type: "scatter", mode: "lines", x, y, customdata, yaxis: "y", connectgaps: false,
+      name: `teeth push only, ${stable ? "stable" : "unstable"}`, showlegend: true,
+      line: { color: colours.branch, width: stable ? 3.5 : 2, dash: stable ? "solid" : "dash" },
+      hovertemplate: `${lines}<extra></extra>`,
+    };
+  };
+  return [trace(true), trace(false)].filter(({ x }) => x.length);
+}
+
+// The orbit nearest to a speed, a stable one first; none where the speed is beyond all branches.
+function orbitAt(speed) {
+  let best = null, least = Infinity;
+  shownBranches().forEach((branch, b) => {
+    if (speed < Math.min(...branch.speed) || speed > Math.max(...branch.speed)) return;
+    branch.speed.forEach((at, i) => {
+      const away = Math.abs(at - speed) + (branch.stable[i] ? 0 : speed);
+      if (away < least) [best, least] = [[b, i], away];
+    });
+  });
+  return best;
+}
+
+// Its transmission error over its cycles, of the nearest orbit whose motion is kept, beside its numbers.
+function showOrbit(orbit) {
+  element("motion").hidden = !shownBranches().length;
+  if (!orbit) {
+    element("motion-wave").replaceChildren();
+    element("motion-text").textContent = "No motion with teeth that push only was looked for at the cursor's speed.";
+    return;
+  }
+  const branch = sweep.branches[orbit[0]], kept = nearest(branch.drawn, orbit[1]), wave = branch.waves[kept];
+  const low = Math.min(...wave), span = Math.max(...wave) - low || 1, closed = [...wave, wave[0]];
+  const svg = element("motion-wave"), part = (name, attributes) => {
+    const made = document.createElementNS("http://www.w3.org/2000/svg", name);
+    Object.entries(attributes).forEach(([key, value]) => made.setAttribute(key, value));
+    return made;
+  };
+  const points = closed.map((v, i) => `${(300 * i) / wave.length},${75 - (70 * (v - low)) / span}`).join(" ");
+  const cycles = Array.from({ length: branch.n - 1 }, (_, k) => (300 * (k + 1)) / branch.n);
+  svg.replaceChildren(
+    ...cycles.map((x) => part("line", { x1: x, x2: x, y1: 0, y2: 80 })), part("polyline", { points }));
+  element("motion-text").textContent =
+    `Motion with teeth that push only: ${orbitWords(orbit).join(", ")}. Curve: transmission error over ` +
+    `${branch.n > 1 ? `${branch.n} mesh cycles` : "a mesh cycle"} at ${rpm(branch.speed[branch.drawn[kept]])}, ` +
+    `${plain(low, 4)} to ${plain(low + span, 4)} µm.`;
+}
