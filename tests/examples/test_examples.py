@@ -242,3 +242,18 @@ def test_19_only_torques_far_from_that_of_the_relief_jump(example):
     # Above the relief's torque the large motion, in which teeth part, ends more than ten times the small one.
     falling = result.sel(jump=(result["jump_torque"] == 136.0) & ~result["jump_rising"])
     assert float((falling["jump_dte_rms"] / falling["jump_dte_rms_after"]).min()) > 10.0
+
+
+def test_20_one_motion_is_chaotic_beside_a_periodic_one(example):
+    module = example(20)
+    result = module.compute()
+    labelled(module.draw(result))
+    assert result.attrs["kind"] == "chaos"
+    # Growth of the distance of two runs over 6000 cycles, without derivatives: 0.138 per cycle.
+    # Four times the standard error, 0.007 over 2000 cycles; which motion it is hangs on rounding.
+    assert result.attrs["exponent"] == pytest.approx(0.138, abs=0.028)
+    starts = result.isel(cycle=slice(None, None, module.SAMPLES))
+    assert float(starts["periodic_dte"].std()) < 1e-12
+    assert float(starts["chaotic_dte"].std()) > 1e-6
+    assert float(result["periodic_load"].min()) > 0.0
+    assert 0.2 < float((result["chaotic_load"] == 0.0).mean()) < 0.8
