@@ -37,6 +37,7 @@ from validation.verification import code_checks, order_checks, refinements
 ASKED = [
     "steady_state",
     "cross_check",
+    "contact_loss",
     "contact_forms",
     "stability",
     "stability_margins",
@@ -69,7 +70,7 @@ def test_every_block_is_in_one_layer_and_figures_and_tables_are_counted_through(
     shown = [id(block) for part in (*front, *evidence) for block in part.blocks]
     assert sorted(shown) == sorted(id(block) for content in chapters.values() for block in content.blocks)
     # What decides comes first; what only an examiner reads does not.
-    assert [part.chapter.key for part in front] == ASKED[:9]
+    assert [part.chapter.key for part in front] == ASKED[:10]
     keys = {block.key for part in front for block in part.blocks if isinstance(block, Table | Picture)}
     assert {"speed_sweep", "flags", "stability_chart", "efficiency_by_law"} <= keys
     assert not {"metrics", "orders", "parameters", "multipliers_table", "closed_forms"} & keys
@@ -81,14 +82,13 @@ def test_every_block_is_in_one_layer_and_figures_and_tables_are_counted_through(
 
 
 def test_every_name_of_a_front_block_exists(chapters):
-    assert {chapter.key for chapter in CHAPTERS} - set(chapters) == {"contact_loss"}  # no teeth part
+    assert {chapter.key for chapter in CHAPTERS} == set(chapters)
     for chapter in CHAPTERS:
-        if chapter.key not in chapters:
-            continue
         keys = {getattr(block, "key", None) for block in chapters[chapter.key].blocks}
         missing = set(chapter.front) - keys
-        # A preset has no parameters of its own; without damping there may be no tongue.
-        assert missing <= {"given", "tongues_table"}, chapter.key
+        # A preset has no parameters of its own; without damping there may be no tongue. At the operating
+        # speed of this pair no teeth part, and near it there is no jump.
+        assert missing <= {"given", "tongues_table", "contact_loss", "jumps"}, chapter.key
 
 
 def test_a_chapter_imports_no_other_chapter():
@@ -101,7 +101,8 @@ def test_a_chapter_imports_no_other_chapter():
 def test_a_quick_report_says_nothing_of_paper_and_verification(pair, sharing):
     quick = sharing(pair)
     keys = {chapter.key for chapter, _ in written(quick, CHAPTERS)}
-    assert set(ASKED) - keys == {"paper", "errata", "code_verification", "solution_verification"}
+    left = {"paper", "errata", "code_verification", "solution_verification", "contact_loss"}
+    assert set(ASKED) - keys == left
     assert sentence(quick)
     assert FULL.full
     assert not QUICK.full

@@ -174,7 +174,8 @@ def _badge(results: Results) -> Badge:
 
 def answer(results: Results) -> Answer:
     """Whether the periodic motion is stable at the operating point, and at which other speeds."""
-    return Answer("Is the motion stable?", _badge(results), words.stability(results))
+    badge = Badge("stable") if words.confirmed_parting(results) else _badge(results)
+    return Answer("Is the motion stable?", badge, words.stability(results))
 
 
 CHAPTER = Chapter("stability", "Stability", write, answer, ("stability_chart",), seconds=3)
