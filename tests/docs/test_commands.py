@@ -126,10 +126,13 @@ def shortened(arguments: list[str]) -> list[str]:
     """The same line with less to compute.
 
     A stability chart has a few nodes on the axes that the line leaves to their defaults, a cross-check runs
-    for fewer cycles, a sweep starts no processes, branches of motions cover a small range.
+    for fewer cycles, a sweep starts no processes, branches of motions and jump maps cover a small range.
     """
     quicker = {"crosscheck": ["--cycles", "8", "--samples", "64"], "sweep": ["--workers", "0"]}
     quicker["response"] = ["--periods", "1", "--seeds", "0", "--range", "12000..13000"]
+    quicker["jumps"] = ["--speeds", "20", "--range", "12000..12500"]
+    if arguments[0] == "jumps":
+        arguments = [re.sub(r"(=.*:.*:)\d+$", r"\g<1>2", word) for word in arguments]
     extra = quicker.get(arguments[0], [])
     if arguments[0] == "stability" and "--speed" not in arguments:
         view = arguments[arguments.index("--view") + 1] if "--view" in arguments else "chart"

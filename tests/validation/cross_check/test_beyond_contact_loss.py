@@ -146,18 +146,13 @@ def test_the_cross_check_compares_the_motion_of_teeth_that_push(parted, pair_bey
     )
 
 
-@pytest.mark.parametrize("fault", ["damper", "pull", "relief"])
-def test_wrong_rules_of_contact_are_not_confirmed(parted, monkeypatch, fault):
-    """In the lumped motion alone: 2 % of the damping, teeth that stick, relief 5 % off."""
+def test_a_weak_damper_is_not_confirmed(parted, monkeypatch):
+    """By 2 %, in the lumped motion alone; further faults are in the catalogue."""
     true = unilateral._contact
 
-    def wrong(pair, cycle, *rest):
-        contact = true(pair, cycle, *rest)
-        if fault == "damper":
-            return dataclasses.replace(contact, damping=0.98 * contact.damping)
-        if fault == "pull":
-            return dataclasses.replace(contact, sign=(1.0, 0.0))
-        return dataclasses.replace(contact, clearance=0.95 * contact.clearance)
+    def wrong(*given):
+        contact = true(*given)
+        return dataclasses.replace(contact, damping=0.98 * contact.damping)
 
     monkeypatch.setattr(unilateral, "_contact", wrong)
     check = crosscheck(parted.pair, cycles=6, samples_per_cycle=64, twin=False)
