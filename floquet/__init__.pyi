@@ -6,8 +6,11 @@ from .engine.forced import PeriodicMotion as PeriodicMotion
 from .engine.forced import periodic_motion as periodic_motion
 from .engine.monodromy import Monodromy as Monodromy
 from .engine.monodromy import monodromy as monodromy
+from .engine.periodic_matrix import PeriodicMatrix as PeriodicMatrix
 from .engine.propagators.base import Propagator as Propagator
 from .engine.propagators.registry import PROPAGATORS as PROPAGATORS
+from .engine.second_order import SecondOrderSystem as SecondOrderSystem
+from .engine.second_order import from_second_order as from_second_order
 from .engine.spectrum import Spectrum as Spectrum
 from .engine.system import PeriodicSystem as PeriodicSystem
 from .engine.tongues import Tongue as Tongue

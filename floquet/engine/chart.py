@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from floquet.engine.monodromy import checked_effort, monodromy
 from floquet.engine.multipliers import verdicts
 from floquet.engine.spectrum import Spectrum
-from lumped.arguments import real_numbers, whole_number
+from floquet.engine.system import PeriodicSystem
+from lumped.arguments import of_type, real_numbers, some_of, whole_number
 from lumped.errors import NumericalError, refuse, shown
 from lumped.labelling import Variable, labelled_dataset
 from lumped.typing import BoolArray, FloatArray, Progress
@@ -42,19 +44,28 @@ def checked_axes(axes: Axes) -> dict[str, FloatArray]:
     return result
 
 
+Family = Callable[[dict[str, float]], Spectrum | PeriodicSystem]
+"""Parameters -> the periodic system there, or its multipliers."""
+
+
 def scan(
-    evaluate: Callable[[dict[str, float]], Spectrum],
+    evaluate: Family,
     axes: Axes,
     *,
+    labels: Mapping[str, tuple[str, str]] | None = None,
+    rtol: float = 1e-8,
     n_jobs: int = 1,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Evaluate the multipliers on the product grid of the axes.
+    """Evaluate the multipliers of a family of periodic systems on the product grid of the axes.
 
     Parameters
     ----------
-    evaluate : parameters -> `Spectrum`; every point must give the same number of multipliers
+    evaluate : parameters -> `PeriodicSystem`, or its `Spectrum` where that is known otherwise; every point
+        must give the same number of multipliers
     axes : name -> values
+    labels : name -> unit, "1" for none, and plain name of an axis
+    rtol : of the monodromy matrix of a `PeriodicSystem`
     n_jobs : processes; -1 for all cores. With more than one, ``evaluate`` must be picklable, and a script
         must start its work under ``if __name__ == "__main__":``.
     progress : told the finished fraction
@@ -71,16 +82,23 @@ def scan(
     """
     grid = checked_axes(axes)
     names = list(grid)
+    labels = dict(labels or {})
+    some_of("labels", labels, names)
+    rtol = checked_effort(rtol, 2)[0]
     mesh = np.stack(np.meshgrid(*grid.values(), indexing="ij"), axis=-1).reshape(-1, len(names))
     points = [dict(zip(names, map(float, row), strict=True)) for row in mesh]
     results: list[Spectrum] = []
     n_jobs = whole_number("n_jobs", n_jobs, -1, 1024, "Use -1 for all cores.") or 1
     if n_jobs == 1:
-        stream: Iterator[Spectrum] = (_at_point(evaluate, point) for point in points)
+        stream: Iterator[Spectrum] = (_at_point(evaluate, rtol, point) for point in points)
     else:
-        stream = _in_processes(partial(_at_point, evaluate), points, n_jobs)
+        stream = _in_processes(partial(_at_point, evaluate, rtol), points, n_jobs)
     for spectrum in stream:
         results.append(spectrum)
+        if spectrum.multipliers.size != results[0].multipliers.size:
+            counts = f"{spectrum.multipliers.size} multipliers at {_place(points[len(results) - 1])}"
+            advice = "Keep the number of coordinates over the axes."
+            raise refuse("evaluate", counts, f"{results[0].multipliers.size} as at the first point", advice)
         if progress is not None:
             progress(len(results) / len(points))
     multipliers = np.array([r.multipliers for r in results])
@@ -88,7 +106,10 @@ def scan(
     radius = np.array([r.spectral_radius for r in results])
     radius_error = np.array([r.error for r in results])
     proven = np.array([r.certificate == "proven" for r in results])
-    return chart_dataset(grid, multipliers, errors, radius, radius_error, proven)
+    chart = chart_dataset(grid, multipliers, errors, radius, radius_error, proven)
+    for name, (unit, text) in labels.items():
+        chart[name].attrs.update(units=unit, long_name=text)
+    return chart
 
 
 def _in_processes(
@@ -104,12 +125,18 @@ def _in_processes(
             pool.shutdown(cancel_futures=True)
 
 
-def _at_point(evaluate: Callable[[dict[str, float]], Spectrum], point: dict[str, float]) -> Spectrum:
+def _at_point(evaluate: Family, rtol: float, point: dict[str, float]) -> Spectrum:
     try:
-        return evaluate(point)
+        found = evaluate(point)
+        if isinstance(found, PeriodicSystem):
+            return monodromy(found, rtol)
+        return of_type("evaluate", found, Spectrum, "a function that returns a PeriodicSystem or a Spectrum")
     except NumericalError as failure:
-        where = ", ".join(f"{name} = {value:g}" for name, value in point.items())
-        raise NumericalError(f"at {where}: {failure}") from failure
+        raise NumericalError(f"at {_place(point)}: {failure}") from failure
+
+
+def _place(point: Mapping[str, float]) -> str:
+    return ", ".join(f"{name} = {value:g}" for name, value in point.items())
 
 
 def chart_dataset(

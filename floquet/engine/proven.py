@@ -24,7 +24,7 @@ _DEGREE = 14
 _ANGLE = 1.0  # of a step, sum of |A_j| h
 _TERMS = 40
 _RADII = np.array([1.5, 2.0, 3.0, 4.5, 7.0, 11.0, 18.0, 30.0, 60.0])
-_CHUNK = 4096
+_CHUNK = 600_000  # entries of the matrices of the steps taken at once: some 300 MB
 _SLACK = 1.0 + 1e-9  # rounding of the bounds themselves
 _FLOOR = 1e-300  # what underflow may take
 
@@ -43,14 +43,14 @@ def proven_propagation(
     ends = np.unique(np.clip([0.0, system.period, *known.breaks], 0.0, system.period))
     start, end = ends[:-1], ends[1:]
     times, steps, errors = [], [], []
-    taken = 0
+    taken, chunk = 0, min(4096, 1 + _CHUNK // d.size**2)
     while start.size:
         if taken + start.size > max_substeps:
             raise NumericalError(
                 f"more than {max_substeps} substeps per period are needed. Use a larger max_substeps, or "
                 "check the units of A and the period."
             )
-        first, last = start[:_CHUNK], end[:_CHUNK]
+        first, last = start[:chunk], end[:chunk]
         matrices, error, good = _steps(known, first, last, d, rtol)
         middle = 0.5 * (first + last)
         if (~good & ((middle <= first) | (middle >= last))).any():
@@ -59,8 +59,8 @@ def proven_propagation(
         steps.append(matrices[good])
         errors.append(error[good])
         taken += int(good.sum())
-        start = np.concatenate([first[~good], middle[~good], start[_CHUNK:]])
-        end = np.concatenate([middle[~good], last[~good], end[_CHUNK:]])
+        start = np.concatenate([first[~good], middle[~good], start[chunk:]])
+        end = np.concatenate([middle[~good], last[~good], end[chunk:]])
     order = np.argsort(np.concatenate(times))
     flows, local = np.concatenate(steps)[order], np.concatenate(errors)[order]
     product, bound = proven_product(flows, local)
@@ -91,11 +91,12 @@ def _steps(
     good = (a.sum(axis=1) <= _ANGLE) & (tail + off <= room)
     # Where rounding of A itself is more than that, shorter steps do not help.
     good |= (a.sum(axis=1) <= 0.05) & np.isfinite(errors)
+    used = np.flatnonzero(a.any(axis=0))
     X = np.zeros((_TERMS + 1, start.size, n, n))
     X[0] = np.eye(n)
     for k in range(_TERMS):
         total = B[:, 0] @ X[k]
-        for j in range(1, min(k, _DEGREE) + 1):
+        for j in used[(used > 0) & (used <= k)]:
             total += B[:, j] @ X[k - j]
         X[k + 1] = total / (k + 1)
     flow = X[_TERMS].copy()

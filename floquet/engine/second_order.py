@@ -1,0 +1,196 @@
+"""Periodic systems of their matrices of mass, damping and stiffness.
+
+M x'' + C(t) x' + K(t) x = 0 is written in coordinates x = T z in which the mean of a conservative system is
+diagonal: z'' = -P^-1 C T z' - P^-1 K T z with P = M T. Multipliers do not depend on T, bounds on their errors
+do: in these coordinates free vibrations keep their norm, in those of finite elements they seem to grow.
+
+Sources: docs/theory/floquet.md, "From matrices of mass, damping and stiffness".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import LinAlgError, cholesky, eigh
+
+from floquet.engine.periodic_matrix import PeriodicMatrix, square
+from floquet.engine.system import PeriodicSystem, second_order
+from lumped.arguments import real_number
+from lumped.errors import NumericalError, refuse
+from lumped.typing import FloatArray
+
+Matrix = npt.ArrayLike | PeriodicMatrix | Callable[[float], npt.ArrayLike]
+"""A constant matrix, one with periodic terms, or a callable t [s] -> (n, n)."""
+
+_WIDE = np.longdouble
+#: Condition number of M, rows and columns scaled, beyond which it counts as singular.
+_SINGULAR = 1e13
+
+
+@dataclass(frozen=True, eq=False)
+class SecondOrderSystem(PeriodicSystem):
+    """A `PeriodicSystem` of M x'' + C(t) x' + K(t) x = 0; its states are (z, z') with x = coordinates z.
+
+    Attributes
+    ----------
+    coordinates : (n, n) T; where M is symmetric and positive definite, the modes of M and the symmetric part
+        of the mean of K, with modal mass one
+    """
+
+    coordinates: FloatArray = field(kw_only=True, repr=False)
+
+
+def from_second_order(
+    M: npt.ArrayLike, C: Matrix, K: Matrix, period: float, breakpoints: Sequence[float] = ()
+) -> SecondOrderSystem:
+    """Return M x'' + C(t) x' + K(t) x = 0 as a `PeriodicSystem`.
+
+    C and K need not be symmetric: gyroscopic and circulatory parts belong to them. Errors are proven bounds,
+    rounding of M^-1 K included, where neither of them is a callable.
+
+    Parameters
+    ----------
+    M : (n, n) constant and invertible; a number where n = 1
+    C, K : constant (n, n), a `PeriodicMatrix`, or a callable t [s] -> (n, n)
+    period : T > 0 [s]
+    breakpoints : times in [0, T] at which a callable jumps or has a kink; a `PeriodicMatrix` knows its own
+
+    Raises
+    ------
+    ParameterError
+        A singular M, matrices of different shapes, a period that is not positive, a term that does not repeat
+        after it, breakpoints outside.
+    NumericalError
+        A callable is not finite somewhere.
+    """
+    mass = square("M", M)
+    n = mass.shape[0]
+    period = real_number("period", period, 0.0, above=True, unit="s", action="Give the length of one cycle.")
+    scale = 2.0 ** -np.round(0.5 * np.log2(np.maximum(np.abs(mass).max(axis=1), 1e-300)))
+    if not np.linalg.cond(mass * scale[:, None] * scale) < _SINGULAR:
+        advice = "Condense coordinates without mass, or give them some."
+        raise refuse("M", "a singular matrix", "an invertible matrix", advice)
+    damping, stiffness = _checked("C", C, n, period), _checked("K", K, n, period)
+    # Breaks of the formulas, and a first check of the callables.
+    places = PeriodicSystem(lambda t: np.zeros((1, 1)), period, breakpoints).edges
+    middle = 0.5 * (places[:-1] + places[1:])
+    C_of, K_of = (_function(name, B, n) for name, B in (("C", damping), ("K", stiffness)))
+    C_of(middle)
+    mean = np.tensordot(np.diff(places) / period, K_of(middle), axes=1)
+    T = _coordinates(mass, mean)
+    if isinstance(damping, PeriodicMatrix) and isinstance(stiffness, PeriodicMatrix):
+        A = _known(mass, damping, stiffness, T)
+        return SecondOrderSystem(A, period, breakpoints, coordinates=T)
+    inverse = np.linalg.inv(mass @ T)
+
+    def sampled(times: FloatArray) -> FloatArray:
+        return second_order(inverse @ K_of(times) @ T, inverse @ C_of(times) @ T)
+
+    known = [t for B in (damping, stiffness) if isinstance(B, PeriodicMatrix) for t in B.breaks]
+    inside = [t for t in known if 0.0 < t < period]
+    return SecondOrderSystem(sampled, period, (*breakpoints, *inside), vectorized=True, coordinates=T)
+
+
+def _checked(
+    name: str, value: Matrix, n: int, period: float
+) -> PeriodicMatrix | Callable[[float], npt.ArrayLike]:
+    """C or K as a `PeriodicMatrix`, or the callable that it is."""
+    if callable(value) and not isinstance(value, PeriodicMatrix):
+        return value
+    found = value if isinstance(value, PeriodicMatrix) else PeriodicMatrix(square(name, value, n))
+    if found.dimension != n:
+        shape = f"({found.dimension}, {found.dimension})"
+        raise refuse(name, f"shape {shape}", f"that of M, ({n}, {n})", "Check the coordinates of both.")
+    for k in found.faulty_terms(period):
+        allowed = f"a function that repeats after the period, {period:g} s"
+        raise refuse(f"{name}, term {k}", "another period", allowed, "Correct one of the two periods.")
+    return found
+
+
+def _function(
+    name: str, value: PeriodicMatrix | Callable[[float], npt.ArrayLike], n: int
+) -> Callable[[FloatArray], FloatArray]:
+    """C or K as a function of times (k,) -> (k, n, n), checked."""
+    if isinstance(value, PeriodicMatrix):
+        return value
+
+    def at(times: FloatArray) -> FloatArray:
+        values = [square(f"{name}(t)", np.asarray(value(float(t))), n) for t in times]
+        return np.stack(values)
+
+    return at
+
+
+def _coordinates(M: FloatArray, K: FloatArray) -> FloatArray:
+    """Modes of the conservative part, (n, n); the unit matrix where M is not symmetric and positive."""
+    if np.abs(M - M.T).max() > 1e-12 * np.abs(M).max():
+        return np.eye(M.shape[0])
+    mass = 0.5 * (M + M.T)
+    try:
+        cholesky(mass)
+        return np.asarray(eigh(0.5 * (K + K.T), mass)[1])
+    except LinAlgError:
+        return np.eye(M.shape[0])
+
+
+def _known(M: FloatArray, C: PeriodicMatrix, K: PeriodicMatrix, T: FloatArray) -> PeriodicMatrix:
+    """A(t) in the coordinates T, with bounds on the rounding of its matrices."""
+    n = M.shape[0]
+    solve = _Solution(M, T)
+
+    def pair(stiffness: FloatArray, damping: FloatArray) -> tuple[FloatArray, FloatArray]:
+        (k, dk), (c, dc) = solve(stiffness), solve(damping)
+        errors = np.abs(second_order(dk, dc))
+        errors[:n, n:] = 0.0
+        return second_order(k, c), errors
+
+    none = np.zeros((n, n))
+    constant, off = pair(K.matrices[0], C.matrices[0])
+    terms, errors = [], [off]
+    varying = [(f, B, none) for f, B in zip(K.functions, K.matrices[1:], strict=True)]
+    varying += [(f, none, B) for f, B in zip(C.functions, C.matrices[1:], strict=True)]
+    for function, stiffness, damping in varying:
+        matrix, off = pair(stiffness, damping)
+        matrix[:n, n:] = 0.0
+        terms.append((function, matrix))
+        errors.append(off)
+    return PeriodicMatrix(constant, *terms, errors=np.stack(errors))
+
+
+class _Solution:
+    """B -> X = (M T)^-1 B T with bounds on the errors of its entries.
+
+    With W an approximate inverse of P = M T and G = I - W P, the error is (I - G)^-1 W (B T - P X);
+    products in the widest floating point that there is, which leaves little but the rounding of X itself.
+    """
+
+    def __init__(self, M: FloatArray, T: FloatArray) -> None:
+        n = M.shape[0]
+        self.T, self.size = T.astype(_WIDE), np.abs(M) @ np.abs(T)
+        self.P = M.astype(_WIDE) @ self.T
+        W = np.linalg.inv(self.P.astype(float))
+        self.W, self.sizes = W.astype(_WIDE), np.abs(W)
+        self.gamma = float((2.0 * n + 8.0) * np.finfo(_WIDE).eps)
+        G = np.abs(np.eye(n) - self.W @ self.P).astype(float) + self.gamma * (
+            self.sizes @ self.size + np.eye(n)
+        )
+        self.g = float(G.sum(axis=1).max())
+        if not self.g < 0.5:
+            raise NumericalError("M is too badly conditioned for bounds. Choose other units or coordinates.")
+
+    def __call__(self, B: FloatArray) -> tuple[FloatArray, FloatArray]:
+        Q = B.astype(_WIDE) @ self.T
+        X = np.zeros(B.shape)
+        for _ in range(3):
+            X = (X + self.W @ (Q - self.P @ X)).astype(float)
+        rest = Q - self.P @ X
+        left = (
+            np.abs(rest).astype(float)
+            + np.abs(B) @ np.abs(self.T).astype(float)
+            + 2.0 * self.size @ np.abs(X)
+        )
+        error = np.abs(self.W @ rest).astype(float) + self.gamma * (self.sizes @ left)
+        return X, np.asarray((error + self.g / (1.0 - self.g) * error.max(axis=0)) * (1.0 + 1e-9))

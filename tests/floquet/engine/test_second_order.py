@@ -1,0 +1,147 @@
+"""Are M, C and K of any kind made into the system that they are, with bounds that hold?"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from floquet import (
+    FourierSeries,
+    PeriodicMatrix,
+    PeriodicSystem,
+    PiecewisePolynomial,
+    from_second_order,
+    monodromy,
+    scan,
+)
+from floquet.engine.reference_systems import meissner_trace
+from floquet.engine.second_order import _Solution
+from lumped.errors import ParameterError
+
+PERIOD = 3.0
+UNITS = np.diag(10.0 ** np.arange(4))  # coordinates in other units: micrometres beside metres
+
+
+def matrices(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """M, C, C_1, K and K_1 of a system with gyroscopic and circulatory parts."""
+    rng = np.random.default_rng(seed)
+    L, S, *rest = rng.normal(size=(5, 4, 4))
+    M = np.tril(L) @ np.tril(L).T + np.eye(4)
+    C, C1, K1 = 0.3 * np.eye(4) + 0.1 * rest[0], 0.05 * rest[1], rest[2]
+    return tuple(UNITS @ B @ UNITS for B in (M, C, C1, 20.0 * np.eye(4) + S + S.T, K1))
+
+
+def rational(B: np.ndarray) -> np.ndarray:
+    return np.array([[Fraction(float(x)) for x in row] for row in B])
+
+
+def exactly_solved(P: np.ndarray, Q: np.ndarray) -> np.ndarray:
+    """P^-1 Q in rational numbers, by elimination."""
+    A = np.hstack([P, Q])
+    for c in range(len(P)):
+        pivot = next(r for r in range(c, len(P)) if A[r, c] != 0)
+        A[[c, pivot]] = A[[pivot, c]]
+        A[c] = A[c] / A[c, c]
+        for r in range(len(P)):
+            if r != c:
+                A[r] = A[r] - A[r, c] * A[c]
+    return A[:, len(P) :]
+
+
+def test_meissners_trace_is_exact_within_a_proven_bound():
+    jump = PiecewisePolynomial([0.0, 0.5 * PERIOD, PERIOD], [[0.4], [-0.4]])
+    found = monodromy(from_second_order(2.0, 0.0, PeriodicMatrix(2.6, (jump, 2.0)), PERIOD))
+    assert found.certificate == "proven"
+    exact = meissner_trace(1.3, 0.4, PERIOD)
+    assert abs(np.trace(found.matrix) - exact) <= 2.0 * found.matrix_error < 1e-11
+
+
+def test_matrices_in_all_forms_give_the_same_multipliers():
+    M, C, C1, K, K1 = matrices(1)
+    wave, jump = FourierSeries(PERIOD, 0.0, [1.0]), PiecewisePolynomial([0.0, 1.0, PERIOD], [[0.0], [1.0]])
+    C_of, K_of = PeriodicMatrix(C, (jump, C1)), PeriodicMatrix(K, (wave, K1))
+
+    def C_at(t: float) -> np.ndarray:
+        return C + (t > 1.0) * C1
+
+    def K_at(t: float) -> np.ndarray:
+        return K + np.cos(2.0 * np.pi * t / PERIOD) * K1
+
+    def plain(t: float) -> np.ndarray:
+        return np.block([[np.zeros((4, 4)), np.eye(4)], [-np.linalg.solve(M, np.hstack([K_at(t), C_at(t)]))]])
+
+    known = monodromy(from_second_order(M, C_of, K_of, PERIOD))
+    others = [
+        from_second_order(M, C_at, K_at, PERIOD, [1.0]),
+        from_second_order(M, C_of, K_at, PERIOD),
+        PeriodicSystem(plain, PERIOD, [1.0]),
+    ]
+    assert known.certificate == "proven"
+    assert known.spectral_radius > 1e-3
+    for other in map(monodromy, others):
+        assert other.certificate == "estimate"
+        assert abs(other.spectral_radius - known.spectral_radius) <= other.error + known.error < 1e-8
+
+
+def test_the_rounding_of_the_matrices_is_in_their_bounds():
+    M, _, _, K, K1 = matrices(2)
+    T = from_second_order(M, 0.0 * M, K, PERIOD).coordinates
+    solve = _Solution(M, T)
+    for B in (K, K1):
+        X, bound = solve(B)
+        exact = exactly_solved(rational(M) @ rational(T), rational(B) @ rational(T))
+        error = np.abs(rational(X) - exact).astype(float)
+        assert (error <= bound).all()
+        # And from there they go into the polynomials of A.
+        _, off = PeriodicMatrix(X, errors=bound[None]).taylor(np.zeros(1), np.ones(1), 2, np.ones(4))
+        assert off[0] >= np.linalg.norm(bound)
+        assert (bound <= 8.0 * np.finfo(float).eps * np.abs(X).max()).all()
+
+
+def test_free_vibrations_keep_their_norm():
+    # A clamped rod of 12 elements, in whose own coordinates free vibrations seem to grow by its stiffness.
+    n = 12
+    K = 1e8 * (2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1))
+    found = monodromy(from_second_order(np.diag(np.geomspace(1.0, 100.0, n)), np.zeros((n, n)), K, 1e-3))
+    balanced = found.matrix / found.scaling[:, None] * found.scaling
+    assert np.linalg.norm(balanced, 2) < 2.0  # powers of two in the place of frequencies
+    assert np.abs(np.abs(found.multipliers) - 1.0).max() <= found.multiplier_errors.max() < 1e-10
+
+
+@pytest.mark.parametrize(
+    ("M", "C", "K", "breaks", "field", "word"),
+    [
+        (np.diag([1.0, 0.0]), np.eye(2), np.eye(2), (), "M", "singular"),
+        (np.ones((2, 3)), np.eye(2), np.eye(2), (), "M", "square"),
+        (np.eye(2), np.eye(3), np.eye(2), (), "C", "square matrix (2, 2)"),
+        (np.eye(2), np.eye(2), PeriodicMatrix(np.eye(3)), (), "K", "that of M"),
+        (np.eye(2), lambda t: np.eye(3), np.eye(2), (), "C(t)", "(3, 3)"),
+        (1.0, 0.0, PeriodicMatrix(1.0, (FourierSeries(2.0, 0.0, [1.0]), 1.0)), (), "K, term 1", "repeats"),
+        (1.0, 0.0, 1.0, (4.0,), "breakpoints", "0 to 3"),
+        (1.0, 0.0, [["1"]], (), "K", "numbers"),
+    ],
+)
+def test_unusable_matrices_are_refused_by_name(M, C, K, breaks, field, word):
+    with pytest.raises(ParameterError) as refused:
+        from_second_order(M, C, K, PERIOD, breaks)
+    assert refused.value.problems[0].field == field
+    assert word in str(refused.value)
+
+
+def test_a_chart_of_any_family_has_its_labels_and_three_verdicts():
+    def family(at: dict[str, float]) -> PeriodicSystem:
+        wave = FourierSeries(np.pi, 0.0, [-2.0 * at["q"]])
+        return from_second_order(1.0, at["c"], PeriodicMatrix(1.0, (wave, 1.0)), np.pi)
+
+    axes = {"q": [0.0, 0.3], "c": [0.0, 0.1]}
+    chart = scan(family, axes, labels={"c": ("1/s", "damping")})
+    # a = 1 is the principal resonance: unstable for any q, on the unit circle for none, unless damped.
+    assert chart["verdict"].values.tolist() == [[0, 1], [-1, -1]]
+    assert chart.attrs["certificate"] == "proven"
+    assert chart["c"].attrs == {"units": "1/s", "long_name": "damping"}
+    with pytest.raises(ParameterError, match="labels"):
+        scan(family, axes, labels={"k": ("1", "stiffness")})
+    with pytest.raises(ParameterError, match="4 multipliers at n = 2"):
+        scan(lambda at: from_second_order(*[np.eye(int(at["n"]))] * 3, 1.0), {"n": [1, 2]})
