@@ -22,6 +22,8 @@ def _branches(field: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
     for key in ("anyOf", "oneOf"):
         for branch in field.get(key, ()):
             yield from _branches(branch)
+    if "items" in field:
+        yield from _branches(field["items"])
 
 
 def _allowed(field: Mapping[str, Any]) -> str:

@@ -133,6 +133,8 @@ def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
         action = "Write it without a point." if point else "Write a whole number in that range."
         return [FieldProblem(path, value, _whole_number(field_of(root, path)), action)]
     allowed = item["msg"]
+    if kind == "tuple_type":
+        allowed = "a list of tables" if models else "a list"
     if found := re.fullmatch(r"Tuple should have (at \w+ \d+ items?) after validation, not (\d+)", allowed):
         allowed = f"{found[1]} instead of {found[2]}"
     for start in ("Input should be ", "Value should be ", "Input should ", "Value should "):

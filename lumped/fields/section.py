@@ -28,7 +28,14 @@ class Section(BaseModel):
             if isinstance(value, Section):
                 result[name] = value.to_mapping()
             elif isinstance(value, tuple):
-                result[name] = [v if quantity is None else to_file(v, quantity.unit) for v in value]
+                result[name] = [
+                    v.to_mapping()
+                    if isinstance(v, Section)
+                    else v
+                    if quantity is None
+                    else to_file(v, quantity.unit)
+                    for v in value
+                ]
             elif value is not None:
                 result[name] = value if quantity is None else to_file(value, quantity.unit)
         return result

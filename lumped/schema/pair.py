@@ -9,7 +9,7 @@ from __future__ import annotations
 import copy
 import html
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
 from pathlib import Path
@@ -19,7 +19,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, PlainSerializer, ValidationError, model_validator
 from pydantic.fields import FieldInfo
 
-from lumped.errors import FieldProblem, ParameterError
+from lumped.errors import FieldProblem, ParameterError, refuse
 from lumped.fields.quantity_range import QuantityRange
 from lumped.fields.refusals import field_of, translated, unknown_key
 from lumped.fields.section import Section, Text
@@ -27,38 +27,15 @@ from lumped.fields.units import Quantity, to_stated
 from lumped.gear_geometry.existence import existence_problems
 from lumped.gear_geometry.geometry import Geometry, Wheel, build_geometry
 from lumped.gear_geometry.tooth_profile import ToothProfile
+from lumped.schema.bearings import Bearings
 from lumped.schema.contact import Friction, Lubricant
 from lumped.schema.gear import BasicRack, Gear
 from lumped.schema.mesh import Mesh
 from lumped.schema.operating import OperatingPoint
-
-#: From a hair to a bearing that is rigid beside any tooth.
-_STIFFNESS = Quantity("N/m", at_least=1e-6, at_most=1e30)
-
+from lumped.schema.shafts import Shafts
 
 #: Least mass and inertia of a gear as a share of the solid disc's.
 _LIGHTEST = 1e-4
-
-
-class Bearing(Section):
-    """Radial support of one gear, along (LOA) and off (OLOA) the line of action."""
-
-    loa_stiffness: Annotated[float, _STIFFNESS] = Field(description="stiffness along the LOA")
-    oloa_stiffness: Annotated[float, _STIFFNESS] = Field(description="stiffness off the LOA")
-    loa_damping_ratio: Annotated[float, Quantity("1", at_least=0, at_most=2)] = Field(
-        description="damping ratio of the gear mass on the LOA stiffness"
-    )
-    oloa_damping_ratio: Annotated[float, Quantity("1", at_least=0, at_most=2)] = Field(
-        description="damping ratio of the gear mass on the OLOA stiffness"
-    )
-
-
-class Bearings(Section):
-    """Bearings of both shafts."""
-
-    pinion: Bearing
-    gear: Bearing
-
 
 #: Fields that a file may give in another form -> the field that is kept.
 STORED_AS = {"basic_rack.diametral_pitch": "basic_rack.module"}
@@ -96,7 +73,8 @@ class GearPair(Section):
     centre_distance: Annotated[float | None, Quantity("mm", above=0, optional=True)] = Field(
         None, description="centre distance; default free of backlash for the profile shifts"
     )
-    bearings: Bearings
+    bearings: Bearings = Field(description="what holds the gears in the 6-DOF model")
+    shafts: Shafts | None = Field(None, description="the shafts that bear the gears, where they are known")
     mesh: Mesh
     lubricant: Lubricant
     friction: Friction
@@ -234,7 +212,10 @@ class GearPair(Section):
 
 
 def leaf_paths(pair: GearPair) -> dict[str, Any]:
-    """Return every set field of a pair as dotted path -> value in file units, ``sources`` apart."""
+    """Return every set field of a pair as dotted path -> value in file units, ``sources`` apart.
+
+    An entry of a list of tables has its number, from 0 on, as part of its path.
+    """
     found: dict[str, Any] = {}
 
     def walk(data: Mapping[str, Any], prefix: str) -> None:
@@ -242,6 +223,8 @@ def leaf_paths(pair: GearPair) -> dict[str, Any]:
             path = f"{prefix}{key}"
             if isinstance(value, Mapping):
                 walk(value, f"{path}.")
+            elif isinstance(value, list) and value and isinstance(value[0], Mapping):
+                walk({str(number): entry for number, entry in enumerate(value)}, f"{path}.")
             else:
                 found[path] = value
 
@@ -295,26 +278,54 @@ def _reads(pair: GearPair, path: str, value: object) -> bool:
     """Whether a field reads as this value already."""
     found: object = pair
     for part in path.split("."):
-        if not isinstance(found, Section) or part not in type(found).model_fields:
+        if isinstance(found, tuple) and _is_entry(found, part):
+            found = found[int(part)]
+        elif isinstance(found, Section) and part in type(found).model_fields:
+            found = getattr(found, part)
+        else:
             return False
-        found = getattr(found, part)
     return type(found) is type(value) and repr(found) == repr(value)
 
 
 def _assign(data: dict[str, Any], path: str, value: Any) -> None:
     *parents, leaf = path.split(".")
-    node = data
+    node: Any = data
     for part in parents:
-        inner = node.setdefault(part, {})
-        if not isinstance(inner, dict):
-            raise ParameterError([unknown_key(path, list(node), part)])
-        node = inner
-    if value is None:
+        node = _inside(node, path, part)
+    if isinstance(node, list):
+        if value is None:
+            raise refuse(path, "None", "a table of keys and values", "Give the list without this entry.")
+        if not _is_entry(node, leaf):
+            raise ParameterError([unknown_key(path, list(map(str, range(len(node)))), leaf)])
+        node[int(leaf)] = _plain(value)
+    elif value is None:
         if path not in STORED_AS:
             field_at(path)  # a name that does not exist is an error also where nothing is set
         node.pop(leaf, None)
     else:
-        node[leaf] = value.to_mapping() if isinstance(value, Section) else copy.deepcopy(value)
+        node[leaf] = _plain(value)
+
+
+def _inside(node: Any, path: str, part: str) -> Any:
+    """The table, or list of tables, that a table has under a key or a list has as an entry."""
+    if isinstance(node, dict):
+        inner = node.setdefault(part, {})
+    else:
+        inner = node[int(part)] if _is_entry(node, part) else None
+    if isinstance(inner, dict) or (isinstance(inner, list) and inner and isinstance(inner[0], dict)):
+        return inner
+    known = list(node) if isinstance(node, dict) else list(map(str, range(len(node))))
+    raise ParameterError([unknown_key(path, known, part)])
+
+
+def _is_entry(node: Sequence[Any], part: str) -> bool:
+    return part in map(str, range(len(node)))
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Section):
+        return value.to_mapping()
+    return [_plain(entry) for entry in value] if isinstance(value, (list, tuple)) else copy.deepcopy(value)
 
 
 def field_at(path: str) -> FieldInfo:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import math
+from typing import get_origin
 
 import numpy as np
 import pytest
@@ -20,8 +21,9 @@ def _quantities(model, prefix=""):
         quantity = next((m for m in info.metadata if isinstance(m, Quantity)), None)
         if quantity is not None:
             yield f"{prefix}{name}", quantity
+        entry = "0." if get_origin(info.annotation) is tuple else ""
         for inner in models_in(info.annotation):
-            yield from _quantities(inner, f"{prefix}{name}.")
+            yield from _quantities(inner, f"{prefix}{name}.{entry}")
 
 
 @pytest.fixture(scope="session")
@@ -75,6 +77,25 @@ def high_contact(nasa):
             "friction.coefficient": 0.05,
         }
     )
+
+
+@pytest.fixture(scope="session")
+def shaft_tables():
+    """Shafts in file units: every field is there, and no two of a kind are alike."""
+    pinion = {
+        "segments": [{"length": 40.3, "diameter": 30, "bore": 10}, {"length": 230, "diameter": 28.3}],
+        "gear_position": 90.1,
+        "bearings": [
+            {"position": 30.1, "loa_stiffness": 2e8, "oloa_stiffness": 1.7e8, "loa_damping": 50.3},
+            {"position": "15.1 cm", "loa_stiffness": 3e8, "oloa_stiffness": 2.3e8, "oloa_damping": 30},
+        ],
+    }
+    one = {"position": 7.3, "loa_stiffness": 1e8, "oloa_stiffness": "100 N/um", "tilt_stiffness": 2e4}
+    steel = {"youngs_modulus": 210, "poisson_ratio": 0.29, "density": 7800.1}
+    gear = {"segments": [{"length": 150, "diameter": 50.3}], "gear_position": 77, "bearings": [one]} | steel
+    motor = {"position": 0, "inertia": 0.0113, "coupling_stiffness": 1.1e5, "coupling_damping": 0.3}
+    load = {"position": 150, "inertia": 0.31, "coupling_stiffness": "2.3 kN*m/deg"}
+    return {"damping_ratio": 0.013, "pinion": pinion, "gear": gear, "motor": motor, "load": load}
 
 
 @pytest.fixture(scope="session")

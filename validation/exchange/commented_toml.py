@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import textwrap
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -13,7 +14,7 @@ from lumped.errors import ParameterError
 from lumped.schema.pair import stated_unit
 from validation.exchange.rexs.said import DOUBTFUL
 
-_SECTION = re.compile(r"\[([\w.]+)\]$")
+_SECTION = re.compile(r"(\[\[?)([\w.]+)\]\]?$")
 _ENTRY = re.compile(r"(\w+) = ")
 _COLUMN = 40
 
@@ -32,10 +33,14 @@ def parameter_text(mapping: Mapping[str, Any], notes: Sequence[str] = ()) -> str
     """
     sources = mapping.get("sources", {})
     section = ""
+    entries: Counter[str] = Counter()  # of a list of tables, those above
     lines = []
     for line in tomli_w.dumps(dict(mapping)).splitlines():
         if found := _SECTION.match(line):
-            section = f"{found[1]}."
+            section = f"{found[2]}."
+            if found[1] == "[[":
+                section += f"{entries[section]}."
+                entries[f"{found[2]}."] += 1
         elif section != "sources." and (entry := _ENTRY.match(line)):
             line = _commented(line, f"{section}{entry[1]}", sources)
         lines.append(line)

@@ -1,5 +1,6 @@
 """Does the schema give one value to one input: units, alternatives, defaults, variations?"""
 
+import copy
 import math
 import tomllib
 
@@ -159,6 +160,25 @@ class TestVariations:
         with pytest.raises(ParameterError, match=f"Did you mean '{near}'"):
             nasa.with_({path: value})
 
+    def test_a_list_of_tables_changes_by_the_number_of_its_entry(self, nasa, shaft_tables):
+        pair = nasa.with_(shafts=shaft_tables)
+        changes = {"shafts.pinion.bearings.1.position": "6 inch", "shafts.gear.segments.0": {"length": 160}}
+        changes["shafts.gear.segments.0"] |= {"diameter": 40}
+        varied = pair.with_(changes)
+        assert varied.shafts.pinion.bearings[1].position == 0.1524
+        assert varied.shafts.pinion.bearings[1].loa_stiffness == 3e8
+        assert varied.shafts.gear.length == 0.16
+        assert leaf_paths(varied)["shafts.pinion.bearings.1.position"] == 152.4
+        assert dict(varied.sources)["shafts.pinion.bearings.1.position"] == "varied by the user"
+        whole = varied.with_({"shafts.pinion.bearings": pair.shafts.pinion.bearings[::-1]})
+        assert whole.shafts.pinion.bearings == pair.shafts.pinion.bearings[::-1]
+        assert "shafts.pinion.bearings.1.position" not in dict(whole.sources)
+        for path in ("segments.1.length", "segments.one.length", "segments.0.length.x", "segments.1"):
+            with pytest.raises(ParameterError, match="unknown key"):
+                pair.with_({f"shafts.gear.{path}": 20})
+        with pytest.raises(ParameterError, match="without this entry"):
+            pair.with_({"shafts.gear.segments.0": None})
+
     def test_a_path_through_a_value_is_refused(self, nasa):
         for path in ("name.length", "pinion.teeth.number"):
             with pytest.raises(ParameterError, match="unknown key"):
@@ -184,6 +204,9 @@ class TestJsonSchema:
         schema = json_schema()
         node = schema
         for part in path.split("."):
+            if part.isdigit():
+                node = node["items"]
+                continue
             node = next(n["properties"][part] for n in _alternatives(node, schema) if part in n["properties"])
         assert node["unit"] == quantity.unit
         assert node["si_unit"] == UNITS[quantity.unit][0]
@@ -197,6 +220,16 @@ class TestJsonSchema:
     def test_brake_torque_carries_its_unit_too(self):
         node = json_schema()["$defs"]["OperatingPoint"]["properties"]["brake_torque"]
         assert (node["unit"], node["si_unit"]) == ("N*m", "N*m")
+
+    def test_shafts_conform(self, nasa, shaft_tables):
+        schema = json_schema()
+        pair = nasa.with_(shafts=shaft_tables)
+        assert list(_violations(pair.to_mapping(), schema, schema, "")) == []
+        wrong = copy.deepcopy(shaft_tables)
+        del wrong["gear"]["bearings"][0]["position"]
+        assert list(
+            _violations({"shafts": wrong}, {"properties": schema["properties"], "type": "object"}, schema, "")
+        )
 
     @pytest.mark.parametrize("name", ["nasa_28_28", "nasa_art_25_31", "kahraman_blankenship_50_50", "fzg_c"])
     def test_presets_conform(self, name):
@@ -297,6 +330,8 @@ def _violations(value, node, root, path):
         inner = node.get("exclusiveMinimum", -math.inf) < value < node.get("exclusiveMaximum", math.inf)
         if not (low <= value <= high and inner):
             yield f"{path}: {value} out of bounds"
+    for entry in value if kind == "array" and isinstance(node.get("items"), dict) else ():
+        yield from _violations(entry, node["items"], root, f"{path}.")
     for key in node.get("required", ()):
         if key not in value:
             yield f"{path}.{key}: missing"

@@ -38,7 +38,7 @@ STIFFNESS = {
 
 
 @pytest.fixture(scope="module")
-def complete(nasa):
+def complete(nasa, shaft_tables):
     """The default pair's data with a given leaf set, whatever section it needs."""
 
     def build(path, value):
@@ -51,13 +51,19 @@ def complete(nasa):
             data[parents[0]][parents[-1]] = dict(RELIEF)
         if parents[:2] == ["mesh", "stiffness"]:
             data["mesh"]["stiffness"] = dict(STIFFNESS[leaf])
-        node = data
-        for part in parents:
-            node = node[part]
-        node[leaf] = value
+        if parents and parents[0] == "shafts":
+            data["shafts"] = copy.deepcopy(shaft_tables)
+        node_at(data, parents)[leaf] = value
         return data
 
     return build
+
+
+def node_at(data, parents):
+    """Table at a path of keys and, in lists, numbers."""
+    for part in parents:
+        data = data[int(part) if isinstance(data, list) else part]
+    return data
 
 
 MAY_BE_NEGATIVE = {"pinion.profile_shift", "gear.profile_shift", "lubricant.viscosity_law.temperature"}
@@ -117,9 +123,7 @@ class TestEveryQuantity:
         path, _ = quantity_field
         data = complete(path, 1.0)
         *parents, leaf = path.split(".")
-        node = data
-        for part in parents:
-            node = node[part]
+        node = node_at(data, parents)
         node[leaf + "x"] = node.pop(leaf)
         with pytest.raises(ParameterError) as caught:
             load_gear_pair(data)

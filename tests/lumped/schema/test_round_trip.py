@@ -40,16 +40,32 @@ NASA = load_gear_pair("nasa_28_28")
 PAIRS += [NASA.with_({path: value}) for path, values in MORE.items() for value in values]
 
 
+@pytest.fixture(scope="module")
+def shafted(shaft_tables):
+    return NASA.with_(shafts=shaft_tables)
+
+
+@pytest.fixture(scope="module")
+def known_fields(shafted):
+    """Of every pair, its fields with what they read as."""
+    return [dict(fields(pair)) for pair in (*PAIRS, shafted)]
+
+
 def fields(section, prefix=""):
     for name in type(section).model_fields:
         value = getattr(section, name)
         yield f"{prefix}{name}", value
         if isinstance(value, Section):
             yield from fields(value, f"{prefix}{name}.")
+        elif isinstance(value, tuple):
+            for number, entry in enumerate(value):
+                if isinstance(entry, Section):
+                    yield from fields(entry, f"{prefix}{name}.{number}.")
 
 
-@pytest.mark.parametrize("pair", PAIRS, ids=lambda pair: pair.name)
-def test_what_a_field_reads_as_can_be_written_back(pair):
+@pytest.mark.parametrize("pair", [*PAIRS, None], ids=lambda pair: pair.name if pair else "shafts")
+def test_what_a_field_reads_as_can_be_written_back(pair, shafted):
+    pair = pair or shafted
     found = dict(fields(pair))
     assert len(found) > 50
     for path, value in found.items():
@@ -72,9 +88,9 @@ def test_the_same_number_of_another_field_is_carried_over(nasa):
             assert load_gear_pair(varied.to_mapping()) == varied
 
 
-def test_every_number_with_a_unit_shows_it(quantity_field):
+def test_every_number_with_a_unit_shows_it(quantity_field, known_fields):
     path, quantity = quantity_field
-    values = [dict(fields(pair))[path] for pair in PAIRS if path in dict(fields(pair))]
+    values = [known[path] for known in known_fields if path in known]
     values = [value for value in values if value is not None]
     assert values, "no pair of the test has this field"
     for value in values:

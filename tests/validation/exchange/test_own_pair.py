@@ -1,11 +1,14 @@
 """Does `spurcheck init --teeth` write a complete file of the user's own pair, and nothing of a preset?"""
 
+import tomllib
+
 import pytest
 from typer.testing import CliRunner
 
 from lumped import ParameterError, load_gear_pair, preset_names
 from lumped.schema.pair import leaf_paths
 from validation.cli import app
+from validation.exchange import parameter_text
 from validation.exchange.own_pair import GIVEN, own_pair_text
 
 OWN = {"--teeth": "19/41", "--module": "2.5", "--face-width": "20", "--speed": "1450", "--torque": "80"}
@@ -98,3 +101,15 @@ def test_a_refused_value_is_named_once_by_its_option(option, value, advice):
     assert result.exit_code == 2
     assert result.stderr.startswith(f"error: {option} = ")
     assert advice in " ".join(result.stderr.split())
+
+
+def test_entries_of_lists_have_their_units_and_remarks():
+    ball = {"loa_stiffness": 2e8, "oloa_stiffness": 2e8}
+    shaft = {"segments": [{"length": 200, "diameter": 30}], "gear_position": 90}
+    shaft["bearings"] = [{"position": 20} | ball, {"position": 180} | ball]
+    pair = load_gear_pair("fzg_c").with_(shafts={"damping_ratio": 0.01, "pinion": shaft, "gear": shaft})
+    stated = {"sources": dict(pair.sources) | {"shafts.gear.bearings.1.position": "assumed"}}
+    text = parameter_text(pair.to_mapping() | stated)
+    assert load_gear_pair(tomllib.loads(text)) == pair.with_(stated)
+    places = [line.split("#")[1].strip() for line in text.splitlines() if line.startswith("position = ")]
+    assert places == ["mm", "mm", "mm", "mm, assumed"]
