@@ -23,6 +23,7 @@ from lumped.labelling import Variable
 from lumped.model.bodies import bodies
 from lumped.model.equations import COORDINATES
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
+from lumped.model.mesh_elements import MeshElements, mesh_elements
 from lumped.model.periodic_system import periodic_system
 from lumped.model.results import labelled, response
 from lumped.model.steady import periodic_solution
@@ -309,9 +310,15 @@ def largest_motion(pair: GearPair) -> float:
 
 
 def start_of(
-    pair: GearPair, start: ArrayLike | GearOrbit | None, form: ContactForm = "feedback"
+    pair: GearPair,
+    start: ArrayLike | GearOrbit | None,
+    form: ContactForm = "feedback",
+    elements: MeshElements | None = None,
 ) -> tuple[FloatArray, float]:
-    """Coordinates of the form with phase rates, and the balanced torque, to start from."""
+    """Coordinates of the form with phase rates, and the balanced torque, to start from.
+
+    ``elements`` are those of the linear model, where they are known already.
+    """
     period = pair.geometry.mesh_period
     if isinstance(start, GearOrbit):
         # Displacements and phase rates of a neighbouring speed are nearer than its rates.
@@ -320,6 +327,8 @@ def start_of(
     given = operating.brake_torque != "balanced"
     torque = operating.pinion_torque * (1.0 if given else g.omega_pinion / g.omega_gear)
     states = np.zeros(12)
+    cycle = MeshCycle(pair.geometry, mesh_elements(pair) if elements is None else elements)
+    absolute = periodic_system(pair, "absolute", cycle=cycle)
     if start is not None:
         states = real_array("start", start)
         if states.shape != (12,):
@@ -327,11 +336,11 @@ def start_of(
             raise refuse("start", f"shape {states.shape}", allowed, "Give them in SI.")
     else:
         try:
-            linear = periodic_solution(periodic_system(pair, "absolute"), np.zeros(1), estimate_error=False)
+            linear = periodic_solution(absolute, np.zeros(1), estimate_error=False)
             states, torque = linear.states[0], linear.pinion_torque if given else linear.brake_torque
         except NumericalError:
             states[2] = static_deflection(pair)
-    reduction = periodic_system(pair, "relative").reduction
+    reduction = periodic_system(pair, "relative", cycle=cycle).reduction
     wide = np.concatenate([reduction @ states[:6], reduction @ states[6:] * period])
     return _of_form(wide, form), torque
 

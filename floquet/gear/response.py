@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from floquet.gear.axes import operating_rpm, speed_range
+from floquet.gear.friction_over_speed import depends_on_speed
 from floquet.gear.orbit import (
     MOST_CYCLES,
     GearOrbit,
@@ -31,6 +32,7 @@ from floquet.orbits.response import Branch, Member, Response, find_response
 from lumped.arguments import real_array, whole_number
 from lumped.errors import refuse
 from lumped.labelling import Variable, labelled_dataset
+from lumped.model.mesh_elements import mesh_elements
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import Progress
@@ -344,10 +346,11 @@ def member(pair: GearPair, low: float, high: float, form: ContactForm = "feedbac
         parameter=pair.operating.pinion_torque,
         amplitude=largest_motion(pair),
     )
+    elements = None if depends_on_speed(pair) else mesh_elements(pair)
     return Member(
         unilateral_family(pair, low, high, form),
         limits,
-        lambda period: start_of(pair.with_({"operating.pinion_speed": cycle / period}), None, form),
+        lambda period: start_of(pair.with_({"operating.pinion_speed": cycle / period}), None, form, elements),
     )
 
 

@@ -6,6 +6,7 @@ Sources: docs/theory/orbits.md, "Bifurcations"; Kuznetsov, Elements of applied b
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
@@ -24,6 +25,8 @@ _Test = Callable[[Orbit, FloatArray], float]
 _ZERO = 1e-5
 #: Inside a tongue the linear system has motions of any amplitude at one speed: a branch that neither turns.
 _ROUNDING = 1e-11
+#: Least cosine between a tangent and the chord for a cubic between neighbours.
+_AHEAD = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,31 +118,47 @@ def _turns(orbit: Orbit) -> bool:
 
 
 def _refined(along: Continuation, path: Path, j: int, kind: Kind, test: _Test) -> Bifurcation:
-    """Where the test changes its sign between points j and j + 1."""
-    last = {
-        float(part): (path.orbits[j + part], test(path.orbits[j + part], path.tangents[j + part]))
-        for part in (0, 1)
-    }
-    around = max(abs(value) for _, value in last.values())
+    """Where the test changes its sign between points j and j + 1, in planes across their chord."""
+    chord = path.X[j + 1] - path.X[j]
+    chord = chord / np.linalg.norm(chord)
+    places = [0.0, 1.0]
+    known = [_Known(path.X[i], path.orbits[i], path.tangents[i], test) for i in (j, j + 1)]
+    around = max(abs(one.value) for one in known)
 
     def value(part: float) -> float:
-        if part not in last:
-            _, orbit, turned, _ = along.correct(_between(path, j, part), path.tangents[j])
-            last[part] = orbit, test(orbit, turned)
-        return last[part][1]
+        at = bisect_left(places, part)
+        if at == len(places) or places[at] != part:
+            one, two = known[at - 1], known[at]
+            share = (part - places[at - 1]) / (places[at] - places[at - 1])
+            X, orbit, turned, _ = along.correct(_between(one, two, chord, share), chord)
+            places.insert(at, part)
+            known.insert(at, _Known(X, orbit, turned, test))
+        return known[at].value
 
     try:
         part = float(brentq(value, 0.0, 1.0, xtol=1e-13, rtol=1e-14, maxiter=80))
+        value(part)
     except (NumericalError, RuntimeError):
-        part = min(last, key=lambda at: abs(last[at][1]))
-    sharp = kind != "grazing" and abs(value(part)) <= _ZERO * around
-    return Bifurcation(kind, last[part][0], j + part, sharp)
+        part = places[int(np.argmin([abs(one.value) for one in known]))]
+    found = known[places.index(part)]
+    sharp = kind != "grazing" and abs(found.value) <= _ZERO * around
+    return Bifurcation(kind, found.orbit, j + part, sharp)
 
 
-def _between(path: Path, j: int, part: float) -> FloatArray:
-    """A point of the cubic through two neighbours with their tangents."""
-    X, Y, t = path.X[j], path.X[j + 1], part
-    length = float(np.linalg.norm(Y - X))
-    a, b = path.tangents[j] * length, path.tangents[j + 1] * length
+class _Known:
+    """A point between two of a path, with its tangent and the value of a test there."""
+
+    def __init__(self, X: FloatArray, orbit: Orbit, tangent: FloatArray, test: _Test) -> None:
+        self.X, self.orbit, self.tangent, self.value = X, orbit, tangent, test(orbit, tangent)
+
+
+def _between(one: _Known, two: _Known, chord: FloatArray, t: float) -> FloatArray:
+    """A point of the cubic through two with their tangents; straight where these turn away from the chord."""
+    X, Y = one.X, two.X
+    length = float(chord @ (Y - X))
+    ahead = [float(chord @ point.tangent) for point in (one, two)]
+    if min(ahead) < _AHEAD:
+        return np.asarray(X + t * (Y - X))
+    a, b = one.tangent * (length / ahead[0]), two.tangent * (length / ahead[1])
     cubic = (2 * t**3 - 3 * t**2 + 1) * X + (t**3 - 2 * t**2 + t) * a
     return np.asarray(cubic + (3 * t**2 - 2 * t**3) * Y + (t**3 - t**2) * b)

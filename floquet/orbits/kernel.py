@@ -46,13 +46,13 @@ def _series(
             if state[i] < 0:
                 continue
             for q in range(columns):
-                x = 0.0
-                y = 0.0
-                for p in range(m):
-                    x += u[i, p] * z[j, p, q]
-                    y += u[i, p] * v[j, p, q]
-                d[i, j, q] = x
-                w[i, j, q] = y
+                d[i, j, q] = u[i, 0] * z[j, 0, q]
+                w[i, j, q] = u[i, 0] * v[j, 0, q]
+            for p in range(1, m):
+                x = u[i, p]
+                for q in range(columns):
+                    d[i, j, q] += x * z[j, p, q]
+                    w[i, j, q] += x * v[j, p, q]
             if j < e.shape[1]:
                 d[i, j, 0] -= e[i, j]
             if j < b.shape[1]:
@@ -64,6 +64,8 @@ def _series(
             for p in range(min(j + 1, k.shape[1])):
                 x = T * T * k[i, p]
                 y = T * c[i, p]
+                if x == 0.0 and y == 0.0:
+                    continue
                 for q in range(columns):
                     load[i, j, q] += x * d[i, j - p, q] + y * w[i, j - p, q]
                 if columns > 1:  # by T itself
@@ -72,15 +74,16 @@ def _series(
             break
         for r in range(n):
             for q in range(columns):
-                x = 0.0
-                for p in range(m):
-                    x -= T * T * K[r, p] * z[j, p, q] + T * C[r, p] * v[j, p, q]
-                v[j + 1, r, q] = x
-            if columns > 1:
-                x = 0.0
-                for p in range(m):
-                    x -= 2.0 * T * K[r, p] * z[j, p, 0] + C[r, p] * v[j, p, 0]
-                v[j + 1, r, columns - 2] += x
+                v[j + 1, r, q] = 0.0
+            for p in range(m):
+                x = T * T * K[r, p]
+                y = T * C[r, p]
+                if x == 0.0 and y == 0.0:
+                    continue
+                for q in range(columns):
+                    v[j + 1, r, q] -= x * z[j, p, q] + y * v[j, p, q]
+                if columns > 1:
+                    v[j + 1, r, columns - 2] -= 2.0 * T * K[r, p] * z[j, p, 0] + C[r, p] * v[j, p, 0]
             if j == 0:
                 v[1, r, 0] += T * T * (F[r] + parameter * H[r])
                 if columns > 1:
@@ -90,6 +93,8 @@ def _series(
                 if state[i] == CLOSED:
                     for p in range(min(j + 1, a.shape[2])):
                         x = a[i, r, p]
+                        if x == 0.0:
+                            continue
                         for q in range(columns):
                             v[j + 1, r, q] += x * load[i, j - p, q]
             for q in range(columns):
@@ -261,15 +266,14 @@ def propagate(
                     series[j] = 0.0
                     for p in range(m):
                         series[j] += output[p] * z[j, p, 0]
-                low, high = extremes(series, step)
-                totals[2], totals[3] = min(totals[2], low), max(totals[3], high)
+                totals[2], totals[3] = extremes(series, step, totals[2], totals[3])
                 series[:] = 0.0
                 for i in range(contacts):
                     if state[i] == CLOSED:
-                        totals[4] = max(totals[4], extremes(load[i, :, 0], step)[1] / (T * T))
+                        totals[4] = extremes(load[i, :, 0], step, -math.inf, totals[4])[1]
                         for j in range(order):
                             series[j] += load[i, j, 0]
-                totals[5] = min(totals[5], extremes(series, step)[0] / (T * T))
+                totals[5] = extremes(series, step, totals[5], math.inf)[0]
                 # Samples in [tau, tau + step).
                 last = tau + step
                 while at < samples.size and samples[at] < last:
@@ -285,18 +289,14 @@ def propagate(
                             _load(load[i, :, 0], order, s) / (T * T) if state[i] == CLOSED else 0.0
                         )
                     at += 1
-                # To the end of the step.
-                for q in range(columns):
+                # To the end of the step: Horner's scheme in place, all columns of an order at once.
+                for j in range(order, 0, -1):
                     for p in range(m):
-                        inner = 0.0
-                        for j in range(order, -1, -1):
-                            inner = inner * step + z[j, p, q]
-                        z[0, p, q] = inner
+                        for q in range(columns):
+                            z[j - 1, p, q] += step * z[j, p, q]
                     for r in range(n):
-                        inner = 0.0
-                        for j in range(order, -1, -1):
-                            inner = inner * step + v[j, r, q]
-                        v[0, r, q] = inner
+                        for q in range(columns):
+                            v[j - 1, r, q] += step * v[j, r, q]
                 if not math.isfinite(v[0, 0, 0]):
                     return -1
                 if cut <= h:
@@ -337,6 +337,8 @@ def propagate(
                     if events > 1000 * cycles:
                         return -1
                 tau = end if end - (tau + step) <= 1e-15 else tau + step
+    totals[4] /= T * T
+    totals[5] /= T * T
     for q in range(columns):
         for p in range(m):
             final[p, q] = z[0, p, q]

@@ -14,6 +14,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 _COMPILE = Compiler(Path(__file__).parent.glob("*.py"))
 _SAMPLES = 8
 _MOST_BISECTIONS = 100
+#: Of a zero, relative: a bit or two.
+_ROOT = 4e-16
 #: An extreme is flat: its value is good to the square of this power of a half.
 _HALVINGS = 20
 
@@ -41,6 +43,15 @@ def slope(c: FloatArray, s: float) -> float:
 
 
 @compiled
+def value_and_slope(c: FloatArray, s: float) -> tuple[float, float]:
+    total, rate = 0.0, 0.0
+    for j in range(c.size - 1, -1, -1):
+        rate = rate * s + total
+        total = total * s + c[j]
+    return total, rate
+
+
+@compiled
 def shift(c: FloatArray, s: float, out: FloatArray) -> None:
     """Coefficients of c(s + x) in powers of x."""
     n = c.size
@@ -54,65 +65,86 @@ def shift(c: FloatArray, s: float, out: FloatArray) -> None:
 
 
 @compiled
-def crossing(c: FloatArray, h: float, sign: float) -> float:
-    """First s in (0, h] where the polynomial leaves the sign that it counts as having at 0; else 2 h."""
-    rest, power = 0.0, h
-    for j in range(1, c.size):
+def bounds(c: FloatArray, h: float) -> tuple[float, float]:
+    """Bounds on [0, h]: those of the quadratic part, less and more the size of the rest."""
+    rest, power = 0.0, h * h * h
+    for j in range(3, c.size):
         rest += abs(c[j]) * power
         power *= h
-    if sign * c[0] > rest:
+    end = c[0] + h * (c[1] + h * c[2])
+    low, high = min(c[0], end), max(c[0], end)
+    if c[1] * (c[1] + 2.0 * c[2] * h) < 0.0:
+        turn = c[0] - 0.25 * c[1] * c[1] / c[2]
+        low, high = min(low, turn), max(high, turn)
+    return low - rest, high + rest
+
+
+@compiled
+def crossing(c: FloatArray, h: float, sign: float) -> float:
+    """First s in (0, h] where the polynomial leaves the sign that it counts as having at 0; else 2 h."""
+    least, most = bounds(c, h)
+    if (least if sign > 0.0 else -most) > 0.0:
         return 2.0 * h
-    low, falling = 0.0, sign * c[1] < 0.0
+    low, before, falling = 0.0, sign * c[0], sign * c[1] < 0.0
     for k in range(1, _SAMPLES + 1):
         high = h * k / _SAMPLES
-        down = sign * slope(c, high) < 0.0
-        if sign * value(c, high) <= 0.0:
-            return _root(c, low, high, sign)
+        y, rate = value_and_slope(c, high)
+        now, down = sign * y, sign * rate < 0.0
+        if now <= 0.0:
+            return _root(c, low, high, sign, before, now)
         if falling and not down:  # it may have crossed twice between the samples
             a, b = low, high
             for _ in range(_MOST_BISECTIONS):
                 middle = 0.5 * (a + b)
                 if middle <= a or middle >= b:
                     break
-                if sign * slope(c, middle) < 0.0:
+                y, rate = value_and_slope(c, middle)
+                if sign * rate < 0.0:
                     a = middle
                 else:
                     b = middle
-                if sign * value(c, middle) <= 0.0:
-                    return _root(c, low, middle, sign)
-        low, falling = high, down
+                if sign * y <= 0.0:
+                    return _root(c, low, middle, sign, before, sign * y)
+        low, before, falling = high, now, down
     return 2.0 * h
 
 
 @compiled
-def _root(c: FloatArray, low: float, high: float, sign: float) -> float:
-    """Zero between low, where the sign holds or counts as holding, and high, where it does not."""
-    s = 0.5 * (low + high)
+def _root(c: FloatArray, low: float, high: float, sign: float, above: float, below: float) -> float:
+    """Zero between low, where the sign holds or counts as holding, and high, where it does not.
+
+    Values there, times the sign, are above and below; the first step is that of the secant.
+    """
+    s = low + (high - low) * above / (above - below) if above > 0.0 else 0.5 * (low + high)
     for _ in range(_MOST_BISECTIONS):
-        f = sign * value(c, s)
-        if f > 0.0:
+        y, rate = value_and_slope(c, s)
+        if sign * y > 0.0:
             low = s
         else:
             high = s
-        rate = sign * slope(c, s)
-        new = s - f / rate if rate != 0.0 else low
+        new = s - y / rate if rate != 0.0 else low
+        if abs(new - s) <= _ROOT * high:
+            return new
         if not low < new < high:
             new = 0.5 * (low + high)
-        if abs(new - s) <= 1e-16 * high or new in (low, high):
+        if new in (low, high):
             return new
         s = new
     return s
 
 
 @compiled
-def extremes(c: FloatArray, h: float) -> tuple[float, float]:
-    """Smallest and largest value on [0, h]."""
-    low = high = c[0]
+def extremes(c: FloatArray, h: float, low: float, high: float) -> tuple[float, float]:
+    """The given smallest and largest value, or those on [0, h] where they are beyond."""
+    least, most = bounds(c, h)
+    if least >= low and most <= high:
+        return low, high
+    low, high = min(low, c[0]), max(high, c[0])
     before, rising = 0.0, c[1] > 0.0
     for k in range(1, _SAMPLES + 1):
         s = h * k / _SAMPLES
-        now = slope(c, s) > 0.0
-        y = value(c, s)
+        y, rate = value_and_slope(c, s)
+        now = rate > 0.0
         low, high = min(low, y), max(high, y)
         if now != rising:
             a, b = before, s
