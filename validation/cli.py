@@ -15,6 +15,7 @@ import typer
 from validation.commands.crosscheck import crosscheck
 from validation.commands.export import export
 from validation.commands.figures import figures
+from validation.commands.floquet import floquet
 from validation.commands.interactive import interactive
 from validation.commands.jumps import jumps
 from validation.commands.measurement import measurement
@@ -76,6 +77,7 @@ COMMANDS = (
     crosscheck,
     reversal,
     stability,
+    floquet,
     response,
     jumps,
     interactive,

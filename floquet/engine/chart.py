@@ -5,6 +5,7 @@ from __future__ import annotations
 import multiprocessing
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -24,6 +25,37 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Axes = Mapping[str, npt.ArrayLike]
+
+
+@dataclass(frozen=True)
+class ChartAxis:
+    """One parameter of a chart.
+
+    Attributes
+    ----------
+    units, long_name : labels of the axis
+    low, high : allowed range, without its lower end where ``open_low``
+    """
+
+    units: str
+    long_name: str
+    low: float = field(default=-np.inf, kw_only=True)
+    high: float = field(default=np.inf, kw_only=True)
+    open_low: bool = field(default=False, kw_only=True)
+
+    def check(self, name: str, values: FloatArray) -> None:
+        """Raise ParameterError when a value is outside the range of the axis."""
+        below = values <= self.low if self.open_low else values < self.low
+        bad = values[below | (values > self.high)]
+        if bad.size:
+            sign = ">" if self.open_low else ">="
+            allowed = f"{sign} {self.low:g}" + ("" if np.isinf(self.high) else f" and <= {self.high:g}")
+            raise refuse(
+                f"axes[{name!r}]",
+                f"{bad[0]:g} {self.units}".removesuffix(" 1"),
+                allowed,
+                "Correct the axis values.",
+            )
 
 
 def checked_axes(axes: Axes) -> dict[str, FloatArray]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from floquet.engine.chart import ChartAxis
 from lumped.arguments import one_of
 from lumped.errors import refuse
 from lumped.fields.units import SIValue, to_stated
@@ -59,38 +60,17 @@ class GearVariation:
 
 
 @dataclass(frozen=True)
-class GearAxis:
+class GearAxis(ChartAxis):
     """One parameter of a gear-pair chart.
 
     Attributes
     ----------
-    units, long_name : labels of the axis
     apply : (variation, value) -> variation
     own : pair -> value that the pair itself has
-    low, high : allowed range, without its lower end where ``open_low``
     """
 
-    units: str
-    long_name: str
     apply: Callable[[GearVariation, float], GearVariation] = field(repr=False)
     own: Callable[[GearPair], float] = field(repr=False)
-    low: float = -np.inf
-    high: float = np.inf
-    open_low: bool = False
-
-    def check(self, name: str, values: FloatArray) -> None:
-        """Raise ParameterError when a value is outside the range of the axis."""
-        below = values <= self.low if self.open_low else values < self.low
-        bad = values[below | (values > self.high)]
-        if bad.size:
-            sign = ">" if self.open_low else ">="
-            allowed = f"{sign} {self.low:g}" + ("" if np.isinf(self.high) else f" and <= {self.high:g}")
-            raise refuse(
-                f"axes[{name!r}]",
-                f"{bad[0]:g} {self.units}".removesuffix(" 1"),
-                allowed,
-                "Correct the axis values.",
-            )
 
 
 def _field(*paths: str) -> Callable[[GearVariation, float], GearVariation]:
@@ -147,31 +127,32 @@ def operating_rpm(pair: GearPair) -> float:
 
 GEAR_AXES: Mapping[str, GearAxis] = {
     "speed_rpm": GearAxis(
-        "rpm", "pinion speed", _field("operating.pinion_speed"), operating_rpm, 0.0, open_low=True
+        "rpm", "pinion speed", _field("operating.pinion_speed"), operating_rpm, low=0.0, open_low=True
     ),
     "damping_ratio": GearAxis(
         "1", "mesh damping ratio", _field("mesh.damping_ratio"),
-        lambda pair: pair.mesh.damping_ratio, 0.0, 1.0,
+        lambda pair: pair.mesh.damping_ratio, low=0.0, high=1.0,
     ),
     "friction_coefficient": GearAxis(
         "1", "mean friction coefficient", _friction,
-        lambda pair: mean_coefficient(mesh_cycle(pair).elements.friction), 0.0, 1.0,
+        lambda pair: mean_coefficient(mesh_cycle(pair).elements.friction), low=0.0, high=1.0,
     ),
     "torque": GearAxis(
         "N m", "pinion torque", _field("operating.pinion_torque"),
-        lambda pair: pair.operating.pinion_torque, 0.0, open_low=True,
+        lambda pair: pair.operating.pinion_torque, low=0.0, open_low=True,
     ),
     "stiffness_variation": GearAxis(
-        "1", "variation of mesh stiffness about its mean, 1 as given", _variation, lambda pair: 1.0, 0.0, 2.0
+        "1", "variation of mesh stiffness about its mean, 1 as given", _variation, lambda pair: 1.0,
+        low=0.0, high=2.0,
     ),
     "contact_ratio": GearAxis(
         "1", "contact ratio, by the tip diameters", _contact_ratio,
-        lambda pair: pair.geometry.contact_ratio, 1.0, 3.0,
+        lambda pair: pair.geometry.contact_ratio, low=1.0, high=3.0,
     ),
     "bearing_stiffness": GearAxis(
         "N/m", "stiffness of all bearings, LOA and OLOA",
         _field(*(f"bearings.{g}.{d}_stiffness" for g in ("pinion", "gear") for d in ("loa", "oloa"))),
-        lambda pair: pair.bearings.pinion.loa_stiffness, 0.0, open_low=True,
+        lambda pair: pair.bearings.pinion.loa_stiffness, low=0.0, open_low=True,
     ),
 }  # fmt: skip
 """Axis name -> what it varies."""

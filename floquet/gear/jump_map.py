@@ -73,7 +73,7 @@ def _own_relief(pair: GearPair) -> float:
 JUMP_AXES: Mapping[str, GearAxis] = {
     "torque": GEAR_AXES["torque"],
     "damping_ratio": GEAR_AXES["damping_ratio"],
-    "tip_relief": GearAxis("um", "amount of tip relief", _with_relief, _own_relief, 0.0, 1000.0),
+    "tip_relief": GearAxis("um", "amount of tip relief", _with_relief, _own_relief, low=0.0, high=1000.0),
 }
 
 

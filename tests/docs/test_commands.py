@@ -10,6 +10,7 @@ import tomllib
 from importlib.util import find_spec
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 from typer.main import get_command
@@ -90,6 +91,7 @@ def belongings(tmp_path_factory, root, blocks) -> Path:
         lumped.load_gear_pair("fzg_c"), folder / "gearbox.rexs"
     )  # a pair that the cross-check confirms
     write_state_space(pair, folder / "averaged.npz")
+    np.savez(folder / "rotor.npz", M=1.0, C=0.1, K=100.0, K_cos_1=0.1, period=0.2)
     (folder / "study-sweep").mkdir()
     for result in ("run.nc", "study-sweep/results.nc"):
         write_results(lumped.simulate(pair, cycles=1), folder / result)
@@ -131,7 +133,7 @@ def shortened(arguments: list[str]) -> list[str]:
     quicker = {"crosscheck": ["--cycles", "8", "--samples", "64"], "sweep": ["--workers", "0"]}
     quicker["response"] = ["--periods", "1", "--seeds", "0", "--range", "12000..13000"]
     quicker["jumps"] = ["--speeds", "20", "--range", "12000..12500"]
-    if arguments[0] == "jumps":
+    if arguments[0] in ("jumps", "floquet"):
         arguments = [re.sub(r"(=.*:.*:)\d+$", r"\g<1>2", word) for word in arguments]
     extra = quicker.get(arguments[0], [])
     if arguments[0] == "stability" and "--speed" not in arguments:
@@ -153,7 +155,7 @@ def run(line: str, root: Path, done: set[str]) -> None:
             return
         if arguments[0] == "crosscheck":
             done.add(same)
-        force = ["--force"] if arguments[0] in ("init", "simulate", "stability", "export") else []
+        force = ["--force"] if arguments[0] in ("init", "simulate", "stability", "floquet", "export") else []
         result = CliRunner().invoke(app, shortened(arguments) + force)
         expected = 2 if REFUSED.search(line) else 0
         assert result.exit_code == expected, f"{line}\n{result.output}\n{result.exception!r}"

@@ -12,12 +12,12 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from floquet.gear.axes import GearAxis
+    from floquet.engine.chart import ChartAxis
 
 _LARGEST_COUNT = 5000
 
 
-def axis_values(text: str, known: Mapping[str, GearAxis]) -> tuple[str, NDArray[np.float64]]:
+def axis_values(text: str, known: Mapping[str, ChartAxis]) -> tuple[str, NDArray[np.float64]]:
     """Name and values of an axis written NAME=FROM:TO:COUNT.
 
     Parameters
@@ -36,7 +36,8 @@ def axis_values(text: str, known: Mapping[str, GearAxis]) -> tuple[str, NDArray[
 
     name, separator, values = (part.strip() for part in text.partition("="))
     allowed = f"NAME=FROM:TO:COUNT with different ends and a count from 2 to {_LARGEST_COUNT}"
-    wrong = refuse("--axis", text, allowed, "For example --axis speed_rpm=1000:20000:80.")
+    example = "speed_rpm=1000:20000:80" if "speed_rpm" in known else f"{next(iter(known))}=1:2:80"
+    wrong = refuse("--axis", text, allowed, f"For example --axis {example}.")
     *ends, many = values.split(":")
     if not separator or len(ends) != 2 or not many.strip().isdecimal():
         raise wrong
@@ -52,6 +53,19 @@ def axis_values(text: str, known: Mapping[str, GearAxis]) -> tuple[str, NDArray[
     except ParameterError as error:
         raise opt.by_option(error, {f"axes[{name!r}]": f"--axis {name}"}, "") from None
     return name, found
+
+
+def axes_values(texts: list[str], known: Mapping[str, ChartAxis]) -> dict[str, NDArray[np.float64]]:
+    """Axes by name, see `axis_values`; refuses a name that comes twice."""
+    from lumped.errors import refuse
+
+    grid: dict[str, NDArray[np.float64]] = {}
+    for text in texts:
+        name, values = axis_values(text, known)
+        if name in grid:
+            raise refuse("--axis", text, "an axis that is not there yet", f"{name} is given twice.")
+        grid[name] = values
+    return grid
 
 
 def number_in(option: str, text: str, unit: str) -> float:

@@ -9,13 +9,10 @@ import typer
 
 from floquet.engine.propagators.registry import PROPAGATORS
 from validation.commands import options as opt
-from validation.commands.axes import axis_values, number_in
+from validation.commands.axes import axes_values, number_in
 from validation.commands.terminal import FAILED, guarded, print_json, stderr, stdout, table
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from floquet.gear.multipliers import GearPairMultipliers
     from lumped import GearPair
 
@@ -102,6 +99,7 @@ def stability(
 
     spurcheck stability --view laws --law composite --against coulomb -o difference.png
     """
+    from floquet.gear.axes import GEAR_AXES
     from floquet.gear.multipliers import gear_pair_multipliers
     from lumped.friction.registry import law_named
     from validation.commands.stability_views import VIEWS, Request, show
@@ -112,7 +110,7 @@ def stability(
 
         raise refuse("--view", view, ", ".join(VIEWS), "For example --view campbell.")
     targets = [check_file(path, DATA_SUFFIXES + FIGURE_SUFFIXES, force=force) for path in output or []]
-    grid = _grid(axes or [])
+    grid = axes_values(axes or [], GEAR_AXES)
     speeds = None if operating_range is None else _range(operating_range)
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings, speed_range)
     request = Request(
@@ -145,20 +143,6 @@ def _print_point(pair: GearPair, found: GearPairMultipliers) -> None:
     shown.add_row("which is", found.certificate)
     shown.add_row("margin, 1 - largest multiplier", number(1.0 - found.spectral_radius))
     stdout().print(shown)
-
-
-def _grid(texts: list[str]) -> dict[str, NDArray[np.float64]]:
-    """Axes by name; refuses a name that comes twice."""
-    from floquet.gear.axes import GEAR_AXES
-    from lumped.errors import refuse
-
-    grid: dict[str, NDArray[np.float64]] = {}
-    for text in texts:
-        name, values = axis_values(text, GEAR_AXES)
-        if name in grid:
-            raise refuse("--axis", text, "an axis that is not there yet", f"{name} is given twice.")
-        grid[name] = values
-    return grid
 
 
 def _range(text: str) -> tuple[float, float]:

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
 
-from lumped.typing import FloatArray
+from lumped.typing import BoolArray, FloatArray
 from validation.plots.labels import WHITE_BOX
 from validation.plots.style import BLACK, GREY, IN_X, RED, legend, one_panel, write_beside
 
@@ -26,7 +26,7 @@ UNSTABLE = "#f2a26b"
 
 
 def stability_figure(chart: xr.Dataset, x: str, y: str, point: tuple[float, float] | None) -> Figure:
-    """Spectral radius over two axes of a chart; unstable regions hatched, the operating point marked.
+    """Spectral radius over two axes of a chart; unstable regions hatched, undecided ones dotted.
 
     Parameters
     ----------
@@ -35,10 +35,13 @@ def stability_figure(chart: xr.Dataset, x: str, y: str, point: tuple[float, floa
     point : operating point (x, y); None: not marked
     """
     radius = chart["spectral_radius"].transpose(y, x).sortby([x, y])
+    undecided = (chart["verdict"] == 0).transpose(y, x).sortby([x, y])
     norm = Normalize(min(float(radius.min()), 0.999), 1.0)
-    words = "spectral radius [-]; unstable above 1 (hatched)"
+    words = "spectral radius [-]; unstable above 1 (hatched)" + undecided.any().item() * "\nundecided: dotted"
     figure, ax = field_figure(radius.clip(max=1.0), chart, norm, _STABLE, words)
-    mark_unstable(ax, radius[x].to_numpy(), radius[y].to_numpy(), radius.to_numpy())
+    xs, ys = radius[x].to_numpy(), radius[y].to_numpy()
+    mark_unstable(ax, xs, ys, radius.where(~undecided, 1.0 - 1e-9).to_numpy())
+    _mark_undecided(ax, xs, ys, undecided.to_numpy())
     mark_operating_point(ax, point)
     return figure
 
@@ -122,6 +125,10 @@ def stability_line_figure(chart: xr.Dataset, x: str, value: float | None) -> Fig
     radius = chart["spectral_radius"].sortby(x)
     xs, values = radius[x].to_numpy(), radius.to_numpy()
     ax.plot(xs, values, color="#08519c", linewidth=1.2)
+    undecided = (chart["verdict"].sortby(x) == 0).to_numpy()
+    if undecided.any():
+        ax.plot(xs[undecided], values[undecided], ".", color=GREY, markersize=4, label="undecided")
+        legend(ax, loc="best")
     ax.axhline(1.0, color=BLACK, linewidth=0.8)
     ax.fill_between(xs, 1.0, np.maximum(values, 1.0), color=UNSTABLE, linewidth=0.0)
     ax.set_xlim(xs[0], xs[-1])
@@ -170,6 +177,14 @@ def mark_unstable(ax: Axes, xs: FloatArray, ys: FloatArray, radius: FloatArray) 
     with mpl.rc_context({"hatch.color": RED, "hatch.linewidth": 0.7}):
         ax.contourf(xs, ys, radius, levels=[1.0, np.inf], colors=[UNSTABLE], hatches=["////"])
     ax.contour(xs, ys, radius, levels=[1.0], colors=[BLACK], linewidths=1.0)
+
+
+def _mark_undecided(ax: Axes, xs: FloatArray, ys: FloatArray, undecided: BoolArray) -> None:
+    """Dot the region (y, x) in which the bound on the error contains 1."""
+    if xs.size < 2 or ys.size < 2 or not undecided.any():
+        return
+    with mpl.rc_context({"hatch.color": GREY, "hatch.linewidth": 0.5}):
+        ax.contourf(xs, ys, undecided.astype(float), levels=[0.5, 1.5], colors=["none"], hatches=["..."])
 
 
 def mark_operating_point(ax: Axes, point: tuple[float, float] | None) -> None:

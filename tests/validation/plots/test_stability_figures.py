@@ -9,9 +9,11 @@ import pytest
 import xarray as xr
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import QuadMesh
+from matplotlib.contour import QuadContourSet
 from typer.testing import CliRunner
 
 from floquet import predicted_lines, stability_chart
+from floquet.engine.multipliers import verdicts
 from floquet.gear.campbell import campbell
 from floquet.gear.margins import StabilityMargins, TongueMargin
 from floquet.gear.paths import multiplier_paths
@@ -21,7 +23,7 @@ from validation.cli import app
 from validation.plots.campbell import campbell_figure
 from validation.plots.labels import pretty, spread
 from validation.plots.multipliers import multiplier_paths_figure
-from validation.plots.stability import stability_figure
+from validation.plots.stability import stability_figure, stability_line_figure
 from validation.plots.tongues import tongue_chart_figure, tongues_figure
 
 
@@ -94,7 +96,8 @@ def test_no_label_of_a_tongue_covers_another() -> None:
 
 
 def over_speed_and_damping(speeds, dampings, radius) -> xr.Dataset:
-    data = {"spectral_radius": (("speed_rpm", "damping_ratio"), radius)}
+    dims = ("speed_rpm", "damping_ratio")
+    data = {"spectral_radius": (dims, radius), "verdict": (dims, verdicts(radius, 1e-9 + 0.0 * radius))}
     axes = {"speed_rpm": speeds, "damping_ratio": dampings}
     return xr.Dataset(data, axes, {"certificate": "mixed"})
 
@@ -117,6 +120,22 @@ def test_a_large_chart_is_one_image_and_not_a_polygon_per_point() -> None:
     vertices = np.concatenate([path.vertices for path in line.get_paths()])
     assert vertices[:, 0].min() == pytest.approx(9000.0 - 500.0 * np.sqrt(np.log(1.5)), abs=5.0)
     assert vertices[:, 1].max() == pytest.approx(0.01 * np.sqrt(np.log(1.5)), abs=2e-5)
+
+
+def test_what_is_undecided_is_dotted_and_not_hatched() -> None:
+    radius = np.array([[0.9, 0.9, 0.9], [1.0 + 1e-10] * 3, [1.1, 1.1, 1.1]])
+    chart = over_speed_and_damping(np.array([1e3, 2e3, 3e3]), np.array([0.0, 0.1, 0.2]), radius)
+    ax = stability_figure(chart, "speed_rpm", "damping_ratio", None).axes[0]
+    spans = {
+        c.hatches[0]: np.concatenate([p.vertices for p in c.get_paths()])[:, 0]
+        for c in ax.collections
+        if isinstance(c, QuadContourSet) and c.filled
+    }
+    assert (spans["..."].min(), spans["..."].max()) == (1500.0, 2500.0)
+    assert spans["////"].min() >= 2000.0
+    assert "dotted" in ax.figure.axes[1].get_ylabel()
+    line = stability_line_figure(chart.isel(damping_ratio=0), "speed_rpm", None).axes[0]
+    assert line.get_lines()[1].get_xdata().tolist() == [2e3]
 
 
 def test_uneven_axes_and_falling_ones_are_drawn_at_their_values() -> None:

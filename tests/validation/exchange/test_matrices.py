@@ -1,0 +1,128 @@
+"""Are matrices from a file the system that its page says, and is anything else refused by its name?"""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+import scipy.io
+import scipy.sparse
+import xarray as xr
+from typer.testing import CliRunner
+
+from floquet import monodromy
+from floquet.engine.reference_systems import meissner_trace
+from lumped.errors import ParameterError
+from validation.cli import app
+from validation.exchange import read_second_order
+
+T = 0.4
+M, K, C = np.diag([1.0, 2.0]), np.array([[300.0, -100.0], [-100.0, 400.0]]), np.diag([0.3, 0.2])
+G, WAVE, DRAG = np.array([[0.0, 0.2], [-0.2, 0.0]]), np.array([[40.0, 5.0], [0.0, 20.0]]), np.diag([0.0, 0.4])
+STEPS = np.stack([np.diag([30.0, 0.0]), np.diag([0.0, 60.0]), np.zeros((2, 2))])
+FIELDS = {"M": M, "K": K, "C": C, "G": G, "K_cos_1": WAVE, "C_sin_2": DRAG, "period": T}
+FIELDS |= {"K_times": [0.0, 0.1, 0.3, T], "K_values": STEPS}
+
+
+def run(*arguments):
+    result = CliRunner().invoke(app, ["floquet", *map(str, arguments)], env={"COLUMNS": "200"})
+    assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
+    return result
+
+
+def test_both_formats_are_the_system_of_the_page(tmp_path):
+    np.savez(tmp_path / "rotor.npz", **FIELDS)
+    of_matlab = FIELDS | {"K_values": np.moveaxis(STEPS, 0, -1), "K": scipy.sparse.csc_matrix(K)}
+    scipy.io.savemat(tmp_path / "rotor.mat", of_matlab)
+
+    def stiffness(t):
+        return K + np.cos(2.0 * np.pi * t / T) * WAVE + STEPS[np.searchsorted([0.1, 0.3], t)]
+
+    def damping(t):
+        return C + 2.0 * np.pi / T * G + np.sin(4.0 * np.pi * t / T) * DRAG
+
+    for name in ("rotor.npz", "rotor.mat"):
+        system = read_second_order(tmp_path / name).system()
+        for t in (0.05, 0.2, 0.35):
+            Q = np.linalg.inv(M @ system.coordinates)
+            expected = [-Q @ B(t) @ system.coordinates for B in (stiffness, damping)]
+            np.testing.assert_allclose(
+                system.evaluate([t])[0, 2:], np.hstack(expected), rtol=1e-11, atol=1e-9
+            )
+
+
+def test_what_a_chart_varies_is_varied(tmp_path):
+    # Meissner's equation: the steps have the mean 1.3, their variation is half a step of 0.4.
+    steps = np.array([1.7, 0.9]).reshape(2, 1, 1)
+    np.savez(tmp_path / "m.npz", M=1.0, K=0.0, C=0.5, period=3.0, K_times=[0.0, 1.5, 3.0], K_values=steps)
+    model = read_second_order(tmp_path / "m.npz")
+    for kept, period in (({}, 3.0), ({"period": 5.0}, 5.0), ({"frequency": 0.2}, 5.0)):
+        for factor in (0.5, 1.5):
+            found = monodromy(model.system(**kept, variation=factor, damping=0.0))
+            assert np.trace(found.matrix) == pytest.approx(
+                meissner_trace(1.3, 0.4 * factor, period), abs=1e-10
+            )
+    # det M = exp(-c T)
+    damped = monodromy(model.system(damping=2.0))
+    assert np.linalg.det(damped.matrix) == pytest.approx(np.exp(-3.0), rel=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("change", "field", "word"),
+    [
+        ({"K_cos1": WAVE}, "K_cos1", "K_cos_1"),
+        ({"K": None}, "K", "missing"),
+        ({"C": np.eye(3)}, "C", "(2, 2)"),
+        ({"K_times": None}, "K_times", "Save both"),
+        ({"K_times": [0.0, 0.3, 0.1, T]}, "K_times", "increasing"),
+        ({"K_times": [0.0, 0.1, 0.3, 0.5]}, "K_times", "0.4 s"),
+        ({"K_values": STEPS[:2]}, "K_values", "(3, 2, 2)"),
+        ({"period": -1.0}, "period", "> 0"),
+        ({"period": [1.0, 2.0]}, "period", "number"),
+        ({"M": np.array(["1"])}, "M", "numbers"),
+    ],
+)
+def test_a_wrong_field_is_refused_by_its_name(tmp_path, change, field, word):
+    np.savez(tmp_path / "bad.npz", **{k: v for k, v in (FIELDS | change).items() if v is not None})
+    with pytest.raises(ParameterError, match=r"bad\.npz") as refused:
+        read_second_order(tmp_path / "bad.npz")
+    assert refused.value.problems[0].field == field
+    assert word in str(refused.value)
+
+
+def test_the_command_prints_bounds_and_writes_a_chart(tmp_path):
+    np.savez(tmp_path / "rotor.npz", **FIELDS)
+    found = run(tmp_path / "rotor.npz", "--json")
+    data = json.loads(found.stdout)
+    exact = monodromy(read_second_order(tmp_path / "rotor.npz").system())
+    assert (data["verdict"], data["certificate"], found.exit_code) == ("stable", "proven", 0)
+    assert data["multipliers"] == [[z.real, z.imag] for z in exact.multipliers]
+    axes = ("--axis", "frequency=4:6:3", "--axis", "damping=0:1:2")
+    made = run(tmp_path / "rotor.npz", *axes, "-o", tmp_path / "c.nc", "-o", tmp_path / "c.png")
+    assert "6 points" in made.stdout
+    assert (tmp_path / "c.png").stat().st_size > 5000
+    with xr.open_dataset(tmp_path / "c.nc", engine="h5netcdf") as chart:
+        assert chart["frequency"].attrs["units"] == "Hz"
+        assert chart["spectral_radius"].shape == (3, 2)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        (["none.npz"], "a file that exists"),
+        (["text.npz"], "a .npz of arrays"),
+        (["text.mat"], "a .npz of arrays"),
+        (["text.csv"], "a name ending in .npz, .mat"),
+        (["text.npz", "-o", "chart.png"], "Give --axis"),
+        (["text.npz", "--axis", "speed_rpm=1:2:3"], "one of period, frequency"),
+        (["text.npz", "--axis", "period=1:2:3", "--axis", "frequency=1:2:3"], "of period and frequency one"),
+    ],
+)
+def test_the_command_refuses_before_it_computes(tmp_path, monkeypatch, arguments, word):
+    monkeypatch.chdir(tmp_path)
+    for name in ("text.npz", "text.mat", "text.csv"):
+        (tmp_path / name).write_text("no matrices")
+    result = run(*arguments)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert word in result.stderr

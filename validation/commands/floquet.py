@@ -1,0 +1,118 @@
+"""spurcheck floquet: multipliers and charts of any periodic system given by its matrices."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from validation.commands import options as opt
+from validation.commands.axes import axes_values
+from validation.commands.terminal import FAILED, guarded, print_json, progress_bar, stderr, stdout, table
+
+if TYPE_CHECKING:
+    from floquet import Monodromy
+
+_SHOWN = 12
+
+
+@guarded
+def floquet(
+    source: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE",
+            help="Matrices: .npz or .mat with M, K, period [s]; if wanted C, G (times 2 pi/period in C), "
+            "periodic terms K_cos_1, K_sin_1, ..., C_cos_1, ... and steps K_times with K_values.",
+        ),
+    ],
+    output: Annotated[
+        list[Path] | None,
+        opt.output(
+            "Result file of a chart, as often as needed: .nc, .csv or .mat for data, .png, .svg or .pdf for "
+            "the figure."
+        ),
+    ] = None,
+    axes: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--axis",
+            metavar="NAME=FROM:TO:COUNT",
+            help="Axis of a chart: period [s], frequency [Hz] (1/period), variation (factor on the periodic "
+            "terms), damping (factor on C). Give it twice for a chart of two axes.",
+        ),
+    ] = None,
+    rtol: Annotated[float, typer.Option(help="Wanted error of the monodromy matrix.")] = 1e-10,
+    as_json: opt.Json = False,
+    force: opt.Force = False,
+) -> None:
+    """Decide whether M x'' + C(t) x' + K(t) x = 0 is stable, for any matrices with one period.
+
+    Prints the Floquet multipliers with proven bounds on their errors; the largest tells by how much a
+    disturbance grows (above 1) or dies (below 1) per period. The exit code is 1 when it is not stable.
+
+    [bold]Examples[/bold]
+
+    spurcheck floquet rotor.npz
+
+    spurcheck floquet rotor.mat --axis frequency=10:80:71 --axis variation=0:2:41 -o chart.png
+    """
+    from floquet import monodromy, scan
+    from lumped.errors import refuse
+    from validation.exchange.matrices import FILE_AXES, read_second_order
+    from validation.files.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
+
+    targets = [check_file(path, DATA_SUFFIXES + FIGURE_SUFFIXES, force=force) for path in output or []]
+    grid = axes_values(axes or [], FILE_AXES)
+    if targets and not grid:
+        raise refuse("--output", targets[0], "a chart to write", "Give --axis, once or twice.")
+    if len(grid) > 2 or {"period", "frequency"} <= set(grid):
+        allowed = "one or two, of period and frequency one"
+        raise refuse("--axis", ", ".join(grid), allowed, "Leave an axis out.")
+    model = read_second_order(source)
+    found = monodromy(model.system(), rtol)
+    if as_json:
+        print_json(
+            {"file": source.name, "verdict": found.verdict, "spectral_radius": found.spectral_radius}
+            | {"error": found.error, "certificate": found.certificate, "period": found.period}
+            | {"multipliers": [[z.real, z.imag] for z in found.multipliers.tolist()]}
+            | {"multiplier_errors": found.multiplier_errors.tolist()}
+        )
+    else:
+        _print(source, found)
+    if grid:
+        labels = {name: (FILE_AXES[name].units, FILE_AXES[name].long_name) for name in grid}
+        with progress_bar("chart") as tell:
+            chart = scan(lambda at: model.system(**at), grid, labels=labels, rtol=rtol, progress=tell)
+        verdict = chart["verdict"].to_numpy()
+        counts = [int((verdict == k).sum()) for k in (1, 0, -1)]
+        stdout().print(
+            f"chart: {verdict.size} points, {counts[0]} stable, {counts[1]} undecided, {counts[2]} unstable; "
+            f"largest bound on an error {float(chart['error'].max()):.1e}"
+        )
+        for target in targets:
+            from validation.plots.of_result import plot
+
+            opt.write_result(target, chart, lambda: plot(chart))
+            stderr().print(f"wrote {target}")
+    if found.verdict != "stable":
+        raise typer.Exit(FAILED)
+
+
+def _print(source: Path, found: Monodromy) -> None:
+    from cmath import phase
+
+    from validation.reporting.formatting import number
+
+    shown = table(f"{source.name}: multipliers", ">modulus", ">phase [deg]", ">bound on the error")
+    rows = zip(found.multipliers.tolist(), found.multiplier_errors.tolist(), strict=True)
+    for z, error in list(rows)[:_SHOWN]:
+        shown.add_row(f"{abs(z):.10f}", f"{57.29577951308232 * phase(z):.4f}", number(error, 2))
+    stdout().print(shown)
+    if found.multipliers.size > _SHOWN:
+        stdout().print(f"and {found.multipliers.size - _SHOWN} smaller ones")
+    stdout().print(
+        f"{found.verdict}: largest multiplier {found.spectral_radius:.10f} +- {found.error:.1e}, "
+        f"which is {'a proven bound' if found.certificate == 'proven' else 'an estimate'}"
+    )
