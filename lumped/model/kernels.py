@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-import numba
+from pathlib import Path
+
 import numpy as np
 
+from lumped.compiler import Compiler
 from lumped.typing import FloatArray, IntArray
 
+compiled = Compiler([Path(__file__)])
 
-@numba.njit(cache=True)
+
+@compiled
 def evaluate_path(breaks: FloatArray, coefficients: FloatArray, xi: float) -> float:
     """Value of a path function at one position; zero outside (see ``PathFunction``)."""
     last = breaks.size - 1
@@ -28,7 +32,7 @@ def evaluate_path(breaks: FloatArray, coefficients: FloatArray, xi: float) -> fl
     return value
 
 
-@numba.njit(cache=True)
+@compiled
 def state_rate(
     time: float,
     state: FloatArray,
@@ -95,7 +99,7 @@ def state_rate(
     return rate
 
 
-@numba.njit(cache=True)
+@compiled
 def gauss_steps(
     which: IntArray,
     free_end: FloatArray,
@@ -123,7 +127,8 @@ def gauss_steps(
     inner = np.empty((2 * stages, columns))
     for j in range(k):
         of = which[j]
-        fixed[:] = 0.0
+        for row in range(rows):
+            fixed[row] = 0.0
         for stage in range(stages):
             for row in range(rows):
                 by_k, by_c, by_e = 0.0, 0.0, 0.0
@@ -135,9 +140,11 @@ def gauss_steps(
                 to[row, stage], to[row, stages + stage] = by_k, by_c
                 fixed[row] += by_e
         for row in range(stages):
-            p[row] = free_p[of, row]
+            for column in range(columns):
+                p[row, column] = free_p[of, row, column]
             p[row, 2 * m] += fixed[row]
-            matrix[row] = 0.0
+            for column in range(stages):
+                matrix[row, column] = 0.0
             matrix[row, row] = 1.0
             for i in range(2 * stages):
                 factor = to[row, i]
@@ -147,13 +154,15 @@ def gauss_steps(
                     matrix[row, column] -= factor * by_p[of, i, column]
         _solve(matrix, p)
         for row in range(2 * stages):
-            inner[row] = start[of, row]
+            for column in range(columns):
+                inner[row, column] = start[of, row, column]
             for i in range(stages):
                 factor = by_p[of, row, i]
                 for column in range(columns):
                     inner[row, column] += factor * p[i, column]
         for row in range(2 * m):
-            maps[j, row] = free_end[of, row]
+            for column in range(columns):
+                maps[j, row, column] = free_end[of, row, column]
             maps[j, row, 2 * m] += fixed[stages + row]
             for i in range(2 * stages):
                 factor = to[stages + row, i]
@@ -162,7 +171,7 @@ def gauss_steps(
     return maps
 
 
-@numba.njit(cache=True)
+@compiled
 def _solve(matrix: FloatArray, right: FloatArray) -> None:
     """Solve matrix (s, s) x = right (s, columns) in place, by elimination with pivots."""
     size, columns = right.shape
@@ -190,12 +199,13 @@ def _solve(matrix: FloatArray, right: FloatArray) -> None:
             right[i, column] = value / matrix[i, i]
 
 
-@numba.njit(cache=True)
+@compiled
 def states_along(maps: FloatArray, initial: FloatArray, weights: FloatArray) -> FloatArray:
     """States (k + 1, n) from x(0) (n,) by k affine maps (k, n, n + columns), forcings weighted (columns,)."""
     k, n, width = maps.shape
     x = np.empty((k + 1, n))
-    x[0] = initial
+    for row in range(n):
+        x[0, row] = initial[row]
     for j in range(k):
         for row in range(n):
             value = 0.0
@@ -207,7 +217,7 @@ def states_along(maps: FloatArray, initial: FloatArray, weights: FloatArray) -> 
     return x
 
 
-@numba.njit(cache=True)
+@compiled
 def chained(maps: FloatArray, group: IntArray) -> FloatArray:
     """Affine maps (k, n, n + columns) of which consecutive ones of the same group (k,), 0, 1, ..., are one.
 
@@ -220,7 +230,8 @@ def chained(maps: FloatArray, group: IntArray) -> FloatArray:
     product = np.empty((n, width))
     held = 0
     for j in range(k):
-        waiting[held], doubled[held] = maps[j], 0
+        _copy(waiting[held], maps[j])
+        doubled[held] = 0
         held += 1
         last = j == k - 1 or group[j + 1] != group[j]
         while held > 1 and (last or doubled[held - 1] == doubled[held - 2]):
@@ -232,10 +243,18 @@ def chained(maps: FloatArray, group: IntArray) -> FloatArray:
                     factor = after[row, inner]
                     for column in range(width):
                         product[row, column] += factor * before[inner, column]
-            before[:] = product
+            _copy(before, product)
             held -= 1
             doubled[held - 1] += 1
         if last:
-            found[group[j]] = waiting[0]
+            _copy(found[group[j]], waiting[0])
             held = 0
     return found
+
+
+@compiled
+def _copy(to: FloatArray, source: FloatArray) -> None:
+    """``to[:] = source``, for which numba would compile the message about other shapes: two seconds."""
+    for row in range(to.shape[0]):
+        for column in range(to.shape[1]):
+            to[row, column] = source[row, column]

@@ -178,7 +178,7 @@ def rate_function(
     functions: list[PathFunction] = [e.stiffness, e.damping, e.friction, e.error, e.error_slope]
     tables = [array for f in functions for array in (f.breaks, f.coefficients)]
     external = np.array([balance.pinion_torque, -balance.brake_torque, 0.0, 0.0, 0.0, 0.0])
-    constants = (s.mass, s.damping, s.stiffness, s.deflection, s.normal, s.friction_arm, external)
+    constants = [*tables, s.mass, s.damping, s.stiffness, s.deflection, s.normal, s.friction_arm, external]
 
     def of(segment: int) -> Callable[[float, FloatArray], FloatArray]:
         margin = 1e-12 * g.base_pitch
@@ -187,7 +187,7 @@ def rate_function(
 
         def rate(time: float, state: FloatArray) -> FloatArray:
             values: FloatArray = kernels.state_rate(
-                time, state, start, end, cycle.offsets, speed, cycle.start, cycle.end, *tables, *constants
+                time, state, start, end, cycle.offsets, speed, cycle.start, cycle.end, *constants
             )
             return values
 

@@ -6,11 +6,14 @@ Sources: docs/theory/contact_energy.md, "Energy of one pair", "Tip corner".
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
-import numba
 import numpy as np
 
+from lumped.compiler import Compiler
 from lumped.typing import FloatArray
+
+compiled = Compiler([Path(__file__)])
 
 #: Newton's steps for the load of a pair, of which six are the most needed, and for the approach.
 _LOAD_STEPS, _APPROACH_STEPS = 20, 200
@@ -19,7 +22,7 @@ _SWEEPS = 100
 _SETTLED = 2e-15
 
 
-@numba.njit(cache=True)
+@compiled
 def load_of(
     compression: float, stiffness: float, softening: float, nominal: float, least: float, guess: float
 ) -> tuple[float, float]:
@@ -44,7 +47,7 @@ def load_of(
     return load, 1.0 / tangent
 
 
-@numba.njit(cache=True)
+@compiled
 def shared_loads(
     compression: FloatArray,
     stiffness: FloatArray,
@@ -101,7 +104,7 @@ def shared_loads(
             break
 
 
-@numba.njit(cache=True)
+@compiled
 def corner_gap_at(
     beyond: float, start: float, tangent: float, flank_radius: float, tip_radius: float
 ) -> float:
@@ -121,7 +124,7 @@ def corner_gap_at(
     return length + flank_radius * angle - (start - beyond)
 
 
-@numba.njit(cache=True)
+@compiled
 def corner_gaps(
     beyond: FloatArray, start: FloatArray, tangent: FloatArray, flank_radius: float, tip_radius: float
 ) -> FloatArray:
@@ -132,7 +135,7 @@ def corner_gaps(
     return found
 
 
-@numba.njit(cache=True)
+@compiled
 def gap_at(place: float, relief: float, half: float, longer: float, ends: FloatArray) -> float:
     """Gap of a pair at xi = ``place`` [m], its contact point ``half`` beyond where the tips leave the line.
 
@@ -146,7 +149,7 @@ def gap_at(place: float, relief: float, half: float, longer: float, ends: FloatA
     return float(relief + before + behind)
 
 
-@numba.njit(cache=True)
+@compiled
 def gaps_at(
     place: FloatArray, relief: FloatArray, half: FloatArray, longer: FloatArray, ends: FloatArray
 ) -> FloatArray:
@@ -157,7 +160,7 @@ def gaps_at(
     return found
 
 
-@numba.njit(cache=True)
+@compiled
 def middle_loads(
     compression: FloatArray,
     stiffness: FloatArray,
@@ -188,7 +191,7 @@ def middle_loads(
     return found
 
 
-@numba.njit(cache=True)
+@compiled
 def approaches(
     place: FloatArray,
     stiffness: FloatArray,

@@ -59,7 +59,8 @@ def bridge(
     speeds, rates = np.empty((7, 6)), np.empty((7, 6))
     for j in range(times.size - 1):
         h = times[j + 1] - times[j]
-        speeds[0], rates[0] = v[j], a[j]
+        for i in range(6):
+            speeds[0, i], rates[0, i] = v[j, i], a[j, i]
         place, speed = q[j + 1], v[j + 1]
         for stage in range(6):
             for i in range(6):
@@ -76,8 +77,8 @@ def bridge(
             for i in range(6):
                 force = wrench[i] + bodies[3, i] - bodies[1, i] * place[i] - bodies[2, i] * speed[i]
                 speeds[stage + 1, i], rates[stage + 1, i] = speed[i], force / bodies[0, i]
-        a[j + 1] = rates[6]
         for i in range(6):
+            a[j + 1, i] = rates[6, i]
             further = faster = 0.0
             for k in range(7):
                 further += _ERROR[k] * speeds[k, i]

@@ -158,7 +158,7 @@ def steps_of_period(
         length = (problem.phases[i + 1] - problem.phases[i]) * T
         rate, misfit, ratio, first, last = load_piece(problem, i, gains, zeta, T, piece)
         parts = max(1, math.ceil(0.5 * length * rate / limits.angle))
-        part = 0
+        part = int(0.0)  # not the literal 0: what is called with it would be compiled for the literal too
         while part < parts:
             if count + parts - part > MAX_STEPS:
                 return -1
