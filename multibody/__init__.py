@@ -11,6 +11,7 @@ from multibody.study.causes import attribution
 from multibody.study.free_vibration import Decay, damping_check
 from multibody.study.frozen_modes import frozen_modes
 from multibody.study.reversal_convergence import reversal_convergence
+from multibody.study.shaft_modes import shaft_modes
 from multibody.study.shared import SHARED, Shared
 from multibody.study.turning import TurningBuild, turning_build
 
@@ -31,6 +32,7 @@ __all__ = [
     "monodromy",
     "power_balance",
     "reversal_convergence",
+    "shaft_modes",
     "simulate",
     "speed_sweep",
     "steady_state",

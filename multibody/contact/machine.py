@@ -13,15 +13,17 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
+from scipy.linalg import eigvalsh
 
 from lumped.model.mesh_cycle import mesh_cycle
 from lumped.model.mesh_elements import mesh_elements
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, IntArray
 from multibody.contact import friction as fr
 from multibody.contact import kernels as kn
 from multibody.contact.drawing import base_tooth_angle, bearing_constants, circles, masses, reliefs
@@ -29,6 +31,14 @@ from multibody.contact.elements import stiffness_at
 from multibody.contact.events import SLIDING, event_table
 from multibody.contact.friction_parameters import fill_friction, friction_switches
 from multibody.contact.kinematics import DRIVE, MAX_PAIRS, add_wrench, line_of_action, mesh_phase, wrap
+from multibody.shafts.train import Train, train
+
+Supports = Literal["springs", "shafts"]
+
+#: Modes of shafts with their gears held are kept up to so many times the fastest mode of gears on springs,
+#: and to this order of the mesh frequency: the rest changes the transmission error by some thousandths of
+#: its peak to peak (docs/theory/shafts.md).
+_MESH_FREQUENCIES, _MESH_ORDERS = 4.0, 5.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +58,7 @@ class Machine:
     period : mesh cycle [s]
     switches : phases of the mesh cycle in [0, 1) at which the nominal element laws jump or have a kink
     events : (n, 2) what makes the contact force jump or bend in finite motion, see ``events.event_table``
+    train : both shafts where these support the gears, whose bearing springs are then zero; else None
     """
 
     parameters: FloatArray
@@ -63,6 +74,25 @@ class Machine:
     period: float
     switches: FloatArray
     events: FloatArray
+    train: Train | None = None
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates; the first six are those of the gears."""
+        return 6 if self.train is None else self.train.size
+
+    @cached_property
+    def units(self) -> FloatArray:
+        """(n,) a metre in each coordinate: 1, or the angle that moves the base circle by as much."""
+        units = np.ones(self.size)
+        for own, radius in zip(self.angles, self.parameters[[kn.RADIUS_P, kn.RADIUS_G]], strict=True):
+            units[own] = 1.0 / radius
+        return units
+
+    @property
+    def angles(self) -> tuple[IntArray, IntArray]:
+        """Coordinates that are angles, about the pinion's and about the gear's axis."""
+        return (np.array([2]), np.array([5])) if self.train is None else self.train.angles
 
     @cached_property
     def overlap(self) -> FloatArray:
@@ -90,16 +120,23 @@ class Machine:
 
         The mesh acts along the nominal line of action, without friction and damping.
         """
-        inertia, bearings, _, _ = self.bodies
         left, right = self.table[:, 0], self.table[:, 1]
         places = np.concatenate([left, 0.5 * (left + right), right])
         largest = max(abs(stiffness_at(self.table, xi)) for xi in places)
-        stiffness = self.pairs * largest * np.outer(self.overlap, self.overlap) + np.diag(bearings)
-        squares = np.linalg.eigvalsh(stiffness / np.sqrt(np.outer(inertia, inertia)))
+        mesh = self.pairs * largest * np.outer(self.overlap, self.overlap)
+        if self.train is None:
+            inertia, bearings, _, _ = self.bodies
+            squares = np.linalg.eigvalsh((mesh + np.diag(bearings)) / np.sqrt(np.outer(inertia, inertia)))
+        else:
+            stiffness = self.train.stiffness.copy()
+            stiffness[:6, :6] += mesh
+            squares = eigvalsh(stiffness, self.train.mass)
         return float(np.sqrt(squares[-1]) * self.period / (2.0 * np.pi))
 
 
-def machine(pair: GearPair, flags: int = 0) -> Machine:
+def machine(
+    pair: GearPair, flags: int = 0, supports: Supports = "springs", highest: float | None = None
+) -> Machine:
     """Describe a gear pair for the multibody model, both torques being that of the pinion.
 
     Parameters
@@ -108,6 +145,8 @@ def machine(pair: GearPair, flags: int = 0) -> Machine:
     flags : effect switches of ``kernels``; with ``TIP_CONTACT`` or ``CLEARANCE``, and where teeth of the
         linear mesh may part, the stiffness holds wherever teeth touch; else relief takes it off where the
         lumped model sees no contact
+    supports : "springs" of the pair's bearings, or "shafts"
+    highest : modes of shafts with their gears held are kept up to this [Hz]; None chooses
     """
     drawn, loaded = circles(pair), pair.mesh.contact == "loaded"
     parts = flags & kn.LINEAR and flags & kn.CONTACT_LOSS
@@ -154,7 +193,7 @@ def machine(pair: GearPair, flags: int = 0) -> Machine:
     switches = switch_phases([*stiffness.switches, *starts, *places], l_xa, tip_p, pitch)
     if loaded and flags & kn.LINEAR:
         table, switches = _loaded_laws(pair, p)
-    return Machine(
+    found = Machine(
         parameters=p,
         table=table,
         mass=mass,
@@ -176,6 +215,19 @@ def machine(pair: GearPair, flags: int = 0) -> Machine:
             alone=not (flags & kn.NEIGHBOURS and p[kn.COUPLED] > 0.0),
         ),
     )
+    if supports == "springs":
+        return found
+    if highest is None:
+        highest = _highest(found)
+    none = np.zeros((2, 2))
+    shafts = train(pair, mass, inertia, (omega_p, float(p[kn.OMEGA_G])), highest)
+    return replace(found, bearing_stiffness=none, bearing_damping=none, train=shafts)
+
+
+def _highest(machine: Machine) -> float:
+    """Frequency up to which modes of shafts are kept: above the mesh's own, and its excitation's [Hz]."""
+    fast = _MESH_FREQUENCIES * machine.vibrations_per_cycle
+    return max(fast, _MESH_ORDERS) / machine.period
 
 
 def _loaded_laws(pair: GearPair, p: FloatArray) -> tuple[FloatArray, FloatArray]:

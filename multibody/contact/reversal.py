@@ -61,8 +61,11 @@ def _accelerations(machine: Machine) -> tuple[float, float, float]:
     load = machine.torque_pinion / p[kn.RADIUS_P]
     by_friction = _beside_pitch_point(machine) * load * mobility
     nominal = (p[kn.OMEGA_P] + p[kn.OMEGA_G]) * p[kn.OMEGA_P] * p[kn.RADIUS_P]
-    critical = 2.0 * np.sqrt(machine.bearing_stiffness[:, 1] * machine.mass)
-    ratio = float((machine.bearing_damping[:, 1] / critical).min())  # of the less damped bearing
+    if machine.train is None:
+        critical = 2.0 * np.sqrt(machine.bearing_stiffness[:, 1] * machine.mass)
+        ratio = float((machine.bearing_damping[:, 1] / critical).min())  # of the less damped bearing
+    else:
+        ratio = machine.train.damping_ratio
     needed = 1.0 + (0.5 / ratio if ratio > 0.0 else np.inf)
     return float(nominal), float(by_friction), needed
 

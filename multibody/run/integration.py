@@ -24,7 +24,7 @@ from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.events import SLIDING, time_to_event
 from multibody.run.bridge import bridge
-from multibody.run.model import ExudynModel, accelerations
+from multibody.run.model import ExudynModel, accelerations, stored
 
 #: Smallest step over the mesh cycle. A floor that is not tiny hangs where friction changes sign: the step
 #: cannot shrink enough to be accepted and the solver tries it for ever.
@@ -46,7 +46,7 @@ _EXUDYN_END = 1e-10
 
 @dataclass(frozen=True)
 class Segment:
-    """Accepted steps of one interval: times (n,), q and v (n, 6), and its dense output."""
+    """Accepted steps of one interval: times (n,), q and v (n, size), and its dense output."""
 
     times: FloatArray
     q: FloatArray
@@ -54,7 +54,7 @@ class Segment:
     a: FloatArray
 
     def at(self, t: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Coordinates and velocities at times t (m,) inside the interval, each (m, 6)."""
+        """Coordinates and velocities at times t (m,) inside the interval, each (m, size)."""
         if self.times.size == 1:
             return np.repeat(self.q, t.size, axis=0), np.repeat(self.v, t.size, axis=0)
         j = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, self.times.size - 2)
@@ -117,7 +117,7 @@ def integrate(
     Parameters
     ----------
     model : assembled model
-    q, v : (6,) initial state
+    q, v : (size,) initial state
     edges : (m + 1,) ends of the intervals [s]
     rtol, atol : tolerances of the step-size control
     clamp : evaluate the nominal phase strictly inside each interval (the edges are switches)
@@ -156,6 +156,7 @@ def _interval(
 ) -> tuple[Segment, float]:
     """Integrate over one interval, from event to event; returns it and a step size to go on with."""
     m, parts, t = model.machine, [], start
+    gears = slice(0, 6)
     a = accelerations(model, np.array([t]), q[None], v[None])[0]
     # Times in swings of the fastest mode. A Taylor step of second order errs by the square of the radians it
     # spans, so one to an event so close errs by less than a tenth of rtol.
@@ -165,7 +166,9 @@ def _interval(
         model.budget.reason = "not finite"
         raise _failure(model, start, stop)
     for _ in range(_MOST_EVENTS if locate else 0):
-        wait, kind = time_to_event(t, q, v, a, model.parameters, model.flags, m.events, _NEAR * swing)
+        wait, kind = time_to_event(
+            t, q[gears], v[gears], a[gears], model.parameters, model.flags, m.events, _NEAR * swing
+        )
         if wait < close:
             beyond = t + wait + 1e-12 * m.period + 1e-15 * t
             if not beyond < stop:
@@ -198,7 +201,7 @@ def _towards(
     step: float,
 ) -> tuple[Segment, float]:
     """Integrate over a time without events; returns it and a step size to go on with."""
-    if stop - start <= _BRIDGED * step and model.drive is None:
+    if stop - start <= _BRIDGED * step and model.drive is None and model.machine.train is None:
         times = np.linspace(start, stop, int(np.ceil((stop - start) / step)) + 1)
         states = np.empty((3, times.size, 6))
         states[:, 0] = q, v, a
@@ -253,8 +256,7 @@ def _run(
         raise _failure(model, start, stop) from error
     if not finished:
         raise _failure(model, start, stop)
-    position, velocity = (np.asarray(system.GetSensorStoredData(number)) for number in model.sensors)
-    times, states_q, states_v = position[:, 0], position[:, 1:], velocity[:, 1:]
+    times, states_q, states_v = stored(model)
     if not (np.isfinite(states_q).all() and np.isfinite(states_v).all()):
         budget.reason = "not finite"
         raise _failure(model, start, stop)

@@ -22,6 +22,7 @@ from multibody.contact.forces import tooth_forces, tooth_forces_over
 from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import Machine
 from multibody.run.drive import DriveTables, drive_torques
+from multibody.shafts.train import Train
 
 
 @dataclass
@@ -59,7 +60,8 @@ class ExudynModel:
     flags : effect switches of the force core, or ``kernels.LINEAR``
     system : exudyn MainSystem
     container : exudyn SystemContainer (must stay alive; also holds the renderer)
-    sensors : numbers of the sensors that store coordinates and velocities of both gears at every step
+    sensors : numbers of the sensors that store coordinates and velocities at every step: of both gears, or of
+        each shaft with its gear
     nodes : numbers of the nodes of pinion and gear
     drive : torques beyond the constant ones
     parameters : the core's parameter vector, may be changed between runs
@@ -70,7 +72,7 @@ class ExudynModel:
     flags: int
     container: exu.SystemContainer
     system: exu.MainSystem
-    sensors: tuple[int, int]
+    sensors: tuple[tuple[int, ...], tuple[int, ...]]
     nodes: tuple[int, int]
     drive: DriveTables | None
     parameters: FloatArray
@@ -102,7 +104,11 @@ def build(
     centres = ((p[kn.CENTRE_PX], p[kn.CENTRE_PY]), (p[kn.CENTRE_GX], p[kn.CENTRE_GY]))
     # The pinion turns clockwise: its driving torque is -T_p. The brake acts against the gear: also negative.
     torques = (-machine.torque_pinion, -machine.torque_gear)
-    nodes = tuple(_add_gear(system, ground, machine, i, centres[i], torques[i]) for i in range(2))
+    bodies: tuple[int, ...] = ()
+    if machine.train is None:
+        nodes = tuple(_add_gear(system, ground, machine, i, centres[i], torques[i]) for i in range(2))
+    else:
+        nodes, bodies = _add_shafts(system, machine.train, centres, torques)
     parameters = p.copy()
     if turning:  # the force core has no nominal rotation to add
         parameters[[kn.T_LOW, kn.T_HIGH]] = 0.0
@@ -115,9 +121,7 @@ def build(
         )
     )
     position, velocity = (
-        system.AddSensor(
-            items.SensorBody(bodyNumber=mesh, outputVariableType=kind, storeInternal=True, writeToFile=False)
-        )
+        tuple(_sensor(system, int(body), kind) for body in bodies or (mesh,))
         for kind in (exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t)
     )
     system.Assemble()
@@ -126,12 +130,65 @@ def build(
         flags=flags,
         container=container,
         system=system,
-        sensors=(int(position), int(velocity)),
+        sensors=(position, velocity),
         nodes=(nodes[0], nodes[1]),
         drive=drive,
         parameters=parameters,
         budget=budget,
     )
+
+
+def _sensor(system: exu.MainSystem, body: int, kind: exu.OutputVariableType) -> int:
+    sensor = items.SensorBody(bodyNumber=body, outputVariableType=kind, storeInternal=True, writeToFile=False)
+    return int(system.AddSensor(sensor))
+
+
+def stored(model: ExudynModel) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Times (n,), coordinates and velocities (n, size) that the sensors stored in the last run."""
+    found = [[np.asarray(model.system.GetSensorStoredData(one)) for one in kind] for kind in model.sensors]
+    times, train = found[0][0][:, 0], model.machine.train
+    if train is None:
+        return times, found[0][0][:, 1:], found[1][0][:, 1:]
+    q, v = np.empty((2, times.size, train.size))
+    for to, kind in ((q, found[0]), (v, found[1])):
+        for own, rows in zip(train.places, kind, strict=True):
+            to[:, own] = rows[:, 1:]
+    return times, q, v
+
+
+def _add_shafts(
+    system: exu.MainSystem,
+    train: Train,
+    centres: tuple[tuple[float, float], ...],
+    torques: tuple[float, float],
+) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Add both shafts with gears, bearings and torques; returns the nodes of the gears, and the objects.
+
+    The nodes of the gears come first: so the system's coordinates are those of ``Train``.
+    """
+    nodes = tuple(
+        int(system.AddNode(items.NodeRigidBody2D(referenceCoordinates=[*centre, 0.0]))) for centre in centres
+    )
+    objects = []
+    for node, shaft, torque in zip(nodes, train.shafts, torques, strict=True):
+        on, further = [node], shaft.size - 3
+        if further:
+            modal = items.NodeGenericODE2(
+                numberOfODE2Coordinates=further,
+                referenceCoordinates=[0.0] * further,
+                initialCoordinates=[0.0] * further,
+                initialCoordinates_t=[0.0] * further,
+            )
+            on.append(int(system.AddNode(modal)))
+        body = items.ObjectGenericODE2(
+            nodeNumbers=on,
+            massMatrix=shaft.mass,
+            stiffnessMatrix=shaft.stiffness,
+            dampingMatrix=shaft.damping,
+            forceVector=torque * shaft.torque,
+        )
+        objects.append(int(system.AddObject(body)))
+    return nodes, tuple(objects)
 
 
 def _add_gear(
@@ -219,7 +276,7 @@ def contact_state(
     Parameters
     ----------
     times : (n,) [s]
-    q, v : (n, 6) coordinates and velocities
+    q, v : (n, size) coordinates and velocities, of which those of the gears are read
 
     Returns
     -------
@@ -230,7 +287,7 @@ def contact_state(
     wrenches, contacts = np.empty((times.size, 6)), np.zeros((times.size, 2 * MAX_PAIRS, kn.N_RECORD))
     p, flags = model.parameters, model.flags
     # Another layout of the arrays would be another compilation.
-    times, q, v = (np.ascontiguousarray(x, dtype=float) for x in (times, q, v))
+    times, q, v = (np.ascontiguousarray(x, dtype=float) for x in (times, q[:, :6], v[:, :6]))
     counts = tooth_forces_over(times, q, v, p, flags, m.table, wrenches, contacts)
     return wrenches, contacts, counts
 
@@ -241,15 +298,21 @@ def accelerations(model: ExudynModel, times: FloatArray, q: FloatArray, v: Float
     Parameters
     ----------
     times : (n,) [s]
-    q, v : (n, 6) coordinates and velocities
+    q, v : (n, size) coordinates and velocities
 
     Returns
     -------
-    (n, 6) second derivatives of the coordinates
+    (n, size) second derivatives of the coordinates
     """
     force = contact_state(model, times, q, v)[0]
     if model.drive is not None:
         for i, t in enumerate(times):
             add_drive(model.drive, t, q[i], v[i], force[i])
+    train = model.machine.train
+    if train is not None:
+        whole = -(q @ train.stiffness.T + v @ train.damping.T)
+        whole -= np.array([model.machine.torque_pinion, model.machine.torque_gear]) @ train.torques
+        whole[:, :6] += force
+        return np.asarray(whole @ train.inverse, dtype=np.float64)
     inertia, stiffness, damping, load = model.machine.bodies
     return np.asarray((force + load - stiffness * q - damping * v) / inertia, dtype=np.float64)

@@ -62,7 +62,7 @@ class Recorder:
     def __init__(self, model: ExudynModel, time: FloatArray) -> None:
         self.model, self.time = model, time
         machine, p, n = model.machine, model.machine.parameters, time.size
-        self.q, self.v = np.zeros((n, 6)), np.zeros((n, 6))
+        self.q, self.v = np.zeros((n, machine.size)), np.zeros((n, machine.size))
         phase = time / machine.period
         self.advance = np.maximum(phase - np.floor(phase + 1e-9), 0.0) * p[kn.PITCH]
         ahead = np.arange(machine.ahead, machine.ahead - machine.pairs, -1)[:, None] * p[kn.PITCH]
@@ -129,14 +129,30 @@ class Recorder:
         for name, data in (("overlap", overlap), ("normal_load_back", back)):
             dims, unit, text = EXTRA[name]
             result[name] = xr.DataArray(data, dims=dims, attrs={"units": unit, "long_name": text})
+        train = self.model.machine.train
+        if train is not None:
+            result["bearing_force"] = xr.DataArray(
+                train.bearing_force(self.q, self.v),
+                {"bearing": list(train.bearing_names), "direction": ["loa", "oloa"], "time": result["time"]},
+                dims=("bearing", "direction", "time"),
+                attrs={"units": "N", "long_name": "force of each bearing on its shaft"},
+            )
         return result
 
     def _motion(self) -> dict[str, FloatArray]:
         """Coordinates, rates, transmission error and bearing forces."""
         machine = self.model.machine
         states = [f"{name}{suffix}" for suffix in ("", "_dot") for name in _COORDINATES]
-        values = dict(zip(states, to_lumped_state(self.q, self.v).T, strict=True))
-        values |= {"dte": self.q @ machine.overlap, "dte_dot": self.v @ machine.overlap}
+        q, v = self.q[:, :6], self.v[:, :6]
+        values = dict(zip(states, to_lumped_state(q, v).T, strict=True))
+        values |= {"dte": q @ machine.overlap, "dte_dot": v @ machine.overlap}
+        if machine.train is not None:
+            force, names = machine.train.bearing_force(self.q, self.v), machine.train.bearing_names
+            for gear, name in (("p", "pinion"), ("g", "gear")):
+                own = [i for i, bearing in enumerate(names) if bearing.startswith(name)]
+                for j, axis in enumerate("xy"):
+                    values[f"bearing_force_{axis}_{gear}"] = force[own, j].sum(axis=0)
+            return values
         stiffness, damping = machine.bearing_stiffness, machine.bearing_damping
         for i, gear in enumerate("pg"):
             for j, axis in enumerate("xy"):

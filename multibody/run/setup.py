@@ -21,10 +21,11 @@ from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.effects import EFFECTS, active_effects, effect_flags
 from multibody.contact.kinematics import MAX_PAIRS
-from multibody.contact.machine import Machine, loaded_phase, machine
+from multibody.contact.machine import Machine, Supports, loaded_phase, machine
 from multibody.contact.reversal import friction_velocity as choose_friction_velocity
 from multibody.run.drive import Drive, drive_tables
 from multibody.run.integration import Segment, integrate
+from multibody.run.linear_motion import LinearMotion, linear_motion
 from multibody.run.model import ExudynModel, build
 from multibody.run.records import from_lumped_state
 
@@ -45,6 +46,9 @@ _MOST_DEFLECTION = 0.25
 #: that is zero when an impact starts would have to be found to the last bit. The coordinates are the rates'
 #: integrals and no less accurate for it.
 _ATOL_SHARE = 0.1
+#: On shafts a hundred times that: else their fastest modes, which hardly move, set the step. At rtol 1e-8 the
+#: transmission error then errs by 1e-8 of itself, and a mesh cycle takes half the time.
+_ATOL_SHARE_ON_SHAFTS = 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,10 +59,11 @@ class Setup:
     ----------
     model : assembled exudyn model
     system : the lumped equations of motion
-    q, v : (6,) initial state in the model's coordinates
+    q, v : (size,) initial state in the model's coordinates
     rtol : relative tolerance of the integration
     deflection : static deflection of the mesh under the driving torque [m]
     attributes : provenance of results
+    motion : on shafts, the model's own periodic motion with the linear mesh
     """
 
     model: ExudynModel
@@ -68,11 +73,13 @@ class Setup:
     rtol: float
     deflection: float
     attributes: dict[str, Any]
+    motion: LinearMotion | None = None
 
     @property
     def atol(self) -> float:
         """Absolute tolerance of the integration, see ``_ATOL_SHARE`` [m/s]."""
-        return self.rtol * _ATOL_SHARE * self.deflection / self.machine.period
+        share = _ATOL_SHARE if self.machine.train is None else _ATOL_SHARE_ON_SHAFTS
+        return self.rtol * share * self.deflection / self.machine.period
 
     @property
     def machine(self) -> Machine:
@@ -112,9 +119,15 @@ def prepare(
     rtol: float = 1e-8,
     friction_velocity: float | None = None,
     drive: Drive | None = None,
+    supports: Supports = "springs",
+    highest: float | None = None,
 ) -> Setup:
-    """Build the model and its initial state; arguments as ``simulate``."""
+    """Build the model and its initial state; arguments as ``simulate``.
+
+    ``highest`` is the frequency up to which modes of shafts with their gears held are kept [Hz].
+    """
     one_of("fidelity", fidelity, get_args(Fidelity))
+    one_of("supports", supports, get_args(Supports))
     rtol = real_number("rtol", rtol, 1e-12, 1e-3)
     if friction_velocity is not None:
         friction_velocity = real_number(
@@ -130,7 +143,7 @@ def prepare(
             allowed = "at most contact_loss at fidelity 'linear'"
             raise refuse("effects", shown(effects), allowed, "Use fidelity='exact'.")
         flags |= kn.LINEAR
-    numbers = machine(pair, flags)
+    numbers = machine(pair, flags, supports, highest)
     call_limit = _call_limit(numbers)
     system = periodic_system(pair, "absolute")
     if pair.mesh.contact == "loaded":
@@ -139,23 +152,21 @@ def prepare(
         numbers = replace(numbers, pairs=offsets.size, ahead=ahead)
     elif flags & kn.TIP_CONTACT:  # corners lengthen the contact of every pair
         numbers = replace(numbers, pairs=min(numbers.pairs + 1, MAX_PAIRS))
-    balance = periodic_solution(system, np.zeros(1), estimate_error=False)
-    mean_balance = balance_of(balance, paid=bool(flags & kn.PATH_WORK))
-    torques = mean_balance["pinion_torque"], mean_balance["brake_torque"]
-    numbers = replace(numbers, torque_pinion=torques[0], torque_gear=torques[1])
+    begin = _on_springs if supports == "springs" else _on_shafts
+    numbers, q, v, mean_balance, motion = begin(pair, system, numbers, flags, initial)
     velocity, reason = _friction_velocity(numbers, flags, friction_velocity)
-    static, _ = from_lumped_state(initial_state(system, "static", balance))
-    numbers = loaded_phase(numbers, flags, static)
     numbers.parameters[kn.V_REG] = velocity
-    state = initial_state(system, initial, balance)
     tables = None
     if drive is not None:
+        if supports == "shafts":
+            raise refuse(
+                "drive", shown(drive), "none with supports='shafts'", "Use shafts.motor and shafts.load."
+            )
         omega = numbers.parameters[kn.OMEGA_P]
-        tables = drive_tables(drive, omega, numbers.torque_pinion, numbers.torque_gear, float(state[0]))
+        tables = drive_tables(drive, omega, numbers.torque_pinion, numbers.torque_gear, -float(q[2]))
         if isinstance(initial, str):  # both gears start at the motor's speed
-            state[6] += tables.motor[0, 1]
-            state[7] += tables.motor[0, 1] * numbers.parameters[kn.OMEGA_G] / omega
-    q, v = from_lumped_state(state)
+            v[2] -= tables.motor[0, 1]
+            v[5] += tables.motor[0, 1] * numbers.parameters[kn.OMEGA_G] / omega
     # With a brake near zero the mean torque that holds a relieved mesh may be below zero.
     deflection = abs(numbers.torque_pinion) / numbers.parameters[kn.RADIUS_P] / system.cycle.mean_stiffness
     if fidelity == "exact" and deflection > _MOST_DEFLECTION * numbers.parameters[kn.PITCH]:
@@ -167,11 +178,18 @@ def prepare(
         )
     names = active_effects(flags)
     attributes = provenance(
-        pair, fidelity=fidelity, effects=names, rtol=rtol, friction_velocity=velocity, drive=drive
+        pair,
+        fidelity=fidelity,
+        effects=names,
+        rtol=rtol,
+        friction_velocity=velocity,
+        drive=drive,
+        supports=supports,
     )
     attributes |= mean_balance | {
         "model": "multibody",
         "fidelity": fidelity,
+        "supports": supports,
         "effects": ", ".join(names),
         "friction_velocity": velocity,
         "friction_velocity_reason": reason,
@@ -184,7 +202,57 @@ def prepare(
         rtol=rtol,
         deflection=deflection,
         attributes=attributes,
+        motion=motion,
     )
+
+
+#: Machine with its torques, initial q and v, the mean balance by name, and the linear motion on shafts.
+_Start = tuple[Machine, FloatArray, FloatArray, dict[str, float], LinearMotion | None]
+
+
+def _on_springs(
+    pair: GearPair, system: LTVSystem, numbers: Machine, flags: int, initial: Initial | ArrayLike
+) -> _Start:
+    """Loads and initial state of the lumped model."""
+    balance = periodic_solution(system, np.zeros(1), estimate_error=False)
+    mean_balance = balance_of(balance, paid=bool(flags & kn.PATH_WORK))
+    torques = mean_balance["pinion_torque"], mean_balance["brake_torque"]
+    numbers = replace(numbers, torque_pinion=torques[0], torque_gear=torques[1])
+    static, _ = from_lumped_state(initial_state(system, "static", balance))
+    q, v = from_lumped_state(initial_state(system, initial, balance))
+    return loaded_phase(numbers, flags, static), q, v, mean_balance, None
+
+
+def _on_shafts(
+    pair: GearPair, system: LTVSystem, numbers: Machine, flags: int, initial: Initial | ArrayLike
+) -> _Start:
+    """Loads and initial state of the model's own periodic motion with the linear mesh."""
+    train = numbers.train
+    assert train is not None
+    if not isinstance(initial, str):
+        raise refuse(
+            "initial", shown(initial), "'static' or 'periodic' with supports='shafts'", "Choose one of them."
+        )
+    one_of("initial", initial, get_args(Initial))
+    straight = replace(machine(pair, kn.LINEAR), train=train)
+    brake = pair.operating.brake_torque
+    motion = linear_motion(straight, None if brake == "balanced" else brake)
+    omega_p, omega_g = numbers.parameters[[kn.OMEGA_P, kn.OMEGA_G]]
+    torque, driving = motion.torque_gear, motion.torque_pinion * omega_p
+    if flags & kn.PATH_WORK and brake == "balanced":
+        torque -= motion.unpaid / omega_g
+    numbers = replace(numbers, torque_pinion=motion.torque_pinion, torque_gear=torque)
+    load = -motion.torque_pinion * (train.torques[0] + omega_p / omega_g * train.torques[1])
+    static = train.static(load, numbers.overlap, system.cycle.mean_stiffness)
+    mean_balance = {
+        "pinion_torque": motion.torque_pinion,
+        "brake_torque": torque,
+        "mesh_efficiency": torque * omega_g / driving,
+    }
+    numbers = loaded_phase(numbers, flags, static[:6])
+    if initial == "static":
+        return numbers, static, np.zeros(train.size), mean_balance, motion
+    return numbers, motion.state[: train.size], motion.state[train.size :], mean_balance, motion
 
 
 def _call_limit(numbers: Machine) -> int:

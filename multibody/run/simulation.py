@@ -16,6 +16,7 @@ from lumped.model.solution import Initial
 from lumped.model.steady import sample_times
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray, Progress
+from multibody.contact.machine import Supports
 from multibody.run.drive import Drive
 from multibody.run.integration import Segment
 from multibody.run.records import Recorder
@@ -36,6 +37,7 @@ def simulate(
     rtol: float = 1e-8,
     friction_velocity: float | None = None,
     drive: Drive | None = None,
+    supports: Supports = "springs",
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Transient of the gear pair as an exudyn multibody system.
@@ -57,6 +59,8 @@ def simulate(
         ``multibody.contact.reversal``)
     drive : motor, torque histories and run-up ramps, see ``multibody.Drive``; None keeps both torques
         constant
+    supports : "springs" of ``pair.bearings``, or the elastic "shafts" of ``pair.shafts`` with their own
+        bearings, motor and load
     progress : called with the finished fraction
 
     Returns
@@ -66,6 +70,7 @@ def simulate(
 
         overlap : overlap of the driving flanks along the actual line of action [m]
         normal_load_back : normal load on the back sides of the teeth [N]
+        bearing_force : on shafts, force of each bearing on its shaft over (bearing, direction, time) [N]
 
     Raises
     ------
@@ -79,7 +84,7 @@ def simulate(
     """
     pair = load_gear_pair(pair)
     cycles = whole_number("cycles", cycles, 1, MOST_CYCLES)
-    setup = prepare(pair, fidelity, initial, effects, rtol, friction_velocity, drive)
+    setup = prepare(pair, fidelity, initial, effects, rtol, friction_velocity, drive, supports)
     run, _, _ = record(setup, cycles, samples_per_cycle, progress=progress)
     return run
 
@@ -104,7 +109,7 @@ def record(
 
     Returns
     -------
-    (dataset, q, v) : the variables, and the state (6,) at the end in the model's coordinates
+    (dataset, q, v) : the variables, and the state (size,) at the end in the model's coordinates
     """
     period = setup.machine.period
     grid = sample_times(period, samples_per_cycle)

@@ -64,7 +64,7 @@ def frozen_modes(pair: AnyPair, phase: float = 0.3) -> xr.Dataset:
     phase = real_number("phase", phase, 1e-9, 1.0 - 1e-9)
     linear, exact = (prepare(pair, fidelity) for fidelity in ("linear", "exact"))
     time = phase * linear.machine.period
-    straight, moving = _held(linear, time), _held(exact, time)
+    straight, moving = held(linear, time), held(exact, time)
     q = _at_rest(moving, time, exact.q, exact.deflection)
     _, contacts, counts = contact_state(moving, np.array([time]), q[None], np.zeros((1, 6)))
     load = float(contacts[0, : counts[0], kn.LOAD].sum())
@@ -73,8 +73,8 @@ def frozen_modes(pair: AnyPair, phase: float = 0.3) -> xr.Dataset:
     spring = load / float(exact.machine.parameters[kn.L_XY]) * np.array([[1.0, -1.0], [-1.0, 1.0]])
     turned[8:, 3:5] += spring / exact.machine.mass[:, None]
     found = {
-        "exudyn linear": _modes(_linearised(straight, np.zeros(6))),
-        "exudyn exact": _modes(_linearised(moving, q)),
+        "exudyn linear": _modes(_without_turn(linearised(straight, np.zeros(6))[0])),
+        "exudyn exact": _modes(_without_turn(linearised(moving, q)[0])),
         "lumped frozen": _modes(np.linalg.eigvals(matrix).astype(np.complex128)),
         "lumped turned line": _modes(np.linalg.eigvals(turned).astype(np.complex128)),
         "control averaged": _modes(np.asarray(averaged_state_space(pair).poles(), dtype=np.complex128)),
@@ -93,7 +93,7 @@ def frozen_modes(pair: AnyPair, phase: float = 0.3) -> xr.Dataset:
     )
 
 
-def _held(setup: Setup, time: float) -> ExudynModel:
+def held(setup: Setup, time: float) -> ExudynModel:
     """The model of a set-up with the nominal rotation held at a time; nominal speeds go on sliding."""
     parameters = setup.machine.parameters.copy()
     parameters[[kn.T_LOW, kn.T_HIGH]] = time
@@ -120,13 +120,18 @@ def _at_rest(model: ExudynModel, time: float, q: FloatArray, scale: float) -> Fl
     return np.asarray(q + scale * found.x / lengths, dtype=np.float64)
 
 
-def _linearised(model: ExudynModel, q: FloatArray) -> ComplexArray:
-    """Eigenvalues of exudyn's linearisation about a position, without those of the free rotation."""
+def linearised(model: ExudynModel, q: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+    """Eigenvalues (2n,) and vectors, in columns, of exudyn's linearisation about a position."""
     initial = exu.ConfigurationType.Initial
     model.system.systemData.SetODE2Coordinates(q.tolist(), configuration=initial)
-    model.system.systemData.SetODE2Coordinates_t([0.0] * 6, configuration=initial)
-    values = model.system.ComputeODE2Eigenvalues(computeComplexEigenvalues=True, useAbsoluteValues=False)[0]
-    roots = np.asarray(values, dtype=np.complex128)
+    model.system.systemData.SetODE2Coordinates_t([0.0] * q.size, configuration=initial)
+    found = model.system.ComputeODE2Eigenvalues(computeComplexEigenvalues=True, useAbsoluteValues=False)
+    values, vectors = (np.asarray(x, dtype=np.complex128) for x in found[:2])
+    return values, vectors
+
+
+def _without_turn(roots: ComplexArray) -> ComplexArray:
+    """Roots without those of the free rotation."""
     return roots[np.argsort(np.abs(roots))[2:]]
 
 

@@ -21,7 +21,7 @@ from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.run.integration import Segment, quiet, settings
-from multibody.run.model import accelerations, build
+from multibody.run.model import accelerations, build, stored
 from multibody.run.setup import Setup, prepare
 from multibody.run.simulation import record
 
@@ -106,9 +106,8 @@ def _run(setup: Setup, cycles: int, times: FloatArray, atol: float) -> tuple[Flo
     with quiet():
         if not model.system.SolveDynamic(s):
             raise NumericalError("exudyn's integrator stopped on turning bodies; raise atol.")
-    position, velocity = (np.asarray(model.system.GetSensorStoredData(number)) for number in model.sensors)
-    at = position[:, 0]
+    at, q, v = stored(model)
     keep = np.diff(at, prepend=-np.inf) > 0.0
-    at, q, v = at[keep], position[keep, 1:] - at[keep, None] * speeds, velocity[keep, 1:] - speeds
+    at, q, v = at[keep], q[keep] - at[keep, None] * speeds, v[keep] - speeds
     dense = Segment(at, q, v, accelerations(usual, at, q, v))
     return dense.at(np.minimum(times, at[-1]))[0], model.budget.calls

@@ -1,0 +1,217 @@
+"""Periodic motion of a pair on shafts with the linear mesh: from the model's own matrices, without exudyn.
+
+The linear mesh acts by the overlap and its rate alone, along directions that depend on time alone; its wrench
+is read off the compiled forces. The 2n states have a double multiplier +1, the free turn of the train: so one
+torque must balance, and the turn is held.
+
+Sources: docs/theory/shafts.md, "The machine"; DOP853 after E. Hairer, S. P. Norsett and G. Wanner, Solving
+Ordinary Differential Equations I (1993), II.5.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import DOP853
+
+from lumped.errors import NumericalError
+from lumped.typing import FloatArray
+from multibody.contact import kernels as kn
+from multibody.contact.forces import tooth_forces_over
+from multibody.contact.kinematics import MAX_PAIRS
+from multibody.contact.machine import Machine
+from multibody.shafts.train import Train
+
+#: Angle by which the fastest mode turns in a step [rad]: the method of eighth order then errs by some 1e-9.
+_STEP_ANGLE = 1.0
+#: A motion whose equations are conditioned worse sits on a stability boundary.
+_WORST_CONDITION = 1e13
+_A, _B, _C = (np.asarray(x, dtype=float) for x in (DOP853.A, DOP853.B, DOP853.C))
+
+
+@dataclass(frozen=True, eq=False)
+class LinearMotion:
+    """Periodic motion with the linear mesh.
+
+    Attributes
+    ----------
+    state : (2n,) coordinates and velocities at t = 0
+    torque_pinion, torque_gear : driving and braking torque that hold the mean speed [N m]
+    transition : (2n, 2n) map of the states over one mesh cycle
+    by_torque : (2n,) change of the state after one cycle by a unit braking torque
+    unpaid : losses beyond the difference of driving and braking power [W]
+    """
+
+    state: FloatArray
+    torque_pinion: float
+    torque_gear: float
+    transition: FloatArray
+    by_torque: FloatArray
+    unpaid: float
+
+
+def linear_motion(machine: Machine, brake: float | None) -> LinearMotion:
+    """Find the periodic motion.
+
+    Parameters
+    ----------
+    machine : numbers of a pair on shafts, for the linear mesh
+    brake : braking torque, so that the driving one balances; None: the driving torque is the machine's
+
+    Raises
+    ------
+    NumericalError : the speed sits on a stability boundary
+    """
+    train = _train(machine)
+    n = train.size
+    start = np.zeros((2 * n, 2 * n + 3))
+    start[:, : 2 * n] = np.eye(2 * n)
+    _, _, end = deque(_propagated(machine, start, np.eye(3)), maxlen=1)[0]
+    transition, forced = end[:, : 2 * n], end[:, 2 * n :]
+    # Columns: the mesh's own forcing with the machine's driving torque, a unit more of it, a unit of brake.
+    unknown = 2 if brake is None else 1
+    weights = np.array([1.0, 0.0, 0.0 if brake is None else brake])
+    scale = state_scale(machine, 1.0)
+    matrix = bordered(transition, forced[:, unknown], train, scale, machine.torque_pinion)
+    size = np.linalg.norm(matrix, axis=0)
+    condition = float(np.linalg.cond(matrix / size))
+    if not condition < _WORST_CONDITION:
+        rpm = float(machine.parameters[kn.OMEGA_P]) * 30.0 / np.pi
+        raise NumericalError(
+            f"No periodic motion at {rpm:.6g} rpm (condition {condition:.1e}): a multiplier is at +1. "
+            "Change the speed slightly or add damping."
+        )
+    found = np.linalg.solve(matrix / size, np.append(forced @ weights / scale, 0.0)) / size
+    state = found[:-1] * scale
+    weights[unknown] = found[-1] * machine.torque_pinion
+    torque = machine.torque_pinion + weights[1]
+    return LinearMotion(
+        state=state,
+        torque_pinion=float(torque),
+        torque_gear=float(weights[2]),
+        transition=transition,
+        by_torque=forced[:, 2],
+        unpaid=_unpaid(machine, state, weights),
+    )
+
+
+def state_scale(machine: Machine, deflection: float) -> FloatArray:
+    """Sizes of the 2n states in a vibration: a deflection [m], and that over the mesh cycle times 2 pi."""
+    lengths = deflection * machine.units
+    return np.concatenate([lengths, lengths * 2.0 * np.pi / machine.period])
+
+
+def bordered(
+    transition: FloatArray, by_torque: FloatArray, train: Train, scale: FloatArray, torque: float
+) -> FloatArray:
+    """I - map, bordered by a torque as unknown (over ``torque``) and the free turn as held, scaled."""
+    n = train.size
+    matrix = np.zeros((2 * n + 1, 2 * n + 1))
+    matrix[:-1, :-1] = (np.eye(2 * n) - transition) * scale / scale[:, None]
+    matrix[:-1, -1] = -by_torque * torque / scale
+    held = (train.mass @ train.free_turn) * scale[:n]
+    matrix[-1, :n] = held / np.abs(held).max()
+    return matrix
+
+
+def _train(machine: Machine) -> Train:
+    assert machine.train is not None
+    return machine.train
+
+
+def _unpaid(machine: Machine, state: FloatArray, weights: FloatArray) -> float:
+    """Losses by sliding, tooth dampers, bearings, shafts and couplings less the power that is missing [W]."""
+    train, p = _train(machine), machine.parameters
+    n, lost = train.size, 0.0
+    run = _propagated(machine, state[:, None], weights[:, None])
+    for (low, high), steps in itertools.groupby(run, key=lambda step: step[0]):
+        rows = list(steps)
+        times = np.array([time for _, time, _ in rows])
+        states = np.array([found[:, 0] for _, _, found in rows])
+        q, v = states[:, :n], states[:, n:]
+        contacts = _contacts(machine, times, q, v, low, high)[1]
+        load, rate = contacts[..., kn.LOAD], contacts[..., kn.OVERLAP_RATE]
+        powers = contacts[..., kn.FRICTION_FORCE] * contacts[..., kn.SLIDE]
+        powers += (load - contacts[..., kn.ELASTIC]) * rate
+        shafts = np.einsum("ti,ij,tj->t", v, train.damping, v)  # gyroscopic terms take no power
+        lost += float(np.trapezoid(powers.sum(axis=1) + shafts, times)) / machine.period
+    driving = (machine.torque_pinion + float(weights[1])) * p[kn.OMEGA_P]
+    return lost - float(driving - weights[2] * p[kn.OMEGA_G])
+
+
+def _propagated(
+    machine: Machine, start: FloatArray, forcing: FloatArray
+) -> Iterator[tuple[tuple[float, float], float, FloatArray]]:
+    """Steps over one mesh cycle: the smooth interval that each lies in, its time and the states (2n, m).
+
+    Every interval yields its start, too.
+
+    Parameters
+    ----------
+    machine : numbers for the linear mesh
+    start : (2n, m)
+    forcing : (3, k) weights of the three forcings in the last k columns
+    """
+    train, period = _train(machine), machine.period
+    n, k = train.size, forcing.shape[1]
+    fastest = 2.0 * np.pi * machine.vibrations_per_cycle / period
+    springs, dampers = train.inverse @ train.stiffness, train.inverse @ train.damping
+    reach, row = train.inverse[:, :6], machine.overlap
+    torques = -(train.inverse @ train.torques.T)
+    edges = np.append(machine.switches, 1.0) * period
+    state = start
+    for low, high in itertools.pairwise(edges):
+        steps = int(np.ceil((high - low) * fastest / _STEP_ANGLE))
+        h = (high - low) / steps
+        at = low + h * (np.arange(steps)[:, None] + _C[:12]).ravel()
+        by_overlap, by_rate, constant = (
+            (x @ reach.T).reshape(steps, 12, n) for x in mesh_wrench(machine, at, low, high)
+        )
+        rates = np.empty((12, *start.shape))
+        yield (float(low), float(high)), float(low), state
+        for step in range(steps):
+            for stage in range(12):
+                y = state + h * np.tensordot(_A[stage, :stage], rates[:stage], 1) if stage else state
+                q, v = y[:n], y[n:]
+                force = -(springs @ q) - dampers @ v
+                force += np.outer(by_overlap[step, stage], row @ q[:6])
+                force += np.outer(by_rate[step, stage], row @ v[:6])
+                own = constant[step, stage] + torques[:, 0] * machine.torque_pinion
+                force[:, -k:] += np.stack([own, torques[:, 0], torques[:, 1]], axis=1) @ forcing
+                rates[stage, :n], rates[stage, n:] = v, force
+            state = state + h * np.tensordot(_B, rates, 1)
+            yield (float(low), float(high)), float(low + (step + 1) * h), state
+
+
+def mesh_wrench(
+    machine: Machine, times: FloatArray, low: float, high: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Wrench of the linear mesh per unit overlap, per unit rate of it, and without both, each (k, 6).
+
+    Parameters
+    ----------
+    machine : numbers for the linear mesh
+    times : (k,) [s]
+    low, high : ends of the smooth interval that they lie in [s]
+    """
+    at_rest, moved = np.zeros((times.size, 6)), np.zeros((times.size, 6))
+    moved[:, 0] = 1.0
+    states = ((moved, at_rest), (at_rest, moved), (at_rest, at_rest))
+    found = [_contacts(machine, times, q, v, low, high)[0] for q, v in states]
+    return found[0] - found[2], found[1] - found[2], found[2]
+
+
+def _contacts(
+    machine: Machine, times: FloatArray, q: FloatArray, v: FloatArray, low: float, high: float
+) -> tuple[FloatArray, FloatArray]:
+    """Wrench (k, 6) and contact records of the linear mesh inside a smooth interval."""
+    p, margin = machine.parameters.copy(), 1e-12 * machine.period
+    p[kn.T_LOW], p[kn.T_HIGH] = low + margin, high - margin
+    wrenches, contacts = np.empty((times.size, 6)), np.zeros((times.size, 2 * MAX_PAIRS, kn.N_RECORD))
+    q, v = np.ascontiguousarray(q[:, :6]), np.ascontiguousarray(v[:, :6])
+    tooth_forces_over(times, q, v, p, kn.LINEAR, machine.table, wrenches, contacts)
+    return wrenches, contacts

@@ -1,0 +1,174 @@
+"""The machine on shafts: is it what its equations say, and the pair on springs where its shafts are stiff?"""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import lumped
+import multibody
+from lumped.errors import ParameterError
+from multibody.contact import kernels as kn
+from multibody.contact.forces import tooth_forces
+from multibody.contact.kinematics import MAX_PAIRS
+from multibody.run.linear_motion import mesh_wrench
+from multibody.run.setup import prepare
+from multibody.run.simulation import record
+
+
+def bearing(position, loa, oloa, **damping):
+    return {"position": position, "loa_stiffness": loa, "oloa_stiffness": oloa} | damping
+
+
+#: No two of a kind alike; the pinion is overhung, and bends and tilts.
+SHAFTS = {
+    "damping_ratio": 0.02,
+    "pinion": {
+        "segments": [{"length": 100, "diameter": 30}, {"length": 60, "diameter": 25, "bore": 8}],
+        "gear_position": 145,
+        "bearings": [bearing(20, 2e8, 1.6e8, loa_damping=300.0), bearing(90, 3e8, 2e8)],
+    },
+    "gear": {
+        "segments": [{"length": 120, "diameter": 35}],
+        "gear_position": 50,
+        "bearings": [bearing(10, 1.5e8, 2.5e8), bearing(105, 2e8, 1e8, oloa_damping=200.0)],
+    },
+    "motor": {"position": 0, "inertia": 0.004, "coupling_stiffness": 4e4, "coupling_damping": 0.2},
+    "load": {"position": 120, "inertia": 0.02, "coupling_stiffness": 2e4},
+}
+PAIR = lumped.load_gear_pair("nasa_28_28").with_(
+    mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.06, shafts=SHAFTS, gear__bore=40
+)
+
+
+@pytest.fixture(scope="module")
+def setup():
+    """Periodic linear motion on few modes."""
+    return prepare(PAIR, "linear", "periodic", supports="shafts", highest=12e3)
+
+
+@pytest.fixture(scope="module")
+def run(setup):
+    return record(setup, 1, 64)
+
+
+def test_exudyn_solves_the_equations_of_the_machine(setup, run):
+    """scipy's DOP853 on M q'' + D q' + K q = f with the same tooth forces, from switch to switch."""
+    m, train = setup.machine, setup.machine.train
+    n, p = m.size, m.parameters.copy()
+    wrench, contacts = np.empty(6), np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
+    load = -np.array([m.torque_pinion, m.torque_gear]) @ train.torques
+
+    def rates(t, state):
+        q, v = state[:n], state[n:]
+        tooth_forces(t, q[:6], v[:6], p, kn.LINEAR, m.table, wrench, contacts)
+        force = load - train.stiffness @ q - train.damping @ v
+        force[:6] += wrench
+        return np.concatenate([v, np.linalg.solve(train.mass, force)])
+
+    state, edges = np.concatenate([setup.q, setup.v]), setup.edges(1)
+    for start, stop in itertools.pairwise(edges):
+        p[kn.T_LOW], p[kn.T_HIGH] = start + 1e-12 * m.period, stop - 1e-12 * m.period
+        state = solve_ivp(rates, (start, stop), state, method="DOP853", rtol=1e-9, atol=1e-13).y[:, -1]
+    found, q, v = run
+    span = float(np.ptp(found["dte"].to_numpy()))
+    # 9e-4 nm in a prototype; here both integrators stay below 1e-7 of the motion.
+    assert np.abs(q - state[:n]).max() < 1e-6 * span
+    assert np.abs((q - state[:n])[:6] / m.units[:6]).max() < 1e-7 * span
+    # And the motion that was found without exudyn and without scipy is periodic in exudyn.
+    assert np.abs((q - setup.q) / m.units).max() < 1e-7 * span
+    assert np.abs((v - setup.v) / m.units).max() < 1e-6 * span * 2 * np.pi / m.period
+
+
+def test_bearings_hold_what_teeth_push(run):
+    """Mean forces: those of all bearings of a shaft against the teeth, the nearer bearing of the overhung
+    pinion more than the load, by the lever 125/70; the brake takes what friction leaves.
+    """
+    mean = run[0].isel(time=slice(None, -1)).mean("time")
+    load = float(mean["normal_load"].sum())
+    friction = float(mean["friction_force"].sum())
+    for gear, sign in (("p", 1.0), ("g", -1.0)):
+        assert float(mean[f"bearing_force_x_{gear}"]) == pytest.approx(sign * load, rel=1e-2)
+        assert float(mean[f"bearing_force_y_{gear}"]) == pytest.approx(-sign * friction, abs=1e-2 * load)
+    force = mean["bearing_force"].sel(direction="loa")
+    assert float(force.sel(bearing="pinion 2")) == pytest.approx(load * 125 / 70, rel=1e-2)
+    assert float(force.sel(bearing="gear 1")) == pytest.approx(-load * 55 / 95, rel=1e-2)
+    assert list(force["bearing"].to_numpy()) == ["pinion 1", "pinion 2", "gear 1", "gear 2"]
+    assert 0.98 < run[0].attrs["mesh_efficiency"] < 1.0
+
+
+def stiff(pair):
+    """Shafts that neither bend nor twist, a half of ``pair.bearings`` on both sides; and a pair as heavy."""
+    weight = 7850 * np.pi / 4 * 0.04**2 * 0.03
+    body, tables = lumped.bodies(pair), {}
+    springs = pair.with_(
+        {
+            "pinion.mass": body.mass_pinion + weight,
+            "gear.mass": body.mass_gear + weight,
+            "pinion.inertia": body.inertia_pinion + weight * 0.02**2 / 2,
+            "gear.inertia": body.inertia_gear + weight * 0.02**2 / 2,
+        }
+    )
+    heavier = lumped.bodies(springs)
+    # The damper of the teeth is that of the gears alone.
+    share = np.sqrt(body.effective_mass / heavier.effective_mass)
+    springs = springs.with_(mesh__damping_ratio=pair.mesh.damping_ratio * share)
+    for name in ("pinion", "gear"):
+        given, mass = getattr(pair.bearings, name), getattr(heavier, f"mass_{name}")
+        half = {}
+        for axis in ("loa", "oloa"):
+            k = getattr(given, f"{axis}_stiffness")
+            half[f"{axis}_stiffness"] = 0.5 * k
+            half[f"{axis}_damping"] = getattr(given, f"{axis}_damping_ratio") * np.sqrt(k * mass)
+        bearings = [half | {"position": position} for position in (5, 25)]
+        segments = [{"length": 30, "diameter": 40}]
+        tables[name] = {"segments": segments, "gear_position": 15, "bearings": bearings}
+    shafts = pair.with_(shafts={"damping_ratio": 0.0, **tables}).shafts
+    rigid = {
+        name: getattr(shafts, name).model_copy(update={"youngs_modulus": 1e15}) for name in ("pinion", "gear")
+    }
+    return pair.model_copy(update={"shafts": shafts.model_copy(update=rigid)}), springs
+
+
+@pytest.mark.parametrize("fidelity", ["linear", "exact"])
+def test_stiff_shafts_are_the_springs_of_the_6_dof_model(fidelity):
+    pair = lumped.load_gear_pair("nasa_28_28").with_(mesh__relief="ignored")
+    on_shafts, on_springs = stiff(pair)
+    run = multibody.simulate(on_shafts, 2, fidelity=fidelity, supports="shafts", samples_per_cycle=64)
+    other = multibody.simulate(on_springs, 2, fidelity=fidelity, samples_per_cycle=64)
+    for name in ("dte", "x_p", "y_p", "x_g", "y_g", "bearing_force_x_p", "bearing_force_y_g"):
+        error = float(np.abs(run[name] - other[name]).max())
+        # Of the shafts' own compliance, 1e-6 of that of the bearings, a resonance makes some more.
+        assert error < 1e-5 * float(np.abs(other[name]).max()), name
+
+
+def test_modes_of_exudyn_are_those_of_the_matrices():
+    """exudyn differentiates the assembled forces; here the mesh adds its incidence to the own matrices."""
+    modes = multibody.shaft_modes(PAIR, 0.3)
+    m = prepare(PAIR, "linear", supports="shafts").machine
+    time = np.array([0.3 * m.period])
+    by_overlap, by_rate, _ = mesh_wrench(m, time, 0.0, m.period)
+    stiffness, damping = m.train.stiffness.copy(), m.train.damping.copy()
+    stiffness[:6, :6] -= np.outer(by_overlap[0], m.overlap)
+    damping[:6, :6] -= np.outer(by_rate[0], m.overlap)
+    n, inverse = m.size, np.linalg.inv(m.train.mass)
+    roots = np.linalg.eigvals(
+        np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ stiffness, -inverse @ damping]])
+    )
+    roots = roots[np.argsort(np.abs(roots))[2:]]
+    upper = roots[roots.imag > 0.0]
+    np.testing.assert_allclose(modes["natural_frequency"], np.abs(upper) / 2 / np.pi, rtol=1e-6)
+    np.testing.assert_allclose(modes["damping_ratio"], -upper.real / np.abs(upper), atol=1e-5)
+    np.testing.assert_allclose(modes["kinetic_share"].sum("part"), 1.0, rtol=1e-9)
+    assert modes.sel(shaft="gear")["whirl"].min() < -0.5 < 0.5 < modes.sel(shaft="gear")["whirl"].max()
+
+
+def test_refusals():
+    plain = lumped.load_gear_pair("nasa_28_28")
+    with pytest.raises(ParameterError, match="supports"):
+        multibody.simulate(plain, 1, supports="shafts")
+    with pytest.raises(ParameterError, match="drive"):
+        multibody.simulate(PAIR, 1, supports="shafts", drive=multibody.Drive())
