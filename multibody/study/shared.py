@@ -82,16 +82,16 @@ SHARED: tuple[Shared, ...] = (
         ("multibody/study/free_vibration.py", "multibody/study/blanks.py"),
     ),
     Shared(
-        "on shafts: definition of the damping ratio, of the gear as a rigid disc, and Cowper's shear coefficient",
-        "definitions of the schema; beams, reduction, gyroscopic moments and the start are worked out twice",
+        "on shafts: what the damping ratio means, the gear as a rigid disc, Cowper's shear coefficient",
+        "definitions of the schema; the rest is worked out twice",
         "closed forms of Timoshenko's beam, of torsion and of a whirling disc, on both sides",
         ("tests/multibody/shafts", "docs/theory/multibody.md"),
     ),
     Shared(
         "initial state of a run, its time origin, and its brake torque where it is balanced",
         "the lumped periodic solution starts both models alike",
-        "multibody.steady_state finds its own periodic motion and the brake torque that balances it; on shafts "
-        "every run starts from the multibody model's own",
+        "multibody.steady_state finds its own periodic motion and the brake torque that balances it; "
+        "on shafts every run starts from the multibody model's own",
         ("multibody/run/flow_map.py",),
     ),
 )

@@ -116,7 +116,10 @@ def test_newtons_law_gives_exudyns_accelerations():
     for name, values in (("SetODE2Coordinates", setup.q), ("SetODE2Coordinates_t", setup.v)):
         getattr(system.systemData, name)(values, configuration=exu.ConfigurationType.Initial)
     system.SolveDynamic(s)
-    rows = [np.asarray(system.GetSensorStoredData(n))[1:] for n in (*model.sensors, *sensors)]
+    rows = [
+        np.asarray(system.GetSensorStoredData(n))[1:]
+        for n in (*model.sensors[0], *model.sensors[1], *sensors)
+    ]
     q, v = rows[0][:, 1:], rows[1][:, 1:]
     a = np.hstack([rows[2][:, 1:], rows[3][:, 1:]])
     expected = accelerations(model, rows[0][:, 0], q, v)
