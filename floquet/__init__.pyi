@@ -39,6 +39,8 @@ from .gear.reference import extended_monodromy as extended_monodromy
 from .gear.reference import stress_test as stress_test
 from .gear.response import ResponseBranches as ResponseBranches
 from .gear.response import response_branches as response_branches
+from .gear.rotors import GearRotor as GearRotor
+from .gear.rotors import gears_on_rotors as gears_on_rotors
 from .gear.sensitivity import gear_sensitivities as gear_sensitivities
 from .gear.tongues import label_regions as label_regions
 from .rank_one.batch import FastMonodromy as FastMonodromy

@@ -257,3 +257,14 @@ def test_20_one_motion_is_chaotic_beside_a_periodic_one(example):
     assert float(starts["chaotic_dte"].std()) > 1e-6
     assert float(result["periodic_load"].min()) > 0.0
     assert 0.2 < float((result["chaotic_load"] == 0.0).mean()) < 0.8
+
+
+def test_25_the_mesh_drives_the_bending_shafts_at_twice_their_frequency(example):
+    module = example(25)
+    result = module.compute()
+    labelled(module.draw(result))
+    assert result.attrs["certificate"] == "proven"
+    unstable = result["speed_rpm"].where(result["verdict"] == -1, drop=True)
+    # The mode of 4544 Hz, see tests/validation/exchange/test_ross.py; 28 teeth; the step is 250 rpm.
+    assert float(unstable.mean()) == pytest.approx(2.0 * 4544.1 * 60.0 / 28.0, abs=125.0)
+    assert 3 <= unstable.size <= 6
