@@ -43,15 +43,14 @@ def on_shafts(rpm: float) -> floquet.SecondOrderSystem:
 
 def compute() -> xr.Dataset:
     """Spectral radius over speed."""
-    axes, labels = {"speed_rpm": np.linspace(18000, 21000, 13)}, {"speed_rpm": ("rpm", "pinion speed")}
-    return floquet.scan(lambda at: on_shafts(at["speed_rpm"]), axes, labels=labels)
+    axes = {"speed_rpm": np.linspace(18000.0, 21000.0, 13)}
+    return floquet.scan(lambda at: on_shafts(at["speed_rpm"]), axes)
 
 
 def draw(result: xr.Dataset) -> Figure:
     """Show the range of speeds in which vibration grows."""
-    axes = Figure(figsize=(7, 3.5), layout="constrained").add_subplot(
-        xlabel="pinion speed [rpm]", ylabel="spectral radius [-], unstable above 1"
-    )
+    axes = Figure(figsize=(7, 3.5), layout="constrained").add_subplot()
+    axes.set(xlabel="pinion speed [rpm]", ylabel="spectral radius [-], unstable above 1")
     axes.plot(result["speed_rpm"], result["spectral_radius"], marker=".")
     axes.axhline(1.0, color="0.5", linewidth=0.8)
     return axes.figure

@@ -14,6 +14,7 @@ from lumped.model.mesh_cycle import mesh_cycle
 PAIR = lumped.load_gear_pair("nasa_28_28").with_(
     friction__law="none",
     mesh__relief="ignored",
+    mesh__stiffness={"model": "parabolic"},
     mesh__damping_ratio=0.01,
     operating__pinion_speed="17000 rpm",
     bearings__gear__loa_stiffness=2.5e8,
