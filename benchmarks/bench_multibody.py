@@ -50,7 +50,7 @@ def dop853(setup: Setup, cycles: int) -> tuple[int, np.ndarray]:
 
     def rates(t: float, state: np.ndarray) -> np.ndarray:
         q, v = state[:6], state[6:]
-        linear_forces(t, q, v, p, m.table, wrench, contacts)
+        linear_forces(t, q, v, p, setup.model.flags, m.table, wrench, contacts)
         return np.concatenate([v, (wrench + load - stiffness * q - damping * v) / inertia])
 
     edges = (np.arange(cycles)[:, None] + m.switches).ravel()

@@ -23,7 +23,8 @@ from lumped.model.propagation import step_maps
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import ComplexArray, FloatArray
 from multibody.contact import kernels as kn
-from multibody.contact.machine import Machine
+from multibody.contact.machine import Machine, Supports
+from multibody.run.linear_motion import bordered, state_scale
 from multibody.run.model import build
 from multibody.run.records import from_lumped_state, to_lumped_state
 from multibody.run.setup import Fidelity, Setup, prepare
@@ -116,7 +117,7 @@ class Orbit:
 
     Attributes
     ----------
-    state : (12,) lumped states at t = 0
+    state : (12,) lumped states at t = 0; on shafts (2n,) coordinates and velocities
     machine : numbers of the pair, with the brake torque that balances this motion
     flow : its flow map
     closure : largest change of the state over one cycle, relative to its scale
@@ -131,8 +132,9 @@ class Orbit:
 def find_orbit(setup: Setup, cycles: int = 1, *, near_lumped: bool = True) -> Orbit:
     """Periodic motion near the initial state of ``setup``, with the brake torque as unknown.
 
-    Broyden's method starts from the monodromy matrix of the lumped model. That differs from the multibody
-    model's by a few per cent, and by much where friction holds the teeth for a time. Each step runs the
+    Broyden's method starts from the monodromy matrix of the lumped model, on shafts from that of the model's
+    own linear mesh. It differs from that of the motion looked for by a few per cent, and by much where
+    friction holds the teeth for a time. Each step runs the
     cycles and corrects the matrix along the way it went; the motion found does not depend on the matrix.
 
     Parameters
@@ -151,8 +153,10 @@ def find_orbit(setup: Setup, cycles: int = 1, *, near_lumped: bool = True) -> Or
     NumericalError : the iteration does not close the cycle
     """
     scale = _scale(setup)
-    state, machine = to_lumped_state(setup.q, setup.v), setup.machine
-    if near_lumped:
+    state, machine = _packed(setup.machine, setup.q, setup.v), setup.machine
+    if near_lumped and setup.motion is not None:
+        transition, by_torque = setup.motion.transition, setup.motion.by_torque
+    elif near_lumped:
         system = setup.system
         maps = step_maps(system, np.stack([system.torque_pinion, system.torque_gear], axis=1))
         transition, forced = maps.over_all()
@@ -164,9 +168,12 @@ def find_orbit(setup: Setup, cycles: int = 1, *, near_lumped: bool = True) -> Or
         by_torque = (Flow(setup, more, cycles)(state) - flow(state)) / (
             more.torque_gear - machine.torque_gear
         )
-    matrix = _bordered(transition, by_torque, machine, scale)
+    if machine.train is None:
+        matrix = _bordered(transition, by_torque, machine, scale)
+    else:
+        matrix = bordered(transition, by_torque, machine.train, scale, machine.torque_gear)
     best, age = Orbit(state, machine, Flow(setup, machine, cycles), np.inf), 0
-    change = np.zeros(13)
+    change = np.zeros(state.size + 1)
     for step in range(_ITERATIONS + 1):
         flow = Flow(setup, machine, cycles)
         mismatch = np.append((flow(state) - state) / scale, 0.0)
@@ -178,8 +185,8 @@ def find_orbit(setup: Setup, cycles: int = 1, *, near_lumped: bool = True) -> Or
         if step > 0:  # Broyden: along the last change the matrix must explain all of the mismatch left
             matrix -= np.outer(mismatch, change) / (change @ change)
         change = np.linalg.solve(matrix, mismatch)
-        state = state + change[:12] * scale
-        machine = replace(machine, torque_gear=machine.torque_gear * (1.0 + float(change[12])))
+        state = state + change[:-1] * scale
+        machine = replace(machine, torque_gear=machine.torque_gear * (1.0 + float(change[-1])))
     if not best.closure < _ACCEPTED:
         raise NumericalError(
             f"No periodic multibody motion near the {'lumped one' if near_lumped else 'start'} (mismatch "
@@ -199,16 +206,17 @@ def steady_state(
     effects: Collection[str] | Mapping[str, bool] | None = None,
     rtol: float = 1e-9,
     friction_velocity: float | None = None,
+    supports: Supports = "springs",
 ) -> xr.Dataset:
     """Periodic motion, stable or not, without settling: the counterpart of ``lumped.steady_state``.
 
     Parameters
     ----------
     pair : a validated gear pair
-    fidelity, effects, rtol, friction_velocity : as ``multibody.simulate``
+    fidelity, effects, rtol, friction_velocity, supports : as ``multibody.simulate``
     samples_per_cycle : output times in [0, T_m)
     initial : 12 states near which the motion is looked for, as ``lumped.simulate`` takes them; None: those of
-        the lumped motion. Where teeth part several motions may exist
+        the lumped motion, on shafts the motion with the linear mesh. Where teeth part several may exist
     cycles : mesh cycles after which the motion repeats, 1 to 64
 
     Returns
@@ -224,10 +232,16 @@ def steady_state(
     pair = load_gear_pair(pair)
     cycles = whole_number("cycles", cycles, 1, 64)
     setup = prepare(
-        pair, fidelity, "periodic" if initial is None else initial, effects, rtol, friction_velocity
+        pair,
+        fidelity,
+        "periodic" if initial is None else initial,
+        effects,
+        rtol,
+        friction_velocity,
+        supports=supports,
     )
     orbit = find_orbit(setup, cycles, near_lumped=initial is None and cycles == 1)
-    q, v = from_lumped_state(orbit.state)
+    q, v = _unpacked(orbit.machine, orbit.state)
     run, _, _ = record(replace(orbit.flow.setup, q=q, v=v), cycles, samples_per_cycle)
     m, p = orbit.machine, orbit.machine.parameters
     run.attrs |= {
@@ -239,7 +253,7 @@ def steady_state(
 
 
 class Flow:
-    """State (12,) -> state after whole mesh cycles."""
+    """State as in ``Orbit`` -> state after whole mesh cycles."""
 
     def __init__(self, setup: Setup, machine: Machine, cycles: int = 1) -> None:
         model = build(machine, setup.model.flags, setup.model.budget.limit)
@@ -247,12 +261,27 @@ class Flow:
         self.edges = setup.edges(cycles)
 
     def __call__(self, state: FloatArray) -> FloatArray:
-        q, v = from_lumped_state(state)
-        return to_lumped_state(*replace(self.setup, q=q, v=v).run(self.edges, lambda *_: None))
+        machine = self.setup.machine
+        q, v = _unpacked(machine, state)
+        return _packed(machine, *replace(self.setup, q=q, v=v).run(self.edges, lambda *_: None))
+
+
+def _packed(machine: Machine, q: FloatArray, v: FloatArray) -> FloatArray:
+    """State as in ``Orbit`` of coordinates and velocities."""
+    return to_lumped_state(q, v) if machine.train is None else np.concatenate([q, v])
+
+
+def _unpacked(machine: Machine, state: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Coordinates and velocities of a state as in ``Orbit``."""
+    return (
+        from_lumped_state(state) if machine.train is None else (state[: machine.size], state[machine.size :])
+    )
 
 
 def _scale(setup: Setup) -> FloatArray:
-    """Sizes of the 12 states in a vibration: static deflection, and that over the mesh cycle times 2 pi."""
+    """Sizes of the states in a vibration: static deflection, and that over the mesh cycle times 2 pi."""
+    if setup.machine.train is not None:
+        return state_scale(setup.machine, setup.deflection)
     p = setup.machine.parameters
     lengths = setup.deflection * np.array([1 / p[kn.RADIUS_P], 1 / p[kn.RADIUS_G], 1, 1, 1, 1])
     return np.concatenate([lengths, lengths * 2 * np.pi / setup.machine.period])

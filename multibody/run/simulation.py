@@ -49,7 +49,8 @@ def simulate(
     fidelity : "linear" solves the lumped equations with exudyn's objects; "exact" lets rigid gears turn
         through finite angles with true involute contact
     samples_per_cycle : output times per mesh cycle; the grid ends on the last cycle's end
-    initial : "static", "periodic" or 12 states, as for ``lumped.simulate``
+    initial : "static", "periodic" or 12 states, as for ``lumped.simulate``; on shafts no states, and the
+        periodic motion is the model's own with the linear mesh
     effects : finite-motion effects that act at fidelity "exact", see ``multibody.EFFECTS``: a collection of
         names, or a mapping name -> bool in which names left out act; default all. At fidelity "linear" only
         "contact_loss", the lumped equations with teeth that push and never pull

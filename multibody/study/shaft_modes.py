@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
 #: Parts of the machine between which a mode shares its kinetic energy.
 PARTS = ("pinion shaft loa", "pinion shaft oloa", "gear shaft loa", "gear shaft oloa", "twist")
-#: Places along each shaft at which the sense of whirl is read.
-_PLACES = 41
+#: Places along each shaft, as shares of its length.
+_PLACES = np.linspace(0.0, 1.0, 81)
 
 
 def shaft_modes(pair: AnyPair, phase: float = 0.3) -> xr.Dataset:
@@ -41,7 +41,8 @@ def shaft_modes(pair: AnyPair, phase: float = 0.3) -> xr.Dataset:
     -------
     xarray.Dataset over ``mode`` by increasing frequency, the free turn left out: ``natural_frequency`` [Hz],
     ``damping_ratio`` [-], ``kinetic_share`` over (part, mode) [-], and ``whirl`` over (shaft, mode): what of
-    the lateral motion of a mode whirls forward, in the sense of rotation, less what whirls backward [-].
+    the lateral motion of a mode whirls forward, in the sense of rotation, less what whirls backward [-]; and
+    ``shape`` over (shaft, direction, place, mode): the axes when they stand furthest out, which is 1 [-].
     Roots without oscillation are left out
 
     Raises
@@ -61,17 +62,31 @@ def shaft_modes(pair: AnyPair, phase: float = 0.3) -> xr.Dataset:
     roots, shapes = roots[upper], vectors[: train.size, upper]
     if not np.isfinite(shapes).all() or not roots.size:
         raise NumericalError("exudyn finds no modes of this machine; look for extremes of stiffness.")
+    axes = np.array(
+        [
+            shaft.reading(_PLACES * sum(part.length for part in shaft.intervals)) @ shapes[own]
+            for shaft, own in zip(train.shafts, train.places, strict=True)
+        ]
+    )
     return labelled_dataset(
         {
             "natural_frequency": ("mode", np.abs(roots) / (2.0 * np.pi), "Hz", "undamped natural frequency"),
             "damping_ratio": ("mode", -roots.real / np.abs(roots), "1", "damping ratio"),
             "kinetic_share": (("part", "mode"), _shares(train, shapes), "1", "share of the kinetic energy"),
-            "whirl": (("shaft", "mode"), _whirl(train, shapes), "1", "forward less backward whirl"),
+            "whirl": (("shaft", "mode"), _whirl(axes), "1", "forward less backward whirl"),
+            "shape": (
+                ("shaft", "direction", "place", "mode"),
+                _standing(axes),
+                "1",
+                "deflection of the axis",
+            ),
         },
         {
             "mode": (np.arange(1, roots.size + 1), "1", "mode by increasing frequency"),
             "part": (list(PARTS), "1", "part of the machine"),
             "shaft": (["pinion", "gear"], "1", "shaft"),
+            "direction": (["loa", "oloa"], "1", "along and off the line of action"),
+            "place": (_PLACES, "1", "place along the shaft over its length"),
         },
         provenance(pair, phase=phase, supports="shafts"),
     )
@@ -89,14 +104,18 @@ def _shares(train: Train, shapes: ComplexArray) -> FloatArray:
     return np.asarray(parts / parts.sum(axis=0))
 
 
-def _whirl(train: Train, shapes: ComplexArray) -> FloatArray:
-    """Forward less backward whirl of both axes over the lateral motion of both, (2, m)."""
-    signed, lateral = [], np.zeros(shapes.shape[1])
-    for shaft, own, sense in zip(train.shafts, train.places, (-1.0, 1.0), strict=True):
-        places = np.linspace(0.0, sum(part.length for part in shaft.intervals), _PLACES)
-        x, y = shaft.reading(places) @ shapes[own]
-        # x + i y turns counter-clockwise with amplitude |X + i Y|/2 and clockwise with |X - i Y|/2.
-        with_it, against = np.abs(x + 1j * y) ** 2, np.abs(x - 1j * y) ** 2
-        signed.append(sense * (with_it - against).sum(axis=0))
-        lateral += (with_it + against).sum(axis=0)
-    return np.asarray(np.array(signed) / np.where(lateral > 0.0, lateral, 1.0))
+def _whirl(axes: ComplexArray) -> FloatArray:
+    """Forward less backward whirl over the lateral motion of both axes, (2, m), of axes (2, 2, k, m)."""
+    x, y = axes[:, 0], axes[:, 1]
+    # x + i y turns counter-clockwise with amplitude |X + i Y|/2 and clockwise with |X - i Y|/2.
+    left, right = np.abs(x + 1j * y) ** 2, np.abs(x - 1j * y) ** 2
+    forward = np.array([[-1.0], [1.0]]) * (left - right).sum(axis=1)  # the pinion turns clockwise
+    lateral = (left + right).sum(axis=(0, 1))
+    return np.asarray(forward / np.where(lateral > 0.0, lateral, 1.0))
+
+
+def _standing(axes: ComplexArray) -> FloatArray:
+    """Real shapes (2, 2, k, m): each mode when the place and direction that move most stand furthest out."""
+    flat = axes.reshape(-1, axes.shape[-1])
+    largest = flat[np.abs(flat).argmax(axis=0), np.arange(flat.shape[1])]
+    return np.asarray((axes / np.where(largest == 0.0, 1.0, largest)).real)
