@@ -55,8 +55,8 @@ def gear_block(
         for k in range(0, len(fitted), 2)
     ]
     return RankOneSystem(
-        stiffness=-np.diag(system.constant[3:, :3]).copy(),
-        damping=-np.diag(system.constant[3:, 3:]).copy(),
+        stiffness=-system.constant[3:, :3],
+        damping=-system.constant[3:, 3:],
         v=system.deflection,
         phases=phases,
         gains=parts[0],

@@ -1,8 +1,6 @@
 """Monodromy matrix of a gear pair in extended precision, to measure the errors of the other routes by.
 
-It integrates the piecewise polynomials k(xi), c(xi) and mu(xi) themselves, in plain coordinates and by a
-Taylor series of its own, and shares nothing with the compiled kernel but these polynomials. Where long double
-is no more than a double (it has 64 bits of mantissa on x86) it is only as good as any other route.
+It integrates the piecewise polynomials k(xi), c(xi) and mu(xi) themselves, not what has been fitted to them.
 
 Sources: docs/theory/floquet.md, "Computing M".
 """
@@ -13,13 +11,13 @@ import warnings
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 from scipy.optimize import linear_sum_assignment
 
 from floquet.gear.block import gear_block
 from floquet.rank_one.batch import fast_multipliers
 from floquet.rank_one.coarsening import coarsened
+from floquet.rank_one.extended import LongArray, extended_transitions
 from lumped import preset_names
 from lumped.arguments import whole_number
 from lumped.errors import LawRangeWarning
@@ -31,11 +29,8 @@ from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
-LongArray = npt.NDArray[np.longdouble]
-
 RATE = 1e4
 """Rates are in units of this [1/s], so that positions and rates are of like size."""
-_TERMS = 30  # of steps that turn by 1 rad at most: 1/30! is far below the precision
 _LD = np.longdouble
 _LAPACK = 1e-13
 
@@ -45,14 +40,8 @@ def extended_monodromy(pair: AnyPair) -> FloatArray:
     pair = load_gear_pair(pair)
     system = periodic_system(pair, "feedback")
     lengths, w, wd = _steps(system)
-    flows = _transitions(
-        lengths,
-        w,
-        wd,
-        -np.diag(system.constant[3:, :3]).astype(_LD),
-        -np.diag(system.constant[3:, 3:]).astype(_LD),
-        system.deflection.astype(_LD),
-    )
+    L, D = (-system.constant[3:, part].astype(_LD) for part in (slice(3), slice(3, 6)))
+    flows = extended_transitions(lengths, w, wd, L, D, system.deflection.astype(_LD), RATE)
     M = np.eye(6, dtype=_LD)
     for flow in flows:
         M = flow @ M
@@ -129,27 +118,6 @@ def _about(function: PathFunction, start: float, middle: float) -> LongArray:
     """Coefficients in powers of (xi - start), lowest first, of the piece that holds ``middle``."""
     j = int(np.clip(np.searchsorted(function.breaks, middle) - 1, 0, function.breaks.size - 2))
     return shifted(function.coefficients[:, j].astype(_LD), _LD(start) - _LD(function.breaks[j]))[::-1]
-
-
-def _transitions(
-    h: LongArray, w: LongArray, wd: LongArray, L: LongArray, D: LongArray, v: LongArray
-) -> LongArray:
-    """Transition matrices (S, 6, 6) of z'' + D z' + L z + w (v . z) + wd (v . z') = 0 over steps h (S,)."""
-    z = np.zeros((h.size, _TERMS + 2, 3, 6), dtype=_LD)
-    z[:, 0, :, :3], z[:, 1, :, 3:] = np.eye(3), RATE * np.eye(3)
-    s, sd = np.zeros((h.size, _TERMS + 1, 6), dtype=_LD), np.zeros((h.size, _TERMS + 1, 6), dtype=_LD)
-    for k in range(_TERMS):
-        rate = (k + 1) * z[:, k + 1]
-        s[:, k], sd[:, k] = v @ z[:, k], v @ rate
-        n = min(k + 1, w.shape[1])
-        total = L[:, None] * z[:, k] + D[:, None] * rate
-        for gain, signal in ((w, s), (wd, sd)):
-            total += np.einsum("tir,tic->trc", gain[:, :n], signal[:, k::-1][:, :n])
-        z[:, k + 2] = -total / _LD((k + 1) * (k + 2))
-    power = h[:, None] ** np.arange(_TERMS + 2)
-    position = np.einsum("tk,tkrc->trc", power, z)
-    rate = np.einsum("tk,tkrc->trc", power[:, :-1] * np.arange(1, _TERMS + 2), z[:, 1:]) / RATE
-    return np.concatenate([position, rate], axis=1)
 
 
 def stress_test(count: int, seed: int) -> xr.Dataset:

@@ -17,8 +17,8 @@ import numpy.typing as npt
 
 from floquet.engine.multipliers import multipliers_with_bounds
 from floquet.engine.spectrum import Certificate
-from floquet.rank_one.kernels.disks import spectra
-from floquet.rank_one.kernels.gains import MAX_STEPS, Limits
+from floquet.rank_one.kernels.disks import spectra, spectra_by
+from floquet.rank_one.kernels.gains import Limits, most_steps
 from floquet.rank_one.kernels.taylor import propagate_points
 from floquet.rank_one.packing import own, packed
 from floquet.rank_one.system import Coarsening, RankOneSystem
@@ -27,6 +27,10 @@ from lumped.errors import NumericalError, refuse, shown
 from lumped.typing import ComplexArray, FloatArray
 
 _T = TypeVar("_T")
+
+MOST = 20
+"""Coordinates at most: the time and the memory of a step grow like their square and more."""
+_SMALL = 8  # states up to which LAPACK takes longer than the compiled eigenvalues
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,8 +70,10 @@ def fast_monodromies(
     ------
     NumericalError : too many steps or terms, or a result that is not finite
     """
-    if system.v.size > 3:
-        raise refuse("coordinates", system.v.size, "at most 3", "Use floquet.monodromy for larger systems.")
+    if system.v.size > MOST:
+        raise refuse(
+            "coordinates", system.v.size, f"at most {MOST}", "Use floquet.monodromy for larger systems."
+        )
     given = system.period if periods is None else periods
     T = own(real_numbers("periods", given, 0.0, above=True, unit="s"))
     tolerance = real_number("tolerance", tolerance, 1e-16, 0.1)
@@ -89,8 +95,9 @@ def fast_monodromies(
     bad = [index for index in in_threads(run, T.size) if index >= 0]
     if bad:
         raise NumericalError(
-            f"period {T[bad[0]]:g} s needs more than {MAX_STEPS} Taylor steps, or a step more terms than the "
-            "kernel has. Loosen the tolerance, or raise the speed."
+            f"period {T[bad[0]]:g} s needs more than {most_steps(n)} Taylor steps, or a step more terms than "
+            "the kernel has. Loosen the tolerance, raise the speed, or leave out the highest natural "
+            "frequencies."
         )
     if not np.isfinite(M).all():
         raise NumericalError(
@@ -144,10 +151,25 @@ def multipliers_of(
     """Eigenvalues of monodromy matrices (N, n, n), each with a bound, when these are wrong by errors (N,)."""
     values, radii = np.empty(matrices.shape[:2], dtype=complex), np.empty(matrices.shape[:2])
     safe = np.empty(errors.size, dtype=bool)
-    spectra(matrices, errors, values, radii, safe)
+    if matrices.shape[1] <= _SMALL:
+        spectra(matrices, errors, values, radii, safe)
+    else:
+        values, X, Y = _vectors(matrices)
+        spectra_by(matrices, errors, values, X, Y, radii, safe)
     for point in np.flatnonzero(~safe):
         values[point], radii[point] = multipliers_with_bounds(matrices[point], float(errors[point]))
     return FastMultipliers(values, radii, certificate)
+
+
+def _vectors(matrices: FloatArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """Eigenvalues (N, n) and about right and left vectors, rows (N, n, n), y^T x = 1 and |x| = |y|."""
+    values, X = (np.asarray(part, dtype=complex) for part in np.linalg.eig(matrices))
+    try:
+        Y = np.linalg.inv(X)
+    except np.linalg.LinAlgError:  # of those that are defective to the last digit no inverse will do
+        Y = np.linalg.pinv(X)
+    length = np.sqrt(np.linalg.norm(Y, axis=2))[:, :, None]
+    return values, np.ascontiguousarray(np.swapaxes(X, 1, 2) * length), np.ascontiguousarray(Y / length)
 
 
 def _factors(

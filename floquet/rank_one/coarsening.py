@@ -113,7 +113,7 @@ class _Fine(NamedTuple):
     weights : (2, Q) what turns the norm of a gain into that of A times the longest period
     reference : (m,) constant part of w that is none of A's
     root : (m,) square roots of the metric
-    calm, drive : max omega + |C|, and how fast C lets energy grow, times the longest period
+    calm, drive : max omega + |C| + |G|/T, and how fast these let energy grow, times the longest period
     """
 
     phases: FloatArray
@@ -150,8 +150,9 @@ class _Fine(NamedTuple):
             weights=longest * rows[:, None] * most,
             reference=form.shapes @ form.reference,
             root=np.sqrt(system.metric),
-            calm=longest * float(form.omega.max() + np.linalg.norm(form.C)),
-            drive=longest * form.drive,
+            calm=longest * float(form.omega.max() + np.linalg.norm(form.C))
+            + float(np.linalg.norm(form.gyroscopic)),
+            drive=longest * form.drive + form.gyroscopic_drive,
         )
 
     @property

@@ -21,7 +21,7 @@ def packed(system: RankOneSystem) -> Problem:
     centred = form.w[0, :, :, 0] - form.reference
     w_size[0] += np.linalg.norm(centred, axis=1) - np.linalg.norm(form.w[0, :, :, 0], axis=1)
     ratios, unequal = _ratios(form.w, form.wd, wd_size)
-    noise, relative = _rounding(system, form)
+    noise, gyroscopic_noise, relative = _rounding(system, form)
     fit_error = np.stack([part.fit_errors for part in system.parts]) * (1.0 + 1e-9)
     fit_error += relative * np.stack([_norms(form.w), wd_size], axis=2)
     edges = [np.zeros((pieces + 1, 2)) if p.edge_errors is None else p.edge_errors for p in system.parts]
@@ -38,36 +38,43 @@ def packed(system: RankOneSystem) -> Problem:
         fit_error=own(fit_error),
         edge_error=own(np.stack(edges) * (1.0 + 1e-9)),
         flow_error=own(flow_error),
-        C=own(form.C),
+        C=own([form.C, form.gyroscopic]),
         drive=form.drive,
         noise=noise,
+        gyroscopic_drive=form.gyroscopic_drive,
+        gyroscopic_noise=gyroscopic_noise,
         omega=own(form.omega),
         v=own(form.v),
         reference=own(form.reference),
     )
 
 
-def _rounding(system: RankOneSystem, form: ModalForm) -> tuple[float, float]:
-    """Bound on the error of A [1/s] by rounding of its constant part, and on the relative one of the gains.
+def _rounding(system: RankOneSystem, form: ModalForm) -> tuple[float, float, float]:
+    """Bounds on errors by rounding: of the constant part of A [1/s], of G, and the relative one of the gains.
 
-    Phi being taken as exact, its inverse is (I - E)^-1 Phi^T G with E = I - Phi^T G Phi. What that leaves of
-    the constant part is computed, with the rounding of its own computation. The gains are turned by Phi^T G,
-    weighted, added, moved to the middle of a step and scaled: 60 roundings of the sum of the moduli.
+    Phi being taken as exact, its inverse is (I - E)^-1 Phi^T g with E = I - Phi^T g Phi. What that leaves of
+    the constant part is computed, with the rounding of its own computation. The gains are turned by Phi^T g,
+    weighted, added, moved to the middle of a step and scaled: 57 + m roundings of the sum of the moduli.
 
     Sources: docs/theory/proven_bounds.md, "The matrix of a step".
     """
     Phi, omega = form.shapes, form.omega
     Y = Phi.T * system.metric
-    absolute, eye = np.abs(Y), np.eye(omega.size)
-    E = float(np.linalg.norm(eye - Y @ Phi) + 8.0 * _U * np.linalg.norm(absolute @ np.abs(Phi)))
+    m = omega.size
+    absolute, twice = np.abs(Y), (2.0 * m + 6.0) * _U  # of a product of three matrices
+    E = float(np.linalg.norm(np.eye(m) - Y @ Phi) + (m + 5.0) * _U * np.linalg.norm(absolute @ np.abs(Phi)))
     E /= 1.0 - min(E, 0.5)
-    damping, turned = Y @ (system.damping[:, None] * Phi), Y @ (system.stiffness[:, None] * Phi)
-    noise = E * np.linalg.norm(damping)
-    noise += 12.0 * _U * np.linalg.norm(absolute @ (np.abs(system.damping)[:, None] * np.abs(Phi)))
+
+    def moduli(matrix: FloatArray) -> FloatArray:
+        return np.asarray(absolute @ np.abs(matrix) @ np.abs(Phi))
+
+    given = np.zeros((m, m)) if system.gyroscopic is None else system.gyroscopic
+    noise = E * np.linalg.norm(form.C) + twice * np.linalg.norm(moduli(system.damping))
+    moving = E * np.linalg.norm(form.gyroscopic) + twice * np.linalg.norm(moduli(given))
+    turned = Y @ system.stiffness @ Phi
     feedback = np.outer(form.reference, form.v)
     rest = np.abs(turned + feedback - np.diag(omega**2)) + E * np.linalg.norm(turned)
-    rest += 12.0 * _U * absolute @ (np.abs(system.stiffness)[:, None] * np.abs(Phi))
-    rest += 12.0 * _U * (np.abs(feedback) + np.diag(omega**2))
+    rest += twice * (moduli(system.stiffness) + np.abs(feedback) + np.diag(omega**2))
     noise += np.linalg.norm(rest / omega)
     # How much the sum of the moduli in v = Phi^T v exceeds what is left of it.
     summed = np.abs(Phi).T @ np.abs(system.v)
@@ -76,10 +83,11 @@ def _rounding(system: RankOneSystem, form: ModalForm) -> tuple[float, float]:
         float(np.linalg.norm(summed / omega) / np.linalg.norm(form.v / omega)),
         float(np.linalg.norm(summed) / np.linalg.norm(form.v)),
     )
-    relative = E + 60.0 * _U * excess
+    relative = E + (57.0 + m) * _U * excess
     calm = float(omega.max()) + np.linalg.norm(form.C)
     calm += np.linalg.norm(form.reference) * np.linalg.norm(form.v / omega)
-    return float(noise + relative * calm), float(relative)
+    moving += relative * np.linalg.norm(form.gyroscopic)
+    return float(noise + relative * calm), float(moving), float(relative)
 
 
 def own(values: object) -> FloatArray:
@@ -109,8 +117,8 @@ def _ratios(w: FloatArray, wd: FloatArray, wd_size: FloatArray) -> tuple[FloatAr
 
 
 def _lanes(poly: FloatArray) -> FloatArray:
-    """(Q, P, m, d+1) -> (Q, P, d+1, LANES)."""
+    """(Q, P, m, d+1) -> (Q, P, d+1, lanes), a whole number of `LANES`."""
     Q, P, m, count = poly.shape
-    out = np.zeros((Q, P, count, LANES))
+    out = np.zeros((Q, P, count, -(-m // LANES) * LANES))
     out[..., :m] = np.swapaxes(poly, 2, 3)
     return out

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from scipy.linalg import eigh
 
 from floquet.engine.system import PeriodicSystem, second_order
-from lumped.errors import refuse
+from lumped.errors import refuse, shown
 from lumped.typing import ComplexArray, FloatArray
 
 
@@ -54,11 +54,11 @@ class Coarsening:
 
 @dataclass(frozen=True, eq=False)
 class RankOneSystem:
-    """z'' + D z' + L z + w(t) (v . z) + wd(t) (v . z') = 0, periodic w and wd, m <= 3 coordinates.
+    """z'' + (D + G/T) z' + L z + w(t) (v . z) + wd(t) (v . z') = 0, periodic w and wd, m coordinates.
 
     Attributes
     ----------
-    stiffness, damping : (m,) L [1/s^2] and D [1/s]
+    stiffness, damping : (m, m) L [1/s^2], diag(g) L being symmetric, and D [1/s]
     v : (m,) how the coordinates feed back
     phases : (P+1,) ends of the pieces as parts of the period, switches among them
     gains : w and wd
@@ -69,6 +69,7 @@ class RankOneSystem:
         point, as where the friction coefficient goes up and down with speed; the system by itself has them
         with factor 1
     coarsening : where pieces have been joined, what that costs
+    gyroscopic : (m, m) G, dimensionless, of parts that turn by fixed angles within a period; None: nothing
     """
 
     stiffness: FloatArray
@@ -80,6 +81,7 @@ class RankOneSystem:
     metric: FloatArray
     varied: tuple[Gains, ...] = ()
     coarsening: Coarsening | None = None
+    gyroscopic: FloatArray | None = None
 
     @property
     def parts(self) -> tuple[Gains, ...]:
@@ -107,9 +109,8 @@ class RankOneSystem:
 
     def _state_matrices(self, w: FloatArray, wd: FloatArray) -> FloatArray:
         """A (..., 2m, 2m) of (z, z') with gains (..., m)."""
-        K = np.diag(self.stiffness) + w[..., None] * self.v
-        C = np.diag(self.damping) + wd[..., None] * self.v
-        return second_order(K, C)
+        C = self.damping if self.gyroscopic is None else self.damping + self.gyroscopic / self.period
+        return second_order(self.stiffness + w[..., None] * self.v, C + wd[..., None] * self.v)
 
     def mean_exponents(self) -> ComplexArray:
         """Exponents (2m,) [1/s] of the system with gains averaged over the period."""
@@ -126,12 +127,16 @@ class RankOneSystem:
         """Return the system in modal coordinates of its time average, see `ModalForm`."""
         g, mean = self.metric, self._mean(self.total.w)
         k = float(g @ (mean * self.v)) / float(self.v @ self.v) if (g * mean) @ self.v > 0 else 0.0
-        K = np.diag(g * self.stiffness) + k * np.outer(self.v, self.v)
+        K = g[:, None] * self.stiffness + k * np.outer(self.v, self.v)
+        if not np.abs(K - K.T).max() <= 1e-9 * np.abs(K).max():
+            raise refuse(
+                "stiffness", shown(self.stiffness), "symmetric in the metric", "Use the general engine."
+            )
         squares, Phi = eigh(K, np.diag(g))
         if squares.min() <= 0.0:
             raise refuse(
                 "stiffness",
-                self.stiffness,
+                shown(self.stiffness),
                 "a mean system that is statically stable",
                 "Use the general engine.",
             )
@@ -142,7 +147,8 @@ class RankOneSystem:
         )
         return ModalForm(
             omega=np.sqrt(squares),
-            C=inverse @ (self.damping[:, None] * Phi),
+            C=inverse @ self.damping @ Phi,
+            gyroscopic=np.zeros_like(Phi) if self.gyroscopic is None else inverse @ self.gyroscopic @ Phi,
             v=Phi.T @ self.v,
             w=w,
             wd=wd,
@@ -154,7 +160,7 @@ class RankOneSystem:
 
 @dataclass(frozen=True, eq=False)
 class ModalForm:
-    """eta'' + C eta' + omega^2 eta + (w - reference) (v . eta) + wd (v . eta') = 0, z = shapes @ eta.
+    """eta'' + (C + G/T) eta' + omega^2 eta + (w - reference) (v . eta) + wd (v . eta') = 0, z = shapes @ eta.
 
     In the states x = (omega eta, eta') the squared norm is twice the energy of the mean undamped
     frictionless system, the natural measure of errors.
@@ -162,7 +168,7 @@ class ModalForm:
     Attributes
     ----------
     omega : (m,) natural frequencies of that system [rad/s]
-    C : (m, m) damping of the supports [1/s]
+    C, gyroscopic : (m, m) damping of the supports [1/s], and G, dimensionless
     v : (m,) the deflection is v . eta
     w, wd : (Q, P, m, d+1) polynomials of the Q parts of `RankOneSystem.parts` on P pieces
     reference : (m,) constant part of w that omega^2 has already
@@ -171,6 +177,7 @@ class ModalForm:
 
     omega: FloatArray
     C: FloatArray
+    gyroscopic: FloatArray
     v: FloatArray
     w: FloatArray
     wd: FloatArray
@@ -180,7 +187,12 @@ class ModalForm:
     @property
     def drive(self) -> float:
         """Bound on the rate at which C lets energy grow [1/s]; 0 where all supports are damped."""
-        return max(0.0, -float(np.linalg.eigvalsh(0.5 * (self.C + self.C.T)).min()))
+        return _drive(self.C)
+
+    @property
+    def gyroscopic_drive(self) -> float:
+        """The same of G, dimensionless; 0 but for rounding where G does no work."""
+        return _drive(self.gyroscopic)
 
     def state_matrix(self) -> FloatArray:
         """Matrix (2m, 2m) that turns x = (omega eta, eta') into (z, z')."""
@@ -189,6 +201,10 @@ class ModalForm:
         out[:m, :m] = self.shapes / self.omega
         out[m:, m:] = self.shapes
         return out
+
+
+def _drive(C: FloatArray) -> float:
+    return max(0.0, -float(np.linalg.eigvalsh(0.5 * (C + C.T)).min()))
 
 
 def padded(poly: FloatArray, count: int) -> FloatArray:

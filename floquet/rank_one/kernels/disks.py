@@ -122,6 +122,20 @@ def _normalise(x: ComplexArray) -> None:
 
 
 @compiled()
+def _partners(values: ComplexArray, partner: npt.NDArray[np.int64]) -> None:
+    """Which value is the conjugate of each; conjugates stand side by side."""
+    for p in range(values.size):
+        partner[p] = p
+        if (
+            p > 0
+            and partner[p - 1] == p - 1
+            and values[p].imag != 0.0
+            and values[p] == values[p - 1].conjugate()
+        ):
+            partner[p], partner[p - 1] = p - 1, p
+
+
+@compiled()
 def _eigenvectors(
     A: FloatArray,
     values: ComplexArray,
@@ -131,17 +145,10 @@ def _eigenvectors(
     Y: ComplexArray,
     partner: npt.NDArray[np.int64],
 ) -> None:
-    """Approximate right and left eigenvectors, rows of X and of Y, and which one is the conjugate of each."""
+    """Approximate right and left eigenvectors, rows of X and of Y."""
     n = A.shape[0]
     for p in range(n):
-        partner[p] = p
-        if (
-            p > 0
-            and partner[p - 1] == p - 1
-            and values[p].imag != 0.0
-            and values[p] == values[p - 1].conjugate()
-        ):
-            partner[p], partner[p - 1] = p - 1, p
+        if partner[p] < p:
             for i in range(n):
                 X[p, i] = X[p - 1, i].conjugate()
                 Y[p, i] = Y[p - 1, i].conjugate()
@@ -294,23 +301,48 @@ def spectra(
         where disks overlap it reaches around all of those that hang together
     """
     n = M.shape[1]
-    A, f, sizes = np.empty((n, n)), np.empty((n, n)), np.empty((3, n))
-    X, Y, work = (
-        np.empty((n, n), np.complex128),
-        np.empty((n, n), np.complex128),
-        np.empty((n, n), np.complex128),
-    )
-    pivots, partner, group = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
+    A, X, Y, LU = np.empty((n, n)), _square(n), _square(n), _square(n)
+    f, sizes, pivots = np.empty((n, n)), np.empty((3, n)), np.empty(n, np.int64)
+    partner, group = np.empty(n, np.int64), np.empty(n, np.int64)
     for point in range(M.shape[0]):
         for i in range(n):
             for j in range(n):
                 A[i, j] = M[point, i, j]
-        ok = eigenvalues(A, values[point])
-        _eigenvectors(M[point], values[point], work, pivots, X, Y, partner)
-        q = _entries(M[point], values[point], X, Y, partner, delta[point], sizes, work, f)
-        for i in range(n):
-            # Beyond this, eigenvalues that nearly meet have better bounds as a cluster.
-            ok = ok and sizes[0, i] * sizes[1, i] < 1e6
+        found = eigenvalues(A, values[point])
+        _partners(values[point], partner)
+        _eigenvectors(M[point], values[point], LU, pivots, X, Y, partner)
+        q = _entries(M[point], values[point], X, Y, partner, delta[point], sizes, LU, f)
         _disks(values[point], f, sizes[2], radii[point])
         _join(values[point], radii[point], sizes[2], group)
-        safe[point] = ok and q < 0.01
+        safe[point] = found and _trusted(q, sizes)
+
+
+@compiled(nogil=True)
+def spectra_by(
+    M: FloatArray, delta: FloatArray, values: ComplexArray, X: ComplexArray, Y: ComplexArray,
+    radii: FloatArray, safe: npt.NDArray[np.bool_],
+) -> None:  # fmt: skip
+    """`spectra` with given values and vectors, rows of X and of Y (N, n, n), Y^T about the inverse of X."""
+    n = M.shape[1]
+    work, f, sizes = _square(n), np.empty((n, n)), np.empty((3, n))
+    partner, group = np.empty(n, np.int64), np.empty(n, np.int64)
+    for point in range(M.shape[0]):
+        _partners(values[point], partner)
+        q = _entries(M[point], values[point], X[point], Y[point], partner, delta[point], sizes, work, f)
+        _disks(values[point], f, sizes[2], radii[point])
+        _join(values[point], radii[point], sizes[2], group)
+        safe[point] = _trusted(q, sizes)
+
+
+@compiled()
+def _square(n: int) -> ComplexArray:
+    return np.empty((n, n), np.complex128)
+
+
+@compiled()
+def _trusted(q: float, sizes: FloatArray) -> bool:
+    """Whether the vectors are good enough; beyond this, values that nearly meet do better as a cluster."""
+    good = q < 0.01
+    for i in range(sizes.shape[1]):
+        good = good and sizes[0, i] * sizes[1, i] < 1e6
+    return bool(good)

@@ -15,6 +15,7 @@ from lumped.typing import FloatArray
 
 MAX_STEPS = 20_000
 """Steps per period at most."""
+_ROOM = 6_000_000  # entries of their matrices together
 
 
 class Problem(NamedTuple):
@@ -23,7 +24,7 @@ class Problem(NamedTuple):
     Attributes
     ----------
     phases : (P+1,) ends of the pieces as parts of the period, 0 to 1
-    w, wd : (Q, P, d+1, LANES) coefficients in powers of the piece's u in [-1, 1], lowest first, coordinates
+    w, wd : (Q, P, d+1, lanes) coefficients in powers of the piece's u in [-1, 1], lowest first, coordinates
         in the first lanes; the damping factor zeta multiplies wd
     degrees : (P, 2) of w and wd
     sizes : (Q, P, 2) bounds on the norms of w and wd over the piece, without the reference
@@ -32,9 +33,11 @@ class Problem(NamedTuple):
     fit_error : (Q, P, 2) largest |error| of w and wd by their polynomials on each piece
     edge_error : (Q, P+1, 2) integral over the phase of a further |error| of w, wd at either side of each end
     flow_error : (P,) bound on what the error of the transition matrix over each piece has besides
-    C, omega, v : (m, m) [1/s], (m,) [rad/s], (m,)
+    C, omega, v : (2, m, m), what does not depend on speed [1/s] and what is to be divided by the period; (m,)
+        [rad/s]; (m,)
     drive : bound on the rate [1/s] at which C lets the state grow; 0 where all supports are damped
     noise : bound on the error of A [1/s] by the change to modal coordinates and the rounding of C and omega
+    gyroscopic_drive, gyroscopic_noise : what adds to drive and noise, times the period
     reference : (m,) constant part of w that omega^2 already has, so that w - reference acts
     """
 
@@ -51,6 +54,8 @@ class Problem(NamedTuple):
     C: FloatArray
     drive: float
     noise: float
+    gyroscopic_drive: float
+    gyroscopic_noise: float
     omega: FloatArray
     v: FloatArray
     reference: FloatArray
@@ -76,15 +81,16 @@ class Piece(NamedTuple):
 
     Attributes
     ----------
-    w, wd : (d+1, LANES) over the piece
+    w, wd : (d+1, lanes) over the piece
     ws, wds : the same over one step, times h^2 and h
     degrees : of w and wd on this piece
     a, powers : majorant, and what ``enough_terms`` needs besides
-    Z, s, sd : (terms, 3, LANES), (terms, LANES): coefficients of eta, v . eta and its derivative
-    v, hC, h2_omega2, h2_reference : (3,), (3, 3), (3,), (3,)
-    sizes : |v/omega|, |v|, max omega + |C|, and |reference| |v/omega|
-    ends : (4, 2m, LANES) states at the end and at the start of the step, and room to work
-    unit : (LANES, LANES) rows of the unit matrix
+    Z, s, sd : (terms, m, lanes), (terms, LANES): coefficients of eta, v . eta and its derivative, with at
+        least three coordinates; at the end of Z the newest ones of eta'
+    v, hC, h2_omega2, h2_reference : (m,), (2, m, m), (m,), (m,); after hC the C of the point
+    sizes : |v/omega|, |v|, max omega + |C|, |reference| |v/omega|, drive and noise of the point
+    ends : (4, 2m, lanes) states at the end and at the start of the step, and room to work
+    unit : (lanes, lanes) rows of the unit matrix
     """
 
     w: FloatArray
@@ -107,35 +113,53 @@ class Piece(NamedTuple):
 
 
 @compiled()
+def most_steps(n: int) -> int:
+    """Steps per period at most with n states, whose matrices are all in memory."""
+    return min(MAX_STEPS, _ROOM // (n * n))
+
+
+@compiled()
 def scratch_for(problem: Problem) -> Piece:
     """Allocate the scratch of one thread."""
-    m = problem.v.size
-    dw, dd = problem.w.shape[2], problem.wd.shape[2]
-    v, omega = np.zeros(3), 0.0
-    lean, C_size = np.zeros(m), 0.0
+    m, dw, dd = problem.v.size, problem.w.shape[2], problem.wd.shape[2]
+    slots, lanes, wide = max(m, 3), problem.w.shape[3], -(-2 * m // LANES) * LANES
+    v, lean = np.zeros(slots), np.zeros(m)
     for q in range(m):  # loops, for each array expression takes the compiler half a second
         v[q] = problem.v[q]
         lean[q] = problem.v[q] / problem.omega[q]
-        omega = max(omega, problem.omega[q])
-        for p in range(m):
-            C_size += problem.C[q, p] ** 2
-    sizes, unit = np.zeros(4), np.zeros((LANES, LANES))
+    sizes, unit = np.zeros(6), np.zeros((wide, wide))
     sizes[0], sizes[1] = norm(lean), norm(problem.v)
-    sizes[2], sizes[3] = omega + math.sqrt(C_size), norm(problem.reference) * sizes[0]
-    for i in range(LANES):
+    sizes[3] = norm(problem.reference) * sizes[0]
+    for i in range(wide):
         unit[i, i] = 1.0
     return Piece(
-        np.zeros((dw, LANES)), np.zeros((dd, LANES)), np.zeros((dw, LANES)), np.zeros((dd, LANES)),
+        np.zeros((dw, lanes)), np.zeros((dd, lanes)), np.zeros((dw, lanes)), np.zeros((dd, lanes)),
         np.zeros(2, dtype=np.int64), np.zeros(max(dw, dd)), powers_of_radii(max(dw, dd)),
-        np.zeros((MAX_TERMS + 2, 3, LANES)),
+        np.zeros((MAX_TERMS + 3, slots, wide)),
         np.zeros((MAX_TERMS + 2, LANES)), np.zeros((MAX_TERMS + 2, LANES)),
-        v, np.zeros((3, 3)), np.zeros(3), np.zeros(3),
-        sizes, np.zeros((4, 2 * m, LANES)), unit,
+        v, np.zeros((2, slots, slots)), np.zeros(slots), np.zeros(slots),
+        sizes, np.zeros((4, 2 * m, wide)), unit,
     )  # fmt: skip
 
 
 # What follows runs for every step of every point: no slices and no array expressions, which would allocate.
 # _nrt=False: without it every call counts the references of all arrays of its tuples, half of the run time.
+
+
+@compiled(_nrt=False)
+def load_point(problem: Problem, T: float, piece: Piece) -> None:
+    """Write what of the constant part goes with the period: gyroscopic terms grow with speed."""
+    m = problem.v.size
+    omega, still, moving = 0.0, 0.0, 0.0
+    for q in range(m):
+        omega = max(omega, problem.omega[q])
+        for p in range(m):
+            still += problem.C[0, q, p] ** 2
+            moving += problem.C[1, q, p] ** 2
+            piece.hC[1, q, p] = problem.C[0, q, p] + problem.C[1, q, p] / T
+    piece.sizes[2] = omega + math.sqrt(still) + math.sqrt(moving) / T
+    piece.sizes[4] = problem.drive + problem.gyroscopic_drive / T
+    piece.sizes[5] = problem.noise + problem.gyroscopic_noise / T
 
 
 @compiled(_nrt=False)
@@ -152,29 +176,32 @@ def _summed(
     polys: FloatArray, i: int, degree: int, weights: FloatArray, factor: float, out: FloatArray
 ) -> None:
     """Out = factor * sum of weights[q] polys[q, i], row by row."""
-    for j in range(degree + 1):
-        total = zero()
-        for q in range(weights.size):
-            total = plus(factor * weights[q], load(polys, (q, i, j)), total)
-        store(out, (j,), total)
+    for c in range(0, out.shape[1], LANES):
+        for j in range(degree + 1):
+            total = zero()
+            for q in range(weights.size):
+                total = plus(factor * weights[q], load(polys, (q, i, j, c)), total)
+            store(out, (j, c), total)
 
 
 @compiled(_nrt=False)
 def _part_of(poly: FloatArray, degree: int, part: int, parts: int, factor: float, out: FloatArray) -> None:
     """Out = factor times poly in the time of one of so many equal parts, by synthetic division."""
-    if parts == 1:
-        for j in range(degree + 1):
-            store(out, (j,), scaled(factor, load(poly, (j,))))
-        return
-    for j in range(degree + 1):
-        store(out, (j,), load(poly, (j,)))
     middle = (2.0 * part + 1.0) / parts - 1.0
-    for j in range(degree):
-        for i in range(degree - 1, j - 1, -1):
-            store(out, (i,), plus(middle, load(out, (i + 1,)), load(out, (i,))))
-    for j in range(degree + 1):
-        store(out, (j,), scaled(factor, load(out, (j,))))
-        factor /= parts
+    for c in range(0, out.shape[1], LANES):
+        if parts == 1:
+            for j in range(degree + 1):
+                store(out, (j, c), scaled(factor, load(poly, (j, c))))
+            continue
+        for j in range(degree + 1):
+            store(out, (j, c), load(poly, (j, c)))
+        for j in range(degree):
+            for i in range(degree - 1, j - 1, -1):
+                store(out, (i, c), plus(middle, load(out, (i + 1, c)), load(out, (i, c))))
+        power = factor
+        for j in range(degree + 1):
+            store(out, (j, c), scaled(power, load(out, (j, c))))
+            power /= parts
 
 
 @compiled(_nrt=False)
@@ -195,7 +222,7 @@ def load_piece(
     _summed(problem.w, i, piece.degrees[0], gains, 1.0, piece.w)
     if math.isnan(rho):
         _summed(problem.wd, i, piece.degrees[1], gains, zeta, piece.wd)
-    rate, error, first, last = calm, problem.noise, 0.0, 0.0
+    rate, error, first, last = calm, piece.sizes[5], 0.0, 0.0
     edge = problem.edge_error
     for q in range(gains.size):
         g = abs(gains[q])
@@ -225,7 +252,7 @@ def load_step(problem: Problem, piece: Piece, part: int, parts: int, h: float, r
         piece.h2_reference[q] = -h * h * problem.reference[q]
         change += (piece.ws[0, q] + piece.h2_reference[q]) ** 2
         for p in range(m):
-            piece.hC[q, p] = h * problem.C[q, p]
+            piece.hC[0, q, p] = h * piece.hC[1, q, p]
     for j in range(piece.a.size):
         piece.a[j] = 0.0
     # ws holds h^2 w and wds h wd.

@@ -1,8 +1,8 @@
 """Eight numbers side by side as one value of compiled code: a row of columns in one vector register.
 
 The compiler does not turn loops of eight turns over possibly overlapping arrays into vector instructions, so
-the kernels say it themselves. ``load`` and ``store`` move array[index..., 0:8]; everything else works on
-registers. For kernels only: none of these can be called from Python.
+the kernels say it themselves. ``load`` and ``store`` move eight numbers of the last axis of an array;
+everything else works on registers. For kernels only: none of these can be called from Python.
 """
 
 from __future__ import annotations
@@ -38,7 +38,8 @@ def _pointer(context: Any, builder: Any, kinds: Any, array: Any, index: Any) -> 
     view = context.make_array(kinds[0])(context, builder, array)
     parts = zip(cgutils.unpack_tuple(builder, index), kinds[1], strict=True)
     where = [context.cast(builder, value, kind, types.intp) for value, kind in parts]
-    where.append(context.get_constant(types.intp, 0))
+    if len(where) < kinds[0].ndim:
+        where.append(context.get_constant(types.intp, 0))
     pointer = cgutils.get_item_pointer(context, builder, kinds[0], view, where)
     return builder.bitcast(pointer, ir.PointerType(_VECTOR))
 
@@ -52,7 +53,7 @@ def _splat(builder: Any, value: Any) -> Any:
 
 @intrinsic
 def load(typing: Any, array: Any, index: Any) -> Any:
-    """load(array, (i, ...)): array[i, ..., 0:8]."""
+    """load(array, (i, ..., c)): array[i, ..., c : c + 8]; c is 0 where it is left out."""
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return builder.load(_pointer(context, builder, signature.args, *args), align=_UNALIGNED)
@@ -62,7 +63,7 @@ def load(typing: Any, array: Any, index: Any) -> Any:
 
 @intrinsic
 def store(typing: Any, array: Any, index: Any, value: Any) -> Any:
-    """store(array, (i, ...), x): array[i, ..., 0:8] = x."""
+    """store(array, (i, ..., c), x): array[i, ..., c : c + 8] = x; c is 0 where it is left out."""
 
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         pointer = _pointer(context, builder, signature.args, args[0], args[1])

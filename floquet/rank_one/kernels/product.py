@@ -20,52 +20,69 @@ def frobenius(rows: FloatArray, scratch: FloatArray) -> float:
     """Bound on the norm of rows[:, 0:n], by way of ``scratch[0]``: squares may be lost to underflow."""
     n = rows.shape[0]
     total = zero()
-    for i in range(n):
-        total = plus_square(load(rows, (i,)), total)
+    for c in range(0, n, LANES):
+        for i in range(n):
+            total = plus_square(load(rows, (i, c)), total)
     store(scratch, (0,), total)
     square = 0.0
-    for lane in range(n):
+    for lane in range(min(n, LANES)):
         square += scratch[0, lane]
     return math.sqrt(square) + _FLOOR
 
 
 @compiled(_nrt=False)
+def copy(given: FloatArray, out: FloatArray) -> None:
+    """Out = given, as many rows as out has."""
+    n = out.shape[0]
+    for c in range(0, n, LANES):
+        for i in range(n):
+            store(out, (i, c), load(given, (i, c)))
+
+
+@compiled(_nrt=False)
 def multiply(left: FloatArray, right: FloatArray, out: FloatArray) -> None:
-    """Out = left[:, 0:n] @ right, all (n, LANES)."""
+    """Out = left[:, 0:n] @ right, all (n, lanes)."""
     n = left.shape[0]
-    for i in range(n):
-        total = zero()
-        for q in range(n):
-            total = plus(left[i, q], load(right, (q,)), total)
-        store(out, (i,), total)
+    for c in range(0, n, LANES):
+        for i in range(n):
+            total = zero()
+            for q in range(n):
+                total = plus(left[i, q], load(right, (q, c)), total)
+            store(out, (i, c), total)
 
 
 @compiled(_nrt=False)
 def invert(A: FloatArray, unit: FloatArray, work: FloatArray, out: FloatArray) -> None:
-    """Out[:, 0:n] = inverse of A[:, 0:n], (n, LANES), by Gauss-Jordan elimination with row pivots.
+    """Out[:, 0:n] = inverse of A[:, 0:n], (n, lanes), by Gauss-Jordan elimination with row pivots.
 
     Not finite where A is singular. ``unit`` has the rows of the unit matrix, ``work`` is scratch like A.
     """
-    n = A.shape[0]
-    for i in range(n):
-        store(work, (i,), load(A, (i,)))
-        store(out, (i,), load(unit, (i,)))
+    n, lanes = A.shape[0], A.shape[1]
+    copy(A, work)
+    copy(unit, out)
     for k in range(n):
         p = k
         for i in range(k + 1, n):
             if abs(work[i, k]) > abs(work[p, k]):
                 p = i
-        factor = 1.0 / work[p, k]
-        left, right = scaled(factor, load(work, (p,))), scaled(factor, load(out, (p,)))
-        store(work, (p,), load(work, (k,)))
-        store(out, (p,), load(out, (k,)))
-        store(work, (k,), left)
-        store(out, (k,), right)
-        for i in range(n):
-            if i != k:
-                factor = -work[i, k]
-                store(work, (i,), plus(factor, left, load(work, (i,))))
-                store(out, (i,), plus(factor, right, load(out, (i,))))
+        factor, own = 1.0 / work[p, k], k - k % LANES
+        if p != k:
+            for c in range(0, lanes, LANES):
+                left, right = load(work, (p, c)), load(out, (p, c))
+                store(work, (p, c), load(work, (k, c)))
+                store(out, (p, c), load(out, (k, c)))
+                store(work, (k, c), left)
+                store(out, (k, c), right)
+        for step in range(LANES, lanes + LANES, LANES):
+            c = (own + step) % lanes  # last that of the factors of this round
+            left, right = scaled(factor, load(work, (k, c))), scaled(factor, load(out, (k, c)))
+            store(work, (k, c), left)
+            store(out, (k, c), right)
+            for i in range(n):
+                if i != k:
+                    turned = -work[i, k]
+                    store(work, (i, c), plus(turned, left, load(work, (i, c))))
+                    store(out, (i, c), plus(turned, right, load(out, (i, c))))
 
 
 @compiled(_nrt=False)
@@ -76,10 +93,10 @@ def divide(
 
     Parameters
     ----------
-    end, start : (n, LANES)
+    end, start : (n, lanes)
     unit : rows of the unit matrix
-    scratch : (2, n, LANES)
-    step : (n, LANES), out: P
+    scratch : (2, n, lanes)
+    step : (n, lanes), out: P
 
     Returns
     -------
@@ -90,8 +107,9 @@ def divide(
     invert(start, unit, back, inverse)
     multiply(end, inverse, step)
     multiply(step, start, back)
-    for i in range(n):
-        store(back, (i,), plus(-1.0, load(end, (i,)), load(back, (i,))))
+    for c in range(0, n, LANES):
+        for i in range(n):
+            store(back, (i, c), plus(-1.0, load(end, (i, c)), load(back, (i, c))))
     residual, size = frobenius(back, inverse), frobenius(step, inverse)
     residual += (n + 1.0) * _EPS * size * frobenius(start, inverse)
     return size, residual
@@ -99,13 +117,14 @@ def divide(
 
 @compiled(_nrt=False)
 def _gram(A: FloatArray, out: FloatArray) -> None:
-    """Out = A^T A of A[:, 0:n], (n, LANES)."""
+    """Out = A^T A of A[:, 0:n], (n, lanes)."""
     n = A.shape[0]
-    for i in range(n):
-        total = zero()
-        for q in range(n):
-            total = plus(A[q, i], load(A, (q,)), total)
-        store(out, (i,), total)
+    for c in range(0, n, LANES):
+        for i in range(n):
+            total = zero()
+            for q in range(n):
+                total = plus(A[q, i], load(A, (q, c)), total)
+            store(out, (i, c), total)
 
 
 @compiled(_nrt=False)
@@ -142,12 +161,12 @@ def carry(
 
     Parameters
     ----------
-    steps : (count, n, LANES)
+    steps : (count, n, lanes)
     local : (count,) bound on |E_j|, 2-norm
-    layout : (count, 4) as from ``steps_of_period``
-    flow : (n, LANES), out: the product
+    layout : (count, 5) as from ``steps_of_period``
+    flow : (n, lanes), out: the product
     before : (count,) scratch: bounds on |Q_j|
-    work : (2 BLOCKS + 2, n, LANES) scratch
+    work : (2 BLOCKS + 2, n, lanes) scratch
     table : (5, BLOCKS) scratch: norm, error, rank of the blocks; norm, error of their product
 
     Returns
@@ -156,19 +175,16 @@ def carry(
     """
     n = flow.shape[0]
     product, scratch = work[0], work[1]
-    for i in range(n):
-        for lane in range(LANES):
-            flow[i, lane] = 1.0 if i == lane and lane < n else 0.0
-    for k in range(count):
+    copy(steps[0], flow)
+    before[0] = math.sqrt(n) * _SLACK
+    for k in range(1, count):
         before[k] = frobenius(flow, scratch)
         multiply(steps[k], flow, product)
-        for i in range(n):
-            store(flow, (i,), load(product, (i,)))
+        copy(product, flow)
     top, total, inner, wrong, norm = 0, 0.0, 1.0, 0.0, 0.0
     for k in range(count - 1, -1, -1):
         # n eps |P| is the rounding of multiplying by this step.
-        size = frobenius(steps[k], scratch)
-        own = local[k]
+        own, size = local[k], layout[k, 4]
         error = own + n * _EPS * size
         part, parts, extra = int(layout[k, 1]), int(layout[k, 2]), layout[k, 3]
         after = table[3, top - 1] + table[4, top - 1] if top > 0 else 1.0
@@ -176,13 +192,11 @@ def carry(
             # The steps of such a piece make one block, whose norm while it grows is the product of theirs.
             if part == parts - 1:
                 inner = 1.0
-                for i in range(n):
-                    store(work[2 + top], (i,), load(steps[k], (i,)))
+                copy(steps[k], work[2 + top])
                 wrong, norm = own, size
             else:
                 multiply(work[2 + top], steps[k], product)
-                for i in range(n):
-                    store(work[2 + top], (i,), load(product, (i,)))
+                copy(product, work[2 + top])
                 wrong = wrong * (size + own) + norm * own + n * _EPS * norm * size
                 norm *= size
             total += after * inner * error * before[k]
@@ -193,8 +207,7 @@ def carry(
             wrong += extra
         else:
             total += after * (error + extra * (1.0 if part == parts - 1 else 0.0)) * before[k]
-            for i in range(n):
-                store(work[2 + top], (i,), load(steps[k], (i,)))
+            copy(steps[k], work[2 + top])
             wrong = own + extra
             norm = size
         rank = 0
@@ -204,8 +217,7 @@ def carry(
             one, two = top - 2, top - 1
             a, b, da, db = table[0, one], table[0, two], table[1, one], table[1, two]
             multiply(work[2 + one], work[2 + two], product)
-            for i in range(n):
-                store(work[2 + one], (i,), load(product, (i,)))
+            copy(product, work[2 + one])
             rank += 1
             table[0, one] = frobenius(product, scratch)
             table[1, one] = a * db + da * b + da * db + n * _EPS * a * b
@@ -214,8 +226,7 @@ def carry(
         # The product of all blocks, which is the flow from here to the end, and its error.
         last, base = top - 1, 2 + BLOCKS
         if last == 0:
-            for i in range(n):
-                store(work[base], (i,), load(work[2], (i,)))
+            copy(work[2], work[base])
             table[4, 0] = table[1, 0]
         else:
             multiply(work[base + last - 1], work[2 + last], work[base + last])

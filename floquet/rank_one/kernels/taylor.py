@@ -27,16 +27,17 @@ import numpy as np
 
 from floquet.rank_one.kernels.compiled import compiled
 from floquet.rank_one.kernels.gains import (
-    MAX_STEPS,
     Limits,
     Piece,
     Problem,
     load_piece,
+    load_point,
     load_step,
+    most_steps,
     scratch_for,
 )
 from floquet.rank_one.kernels.lanes import LANES, load, plus, scaled, store, zero
-from floquet.rank_one.kernels.majorant import enough_terms
+from floquet.rank_one.kernels.majorant import MAX_TERMS, enough_terms
 from floquet.rank_one.kernels.product import BLOCKS, carry, divide
 from lumped.typing import FloatArray
 
@@ -48,7 +49,7 @@ def _series(piece: Piece, terms: int, h: float, ratio: float) -> None:
     """Fill Z[k] (3, LANES), the Taylor coefficients in step time, k = 2..terms+1, from Z[0] and Z[1].
 
     With wd = ratio w the two convolutions merge into one with s + (ratio/h) s'. All three coordinates side by
-    side, and the newest values last in every sum: what is older need not wait for them.
+    side in registers, and the newest values last in every sum: what is older need not wait for them.
     """
     v, C, o, ref = piece.v, piece.hC, piece.h2_omega2, piece.h2_reference
     Z, s, sd, w, wd = piece.Z, piece.s, piece.sd, piece.ws, piece.wds
@@ -81,9 +82,9 @@ def _series(piece: Piece, terms: int, h: float, ratio: float) -> None:
             t0, t1, t2 = plus(wd[0, 0], rate, t0), plus(wd[0, 1], rate, t1), plus(wd[0, 2], rate, t2)
         store(s, (k,), here)
         store(sd, (k,), rate)
-        t0 = plus(c * C[0, 2], y2, plus(c * C[0, 1], y1, plus(c * C[0, 0], y0, t0)))
-        t1 = plus(c * C[1, 2], y2, plus(c * C[1, 1], y1, plus(c * C[1, 0], y0, t1)))
-        t2 = plus(c * C[2, 2], y2, plus(c * C[2, 1], y1, plus(c * C[2, 0], y0, t2)))
+        t0 = plus(c * C[0, 0, 2], y2, plus(c * C[0, 0, 1], y1, plus(c * C[0, 0, 0], y0, t0)))
+        t1 = plus(c * C[0, 1, 2], y2, plus(c * C[0, 1, 1], y1, plus(c * C[0, 1, 0], y0, t1)))
+        t2 = plus(c * C[0, 2, 2], y2, plus(c * C[0, 2, 1], y1, plus(c * C[0, 2, 0], y0, t2)))
         factor = -1.0 / (c * (c + 1.0))
         x0, x1, x2 = y0, y1, y2
         y0, y1, y2 = scaled(factor, t0), scaled(factor, t1), scaled(factor, t2)
@@ -93,36 +94,79 @@ def _series(piece: Piece, terms: int, h: float, ratio: float) -> None:
         here, there = there, plus(v[2], y2, plus(v[1], y1, scaled(v[0], y0)))
 
 
+@compiled(fastmath={"contract"}, _nrt=False)
+def _series_of_many(piece: Piece, terms: int, h: float, ratio: float) -> None:
+    """`_series` for any number of coordinates, eight columns after the other."""
+    v, C, o, ref = piece.v, piece.hC, piece.h2_omega2, piece.h2_reference
+    Z, s, sd, w, wd = piece.Z, piece.s, piece.sd, piece.ws, piece.wds
+    merged = not math.isnan(ratio)
+    lag = ratio / h if merged else 0.0
+    dw, dd, m, rates = piece.degrees[0], piece.degrees[1], v.size, MAX_TERMS + 2
+    for column in range(0, 2 * m, LANES):
+        here = zero()
+        for q in range(m):
+            here = plus(v[q], load(Z, (0, q, column)), here)
+        for k in range(terms):
+            c = k + 1.0
+            there = zero()
+            for q in range(m):
+                y = load(Z, (k + 1, q, column))
+                there = plus(v[q], y, there)
+                store(Z, (rates, q, column), scaled(c, y))
+            rate = scaled(c, there)
+            if merged:
+                rate = plus(lag * c, there, here)
+            store(s, (k,), here)
+            store(sd, (k,), rate)
+            factor = -1.0 / (c * (c + 1.0))
+            for q in range(m):
+                t = plus(ref[q], here, scaled(o[q], load(Z, (k, q, column))))
+                if merged:
+                    for i in range(min(dw, k), -1, -1):
+                        t = plus(w[i, q], load(sd, (k - i,)), t)
+                else:
+                    for i in range(min(dw, k), -1, -1):
+                        t = plus(w[i, q], load(s, (k - i,)), t)
+                    for i in range(min(dd, k), -1, -1):
+                        t = plus(wd[i, q], load(sd, (k - i,)), t)
+                for p in range(m):
+                    t = plus(C[0, q, p], load(Z, (rates, p, column)), t)
+                store(Z, (k + 2, q, column), scaled(factor, t))
+            here = there
+
+
 @compiled(_nrt=False)
 def _unit_states(problem: Problem, piece: Piece, h: float) -> None:
     """Unit initial states x = (omega eta, eta') in the first 2m columns."""
     m = problem.v.size
-    for q in range(m):
-        store(piece.Z, (0, q), scaled(1.0 / problem.omega[q], load(piece.unit, (q,))))
-        store(piece.Z, (1, q), scaled(h, load(piece.unit, (m + q,))))
+    for c in range(0, 2 * m, LANES):
+        for q in range(m):
+            store(piece.Z, (0, q, c), scaled(1.0 / problem.omega[q], load(piece.unit, (q, c))))
+            store(piece.Z, (1, q, c), scaled(h, load(piece.unit, (m + q, c))))
 
 
 @compiled(fastmath={"contract"}, _nrt=False)
 def _ends_of_step(
     problem: Problem, piece: Piece, terms: int, h: float, end: FloatArray, start: FloatArray
 ) -> None:
-    """Energy coordinates at both ends of the step, (2m, LANES), summed from the smallest terms on."""
-    m = problem.v.size
+    """Energy coordinates at both ends of the step, (2m, lanes), summed from the smallest terms on."""
+    m, Z = problem.v.size, piece.Z
     top = terms + 1 - (terms + 1) % 2  # the largest even power
-    for q in range(m):
-        even, odd, even_rate, odd_rate = zero(), zero(), zero(), zero()
-        if top == terms:
-            odd = load(piece.Z, (terms + 1, q))
-            even_rate = scaled(terms + 1.0, odd)
-        for k in range(top, 0, -2):
-            x, y = load(piece.Z, (k, q)), load(piece.Z, (k - 1, q))
-            even, odd_rate = plus(1.0, x, even), plus(float(k), x, odd_rate)
-            odd, even_rate = plus(1.0, y, odd), plus(float(k - 1), y, even_rate)
-        even = plus(1.0, load(piece.Z, (0, q)), even)
-        store(end, (q,), scaled(problem.omega[q], plus(1.0, odd, even)))
-        store(start, (q,), scaled(problem.omega[q], plus(-1.0, odd, even)))
-        store(end, (m + q,), scaled(1.0 / h, plus(1.0, odd_rate, even_rate)))
-        store(start, (m + q,), scaled(1.0 / h, plus(-1.0, odd_rate, even_rate)))
+    for c in range(0, 2 * m, LANES):
+        for q in range(m):
+            even, odd, even_rate, odd_rate = zero(), zero(), zero(), zero()
+            if top == terms:
+                odd = load(Z, (terms + 1, q, c))
+                even_rate = scaled(terms + 1.0, odd)
+            for k in range(top, 0, -2):
+                x, y = load(Z, (k, q, c)), load(Z, (k - 1, q, c))
+                even, odd_rate = plus(1.0, x, even), plus(float(k), x, odd_rate)
+                odd, even_rate = plus(1.0, y, odd), plus(float(k - 1), y, even_rate)
+            even = plus(1.0, load(Z, (0, q, c)), even)
+            store(end, (q, c), scaled(problem.omega[q], plus(1.0, odd, even)))
+            store(start, (q, c), scaled(problem.omega[q], plus(-1.0, odd, even)))
+            store(end, (m + q, c), scaled(1.0 / h, plus(1.0, odd_rate, even_rate)))
+            store(start, (m + q, c), scaled(1.0 / h, plus(-1.0, odd_rate, even_rate)))
 
 
 @compiled(_nrt=False)
@@ -142,37 +186,41 @@ def steps_of_period(
     Parameters
     ----------
     gains, zeta, T : weights (Q,) of the parts, damping factor, period [s]
-    steps : (MAX_STEPS, 2m, LANES), out: transition matrices
-    local : (MAX_STEPS,), out: bounds on their errors
-    layout : (MAX_STEPS, 4), out: piece, number of the step in it, number of steps in it, and the bound on
-        what the error of the piece has besides those of its steps
+    steps : (most, 2m, lanes), out: transition matrices
+    local : (most,), out: bounds on their errors
+    layout : (most, 5), out: piece, number of the step in it, number of steps in it, the bound on what the
+        error of the piece has besides those of its steps, and a bound on the Frobenius norm of the step
 
     Returns
     -------
-    number of steps; -1 if there would be more than MAX_STEPS or MAX_TERMS
+    number of steps; -1 if there would be more than ``most`` or MAX_TERMS
     """
-    m = problem.v.size
+    m, most = problem.v.size, steps.shape[0]
     count = 0
+    load_point(problem, T, piece)
     log_tolerance = math.log(limits.tolerance)
     for i in range(problem.phases.size - 1):
         length = (problem.phases[i + 1] - problem.phases[i]) * T
         rate, misfit, ratio, first, last = load_piece(problem, i, gains, zeta, T, piece)
         parts = max(1, math.ceil(0.5 * length * rate / limits.angle))
-        part = int(0.0)  # not the literal 0: what is called with it would be compiled for the literal too
-        while part < parts:
-            if count + parts - part > MAX_STEPS:
+        begin = count
+        while count < begin + parts:
+            part = count - begin
+            if count + parts - part > most:
                 return -1
             h = 0.5 * length / parts
             degree = load_step(problem, piece, part, parts, h, ratio)
             terms, size = enough_terms(piece.a, degree, log_tolerance, piece.powers, piece.ends[0])
             if terms < 0:
                 # The polynomials vary too much within the step: begin the piece again with half of it.
-                count -= part
+                count = begin
                 parts *= 2
-                part = 0
                 continue
             _unit_states(problem, piece, h)
-            _series(piece, terms, h, ratio)
+            if m <= 3:
+                _series(piece, terms, h, ratio)
+            else:
+                _series_of_many(piece, terms, h, ratio)
             end, start, scratch = piece.ends[0], piece.ends[1], piece.ends[2:]
             _ends_of_step(problem, piece, terms, h, end, start)
             size_step, residual = divide(end, start, piece.unit, scratch, steps[count])
@@ -181,11 +229,13 @@ def steps_of_period(
             for j in range(degree + 1):
                 total += piece.a[j]
                 turned += piece.a[j] / (j + 1.0)
-            growth = total + h * (problem.drive - piece.sizes[2])
+            growth = total + h * (piece.sizes[4] - piece.sizes[2])
             # Each coefficient goes through at most this many roundings of the sum of the moduli of its terms,
             # and errors grow along the recurrence as its solution does; then come the sums at both ends.
             count_w = piece.degrees[0] + (piece.degrees[1] if math.isnan(ratio) else 0)
-            rounding = _U * math.sqrt(2.0 * m) * size * ((count_w + 20.0) * turned + total + 10.0)
+            rounding = (
+                _U * math.sqrt(2.0 * m) * size * ((count_w + 2.0 * max(m, 3) + 14.0) * turned + total + 10.0)
+            )
             back = math.exp(growth) * (1.0 + 1e-12)
             # What is wrong at an end of the piece acts in the step at that end, not in all of them alike.
             off = 2.0 * h * misfit
@@ -198,9 +248,8 @@ def steps_of_period(
             error = (residual + (1.0 + size_step) * (limits.tolerance + rounding)) * back * (1.0 + 1e-6)
             local[count] = error + off * spread
             layout[count, 0], layout[count, 1], layout[count, 2] = i, part, parts
-            layout[count, 3] = problem.flow_error[i]
+            layout[count, 3], layout[count, 4] = problem.flow_error[i], size_step
             count += 1
-            part += 1
     return count
 
 
@@ -224,14 +273,15 @@ def propagate_points(
 
     Returns
     -------
-    index of the first point that needs more than MAX_STEPS or MAX_TERMS, -1 if none
+    index of the first point that needs more than ``most_steps`` or MAX_TERMS, -1 if none
     """
-    n = 2 * problem.v.size
     piece = scratch_for(problem)
-    steps = np.empty((MAX_STEPS, n, LANES))
-    local, layout = np.empty(MAX_STEPS), np.empty((MAX_STEPS, 4))
-    before, table = np.empty(MAX_STEPS), np.zeros((5, BLOCKS))
-    work, flow = np.zeros((2 * BLOCKS + 2, n, LANES)), np.zeros((n, LANES))
+    n, lanes = 2 * problem.v.size, piece.unit.shape[0]
+    most = most_steps(n)
+    steps = np.empty((most, n, lanes))
+    local, layout = np.empty(most), np.empty((most, 5))
+    before, table = np.empty(most), np.zeros((5, BLOCKS))
+    work, flow = np.zeros((2 * BLOCKS + 2, n, lanes)), np.zeros((n, lanes))
     for point in range(periods.size):
         count = steps_of_period(
             problem, gains[point], damping_factor[point], periods[point], limits, piece, steps, local, layout

@@ -39,8 +39,8 @@ def random_system(rng: np.random.Generator) -> RankOneSystem:
     if rng.random() < 0.3:
         wd = rng.uniform(0.0, 0.1) * w  # damping proportional to stiffness, a case of its own in the kernel
     return RankOneSystem(
-        stiffness=rng.uniform(0.5, 4.0, m),
-        damping=rng.uniform(-0.02, 0.2, m),
+        stiffness=np.diag(rng.uniform(0.5, 4.0, m)),
+        damping=np.diag(rng.uniform(-0.02, 0.2, m)),
         v=v,
         phases=phases,
         gains=Gains(

@@ -27,8 +27,8 @@ def staircase(rng: np.random.Generator, pieces: int, degree: int = 0, m: int = 2
         return Gains(w, wd, np.zeros((pieces, 2)))
 
     return RankOneSystem(
-        stiffness=rng.uniform(0.5, 4.0, m),
-        damping=rng.uniform(0.0, 0.1, m),
+        stiffness=np.diag(rng.uniform(0.5, 4.0, m)),
+        damping=np.diag(rng.uniform(0.0, 0.1, m)),
         v=v,
         phases=np.concatenate([[0.0], np.sort(rng.uniform(0.01, 0.99, pieces - 1)), [1.0]]),
         gains=gains(w, 0.05 * rng.normal(size=(pieces, m, 2))),
@@ -80,8 +80,8 @@ def test_bound_is_near_the_first_order_change(degree: int) -> None:
     w = np.zeros((2, 1, degree + 2))
     w[:, 0] = halves
     system = RankOneSystem(
-        stiffness=np.array([0.2]),
-        damping=np.array([0.0]),
+        stiffness=np.array([[0.2]]),
+        damping=np.array([[0.0]]),
         v=np.array([1.0]),
         phases=np.array([0.0, 0.5, 1.0]),
         gains=Gains(w, np.zeros((2, 1, 1)), np.zeros((2, 2))),

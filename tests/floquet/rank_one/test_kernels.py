@@ -78,8 +78,8 @@ def test_supports_that_feed_energy_in_enter_the_bound() -> None:
     e, zero = 1e-6, np.zeros((1, 1, 1))
     declared = Gains(np.array([[[0.25]]]), zero, np.array([[e, 0.0]]))
     system = RankOneSystem(
-        stiffness=np.array([1e-3]), damping=np.array([-4.0]), v=np.array([1.0]), phases=np.array([0.0, 1.0]),
-        gains=declared, period=1.0, metric=np.array([1.0]),
+        stiffness=np.array([[1e-3]]), damping=np.array([[-4.0]]), v=np.array([1.0]),
+        phases=np.array([0.0, 1.0]), gains=declared, period=1.0, metric=np.array([1.0]),
     )  # fmt: skip
     found = fast_monodromies(system)
     S = system.modal().state_matrix()
@@ -99,7 +99,7 @@ def test_a_break_that_is_off_enters_the_bound(route: str) -> None:
 
     def system(place: float, edge_errors: np.ndarray | None) -> RankOneSystem:
         return RankOneSystem(
-            stiffness=np.array([1.0]), damping=np.array([0.1]), v=np.array([1.0]), period=1.0,
+            stiffness=np.array([[1.0]]), damping=np.array([[0.1]]), v=np.array([1.0]), period=1.0,
             phases=np.array([0.0, place, 1.0]), metric=np.array([1.0]),
             gains=Gains(w, zero, np.zeros((2, 2)), edge_errors),
         )  # fmt: skip

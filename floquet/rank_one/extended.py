@@ -1,0 +1,92 @@
+"""Monodromy matrices of rank-one feedback systems in extended precision, to measure the kernel's errors by.
+
+In plain coordinates and by a Taylor series of its own from the start of each step, the results share nothing
+with the compiled kernel but the polynomials. Where long double is no more than a double (it has 64 bits of
+mantissa on x86) they are only as good as any other route.
+
+Sources: docs/theory/floquet.md, "Computing M".
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from floquet.rank_one.system import RankOneSystem
+
+LongArray = npt.NDArray[np.longdouble]
+
+_TERMS = 30  # of steps that turn by 1 rad at most: 1/30! is far below the precision
+_LD = np.longdouble
+
+
+def extended_transitions(
+    h: LongArray, w: LongArray, wd: LongArray, L: LongArray, D: LongArray, v: LongArray, rate: float
+) -> LongArray:
+    """Transition matrices (S, 2m, 2m) of z'' + D z' + L z + w (v . z) + wd (v . z') = 0 over steps h (S,).
+
+    Parameters
+    ----------
+    h : (S,) [s], each turning by 1 rad at most
+    w, wd : (S, d+1, m) in powers of the time since the start of each step
+    L, D, v : (m, m), (m, m), (m,)
+    rate : unit of the rates among the states [1/s]
+    """
+    m = v.size
+    z = np.zeros((h.size, _TERMS + 2, m, 2 * m), dtype=_LD)
+    z[:, 0, :, :m], z[:, 1, :, m:] = np.eye(m), rate * np.eye(m)
+    s, sd = np.zeros((2, h.size, _TERMS + 1, 2 * m), dtype=_LD)
+    for k in range(_TERMS):
+        speed = (k + 1) * z[:, k + 1]
+        s[:, k], sd[:, k] = v @ z[:, k], v @ speed
+        n = min(k + 1, w.shape[1])
+        total = L @ z[:, k] + D @ speed
+        for gain, signal in ((w, s), (wd, sd)):
+            total += np.einsum("tir,tic->trc", gain[:, :n], signal[:, k::-1][:, :n])
+        z[:, k + 2] = -total / _LD((k + 1) * (k + 2))
+    power = h[:, None] ** np.arange(_TERMS + 2)
+    position = np.einsum("tk,tkrc->trc", power, z)
+    speed = np.einsum("tk,tkrc->trc", power[:, :-1] * np.arange(1, _TERMS + 2), z[:, 1:]) / rate
+    return np.concatenate([position, speed], axis=1)
+
+
+def extended_matrix(system: RankOneSystem) -> LongArray:
+    """Monodromy matrix (2m, 2m) in the energy coordinates of ``system.modal()``."""
+    form, total, T, m = system.modal(), system.total, _LD(system.period), system.v.size
+    rate = float(form.omega.max())
+    count = max(total.w.shape[2], total.wd.shape[2])
+    lengths, starts, gains = [], [], []
+    for i, (low, high) in enumerate(zip(system.phases[:-1], system.phases[1:], strict=True)):
+        parts = int(np.ceil(1.5 * rate * system.period * (high - low))) + 1
+        both = np.zeros((2, count, m), dtype=_LD)
+        for poly, given in zip(both, (total.w, total.wd), strict=True):
+            poly[: given.shape[2]] = given[i].T
+        for part in range(parts):
+            lengths.append((_LD(high) - _LD(low)) * T / parts)
+            starts.append(_LD(2 * part) / parts - _LD(1))
+            # u = start + 2 t/((high - low) T)
+            gains.append(_moved(both, starts[-1], _LD(2) / ((_LD(high) - _LD(low)) * T)))
+    w, wd = np.stack(gains, axis=1)
+    G = np.zeros((m, m)) if system.gyroscopic is None else system.gyroscopic
+    D = system.damping.astype(_LD) + G.astype(_LD) / T
+    M = np.eye(2 * m, dtype=_LD)
+    L, v = system.stiffness.astype(_LD), system.v.astype(_LD)
+    for flow in extended_transitions(np.array(lengths), w, wd, L, D, v, rate):
+        M = flow @ M
+    S = form.state_matrix().astype(_LD)
+    S[m:] /= rate
+    inverse = np.linalg.inv(S.astype(float)).astype(_LD)
+    for _ in range(2):  # Newton
+        inverse = inverse + inverse @ (np.eye(2 * m) - S @ inverse)
+    return np.asarray(inverse @ M @ S)
+
+
+def _moved(poly: LongArray, start: np.longdouble, slope: np.longdouble) -> LongArray:
+    """Coefficients (..., d+1, m) in powers of u -> in powers of t, u = start + slope t."""
+    out = np.zeros_like(poly)
+    for j in range(poly.shape[-2] - 1, -1, -1):
+        moved = start * out
+        moved[..., 1:, :] += slope * out[..., :-1, :]
+        out = moved
+        out[..., 0, :] += poly[..., j, :]
+    return out
