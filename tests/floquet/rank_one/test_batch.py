@@ -296,6 +296,6 @@ def test_limits_are_reported() -> None:
     system = random_system(np.random.default_rng(3))
     with pytest.raises(NumericalError, match="Taylor steps"):
         fast_monodromies(system, [1e7 * system.period])
-    unstable = replace(system, stiffness=-5.0 - system.stiffness)
+    unstable = replace(system, stiffness=-5.0 * np.eye(system.v.size) - system.stiffness)
     with pytest.raises(ParameterError, match="statically stable"):
         fast_monodromies(unstable)
