@@ -9,15 +9,15 @@ import math
 
 import numpy as np
 
-from lumped.typing import BoolArray, FloatArray
+from lumped.typing import FloatArray
 from multibody.contact.compiled import compiled
 
 #: Below this share of the mean load a pair is linear: Hertz's logarithm would make it infinitely soft.
 _LINEAR_BELOW = 1e-3
-#: Newton's steps for the load of Hertz's contact, of which six are the most needed.
+#: Steps for the load of Hertz's contact, of which four are the most needed.
 _MOST_STEPS = 20
-#: Newton's steps double the digits: behind one of this size, relative, nothing but rounding is left.
-_LAST_STEP = 1e-9
+#: Steps more than double the digits: behind one of this size, relative, nothing but rounding is left.
+_LAST_STEP = 1e-8
 
 
 @compiled
@@ -52,8 +52,10 @@ def stiffness_at(table: FloatArray, xi: float) -> float:
 
 
 @compiled
-def compliances(load: float, stiffness: float, softening: float, nominal: float) -> tuple[float, float]:
-    """Compression of one tooth pair over its load, and how it grows with the load [m/N].
+def compliances(
+    load: float, stiffness: float, softening: float, nominal: float
+) -> tuple[float, float, float]:
+    """Compression of one tooth pair over its load, and how it grows with the load: slope, half of its bend.
 
     With Hertz's contact by Weber and Banaschek p = N (1/k - D/2 ln(S/N_0^2)) with S = N^2 + N_1^2: it grows
     stiffer with the load, and is linear below N_1. Pulled, in a mesh that cannot part, it is linear.
@@ -64,25 +66,32 @@ def compliances(load: float, stiffness: float, softening: float, nominal: float)
     stiffness : k at the load ``nominal`` [N/m]
     softening : D [m/N]; 0 is a linear spring
     nominal : N_0 [N]
+
+    Returns
+    -------
+    p/N [m/N], dp/dN [m/N] and d^2p/dN^2/2 [m/N^2]
     """
     if softening == 0.0 or load <= 0.0:
-        return 1.0 / stiffness, 1.0 / stiffness
+        return 1.0 / stiffness, 1.0 / stiffness, 0.0
     square = load * load + (_LINEAR_BELOW * nominal) ** 2
     secant = 1.0 / stiffness - 0.5 * softening * math.log(square / nominal**2)
-    return secant, secant - softening * load * load / square
+    share = load * load / square
+    bend = softening * load / square * (share - 1.5)
+    return secant, secant - softening * share, bend
 
 
 @compiled
 def elastic_load(pressed: float, stiffness: float, softening: float, nominal: float) -> float:
-    """Load of one tooth pair alone [N]; arguments as ``compliances`` and ``stored_energy``."""
+    """Load of one tooth pair alone [N], by Chebyshev's method; arguments as ``two_loads``."""
     if stiffness <= 0.0:
         return 0.0
     load = stiffness * pressed
     if softening == 0.0 or pressed <= 0.0:
         return load
     for _ in range(_MOST_STEPS):
-        secant, tangent = compliances(load, stiffness, softening, nominal)
+        secant, tangent, bend = compliances(load, stiffness, softening, nominal)
         step = (load * secant - pressed) / tangent
+        step += bend * step * step / tangent
         load -= step
         if abs(step) <= _LAST_STEP * load:
             break
@@ -112,8 +121,9 @@ def stored_energy(
     least = (_LINEAR_BELOW * nominal) ** 2
     square = load * load + least
     # N p - C of the logarithm: the integral of N ln(S) is (S ln(S) - S)/2.
-    ends = square * (math.log(square / nominal**2) - 1.0) - least * (math.log(least / nominal**2) - 1.0)
-    return stored - 0.5 * softening * (load * load * math.log(square / nominal**2) - 0.5 * ends), along
+    rise = math.log(square / nominal**2)
+    ends = square * (rise - 1.0) - least * (math.log(_LINEAR_BELOW**2) - 1.0)
+    return stored - 0.5 * softening * (load * load * rise - 0.5 * ends), along
 
 
 @compiled
@@ -126,7 +136,7 @@ def two_loads(
 ) -> tuple[float, float]:
     """Loads of two tooth pairs that touch and move each other [N]; arguments as ``shared_loads``.
 
-    Newton's steps from the loads of linear springs.
+    From the loads of linear springs by Chebyshev's method: Newton's step, and what the bend adds to it.
     """
     first, second = 1.0 / stiffness[0], 1.0 / stiffness[1]
     determinant = first * second - coupling * coupling
@@ -135,13 +145,16 @@ def two_loads(
     if softening == 0.0:
         return one, other
     for _ in range(_MOST_STEPS):
-        secant, first = compliances(one, stiffness[0], softening, nominal)
+        secant, first, bend_one = compliances(one, stiffness[0], softening, nominal)
         rest_one = one * secant + coupling * other - pressed[0]
-        secant, second = compliances(other, stiffness[1], softening, nominal)
+        secant, second, bend_other = compliances(other, stiffness[1], softening, nominal)
         rest_other = other * secant + coupling * one - pressed[1]
-        determinant = first * second - coupling * coupling
-        step_one = (second * rest_one - coupling * rest_other) / determinant
-        step_other = (first * rest_other - coupling * rest_one) / determinant
+        inverse = 1.0 / (first * second - coupling * coupling)
+        step_one = (second * rest_one - coupling * rest_other) * inverse
+        step_other = (first * rest_other - coupling * rest_one) * inverse
+        rest_one, rest_other = bend_one * step_one * step_one, bend_other * step_other * step_other
+        step_one += (second * rest_one - coupling * rest_other) * inverse
+        step_other += (first * rest_other - coupling * rest_one) * inverse
         one, other = one - step_one, other - step_other
         if abs(step_one) + abs(step_other) <= _LAST_STEP * (abs(one) + abs(other)):
             break
@@ -149,11 +162,58 @@ def two_loads(
 
 
 @compiled
+def _many_loads(
+    count: int,
+    pressed: FloatArray,
+    stiffness: FloatArray,
+    touch: int,
+    coupling: FloatArray,
+    softening: float,
+    nominal: float,
+    loads: FloatArray,
+) -> None:
+    """Loads of more than two pairs that touch, by Newton's steps from ``loads``.
+
+    ``touch`` are the bits of these pairs; the other arguments are as ``shared_loads``.
+    """
+    matrix, rest = np.empty((count, count)), np.empty(count)
+    for _ in range(_MOST_STEPS):
+        for i in range(count):
+            secant, tangent = 1.0, 1.0
+            acts = touch >> i & 1
+            if acts:
+                secant, tangent, _ = compliances(loads[i], stiffness[i], softening, nominal)
+            rest[i] = loads[i] * secant - pressed[i] if acts else 0.0
+            for j in range(count):
+                matrix[i, j] = coupling[i, j] if acts and touch >> j & 1 else 0.0
+                rest[i] += matrix[i, j] * loads[j]
+            matrix[i, i] = tangent
+        # Gauss's elimination; the matrix is symmetric and positive definite.
+        for i in range(count):
+            for k in range(i + 1, count):
+                share = matrix[k, i] / matrix[i, i]
+                for j in range(i, count):
+                    matrix[k, j] -= share * matrix[i, j]
+                rest[k] -= share * rest[i]
+        step = total = 0.0
+        for i in range(count - 1, -1, -1):
+            for j in range(i + 1, count):
+                rest[i] -= matrix[i, j] * rest[j]
+            rest[i] /= matrix[i, i]
+            if touch >> i & 1:
+                loads[i] -= rest[i]
+                step += abs(rest[i])
+                total += abs(loads[i])
+        if step <= _LAST_STEP * total:
+            break
+
+
+@compiled
 def shared_loads(
     count: int,
     pressed: FloatArray,
     stiffness: FloatArray,
-    pulls: BoolArray,
+    pulls: int,
     coupling: FloatArray,
     softening: float,
     nominal: float,
@@ -161,27 +221,28 @@ def shared_loads(
 ) -> None:
     """Loads of tooth pairs that move each other, p_i = N_i c_i(N_i) + sum_j w_ij N_j where they touch.
 
-    Newton's steps for the pairs that touch; then those that would pull are let go and those that would
-    overlap are taken in, until none is left. The energy is convex, so there is one answer.
+    Solved for the pairs that touch; then those that would pull are let go and those that would overlap are
+    taken in, until none is left. The energy is convex, so there is one answer.
 
     Parameters
     ----------
     count : number of pairs, the first entries of the arrays
     pressed, stiffness : approach less all gaps [m], and k [N/m]
-    pulls : whether the pair cannot part
+    pulls : bits of the pairs that cannot part
     coupling : w_ij, zero on the diagonal [m/N]
     softening, nominal : as ``compliances``
     loads : receives N_i [N]
     """
-    touch = np.empty(count, np.bool_)
+    touch = 0
     for i in range(count):
-        touch[i] = stiffness[i] > 0.0 and (pulls[i] or pressed[i] > 0.0)
-        loads[i] = stiffness[i] * pressed[i] if touch[i] else 0.0
-    matrix, rest = np.empty((count, count)), np.empty(count)
+        loads[i] = 0.0
+        if stiffness[i] > 0.0 and (pulls >> i & 1 or pressed[i] > 0.0):
+            touch |= 1 << i
+            loads[i] = stiffness[i] * pressed[i]
     for _ in range(2 * count + 1):
         number, one, other = 0, 0, 0
         for i in range(count):
-            if touch[i]:
+            if touch >> i & 1:
                 number, one, other = number + 1, other, i
         if number == 1:
             loads[other] = elastic_load(pressed[other], stiffness[other], softening, nominal)
@@ -193,43 +254,18 @@ def shared_loads(
                 softening,
                 nominal,
             )
-        for _ in range(_MOST_STEPS if number > 2 else 0):
-            for i in range(count):
-                secant, tangent = 1.0, 1.0
-                if touch[i]:
-                    secant, tangent = compliances(loads[i], stiffness[i], softening, nominal)
-                rest[i] = loads[i] * secant - pressed[i] if touch[i] else 0.0
-                for j in range(count):
-                    matrix[i, j] = coupling[i, j] if touch[i] and touch[j] else 0.0
-                    rest[i] += matrix[i, j] * loads[j]
-                matrix[i, i] = tangent
-            # Gauss's elimination; the matrix is symmetric and positive definite.
-            for i in range(count):
-                for k in range(i + 1, count):
-                    share = matrix[k, i] / matrix[i, i]
-                    for j in range(i, count):
-                        matrix[k, j] -= share * matrix[i, j]
-                    rest[k] -= share * rest[i]
-            step = total = 0.0
-            for i in range(count - 1, -1, -1):
-                for j in range(i + 1, count):
-                    rest[i] -= matrix[i, j] * rest[j]
-                rest[i] /= matrix[i, i]
-                if touch[i]:
-                    loads[i] -= rest[i]
-                    step += abs(rest[i])
-                    total += abs(loads[i])
-            if step <= _LAST_STEP * total:
-                break
+        elif number > 2:
+            _many_loads(count, pressed, stiffness, touch, coupling, softening, nominal, loads)
         settled = True
         for i in range(count):
             left = pressed[i]
             for j in range(count):
                 left -= coupling[i, j] * loads[j]
-            if touch[i] and not pulls[i] and loads[i] <= 0.0:
-                touch[i], loads[i], settled = False, 0.0, False
-            elif not touch[i] and stiffness[i] > 0.0 and left > 0.0:
-                touch[i], settled = True, False
+            if touch >> i & 1:
+                if loads[i] <= 0.0 and not pulls >> i & 1:
+                    touch, loads[i], settled = touch & ~(1 << i), 0.0, False
+            elif stiffness[i] > 0.0 and left > 0.0:
+                touch, settled = touch | 1 << i, False
         if settled:
             break
 

@@ -18,9 +18,10 @@ from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.compiled import compiled
 from multibody.contact.elements import compliances
-from multibody.contact.kernels import mesh_position, relief_at
+from multibody.contact.kernels import coupling_at, mesh_position, relief_at
 from multibody.contact.kinematics import (
     DRIVE,
+    MAX_PAIRS,
     corner_gap,
     corner_reach,
     overlap_rate,
@@ -41,6 +42,9 @@ _STEP, _NEGLIGIBLE = 0.005, 1e-6
 _MOST_SWITCHES = 12
 #: A prediction is repeated until it moves by less than this share of the mesh cycle, or so often.
 _SHARP, _MOST_ITERATIONS = 1e-13, 10
+#: The same where the force only bends; and how often the place of a touch beyond the tips is corrected by
+#: what the loads there move.
+_BENDS, _PLACES = 1e-10, 2
 
 
 def event_table(
@@ -50,7 +54,6 @@ def event_table(
     pitch: float,
     *,
     corners: bool = False,
-    alone: bool = True,
 ) -> FloatArray:
     """Rows (kind, place) of what makes the force jump or bend once per mesh cycle, (n, 2).
 
@@ -61,7 +64,6 @@ def event_table(
     friction : (kind, place) of the jumps and kinks of the friction law
     pitch : base pitch [m]
     corners : whether tip corners touch beyond the path of contact
-    alone : whether the load of a pair moves no other; else the touches of corners are not foreseen
     """
     step = _STEP * pitch
     sizes = {
@@ -76,7 +78,7 @@ def event_table(
         rows += [(ENTRY, 0.0), (EXIT, 0.0)]
     if corners:
         ends = stiffness(np.array([low, np.nextafter(high, low)]))
-        rows += [(FIRST_TOUCH, 0.0), (LET_GO, float(ends[1])), (LAST_TOUCH, 0.0)] if alone else []
+        rows += [(FIRST_TOUCH, 0.0), (LET_GO, float(ends[1])), (LAST_TOUCH, 0.0)]
         least = _NEGLIGIBLE * float(np.abs(stiffness(stiffness.breaks[:-1])).max())
         bent = np.abs(stiffness(inside) - ends) > least  # beyond, k keeps its value, and so does a relief
         rows += [(SWITCH, at) for at, one in zip((low, high), bent, strict=True) if one or bends]
@@ -144,36 +146,70 @@ def let_go(
         load = pull if pull > full else 0.25 * (3.0 + math.sqrt(9.0 - 8.0 * full / pull)) * full
         left = gap - load * compliances(load, stiffness, softening, p[kn.NOMINAL_FORCE])[0]
         before, beyond = beyond, corner_reach(left, tip, length, rp, rg)
-        if abs(beyond - before) < _SHARP * p[kn.PITCH]:
+        if abs(beyond - before) < _BENDS * p[kn.PITCH]:
             break
     return float(beyond)
 
 
 @compiled
+def moved_by_others(at: float, contacts: FloatArray, count: int, p: FloatArray) -> float:
+    """How much of the approach of a pair at xi = ``at`` the loads of the others take [m].
+
+    Parameters
+    ----------
+    at : where the pair will be at an event, the others being whole pitches off [m]
+    contacts, count : records of the present contacts, see ``kernels.contact_forces``
+    """
+    moved = 0.0
+    for i in range(count):
+        apart = math.floor((contacts[i, kn.XI] - at) / p[kn.PITCH] + 0.5)
+        if apart != 0 and contacts[i, kn.FLANK] > 0.0:
+            behind = min(at, at + apart * p[kn.PITCH])
+            moved += coupling_at(p, abs(apart), behind)[0] * contacts[i, kn.ELASTIC]
+    return moved
+
+
+@compiled
 def distance(
-    kind: float, place: float, t: float, q: FloatArray, v: FloatArray, p: FloatArray, flags: int
+    kind: float,
+    place: float,
+    t: float,
+    q: FloatArray,
+    v: FloatArray,
+    p: FloatArray,
+    flags: int,
+    contacts: FloatArray,
+    count: int,
 ) -> float:
     """How far one tooth pair has to travel along the path of contact to an event, modulo the base pitch [m].
 
     Friction jumps or bends at a sliding velocity v_s, given by the place where the nominal motion slides so
     fast, xi = L_XP + v_s/(Omega_p + Omega_g). The actual v_s is linear along the line of action, so the place
-    where it takes that value is exact.
+    where it takes that value is exact. ``contacts`` are the ``count`` pairs whose loads move a tip corner,
+    none where pairs stand alone.
     """
     ex, ey, length, delta, rho, xi = mesh_position(t, q, p, flags, DRIVE)
     shifted = flags & (kn.ENTRY_SHIFT | kn.TIP_CONTACT)
-    if kind in (EXIT, LET_GO, LAST_TOUCH):
-        beyond = 0.0
-        if kind == LET_GO:
-            beyond = let_go(delta - relief_at(p, p[kn.L_XD])[0], place, ex, ey, length, v, p, flags)
-        elif kind == LAST_TOUCH:
-            gap = delta - relief_at(p, p[kn.L_XD])[0]
-            beyond = corner_reach(gap, p[kn.TIP_P], length, p[kn.RADIUS_P], p[kn.RADIUS_G])
-        return float(p[kn.TIP_P] if shifted else p[kn.L_XD]) + beyond - rho
-    if kind in (ENTRY, FIRST_TOUCH):
-        beyond = 0.0
-        if kind == FIRST_TOUCH:
+    first, last = kind == FIRST_TOUCH, kind in (LET_GO, LAST_TOUCH)
+    beyond = 0.0
+    # The loads of other pairs depend little on where exactly the pair will be.
+    for _ in range(_PLACES if first or last else 0):
+        if first:
             gap = delta - relief_at(p, p[kn.L_XA])[0]
+            gap -= moved_by_others(p[kn.L_XA] - beyond, contacts, count, p)
             beyond = corner_reach(gap, p[kn.TIP_G], length, p[kn.RADIUS_G], p[kn.RADIUS_P])
+        else:
+            gap = delta - relief_at(p, p[kn.L_XD])[0]
+            gap -= moved_by_others(p[kn.L_XD] + beyond, contacts, count, p)
+            if kind == LET_GO:
+                beyond = let_go(gap, place, ex, ey, length, v, p, flags)
+            else:
+                beyond = corner_reach(gap, p[kn.TIP_P], length, p[kn.RADIUS_P], p[kn.RADIUS_G])
+        if count == 0:
+            break
+    if kind == EXIT or last:
+        return float(p[kn.TIP_P] if shifted else p[kn.L_XD]) + beyond - rho
+    if kind == ENTRY or first:
         return float(length + delta - p[kn.TIP_G] if shifted else p[kn.L_XA]) - beyond - rho
     if kind == SLIDING and flags & kn.SLIDING:
         omega_p, omega_g = v[2] - p[kn.OMEGA_P], v[5] + p[kn.OMEGA_G]
@@ -192,6 +228,7 @@ def time_to_event(
     a: FloatArray,
     p: FloatArray,
     flags: int,
+    table: FloatArray,
     events: FloatArray,
     near: float,
 ) -> tuple[float, float]:
@@ -201,26 +238,37 @@ def time_to_event(
     ----------
     t : time [s]
     q, v, a : (6,) coordinates, velocities, accelerations
-    p, flags : as ``kernels.contact_forces``
+    p, flags, table : as ``kernels.contact_forces``
     events : (n, 2) from ``event_table``
     near : time over which a Taylor polynomial foretells the vibration [s]; further ahead only the nominal
         speed is asked
     """
     pitch, speed = float(p[kn.PITCH]), float(p[kn.OMEGA_P] * p[kn.RADIUS_P])
+    coupled = flags & kn.NEIGHBOURS and flags & kn.TIP_CONTACT and p[kn.COUPLED] > 0.0
+    wrench, contacts, count = np.empty(6), np.empty((2 * MAX_PAIRS, kn.N_RECORD)), 0
+    if coupled:
+        count = kn.contact_forces(t, q, v, p, flags, table, wrench, contacts)
     way, which = math.inf, 0
     for i in range(events.shape[0]):
-        d = distance(events[i, 0], events[i, 1], t, q, v, p, flags) % pitch
+        d = distance(events[i, 0], events[i, 1], t, q, v, p, flags, contacts, count) % pitch
         if d < way:
             way, which = d, i
     wait = way / speed
     kind = float(events[which, 0]) if events.shape[0] else ENTRY
     if not wait < near:
         return wait, kind
-    for _ in range(_MOST_ITERATIONS):
+    before = shift = 0.0
+    for turn in range(_MOST_ITERATIONS):
         later, moving = q + wait * (v + 0.5 * wait * a), v + wait * a
-        d = distance(kind, events[which, 1], t + wait, later, moving, p, flags)
+        if coupled and kind >= FIRST_TOUCH:
+            count = kn.contact_forces(t + wait, later, moving, p, flags, table, wrench, contacts)
+        d = distance(kind, events[which, 1], t + wait, later, moving, p, flags, contacts, count)
         change = wrap(d, pitch) / speed
-        wait += change
-        if abs(change) * speed < _SHARP * pitch:
+        share = 1.0  # of the way that the secant through the last two predictions goes
+        if turn > 0 and abs(change) < 0.5 * abs(shift):
+            share = (wait - before) / (shift - change)
+        before, shift = wait, change
+        wait += share * change
+        if abs(change) * speed < (_SHARP if kind < FIRST_TOUCH else _BENDS) * pitch:
             break
     return max(wait, 0.0), kind

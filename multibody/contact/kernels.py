@@ -84,9 +84,12 @@ N_RECORD = 15
 
 # Rows of what is known of the pairs before their loads are.
 (
-    POSITION, PRESSED, PRESSING, RELIEF_SLOPE, BY_P, BY_G, BY_L, STIFFNESS, SLOPE, NORMAL,
-) = range(10)  # fmt: skip
-N_STATE = 10
+    POSITION, PRESSED, PRESSING, RELIEF_SLOPE, BY_P, BY_G, BY_L, STIFFNESS, SLOPE, NORMAL, ARMS,
+) = range(11)  # fmt: skip
+# The flank distances take two rows; behind them stand how pairs move each other, and its slopes.
+COUPLINGS = ARMS + 2
+SLOPES = COUPLINGS + MAX_PAIRS
+N_STATE = SLOPES + MAX_PAIRS
 
 #: How far beyond the tips contact is looked for, over the base pitch.
 _REACH = 0.4
@@ -282,10 +285,10 @@ def contact_forces(
     vx, vy = v[0] - v[3], v[1] - v[4]
     unilateral = (flags & CONTACT_LOSS) != 0
     coupled = p[COUPLED] > 0.0 and (flags & NEIGHBOURS) != 0
-    softening = p[SOFTENING] if flags & CONTACT_LAW else 0.0
-    arms, state = np.empty((MAX_PAIRS, 2)), np.empty((N_STATE, MAX_PAIRS))
-    bound = np.empty(MAX_PAIRS, np.bool_)
-    coupling, slopes = np.zeros((MAX_PAIRS, MAX_PAIRS)), np.zeros((MAX_PAIRS, MAX_PAIRS))
+    softening, nominal = p[SOFTENING] if flags & CONTACT_LAW else 0.0, p[NOMINAL_FORCE]
+    # One array, for each costs as much as a contact's geometry.
+    state = np.empty((N_STATE, MAX_PAIRS))
+    arms, coupling = state[ARMS:COUPLINGS].reshape((MAX_PAIRS, 2)), state[COUPLINGS:SLOPES]
     count = 0
     for side in range(2 if flags & BACK_SIDE else 1):
         flank = DRIVE if side == 0 else COAST
@@ -301,17 +304,21 @@ def contact_forces(
             length_rate = flank * (rp + rg) * psi_rate - (ex * vx + ey * vy)
         wp, wg = (omega_p, omega_g) if flags & ROTATION_PHASE else (-p[OMEGA_P], p[OMEGA_G])
         xi_rate = 0.5 * flank * (rp * (psi_rate - wp) - rg * (psi_rate - wg))
-        for i in range(pairs):
-            xi = 0.5 * (arms[i, 0] - arms[i, 1] + p[L_XY])
+        bound, candidates, pairs = 0, pairs, 0  # bound: bits of the pairs that cannot part
+        for candidate in range(candidates):
+            rho_p, rho_g, i = arms[candidate, 0], arms[candidate, 1], pairs
+            xi = 0.5 * (rho_p - rho_g + p[L_XY])
             error, error_slope = relief_at(p, xi)
             pressed, pressing = delta - error, rate - error_slope * xi_rate
             corners, beyond = Corners(0.0, 0.0, 0.0, 0.0), False
             if flags & TIP_CONTACT:
                 if xi < p[L_XA] or xi > p[L_XD]:
                     error, error_slope = relief_at(p, min(max(xi, p[L_XA]), p[L_XD]))[0], 0.0
-                corners = corners_at(arms[i, 0], arms[i, 1], length, p[TIP_P], p[TIP_G], rp, rg)
-                beyond = arms[i, 0] > p[TIP_P] or arms[i, 1] > p[TIP_G]
+                corners = corners_at(rho_p, rho_g, length, p[TIP_P], p[TIP_G], rp, rg)
+                beyond = rho_p > p[TIP_P] or rho_g > p[TIP_G]
                 pressed = delta - error - corners.gap
+                if beyond and pressed < -abs(delta):
+                    continue  # further apart than any neighbour could move it
                 pressing = (
                     rate
                     - error_slope * xi_rate
@@ -319,30 +326,27 @@ def contact_forces(
                     - corners.by_g * flank * rg * (psi_rate - omega_g)
                     - corners.by_length * length_rate
                 )
-            bound[i] = not (unilateral or beyond)
+            pairs += 1
+            arms[i, 0], arms[i, 1] = rho_p, rho_g
+            if not (unilateral or beyond):
+                bound |= 1 << i
             state[POSITION, i], state[PRESSED, i], state[PRESSING, i] = xi, pressed, pressing
             state[RELIEF_SLOPE, i] = error_slope
             state[BY_P, i], state[BY_G, i], state[BY_L, i] = corners.by_p, corners.by_g, corners.by_length
             state[STIFFNESS, i], state[SLOPE, i] = stiffness_and_slope(table, xi)
             if not coupled:
-                load = elastic_load(pressed, state[STIFFNESS, i], softening, p[NOMINAL_FORCE])
-                state[NORMAL, i] = load if bound[i] else max(load, 0.0)
+                load = elastic_load(pressed, state[STIFFNESS, i], softening, nominal)
+                state[NORMAL, i] = load if bound >> i & 1 else max(load, 0.0)
         if coupled:
             for i in range(pairs):
+                coupling[i, i] = 0.0
                 for j in range(i):
                     # The newest pair, furthest behind, comes first.
-                    coupling[i, j], slopes[i, j] = coupling_at(p, i - j, state[POSITION, j])
-                    coupling[j, i], slopes[j, i] = coupling[i, j], slopes[i, j]
-            shared_loads(
-                pairs,
-                state[PRESSED],
-                state[STIFFNESS],
-                bound,
-                coupling,
-                softening,
-                p[NOMINAL_FORCE],
-                state[NORMAL],
-            )
+                    moved, moved_slope = coupling_at(p, i - j, state[POSITION, j])
+                    coupling[i, j] = coupling[j, i] = moved
+                    state[SLOPES + i, j] = state[SLOPES + j, i] = moved_slope
+            pressed_by, stiff, loads = state[PRESSED], state[STIFFNESS], state[NORMAL]
+            shared_loads(pairs, pressed_by, stiff, bound, coupling, softening, nominal, loads)
         for i in range(pairs):
             xi, pressed, pressing = state[POSITION, i], state[PRESSED, i], state[PRESSING, i]
             elastic, stiffness, error_slope = state[NORMAL, i], state[STIFFNESS, i], state[RELIEF_SLOPE, i]
@@ -351,18 +355,17 @@ def contact_forces(
                 for j in range(pairs):
                     if j != i:
                         moved += coupling[i, j] * state[NORMAL, j]
-                        moved_slope += slopes[i, j] * state[NORMAL, j]
+                        moved_slope += state[SLOPES + i, j] * state[NORMAL, j]
                 own -= moved
-            if own <= 0.0 and not bound[i] and (side == 1 or arms[i, 0] > p[TIP_P] or arms[i, 1] > p[TIP_G]):
+            beyond = arms[i, 0] > p[TIP_P] or arms[i, 1] > p[TIP_G]
+            if own <= 0.0 and (beyond or (side == 1 and unilateral)):
                 continue
             arm_p = 0.5 * (arms[i, 0] - arms[i, 1] + length)
             arm_g = length - arm_p
             damping = p[DAMPING] * math.sqrt(max(stiffness, 0.0))
             if flags & TIP_CONTACT:
-                damping *= gradual(elastic / (GRADUAL * p[NOMINAL_FORCE]))
-            stored, stored_slope = stored_energy(
-                elastic, stiffness, state[SLOPE, i], softening, p[NOMINAL_FORCE]
-            )
+                damping *= gradual(elastic / (GRADUAL * nominal))
+            stored, stored_slope = stored_energy(elastic, stiffness, state[SLOPE, i], softening, nominal)
             # Half of w_ij N_i N_j is counted at either pair, and half of its slope at constant compression.
             stored += 0.5 * elastic * moved
             stored_slope -= 0.5 * elastic * moved_slope

@@ -212,7 +212,6 @@ def machine(
             friction,
             pitch,
             corners=bool(flags & kn.TIP_CONTACT),
-            alone=not (flags & kn.NEIGHBOURS and p[kn.COUPLED] > 0.0),
         ),
     )
     if supports == "springs":

@@ -1,13 +1,17 @@
-"""A few steps of DOPRI5 without exudyn, over what is left before an event or the end of an interval.
+"""A few steps of DOPRI5 without exudyn: around events, and over what is left before the end of an interval.
 
-To start exudyn's solver costs as much as three of its steps. These steps solve the same equations with the
-same method and within the same tolerance; where they would not, exudyn takes over.
+To start exudyn's solver costs as much as three of its steps, and a step that it rejects as much as one that
+it takes. Behind an event, where the force bends or the damper of a corner takes hold within few hundredths of
+a step, the step size is found here. These steps solve the same equations with the same method and within the
+same tolerance; exudyn takes over where its steps are regained.
 
 Sources: J. R. Dormand and P. J. Prince, "A family of embedded Runge-Kutta formulae", J. Comput. Appl. Math. 6
 (1980) 19-26.
 """
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 
@@ -30,38 +34,56 @@ _STAGES = np.array(
 )
 #: Result of fifth order less that of fourth.
 _ERROR = np.array([71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40])
+#: Part of the next step that the error of this one allows, and by what a step may change.
+_SAFETY, _SHRINK, _GROW = 0.9, 0.2, 5.0
+#: What is left before an interval's end is bridged if it is no longer than so many ordinary steps.
+FEW = 3.0
+#: A step this much smaller than an ordinary one is left to exudyn.
+_LEAST = 1e-9
 
 
 @compiled
 def bridge(
+    stop: float,
+    ordinary: float,
     times: FloatArray,
-    q: FloatArray,
-    v: FloatArray,
-    a: FloatArray,
+    states: FloatArray,
     p: FloatArray,
     flags: int,
     table: FloatArray,
     bodies: FloatArray,
     rtol: float,
     atol: float,
-) -> bool:
-    """Fill states at the times; whether every step is within its tolerance.
+) -> tuple[int, float, int]:
+    """Steps from the first of the times until ``stop``, or until they are of ordinary length with far to go.
 
     Parameters
     ----------
-    times : (n,) increasing [s]
-    q, v, a : (n, 6) coordinates, velocities and accelerations, of which the first rows are given
+    stop : where to arrive [s]
+    ordinary : step of exudyn away from events, and the first to try [s]
+    times : (n,) receives the ends of the steps; the first is given [s]
+    states : (3, n, 6) coordinates, velocities and accelerations, of which the first rows are given
     p, flags, table : as ``kernels.contact_forces``
     bodies : (4, 6) as ``Machine.bodies``
     rtol, atol : largest error of a step: rtol times the value, and atol
+
+    Returns
+    -------
+    number of rows filled, step to go on with [s], number of force evaluations
     """
     wrench, contacts = np.empty(6), np.empty((2 * MAX_PAIRS, kn.N_RECORD))
     speeds, rates = np.empty((7, 6)), np.empty((7, 6))
-    for j in range(times.size - 1):
-        h = times[j + 1] - times[j]
+    q, v, a = states[0], states[1], states[2]
+    step, rows, calls = ordinary, 1, 0
+    while rows < times.size and times[rows - 1] < stop:
+        left, j = stop - times[rows - 1], rows - 1
+        if rows > 1 and step >= ordinary and left > FEW * ordinary:
+            break
+        equal = math.ceil(left / step)
+        h = left / equal
         for i in range(6):
             speeds[0, i], rates[0, i] = v[j, i], a[j, i]
-        place, speed = q[j + 1], v[j + 1]
+        place, speed = q[rows], v[rows]
         for stage in range(6):
             for i in range(6):
                 further = faster = 0.0
@@ -69,23 +91,31 @@ def bridge(
                     further += _STAGES[stage, k] * speeds[k, i]
                     faster += _STAGES[stage, k] * rates[k, i]
                 place[i], speed[i] = q[j, i] + h * further, v[j, i] + h * faster
-            if (
-                tooth_forces(times[j] + h * _TIMES[stage], place, speed, p, flags, table, wrench, contacts)
-                < 0
-            ):
-                return False
+            calls += 1
+            t = times[j] + h * _TIMES[stage]
+            if tooth_forces(t, place, speed, p, flags, table, wrench, contacts) < 0:
+                return rows, step, calls
             for i in range(6):
                 force = wrench[i] + bodies[3, i] - bodies[1, i] * place[i] - bodies[2, i] * speed[i]
                 speeds[stage + 1, i], rates[stage + 1, i] = speed[i], force / bodies[0, i]
+        worst = 0.0
         for i in range(6):
             a[j + 1, i] = rates[6, i]
             further = faster = 0.0
             for k in range(7):
                 further += _ERROR[k] * speeds[k, i]
                 faster += _ERROR[k] * rates[k, i]
-            if not (
-                h * abs(further) <= atol + rtol * abs(place[i])
-                and h * abs(faster) <= atol + rtol * abs(speed[i])
-            ):
-                return False
-    return True
+            worst = max(worst, h * abs(further) / (atol + rtol * abs(place[i])))
+            worst = max(worst, h * abs(faster) / (atol + rtol * abs(speed[i])))
+        change = _SAFETY * worst**-0.2 if worst > 0.0 else _GROW
+        change = min(max(change, _SHRINK), _GROW)
+        if worst <= 1.0:
+            times[rows] = stop if equal == 1 else times[j] + h
+            rows += 1
+            # A step that was cut short tells little about a longer one.
+            step = max(change * h, step) if change >= 1.0 else change * h
+        else:
+            step = min(change, 1.0) * h
+            if not step > _LEAST * ordinary:
+                break
+    return rows, step, calls

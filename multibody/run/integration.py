@@ -3,10 +3,9 @@
 Each interval ends where the nominal element laws switch (linear) or at the end of a mesh cycle (exact). The
 latter is cut further where the motion itself will make the contact force jump or bend
 (``multibody.contact.events``): the integrator stops before, a few steps of the same method without exudyn
-(``multibody.run.bridge``) and a Taylor step lead across, and the integrator starts again. Between the
-integrator's own steps the state is a quintic Hermite polynomial through
-coordinates, velocities and accelerations; its error, of sixth order in the step, stays below the
-integrator's, of fifth.
+(``multibody.run.bridge``) and a Taylor step lead across, and the integrator starts again. Between the steps
+the state is a quintic Hermite polynomial through coordinates, velocities and accelerations; its error, of
+sixth order in the step, stays below the integrator's, of fifth.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ from lumped.errors import NumericalError
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.events import SLIDING, time_to_event
-from multibody.run.bridge import bridge
+from multibody.run.bridge import FEW, bridge
 from multibody.run.model import ExudynModel, accelerations, stored
 
 #: Smallest step over the mesh cycle. A floor that is not tiny hangs where friction changes sign: the step
@@ -38,8 +37,8 @@ _NEAR = 0.2
 #: Further ahead the nominal speed tells the time of an event, which vibration shifts by less than this; much
 #: more where sliding turns, which depends on rates.
 _FAR, _FAR_SLIDING = 0.04, 0.15
-#: So many ordinary steps are taken without exudyn.
-_BRIDGED = 3.0
+#: Most steps that are taken without exudyn at a time.
+_BRIDGED = 12
 #: exudyn takes an interval as finished so long before its end [s].
 _EXUDYN_END = 1e-10
 
@@ -165,15 +164,16 @@ def _interval(
     if not np.isfinite(a).all():
         model.budget.reason = "not finite"
         raise _failure(model, start, stop)
+    bent = False
     for _ in range(_MOST_EVENTS if locate else 0):
         wait, kind = time_to_event(
-            t, q[gears], v[gears], a[gears], model.parameters, model.flags, m.events, _NEAR * swing
+            t, q[gears], v[gears], a[gears], model.parameters, model.flags, m.table, m.events, _NEAR * swing
         )
         if wait < close:
             beyond = t + wait + 1e-12 * m.period + 1e-15 * t
             if not beyond < stop:
                 break
-            part = _across(model, t, q, v, a, t + wait, beyond)
+            part, bent = _across(model, t, q, v, a, t + wait, beyond), True
         else:
             # Stop short of it by what vibration may shift it: the third order of the Taylor polynomial.
             ahead = wait / swing
@@ -183,10 +183,11 @@ def _interval(
             until = t + wait - swing * min(0.5 * ahead, short)
             if not until < stop:  # or no event at all
                 break
-            part, step = _towards(model, s, q, v, a, t, until, step)
+            part, step = _towards(model, s, q, v, a, t, until, step, bent=bent)
+            bent = False
         parts.append(part)
         t, q, v, a = float(part.times[-1]), part.q[-1], part.v[-1], part.a[-1]
-    part, step = _towards(model, s, q, v, a, t, stop, step)
+    part, step = _towards(model, s, q, v, a, t, stop, step, bent=bent)
     return Segment.joined([*parts, part]), step
 
 
@@ -199,20 +200,29 @@ def _towards(
     start: float,
     stop: float,
     step: float,
+    *,
+    bent: bool = False,
 ) -> tuple[Segment, float]:
-    """Integrate over a time without events; returns it and a step size to go on with."""
-    if stop - start <= _BRIDGED * step and model.drive is None and model.machine.train is None:
-        times = np.linspace(start, stop, int(np.ceil((stop - start) / step)) + 1)
-        states = np.empty((3, times.size, 6))
-        states[:, 0] = q, v, a
+    """Integrate over a time without events; returns it and an ordinary step size to go on with.
+
+    ``bent``: an event has just been passed, behind which the step size is not known.
+    """
+    parts, first = [], step
+    if (bent or stop - start <= FEW * step) and model.drive is None and model.machine.train is None:
         m, ti = model.machine, s.timeIntegration
+        times, states = np.full(_BRIDGED + 1, start), np.empty((3, _BRIDGED + 1, 6))
+        states[:, 0] = q, v, a
         rtol, atol = ti.relativeTolerance, ti.absoluteTolerance
-        model.budget.calls += 6 * (times.size - 1)
-        rows = states[0], states[1], states[2]
-        if bridge(times, *rows, model.parameters, model.flags, m.table, m.bodies, rtol, atol):
-            return Segment(times, *rows), step
-    part = _run(model, s, q, v, start, stop, step)
-    return part, _middle_step(part, step)
+        rows, first, calls = bridge(
+            stop, step, times, states, model.parameters, model.flags, m.table, m.bodies, rtol, atol
+        )
+        model.budget.calls += calls
+        parts = [Segment(times[:rows], *states[:, :rows])]
+        start, q, v = float(times[rows - 1]), states[0, rows - 1], states[1, rows - 1]
+    if start < stop:
+        parts.append(_run(model, s, q, v, start, stop, first))
+        step = _middle_step(parts[-1], step)
+    return Segment.joined(parts), step
 
 
 def _middle_step(part: Segment, default: float) -> float:

@@ -228,21 +228,22 @@ def _force_function(
     budget: CallBudget,
     drive: DriveTables | None,
     turning: bool,
-) -> Callable[..., FloatArray]:
+) -> Callable[..., list[float]]:
     """Return the user function of the contact object; it writes into its own buffers.
 
     It is called some thousand times per mesh cycle, so the two lists it gets are packed into one buffer,
-    twice as fast as by assignment to arrays.
+    twice as fast as by assignment to arrays; exudyn reads a list sooner than an array.
     """
     buffer = bytearray(struct.calcsize("12d"))
     q, v = np.frombuffer(buffer).reshape(2, 6)
     wrench = np.empty(6)
     contacts = np.empty((2 * MAX_PAIRS, kn.N_RECORD))
     table, pack = machine.table, struct.Struct("12d").pack_into
+    as_list = wrench.tolist
 
     def forces(
         _system: exu.MainSystem, t: float, _item: int, coordinates: list[float], rates: list[float]
-    ) -> FloatArray:
+    ) -> list[float]:
         budget.calls += 1
         pack(buffer, 0, *coordinates, *rates)
         if turning:  # the core wants rates beyond the nominal speeds
@@ -256,7 +257,7 @@ def _force_function(
             raise _Stop
         if drive is not None:
             add_drive(drive, t, q, v, wrench)
-        return wrench
+        return as_list()
 
     return forces
 

@@ -95,7 +95,7 @@ class _Mesh:
             for j in range(i):
                 coupling[i, j] = coupling[j, i] = kn.coupling_at(p, i - j, places[j])[0]
         law = p[kn.SOFTENING], p[kn.NOMINAL_FORCE]
-        shared_loads(n, pressed, stiffness, np.zeros(n, np.bool_), coupling, *law, loads)
+        shared_loads(n, pressed, stiffness, 0, coupling, *law, loads)
         return loads, pressed - coupling @ loads
 
     def at(self, xi: float) -> _Equilibrium:

@@ -183,7 +183,7 @@ def test_neighbours_share_the_load_in_both_models(softening):
         w = rng.uniform(-1.5e-9, 4e-9, (n, n))
         w = np.tril(w, -1) + np.tril(w, -1).T
         loads, theirs = np.empty(n), np.zeros(n)
-        shared_loads(n, pressed, k, np.zeros(n, bool), w, softening, nominal, loads)
+        shared_loads(n, pressed, k, 0, w, softening, nominal, loads)
         lumped_shared_loads(
             pressed, k, w, softening, nominal, 1e-3 * nominal, theirs, np.zeros(n), np.zeros(n)
         )
@@ -217,7 +217,7 @@ def test_each_pair_is_moved_by_what_the_lumped_model_says_of_the_pair_behind():
 def test_a_pair_that_cannot_part_pulls_and_still_moves_its_neighbour():
     loads, w = np.empty(2), np.array([[0.0, 2e-9], [2e-9, 0.0]])
     k, pressed = np.array([8e7, 6e7]), np.array([1e-5, -4e-6])
-    shared_loads(2, pressed, k, np.ones(2, bool), w, 0.0, 1353.0, loads)
+    shared_loads(2, pressed, k, 0b11, w, 0.0, 1353.0, loads)
     assert loads == pytest.approx(np.linalg.solve(np.diag(1.0 / k) + w, pressed), rel=1e-12)
     assert loads[1] < 0.0
 

@@ -10,7 +10,17 @@ import multibody
 from lumped import PathFunction
 from multibody.contact import kernels as kn
 from multibody.contact.effects import effect_flags
-from multibody.contact.events import ENTRY, EXIT, LET_GO, SLIDING, SWITCH, event_table, time_to_event
+from multibody.contact.events import (
+    ENTRY,
+    EXIT,
+    FIRST_TOUCH,
+    LAST_TOUCH,
+    LET_GO,
+    SLIDING,
+    SWITCH,
+    event_table,
+    time_to_event,
+)
 from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import machine
 
@@ -44,7 +54,7 @@ def test_the_force_jumps_where_it_was_foreseen_and_not_before(pair, effects, rng
         q, v, a = rng.normal(size=6) * 1e-5, rng.normal(size=6) * 0.02, rng.normal(size=6) * 200.0
         q[[2, 5]] = -2e-5 / np.array([p[kn.RADIUS_P], p[kn.RADIUS_G]])  # pressed by some 40 um
         v[[2, 5]], a[[2, 5]] = v[[2, 5]] * 10, a[[2, 5]] * 10
-        wait, _ = time_to_event(t, q, v, a, p, flags, numbers.events, 0.05 * period)
+        wait, _ = time_to_event(t, q, v, a, p, flags, numbers.table, numbers.events, 0.05 * period)
         assert 0.0 <= wait < period
         if wait > 0.04 * period:
             continue  # foreseen roughly; the integrator asks again when it is nearer
@@ -77,27 +87,29 @@ def test_which_places_are_events():
     }
 
 
-def test_a_corner_lets_go_where_it_was_foreseen():
-    """Its damper would pull more than it presses: the load ends with the corner still pressed."""
-    loaded = JUMPS.with_(mesh__contact="loaded", mesh__stiffness={"model": "rectangular"})
+@pytest.mark.parametrize("stiffness", ["rectangular", "energy"])
+def test_corners_touch_and_let_go_where_it_was_foreseen(stiffness):
+    """Also where neighbours share the body; the damper lets go with the corner still pressed."""
+    loaded = JUMPS.with_(mesh__contact="loaded", mesh__stiffness={"model": stiffness})
     flags = effect_flags(None, "loaded")
     numbers = machine(loaded, flags)
-    p, period = numbers.parameters, numbers.period
-    events = numbers.events[numbers.events[:, 0] == LET_GO]
+    p, table, period = numbers.parameters, numbers.table, numbers.period
     q, v = np.zeros(6), np.array([0.0, 0.0, -1.0, 0.0, 0.0, 1.0])
     q[2] = -2e-5 / p[kn.RADIUS_P]
-    wait, _ = time_to_event(0.0, q, v, np.zeros(6), p, flags, events, np.inf)
 
-    def loads(tau):
-        records = np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
-        moved = q + tau * v
-        count = kn.contact_forces(tau, moved, v, p, flags, numbers.table, np.zeros(6), records)
-        return records[:count, kn.LOAD].min(), records[:count, kn.ELASTIC].min()
+    def around(kind):
+        events = numbers.events[numbers.events[:, 0] == kind]
+        wait, _ = time_to_event(0.0, q, v, np.zeros(6), p, flags, table, events, np.inf)
+        for tau in (wait - 2e-6 * period, wait + 2e-6 * period):
+            records = np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
+            count = kn.contact_forces(tau, q + tau * v, v, p, flags, table, np.zeros(6), records)
+            yield count, records[:count, kn.LOAD].min(), records[:count, kn.ELASTIC].min()
 
-    for tau, pressing in ((wait - 1e-6 * period, True), (wait + 1e-6 * period, False)):
-        load, elastic = loads(tau)
-        assert (load > 0.0) == pressing
-        assert elastic > 1.0
+    assert [count for count, *_ in around(FIRST_TOUCH)] == [1, 2]
+    assert [count for count, *_ in around(LAST_TOUCH)] == [2, 1]
+    (_, before, _), (_, after, elastic) = around(LET_GO)
+    assert before > 0.0 == after
+    assert elastic > 1.0
 
 
 def test_of_many_switches_only_the_largest_are_events():
