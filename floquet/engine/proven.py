@@ -56,7 +56,7 @@ def proven_propagation(
         if (~good & ((middle <= first) | (middle >= last))).any():
             raise NumericalError(f"the step size fell to rounding at t = {first[~good][0]:.17g} s.")
         times.append(first[good])
-        steps.append(matrices[good])
+        steps.append(matrices)
         errors.append(error[good])
         taken += int(good.sum())
         start = np.concatenate([first[~good], middle[~good], start[chunk:]])
@@ -71,7 +71,7 @@ def proven_propagation(
 def _steps(
     known: KnownMatrix, start: FloatArray, end: FloatArray, d: FloatArray, rtol: float
 ) -> tuple[FloatArray, FloatArray, np.ndarray[tuple[int], np.dtype[np.bool_]]]:
-    """Transition matrices (k, n, n), bounds on the 2-norms of their errors, and which are good."""
+    """Transition matrices of the good steps, bounds (k,) on the 2-norms of the errors, and which are good."""
     h, n = end - start, d.size
     A, wrong = known.taylor(start, h, _DEGREE, d)
     B = A * h[:, None, None, None]
@@ -91,8 +91,10 @@ def _steps(
     good = (a.sum(axis=1) <= _ANGLE) & (tail + off <= room)
     # Where rounding of A itself is more than that, shorter steps do not help.
     good |= (a.sum(axis=1) <= 0.05) & np.isfinite(errors)
-    used = np.flatnonzero(a.any(axis=0))
-    X = np.zeros((_TERMS + 1, start.size, n, n))
+    if not good.any():
+        return np.empty((0, n, n)), errors, good
+    used, B = np.flatnonzero(a.any(axis=0)), B[good]
+    X = np.zeros((_TERMS + 1, len(B), n, n))
     X[0] = np.eye(n)
     for k in range(_TERMS):
         total = B[:, 0] @ X[k]

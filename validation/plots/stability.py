@@ -14,6 +14,7 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
+from scipy.ndimage import maximum_filter
 
 from lumped.typing import BoolArray, FloatArray
 from validation.plots.labels import WHITE_BOX
@@ -40,7 +41,7 @@ def stability_figure(chart: xr.Dataset, x: str, y: str, point: tuple[float, floa
     words = "spectral radius [-]; unstable above 1 (hatched)" + undecided.any().item() * "\nundecided: dotted"
     figure, ax = field_figure(radius.clip(max=1.0), chart, norm, _STABLE, words)
     xs, ys = radius[x].to_numpy(), radius[y].to_numpy()
-    mark_unstable(ax, xs, ys, radius.where(~undecided, 1.0 - 1e-9).to_numpy())
+    mark_unstable(ax, xs, ys, _decided(radius.to_numpy(), undecided.to_numpy()))
     _mark_undecided(ax, xs, ys, undecided.to_numpy())
     mark_operating_point(ax, point)
     return figure
@@ -177,6 +178,12 @@ def mark_unstable(ax: Axes, xs: FloatArray, ys: FloatArray, radius: FloatArray) 
     with mpl.rc_context({"hatch.color": RED, "hatch.linewidth": 0.7}):
         ax.contourf(xs, ys, radius, levels=[1.0, np.inf], colors=[UNSTABLE], hatches=["////"])
     ax.contour(xs, ys, radius, levels=[1.0], colors=[BLACK], linewidths=1.0)
+
+
+def _decided(radius: FloatArray, undecided: BoolArray) -> FloatArray:
+    """Radius (y, x), what is undecided as far below 1 as its neighbours are above: the edge lies between."""
+    excess = np.where(undecided, 0.0, np.maximum(radius - 1.0, 0.0))
+    return np.where(undecided, 1.0 - 1e-9 - maximum_filter(excess, size=3), radius)
 
 
 def _mark_undecided(ax: Axes, xs: FloatArray, ys: FloatArray, undecided: BoolArray) -> None:
