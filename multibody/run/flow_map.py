@@ -10,7 +10,8 @@ Sources: docs/theory/multibody.md, "Stability".
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+import itertools
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, get_args
 
@@ -24,6 +25,7 @@ from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import ComplexArray, FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.machine import Machine, Supports
+from multibody.run.integration import Segment, keep_inside
 from multibody.run.linear_motion import bordered, state_scale
 from multibody.run.model import build
 from multibody.run.records import from_lumped_state, to_lumped_state
@@ -242,7 +244,8 @@ def steady_state(
     )
     orbit = find_orbit(setup, cycles, near_lumped=initial is None and cycles == 1)
     q, v = _unpacked(orbit.machine, orbit.state)
-    run, _, _ = record(replace(orbit.flow.setup, q=q, v=v), cycles, samples_per_cycle)
+    setup = replace(orbit.flow.setup, q=q, v=v)
+    run, _, _ = record(setup, cycles, samples_per_cycle, run=orbit.flow.again)
     m, p = orbit.machine, orbit.machine.parameters
     run.attrs |= {
         "brake_torque": m.torque_gear,
@@ -259,11 +262,26 @@ class Flow:
         model = build(machine, setup.model.flags, setup.model.budget.limit)
         self.setup = replace(setup, model=model)
         self.edges = setup.edges(cycles)
+        self.segments: list[Segment] = []
 
     def __call__(self, state: FloatArray) -> FloatArray:
         machine = self.setup.machine
         q, v = _unpacked(machine, state)
-        return _packed(machine, *replace(self.setup, q=q, v=v).run(self.edges, lambda *_: None))
+        self.segments = []
+        end = replace(self.setup, q=q, v=v).run(self.edges, lambda _, segment: self.segments.append(segment))
+        return _packed(machine, *end)
+
+    def again(
+        self, edges: FloatArray, visit: Callable[[int, Segment], None]
+    ) -> tuple[FloatArray, FloatArray]:
+        """Visit the intervals of the last run once more, as ``Setup.run`` would."""
+        for number, (segment, (start, stop)) in enumerate(
+            zip(self.segments, itertools.pairwise(edges), strict=True)
+        ):
+            if self.setup.position_is_nominal:
+                keep_inside(self.setup.model, float(start), float(stop))
+            visit(number, segment)
+        return self.segments[-1].q[-1], self.segments[-1].v[-1]
 
 
 def _packed(machine: Machine, q: FloatArray, v: FloatArray) -> FloatArray:

@@ -134,13 +134,18 @@ def integrate(
     step = _FIRST_STEP * model.machine.period
     for number, (start, stop) in enumerate(itertools.pairwise(edges)):
         if clamp:
-            margin = 1e-12 * model.machine.period
-            model.parameters[kn.T_LOW], model.parameters[kn.T_HIGH] = start + margin, stop - margin
+            keep_inside(model, start, stop)
         model.budget.reset()
         segment, step = _interval(model, s, q, v, float(start), float(stop), step, locate=not clamp)
         visit(number, segment)
         q, v = segment.q[-1], segment.v[-1]
     return q, v
+
+
+def keep_inside(model: ExudynModel, start: float, stop: float) -> None:
+    """Let the model evaluate the nominal phase strictly inside an interval, whose ends are switches."""
+    margin = 1e-12 * model.machine.period
+    model.parameters[kn.T_LOW], model.parameters[kn.T_HIGH] = start + margin, stop - margin
 
 
 def _interval(

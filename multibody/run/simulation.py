@@ -5,7 +5,7 @@ Sources: docs/theory/multibody.md.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,6 +24,9 @@ from multibody.run.setup import MOST_CYCLES, Fidelity, Setup, prepare
 
 if TYPE_CHECKING:
     import xarray as xr
+
+#: Runs over intervals (m + 1,) and calls with each one's number and segment; the state at the end.
+Run = Callable[[FloatArray, Callable[[int, Segment], None]], tuple[FloatArray, FloatArray]]
 
 
 def simulate(
@@ -97,6 +100,7 @@ def record(
     *,
     first_cycle: int = 0,
     progress: Progress | None = None,
+    run: Run | None = None,
 ) -> tuple[xr.Dataset, FloatArray, FloatArray]:
     """Run a model and keep the variables of the last cycles.
 
@@ -107,6 +111,7 @@ def record(
     samples_per_cycle : output times per mesh cycle
     first_cycle : the first one whose variables are kept
     progress : called with the finished fraction
+    run : visits the segments of a run that was made; None makes it
 
     Returns
     -------
@@ -123,7 +128,7 @@ def record(
         if progress is not None:
             progress(float(edges[number + 1] / edges[-1]))
 
-    q, v = setup.run(edges, visit)
+    q, v = (run or setup.run)(edges, visit)
     recorder.finish(q, v, float(edges[-1]))
     attributes = setup.attributes | {
         "cycles": cycles,

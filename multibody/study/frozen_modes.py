@@ -19,7 +19,7 @@ from scipy.optimize import root
 from lumped.arguments import real_number
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset
-from lumped.model.averaged import averaged_state_space
+from lumped.model.averaged import averaged_matrix
 from lumped.model.periodic_system import periodic_system
 from lumped.model.results import provenance
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -36,7 +36,7 @@ SOURCES = {
     "exudyn exact": "exudyn's linearisation, fidelity exact, about the loaded teeth",
     "lumped frozen": "lumped A(t) at the phase",
     "lumped turned line": "lumped A(t) with the spring of the turned line of action",
-    "control averaged": "lumped mean of A(t), by python-control",
+    "lumped averaged": "lumped mean of A(t) over the mesh cycle",
 }
 #: Largest residual acceleration of the loaded teeth over that of the load on a free body.
 _AT_REST = 1e-9
@@ -68,7 +68,8 @@ def frozen_modes(pair: AnyPair, phase: float = 0.3) -> xr.Dataset:
     q = _at_rest(moving, time, exact.q, exact.deflection)
     _, contacts, counts = contact_state(moving, np.array([time]), q[None], np.zeros((1, 6)))
     load = float(contacts[0, : counts[0], kn.LOAD].sum())
-    matrix = periodic_system(pair, "relative").A(time)
+    system = periodic_system(pair, "relative")
+    matrix = system.A(time)
     turned = matrix.copy()
     spring = load / float(exact.machine.parameters[kn.L_XY]) * np.array([[1.0, -1.0], [-1.0, 1.0]])
     turned[8:, 3:5] += spring / exact.machine.mass[:, None]
@@ -77,7 +78,7 @@ def frozen_modes(pair: AnyPair, phase: float = 0.3) -> xr.Dataset:
         "exudyn exact": _modes(_without_turn(linearised(moving, q)[0])),
         "lumped frozen": _modes(np.linalg.eigvals(matrix).astype(np.complex128)),
         "lumped turned line": _modes(np.linalg.eigvals(turned).astype(np.complex128)),
-        "control averaged": _modes(np.asarray(averaged_state_space(pair).poles(), dtype=np.complex128)),
+        "lumped averaged": _modes(np.linalg.eigvals(averaged_matrix(system)).astype(np.complex128)),
     }
     table = np.array([found[name] for name in SOURCES])
     return labelled_dataset(

@@ -115,7 +115,7 @@ def test_frozen_modes_are_the_lumped_ones_but_for_the_turned_line():
         mode.natural_frequency
         for mode in modes(lumped.load_gear_pair("nasa_28_28").with_(mesh__relief="ignored"))
     ]
-    np.testing.assert_allclose(f.sel(source="control averaged"), averaged, rtol=1e-9)
+    np.testing.assert_allclose(f.sel(source="lumped averaged"), averaged, rtol=1e-9)
 
 
 def test_evidence_for_what_is_shared_exists():

@@ -150,7 +150,7 @@ _SOURCES = {
     "lumped frozen": "lumped A(t)",
     "exudyn exact": "exudyn, exact",
     "lumped turned line": "lumped, turned line",
-    "control averaged": "mean of A(t), control",
+    "lumped averaged": "lumped, mean of A(t)",
 }
 
 
