@@ -127,11 +127,9 @@ def multipliers_with_bounds(M: FloatArray, delta: float) -> tuple[ComplexArray, 
     T = np.triu(T)
     eigenvalues = np.diagonal(T)
     clusters = [[i] for i in range(n)]
-    while True:
-        bounds = [_cluster_bound(M, T, Z, members, delta) for members in clusters]
-        bad = next((i for i, b in enumerate(bounds) if b is None), None)
-        if bad is None or len(clusters) == 1:
-            break
+    bounds = [_cluster_bound(M, T, Z, members, delta) for members in clusters]
+    while len(clusters) > 1 and None in bounds:
+        bad = bounds.index(None)
         here = eigenvalues[clusters[bad]]
         distance = [
             math.inf if k == bad else float(np.abs(here[:, None] - eigenvalues[other]).min())
@@ -139,7 +137,8 @@ def multipliers_with_bounds(M: FloatArray, delta: float) -> tuple[ComplexArray, 
         ]
         nearest = int(np.argmin(distance))
         clusters[bad] = clusters[bad] + clusters[nearest]
-        del clusters[nearest]
+        bounds[bad] = _cluster_bound(M, T, Z, clusters[bad], delta)
+        del clusters[nearest], bounds[nearest]
     values, errors = np.empty(n, dtype=complex), np.empty(n)
     for members, bound in zip(clusters, bounds, strict=True):
         values[members], errors[members] = (eigenvalues[members], math.inf) if bound is None else bound

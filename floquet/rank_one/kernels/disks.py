@@ -27,7 +27,11 @@ def _vectors_of(
     x: ComplexArray,
     y: ComplexArray,
 ) -> None:
-    """Right and left null vectors x, y (n,) of A - shift I by inverse iteration, y^T x = 1, |x| = |y|."""
+    """Right and left null vectors x, y (n,) of A - shift I, y^T x = 1, |x| = |y|.
+
+    By one inverse iteration, for the shift is an eigenvalue to rounding: y from a vector of no symmetry, x
+    from L times that vector, its rows exchanged back.
+    """
     n = A.shape[0]
     scale = 0.0
     for i in range(n):
@@ -63,25 +67,15 @@ def _vectors_of(
     for i in range(n):
         x[i] = 1.0 / (1.0 + 0.6180339887 * i)  # no symmetry, which would keep it off a vector
         y[i] = x[i]
-    for turn in range(2):
-        if turn > 0:
-            for k in range(n):
-                held = x[k]
-                x[k] = x[pivots[k]]
-                x[pivots[k]] = held
-            for i in range(n):
-                for j in range(i):
-                    x[i] -= LU[i, j] * x[j]
-        for i in range(n - 1, -1, -1):
-            for j in range(i + 1, n):
-                x[i] -= LU[i, j] * x[j]
-            x[i] *= LU[i, i]
-        _normalise(x)
+    for i in range(n - 1, -1, -1):
+        for j in range(i + 1, n):
+            x[i] -= LU[i, j] * x[j]
+        x[i] *= LU[i, i]
+    _normalise(x)
     for i in range(n):
         for j in range(i):
             y[i] -= LU[j, i] * y[j]
         y[i] *= LU[i, i]
-    _normalise(y)
     for i in range(n - 1, -1, -1):
         for j in range(i + 1, n):
             y[i] -= LU[j, i] * y[j]
@@ -254,7 +248,7 @@ def _disks(values: ComplexArray, f: FloatArray, rows: FloatArray, radii: FloatAr
         tau = 0.0
         for j in range(n):
             if j != i:
-                gap = abs(values[i] - values[j]) * (1.0 - 1e-12)
+                gap = _modulus(values[i] - values[j]) * (1.0 - 1e-12)
                 if gap < 2.0 * (rows[i] + rows[j]):
                     tau = 1.0
                 elif gap * tau < 2.0 * f[j, i]:
@@ -271,7 +265,7 @@ def _join(values: ComplexArray, radii: FloatArray, scratch: FloatArray, group: n
         scratch[i] = radii[i]
     for i in range(n):
         for j in range(i):
-            if group[i] != group[j] and abs(values[i] - values[j]) <= radii[i] + radii[j]:
+            if group[i] != group[j] and _modulus(values[i] - values[j]) <= radii[i] + radii[j]:
                 old, new = group[i], group[j]
                 for k in range(n):
                     if group[k] == old:
@@ -279,7 +273,7 @@ def _join(values: ComplexArray, radii: FloatArray, scratch: FloatArray, group: n
     for i in range(n):
         for j in range(n):
             if j != i and group[i] == group[j]:
-                radii[i] = max(radii[i], (abs(values[i] - values[j]) + scratch[j]) * (1.0 + 1e-12))
+                radii[i] = max(radii[i], (_modulus(values[i] - values[j]) + scratch[j]) * (1.0 + 1e-12))
 
 
 @compiled(nogil=True)
