@@ -16,7 +16,6 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from scipy.linalg import eigvalsh
 
 from lumped.model.mesh_cycle import mesh_cycle
 from lumped.model.mesh_elements import mesh_elements
@@ -118,8 +117,14 @@ class Machine:
     def vibrations_per_cycle(self) -> float:
         """Swings of the fastest natural mode in one mesh cycle, with every pair at its largest stiffness.
 
-        The mesh acts along the nominal line of action, without friction and damping.
+        The mesh acts along the nominal line of action, without friction and damping. On shafts dampers count,
+        where they answer faster.
         """
+        return self.rates[1] * self.period / (2.0 * np.pi)
+
+    @cached_property
+    def rates(self) -> tuple[float, float]:
+        """Frequency of the fastest natural mode, and the largest rate that dampers make of it [rad/s]."""
         left, right = self.table[:, 0], self.table[:, 1]
         places = np.concatenate([left, 0.5 * (left + right), right])
         largest = max(abs(stiffness_at(self.table, xi)) for xi in places)
@@ -127,11 +132,8 @@ class Machine:
         if self.train is None:
             inertia, bearings, _, _ = self.bodies
             squares = np.linalg.eigvalsh((mesh + np.diag(bearings)) / np.sqrt(np.outer(inertia, inertia)))
-        else:
-            stiffness = self.train.stiffness.copy()
-            stiffness[:6, :6] += mesh
-            squares = eigvalsh(stiffness, self.train.mass)
-        return float(np.sqrt(squares[-1]) * self.period / (2.0 * np.pi))
+            return float(np.sqrt(squares[-1])), float(np.sqrt(squares[-1]))
+        return self.train.fastest(mesh)
 
 
 def machine(

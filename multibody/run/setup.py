@@ -258,6 +258,14 @@ def _on_shafts(
 def _call_limit(numbers: Machine) -> int:
     """Most force evaluations of one interval; refuses a speed at which a mesh cycle would take minutes."""
     vibrations = numbers.vibrations_per_cycle
+    natural, damped = numbers.rates
+    if vibrations > _MOST_VIBRATIONS and damped > 2.0 * natural:
+        raise refuse(
+            "shafts",
+            f"a damper that answers within {1.0 / damped:.2g} s",
+            f"dampers no faster than {1.0 / natural:.2g} s, a swing of the fastest mode over 2 pi",
+            "Lower loa_damping and oloa_damping of the bearings, or coupling_damping.",
+        )
     if vibrations > _MOST_VIBRATIONS:
         rpm = float(numbers.parameters[kn.OMEGA_P]) * 30.0 / np.pi
         raise refuse(

@@ -30,6 +30,8 @@ from multibody.shafts.reduction import Reduced, reduce_fields
 
 #: Stations closer than this are one [m].
 _SAME = 1e-7
+#: A coupling on which its inertia swings so many times as fast as the highest mode is rigid.
+_RIGID = 1e3
 #: Most waves of the highest frequency in an interval: an order of 20 resolves them.
 _WAVES = 4.0
 
@@ -119,6 +121,8 @@ def reduced_shaft(
     if coupled is not None:
         places.append(coupled.position)
     intervals, stations = divided(shaft, places, highest)
+    station = 0 if coupled is None else _nearest(stations, coupled.position)
+    rigid = coupled is None or coupled.coupling_stiffness > (_RIGID * highest) ** 2 * coupled.inertia
     gear = _nearest(stations, shaft.gear_position)
     at = np.array([_nearest(stations, bearing.position) for bearing in shaft.bearings])
     springs = np.array([[b.loa_stiffness, b.oloa_stiffness] for b in shaft.bearings])
@@ -145,9 +149,10 @@ def reduced_shaft(
             rim = mass.shape[0] - 1
         else:
             mass[gear, gear] += disc.inertia
-        if coupled is not None:
-            where = _nearest(stations, coupled.position)
-            mass, stiffness = _attached(mass, stiffness, where, coupled.inertia, coupled.coupling_stiffness)
+        if coupled is not None and rigid:
+            mass[station, station] += coupled.inertia
+        elif coupled is not None:
+            mass, stiffness = _attached(mass, stiffness, station, coupled.inertia, coupled.coupling_stiffness)
         return mass, stiffness, rim
 
     fields, order, error = reduce_fields(
@@ -175,10 +180,9 @@ def reduced_shaft(
     if coupled is None:
         torque[2] = 1.0
     else:
-        torque[columns[2]] = fields[2].basis[-1]
-        where = _nearest(stations, coupled.position)
+        at_inertia, at_station = fields[2].basis[station if rigid else -1], fields[2].basis[station]
         along = np.zeros(size)
-        along[columns[2]] = fields[2].basis[-1] - fields[2].basis[where]
+        torque[columns[2]], along[columns[2]] = at_inertia, at_inertia - at_station
         damping += coupled.coupling_damping * np.outer(along, along)
     return ReducedShaft(
         intervals=intervals,

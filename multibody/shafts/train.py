@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import cho_factor, cho_solve, eigvals, eigvalsh
 
 from lumped.errors import refuse
 from lumped.schema.gear import Gear
@@ -110,6 +110,21 @@ class Train:
         stiffness = np.concatenate([shaft.bearing_stiffness for shaft in self.shafts])[:, :, None]
         damping = np.concatenate([shaft.bearing_damping for shaft in self.shafts])[:, :, None]
         return np.asarray(-(stiffness * (self.bearings @ q.T) + damping * (self.bearings @ v.T)))
+
+    def fastest(self, mesh_stiffness: FloatArray) -> tuple[float, float]:
+        """Largest natural frequency, and largest rate of a root with all dampers [rad/s].
+
+        Parameters
+        ----------
+        mesh_stiffness : (6, 6) between the gears [N/m] and so on
+        """
+        n, stiffness = self.size, self.stiffness.copy()
+        stiffness[:6, :6] += mesh_stiffness
+        state = np.zeros((2 * n, 2 * n))
+        state[:n, n:] = np.eye(n)
+        state[n:, :n], state[n:, n:] = -self.inverse @ stiffness, -self.inverse @ self.damping
+        natural = float(np.sqrt(eigvalsh(stiffness, self.mass)[-1]))
+        return natural, max(natural, float(np.abs(eigvals(state)).max()))
 
     def static(self, force: FloatArray, overlap: FloatArray, mesh_stiffness: float) -> FloatArray:
         """Deflection (n,) under a force (n,), with a spring along the row ``overlap`` (6,) between the gears.

@@ -203,3 +203,8 @@ def test_refusals():
         multibody.simulate(plain, 1, supports="shafts")
     with pytest.raises(ParameterError, match="drive"):
         multibody.simulate(PAIR, 1, supports="shafts", drive=multibody.Drive())
+    with pytest.raises(ParameterError, match="'static' or 'periodic'"):
+        multibody.simulate(PAIR, 1, supports="shafts", initial=np.zeros(12))
+    damped = PAIR.with_({"shafts.pinion.bearings.0.loa_damping": 1e9})
+    with pytest.raises(ParameterError, match="a damper that answers within"):
+        multibody.simulate(damped, 1, supports="shafts")

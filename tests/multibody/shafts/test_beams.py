@@ -171,6 +171,24 @@ def test_deflection_whirl_and_damping_of_a_disc_on_a_light_shaft():
     assert damped.bearings[0, 0, 0] == pytest.approx(share, rel=1e-9)
 
 
+def test_a_light_inertia_does_not_stall():
+    """On a coupling it would swing at 1e9 Hz; it turns with its station, where a heavy one swings itself."""
+    light, heavy = (
+        CoupledInertia.model_construct(
+            position=0.2, inertia=inertia, coupling_stiffness=1e6, coupling_damping=0.0
+        )
+        for inertia in (1e-12, 1e-3)
+    )
+    disc = Disc(0.8, 1.3e-3, 0.9e-3)
+    options = {"speed": 0.0, "damping_ratio": 0.0, "highest": 1e5}
+    one, two = (reduced_shaft(symmetric(7850.0), disc, motor, **options) for motor in (light, heavy))
+    alone = reduced_shaft(symmetric(7850.0), disc, None, **options)
+    assert one.mass[2, 2] == pytest.approx(alone.mass[2, 2] + 1e-12, rel=1e-12)
+    assert two.mass[2, 2] == pytest.approx(alone.mass[2, 2] + 1e-3, rel=1e-9)
+    assert one.torque[2] == pytest.approx(1.0, rel=1e-9)
+    assert two.size == alone.size + 1 == one.size + 1
+
+
 def test_mass_of_a_shaft():
     """A unit translation and a unit turn weigh what the shaft weighs."""
     beam, (mass, _) = bending(STEPPED, 5), torsion(STEPPED, 5)
