@@ -16,16 +16,15 @@ import floquet
 import lumped
 
 PAIR = lumped.load_gear_pair("nasa_28_28").with_(mesh__relief="ignored", mesh__damping_ratio=0.002)
-STORED = Path(__file__).with_name("25_rotor.npz")  # M, C, K, G of ``ross_shaft`` by ROSS 2.3.0
 
 
 def ross_shaft():
     """Shaft 30 mm thick, 240 mm between bearings of 2e8 N/m, the gear in its middle, node 2."""
     import ross  # pip install spurcheck[ross]
 
-    body, radius = lumped.bodies(PAIR), PAIR.geometry.base_radius_pinion
+    body, g = lumped.bodies(PAIR), PAIR.geometry
     sizes = {"m": body.mass_pinion, "Id": body.inertia_pinion / 2, "Ip": body.inertia_pinion}
-    teeth = {"n_teeth": 28, "base_diameter": 2 * radius, "pr_angle": PAIR.geometry.operating_pressure_angle}
+    teeth = {"n_teeth": 28, "base_diameter": 2 * g.base_radius_pinion, "pr_angle": g.operating_pressure_angle}
     steel = ross.Material(name="steel", rho=7810, E=211e9, G_s=81.2e9)
     shaft = [ross.ShaftElement(L=0.06, idl=0, odl=0.03, material=steel) for _ in range(4)]
     bearings = [ross.BearingElement(n=n, kxx=2e8, kyy=2e8, cxx=120.0, cyy=120.0) for n in (0, 4)]
@@ -34,7 +33,8 @@ def ross_shaft():
 
 def on_shafts(rpm: float) -> floquet.SecondOrderSystem:
     """Both rotors with the mesh between them; the gear's turns the other way."""
-    with np.load(STORED) as file:  # or validation.exchange.ross_rotor(ross_shaft(), 2, rpm) and (..., -rpm)
+    # What ROSS 2.3.0 makes of it; or validation.exchange.ross_rotor(ross_shaft(), 2, rpm) and (..., -rpm).
+    with np.load(Path(on_shafts.__code__.co_filename).with_name("25_rotor.npz")) as file:
         M, C, K, G = (file[name] for name in "MCKG")
     speed, station = np.pi / 30.0 * rpm, (12, 13, 17)
     rotors = [floquet.GearRotor(M, C + sign * speed * G, K, station) for sign in (1, -1)]
