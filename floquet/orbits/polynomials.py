@@ -124,7 +124,7 @@ def _root(c: FloatArray, low: float, high: float, sign: float, above: float, bel
             high = s
         new = s - y / rate if rate != 0.0 else low
         if abs(new - s) <= _ROOT * high:
-            return new
+            return s  # the new one may lie before the bracket
         if not low < new < high:
             new = 0.5 * (low + high)
         if new in (low, high):

@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from floquet.orbits.kernel import CLOSED, GAP
+from floquet.orbits.polynomials import crossing
 from floquet.orbits.system import Contact, ContactSystem
 from lumped import NumericalError, ParameterError
 
@@ -17,6 +18,11 @@ def bounce_time(v0):
     """Time of flight and of contact of a mass that leaves the spring at speed v0."""
     omega = np.sqrt(STIFFNESS)
     return 2.0 * v0 / GRAVITY, (2.0 * np.pi - 2.0 * np.arctan2(v0 * omega, GRAVITY)) / omega
+
+
+def test_an_event_at_the_start_of_a_step_lies_not_before_it():
+    """Newton's last step by rounding must not leave the bracket, or the time runs back."""
+    assert 0.0 < crossing(np.array([1e-38, 1e-14, -0.76, -0.52, 0.71]), 1.0, 1.0) < 1e-10
 
 
 def test_a_bouncing_mass_returns_after_the_time_of_flight_and_contact(bouncer):
