@@ -15,11 +15,14 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.arguments import one_of
 from lumped.model.equations import COORDINATES, Structure, structure
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
+from lumped.model.shafted import ShaftedPair, shafted_pair
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
 Form = Literal["absolute", "relative", "feedback"]
+#: What holds the gears: springs of their own, or the elastic shafts of the parameter file in their bearings.
+Supports = Literal["springs", "shafts"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,15 +50,20 @@ class LTVSystem:
     pair : the gear pair
     form : "absolute" (theta_p, theta_g, x_p, x_g, y_p, y_g: 12 states, with the rigid rotation),
         "relative" (q = r_bp theta_p - r_bg theta_g instead of the rotations: 10 states) or
-        "feedback" (q, x_p, x_g: the 6 states that decide stability)
+        "feedback" (q, x_p, x_g: the 6 states that decide stability). On shafts z are modal coordinates of
+        the shafts with the teeth apart, in "absolute" the common rotation first and the relative one second,
+        without the common one in the other two, as gyroscopic moments couple y
     coordinates : names of z, (m,)
     cycle : mesh cycle with positions, switch times and coefficients of the tooth pairs
     constant : (2m, 2m) part of A that does not depend on time: bearings, each on one coordinate, so that
-        its blocks are diagonal
+        its blocks are diagonal; on shafts squares of frequencies, dissipation and gyroscopic moments
     torque_pinion, torque_gear : (2m,) b per unit T_p and per unit T_g
     deflection : (m,) u with dynamic transmission error u . z
-    reduction : (m, 6) rows that make z of the six coordinates
-    structure : constant data of the equations of motion
+    reduction : (m, 6) takes accelerations of both gears by forces on them alone to those of z; without
+        shafts it also makes z of the six coordinates
+    structure : constant data of the equations of motion without shafts
+    gears : (6, m) rows that make the six coordinates of z, up to the common rotation
+    shafts : the modal data, where the supports are shafts
     """
 
     pair: GearPair
@@ -68,6 +76,20 @@ class LTVSystem:
     deflection: FloatArray
     reduction: FloatArray
     structure: Structure
+    gears: FloatArray
+    shafts: ShaftedPair | None = None
+
+    @property
+    def supports(self) -> Supports:
+        """What holds the gears."""
+        return "springs" if self.shafts is None else "shafts"
+
+    def gear_motion(self, states: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The six coordinates and their rates, (k, 6) each, of states (k, 2m); see ``gears``."""
+        m = len(self.coordinates)
+        if self.form == "absolute" and self.shafts is None:
+            return states[:, :m], states[:, m:]
+        return states[:, :m] @ self.gears.T, states[:, m:] @ self.gears.T
 
     @property
     def pinion_torque(self) -> float:
@@ -139,6 +161,7 @@ def periodic_system(
     *,
     as_printed: Collection[int] = (),
     cycle: MeshCycle | None = None,
+    supports: Supports = "springs",
 ) -> LTVSystem:
     """Return the gear pair as a linear time-varying periodic system (docs/theory/equations.md, eqs. 1 to 9).
 
@@ -149,14 +172,18 @@ def periodic_system(
     as_printed : equations out of 1, 2, 7, 9 whose printed sign is used; every form stays exact, because all
         forces depend on the rotations through the dynamic transmission error only
     cycle : the pair's mesh cycle where it is known already
+    supports : "springs", the four of ``bearings``, or "shafts", the elastic ones of ``shafts``
 
     Raises
     ------
-    ParameterError : unknown form or equation
+    ParameterError : unknown form, supports or equation, or shafts that the pair does not have
     """
     pair = load_gear_pair(pair)
     one_of("form", form, get_args(Form))
+    one_of("supports", supports, get_args(Supports))
     s = structure(pair, as_printed)
+    if supports == "shafts":
+        return _on_shafts(pair, form, s, cycle or mesh_cycle(pair))
     g = pair.geometry
     if form == "absolute":
         names: tuple[str, ...] = COORDINATES
@@ -171,7 +198,7 @@ def periodic_system(
     constant = np.zeros((2 * m, 2 * m))
     constant[:m, m:] = np.eye(m)
     # Bearings act on translations, which every form keeps as coordinates of their own.
-    lift = np.linalg.pinv(reduction)
+    lift = np.asarray(np.linalg.pinv(reduction), dtype=np.float64)
     constant[m:, :m] = -reduction @ np.diag(s.stiffness / s.mass) @ lift
     constant[m:, m:] = -reduction @ np.diag(s.damping / s.mass) @ lift
     torque = np.zeros((2, 2 * m))
@@ -189,4 +216,36 @@ def periodic_system(
         deflection=deflection,
         reduction=reduction,
         structure=s,
+        gears=lift,
+    )
+
+
+def _on_shafts(pair: GearPair, form: Form, s: Structure, cycle: MeshCycle) -> LTVSystem:
+    shafted = shafted_pair(pair)
+    kept = slice(0 if form == "absolute" else 1, None)
+    names, gears = shafted.names[kept], shafted.gears[:, kept]
+    m = len(names)
+    constant = np.zeros((2 * m, 2 * m))
+    constant[:m, m:] = np.eye(m)
+    constant[m:, :m] = -np.diag(shafted.frequencies[kept] ** 2)
+    damping = shafted.damping + pair.geometry.omega_pinion * shafted.gyroscopic
+    constant[m:, m:] = -damping[kept, kept]
+    deflection = s.deflection @ gears
+    if form == "absolute":
+        deflection[0] = 0.0  # but for rounding
+    torque = np.zeros((2, 2 * m))
+    torque[:, m:] = shafted.torque_pinion[kept], shafted.torque_gear[kept]
+    return LTVSystem(
+        pair=pair,
+        form=form,
+        coordinates=names,
+        cycle=cycle,
+        constant=constant,
+        torque_pinion=torque[0],
+        torque_gear=torque[1],
+        deflection=deflection,
+        reduction=gears.T * s.mass,  # modal masses are 1
+        structure=s,
+        gears=gears,
+        shafts=shafted,
     )

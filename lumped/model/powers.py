@@ -46,7 +46,8 @@ class MeanPowers:
     ----------
     driving : of the pinion's torque
     sliding : taken by sliding friction at the actual sliding velocities
-    tooth_dampers, bearings : taken by the dampers of the teeth and of the bearings
+    tooth_dampers, bearings, shafts : taken by the dampers of the teeth, of the bearings, and of the elastic
+        shafts with their couplings
     unpaid : what the losses exceed the difference of driving and braking power of the equations of motion by
     """
 
@@ -54,12 +55,13 @@ class MeanPowers:
     sliding: float
     tooth_dampers: float
     bearings: float
+    shafts: float
     unpaid: float
 
     @property
     def lost(self) -> float:
         """All losses together [W]."""
-        return self.sliding + self.tooth_dampers + self.bearings
+        return self.sliding + self.tooth_dampers + self.bearings + self.shafts
 
     @property
     def efficiency(self) -> float:
@@ -96,12 +98,13 @@ def pays(solution: PeriodicSolution) -> bool:
 def power_attributes(solution: PeriodicSolution) -> dict[str, float]:
     """Mean losses by place, and what of them nobody pays [W], as attributes of a result."""
     powers = mean_powers(solution)
-    return {
+    found = {
         "power_sliding": powers.sliding,
         "power_tooth_dampers": powers.tooth_dampers,
         "power_bearings": powers.bearings,
         "power_unpaid": 0.0 if pays(solution) else powers.unpaid,
     }
+    return found if solution.system.shafts is None else found | {"power_shafts": powers.shafts}
 
 
 @lru_cache(maxsize=4)
@@ -122,6 +125,7 @@ def mean_powers(solution: PeriodicSolution) -> MeanPowers:
         sliding=float(power[0]),
         tooth_dampers=float(power[1]),
         bearings=float(power[2]),
+        shafts=float(power[3]),
         unpaid=float(power.sum() - moments),
     )
 
@@ -134,7 +138,8 @@ def _between(solution: PeriodicSolution) -> tuple[FloatArray, FloatArray, FloatA
     1e-7 of themselves (5e-5 at 3 rpm, where the number of intervals is bounded).
     """
     time, states = solution.cycle_time, solution.cycle_states
-    low, high, z, v = states[:-1], states[1:], slice(0, 6), slice(6, 12)
+    m = len(solution.system.coordinates)
+    low, high, z, v = states[:-1], states[1:], slice(0, m), slice(m, 2 * m)
     h = np.diff(time)
     segment = np.searchsorted(solution.system.cycle.edges, time[:-1] + 0.5 * h) - 1
     first = _accelerations(solution, time[:-1], low, segment)
@@ -143,14 +148,14 @@ def _between(solution: PeriodicSolution) -> tuple[FloatArray, FloatArray, FloatA
     ends = np.stack([low[:, z], h * low[:, v], h**2 * first, high[:, z], h * high[:, v], h**2 * last])
     inside = np.einsum("nj,jkm->knm", _QUINTIC, ends), np.einsum("nj,jkm->knm", _RATES, ends) / h[:, None]
     times = (time[:-1, None] + h * _NODES).ravel()
-    return times, np.concatenate(inside, axis=2).reshape(-1, 12), (h * _WEIGHTS).ravel() / time[-1]
+    return times, np.concatenate(inside, axis=2).reshape(-1, 2 * m), (h * _WEIGHTS).ravel() / time[-1]
 
 
 def _accelerations(
     solution: PeriodicSolution, times: FloatArray, states: FloatArray, segment: IntArray
 ) -> FloatArray:
-    """Accelerations (k, 6) at states (k, 12), as limits from inside the smooth segments."""
-    system, m = solution.system, 6
+    """Accelerations (k, m) at states (k, 2m), as limits from inside the smooth segments."""
+    system, m = solution.system, len(solution.system.coordinates)
     gain = system.gain(times, segment)
     found = states @ system.constant[m:].T + gain.error
     found += gain.stiffness * (states[:, :m] @ system.deflection)[:, None]
@@ -160,17 +165,23 @@ def _accelerations(
 
 
 def _powers(solution: PeriodicSolution, times: FloatArray, states: FloatArray) -> FloatArray:
-    """Powers taken by sliding, tooth dampers and bearings at n states, (3, n) [W]."""
+    """Powers taken by sliding, tooth dampers, bearings and shafts at n states, (4, n) [W]."""
     from lumped.model.results import response
 
     system = solution.system
     values = response(system, times, states)
-    pairs, rates = system.cycle.sample(times), states[:, 6:]
+    pairs, rates = system.cycle.sample(times), states[:, len(system.coordinates) :]
     closing = values["dte_dot"] - pairs.error_rate
+    shafts = system.shafts
+    if shafts is None:
+        supports = rates**2 @ system.structure.damping, np.zeros(times.size)
+    else:
+        inside = shafts.modal_damping + shafts.coupling_damping
+        supports = tuple(np.sum((rates @ c) * rates, axis=1) for c in (shafts.bearing_damping, inside))
     return np.stack(
         [
             -values["friction_power"].sum(axis=0),
             (pairs.damping * closing**2).sum(axis=0),
-            rates**2 @ system.structure.damping,
+            *supports,
         ]
     )

@@ -117,9 +117,8 @@ def _steps(
 ) -> FloatArray:
     """Maps (k, 2m, 2m + columns) of Gauss steps of lengths h (k,) from the times ``start``.
 
-    In x = (z, v) with z' = v only the stage accelerations W_i are unknown. A's constant part (K, C) is
-    diagonal, for a bearing acts on one coordinate. With the deflections delta = u.z and delta' = u.v at the
-    stages and the feedback (g_k, g_c, g_0) of the mesh,
+    In x = (z, v) with z' = v only the stage accelerations W_i are unknown. With the constant part (K, C) of
+    A, the deflections delta = u.z and delta' = u.v at the stages and the mesh's feedback (g_k, g_c, g_0),
 
         W_i = K (z + h c_i v + h^2 (a a)_ij W_j) + C (v + h a_ij W_j) + f + n_i,
         n_i = g_k,i delta_i + g_c,i delta'_i + g_0,i.
@@ -147,7 +146,7 @@ def _without_mesh(
 ) -> tuple[FloatArray, ...]:
     """What ``_steps`` needs of step lengths h (k,); columns are unit states and forcings, s stages.
 
-    Without the mesh each coordinate is a problem of its own, of s equations.
+    Without shafts each coordinate is a problem of its own then, of s equations, for a bearing acts on one.
 
     Returns
     -------
@@ -157,6 +156,8 @@ def _without_mesh(
     """
     a, b, c = gauss
     s, m, k, u = c.size, system.size // 2, h.size, system.deflection
+    if _couples(system.constant[m:, :m]) or _couples(system.constant[m:, m:]):
+        return _coupled_without_mesh(system, h, extra, gauss)
     stiffness, damping = np.diag(system.constant[m:, :m]), np.diag(system.constant[m:, m:])
     forces = np.column_stack([system.torque_pinion * system.pinion_torque, extra])[m:]
     h = h[:, None, None, None]
@@ -189,6 +190,43 @@ def _without_mesh(
     moves = to_end[:, None] @ inverse  # (k, m, 2, s)
     by_feedback[:, :, s + diagonal, diagonal] = moves[:, :, 0].swapaxes(1, 2)
     by_feedback[:, :, s + m + diagonal, diagonal] = moves[:, :, 1].swapaxes(1, 2)
+    by_p = np.concatenate([h**2 * (a @ a), h * a], axis=1)
+    return end, p, by_feedback, start, by_p
+
+
+def _couples(block: FloatArray) -> bool:
+    return bool(np.count_nonzero(block) > np.count_nonzero(np.diag(block)))
+
+
+def _coupled_without_mesh(
+    system: LTVSystem, h: FloatArray, extra: FloatArray, gauss: tuple[FloatArray, FloatArray, FloatArray]
+) -> tuple[FloatArray, ...]:
+    """The same where stiffness and damping couple the coordinates: one problem of s m equations."""
+    a, b, c = gauss
+    s, m, k, u = c.size, system.size // 2, h.size, system.deflection
+    stiffness, damping = system.constant[m:, :m], system.constant[m:, m:]
+    forces = np.column_stack([system.torque_pinion * system.pinion_torque, extra])[m:]
+    h = h[:, None, None]
+    left = np.eye(s * m) - h**2 * np.kron(a @ a, stiffness) - h * np.kron(a, damping)
+    inverse = np.linalg.inv(left).reshape(k, s, m, s, m)
+    right = np.zeros((k, s, m, 2 * m + forces.shape[1]))
+    right[..., :m] = stiffness
+    right[..., m : 2 * m] = h[..., None] * np.multiply.outer(c, stiffness) + damping
+    right[..., 2 * m :] = forces
+    columns = right.shape[-1]
+    accelerations = (inverse.reshape(k, s * m, s * m) @ right.reshape(k, s * m, columns)).reshape(right.shape)
+    to_end = np.stack([h[:, 0] ** 2 * (b @ a), h[:, 0] * b], axis=1)  # (k, 2, s)
+    end = np.einsum("kds,ksmx->kdmx", to_end, accelerations).reshape(k, 2 * m, columns)
+    end[:, :, : 2 * m] += np.eye(2 * m)
+    end[:, :m, m : 2 * m] += h * np.eye(m)
+    p = np.einsum("m,ksmx->ksx", u, accelerations)
+    start = np.zeros((k, 2 * s, columns))
+    start[:, :s, :m] = start[:, s:, m : 2 * m] = u
+    start[:, :s, m : 2 * m] = h * np.multiply.outer(c, u)
+    by_feedback = np.zeros((k, s, s + 2 * m, m))
+    by_feedback[:, :, :s] = np.einsum("m,krmsi->ksri", u, inverse)
+    moves = np.einsum("kdr,krmsi->ksdmi", to_end, inverse)
+    by_feedback[:, :, s:] = moves.reshape(k, s, 2 * m, m)
     by_p = np.concatenate([h**2 * (a @ a), h * a], axis=1)
     return end, p, by_feedback, start, by_p
 

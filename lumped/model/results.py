@@ -14,6 +14,7 @@ import numpy as np
 from lumped.labelling import Variable, labelled_dataset
 from lumped.model.equations import COORDINATES
 from lumped.model.periodic_system import LTVSystem
+from lumped.model.shafted import ShaftedPair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -108,16 +109,49 @@ def labelled(
 def dataset(
     system: LTVSystem, time: FloatArray, states: FloatArray, attributes: Mapping[str, Any]
 ) -> xr.Dataset:
-    """Return states of the 12-state lumped model with all loads and velocities that follow from them.
+    """Return states of the "absolute" system with all loads and velocities that follow from them.
 
     Parameters
     ----------
     system : the "absolute" system of a gear pair
     time : (k,) [s]
-    states : (k, 12)
+    states : (k, n)
     attributes : of the dataset
     """
-    return labelled(time, response(system, time, states), attributes)
+    found = labelled(time, response(system, time, states), dict(attributes) | {"supports": system.supports})
+    if system.shafts is None:
+        return found
+    return with_bearings(found, bearing_forces(system.shafts, states), system.shafts.bearing_names)
+
+
+def with_bearings(run: xr.Dataset, forces: FloatArray, names: tuple[str, ...]) -> xr.Dataset:
+    """The result of a pair on shafts with the force of every bearing on its shaft.
+
+    Parameters
+    ----------
+    run : over ``time``
+    forces : (bearings, 2, k) along x and y [N]
+    names : of the bearings
+    """
+    variable = ("bearing", "direction", "time"), forces, {"units": "N", "long_name": "force on the shaft"}
+    return run.assign(bearing_force=variable).assign_coords(bearing=list(names), direction=["loa", "oloa"])
+
+
+def bearing_forces(shafts: ShaftedPair, states: FloatArray) -> FloatArray:
+    """Forces of the bearings on their shafts, (bearings, 2, k) [N], of states (k, 2m)."""
+    m = len(shafts.names)
+    spring = np.einsum("bd,bdm,km->bdk", shafts.bearing_stiffness, shafts.bearings, states[:, :m])
+    dashpot = np.einsum("bd,bdm,km->bdk", shafts.bearing_dampers, shafts.bearings, states[:, m:])
+    return np.asarray(-(spring + dashpot), dtype=np.float64)
+
+
+def _sums_of_bearings(shafts: ShaftedPair, forces: FloatArray) -> FloatArray:
+    """Sum over the bearings of each shaft, (k, 6) in the order of the coordinates."""
+    found = np.zeros((forces.shape[2], len(COORDINATES)))
+    for which, name in enumerate(("pinion", "gear")):
+        own = [bearing.startswith(name) for bearing in shafts.bearing_names]
+        found[:, [2 + which, 4 + which]] = forces[own].sum(axis=0).T
+    return found
 
 
 def load_range(contact_form: str, load: FloatArray, contact: FloatArray) -> tuple[float, float]:
@@ -144,7 +178,7 @@ def response(
     ``normal_load`` (pairs, k) [N] replaces what the linear model's teeth carry, where they may part.
     """
     g, s = system.pair.geometry, system.structure
-    z, rates = states[:, :6], states[:, 6:]
+    z, rates = system.gear_motion(states)
     dte, dte_dot = z @ s.deflection, rates @ s.deflection
     pairs = system.cycle.sample(time)
     normal = normal_load
@@ -157,7 +191,10 @@ def response(
         - (g.omega_gear + rates[:, 1]) * arm_g
         - (rates[:, 4] - rates[:, 5])
     )
-    bearing = -(s.stiffness * z + s.damping * rates)
+    if system.shafts is None:
+        bearing = -(s.stiffness * z + s.damping * rates)
+    else:
+        bearing = _sums_of_bearings(system.shafts, bearing_forces(system.shafts, states))
     values: dict[str, FloatArray] = {name: z[:, j] for j, name in enumerate(COORDINATES)}
     values |= {f"{name}_dot": rates[:, j] for j, name in enumerate(COORDINATES)}
     values |= {f"bearing_force_{name}": bearing[:, j] for j, name in enumerate(COORDINATES) if j > 1}

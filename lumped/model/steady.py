@@ -10,7 +10,7 @@ from lumped.arguments import whole_number
 from lumped.errors import NumericalError
 from lumped.model.equations import COORDINATES
 from lumped.model.extremes import peak_to_peak
-from lumped.model.periodic_system import LTVSystem, periodic_system
+from lumped.model.periodic_system import LTVSystem, Supports, periodic_system
 from lumped.model.propagation import STAGES, STEP_ANGLE, fastest_frequency, step_maps
 from lumped.model.results import response
 from lumped.schema.pair import GearPair
@@ -29,9 +29,9 @@ class PeriodicSolution:
 
     Attributes
     ----------
-    system : the 12-state system
+    system : the "absolute" system, of n states: 12, or more on shafts
     time : (k,) [s]
-    states : (k, 12)
+    states : (k, n)
     pinion_torque, brake_torque : mean torques that hold the mean speed [N m]
     closure : largest mismatch of state and state one cycle later, over the largest displacement or rate
     error : estimate of the largest relative error of the dynamic transmission error; None where not asked for
@@ -39,7 +39,7 @@ class PeriodicSolution:
         motion is unstable, and a pair leaves it
     peak_to_peak : variable -> its peak to peak over the whole cycle [m], with switches and extremes between
         samples
-    cycle_time, cycle_states : (n,) [s], 0, the period and all switches included, and (n, 12): close enough to
+    cycle_time, cycle_states : (i,) [s], 0, the period and all switches included, and (i, n): close enough to
         resolve the fastest vibration
     """
 
@@ -76,14 +76,14 @@ def periodic_solution(
 ) -> PeriodicSolution:
     """Periodic motion at given times of the mesh cycle.
 
-    The 12-state map over one cycle has a defective double multiplier +1 (rigid rotation), so one torque must
+    The map over one cycle has a defective double multiplier +1 (rigid rotation), so one torque must
     balance: the brake torque, or, where the brake torque is given, the mean driving torque that holds the
     speed. Bordering the map with that torque and with the position of the rigid rotation
     (J_p theta_p / r_bp + J_g theta_g / r_bg = 0 at t = 0) makes it regular.
 
     Parameters
     ----------
-    system : the "absolute" system of a gear pair, 12 states
+    system : the "absolute" system of a gear pair
     times : increasing, within [0, T_m) [s]
     estimate_error : whether to compute ``error``, by a second integration of lower order
 
@@ -104,7 +104,8 @@ def periodic_solution(
     if estimate_error:
         low = step_maps(system, torques, outputs=outputs, stages=STAGES - 1)
         other = low.states(*balanced_start(system, *low.over_all()))[at]
-        dte, dte_low = result[:, :6] @ system.deflection, other[:, :6] @ system.deflection
+        m = len(system.coordinates)
+        dte, dte_low = result[:, :m] @ system.deflection, other[:, :m] @ system.deflection
         error = float(np.abs(dte - dte_low).max() / np.abs(dte).max())
     return PeriodicSolution(
         system=system,
@@ -121,19 +122,20 @@ def periodic_solution(
     )
 
 
-def periodic_cycle(pair: GearPair, samples: int) -> PeriodicSolution:
+def periodic_cycle(pair: GearPair, samples: int, *, supports: Supports = "springs") -> PeriodicSolution:
     """Periodic motion of a gear pair without error estimate, labels and provenance: half the time.
 
     Parameters
     ----------
     pair : a validated gear pair
     samples : times per mesh cycle
+    supports : of the gears
 
     Raises
     ------
     NumericalError : the speed sits on a stability boundary, where no periodic motion exists
     """
-    system = periodic_system(pair, "absolute")
+    system = periodic_system(pair, "absolute", supports=supports)
     return periodic_solution(system, sample_times(system.period, samples), estimate_error=False)
 
 
@@ -156,13 +158,14 @@ def _peaks(system: LTVSystem, times: FloatArray, states: FloatArray) -> dict[str
     to = {"dte": system.structure.deflection} | {
         name: np.eye(6)[j] for j, name in enumerate(COORDINATES) if j > 1
     }
-    return {name: peak_to_peak(times, states[:, :6] @ v, states[:, 6:] @ v) for name, v in to.items()}
+    z, rates = system.gear_motion(states)
+    return {name: peak_to_peak(times, z @ v, rates @ v) for name, v in to.items()}
 
 
 def _closure(system: LTVSystem, states: FloatArray) -> float:
     """Mismatch of the last and the first state; rotations count by their way on the base circle."""
     radius = np.append(np.abs(system.structure.deflection[:2]), np.ones(4))
-    z, rates = states[:, :6] * radius, states[:, 6:] * radius
+    z, rates = (part * radius for part in system.gear_motion(states))
     length = np.abs(z).max()
     # A pair at rest but for rounding has no rate of its own to compare with.
     velocity = max(np.abs(rates).max(), length / system.period)
@@ -170,45 +173,48 @@ def _closure(system: LTVSystem, states: FloatArray) -> float:
 
 
 def relative_spectral_radius(system: LTVSystem, phi: FloatArray) -> float:
-    """Largest modulus of the multipliers of a 12-state map without its rigid rotation.
+    """Largest modulus of the multipliers of the map of an "absolute" system without its rigid rotation.
 
-    Nothing depends on the rotations but through q = r_bp theta_p - r_bg theta_g, so with S from the 12 states
+    Nothing depends on the rotations but through q = r_bp theta_p - r_bg theta_g, so with S from all states
     to those of q and the translations, S phi = phi_rel S; any right inverse R of S gives phi_rel = S phi R.
 
     Parameters
     ----------
-    system : the 12-state system
-    phi : (12, 12) map of the states over one mesh cycle
+    system : the "absolute" system
+    phi : (n, n) map of the states over one mesh cycle
     """
-    to_relative = np.zeros((5, 6))
-    to_relative[0, :2] = system.structure.deflection[:2]
-    to_relative[1:, 2:] = np.eye(4)
-    back = np.zeros((6, 5))
-    back[0, 0] = 1.0 / system.structure.deflection[0]
-    back[2:, 1:] = np.eye(4)
+    m = len(system.coordinates)
+    if system.supports == "shafts":  # the first coordinate is the common rotation
+        to_relative, back = np.eye(m)[1:], np.eye(m)[:, 1:]
+    else:
+        to_relative = np.zeros((5, 6))
+        to_relative[0, :2] = system.structure.deflection[:2]
+        to_relative[1:, 2:] = np.eye(4)
+        back = np.zeros((6, 5))
+        back[0, 0] = 1.0 / system.structure.deflection[0]
+        back[2:, 1:] = np.eye(4)
     twice = np.eye(2)
     relative = np.kron(twice, to_relative) @ phi @ np.kron(twice, back)
     return float(np.abs(np.linalg.eigvals(relative)).max())
 
 
 def balanced_start(system: LTVSystem, phi: FloatArray, forced: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Initial state (12,) and weights (3,) of own forcing, extra T_p and T_g, from the map over the cycle."""
-    operating, g = system.pair.operating, system.pair.geometry
+    """Initial state (n,) and weights (3,) of own forcing, extra T_p and T_g, from the map over the cycle."""
+    operating, n = system.pair.operating, system.size
     brake = operating.brake_torque
     unknown = 2 if brake == "balanced" else 1
     known = np.array([1.0, 0.0, 0.0 if brake == "balanced" else brake])
-    matrix = np.zeros((13, 13))
-    matrix[:12, :12] = np.eye(12) - phi
-    matrix[:12, 12] = -forced[:, unknown]
-    inertia = system.structure.mass[:2] / np.abs(system.structure.deflection[:2])
-    matrix[12, :2] = inertia
+    matrix = np.zeros((n + 1, n + 1))
+    matrix[:n, :n] = np.eye(n) - phi
+    matrix[:n, n] = -forced[:, unknown]
+    unit, inertia = _units(system)
+    matrix[n, : inertia.size] = inertia
     right = np.append(forced @ known, 0.0)
     # Angles, lengths and their rates differ by many decades; equilibrate before judging the rank.
-    unit = np.array([1 / g.base_radius_pinion, 1 / g.base_radius_gear, 1.0, 1.0, 1.0, 1.0])
     rate = 1.0 / system.period
     columns = np.concatenate([unit, unit * rate, [0.0]])
-    columns[12] = system.pinion_torque / _static(system)
-    rows = np.append(columns[:12], inertia[0] * unit[0])
+    columns[n] = system.pinion_torque / _static(system)
+    rows = np.append(columns[:n], inertia[0] * unit[0])
     scaled = matrix * columns / rows[:, None]
     condition = float(np.linalg.cond(scaled))
     if not condition < 1e13:
@@ -218,8 +224,17 @@ def balanced_start(system: LTVSystem, phi: FloatArray, forced: FloatArray) -> tu
         )
     solution = np.linalg.solve(scaled, right / rows) * columns
     weights = known.copy()
-    weights[unknown] = solution[12]
-    return solution[:12], weights
+    weights[unknown] = solution[n]
+    return solution[:n], weights
+
+
+def _units(system: LTVSystem) -> tuple[FloatArray, FloatArray]:
+    """Size (m,) of each coordinate where lengths are of order 1, and weights that make the rigid rotation."""
+    if system.supports == "shafts":
+        return np.full(len(system.coordinates), np.sqrt(system.structure.mass[2])), np.ones(1)
+    g, s = system.pair.geometry, system.structure
+    unit = np.array([1 / g.base_radius_pinion, 1 / g.base_radius_gear, 1.0, 1.0, 1.0, 1.0])
+    return unit, s.mass[:2] / np.abs(s.deflection[:2])
 
 
 def _static(system: LTVSystem) -> float:

@@ -16,7 +16,7 @@ from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.mesh_elements import MeshElements, mesh_elements
-from lumped.model.periodic_system import LTVSystem, periodic_system
+from lumped.model.periodic_system import LTVSystem, Supports, periodic_system
 from lumped.model.powers import balance
 from lumped.model.results import load_range, provenance
 from lumped.model.steady import periodic_solution, sample_times
@@ -34,6 +34,7 @@ def speed_sweep(
     speeds_rpm: Iterable[float],
     *,
     samples_per_cycle: int = 128,
+    supports: Supports = "springs",
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Periodic motion over pinion speed.
@@ -43,6 +44,7 @@ def speed_sweep(
     pair : a validated gear pair; its speed is replaced
     speeds_rpm : pinion speeds [rpm], positive
     samples_per_cycle : times per cycle; peak to peak takes in extremes between them
+    supports : of the gears, as of `lumped.steady_state`
     progress : called with the finished fraction
 
     Returns
@@ -73,7 +75,7 @@ def speed_sweep(
         )
     }
     periodic = np.zeros(speeds.size, dtype=bool)
-    for j, system in enumerate(systems_over_speed(pairs)):
+    for j, system in enumerate(systems_over_speed(pairs, supports)):
         times = sample_times(system.period, samples_per_cycle)
         try:
             solution = periodic_solution(system, times, estimate_error=False)
@@ -96,7 +98,7 @@ def speed_sweep(
     return labelled_dataset(
         variables | {"periodic": ("speed", periodic, "1", "whether a periodic motion exists")},
         {"speed": (speeds, "rpm", "pinion speed")},
-        provenance(pair) | {"model": "lumped"},
+        provenance(pair) | {"model": "lumped", "supports": supports},
     )
 
 
@@ -107,7 +109,7 @@ def _label(name: str) -> tuple[str, str]:
     return unit, name.replace("_", " ").replace("dte", "transmission error")
 
 
-def systems_over_speed(pairs: Iterable[GearPair]) -> Iterator[LTVSystem]:
+def systems_over_speed(pairs: Iterable[GearPair], supports: Supports = "springs") -> Iterator[LTVSystem]:
     """Systems of pairs that differ in speed alone: of the element laws only friction changes with it."""
     elements: MeshElements | None = None
     for at in pairs:
@@ -118,7 +120,7 @@ def systems_over_speed(pairs: Iterable[GearPair]) -> Iterator[LTVSystem]:
             elements = replace(
                 elements, friction=friction_path_function(at, interval=elements.stiffness.interval)
             )
-        yield periodic_system(at, "absolute", cycle=MeshCycle(g, elements))
+        yield periodic_system(at, "absolute", cycle=MeshCycle(g, elements), supports=supports)
 
 
 def _reversal(run: Mapping[str, FloatArray], pitch_point: float) -> float:

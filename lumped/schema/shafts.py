@@ -135,6 +135,11 @@ class Shafts(Section):
         description="of every elastic mode of a shaft with its gear and coupled inertia in its bearings, "
         "teeth apart; beside the dampers of bearings and couplings"
     )
+    max_frequency: Annotated[float | None, Quantity("Hz", at_least=1, at_most=1e7, optional=True)] = Field(
+        None,
+        description="modes of the shafts with their gears held are kept up to this; default three times the "
+        "frequency of both gears turning on teeth of 20 N/(mm um)",
+    )
     pinion: Shaft = Field(description="the pinion's shaft")
     gear: Shaft = Field(description="the gear's shaft")
     motor: CoupledInertia | None = Field(

@@ -95,7 +95,8 @@ def shaft_tables():
     gear = {"segments": [{"length": 150, "diameter": 50.3}], "gear_position": 77, "bearings": [one]} | steel
     motor = {"position": 0, "inertia": 0.0113, "coupling_stiffness": 1.1e5, "coupling_damping": 0.3}
     load = {"position": 150, "inertia": 0.31, "coupling_stiffness": "2.3 kN*m/deg"}
-    return {"damping_ratio": 0.013, "pinion": pinion, "gear": gear, "motor": motor, "load": load}
+    modes = {"damping_ratio": 0.013, "max_frequency": "5 kHz"}
+    return modes | {"pinion": pinion, "gear": gear, "motor": motor, "load": load}
 
 
 @pytest.fixture(scope="session")
