@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.special import lambertw
 
 import lumped
@@ -16,6 +19,8 @@ from multibody.contact import kinematics as kin
 from multibody.contact.effects import effect_flags
 from multibody.contact.elements import elastic_load, shared_loads, stored_energy
 from multibody.contact.machine import machine
+from multibody.run.flow_map import find_orbit
+from multibody.run.setup import prepare
 
 ALL = effect_flags(None, "loaded")
 #: Neither friction nor dampers, so that all forces come from the energy.
@@ -173,6 +178,53 @@ def test_hertz_law_is_the_derivative_of_its_energy_and_lamberts_function(share):
         assert load == pytest.approx(-pressed / (d * w), rel=1e-6)
 
 
+def test_a_cantilever_pushes_along_itself_with_its_load_times_the_slope_of_its_end():
+    """k = 3 EI/x^3: the end turns by N x^2/(2 EI), towards the tip."""
+    bending, x, load = 7.0, 0.04, 900.0
+    k = 3.0 * bending / x**3
+    along = stored_energy(load, k, -3.0 * k / x, 0.0, load)[1]
+    assert -along == pytest.approx(load * load * x**2 / (2.0 * bending), rel=1e-14)
+
+
+@pytest.mark.parametrize("path_work", [True, False])
+def test_a_slow_change_of_stiffness_is_paid_by_the_shafts(path_work):
+    """A free pair vibrates on while k grows: its energy over its frequency stays, and path work is who pays.
+
+    Gears that only turn, teeth that push and pull, no torque; the shafts pay from the energy of their
+    rotation, and without path work the energy comes from nowhere.
+    """
+    flags = ALL & ~(kn.CONTACT_LOSS | kn.BACK_SIDE | kn.NEIGHBOURS | (0 if path_work else kn.PATH_WORK))
+    pair = bare({"model": "rectangular"}, **{"operating.pinion_speed": 200.0})
+    numbers = machine(pair, flags)
+    p, inertia, low, high = numbers.parameters, numbers.inertia, *numbers.table[0, :2]
+    numbers = replace(numbers, table=np.array([[low, high, 1e8 / (high - low), 1e8]]))
+
+    def expanded(y):
+        q, v = np.zeros((2, 6))
+        q[[2, 5]], v[[2, 5]] = y[:2], y[2:]
+        return q, v
+
+    def rates(t, y):
+        return [*y[2:], *contact(numbers, t, *expanded(y), flags=flags)[0][[2, 5]] / inertia]
+
+    def energies(t, y):
+        """Stored and kinetic: of the vibration, and with the rotation; and stiffness."""
+        (record,) = contact(numbers, t, *expanded(y), flags=flags)[1]
+        speeds = np.array([-p[kn.OMEGA_P], p[kn.OMEGA_G]]) + y[2:]
+        kinetic = 0.5 * inertia @ np.stack([y[2:], speeds], axis=1) ** 2
+        return *(kinetic + record[kn.ENERGY]), record[kn.K]
+
+    times = np.array([0.7, 0.95]) * numbers.period  # one pair in contact
+    start = [-1e-6 / p[kn.RADIUS_P], 0.0, 0.0, 0.0]
+    run = solve_ivp(rates, times, start, method="DOP853", rtol=1e-10, atol=1e-15)
+    (before, all_before, k_before), (after, all_after, k_after) = map(energies, times, run.y[:, [0, -1]].T)
+    growth = np.sqrt(k_after / k_before)
+    assert growth > 1.05
+    assert after / before == pytest.approx(growth, rel=2e-4)
+    made = (all_after - all_before) / before
+    assert made == pytest.approx(0.0 if path_work else growth - 1.0, abs=1e-7 if path_work else 5e-4)
+
+
 @pytest.mark.parametrize("softening", [0.0, 4.4e-10])
 def test_neighbours_share_the_load_in_both_models(softening):
     """Newton's steps here, relaxation there; and the conditions of contact themselves."""
@@ -291,3 +343,23 @@ def test_the_loaded_form_meets_the_exact_contact(relief, most):
     )
     difference = (exact - exact.mean()) - (own - own.mean())
     assert np.abs(difference).max() < most * np.ptp(exact)
+
+
+def test_a_loss_that_falls_with_speed_lets_the_free_train_run_away():
+    """Sommerfeld's effect above a peak of the loss: of the double multiplier one is 1 - (dtau/dOm) T_m/J.
+
+    The two are split by little, so their sum is what differences tell.
+    """
+    pair = bare({"model": "energy"}, **{"mesh.damping_ratio": 0.05, "operating.pinion_speed": 8500.0})
+    step = 0.002
+    low, high = (
+        find_orbit(prepare(pair.with_(operating__pinion_speed=8500.0 * f), rtol=1e-10)).machine.torque_gear
+        for f in (1.0 - step, 1.0 + step)
+    )
+    gains = (high - low) / (2.0 * step * pair.operating.pinion_speed)  # equal gears: -dtau/dOm
+    numbers = machine(pair)
+    multipliers = np.linalg.eigvals(multibody.monodromy(pair).full)
+    two = multipliers[np.argsort(np.abs(multipliers - 1.0))[:2]]
+    runaway = gains * numbers.period / numbers.inertia.sum()
+    assert runaway > 5e-5
+    assert two.sum().real - 2.0 == pytest.approx(runaway, rel=0.02)
