@@ -34,9 +34,9 @@ from multibody.shafts.train import Train, train
 
 Supports = Literal["springs", "shafts"]
 
-#: Modes of shafts with their gears held are kept up to so many times the fastest mode of gears on springs,
-#: and to this order of the mesh frequency: the rest changes the transmission error by some thousandths of
-#: its peak to peak (docs/theory/shafts.md).
+#: Where shafts.max_frequency is not given, modes of shafts with their gears held are kept up to so many times
+#: the fastest mode of the gears on springs, and to this order of the mesh frequency: the rest changes the
+#: transmission error by some thousandths of its peak to peak (docs/theory/multibody.md).
 _MESH_FREQUENCIES, _MESH_ORDERS = 4.0, 5.0
 
 
@@ -136,9 +136,7 @@ class Machine:
         return self.train.fastest(mesh)
 
 
-def machine(
-    pair: GearPair, flags: int = 0, supports: Supports = "springs", highest: float | None = None
-) -> Machine:
+def machine(pair: GearPair, flags: int = 0, supports: Supports = "springs") -> Machine:
     """Describe a gear pair for the multibody model, both torques being that of the pinion.
 
     Parameters
@@ -148,7 +146,6 @@ def machine(
         linear mesh may part, the stiffness holds wherever teeth touch; else relief takes it off where the
         lumped model sees no contact
     supports : "springs" of the pair's bearings, or "shafts"
-    highest : modes of shafts with their gears held are kept up to this [Hz]; None chooses
     """
     drawn, loaded = circles(pair), pair.mesh.contact == "loaded"
     parts = flags & kn.LINEAR and flags & kn.CONTACT_LOSS
@@ -218,10 +215,8 @@ def machine(
     )
     if supports == "springs":
         return found
-    if highest is None:
-        highest = _highest(found)
     none = np.zeros((2, 2))
-    shafts = train(pair, mass, inertia, (omega_p, float(p[kn.OMEGA_G])), highest)
+    shafts = train(pair, mass, inertia, (omega_p, float(p[kn.OMEGA_G])), _highest(found))
     return replace(found, bearing_stiffness=none, bearing_damping=none, train=shafts)
 
 

@@ -120,12 +120,8 @@ def prepare(
     friction_velocity: float | None = None,
     drive: Drive | None = None,
     supports: Supports = "springs",
-    highest: float | None = None,
 ) -> Setup:
-    """Build the model and its initial state; arguments as ``simulate``.
-
-    ``highest`` is the frequency up to which modes of shafts with their gears held are kept [Hz].
-    """
+    """Build the model and its initial state; arguments as ``simulate``."""
     one_of("fidelity", fidelity, get_args(Fidelity))
     one_of("supports", supports, get_args(Supports))
     rtol = real_number("rtol", rtol, 1e-12, 1e-3)
@@ -143,7 +139,7 @@ def prepare(
             allowed = "at most contact_loss at fidelity 'linear'"
             raise refuse("effects", shown(effects), allowed, "Use fidelity='exact'.")
         flags |= kn.LINEAR
-    numbers = machine(pair, flags, supports, highest)
+    numbers = machine(pair, flags, supports)
     call_limit = _call_limit(numbers)
     system = periodic_system(pair, "absolute")
     if pair.mesh.contact == "loaded":

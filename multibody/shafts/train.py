@@ -155,7 +155,7 @@ def train(
     mass: FloatArray,
     inertia: FloatArray,
     speeds: tuple[float, float],
-    highest: float,
+    enough: float,
 ) -> Train:
     """Both shafts of a pair.
 
@@ -164,7 +164,7 @@ def train(
     pair : a validated gear pair with shafts
     mass, inertia : (2,) of pinion and gear, polar [kg], [kg m^2]
     speeds : of pinion and gear, both positive [rad/s]; the pinion turns clockwise
-    highest : modes with the gears held are kept up to this [Hz]
+    enough : modes with the gears held are kept up to this where the pair does not say it [Hz]
 
     Raises
     ------
@@ -175,6 +175,8 @@ def train(
         raise refuse(
             "supports", "'shafts'", "'springs' for a pair without [shafts]", "Add [shafts] to the parameters."
         )
+    given = pair.shafts.max_frequency
+    highest = enough if given is None else given
     found = []
     sides = (
         (pair.pinion, pair.shafts.pinion, pair.shafts.motor, -speeds[0]),

@@ -42,6 +42,7 @@ def quantities(pair: GearPair) -> dict[str, FloatArray]:
         _motion,
         _report,
         _stability,
+        _on_shafts,
         partial(_multibody, "linear"),
         partial(_multibody, "exact"),
     ):
@@ -79,6 +80,17 @@ def _numbers(data: xr.Dataset, prefix: str) -> dict[str, FloatArray]:
 
 def _attributes(data: xr.Dataset, prefix: str, *names: str) -> dict[str, FloatArray]:
     return {f"{prefix} {name}": np.array([float(data.attrs[name])]) for name in names}
+
+
+def _on_shafts(pair: GearPair) -> dict[str, FloatArray]:
+    """Motion of both models on elastic shafts, where the pair has them."""
+    if pair.shafts is None:
+        return {}
+    modal = lumped.steady_state(pair, supports="shafts", samples_per_cycle=SAMPLES)
+    machine = multibody.simulate(
+        pair, 1, fidelity="linear", initial="periodic", supports="shafts", samples_per_cycle=SAMPLES
+    )
+    return _numbers(modal, "lumped on shafts") | _numbers(machine, "multibody on shafts")
 
 
 def _path(pair: GearPair) -> dict[str, FloatArray]:

@@ -23,12 +23,13 @@ from multibody.contact.drawing import circles, masses
 from multibody.contact.machine import machine
 from validation.verification.checks import Check, check, rows_check
 from validation.verification.loaded_form import loaded_form
+from validation.verification.on_shafts import on_shafts
 
 _PLACES = 101
 
 
 def written_twice(pair: GearPair) -> tuple[Check, ...]:
-    """Geometry, bodies, damping, relief, every friction law and the static mesh of a pair, from both models.
+    """Geometry, bodies, damping, relief, every friction law, static mesh and shafts, from both models.
 
     Parameters
     ----------
@@ -41,6 +42,7 @@ def written_twice(pair: GearPair) -> tuple[Check, ...]:
         _laws(pair),
         *_relief(pair),
         *loaded_form(pair),
+        *on_shafts(pair),
     )
 
 

@@ -1,6 +1,7 @@
 """Every fault, by group: a TOML file a group, a table a fault, its name the key.
 
-``without`` lists fields that the fault needs to be absent; all other entries are those of ``Fault``.
+``without`` lists fields that the fault needs to be absent; all other entries are those of ``Fault``. A table
+``on`` of the file itself holds for all its faults.
 """
 
 from __future__ import annotations
@@ -14,9 +15,10 @@ from validation.faults.fault import Fault
 
 def _read(group: str) -> tuple[Fault, ...]:
     text = (files(__package__) / f"{group.replace(' ', '_')}.toml").read_text(encoding="utf-8")
-    found = []
-    for key, row in tomllib.loads(text).items():
-        on = row.pop("on", {}) | dict.fromkeys(row.pop("without", ()))
+    found, rows = [], tomllib.loads(text)
+    common = rows.pop("on", {})
+    for key, row in rows.items():
+        on = common | row.pop("on", {}) | dict.fromkeys(row.pop("without", ()))
         found.append(Fault(key, on=on, **row))
     return tuple(found)
 
@@ -36,6 +38,7 @@ GROUPS: Mapping[str, tuple[Fault, ...]] = {
         "integration",
         "stability",
         "multibody model",
+        "shafts",
         "report",
         "input",
     )
