@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from floquet import (
         PeriodicSystem,
         campbell,
+        from_second_order,
         monodromy,
         stability_boundaries,
         stability_chart,
@@ -73,6 +74,7 @@ __all__ = [
     "campbell",
     "crosscheck",
     "floquet",
+    "from_second_order",
     "gear_pair_from_rexs",
     "geometry",
     "load_gear_pair",

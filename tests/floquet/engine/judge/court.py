@@ -38,13 +38,13 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 from balls import BITS, exact_multipliers
 from findings import Disks, Finding, finding
-from formulas import black_box, formula
+from formulas import black_box, formula, matrices
 from gears import MODELS, ball, pieces, random_pair
 
 SPECIAL = ("tongue edge", "collision", "low speed")
 KINDS = (
     *MODELS, *SPECIAL, "stiffness variation", "law over speed", "chebyshev", "bearings",
-    "formula", "black box",
+    "formula", "black box", "matrices",
 )  # fmt: skip
 
 
@@ -60,6 +60,8 @@ def judge(kind: str, seed: int) -> list[Finding]:
         warnings.simplefilter("ignore", LawRangeWarning)
         if kind == "formula":
             return formula(rng)
+        if kind == "matrices":
+            return matrices(rng)
         if kind == "black box":
             return black_box(rng)
         if kind in _OF_PAIRS:

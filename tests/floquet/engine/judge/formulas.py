@@ -1,4 +1,4 @@
-"""Systems without gears for the judge: A(t) as formulas, and as callables with a narrow feature."""
+"""Systems without gears for the judge: by formulas, by M, C and K, and callables with a narrow feature."""
 
 from __future__ import annotations
 
@@ -10,9 +10,17 @@ from itertools import pairwise
 import numpy as np
 from balls import BITS, Piece, exact_multipliers  # type: ignore[import-not-found]
 from findings import Finding, finding  # type: ignore[import-not-found]
-from flint import acb, arb, arb_series, ctx
+from flint import acb, arb, arb_mat, arb_series, ctx
 
-from floquet import FourierSeries, KnownMatrix, PeriodicSystem, PiecewisePolynomial, monodromy
+from floquet import (
+    FourierSeries,
+    KnownMatrix,
+    PeriodicMatrix,
+    PeriodicSystem,
+    PiecewisePolynomial,
+    from_second_order,
+    monodromy,
+)
 from lumped.errors import ResolutionWarning
 
 Entry = Callable[[arb_series], arb_series]
@@ -96,6 +104,49 @@ def formula(rng: np.random.Generator) -> list[Finding]:
         errors = found.multiplier_errors
         findings.append(finding(kind, route, found.multipliers, errors, truth, found.certificate))
     return findings
+
+
+def matrices(rng: np.random.Generator) -> list[Finding]:
+    """Random M, C, K in mixed units: gyroscopic and circulatory parts, a harmonic and a step."""
+    ctx.prec = BITS
+    n, T = int(rng.integers(1, 3)), float(rng.uniform(0.3, 3.0))
+    L, S, R, *varied = rng.normal(size=(5, n, n))
+    units = np.diag(10.0 ** rng.uniform(-2.0, 2.0, n))
+    M = units @ (L @ L.T + np.eye(n)) @ units
+    C = units @ (float(rng.choice([0.0, 0.1, 1.0])) * np.eye(n) + 0.3 * (R - R.T)) @ units
+    K = units @ (rng.uniform(3.0, 30.0) * np.eye(n) + S @ S.T) @ units
+    K1, K2 = (units @ B @ units for B in varied)
+    jump = float(rng.uniform(0.1, 0.9)) * T
+    step = PiecewisePolynomial([0.0, jump, T], [[1.0], [-0.5]])
+    stiffness = PeriodicMatrix(K, (FourierSeries(T, 0.0, [1.0]), K1), (step, K2))
+    found = monodromy(from_second_order(M, C, stiffness, T), 1e-8)
+
+    def ball(B: np.ndarray) -> arb_mat:
+        return arb_mat([[arb(x) for x in row] for row in B.tolist()])
+
+    inverse = ball(M).inv()
+    wave, drag, exact = inverse * ball(K1), inverse * ball(C), []
+    for start, end, level in ((0.0, jump, 1.0), (jump, T, -0.5)):
+        fixed = inverse * (ball(K) + ball(K2) * arb(level))
+        entries, functions = [(i, n + i, _analytic(lambda t: t * 0 + arb(1))) for i in range(n)], []
+        for i in range(n):
+            for j in range(n):
+
+                def spring(t: object, i: int = i, j: int = j, fixed: arb_mat = fixed) -> object:
+                    return (_cos(t, 1, T) * wave[i, j] + fixed[i, j]) * -1  # type: ignore[operator]
+
+                def damper(t: object, i: int = i, j: int = j) -> object:
+                    return t * 0 - drag[i, j]  # type: ignore[operator]
+
+                entries += [(n + i, j, _analytic(spring)), (n + i, n + j, _analytic(damper))]
+                functions += [spring, damper]
+        bound = _bounded([*functions, lambda t: t * 0 + arb(1)], 4.0)
+        parts = math.ceil(10.0 * (end - start) / T)
+        length = (arb(end) - arb(start)) / parts
+        exact += [Piece(arb(start) + i * length, length, entries, bound) for i in range(parts)]
+    truth = exact_multipliers(lambda: exact, 2 * n)
+    errors = found.multiplier_errors
+    return [finding("matrices", "engine", found.multipliers, errors, truth, found.certificate)]
 
 
 def black_box(rng: np.random.Generator) -> list[Finding]:
