@@ -123,11 +123,9 @@ def _root(c: FloatArray, low: float, high: float, sign: float, above: float, bel
         else:
             high = s
         new = s - y / rate if rate != 0.0 else low
-        if abs(new - s) <= _ROOT * high:
-            return s  # the new one may lie before the bracket
         if not low < new < high:
             new = 0.5 * (low + high)
-        if new in (low, high):
+        if abs(new - s) <= _ROOT * high or new in (low, high):
             return new
         s = new
     return s
