@@ -18,6 +18,8 @@ from typer.testing import CliRunner
 
 import lumped
 from validation.cli import app
+from validation.commands import response
+from validation.cross_check import comparison
 from validation.exchange import write_results, write_rexs, write_state_space
 from validation.interactive import write_interactive_page
 from validation.interactive.results import Sampling
@@ -115,6 +117,9 @@ def test_a_page_works_from_top_to_bottom(page, blocks, root, tmp_path, monkeypat
     shutil.copytree(belongings, tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setitem(write_interactive_page.__kwdefaults__, "sampling", COARSE)
+    monkeypatch.setattr(response, "_LINEAR_SPEEDS", 9)
+    # The twin is judged in tests/validation/cross_check.
+    monkeypatch.setitem(comparison.crosscheck.__kwdefaults__, "twin", False)
     session: dict[str, object] = {}
     for block in blocks(page):
         if block.language == "sh":
@@ -127,14 +132,17 @@ def test_a_page_works_from_top_to_bottom(page, blocks, root, tmp_path, monkeypat
 def shortened(arguments: list[str]) -> list[str]:
     """The same line with less to compute.
 
-    A stability chart has a few nodes on the axes that the line leaves to their defaults, a cross-check runs
-    for fewer cycles, a sweep starts no processes, branches of motions and jump maps cover a small range.
+    A stability chart has a few nodes on every axis, a cross-check runs for fewer cycles, a sweep starts no
+    processes, branches of motions and jump maps cover a small range.
     """
     quicker = {"crosscheck": ["--cycles", "8", "--samples", "64"], "sweep": ["--workers", "0"]}
-    quicker["response"] = ["--periods", "1", "--seeds", "0", "--range", "12000..13000"]
-    quicker["jumps"] = ["--speeds", "20", "--range", "12000..12500"]
-    if arguments[0] in ("jumps", "floquet"):
-        arguments = [re.sub(r"(=.*:.*:)\d+$", r"\g<1>2", word) for word in arguments]
+    quicker["response"] = ["--periods", "1", "--seeds", "0", "--range", "12000..12100"]
+    quicker["jumps"] = ["--speeds", "3", "--range", "12000..12100"]
+    most = 2 if arguments[0] in ("jumps", "floquet") else 5
+    arguments = [
+        re.sub(r"(?<=:)\d+$", lambda nodes: str(min(int(nodes[0]), most)), word) if "=" in word else word
+        for word in arguments
+    ]
     extra = quicker.get(arguments[0], [])
     if arguments[0] == "stability" and "--speed" not in arguments:
         view = arguments[arguments.index("--view") + 1] if "--view" in arguments else "chart"

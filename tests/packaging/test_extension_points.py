@@ -11,10 +11,13 @@ from importlib import metadata
 from pathlib import Path
 
 import pytest
+from numba.core.caching import _CacheLocator
 
 from lumped.schema.files import load_gear_pair, preset_names
 
 ROOT = Path(__file__).parents[2]
+#: Folder of a file's kernels within NUMBA_CACHE_DIR.
+kernel_folder = _CacheLocator.get_suitable_cache_subpath
 
 #: A new law and a new model: new file -> its text, or file -> (line, the lines that replace it).
 LAW = {
@@ -226,11 +229,15 @@ def test_a_new_part_takes_as_few_files_as_stated(tmp_path, package, changes, fil
     shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
     for path in tmp_path.rglob("*.py"):
         # Compiled kernels of unchanged files are those of the tree: copies keep their times.
-        cache = path.parent / "__pycache__"
+        cache, name = path.parent / "__pycache__", path.relative_to(tmp_path)
         if not cache.exists():
             own = ROOT / cache.relative_to(tmp_path)
             own.mkdir(exist_ok=True)
             cache.symlink_to(own)
+            if elsewhere := os.environ.get("NUMBA_CACHE_DIR"):
+                of_tree, of_copy = (Path(elsewhere, kernel_folder(str(p))) for p in (ROOT / name, path))
+                of_tree.mkdir(parents=True, exist_ok=True)
+                of_copy.symlink_to(of_tree)
     assert len(changes) == files
     for name, change in changes.items():
         path = tmp_path / name

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 
 import pytest
 
 import floquet
 import lumped
+from floquet.gear.jump_removal import JumpRemoval
 from validation.reporting import words
 from validation.reporting.chapters import contact_loss
-from validation.reporting.results import QUICK, Results
+from validation.reporting.results import Results
 
 
 @pytest.fixture(scope="module")
-def results():
-    return Results(lumped.load_gear_pair("nasa_28_28"), QUICK)
+def results(no_twin, tiny):
+    return Results(lumped.load_gear_pair("nasa_28_28"), tiny)
 
 
 def test_the_first_page_says_the_motion_of_teeth_that_push(results):
@@ -49,24 +51,31 @@ def test_a_motion_that_is_refuted_or_not_compared_is_no_prediction(results, monk
 def test_the_chapter_is_there_only_where_teeth_part(results):
     content = contact_loss.write(results)
     assert "contact_loss" in {getattr(block, "key", None) for block in content.blocks}
-    held = Results(results.pair.with_(mesh__relief="ignored"), QUICK)
+    held = Results(results.pair.with_(mesh__relief="ignored"), results.effort)
     assert held.parting is None
     assert contact_loss.write(held) is None
     assert words.parted(held) == ""
 
 
 def test_the_chapter_tells_jumps_and_what_removes_them(results, monkeypatch):
-    """28/28 without relief and friction: the folds at 7596 and 7723 rpm meet at a damping ratio of 0.0547."""
+    """28/28 without relief and friction: folds at 7596 and 7723 rpm; tests/floquet/gear removes them."""
     pair = results.pair.with_(mesh__relief="ignored", friction__law="none")
     pair = pair.with_({"operating.pinion_speed": 7660.0, "mesh.damping_ratio": 0.05})
-    told = Results(pair, QUICK)
+    told = Results(pair, results.effort)
     monkeypatch.setattr(told, "parting", None, raising=False)
     found = floquet.response_branches(pair, (7400.0, 7900.0), (1,), seeds=0)
     monkeypatch.setattr(told, "branches", found, raising=False)
+    removal = JumpRemoval("damping_ratio", "larger", 0.05, 1.0, 0.0547, 1e-5, 7660.0)
+    nothing = dataclasses.replace(removal, direction="smaller", value=math.nan)
+    monkeypatch.setattr(
+        contact_loss,
+        "jumps_removed_by",
+        lambda _, axis: (nothing, removal) if axis == removal.axis else (nothing,),
+    )
     content = contact_loss.write(told)
     blocks = {getattr(block, "key", None): block for block in content.blocks}
     assert {"response", "jumps"} <= blocks.keys()
     text = " ".join(str(block) for block in content.blocks)
-    assert "damping ratio of the mesh above 0.0547" in text
+    assert "with a damping ratio of the mesh above 0.0547." in text
     assert "7723" in words.jumps(told) or "7596" in words.jumps(told)
     assert "the largest of 2 jumps" in words.jumps(told)

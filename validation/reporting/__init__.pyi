@@ -1,0 +1,2 @@
+from .build import Report as Report
+from .build import report as report
