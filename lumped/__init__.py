@@ -3,9 +3,11 @@
 from lumped.errors import FieldProblem, LawRangeWarning, NumericalError, ParameterError, SpurcheckError
 from lumped.gear_geometry.geometry import Geometry
 from lumped.model.bodies import Bodies, bodies
+from lumped.model.condensation import condensed_bearings
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.model.mesh_elements import MeshElements, mesh_elements
 from lumped.model.periodic_system import LTVSystem, periodic_system
+from lumped.model.shaft_modes import shaft_modes
 from lumped.model.solution import simulate, steady_state
 from lumped.model.sweep import speed_sweep
 from lumped.path_function import PathFunction
@@ -29,6 +31,7 @@ __all__ = [
     "PathFunction",
     "SpurcheckError",
     "bodies",
+    "condensed_bearings",
     "geometry",
     "json_schema",
     "load_gear_pair",
@@ -39,6 +42,7 @@ __all__ = [
     "periodic_system",
     "plane_compliance",
     "preset_names",
+    "shaft_modes",
     "simulate",
     "speed_sweep",
     "static_transmission_error",

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 from lumped.errors import ParameterError
 from lumped.model.bodies import bodies
+from lumped.model.condensation import condensed_bearings
 from lumped.path_of_contact.friction import contact_path
 from lumped.path_of_contact.stiffness import mesh_stiffness
 from lumped.schema.files import AnyPair, load_gear_pair, preset_names
@@ -25,6 +26,8 @@ _GIVES_WAY = 0.1
 _OSCILLATIONS = 1000.0
 #: Speed below which a point that parts thousands is likelier than the speed [rpm].
 _SLOW = 5.0
+#: Springs and shafts are not of one machine where their stiffness differs by more than this factor.
+_FAR = 2.0
 _DESIGN = ("basic_rack.", "pinion.", "gear.", "centre_distance")
 
 
@@ -38,6 +41,7 @@ def doubts(pair: AnyPair) -> tuple[str, ...]:
     pair = load_gear_pair(pair)
     return (
         *_bearings(pair),
+        *_shafts(pair),
         *_materials(pair),
         *_load(pair),
         *_speed(pair),
@@ -63,6 +67,21 @@ def _bearings(pair: GearPair) -> Iterator[str]:
             f"The fastest mode swings {oscillations:.2g} times in a mesh cycle: the multibody model needs "
             f"some {30 * oscillations:.1g} evaluations a cycle. Check stiffness and speed."
         )
+
+
+def _shafts(pair: GearPair) -> Iterator[str]:
+    """Springs of the 6-DOF model that the shafts contradict."""
+    if pair.shafts is None:
+        return
+    condensed = condensed_bearings(pair)
+    for name in ("pinion", "gear"):
+        for field in ("loa_stiffness", "oloa_stiffness"):
+            given, static = (getattr(getattr(one.bearings, name), field) for one in (pair, condensed))
+            if not 1.0 / _FAR < given / static < _FAR:
+                yield (
+                    f"bearings.{name}.{field} = {given:.3g} N/m, but on its shaft the gear has "
+                    f"{static:.3g} N/m. Take those of lumped.condensed_bearings, or correct the shafts."
+                )
 
 
 def _squared_frequencies(pair: GearPair) -> Iterator[float]:

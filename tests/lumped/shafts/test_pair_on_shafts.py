@@ -1,34 +1,12 @@
 """Is a pair on shafts what it must be where that is known: a pair on springs, and balanced forces?"""
 
-import math
-
 import numpy as np
 import pytest
 
-from lumped import ParameterError, bodies, periodic_system, simulate, steady_state
-
-GEARS = ("pinion", "gear")
+from lumped import ParameterError, periodic_system, simulate, steady_state
 
 
-def on_short_shafts(pair):
-    """Short, light and stiff shafts, each in one bearing under its gear with its springs and dampers."""
-    b, changes = bodies(pair), {"shafts": {"damping_ratio": 0}}
-    own = 10 * math.pi * 0.02**2 * 0.02  # of the shaft, which is taken off the gear
-    for name in GEARS:
-        mass, inertia = getattr(b, f"mass_{name}"), getattr(b, f"inertia_{name}")
-        changes |= {f"{name}.mass": mass - own, f"{name}.inertia": inertia - 0.5 * own * 0.02**2}
-        springs, bearing = getattr(pair.bearings, name), {"position": 10, "tilt_stiffness": 1e7}
-        for d in ("loa", "oloa"):
-            stiffness, ratio = getattr(springs, f"{d}_stiffness"), getattr(springs, f"{d}_damping_ratio")
-            bearing |= {f"{d}_stiffness": stiffness, f"{d}_damping": 2 * ratio * math.sqrt(stiffness * mass)}
-        changes["shafts"][name] = {
-            "segments": [{"length": 20, "diameter": 40}], "gear_position": 10, "bearings": [bearing],
-            "youngs_modulus": 2000, "density": 10,
-        }  # fmt: skip
-    return pair.with_(changes)
-
-
-def test_rigid_shafts_are_the_springs(unequal):
+def test_rigid_shafts_are_the_springs(unequal, on_short_shafts):
     pair = unequal.with_({"mesh.contact": "loaded", "operating.pinion_speed": 3000})
     springs = steady_state(pair, samples_per_cycle=64)
     shafts = steady_state(on_short_shafts(pair), samples_per_cycle=64, supports="shafts")
@@ -43,15 +21,6 @@ def test_rigid_shafts_are_the_springs(unequal):
     assert shafts.attrs["supports"] == "shafts"
     assert list(shafts.bearing.to_numpy()) == ["pinion 1", "gear 1"]
     np.testing.assert_array_equal(shafts.bearing_force[1, 0], shafts.bearing_force_x_g)
-
-
-@pytest.fixture(scope="module")
-def shafted(unequal, shaft_tables):
-    return unequal.with_(
-        {
-            "shafts": shaft_tables,
-        }
-    )
 
 
 def test_motion_on_elastic_shafts(shafted):

@@ -48,3 +48,14 @@ def test_commands_say_it_and_go_on():
     )
     assert result.exit_code == 0
     assert "note: friction.composite_roughness = 0.8 um is used for the film" in result.stderr
+
+
+def test_springs_that_the_shafts_contradict_are_named(nasa_pair):
+    bearings = [{"position": at, "loa_stiffness": 1e8, "oloa_stiffness": 1e8} for at in (0, 100)]
+    shaft = {"segments": [{"length": 100, "diameter": 60}], "gear_position": 50, "bearings": bearings}
+    thin = shaft | {"segments": [{"length": 100, "diameter": 15}]}
+    pair = nasa_pair.with_(shafts={"damping_ratio": 0.01, "pinion": shaft, "gear": thin})
+    found = [doubt for doubt in doubts(pair) if "on its shaft" in doubt]
+    assert [doubt.split(" ")[0] for doubt in found] == [
+        f"bearings.gear.{d}_stiffness" for d in ("loa", "oloa")
+    ]
