@@ -158,17 +158,20 @@ def _without_mesh(
     s, m, k, u = c.size, system.size // 2, h.size, system.deflection
     if _couples(system.constant[m:, :m]) or _couples(system.constant[m:, m:]):
         return _coupled_without_mesh(system, h, extra, gauss)
-    stiffness, damping = np.diag(system.constant[m:, :m]), np.diag(system.constant[m:, m:])
+    supports = np.stack([np.diag(system.constant[m:, :m]), np.diag(system.constant[m:, m:])])
+    # Few differ: rotations have none, and a bearing is alike along x and y.
+    (stiffness, damping), alike = np.unique(supports, axis=1, return_inverse=True)
     forces = np.column_stack([system.torque_pinion * system.pinion_torque, extra])[m:]
     h = h[:, None, None, None]
     left = np.eye(s) - h**2 * stiffness[:, None, None] * (a @ a) - h * damping[:, None, None] * a
-    inverse = np.linalg.inv(left)  # (k, m, s, s)
-    # Accelerations at the stages by z and by v at the start, and by a unit force: (k, m, s, 3)
-    right = np.zeros((k, m, s, 3))
+    inverse = np.linalg.inv(left)
+    # Accelerations at the stages by z and by v at the start, and by a unit force
+    right = np.zeros((k, stiffness.size, s, 3))
     right[..., 0] = stiffness[:, None]
     right[..., 1] = h[..., 0] * stiffness[:, None] * c + damping[:, None]
     right[..., 2] = 1.0
-    accelerations = inverse @ right
+    accelerations = (inverse @ right)[:, alike]  # (k, m, s, 3)
+    inverse = inverse[:, alike]  # (k, m, s, s)
     to_end = np.stack([h[:, 0, 0] ** 2 * (b @ a), h[:, 0, 0] * b], axis=1)  # (k, 2, s)
     ends = np.einsum("kds,kmsx->kdmx", to_end, accelerations)
     h = h[..., 0]
