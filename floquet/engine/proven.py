@@ -89,8 +89,8 @@ def _steps(
         errors = (tail + rounding + off * size**2 * np.exp(off)) * _SLACK
     room = np.maximum(1e-3 * rtol, 8.0 * rounding)
     good = (a.sum(axis=1) <= _ANGLE) & (tail + off <= room)
-    # Where rounding of A itself is more than that, shorter steps do not help.
-    good |= (a.sum(axis=1) <= 0.05) & np.isfinite(errors)
+    # Where rounding of A itself is more than that, and its polynomials end, shorter steps do not help.
+    good |= (a.sum(axis=1) <= 0.05) & (a[:, -2:].max(axis=1) <= room) & np.isfinite(errors)
     if not good.any():
         return np.empty((0, n, n)), errors, good
     used, B = np.flatnonzero(a.any(axis=0)), B[good]

@@ -108,11 +108,11 @@ def _print(source: Path, found: Monodromy) -> None:
     shown = table(f"{source.name}: multipliers", ">modulus", ">phase [deg]", ">bound on the error")
     rows = zip(found.multipliers.tolist(), found.multiplier_errors.tolist(), strict=True)
     for z, error in list(rows)[:_SHOWN]:
-        shown.add_row(f"{abs(z):.10f}", f"{57.29577951308232 * phase(z):.4f}", number(error, 2))
+        shown.add_row(f"{abs(z):.12g}", f"{57.29577951308232 * phase(z):.4f}", number(error, 2))
     stdout().print(shown)
     if found.multipliers.size > _SHOWN:
         stdout().print(f"and {found.multipliers.size - _SHOWN} smaller ones")
     stdout().print(
-        f"{found.verdict}: largest multiplier {found.spectral_radius:.10f} +- {found.error:.1e}, "
+        f"{found.verdict}: largest multiplier {found.spectral_radius:.12g} +- {found.error:.1e}, "
         f"which is {'a proven bound' if found.certificate == 'proven' else 'an estimate'}"
     )

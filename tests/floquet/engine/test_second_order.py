@@ -145,3 +145,11 @@ def test_a_chart_of_any_family_has_its_labels_and_three_verdicts():
         scan(family, axes, labels={"k": ("1", "stiffness")})
     with pytest.raises(ParameterError, match="4 multipliers at n = 2"):
         scan(lambda at: from_second_order(*[np.eye(int(at["n"]))] * 3, 1.0), {"n": [1, 2]})
+
+
+def test_a_high_harmonic_is_proven_where_its_own_steps_are_short():
+    # A mesh seen over a turn of its gear: far above 2 omega = 20, nothing grows, |mu| = exp(-c T/2).
+    wave = FourierSeries(0.3, 0.0, [0.0] * 59 + [1.0])
+    found = monodromy(from_second_order(1.0, 0.1, PeriodicMatrix(100.0, (wave, 20.0)), 0.3))
+    assert found.spectral_radius == pytest.approx(np.exp(-0.015), abs=found.error + 1e-15)
+    assert found.error < 1e-11
