@@ -31,6 +31,7 @@ import lumped
 from floquet import fast_multipliers, gear_block, stability_chart
 from floquet.gear.reference import extended_monodromy, stress_test
 from lumped.errors import LawRangeWarning
+from lumped.model.periodic_system import Supports
 from lumped.schema.pair import GearPair
 
 CORES = os.cpu_count() or 1
@@ -131,20 +132,24 @@ def by_turning(points: int) -> None:
         )
 
 
-def by_solver(pair: GearPair, name: str, rtol: float, by_column: bool) -> np.ndarray:
+def by_solver(
+    pair: GearPair, name: str, rtol: float, by_column: bool, supports: Supports = "springs"
+) -> np.ndarray:
     """Monodromy matrix of the feedback block by solve_ivp, rates in units of 1e4/s."""
-    block = gear_block(pair)
-    scale = np.repeat([1.0, 1e4], 3)
+    block = gear_block(pair, supports=supports)
+    m = block.v.size
+    C = block.damping if block.gyroscopic is None else block.damping + block.gyroscopic / block.period
+    scale = np.repeat([1.0, 1e4], m)
     degree = max(block.total.w.shape[2], block.total.wd.shape[2])
-    M = np.eye(6)
+    M = np.eye(2 * m)
     for i, (a, b) in enumerate(pairwise(block.phases * block.period)):
-        A = np.zeros((degree, 6, 6))
-        A[0, :3, 3:] = np.eye(3)
-        A[0, 3:, :3], A[0, 3:, 3:] = -np.diag(block.stiffness), -np.diag(block.damping)
+        A = np.zeros((degree, 2 * m, 2 * m))
+        A[0, :m, m:] = np.eye(m)
+        A[0, m:, :m], A[0, m:, m:] = -block.stiffness, -C
         for j in range(block.total.w.shape[2]):
-            A[j, 3:, :3] -= np.outer(block.total.w[i, :, j], block.v)
+            A[j, m:, :m] -= np.outer(block.total.w[i, :, j], block.v)
         for j in range(block.total.wd.shape[2]):
-            A[j, 3:, 3:] -= np.outer(block.total.wd[i, :, j], block.v)
+            A[j, m:, m:] -= np.outer(block.total.wd[i, :, j], block.v)
         A *= scale[None, None, :] / scale[None, :, None]
 
         def rates(t: float, y: np.ndarray, a: float = a, b: float = b, A: np.ndarray = A) -> np.ndarray:
@@ -152,13 +157,13 @@ def by_solver(pair: GearPair, name: str, rtol: float, by_column: bool) -> np.nda
             now = A[-1]
             for j in range(len(A) - 2, -1, -1):
                 now = now * u + A[j]
-            return (now @ y.reshape(6, -1)).ravel()
+            return (now @ y.reshape(2 * m, -1)).ravel()
 
-        starts = [M[:, c] for c in range(6)] if by_column else [M.ravel()]
+        starts = list(M.T) if by_column else [M.ravel()]
         ends = [
             solve_ivp(rates, (a, b), y, method=name, rtol=rtol, atol=1e-2 * rtol).y[:, -1] for y in starts
         ]
-        M = np.stack(ends, axis=1) if by_column else ends[0].reshape(6, 6)
+        M = np.stack(ends, axis=1) if by_column else ends[0].reshape(2 * m, 2 * m)
     return M
 
 
@@ -186,6 +191,39 @@ def baselines(per_point: float, points: int) -> None:
             f"worst error {worst([np.linalg.eigvals(M) for M in found]):.0e}; the direct chart is "
             f"{seconds / points / per_point:.0f} times as fast per core",
         )
+
+
+def on_shafts(size: int, points: int) -> None:
+    """A chart of the pair on slender shafts, and DOP853 on the same modes at some of its speeds."""
+    shaft = {
+        "segments": [{"length": 220, "diameter": 30}],
+        "gear_position": 200,
+        "bearings": [{"position": z, "loa_stiffness": 2e8, "oloa_stiffness": 2e8} for z in (20, 140)],
+    }
+    pair = PAIR.with_(shafts={"damping_ratio": 0.01, "pinion": shaft, "gear": shaft})
+    axes = {"speed_rpm": np.linspace(2000.0, 20000.0, size), "damping_ratio": np.linspace(0.0, 0.1, size)}
+    modes = gear_block(pair, supports="shafts").v.size
+    stability_chart(pair, {"speed_rpm": [9000.0]}, supports="shafts", rtol=1e-8)
+    chart, seconds = cpu(lambda: stability_chart(pair, axes, rtol=1e-8, store="radius", supports="shafts"))
+    each = seconds / size**2
+    row(
+        f"chart {size} x {size} on shafts, {modes} modes coupled",
+        f"{CORES / each:.0f} points/s",
+        f"{each * 1e6:.0f} us/point; bound: median {float(chart.error.median()):.0e}",
+    )
+    speeds = axes["speed_rpm"][size // (2 * points) :: size // points][:points]
+    pairs = [pair.with_(operating__pinion_speed=float(rpm)) for rpm in speeds]
+    found, seconds = cpu(lambda: [by_solver(p, "DOP853", 1e-9, False, "shafts") for p in pairs])
+    ours = [fast_multipliers(gear_block(p, supports="shafts")).multipliers[0] for p in pairs]
+    worst = max(
+        float(np.abs(a[:, None] - np.linalg.eigvals(M)).min(axis=1).max())
+        for a, M in zip(ours, found, strict=True)
+    )
+    row(
+        f"DOP853 on the matrix of {modes} modes, rtol 1e-09",
+        f"{points / seconds:.2f} points/s per core",
+        f"differs by {worst:.0e}; the chart is {seconds / points / each:.0f} times as fast per core",
+    )
 
 
 def child(size: int, method: str, store: str, **environment: str) -> list[float]:
@@ -259,6 +297,7 @@ def main() -> None:
     per_point = charts(arguments.size)
     forms(arguments.size // 2)
     by_turning(4000)
+    on_shafts(arguments.size // 8, 3)
     baselines(per_point, 6)
     processes()
     accuracy(arguments.pairs, arguments.seed)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import get_args
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from lumped.fields.units import SIValue, to_stated
 from lumped.friction import LAWS, mean_coefficient
 from lumped.labelling import Coordinate
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
+from lumped.model.periodic_system import Supports
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.operating import LARGEST_SPEED
 from lumped.schema.pair import GearPair
@@ -30,16 +32,21 @@ class GearVariation:
     pair : the validated pair
     friction_mean : wanted mean of |mu| over the path; None: as the law gives it
     stiffness_variation : factor on the variation of the total mesh stiffness about its mean over the cycle
+    supports : "springs", the pair's ``bearings``, or its "shafts"
     """
 
     pair: GearPair
     friction_mean: float | None = None
     stiffness_variation: float = 1.0
+    supports: Supports = "springs"
 
     @classmethod
-    def of(cls, source: AnyPair | GearVariation) -> GearVariation:
-        """A pair as it is, or a variation of one."""
-        return source if isinstance(source, GearVariation) else cls(load_gear_pair(source))
+    def of(cls, source: AnyPair | GearVariation, supports: Supports = "springs") -> GearVariation:
+        """A pair as it is on these supports, or a variation of one, which names its own."""
+        if isinstance(source, GearVariation):
+            return source
+        one_of("supports", supports, get_args(Supports))
+        return cls(load_gear_pair(source), supports=supports)
 
     def cycle(self) -> MeshCycle:
         """Mesh cycle, with the friction law scaled to ``friction_mean``."""
@@ -175,9 +182,9 @@ def axis_coordinates(grid: Mapping[str, FloatArray]) -> dict[str, Coordinate]:
     return {name: (values, *known.get(name, unnamed)) for name, values in grid.items()}
 
 
-def vary(pair: GearPair, point: Mapping[str, float]) -> GearVariation:
+def vary(pair: GearPair, point: Mapping[str, float], supports: Supports = "springs") -> GearVariation:
     """Return the pair at one point of a chart."""
-    variation = GearVariation(pair)
+    variation = GearVariation.of(pair, supports)
     for name, value in point.items():
         variation = gear_axis(name).apply(variation, value)
     return variation

@@ -16,11 +16,13 @@ from floquet.engine.chart import Axes, chart_dataset, checked_axes, scan
 from floquet.engine.propagators.base import Propagator
 from floquet.engine.propagators.registry import PROPAGATORS
 from floquet.engine.spectrum import Spectrum
-from floquet.gear.axes import gear_axis, vary
+from floquet.gear.axes import GearVariation, gear_axis, vary
+from floquet.gear.feedback import feedback_system, separate_modes
 from floquet.gear.multipliers import gear_pair_multipliers
 from floquet.gear.plane import Plane, Store, plane_multipliers
 from lumped.arguments import one_of, real_number
 from lumped.errors import refuse
+from lumped.model.periodic_system import Supports
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
@@ -46,6 +48,7 @@ def stability_chart(
     rtol: float = 1e-10,
     method: str | Propagator = "taylor",
     store: Literal["all", "radius"] = "all",
+    supports: Supports = "springs",
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Stability chart of a gear pair.
@@ -65,15 +68,17 @@ def stability_chart(
         the two costs less; or a method of `monodromy` for an independent check
     store : "all"; or "radius" for the spectral radius, its error and the verdict without the multipliers: 18
         bytes a point instead of 258
+    supports : "springs", the pair's ``bearings``, or its "shafts" with the modes that count most
     progress : told the finished fraction
 
     Returns
     -------
     xarray.Dataset over the axes: spectral_radius, error, verdict, proven and, with store "all", multipliers
-    and multiplier_errors (10 each: the feedback block and the off-line-of-action block; the rigid rotation is
-    no part of them). Its attribute ``certificate`` is "proven", "estimate" or "mixed", which the variable
-    ``proven`` tells for every point: estimates are what "chebyshev" interpolates, what "taylor" gives
-    over speeds that share a friction law to a tolerance, and all of the other methods.
+    and multiplier_errors (10 each: the feedback block and the off-line-of-action block, on shafts two for
+    each mode; the rigid rotation is no part of them). Its attribute ``certificate`` is "proven", "estimate"
+    or "mixed", which the variable ``proven`` tells for every point: estimates are what "chebyshev"
+    interpolates, what "taylor" gives over speeds that share a friction law to a tolerance, and all of the
+    other methods.
 
     Raises
     ------
@@ -81,10 +86,12 @@ def stability_chart(
     NumericalError
         A point fails; the message names it.
     """
-    pair = load_gear_pair(pair)
-    grid = checked_axes(axes)
+    variation = GearVariation.of(load_gear_pair(pair), supports)
+    pair, grid = variation.pair, checked_axes(axes)
     for name, values in grid.items():
         gear_axis(name).check(name, values)
+    if supports == "shafts" and "bearing_stiffness" in grid:
+        raise refuse("axes", "bearing_stiffness", "not with shafts", "Their bearings are fields of [shafts].")
     points = math.prod(values.size for values in grid.values())
     if points > _LARGEST:
         raise refuse("points of the chart", points, f"at most {_LARGEST}", "Give the axes smaller counts.")
@@ -100,11 +107,12 @@ def stability_chart(
             raise refuse(
                 "method", method, '"taylor" for axes without speed_rpm', "Interpolation is over speed."
             )
-        dataset = _compiled_chart(pair, grid, rtol, progress, method == "chebyshev", store == "all")
+        interpolate, everything = method == "chebyshev", store == "all"
+        dataset = _compiled_chart(pair, supports, grid, rtol, progress, interpolate, everything)
     else:
 
         def evaluate(point: dict[str, float]) -> Spectrum:
-            return gear_pair_multipliers(vary(pair, point), rtol, method=method)
+            return gear_pair_multipliers(vary(pair, point, supports), rtol, method=method)
 
         dataset = scan(evaluate, grid, progress=progress)
         if store == "radius":
@@ -115,6 +123,7 @@ def stability_chart(
     dataset.attrs.update(
         title=f"stability chart of {pair.name}",
         friction_law=pair.friction.law,
+        supports=supports,
         method=method if isinstance(method, str) else method.name,
         rtol=rtol,
     )
@@ -134,6 +143,7 @@ def chart_method(axes: Mapping[str, FloatArray]) -> str:
 
 def _compiled_chart(
     pair: GearPair,
+    supports: Supports,
     grid: Mapping[str, FloatArray],
     rtol: float,
     progress: Progress | None,
@@ -154,7 +164,9 @@ def _compiled_chart(
     steps = {name: grid[name].size if name in inner else 1 for name in grid}
     if "speed_rpm" in inner:
         steps["speed_rpm"] = max(_SPEEDS, _SLICE * steps["speed_rpm"] // math.prod(steps.values()))
-    store, done = Store(index.size, multipliers), 0
+    everywhere = vary(pair, {}, supports)
+    size = 2 * (feedback_system(everywhere).squares.size + separate_modes(everywhere)[0].size)
+    store, done = Store(index.size, size, multipliers), 0
     for block in product(
         *([slice(i, i + steps[name]) for i in range(0, grid[name].size, steps[name])] for name in grid)
     ):
@@ -162,7 +174,7 @@ def _compiled_chart(
         mesh = np.meshgrid(*(here[name] for name in inner), indexing="ij")
         flat = {name: values.ravel() for name, values in zip(inner, mesh, strict=True)}
         point = {name: float(values[0]) for name, values in here.items() if name not in inner}
-        plane = Plane(pair, point, flat, index[block].ravel())
+        plane = Plane(pair, supports, point, flat, index[block].ravel())
         plane_multipliers(plane, store, rtol, interpolate)
         done += plane.index.size
         if progress is not None:

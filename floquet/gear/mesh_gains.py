@@ -91,7 +91,7 @@ class _Law:
 
 
 class MeshGains:
-    """Gains on (q, x_p, x_g) as `fit_pieces` asks for them.
+    """Gains on the coordinates of a "feedback" form as `fit_pieces` asks for them.
 
     In this order: feedback of deflection and of its rate by normal loads (with their friction, unless it is
     apart), the same by each part of friction. The parts of friction are mu less the sum of the ``levels``,
@@ -102,7 +102,7 @@ class MeshGains:
     system : the feedback form of the gear pair
     factor : on the variation of the total stiffness about its mean
     levels : of friction apart; empty where friction goes with the normal loads
-    metric : (3,) of the norm of errors, for q, x_p, x_g
+    metric : (m,) of the norm of errors
 
     Attributes
     ----------
@@ -143,7 +143,7 @@ class MeshGains:
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """See `PolynomialGains`."""
         phases = centre[:, None] + half[:, None] * nodes
-        groups = np.zeros((2 * self.parts, *phases.shape, 3))
+        groups = np.zeros((2 * self.parts, *phases.shape, self.normal.size))
         errors = np.zeros((groups.shape[0], centre.size))
         factors, fixed = [np.ones_like(phases)] * 2, self._fixed[0][:, segment]
         if self.varied:
@@ -159,7 +159,7 @@ class MeshGains:
             xi = self.offsets[i] + self.pitch * phases
             mu, arm = self.mu(xi, i, segment)[..., None], self.arm[0] + xi[..., None] * self.arm[1]
             sign = self.side[i, segment][:, None, None]
-            rows = [np.broadcast_to(self.normal, (*xi.shape, 3))]
+            rows = [np.broadcast_to(self.normal, (*xi.shape, self.normal.size))]
             if self.levels:
                 rows += [(mu - sum(self.levels) * sign) * arm, *(s * sign * arm for s in self.levels[1:])]
             else:

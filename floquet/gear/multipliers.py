@@ -6,6 +6,7 @@ Sources: docs/theory/floquet.md, "Structure".
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import get_args
 
 import numpy as np
 
@@ -15,8 +16,11 @@ from floquet.engine.spectrum import Spectrum
 from floquet.engine.system import PeriodicSystem
 from floquet.gear.axes import GearVariation
 from floquet.gear.block import gear_block
+from floquet.gear.feedback import feedback_system, separate_modes
 from floquet.rank_one.batch import fast_multipliers
-from lumped.model.periodic_system import Form, LTVSystem, periodic_system
+from lumped.arguments import one_of
+from lumped.errors import NumericalError
+from lumped.model.periodic_system import Form, LTVSystem, Supports, periodic_system
 from lumped.schema.files import AnyPair
 from lumped.typing import ComplexArray, FloatArray
 
@@ -25,12 +29,14 @@ _U = 0.5 * float(np.finfo(np.float64).eps)
 
 @dataclass(frozen=True, eq=False)
 class GearPairMultipliers(Spectrum):
-    """Multipliers of a gear pair over one mesh cycle, 10 in all.
+    """Multipliers of a gear pair over one mesh cycle, 10 in all; on shafts two for each mode.
 
     Attributes
     ----------
-    feedback : (6,) of q = r_bp theta_p - r_bg theta_g, x_p, x_g, which alone can become unstable
-    oloa : (4,) of y_p, y_g, two each: driven by friction without acting back, so those of their bearings
+    feedback : (6,) of q = r_bp theta_p - r_bg theta_g, x_p, x_g, which alone can become unstable; on shafts
+        those of the modes that count most
+    oloa : (4,) of y_p, y_g, two each: driven by friction without acting back, so those of their bearings;
+        on shafts those of the other modes, each by itself
     rigid_body : (2,) of the free rotation, a defective double +1 that the relative coordinate q removes; no
         part of ``multipliers``, the radius or the verdict, since it means a free choice of angle and speed
     liouville_residual : of the feedback block by the general engine, see `Monodromy`
@@ -42,17 +48,25 @@ class GearPairMultipliers(Spectrum):
     liouville_residual: float
 
 
-def gear_pair_system(source: AnyPair | GearVariation, form: Form = "relative") -> PeriodicSystem:
+def gear_pair_system(
+    source: AnyPair | GearVariation, form: Form = "relative", *, supports: Supports = "springs"
+) -> PeriodicSystem:
     """Return the gear pair (or a variation of it) as a `PeriodicSystem`.
 
     Parameters
     ----------
     source : the pair
-    form : "relative" (10 states), "feedback" (6) or "absolute" (12), as in ``lumped.periodic_system``
+    form : "relative" (10 states), "feedback" (6) or "absolute" (12), as in ``lumped.periodic_system``; on
+        shafts more, and "feedback" with the modes that count only, see `gear_pair_multipliers`
+    supports : of a pair: "springs", its ``bearings``, or its "shafts"
     """
-    variation = GearVariation.of(source)
-    cycle = variation.cycle()
-    system = periodic_system(variation.pair, form, cycle=cycle)
+    variation = GearVariation.of(source, supports)
+    one_of("form", form, get_args(Form))
+    if form == "feedback":
+        system = feedback_system(variation).system
+    else:
+        pair, supports = variation.pair, variation.supports
+        system = periodic_system(pair, form, cycle=variation.cycle(), supports=supports)
     coefficients = _Coefficients(system, variation.stiffness_variation)
     return PeriodicSystem(coefficients, system.period, tuple(system.breakpoints), vectorized=True)
 
@@ -88,13 +102,13 @@ class _Coefficients:
 
 @dataclass(frozen=True, eq=False)
 class OffLineOfAction:
-    """Exponents of the motions y_p, y_g off the line of action, closed form.
+    """Exponents of the motions y_p, y_g off the line of action, or of separate modes on shafts; closed form.
 
     m y'' + c y' + K y = 0 for each: s = -d +- sqrt(r), d = c/(2 m), r = d^2 - K/m, multipliers exp(s T).
 
     Attributes
     ----------
-    exponents : (4,) s [1/s]
+    exponents : (4,) s [1/s]; on shafts two for each mode
     errors : (4,) bounds on their errors for m, c and K that are right to rounding [1/s]. With e a bound on
         the error of r, sqrt(r) is wrong by at most min(sqrt e, e/sqrt |r|): at critical damping by sqrt e.
     """
@@ -103,10 +117,9 @@ class OffLineOfAction:
     errors: FloatArray
 
     @classmethod
-    def of(cls, system: LTVSystem) -> OffLineOfAction:
-        """Of the two bearings of a gear pair."""
-        s = system.structure
-        decay, square = s.damping[4:] / (2.0 * s.mass[4:]), s.stiffness[4:] / s.mass[4:]
+    def of(cls, variation: GearVariation) -> OffLineOfAction:
+        """Of a gear pair."""
+        decay, square = separate_modes(variation)
         r = decay**2 - square
         root = np.sqrt(r.astype(complex))
         # Twelve units of rounding: those of m, c and K, of d^2, of K/m and of the difference.
@@ -126,19 +139,27 @@ class OffLineOfAction:
 
 
 def gear_pair_multipliers(
-    source: AnyPair | GearVariation, rtol: float = 1e-10, *, method: str | Propagator = "taylor"
+    source: AnyPair | GearVariation,
+    rtol: float = 1e-10,
+    *,
+    method: str | Propagator = "taylor",
+    supports: Supports = "springs",
 ) -> GearPairMultipliers:
     """Floquet multipliers of a gear pair over one mesh cycle.
 
     The equations of y_p and y_g contain q, x_p, x_g but not the other way round, so the 10 x 10 matrix is
-    block triangular: its multipliers are those of the 6 x 6 feedback block and of the bearings of y.
+    block triangular: its multipliers are those of the 6 x 6 feedback block and of the bearings of y. On
+    shafts gyroscopic moments close this circle. The feedback block then has the 12 modes that count most in
+    the motion of the mesh, and the bounds are those of a system in which the others move each by itself.
 
     Parameters
     ----------
     source : a gear pair, or a variation from a chart
     rtol : wanted error of the monodromy matrix relative to its norm, 1e-13 to 1e-1
-    method : "taylor", the compiled kernel, whose bound is proven; or a method of `monodromy` on A(t) as a
+    method : "taylor", the compiled kernel, whose bound is proven (an estimate by the general engine where
+        speed is too low for the kernel); or a method of `monodromy` on A(t) as a
         callable, for an independent estimate
+    supports : of a pair: "springs", its ``bearings``, or its "shafts"
 
     Returns
     -------
@@ -148,15 +169,17 @@ def gear_pair_multipliers(
     ------
     NumericalError : as in `monodromy`
     """
-    variation = GearVariation.of(source)
+    variation = GearVariation.of(source, supports)
     own: Spectrum
     if isinstance(method, str) and method == "taylor":
         block = monodromy(gear_pair_system(variation, "feedback"), rtol)
-        own = _proven(variation, rtol)
+        try:
+            own = _proven(variation, rtol)
+        except NumericalError:  # more steps than the kernel takes
+            own = block
     else:
         own = block = monodromy(gear_pair_system(variation, "feedback"), rtol, method=method)
-    bearings = OffLineOfAction.of(periodic_system(variation.pair, "relative"))
-    (oloa,), (oloa_errors,) = bearings.multipliers(np.array([block.period]))
+    (oloa,), (oloa_errors,) = OffLineOfAction.of(variation).multipliers(np.array([block.period]))
     values = np.concatenate([own.multipliers, oloa])
     errors = np.concatenate([own.multiplier_errors, oloa_errors])
     order = np.argsort(-np.abs(values), kind="stable")

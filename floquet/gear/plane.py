@@ -17,7 +17,7 @@ from floquet.rank_one.batch import FastMonodromy, FastMultipliers, fast_monodrom
 from floquet.rank_one.coarsening import coarsened
 from floquet.rank_one.interpolation import interpolated_multipliers
 from floquet.rank_one.system import RankOneSystem
-from lumped.model.periodic_system import periodic_system
+from lumped.model.periodic_system import Supports
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -39,13 +39,14 @@ class Plane:
 
     Attributes
     ----------
-    pair : the gear pair
+    pair, supports : the gear pair, and what holds it
     point : name -> value of the axes that are the same for all points
     flat : name -> values (count,) of those that are not
     index : (count,) where their multipliers belong in a `Store`
     """
 
     pair: GearPair
+    supports: Supports
     point: Mapping[str, float]
     flat: Mapping[str, FloatArray]
     index: npt.NDArray[np.intp]
@@ -59,7 +60,7 @@ class Plane:
             values["friction_coefficient"] = float(self.flat["friction_coefficient"].max())
         if speed_rpm is not None and "speed_rpm" in self.flat:
             values["speed_rpm"] = speed_rpm
-        return vary(self.pair, values)
+        return vary(self.pair, values, self.supports)
 
     def damping(self) -> FloatArray:
         """Factors (count,) on the damping of the reference."""
@@ -78,20 +79,21 @@ class Store:
     Parameters
     ----------
     count : number of points
+    size : number of multipliers of each
     multipliers : whether to keep the multipliers and their errors
 
     Attributes
     ----------
     radius, radius_error : (count,)
     proven : (count,) whether the errors are proven bounds
-    multipliers, errors : (count, 10) the largest modulus first, or None
+    multipliers, errors : (count, size) the largest modulus first, or None
     """
 
-    def __init__(self, count: int, multipliers: bool) -> None:
+    def __init__(self, count: int, size: int, multipliers: bool) -> None:
         self.radius, self.radius_error = np.empty(count), np.empty(count)
         self.proven = np.zeros(count, dtype=bool)
-        self.multipliers = np.empty((count, 10), dtype=complex) if multipliers else None
-        self.errors = np.empty((count, 10)) if multipliers else None
+        self.multipliers = np.empty((count, size), dtype=complex) if multipliers else None
+        self.errors = np.empty((count, size)) if multipliers else None
 
     def put(
         self,
@@ -151,7 +153,7 @@ def plane_multipliers(
         periods = block.period * variation.pair.operating.pinion_speed * 30.0 / np.pi / speeds[part]
         # At the other speeds of a family the law is that of one speed times factors found by sampling.
         exact = family.members.size == 1 or family.law is None
-        bearings = OffLineOfAction.of(periodic_system(variation.pair, "relative"))
+        bearings = OffLineOfAction.of(variation)
 
         def put(
             index: npt.NDArray[np.intp],

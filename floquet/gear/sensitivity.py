@@ -17,7 +17,6 @@ from floquet.gear.multipliers import OffLineOfAction, gear_pair_multipliers, gea
 from lumped.arguments import some_of
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset
-from lumped.model.periodic_system import periodic_system
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -130,6 +129,7 @@ def _oloa_slope(pair: GearPair, name: str, points: list[tuple[float, float]]) ->
     """Derivative of the largest |exp(s T)| of the bearings off the line of action."""
     moduli = []
     for _, value in points:
-        system = periodic_system(vary(pair, {name: value}).pair, "relative")
-        moduli.append(float(np.exp(OffLineOfAction.of(system).exponents.real * system.period).max()))
+        at = vary(pair, {name: value})
+        period = at.pair.geometry.mesh_period
+        moduli.append(float(np.exp(OffLineOfAction.of(at).exponents.real * period).max()))
     return sum(weight * modulus for (weight, _), modulus in zip(points, moduli, strict=True))
