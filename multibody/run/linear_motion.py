@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import DOP853
+from scipy.integrate import DOP853, simpson
 
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray
@@ -28,6 +28,8 @@ from multibody.shafts.train import Train
 
 #: Angle by which the fastest mode turns in a step [rad]: the method of eighth order then errs by some 1e-9.
 _STEP_ANGLE = 1.0
+#: Phases of the mesh cycle closer than this are one.
+_SAME_PHASE = 1e-10
 #: A motion whose equations are conditioned worse sits on a stability boundary.
 _WORST_CONDITION = 1e13
 _A, _B, _C = (np.asarray(x, dtype=float) for x in (DOP853.A, DOP853.B, DOP853.C))
@@ -43,7 +45,6 @@ class LinearMotion:
     torque_pinion, torque_gear : driving and braking torque that hold the mean speed [N m]
     transition : (2n, 2n) map of the states over one mesh cycle
     by_torque : (2n,) change of the state after one cycle by a unit braking torque
-    unpaid : losses beyond the difference of driving and braking power [W]
     """
 
     state: FloatArray
@@ -51,7 +52,6 @@ class LinearMotion:
     torque_gear: float
     transition: FloatArray
     by_torque: FloatArray
-    unpaid: float
 
 
 def linear_motion(machine: Machine, brake: float | None) -> LinearMotion:
@@ -95,7 +95,6 @@ def linear_motion(machine: Machine, brake: float | None) -> LinearMotion:
         torque_gear=float(weights[2]),
         transition=transition,
         by_torque=forced[:, 2],
-        unpaid=_unpaid(machine, state, weights),
     )
 
 
@@ -123,11 +122,17 @@ def _train(machine: Machine) -> Train:
     return machine.train
 
 
-def _unpaid(machine: Machine, state: FloatArray, weights: FloatArray) -> float:
-    """Losses by sliding, tooth dampers, bearings, shafts and couplings less the power that is missing [W]."""
+def unpaid(machine: Machine, motion: LinearMotion) -> float:
+    """Losses by sliding, tooth dampers, bearings, shafts and couplings less the power that is missing [W].
+
+    Parameters
+    ----------
+    machine, motion : numbers for the linear mesh, and its periodic motion
+    """
     train, p = _train(machine), machine.parameters
     n, lost = train.size, 0.0
-    run = _propagated(machine, state[:, None], weights[:, None])
+    weights = np.array([[1.0], [motion.torque_pinion - machine.torque_pinion], [motion.torque_gear]])
+    run = _propagated(machine, motion.state[:, None], weights, _STEP_ANGLE / 4.0)
     for (low, high), steps in itertools.groupby(run, key=lambda step: step[0]):
         rows = list(steps)
         times = np.array([time for _, time, _ in rows])
@@ -138,13 +143,12 @@ def _unpaid(machine: Machine, state: FloatArray, weights: FloatArray) -> float:
         powers = contacts[..., kn.FRICTION_FORCE] * contacts[..., kn.SLIDE]
         powers += (load - contacts[..., kn.ELASTIC]) * rate
         shafts = np.einsum("ti,ij,tj->t", v, train.damping, v)  # gyroscopic terms take no power
-        lost += float(np.trapezoid(powers.sum(axis=1) + shafts, times)) / machine.period
-    driving = (machine.torque_pinion + float(weights[1])) * p[kn.OMEGA_P]
-    return lost - float(driving - weights[2] * p[kn.OMEGA_G])
+        lost += float(simpson(powers.sum(axis=1) + shafts, times)) / machine.period
+    return lost - float(motion.torque_pinion * p[kn.OMEGA_P] - motion.torque_gear * p[kn.OMEGA_G])
 
 
 def _propagated(
-    machine: Machine, start: FloatArray, forcing: FloatArray
+    machine: Machine, start: FloatArray, forcing: FloatArray, angle: float = _STEP_ANGLE
 ) -> Iterator[tuple[tuple[float, float], float, FloatArray]]:
     """Steps over one mesh cycle: the smooth interval that each lies in, its time and the states (2n, m).
 
@@ -162,10 +166,10 @@ def _propagated(
     springs, dampers = train.inverse @ train.stiffness, train.inverse @ train.damping
     reach, row = train.inverse[:, :6], machine.overlap
     torques = -(train.inverse @ train.torques.T)
-    edges = np.append(machine.switches, 1.0) * period
+    edges = _smooth(machine) * period
     state = start
     for low, high in itertools.pairwise(edges):
-        steps = int(np.ceil((high - low) * fastest / _STEP_ANGLE))
+        steps = int(np.ceil((high - low) * fastest / angle))
         h = (high - low) / steps
         at = low + h * (np.arange(steps)[:, None] + _C[:12]).ravel()
         by_overlap, by_rate, constant = (
@@ -185,6 +189,14 @@ def _propagated(
                 rates[stage, :n], rates[stage, n:] = v, force
             state = state + h * np.tensordot(_B, rates, 1)
             yield (float(low), float(high)), float(low + (step + 1) * h), state
+
+
+def _smooth(machine: Machine) -> FloatArray:
+    """Ends of the smooth parts of the mesh cycle as phases: switches, and where polynomials of a law meet."""
+    p, places = machine.parameters, np.unique(machine.table[:, :2])
+    joints = np.mod((places - p[kn.L_XA]) / p[kn.PITCH], 1.0)
+    phases = np.sort(np.concatenate([machine.switches, joints, [1.0]]))
+    return np.asarray(phases[np.diff(phases, prepend=-1.0) > _SAME_PHASE])
 
 
 def mesh_wrench(

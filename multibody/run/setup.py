@@ -25,7 +25,7 @@ from multibody.contact.machine import Machine, Supports, loaded_phase, machine
 from multibody.contact.reversal import friction_velocity as choose_friction_velocity
 from multibody.run.drive import Drive, drive_tables
 from multibody.run.integration import Segment, integrate
-from multibody.run.linear_motion import LinearMotion, linear_motion
+from multibody.run.linear_motion import LinearMotion, linear_motion, unpaid
 from multibody.run.model import ExudynModel, build
 from multibody.run.records import from_lumped_state
 
@@ -236,7 +236,7 @@ def _on_shafts(
     omega_p, omega_g = numbers.parameters[[kn.OMEGA_P, kn.OMEGA_G]]
     torque, driving = motion.torque_gear, motion.torque_pinion * omega_p
     if flags & kn.PATH_WORK and brake == "balanced":
-        torque -= motion.unpaid / omega_g
+        torque -= unpaid(straight, motion) / omega_g
     numbers = replace(numbers, torque_pinion=motion.torque_pinion, torque_gear=torque)
     load = -motion.torque_pinion * (train.torques[0] + omega_p / omega_g * train.torques[1])
     static = train.static(load, numbers.overlap, system.cycle.mean_stiffness)

@@ -85,9 +85,11 @@ def _held(numbers: tuple[FloatArray, FloatArray, int], highest: float) -> tuple[
     mass, stiffness, kept = numbers
     inside = np.delete(np.arange(mass.shape[0]), kept)
     both = np.ix_(inside, inside)
-    squares, modes = eigh(stiffness[both], mass[both])
-    few = int(np.searchsorted(squares, highest**2))
-    return np.sqrt(np.maximum(squares[:few], 0.0)), modes[:, :few]  # below zero by rounding only
+    # Of the inverse problem the modes that are wanted are the largest: rounding by the smallest intervals, in
+    # which vibration would be fastest, then stays in those that are not.
+    inverse, modes = eigh(mass[both], stiffness[both], subset_by_value=(highest**-2, np.inf))
+    frequencies = 1.0 / np.sqrt(inverse[::-1])
+    return frequencies, modes[:, ::-1] * frequencies
 
 
 def _reduced(
