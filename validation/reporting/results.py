@@ -26,7 +26,8 @@ from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.reporting.paper_results import PaperResults, paper_results
 from validation.validity.beyond_contact_loss import branches_about_operation
 from validation.validity.contact_forms import ContactForms, contact_forms
-from validation.validity.flags import LOAD_NOISE, Flag, speed_drift, validity_flags
+from validation.validity.flags import LOAD_NOISE, Flag, speed_drift, supports, validity_flags
+from validation.validity.four_springs import FourSprings, four_springs
 from validation.validity.plausibility import doubts
 from validation.verification import Check
 from validation.verification.reference_model import ReferenceModel, reference_model
@@ -48,6 +49,7 @@ class Effort:
     chart_speeds, chart_dampings : nodes of the stability chart
     chart_rtol : accuracy of the monodromy matrices in the chart
     map_speeds, map_torques : points of the validity map
+    shaft_speeds : at which four springs are compared with shafts
     full : whether to search the best tip relief, to solve the periodic motion of every law, to switch the
         finite-motion effects one at a time, to check the code against closed forms and to refine solutions
     paper : whether to reproduce the paper's figures, judge its claims and show its errata with this pair
@@ -62,13 +64,14 @@ class Effort:
     chart_rtol: float
     map_speeds: int
     map_torques: int
+    shaft_speeds: int
     full: bool
     paper: bool
     claim_samples: int
 
 
-FULL = Effort(512, 6, 240, 121, 25, 1e-6, 15, 5, full=True, paper=True, claim_samples=100)
-QUICK = Effort(128, 16, 48, 16, 4, 1e-6, 7, 3, full=False, paper=False, claim_samples=8)
+FULL = Effort(512, 6, 240, 121, 25, 1e-6, 15, 5, 41, full=True, paper=True, claim_samples=100)
+QUICK = Effort(128, 16, 48, 16, 4, 1e-6, 7, 3, 13, full=False, paper=False, claim_samples=8)
 
 
 @dataclass(frozen=True, eq=False)
@@ -258,8 +261,20 @@ class Results:
     @cached_property
     def flags(self) -> tuple[Flag, ...]:
         """Assumptions of the lumped model, checked at the operating point."""
-        drift = speed_drift(self.geometry, self.check.multibody["linear"])
-        return (*validity_flags(self.pair, self.motion, self.multipliers), drift)
+        found = [*validity_flags(self.pair, self.motion, self.multipliers)]
+        found.append(speed_drift(self.geometry, self.check.multibody["linear"]))
+        if isinstance(self.four_springs, FourSprings):
+            found.append(supports(self.four_springs))
+        return tuple(found)
+
+    @cached_property
+    def four_springs(self) -> FourSprings | str | None:
+        """The pair on its shafts beside four springs; why it cannot be computed; None without shafts."""
+        if self.pair.shafts is None:
+            return None
+        speeds = np.linspace(*self.speeds, self.effort.shaft_speeds)
+        stage = self.stage("the pair on its shafts")
+        return _or_why_not(partial(four_springs, speeds_rpm=speeds, progress=stage), self.pair)
 
     @cached_property
     def paper(self) -> PaperResults | str | None:

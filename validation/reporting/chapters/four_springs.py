@@ -1,0 +1,186 @@
+"""Are four springs enough? The model of the report beside the same pair on its shafts."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from validation.plots.four_springs import four_springs_figure
+from validation.plots.shafts import shafts_figure
+from validation.reporting.blocks import Badge, Block, Content, Picture, Quantity, Text, table_of
+from validation.reporting.chapter import Chapter
+from validation.reporting.formatting import number
+from validation.reporting.results import Results
+from validation.validity.four_springs import LIMITS, MODELS, FourSprings, valid_ranges
+
+_STATES = ("confirmed", "warning", "violated")
+#: Modes listed: those up to this many mesh frequencies.
+_MESH_FREQUENCIES = 3.0
+
+
+def write(results: Results) -> Content | None:
+    """Write the chapter; nothing for a pair without shafts."""
+    found = results.four_springs
+    if found is None:
+        return None
+    if isinstance(found, str):
+        return Content((Text(f"The pair on its shafts cannot be computed: {found}"),), Badge("undecided"))
+    blocks: list[Block] = [
+        Text(f"{_answer(found)} {_reference(results)}"),
+        Picture(
+            "four_springs",
+            "The pair on four springs, on its shafts, and as a machine, over speed.",
+            partial(four_springs_figure, found, results.operating_rpm),
+        ),
+        table_of(
+            "four_springs_models",
+            "The operating point with each support.",
+            list(MODELS),
+            {
+                "model": ("supports", MODELS.__getitem__),
+                "dte": ("transmission error, peak to peak", lambda m: _here(found, m, "dte", "m")),
+                "force_p": (
+                    "bearing forces of the pinion, peak to peak",
+                    lambda m: _here(found, m, "force_p", "N"),
+                ),
+                "force_g": ("of the gear", lambda m: _here(found, m, "force_g", "N")),
+                "radius": ("largest multiplier", lambda m: _radius(found, m)),
+                "off": ("largest difference", lambda m: None if m == "shafts" else found.off_here(m)),
+                "state": ("state", lambda m: _badge(found, m)),
+            },
+            note=f"Differences are over the model on shafts; above {LIMITS[0]:.0%} a warning, above "
+            f"{LIMITS[1]:.0%} four springs do not hold. Its own contact makes the machine differ.",
+        ),
+    ]
+    if found.misses:
+        blocks.append(
+            table_of(
+                "four_springs_misses",
+                "Speeds at which the given springs do not hold, and the mode that is missing.",
+                found.misses,
+                {
+                    "low": ("from", lambda m: Quantity(m.low, "rpm")),
+                    "high": ("to", lambda m: Quantity(m.high, "rpm")),
+                    "largest": (
+                        "largest difference",
+                        lambda m: m.largest if np.isfinite(m.largest) else None,
+                    ),
+                    "order": ("mesh order", lambda m: m.order),
+                    "mode": ("nearest mode", lambda m: m.mode),
+                    "frequency": ("its frequency", lambda m: Quantity(m.frequency, "Hz")),
+                },
+            )
+        )
+    blocks += [
+        Picture(
+            "shafts",
+            "Both shafts to scale: bearings (crossed boxes), gears, motor and load.",
+            partial(shafts_figure, found.pair),
+        ),
+        _modes(found),
+    ]
+    return Content(
+        tuple(blocks),
+        Badge(_state(results, found)),
+        {"four_springs": found.over_speed, "shaft_modes": found.modes},
+    )
+
+
+def _answer(found: FourSprings) -> str:
+    """Whether springs stand for the shafts, where they do not, and which modes are missing."""
+    off, better = found.off_here("springs"), found.off_here("condensed")
+    low, high = (f"{rpm:.0f}" for rpm in found.over_speed["speed"].to_numpy()[[0, -1]])
+    here = ("are enough", "are a rough picture", "are not enough")[
+        int(off > LIMITS[0]) + int(off > LIMITS[1])
+    ]
+    told = f"Four springs {here} here: off by {_differs(off)}"
+    told += f", with springs condensed from the shafts by {_differs(better)}."
+    good = ", ".join(f"{a:.0f} to {b:.0f}" for a, b in valid_ranges(found))
+    if not found.misses:
+        return f"{told} They hold at all speeds from {low} to {high} rpm."
+    worst = max(found.misses, key=lambda miss: miss.largest)
+    where = f"Within {LIMITS[1]:.0%} they hold at {good} rpm" if good else "They hold nowhere in the range"
+    return (
+        f"{told} {where}; at {worst.speed:.0f} rpm what is missing is {worst.mode} "
+        f"({number(worst.frequency, 4)} Hz, mesh order {worst.order})."
+    )
+
+
+def _differs(off: float) -> str:
+    return f"{number(100 * off, 2)}\u00a0%" if np.isfinite(off) else "the stability of the motion"
+
+
+def _state(results: Results, found: FourSprings) -> str:
+    if not all(check.passes for check in results.checks if check.key == "on_shafts"):
+        return "not confirmed"
+    off = found.off_here("springs")
+    return _STATES[int(off > LIMITS[0]) + int(off > LIMITS[1])]
+
+
+def _badge(found: FourSprings, model: str) -> Badge | None:
+    if model in ("shafts", "machine"):
+        return None
+    off = found.off_here(model)
+    return Badge(_STATES[int(off > LIMITS[0]) + int(off > LIMITS[1])])
+
+
+def _reference(results: Results) -> str:
+    found = next((check for check in results.checks if check.key == "on_shafts"), None)
+    if found is None:
+        return "The model on shafts is not compared with the machine: it has too many modes."
+    verb = "has" if found.passes else "does not have"
+    return (
+        f"With a mesh as linear the machine in exudyn, whose beams are its own, {verb} the motion of the "
+        f"model on shafts: off by {number(found.value, 2)} of a span (limit {number(found.limit, 2)})."
+    )
+
+
+def _here(found: FourSprings, model: str, name: str, unit: str) -> Quantity | None:
+    value = float(found.over_speed[name].sel(model=model)[_operating(found)])
+    return Quantity(value, unit) if np.isfinite(value) else None
+
+
+def _operating(found: FourSprings) -> int:
+    """Number of the operating speed."""
+    at = found.pair.operating.pinion_speed * 30.0 / np.pi
+    return int(np.argmin(np.abs(found.over_speed["speed"].to_numpy() - at)))
+
+
+def _radius(found: FourSprings, model: str) -> float | None:
+    value = float(found.over_speed["spectral_radius"].sel(model=model)[_operating(found)])
+    return value if np.isfinite(value) else None
+
+
+def _modes(found: FourSprings) -> Block:
+    modes = found.modes
+    highest = _MESH_FREQUENCIES / found.pair.geometry.mesh_period
+    numbers = [j for j, f in enumerate(modes["natural_frequency"].to_numpy()) if f <= highest]
+    return table_of(
+        "shaft_modes",
+        "Modes of the pair on its shafts, mean mesh stiffness, up to three mesh frequencies.",
+        numbers,
+        {
+            "name": ("mode", lambda j: str(modes["name"].to_numpy()[j])),
+            "frequency": (
+                "natural frequency",
+                lambda j: Quantity(float(modes["natural_frequency"][j]), "Hz"),
+            ),
+            "damping": ("damping ratio", lambda j: float(modes["damping_ratio"][j])),
+            "speed": (
+                "met by the mesh frequency at",
+                lambda j: Quantity(
+                    60.0 * float(modes["natural_frequency"][j]) / found.pair.pinion.teeth, "rpm"
+                ),
+            ),
+        },
+    )
+
+
+CHAPTER = Chapter(
+    "four_springs",
+    "Are four springs enough?",
+    write,
+    front=("four_springs", "four_springs_models", "four_springs_misses"),
+    seconds=10,
+)

@@ -1,0 +1,246 @@
+"""Are four springs enough? The six-degree-of-freedom model against the same pair on its shafts.
+
+Four lumped models differ in their supports alone: the springs of the parameters, the springs and masses to
+which the shafts condense at rest and at the mesh frequency, and the shafts with their modes. The machine in
+exudyn, with beams of its own and the exact contact, shows what all of them leave out; with the linear mesh it
+is compared with the last one in every report (``validation.verification.on_shafts``).
+
+Sources: docs/theory/shafts.md, "Four springs".
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import xarray as xr
+
+import lumped
+import multibody
+from floquet.gear.axes import operating_rpm
+from lumped import GearPair
+from lumped.errors import NumericalError, ParameterError
+from lumped.labelling import labelled_dataset
+from lumped.model.extremes import cycle_peak_to_peak
+from lumped.model.periodic_system import Supports
+from lumped.model.shafted import highest_frequency
+from lumped.model.steady import UNSTABLE, PeriodicSolution, periodic_cycle
+from lumped.typing import BoolArray, ComplexArray, FloatArray, Progress
+
+#: Model -> what it is in words.
+MODELS = {
+    "springs": "four springs as given",
+    "condensed": "four springs condensed from the shafts at rest",
+    "dynamic": "condensed at the mesh frequency",
+    "shafts": "shafts with their modes",
+    "machine": "machine in exudyn",
+}
+#: Quantity over speed -> unit and words.
+QUANTITIES = {
+    "dte": ("m", "transmission error, peak to peak"),
+    "force_p": ("N", "force of the pinion's bearings along the LOA, peak to peak"),
+    "force_g": ("N", "force of the gear's bearings along the LOA, peak to peak"),
+}
+#: Differences over the model on shafts, from which on four springs are a warning, and do not hold.
+LIMITS = (0.1, 0.3)
+_SAMPLES = 64
+#: Speeds at which the machine runs.
+_MACHINE_SPEEDS = 5
+_ORDERS = 6
+
+
+@dataclass(frozen=True)
+class Miss:
+    """A range of speeds at which four springs do not hold, and why.
+
+    Attributes
+    ----------
+    low, high : of the pinion [rpm]
+    largest : difference in it, as ``FourSprings.off``
+    speed : where that is [rpm]
+    order : of the mesh frequency whose part of the transmission error differs most there
+    mode, frequency : the mode on shafts that this order is nearest to, and its frequency [Hz]
+    """
+
+    low: float
+    high: float
+    largest: float
+    speed: float
+    order: int
+    mode: str
+    frequency: float
+
+
+@dataclass(frozen=True, eq=False)
+class FourSprings:
+    """Outcome of ``four_springs``.
+
+    Attributes
+    ----------
+    pair : with ``shafts.max_frequency`` as all models take it
+    over_speed : dataset over ``model`` and ``speed`` [rpm]: the quantities of ``QUANTITIES`` and
+        ``spectral_radius``; NaN where there is no periodic motion, and at most speeds of the machine
+    modes : dataset of ``lumped.shaft_modes``
+    misses : ranges of speeds at which the springs of the parameters do not hold
+    """
+
+    pair: GearPair
+    over_speed: xr.Dataset
+    modes: xr.Dataset
+    misses: tuple[Miss, ...]
+
+    def off(self, model: str) -> FloatArray:
+        """Largest relative difference of any quantity from the model on shafts, over speed; inf: unstable."""
+        return _off(self.over_speed, model)
+
+    def off_here(self, model: str) -> float:
+        """The same at the operating speed."""
+        speeds = self.over_speed["speed"].to_numpy()
+        return float(self.off(model)[int(np.argmin(np.abs(speeds - operating_rpm(self.pair))))])
+
+    def holds(self, model: str) -> BoolArray:
+        """Speeds at which four springs hold, (k,)."""
+        return np.asarray(self.off(model) <= LIMITS[1])
+
+
+def four_springs(pair: GearPair, speeds_rpm: FloatArray, progress: Progress | None = None) -> FourSprings:
+    """Compare the springs of a pair with its shafts.
+
+    Parameters
+    ----------
+    pair : a validated gear pair with shafts
+    speeds_rpm : pinion speeds; the operating speed is added [rpm]
+    progress : called with the finished fraction
+
+    Raises
+    ------
+    ParameterError : the pair has no shafts
+    """
+    pair = pair.with_({"shafts.max_frequency": highest_frequency(pair) / (2.0 * np.pi)})
+    # What hangs on a gear's shaft by a coupling does not turn with it at mesh frequencies.
+    at_rest = lumped.condensed_bearings(pair.with_({"shafts.motor": None, "shafts.load": None}))
+    speeds = np.union1d(np.asarray(speeds_rpm, dtype=float), operating_rpm(pair))
+    table, spectra = _over_speed(pair, at_rest, speeds, progress)
+    step = max(1, round(speeds.size / _MACHINE_SPEEDS))
+    here = int(np.argmin(np.abs(speeds - operating_rpm(pair))))
+    for j in sorted({*range(step // 2, speeds.size, step), here}):
+        _machine_at(table, pair, j, float(speeds[j]))
+    modes = lumped.shaft_modes(pair)
+    over_speed = _dataset(table, speeds)
+    return FourSprings(
+        pair=pair,
+        over_speed=over_speed,
+        modes=modes,
+        misses=_misses(over_speed, spectra, modes, pair),
+    )
+
+
+def _over_speed(
+    pair: GearPair, at_rest: GearPair, speeds: FloatArray, progress: Progress | None
+) -> tuple[dict[str, FloatArray], dict[str, ComplexArray]]:
+    """Quantities (models, speeds), and orders of the transmission error, (speeds, orders)."""
+    table = {name: np.full((len(MODELS), speeds.size), np.nan) for name in (*QUANTITIES, "spectral_radius")}
+    spectra = {name: np.zeros((speeds.size, _ORDERS + 1), dtype=complex) for name in MODELS}
+    for j, rpm in enumerate(speeds):
+        here, rest = (one.with_({"operating.pinion_speed": float(rpm)}) for one in (pair, at_rest))
+        models: dict[str, tuple[GearPair, Supports]] = {
+            "springs": (here, "springs"),
+            "condensed": (rest, "springs"),
+            "shafts": (here, "shafts"),
+        }
+        # Where a shaft resists like no spring at all, there is no such pair.
+        with contextlib.suppress(ParameterError):
+            dynamic = lumped.condensed_bearings(here, 1.0 / here.geometry.mesh_period)
+            models["dynamic"] = (dynamic, "springs")
+        for name, (one, supports) in models.items():
+            try:
+                found = periodic_cycle(one, _SAMPLES, supports=supports)
+            except NumericalError:
+                continue
+            _enter(table, list(MODELS).index(name), j, found)
+            spectra[name][j] = np.fft.rfft(found.values["dte"])[: _ORDERS + 1] / _SAMPLES
+        if progress is not None:
+            progress((j + 1) / speeds.size)
+    return table, spectra
+
+
+def _enter(table: dict[str, FloatArray], i: int, j: int, found: PeriodicSolution) -> None:
+    values = found.values
+    table["dte"][i, j] = found.peak_to_peak["dte"]
+    table["force_p"][i, j] = np.ptp(values["bearing_force_x_p"])
+    table["force_g"][i, j] = np.ptp(values["bearing_force_x_g"])
+    table["spectral_radius"][i, j] = found.spectral_radius
+
+
+def _machine_at(table: dict[str, FloatArray], pair: GearPair, j: int, rpm: float) -> None:
+    at = pair.with_({"operating.pinion_speed": rpm})
+    try:
+        run = multibody.steady_state(at, samples_per_cycle=_SAMPLES, supports="shafts")
+    except NumericalError:
+        return
+    row = list(MODELS).index("machine")
+    table["dte"][row, j] = cycle_peak_to_peak(run, "dte", at.geometry.mesh_period)
+    table["force_p"][row, j] = np.ptp(run["bearing_force_x_p"].to_numpy())
+    table["force_g"][row, j] = np.ptp(run["bearing_force_x_g"].to_numpy())
+
+
+def _dataset(table: Mapping[str, FloatArray], speeds: FloatArray) -> xr.Dataset:
+    about = QUANTITIES | {"spectral_radius": ("1", "largest modulus of the multipliers")}
+    return labelled_dataset(
+        {name: (("model", "speed"), values, *about[name]) for name, values in table.items()},
+        {"model": (list(MODELS), "1", "model"), "speed": (speeds, "rpm", "pinion speed")},
+    )
+
+
+def _off(over_speed: xr.Dataset, model: str) -> FloatArray:
+    one, shafts = over_speed.sel(model=model), over_speed.sel(model="shafts")
+    off = np.max([np.abs(one[name] / shafts[name] - 1.0) for name in QUANTITIES], axis=0)
+    if model != "machine":
+        stable = (one["spectral_radius"] <= UNSTABLE) == (shafts["spectral_radius"] <= UNSTABLE)
+        off = np.where(stable & ~np.isnan(off), off, np.inf)
+    return np.asarray(off)
+
+
+def _misses(
+    over_speed: xr.Dataset, spectra: Mapping[str, ComplexArray], modes: xr.Dataset, pair: GearPair
+) -> tuple[Miss, ...]:
+    speeds, off = over_speed["speed"].to_numpy(), _off(over_speed, "springs")
+    bad = np.concatenate([[False], off > LIMITS[1], [False]])
+    edges = np.flatnonzero(np.diff(bad))
+    frequencies, found = modes["natural_frequency"].to_numpy(), []
+    for first, end in zip(edges[::2], edges[1::2], strict=True):
+        worst = first + int(np.argmax(off[first:end]))
+        apart = np.abs(spectra["springs"][worst] - spectra["shafts"][worst])
+        order = 1 + int(np.argmax(apart[1:]))
+        met = order * speeds[worst] / 60.0 * pair.pinion.teeth
+        near = int(np.argmin(np.abs(np.log(frequencies / met))))
+        low, high = (_between(speeds, first - 1), _between(speeds, end - 1))
+        found.append(
+            Miss(
+                low=low,
+                high=high,
+                largest=float(off[worst]),
+                speed=float(speeds[worst]),
+                order=order,
+                mode=str(modes["name"].to_numpy()[near]),
+                frequency=float(frequencies[near]),
+            )
+        )
+    return tuple(found)
+
+
+def _between(speeds: FloatArray, j: int) -> float:
+    """Middle between a speed and the next; the ends of the range at its ends."""
+    if j < 0 or j + 1 >= speeds.size:
+        return float(speeds[0] if j < 0 else speeds[-1])
+    return float(0.5 * (speeds[j] + speeds[j + 1]))
+
+
+def valid_ranges(found: FourSprings, model: str = "springs") -> tuple[tuple[float, float], ...]:
+    """Ranges of speeds at which four springs hold [rpm]."""
+    speeds, good = found.over_speed["speed"].to_numpy(), found.holds(model)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], good, [False]])))
+    return tuple((_between(speeds, a - 1), _between(speeds, b - 1)) for a, b in list(pairwise(edges))[::2])
