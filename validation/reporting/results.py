@@ -30,6 +30,7 @@ from validation.validity.flags import LOAD_NOISE, Flag, speed_drift, supports, v
 from validation.validity.four_springs import FourSprings, four_springs
 from validation.validity.plausibility import doubts
 from validation.verification import Check
+from validation.verification.on_shafts import on_shafts
 from validation.verification.reference_model import ReferenceModel, reference_model
 from validation.verification.stability_routes import StabilityRoutes, stability_routes
 from validation.verification.tooth_stiffness import ToothStiffness, tooth_stiffness
@@ -250,7 +251,16 @@ class Results:
     def checks(self) -> tuple[Check, ...]:
         """Checks of multibody model, multipliers and tooth stiffness, which every report has."""
         others = (found for found in (self.routes, self.tooth_stiffness) if not isinstance(found, str))
-        return (*self.reference.checks, *(check for found in others for check in found.checks))
+        return (
+            *self.reference.checks,
+            *(check for found in others for check in found.checks),
+            *self.on_shafts,
+        )
+
+    @cached_property
+    def on_shafts(self) -> tuple[Check, ...]:
+        """The machine against the model on shafts; empty without shafts."""
+        return tuple(on_shafts(self.pair))
 
     @cached_property
     def margins(self) -> StabilityMargins:

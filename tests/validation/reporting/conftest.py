@@ -8,7 +8,15 @@ from validation.reporting import build, results
 from validation.reporting.results import QUICK, Results
 
 TINY = dataclasses.replace(
-    QUICK, samples=64, cycles=6, sweep_speeds=9, chart_speeds=4, chart_dampings=2, map_speeds=2, map_torques=2
+    QUICK,
+    samples=64,
+    cycles=6,
+    sweep_speeds=9,
+    chart_speeds=4,
+    chart_dampings=2,
+    map_speeds=2,
+    map_torques=2,
+    shaft_speeds=3,
 )
 
 
