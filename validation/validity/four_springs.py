@@ -242,5 +242,5 @@ def _between(speeds: FloatArray, j: int) -> float:
 def valid_ranges(found: FourSprings, model: str = "springs") -> tuple[tuple[float, float], ...]:
     """Ranges of speeds at which four springs hold [rpm]."""
     speeds, good = found.over_speed["speed"].to_numpy(), found.holds(model)
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], good, [False]])))
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], good, [False]]))).tolist()
     return tuple((_between(speeds, a - 1), _between(speeds, b - 1)) for a, b in list(pairwise(edges))[::2])
