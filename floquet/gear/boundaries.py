@@ -22,6 +22,7 @@ from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_number, real_numbers, whole_number
 from lumped.errors import refuse, shown
 from lumped.labelling import labelled_dataset
+from lumped.model.periodic_system import Supports
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray, Progress
@@ -81,6 +82,7 @@ def stability_boundaries(
     orders: int = 12,
     xtol: float = 1e-8,
     rtol: float = 1e-9,
+    supports: Supports = "springs",
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Boundaries, spectral radius = 1, of the tongues of instability over speed.
@@ -99,6 +101,7 @@ def stability_boundaries(
     orders : largest k of the clusters
     xtol : relative accuracy of the boundaries
     rtol : of the monodromy matrices
+    supports : "springs", the pair's ``bearings``, or its "shafts"; labels then number the modes that count
     progress : told the finished fraction
 
     Returns
@@ -115,7 +118,7 @@ def stability_boundaries(
     ------
     ParameterError : unusable range or axis
     """
-    pair = load_gear_pair(pair)
+    pair = GearVariation.of(load_gear_pair(pair), supports).pair
     low, high = checked_range(speed_rpm)
     nodes = whole_number("nodes", nodes, 0, 1_000_000)
     xtol = real_number("xtol", xtol, 1e-15, 0.1)
@@ -129,20 +132,22 @@ def stability_boundaries(
     complete = np.ones(values.size, dtype=bool)
     for index, value in enumerate(values):
         point = {name: float(value)} if axes else {}
-        lines = np.array(list(predicted_lines(vary(pair, point), orders).values()))
-        dense, complete[index] = search_grid(gear_block(vary(pair, point)), low, high)
+        here = vary(pair, point, supports)
+        lines = np.array(list(predicted_lines(here, orders).values()))
+        dense, complete[index] = search_grid(gear_block(here), low, high)
         start = np.union1d(dense, seeded_nodes(lines, low, high, nodes))
 
         def radius(speeds: FloatArray, point: dict[str, float] = point) -> FloatArray:
             grid = {"speed_rpm": speeds} | {key: np.array([at]) for key, at in point.items()}
-            return np.ravel(stability_chart(pair, grid, rtol=rtol, store="radius").spectral_radius.values)
+            chart = stability_chart(pair, grid, rtol=rtol, store="radius", supports=supports)
+            return np.ravel(chart.spectral_radius.values)
 
         for interval in unstable_intervals(radius, start, xtol=xtol):
-            label = label_variation(vary(pair, {**point, "speed_rpm": interval.peak}))
+            label = label_variation(vary(pair, {**point, "speed_rpm": interval.peak}, supports))
             found.setdefault(label, {}).setdefault(index, []).append(interval)
         if progress is not None:
             progress((index + 1) / values.size)
-    result = _dataset(pair, found, name, values, complete)
+    result = _dataset(pair, found, name, values, complete).assign_attrs(supports=supports)
     return result if axes else result.isel({name: 0}, drop=True)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import lumped
-from floquet import gear_block, gear_pair_multipliers, stability_chart
+from floquet import gear_block, gear_pair_multipliers, stability_boundaries, stability_chart
 from floquet.gear.axes import GearVariation
 from floquet.gear.feedback import MODES, separate_modes
 from lumped.errors import ParameterError
@@ -67,6 +67,17 @@ def test_modes_left_out_hardly_count(slender: GearPair) -> None:
     assert decay.size > MODES
     # What the shafts' damping ratio says, apart from what the mesh does to a mode.
     assert decay / np.sqrt(squares) == pytest.approx(np.full(decay.size, 0.01), rel=2e-2)
+
+
+def test_boundaries_are_where_the_radius_is_one() -> None:
+    pair = on_shafts((60.0, 80.0), (60.0, 80.0))
+    found = stability_boundaries(pair, (5500.0, 6200.0), nodes=0, orders=2, supports="shafts")
+    assert found.complete
+    assert found.present.values.any()
+    ends = np.unique([end for end in found.lower.values if 5500.0 < end < 6200.0])
+    beside = np.concatenate([ends * (1.0 - 1e-5), ends * (1.0 + 1e-5)])
+    chart = stability_chart(pair, {"speed_rpm": beside}, supports="shafts")
+    assert (chart.verdict.values == np.repeat([1, -1], ends.size)).all()
 
 
 def test_stiff_shafts_are_springs() -> None:
