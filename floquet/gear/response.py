@@ -207,7 +207,12 @@ class ResponseBranches:
 
     @cached_property
     def restless(self) -> tuple[Restless, ...]:
-        """Speeds without a stable periodic motion among those that were found."""
+        """What a run does in ``gaps``."""
+        return tuple(self._restless(*gap) for gap in self.gaps)
+
+    @property
+    def gaps(self) -> tuple[tuple[float, float], ...]:
+        """Speeds without a stable periodic motion among those that were found, (low, high) [rpm]."""
         low, high = self.speeds_rpm
         calm = sorted(
             tuple(sorted(self._cycle_at_1_rpm / orbit.period for orbit in two))
@@ -215,10 +220,10 @@ class ResponseBranches:
             for two in pairwise(branch.orbits)
             if max(orbit.spectral_radius for orbit in two) < MARGINAL
         )
-        found, reached = [], low
+        found, reached = list[tuple[float, float]](), low
         for start, end in [*calm, (high, high)]:
             if start - reached > _GAP * (high - low):
-                found.append(self._restless(reached, start))
+                found.append((reached, start))
             reached = max(reached, end)
         return tuple(found)
 

@@ -23,7 +23,7 @@ from validation.interactive.results import FINE, PageResults, Sampling, compute
 from validation.validity.map import STATES, speed_spans
 
 #: Parts of the page's own script, in this order.
-_SCRIPTS = ("data.js", "chart.js", "stability.js", "branches.js", "sweep.js", "start.js")
+_SCRIPTS = ("data.js", "chart.js", "stability.js", "branches.js", "sweep.js", "jumps.js", "start.js")
 
 
 def write_interactive_page(
@@ -96,6 +96,7 @@ def render(results: PageResults, data_name: str) -> str:
         unstable=unstable_speeds,
         response=_response_rows(results),
         branches=_branch_rows(results.branches) if isinstance(results.branches, xr.Dataset) else [],
+        jumps=results.jumps,
         no_branches=results.branches if isinstance(results.branches, str) else "",
         missing={LAWS[law].long_name: reason for law, reason in results.missing.items()},
         data_name=data_name,

@@ -24,7 +24,12 @@ from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import Progress
 from validation.interactive.branches import branch_dataset
 from validation.interactive.slices import SLICES, Slices
-from validation.validity.beyond_contact_loss import BRANCH_SPEEDS, branches_about_operation
+from validation.validity.beyond_contact_loss import (
+    BRANCH_SPEEDS,
+    MAP_SIZE,
+    branches_about_operation,
+    jumps_about_operation,
+)
 from validation.validity.flags import LOAD_NOISE
 from validation.validity.map import STATES, validity_state
 
@@ -40,6 +45,7 @@ class Sampling:
     sweep_speeds : of the response over speed, at most
     branches : slowest and fastest speed of the motions beyond contact loss, over the operating speed; None:
         without them
+    jumps : torques and speeds of the jump map
     """
 
     speeds: int = 101
@@ -47,11 +53,12 @@ class Sampling:
     slices: int = 7
     sweep_speeds: int = 80
     branches: tuple[float, float] | None = BRANCH_SPEEDS
+    jumps: tuple[int, int] = MAP_SIZE
 
 
 #: Samples per mesh cycle of the response over speed.
 _SAMPLES = 96
-_BEYOND = "motions beyond contact loss"
+_BEYOND, _JUMPS = "motions beyond contact loss", "jumps over speed and torque"
 FINE = Sampling()
 
 
@@ -74,6 +81,7 @@ class PageResults:
     multibody : one or more points of the multibody model over ``multibody_speed``, or None
     branches : motions of teeth that push only, see ``branch_dataset``; why there are none; None where the
         linear model keeps contact at all speeds
+    jumps : ``floquet.jump_map`` over speed and torque; None where there are no such motions
     """
 
     pair: GearPair
@@ -86,6 +94,7 @@ class PageResults:
     resonances: tuple[float, ...]
     multibody: xr.Dataset | None
     branches: xr.Dataset | str | None
+    jumps: xr.Dataset | None
 
     def dataset(self) -> xr.Dataset:
         """Every number of the page; the charts carry ``_over_`` and their third parameter in their names."""
@@ -95,6 +104,9 @@ class PageResults:
         ]
         parts += [self.sweep] + ([] if self.multibody is None else [self.multibody])
         parts += [self.branches] if isinstance(self.branches, xr.Dataset) else []
+        if self.jumps is not None:
+            names = [*self.jumps.variables, "jump"]
+            parts.append(self.jumps.rename({name: f"map_{name}" for name in dict.fromkeys(map(str, names))}))
         merged = xr.merge(parts, join="exact", combine_attrs="override")
         merged.attrs = provenance(self.pair) | {"title": f"interactive page of {self.pair.name}"}
         return merged
@@ -141,8 +153,14 @@ def compute(
         notes = tuple("; ".join(map(str, law_range_violations(pair, law))) for law in sweeps)
         multipliers = gear_pair_multipliers(pair)
         branches = _branches(
-            pair, sampling, sweeps[pair.friction.law], lambda f: tell(0.6 + 0.4 * f, _BEYOND)
+            pair, sampling, sweeps[pair.friction.law], lambda f: tell(0.6 + 0.2 * f, _BEYOND)
         )
+        jumps = None
+        if isinstance(branches, xr.Dataset) and sampling.branches is not None:
+            found_jumps = jumps_about_operation(
+                pair, sampling.branches, sampling.jumps, lambda f, _="", /: tell(0.8 + 0.2 * f, _JUMPS)
+            )
+            jumps = None if isinstance(found_jumps, str) else found_jumps
     laws = xr.DataArray(
         np.array(list(sweeps), dtype=object), dims="law", name="law", attrs={"long_name": "friction law"}
     )
@@ -157,6 +175,7 @@ def compute(
         resonances=tuple(mode.resonant_speed for mode in found),
         multibody=None if multibody is None else _points(pair, multibody),
         branches=branches,
+        jumps=jumps,
     )
 
 

@@ -24,7 +24,7 @@ from lumped.path_of_contact import friction_profile
 from lumped.typing import BoolArray, Progress
 from validation.cross_check.comparison import CrossCheck, crosscheck
 from validation.reporting.paper_results import PaperResults, paper_results
-from validation.validity.beyond_contact_loss import branches_about_operation
+from validation.validity.beyond_contact_loss import branches_about_operation, jumps_about_operation
 from validation.validity.contact_forms import ContactForms, contact_forms
 from validation.validity.flags import LOAD_NOISE, Flag, speed_drift, supports, validity_flags
 from validation.validity.four_springs import FourSprings, four_springs
@@ -213,6 +213,13 @@ class Results:
         if not self.effort.full or not self.separating_share:
             return None
         return branches_about_operation(self.pair, progress=self.stage("motions beyond contact loss"))
+
+    @cached_property
+    def jump_map(self) -> xr.Dataset | str | None:
+        """Where the pair can jump over speed and torque; why it is not known; None where ``branches`` is."""
+        if self.branches is None:
+            return None
+        return jumps_about_operation(self.pair, progress=self.stage("jumps over speed and torque"))
 
     @cached_property
     def forms(self) -> ContactForms | str:

@@ -115,13 +115,26 @@ def with_loss_of_contact(results: Results, found: Parting) -> str:
 
 
 def jumps(results: Results) -> str:
-    """At which speeds the pair jumps to another motion, and between which; empty where nothing is known."""
+    """At which speeds the pair jumps to another motion, and between which; where no motion repeats.
+
+    Empty where nothing is known.
+    """
     found = results.branches
     if found is None or isinstance(found, str):
         return ""
     low, high = (f"{rpm:.0f}" for rpm in found.speeds_rpm)
+    gaps = ", ".join(f"{number(a, 4)} to {number(b, 4)}" for a, b in found.gaps)
+    restless = (
+        f" No stable motion that repeats after a few mesh cycles was found at {gaps}\u00a0rpm: there it "
+        "beats, is chaotic or comes to a motion apart from these."
+        if gaps
+        else ""
+    )
     if not found.jumps:
-        return f"From {low} to {high} rpm the pair does not jump to another motion."
+        return (
+            f"From {low} to {high} rpm no jump was found on the motions that continue the linear one; "
+            f"motions apart from them were not looked for.{restless}"
+        )
     most = max(
         found.jumps, key=lambda jump: np.nan_to_num(abs(jump.dte_rms_after - jump.dte_rms), nan=np.inf)
     )
@@ -131,7 +144,7 @@ def jumps(results: Results) -> str:
     return (
         f"From {low} to {high} rpm it jumps at {number(most.speed_rpm, 4)} rpm on running "
         f"{'up' if most.rising else 'down'}, from {quantity(most.dte_rms, 'm', 3)} {after} root mean square"
-        f"{more}."
+        f"{more}.{restless}"
     )
 
 

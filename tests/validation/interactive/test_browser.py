@@ -143,24 +143,39 @@ def test_hover_over_a_branch_shows_its_load_and_multiplier(page, data):
     first = data.isel(orbit=0)
     place = float(first["branch_speed_rpm"]), 1e6 * float(first["branch_dte_peak_to_peak"])
     lines = page.hover("sweep-plot", *place)
-    speeds = [f"{v:.6g} rpm" for v in data["branch_speed_rpm"].to_numpy()]
-    assert lines[0] in speeds  # neighbours are less than a pixel apart
-    one = data.isel(orbit=speeds.index(lines[0]))
+    columns = [data[f"branch_{name}"].to_numpy() for name in (
+        "speed_rpm", "dte_peak_to_peak", "largest_load", "spectral_radius")]  # fmt: skip
     expected = [
-        lines[0],
-        f"{1e6 * float(one['branch_dte_peak_to_peak']):.6g} µm peak to peak",
-        f"largest tooth load {float(one['branch_largest_load']):.6g} N",
-        f"largest multiplier {float(one['branch_spectral_radius']):.6g}",
-        "repeats after 1 mesh cycle",
-        "stable",
+        [
+            f"{speed:.5g} rpm",
+            f"{1e6 * dte:.4g} µm peak to peak",
+            f"largest tooth load {load:.4g} N",
+            f"largest multiplier {radius:.4g}",
+            "repeats after 1 mesh cycle",
+            "stable",
+        ]
+        for speed, dte, load, radius in zip(*columns, strict=True)
     ]
-    assert lines == expected
-    assert ", ".join(expected) in page.text("motion-text")
+    assert lines in expected  # neighbours are less than a pixel apart
+    assert ", ".join(lines) in page.text("motion-text")
     points = page.run("return document.querySelector('#motion-wave polyline').points.length")
     assert points == 49  # 48 samples and the first one again
     page.choose("law", 0)
     assert page.drawn("sweep-plot", "plot.data.some(t => t.name?.startsWith('teeth push only'))") is False
     assert page.run("return document.getElementById('motion').hidden") is True
+
+
+def test_hover_over_the_jump_map_shows_the_data_file(page, data):
+    one = data.isel(map_torque=1, map_speed_rpm=2)
+    lines = page.hover("jumps-plot", float(one["map_speed_rpm"]), float(one["map_torque"]))
+    assert lines == [
+        f"{float(one['map_speed_rpm']):.5g} rpm, {float(one['map_torque']):.4g} N m",
+        f"largest motion {1e6 * float(one['map_dte_rms_largest']):.4g} µm rms, "
+        f"tooth load up to {float(one['map_largest_load']):.4g} N",
+        "1 stable motion",
+        "contact kept" if one["map_contact_kept"] else "teeth part",
+    ]
+    assert "; ".join(lines) in page.text("jumps-text")
 
 
 def test_flags_of_the_strip_are_those_of_the_data_file(page, data):

@@ -13,6 +13,7 @@ from floquet.gear.jump_removal import JumpRemoval
 from validation.reporting import words
 from validation.reporting.chapters import contact_loss
 from validation.reporting.results import Results
+from validation.validity.beyond_contact_loss import jumps_about_operation
 
 
 @pytest.fixture(scope="module")
@@ -72,10 +73,23 @@ def test_the_chapter_tells_jumps_and_what_removes_them(results, monkeypatch):
         "jumps_removed_by",
         lambda _, axis: (nothing, removal) if axis == removal.axis else (nothing,),
     )
+    jumping = jumps_about_operation(pair, (0.98, 1.02), (2, 9))
+    monkeypatch.setattr(told, "jump_map", jumping, raising=False)
+    assert jumping["jump_speed_rpm"].to_numpy() == pytest.approx([7596.3, 7723.1] * 2, abs=0.1)
     content = contact_loss.write(told)
     blocks = {getattr(block, "key", None): block for block in content.blocks}
-    assert {"response", "jumps"} <= blocks.keys()
+    assert {"response", "jumps", "jump_map"} <= blocks.keys()
+    assert "several stable motions at 33" in str(content.blocks)
+    monkeypatch.setattr(told, "jump_map", jumps_about_operation(results.pair, (0.99, 1.0), (2, 2)))
+    content = contact_loss.write(told)
+    assert "one stable motion everywhere" in str(content.blocks)
     text = " ".join(str(block) for block in content.blocks)
     assert "with a damping ratio of the mesh above 0.0547." in text
     assert "7723" in words.jumps(told) or "7596" in words.jumps(told)
     assert "the largest of 2 jumps" in words.jumps(told)
+    assert "beats" not in words.jumps(told)
+    beating = pair.with_({"operating.pinion_speed": 13800.0})
+    found = floquet.response_branches(beating, (13700.0, 13900.0), (1,), seeds=0)
+    monkeypatch.setattr(told, "branches", found, raising=False)
+    assert "at 13700 to 13900" in words.jumps(told)
+    assert "there it beats, is chaotic" in words.jumps(told)

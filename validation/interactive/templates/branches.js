@@ -4,8 +4,8 @@ const shownBranches = () => (now.law === sweep.own ? sweep.branches : []);
 function orbitWords([b, i]) {
   const branch = sweep.branches[b];
   return [
-    rpm(branch.speed[i]), `${plain(branch.dte[i])} µm peak to peak`, `largest tooth load ${plain(branch.load[i])} N`,
-    `largest multiplier ${plain(branch.radius[i])}`, `repeats after ${branch.n} mesh cycle${branch.n > 1 ? "s" : ""}`,
+    `${plain(branch.speed[i], 5)} rpm`, `${plain(branch.dte[i], 4)} µm peak to peak`, `largest tooth load ${plain(branch.load[i], 4)} N`,
+    `largest multiplier ${plain(branch.radius[i], 4)}`, `repeats after ${branch.n} mesh cycle${branch.n > 1 ? "s" : ""}`,
     branch.stable[i] ? "stable" : "unstable",
   ];
 }

@@ -8,6 +8,7 @@ import numpy as np
 
 from floquet.gear.jump_removal import jumps_removed_by
 from floquet.gear.response import ResponseBranches
+from validation.plots.jumps import jump_map_figure
 from validation.plots.response import response_figure
 from validation.reporting.blocks import Block, Content, Picture, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
@@ -104,7 +105,34 @@ def _over_speed(results: Results) -> list[Block]:
                 },
             )
         )
-    return blocks
+    return [*blocks, *_over_torque(results)]
+
+
+def _over_torque(results: Results) -> list[Block]:
+    """The jump map about the operating point; a sentence where nothing happens on it."""
+    found = results.jump_map
+    if found is None or isinstance(found, str):
+        return [Text(f"Where the pair jumps at other torques was not found: {found}")] if found else []
+    torques, speeds = found["torque"].to_numpy(), found["speed_rpm"].to_numpy()
+    low, high = (quantity(float(value), "N m", 3) for value in torques[[0, -1]])
+    where = f"At {torques.size} torques from {low} to {high} and the same speeds"
+    if bool(((found["motions"] == 1) & found["contact_kept"]).all()):
+        return [Text(f"{where} no motion parts the teeth, and there is one stable motion everywhere.")]
+    several = float((found["motions"] > 1).mean())
+    largest = found["dte_rms_largest"]
+    return [
+        Text(
+            f"{where} the pair has several stable motions at {number(100 * several, 2)}\u00a0% of the "
+            f"points, the largest of {quantity(float(largest.max()), 'm', 3)} root mean square."
+        ),
+        Picture(
+            "jump_map",
+            f"Where the pair can jump, over speed and torque ({torques.size} torques, {speeds.size} speeds, "
+            "motions of one mesh cycle, without friction, which hardly moves them); right: the largest "
+            "stable motion.",
+            partial(jump_map_figure, found),
+        ),
+    ]
 
 
 def _known(value: float, unit: str) -> Quantity | None:
@@ -137,5 +165,5 @@ def _removed(results: Results) -> str:
 
 
 CHAPTER = Chapter(
-    "contact_loss", "Where teeth part", write, front=("contact_loss", "response", "jumps"), seconds=10
+    "contact_loss", "Where teeth part", write, front=("contact_loss", "response", "jumps"), seconds=12
 )
