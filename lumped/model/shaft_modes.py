@@ -89,8 +89,10 @@ def _name(elastic: FloatArray, kinetic: FloatArray) -> str:
     bending = kinetic[:4].reshape(2, 2) / kinetic[:4].sum()
     shafts, planes = bending.sum(axis=1), bending.sum(axis=0)
     owner = ("pinion shaft", "gear shaft")[int(shafts.argmax())] if shafts.max() > _MOST else "both shafts"
-    along = ("along x", "along y")[int(planes.argmax())] if planes.max() > _MOST else "whirling"
-    return f"{owner} {'in bearings' if elastic[_BEARINGS] > 0.5 else 'bending'} {along}"
+    if planes.max() <= _MOST:
+        return f"{owner} whirling"
+    motion = "in bearings" if elastic[_BEARINGS] > 0.5 else "bending"
+    return f"{owner} {motion} along {'xy'[int(planes.argmax())]}"
 
 
 def _shares(system: LTVSystem, shapes: FloatArray) -> tuple[FloatArray, FloatArray]:

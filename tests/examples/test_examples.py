@@ -335,3 +335,15 @@ def test_25_the_mesh_drives_the_bending_shafts_at_twice_their_frequency(example)
     # The mode of 4544 Hz, see tests/validation/exchange/test_ross.py; 28 teeth; the step is 375 rpm.
     assert float(unstable.mean()) == pytest.approx(2.0 * 4544.1 * 60.0 / 28.0, abs=190.0)
     assert unstable.size == 3
+
+
+def test_26_springs_miss_what_the_modes_of_the_shafts_do(example):
+    module = example(26)
+    module.SPEEDS = np.array([2750.0, 4875.0])
+    result = module.compute()
+    labelled(module.draw(result))
+    # The mode of the mesh on stiff shafts meets the mesh frequency at 4880 rpm.
+    assert any(mode.endswith("tooth mesh") and mode.startswith("22") for mode in result.attrs["stiff"])
+    assert result["stiff_shafts"][1] > 3.0 * result["stiff_shafts"][0]
+    assert result["stiff_springs"][0] > 2.0 * result["stiff_shafts"][0]
+    assert not any("tooth mesh" in mode for mode in result.attrs["slender"])

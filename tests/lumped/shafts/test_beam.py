@@ -96,6 +96,8 @@ def test_statics_is_exact_and_steps_are_where_they_are():
         for m, place, piece in zip(masses, (0.025, 0.065), (thick, thin), strict=True)
     )
     assert rigid @ mesh.mass @ rigid == pytest.approx(about, rel=1e-12)
+    polar = sum(m * (p.diameter**2 + p.bore**2) / 8 for m, p in zip(masses, (thick, thin), strict=True))
+    assert rigid @ mesh.spin @ rigid == pytest.approx(polar, rel=1e-12)
 
 
 def test_twist():

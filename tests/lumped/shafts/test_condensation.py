@@ -23,8 +23,8 @@ def test_shafts_under_springs_are_the_springs(unequal, on_short_shafts):
     assert again.shafts is None
 
 
-def resistance(pair, omega):
-    """Dynamic stiffness of the pinion along x and of its rim, from all matrices of its shaft at once."""
+def resistance(pair, omega, direction="loa"):
+    """Dynamic stiffness of the pinion in a direction and of its rim, from all matrices of the shaft."""
     shaft, disc, motor = pair.shafts.pinion, discs(pair)[0], pair.shafts.motor
     pieces = [Piece(s.length, s.diameter, s.bore, 206e9, 0.3, 7850.0) for s in shaft.segments]
     mesh = beam(pieces, [shaft.gear_position, *(b.position for b in shaft.bearings)], 1e5, 0.5)
@@ -33,7 +33,7 @@ def resistance(pair, omega):
     bending[2 * gear, 2 * gear] -= omega**2 * disc.mass
     bending[2 * gear + 1, 2 * gear + 1] -= omega**2 * disc.tilting
     for b in shaft.bearings:
-        bending[2 * mesh.node(b.position), 2 * mesh.node(b.position)] += b.loa_stiffness
+        bending[2 * mesh.node(b.position), 2 * mesh.node(b.position)] += getattr(b, f"{direction}_stiffness")
     twist = np.zeros((n + 1, n + 1))
     twist[:n, :n] = mesh.twist_stiffness - omega**2 * mesh.twist_mass
     twist[gear, gear] -= omega**2 * disc.inertia
@@ -51,11 +51,17 @@ def test_condensed_gears_feel_their_shafts(shafted, frequency):
     found = pair.bearings.pinion.loa_stiffness - omega**2 * pair.pinion.mass
     assert found == pytest.approx(along, rel=2e-3)
     assert -((omega or 1.0) ** 2) * pair.pinion.inertia == pytest.approx(turning, rel=2e-3)
+    off = pair.bearings.pinion.oloa_stiffness - omega**2 * pair.pinion.mass
+    assert off == pytest.approx(resistance(shafted, omega or 1.0, "oloa")[0], rel=2e-3)
     step = 1e-3 * omega or 10.0
     slope = resistance(shafted, omega + step)[0] - resistance(shafted, abs(omega - step))[0]
     slope /= 4 * omega * step or 1.0
     if omega:
         assert pair.pinion.mass == pytest.approx(-slope, rel=1e-3)
+
+
+def test_a_gear_tilts_as_a_disc_of_its_mass_inertia_and_width(shafted):
+    assert discs(shafted)[0].tilting == pytest.approx(0.5 * 2.1e-4 + 0.25 * 6.35e-3**2 / 12, rel=1e-12)
 
 
 def test_no_spring_above_a_resonance(shafted):
