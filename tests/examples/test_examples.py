@@ -343,7 +343,6 @@ def test_26_springs_miss_what_the_modes_of_the_shafts_do(example):
     result = module.compute()
     labelled(module.draw(result))
     # The mode of the mesh on stiff shafts meets the mesh frequency at 4880 rpm.
-    assert any(mode.endswith("tooth mesh") and mode.startswith("22") for mode in result.attrs["stiff"])
+    assert result.attrs["stiff"] == pytest.approx(4880 * 28 / 60, rel=2e-3)
     assert result["stiff_shafts"][1] > 3.0 * result["stiff_shafts"][0]
     assert result["stiff_springs"][0] > 2.0 * result["stiff_shafts"][0]
-    assert not any("tooth mesh" in mode for mode in result.attrs["slender"])
