@@ -16,7 +16,7 @@ PAIR = lumped.load_gear_pair("nasa_28_28").with_(
     mesh__relief="ignored",
     mesh__stiffness={"model": "parabolic"},
     mesh__damping_ratio=0.01,
-    operating__pinion_speed="17000 rpm",
+    operating__pinion_speed="16500 rpm",
     bearings__gear__loa_stiffness=2.5e8,
     bearings__gear__oloa_stiffness=2.5e8,
 )
