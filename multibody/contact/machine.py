@@ -36,7 +36,7 @@ Supports = Literal["springs", "shafts"]
 
 #: Where shafts.max_frequency is not given, modes of shafts with their gears held are kept up to so many times
 #: the fastest mode of the gears on springs, and to this order of the mesh frequency: the rest changes the
-#: transmission error by some thousandths of its peak to peak (docs/theory/multibody.md).
+#: transmission error by some thousandths of its peak to peak (docs/theory/shafts.md).
 _MESH_FREQUENCIES, _MESH_ORDERS = 4.0, 5.0
 
 

@@ -85,7 +85,7 @@ SHARED: tuple[Shared, ...] = (
         "on shafts: what the damping ratio means, the gear as a rigid disc, Cowper's shear coefficient",
         "definitions of the schema; the rest is worked out twice",
         "closed forms of Timoshenko's beam, of torsion and of a whirling disc, on both sides",
-        ("tests/multibody/shafts", "docs/theory/multibody.md"),
+        ("tests/multibody/shafts", "tests/lumped/shafts", "docs/theory/shafts.md"),
     ),
     Shared(
         "initial state of a run, its time origin, and its brake torque where it is balanced",

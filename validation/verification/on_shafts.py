@@ -1,6 +1,6 @@
 """The machine on its shafts, worked out by both models: beams, reduction, modes, dampers and motion.
 
-Sources: docs/theory/multibody.md, "The machine on shafts".
+Sources: docs/theory/shafts.md, "Checks".
 """
 
 from __future__ import annotations
