@@ -82,8 +82,9 @@ def test_every_block_is_in_one_layer_and_figures_and_tables_are_counted_through(
 
 
 def test_every_name_of_a_front_block_exists(chapters):
-    assert {chapter.key for chapter in CHAPTERS} == set(chapters)
-    for chapter in CHAPTERS:
+    # This pair has no shafts; test_four_springs looks at that chapter.
+    assert {chapter.key for chapter in CHAPTERS} - {"four_springs"} == set(chapters)
+    for chapter in (one for one in CHAPTERS if one.key in chapters):
         keys = {getattr(block, "key", None) for block in chapters[chapter.key].blocks}
         missing = set(chapter.front) - keys
         # A preset has no parameters of its own; without damping there may be no tongue. At the operating

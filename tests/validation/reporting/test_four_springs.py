@@ -61,6 +61,7 @@ def test_slender_shafts_are_no_springs(slender):
     content = CHAPTER.write(slender)
     assert content.badge.state == "violated"
     assert "not enough here" in content.blocks[0].text
+    assert set(CHAPTER.front) <= {getattr(block, "key", None) for block in content.blocks}
 
 
 def test_short_and_stiff_shafts_are_springs(stiff):
