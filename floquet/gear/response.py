@@ -153,6 +153,15 @@ class ResponseBranches:
         """Curves of periodic motions; each has ``n``, ``orbits``, ``ends``."""
         return self.response.branches
 
+    @property
+    def contact_kept(self) -> bool:
+        """Whether all motions found, and all that runs came to, are stable and always carry some load."""
+        orbits = [orbit for branch in self.branches for orbit in branch.orbits]
+        ends = [run.orbit for _, run in self.response.settled]
+        return bool(orbits) and all(
+            o is not None and o.stable and o.run.least_load > 0.0 for o in orbits + ends
+        )
+
     @cached_property
     def _cycle_at_1_rpm(self) -> float:
         return self.pair.geometry.mesh_period * operating_rpm(self.pair)

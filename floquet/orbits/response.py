@@ -33,6 +33,8 @@ _NEIGHBOURS = 6
 #: Starts apart from all motions, two a speed: displacements and phase rates in lengths, by an additive
 #: recurrence that fills the square evenly (Roberts 2018), the same at every run.
 _APART = 2
+#: Where no motion found loses contact, every so many of these speeds.
+_HELD = 2
 _FILL = np.array([0.7548776662466927, 0.5698402909980532])
 _SPREAD = np.array([[-8.0, 5.0], [-40.0, 40.0]])
 
@@ -117,7 +119,8 @@ def find_response(
 
     Branches of one cycle are looked for from the motion while all contacts hold, at 24 speeds; those of
     twice the cycles leave period doublings; isolated ones start from runs that settled, at ``seeds`` speeds,
-    on running up, on running down and from two starts apart.
+    on running up, on running down and from two starts apart. Where all motions found so far are stable and
+    have some load at every moment, runs settle from starts apart only, at every other speed.
 
     Parameters
     ----------
@@ -208,7 +211,9 @@ class _Search:
         self.subharmonics()
         report(0.5)
         rates = np.linspace(limits.slowest, limits.fastest, seeds)
-        for k, way in enumerate((rates, rates[::-1])):
+        if self.held:  # runs up and down would stay on the motions that are there
+            rates = rates[::_HELD]
+        for k, way in enumerate(() if self.held else (rates, rates[::-1])):
             state: FloatArray | None = None
             for j, rate in enumerate(way):
                 run = self.settle(1.0 / float(rate), state)
@@ -219,9 +224,15 @@ class _Search:
                 place = np.mod(0.5 + (_APART * j + k) * _FILL, 1.0)
                 apart = _SPREAD[:, 0] + place * np.diff(_SPREAD, axis=1)[:, 0]
                 self.settle(1.0 / float(rate), None, apart)
-            report(0.8 + 0.2 * (j + 1) / seeds)
+            report(0.8 + 0.2 * (j + 1) / rates.size)
         self.doublings()
         report(1.0)
+
+    @property
+    def held(self) -> bool:
+        """Whether all motions found so far are stable and have some load at every moment."""
+        orbits = [orbit for branch in self.branches for orbit in branch.orbits]
+        return bool(orbits) and all(o.stable and o.run.least_load > 0.0 for o in orbits)
 
     def from_neighbour(self, other: _Search) -> None:
         """Look for the branches of a neighbouring system, lengths in proportion."""

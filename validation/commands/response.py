@@ -134,6 +134,13 @@ def _print(pair: GearPair, found: ResponseBranches) -> None:
             motion(jump.dte_rms_after, jump.largest_load_after, jump.after, jump.n_after),
         )
     stdout().print(shown if found.jumps else "no jumps: one stable motion leads to the next")
+    if found.contact_kept:
+        runs = len(found.response.settled)
+        stdout().print(
+            f"contact is never lost: {runs} runs, from starts far from these motions, came to no other one"
+            if runs
+            else "contact is never lost in these motions; others were not looked for (--seeds)"
+        )
     for one in found.restless:
         words = f"repeats after {one.n} cycles" if one.n else one.kind
         stdout().print(
