@@ -78,7 +78,7 @@ def write(results: Results) -> Content | None:
             "Both shafts to scale: bearings (crossed boxes), gears, motor and load.",
             partial(shafts_figure, found.pair),
         ),
-        _modes(found),
+        _modes(results, found),
     ]
     return Content(
         tuple(blocks),
@@ -152,8 +152,13 @@ def _radius(found: FourSprings, model: str) -> float | None:
     return value if np.isfinite(value) else None
 
 
-def _modes(found: FourSprings) -> Block:
-    modes = found.modes
+def _modes(results: Results, found: FourSprings) -> Block:
+    modes, springs = found.modes, np.array([mode.natural_frequency for mode in results.modes])
+
+    def nearest(j: int) -> Quantity | None:
+        frequency = float(modes["natural_frequency"][j])
+        return Quantity(float(min(springs, key=lambda f: abs(f - frequency))), "Hz") if springs.size else None
+
     highest = _MESH_FREQUENCIES / found.pair.geometry.mesh_period
     numbers = [j for j, f in enumerate(modes["natural_frequency"].to_numpy()) if f <= highest]
     return table_of(
@@ -166,6 +171,7 @@ def _modes(found: FourSprings) -> Block:
                 "natural frequency",
                 lambda j: Quantity(float(modes["natural_frequency"][j]), "Hz"),
             ),
+            "springs": ("nearest one on four springs", nearest),
             "damping": ("damping ratio", lambda j: float(modes["damping_ratio"][j])),
             "speed": (
                 "met by the mesh frequency at",
