@@ -25,11 +25,14 @@ def write(results: Results) -> Content:
         },
         tuple(_rows(results)),
     )
+    supports = "shafts and housing beyond the bearing stiffness given"
+    if results.pair.shafts is not None:
+        supports = "housing; shafts in all chapters but one"
     outside = Text(
         "Not covered by any model of this report:",
         (
-            "Motions out of the plane: shaft tilt, misalignment, crowning, load across the face width.",
-            "Elastic blanks, shafts and housing beyond the bearing stiffness given; rotating imbalance.",
+            "What tilt, misalignment and crowning do to the load across the face width.",
+            f"Elastic blanks, {supports}; rotating imbalance.",
             "Differences from tooth to tooth, and so everything slower than the mesh frequency: shaft "
             "orders, hunting tooth.",
             "Heat: the oil's viscosity is one value; wear, scuffing and strength are not computed.",
@@ -60,6 +63,7 @@ def _rows(results: Results) -> Rows:
     of_flag("contact_loss", "Teeth in contact stay in contact.")
     of_flag("sliding_reversal", "Sliding has the direction of the nominal rotation.")
     of_flag("torque_balance", "The torques balance friction, so the mean speed is constant.")
+    of_flag("supports", "Four springs hold the gears as their shafts do.")
     of_flag("film_parameter", "The friction law suits the lubrication regime.")
     of_flag("friction_law_range", "The friction law is used inside the range of its fit.")
     of_flag("stiffness_range", "The tooth stiffness is used inside the range of its fit.")
