@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -49,6 +49,12 @@ Law = Annotated[
     typer.Option(
         "--law",
         help="Friction law: I to V, none, or a name such as coulomb; an unknown name lists them all.",
+    ),
+]
+Supports = Annotated[
+    Literal["springs", "shafts"],
+    typer.Option(
+        help="What holds the gears: the springs of 'bearings', or the elastic shafts of the section 'shafts'."
     ),
 ]
 Settings = Annotated[
@@ -116,6 +122,20 @@ def gear_pair(
     for doubt in doubts(pair):
         note(doubt)
     return pair
+
+
+def check_supports(pair: GearPair, supports: Literal["springs", "shafts"]) -> None:
+    """Refuse shafts that the pair does not have, before any work.
+
+    Raises
+    ------
+    ParameterError : "shafts" of a pair without them
+    """
+    from lumped.errors import refuse
+
+    if supports == "shafts" and pair.shafts is None:
+        action = "Describe its shafts in the parameter file, or leave the option out."
+        raise refuse("--supports", supports, "springs for a pair without [shafts]", action)
 
 
 def by_option(error: ParameterError, options: Mapping[str, str], source: str) -> ParameterError:

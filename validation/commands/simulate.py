@@ -32,6 +32,7 @@ def simulate(
     steady: Annotated[
         bool, typer.Option("--steady", help="Only the periodic motion over one mesh cycle (lumped).")
     ] = False,
+    supports: opt.Supports = "springs",
     speed: opt.Speed = None,
     torque: opt.Torque = None,
     law: opt.Law = None,
@@ -50,20 +51,28 @@ def simulate(
     spurcheck simulate my_pair.toml --model multibody --cycles 50 -o run.csv
 
     spurcheck simulate --steady --law coulomb -o steady.png
+
+    spurcheck simulate my_pair.toml --supports shafts -o on_shafts.nc
     """
     import lumped
     from lumped.errors import refuse
 
     target = opt.figure_or_data(output, force=force)
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
+    opt.check_supports(gear_pair, supports)
     if steady and model == "multibody":
         raise refuse("--steady", "with --model multibody", "the lumped model", "Leave one of the two out.")
     with progress_bar(f"{model} model") as tell:
         if steady:
-            result = lumped.steady_state(gear_pair, samples_per_cycle=samples)
+            result = lumped.steady_state(gear_pair, samples_per_cycle=samples, supports=supports)
         elif model == "lumped":
             result = lumped.simulate(
-                gear_pair, cycles, samples_per_cycle=samples, initial=initial, progress=tell
+                gear_pair,
+                cycles,
+                samples_per_cycle=samples,
+                initial=initial,
+                supports=supports,
+                progress=tell,
             )
         else:
             import multibody
@@ -74,6 +83,7 @@ def simulate(
                 fidelity=fidelity,
                 samples_per_cycle=samples,
                 initial=initial,
+                supports=supports,
                 progress=tell,
             )
     from lumped.model.extremes import cycle_peak_to_peak
@@ -95,9 +105,9 @@ def simulate(
         "brake_torque": float(result.attrs["brake_torque"]),
     }
     if as_json:
-        print_json({"gear_pair": gear_pair.name, "model": model} | numbers)
+        print_json({"gear_pair": gear_pair.name, "model": model, "supports": supports} | numbers)
     else:
-        shown = table(f"{gear_pair.name}, last mesh cycle", "quantity", ">value")
+        shown = table(f"{gear_pair.name} on {supports}, last mesh cycle", "quantity", ">value")
         for name, value in {
             "transmission error, peak to peak": quantity(numbers["dte_peak_to_peak"], "m", 3),
             "transmission error, mean": quantity(numbers["dte_mean"], "m"),

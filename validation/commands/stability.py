@@ -14,7 +14,6 @@ from validation.commands.terminal import FAILED, guarded, print_json, stderr, st
 
 if TYPE_CHECKING:
     from floquet.gear.multipliers import GearPairMultipliers
-    from lumped import GearPair
 
 
 @guarded
@@ -73,8 +72,9 @@ def stability(
         ),
     ] = "auto",
     multipliers: Annotated[
-        bool, typer.Option("--multipliers", help="Keep all ten multipliers of every chart point in the data.")
+        bool, typer.Option("--multipliers", help="Keep all multipliers of every chart point in the data.")
     ] = False,
+    supports: opt.Supports = "springs",
     speed: opt.Speed = None,
     torque: opt.Torque = None,
     speed_range: opt.Range = None,
@@ -98,6 +98,8 @@ def stability(
     spurcheck stability --view boundaries --axis friction_coefficient=0:0.2:9 -o boundaries.nc
 
     spurcheck stability --view laws --law composite --against coulomb -o difference.png
+
+    spurcheck stability my_pair.toml --supports shafts --axis speed_rpm=500:20000:1000 -o on_shafts.png
     """
     from floquet.gear.axes import GEAR_AXES
     from floquet.gear.multipliers import gear_pair_multipliers
@@ -113,18 +115,18 @@ def stability(
     grid = axes_values(axes or [], GEAR_AXES)
     speeds = None if operating_range is None else _range(operating_range)
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings, speed_range)
-    request = Request(
-        gear_pair, grid, speeds, tongues, law_named(against, "--against").name, method, multipliers, targets
-    )
+    opt.check_supports(gear_pair, supports)
+    law_against = law_named(against, "--against").name
+    request = Request(gear_pair, grid, speeds, tongues, law_against, method, multipliers, targets, supports)
     request.check(view)
-    found = gear_pair_multipliers(gear_pair)
+    found = gear_pair_multipliers(gear_pair, supports=supports)
     if as_json:
         radius = found.spectral_radius
         point = {"verdict": found.verdict, "spectral_radius": radius, "error": found.error}
         point |= {"certificate": found.certificate, "margin": 1.0 - radius}
-        print_json({"gear_pair": gear_pair.name} | point)
+        print_json({"gear_pair": gear_pair.name, "supports": supports} | point)
     else:
-        _print_point(gear_pair, found)
+        _print_point(f"{gear_pair.name} on {supports}", found)
     if targets or axes or tongues or view != "chart":
         show(view, request)
         for target in targets:
@@ -133,10 +135,10 @@ def stability(
         raise typer.Exit(FAILED)
 
 
-def _print_point(pair: GearPair, found: GearPairMultipliers) -> None:
+def _print_point(pair: str, found: GearPairMultipliers) -> None:
     from validation.reporting.formatting import number
 
-    shown = table(f"{pair.name}: operating point", "quantity", ">value")
+    shown = table(f"{pair}: operating point", "quantity", ">value")
     shown.add_row("verdict", found.verdict)
     shown.add_row("largest multiplier", f"{found.spectral_radius:.8f}")
     shown.add_row("bound on its error", number(found.error, 2))

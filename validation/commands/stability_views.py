@@ -22,6 +22,7 @@ from floquet.gear.paths import multiplier_paths
 from floquet.gear.tongues import LabelledRegion, label_regions
 from lumped import GearPair
 from lumped.errors import refuse
+from lumped.model.periodic_system import Supports
 from lumped.typing import FloatArray
 from validation.commands.options import write_result
 from validation.commands.terminal import progress_bar, stdout, table
@@ -49,6 +50,8 @@ _DAMPING_AXES = {"speed_rpm", "damping_ratio"}
 _CHART = (401, 81)
 _LINE = 401
 _LARGEST_DIFFERENCE = 250_000
+#: Views of pairs on elastic shafts.
+_ON_SHAFTS = ("chart", "boundaries")
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,19 +66,22 @@ class Request:
     method: str
     multipliers: bool
     targets: list[Path]
+    supports: Supports
 
     def check(self, view: str) -> None:
         """Refuse what cannot be shown, before any work.
 
         Raises
         ------
-        ParameterError : number of axes, method or law that the view cannot take
+        ParameterError : number of axes, method, law or supports that the view cannot take
         """
         counts, over_speed, text = VIEWS[view][1:]
         count = len(self.axes)
         without_speed = count == over_speed and "speed_rpm" not in self.axes
         if self.axes and (count not in counts or without_speed):
             raise refuse("--axis", ", ".join(self.axes), f"{text} for --view {view}", "Change the axes.")
+        if self.supports == "shafts":
+            self._check_on_shafts(view)
         if view == "zones":
             coulomb_gear_pair(self.pair, 0.0)  # refuses a ratio for which there is no closed form
         if self.method not in METHODS:
@@ -89,6 +95,21 @@ class Request:
             raise refuse(
                 "--output", figures[0], "a chart of one or two axes for a figure", "Write .nc or .csv."
             )
+
+    def _check_on_shafts(self, view: str) -> None:
+        """Refuse what is computed of pairs on springs only."""
+        if view not in _ON_SHAFTS:
+            action = f"Take --view {' or '.join(_ON_SHAFTS)}, or --supports springs."
+            raise refuse("--view", view, f"{', '.join(_ON_SHAFTS)} with --supports shafts", action)
+        if self.tongues:
+            action = "Leave it out, or trace them over one axis with --view boundaries."
+            raise refuse("--tongues", "given", "not with --supports shafts", action)
+        if "bearing_stiffness" in self.axes:
+            action = "Change the bearings of the shafts by --set shafts.pinion.bearings.1.loa_stiffness=..."
+            raise refuse("--axis", "bearing_stiffness", "not with --supports shafts", action)
+        if view == "boundaries" and not set(self.axes) - {"speed_rpm"}:
+            action = "For example --axis damping_ratio=0.005:0.05:5."
+            raise refuse("--axis", "none", "an axis other than speed_rpm with --supports shafts", action)
 
     def axis(self, name: str) -> tuple[str, FloatArray]:
         """Return the one axis asked for; else ``name`` over the range of the report's chart."""
@@ -120,6 +141,7 @@ def _chart(request: Request) -> View:
             rtol=1e-8,
             method=request.method,
             store="all" if request.multipliers else "radius",
+            supports=request.supports,
             progress=tell,
         )
     stable = chart["verdict"].to_numpy() == 1
@@ -214,12 +236,16 @@ def _boundaries(request: Request) -> View:
     grid = dict(request.axes)
     speeds = grid.pop("speed_rpm", ends)
     name, values = next(iter(grid.items()), ("damping_ratio", speeds))
-    if name == "damping_ratio":
+    if name == "damping_ratio" and request.supports == "springs":
         traced = _traced(pair, speeds)
         return margins_dataset(traced), lambda: tongues_figure(traced, request.operating_range)
     with progress_bar("boundaries") as tell:
         found = stability_boundaries(
-            pair, (float(speeds.min()), float(speeds.max())), {name: values}, progress=tell
+            pair,
+            (float(speeds.min()), float(speeds.max())),
+            {name: values},
+            supports=request.supports,
+            progress=tell,
         )
     headings = ("tongue", ">values", ">from, rpm", ">to, rpm", ">largest multiplier")
     shown = table(f"tongues over {GEAR_AXES[name].long_name}", *headings)

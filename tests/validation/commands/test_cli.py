@@ -5,6 +5,7 @@ import math
 import re
 
 import pytest
+import xarray as xr
 from typer.testing import CliRunner
 
 import lumped
@@ -147,6 +148,18 @@ def test_multibody_runs_from_the_command():
     result = run("simulate", "--model", "multibody", "--cycles", 1, "--samples", 32, "--initial", "periodic")
     assert result.exit_code == 0, result.stderr
     assert "mesh efficiency" in result.stdout
+
+
+def test_simulate_on_shafts(tmp_path, shafted_file):
+    path = tmp_path / "run.nc"
+    for arguments in (("--steady",), ("--cycles", 1), ("--cycles", 1, "--model", "multibody")):
+        on_shafts = ("--supports", "shafts", "--samples", 32, "-o", path, "--force")
+        result = run("simulate", shafted_file, *arguments, *on_shafts)
+        assert result.exit_code == 0, result.stderr
+        with xr.open_dataset(path, engine="h5netcdf") as data:
+            assert data.attrs["supports"] == "shafts"
+            assert data["bearing_force"].shape[:2] == (4, 2)
+    assert "springs for a pair without [shafts]" in refused("simulate", "--supports", "shafts")
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,8 @@ import pytest
 import xarray as xr
 from typer.testing import CliRunner
 
+import lumped
+from floquet import gear_pair_multipliers
 from validation.cli import app
 from validation.commands.stability import _range
 
@@ -234,3 +236,40 @@ def test_what_cannot_be_read_is_named_by_its_option_with_advice(option, first_wo
     message = refused(*option)
     assert message.startswith(first_words)
     assert advice in message
+
+
+def test_stability_on_shafts(tmp_path, shafted_file):
+    data, on_shafts = tmp_path / "chart.nc", ("--supports", "shafts")
+    axis = ("--axis", "speed_rpm=9000:10000:2")
+    result = run(shafted_file, *on_shafts, *axis, "-o", data)
+    assert result.exit_code == 0, result.stderr
+    chart = opened(data)
+    assert chart.attrs["supports"] == "shafts"
+    pair = lumped.load_gear_pair(shafted_file)
+    exact = gear_pair_multipliers(pair, supports="shafts").spectral_radius
+    assert f"{exact:.8f}" in result.stdout
+    springs = gear_pair_multipliers(pair).spectral_radius
+    assert abs(exact - springs) > 1e-3
+    for arguments, expected in (
+        (("--view", "campbell"), "--view = campbell: allowed chart, boundaries with --supports shafts"),
+        (("--tongues",), "--view boundaries"),
+        (("--axis", "bearing_stiffness=1e8:2e8:2"), "shafts.pinion.bearings"),
+        (("--view", "boundaries", *axis), "an axis other than speed_rpm"),
+    ):
+        assert expected in refused(shafted_file, *on_shafts, *arguments)
+    assert "springs for a pair without [shafts]" in refused(*on_shafts)
+
+
+def test_boundaries_on_shafts_are_asked_for(monkeypatch, shafted_file):
+    # They take half a minute; tests/floquet/gear/test_on_shafts.py judges them.
+    asked = {}
+
+    def fail(pair, speeds, axes, **options):
+        asked.update(options, axes=axes)
+        raise lumped.NumericalError("Asked.")
+
+    monkeypatch.setattr("validation.commands.stability_views.stability_boundaries", fail)
+    view = ("--view", "boundaries", "--axis", "damping_ratio=0.07:0.08:2")
+    assert run(shafted_file, "--supports", "shafts", *view).exit_code == 3
+    assert asked["supports"] == "shafts"
+    assert list(asked["axes"]) == ["damping_ratio"]
