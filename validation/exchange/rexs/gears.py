@@ -15,7 +15,7 @@ _BLANK = {
     "bore": "inner_diameter",
     "mass": "mass_of_component",
 }
-_MATERIAL = {"youngs_modulus": "elastic_modulus", "poisson_ratio": "poisson_ratio", "density": "density"}
+MATERIAL = {"youngs_modulus": "elastic_modulus", "poisson_ratio": "poisson_ratio", "density": "density"}
 #: Ra and Rz of the flank: names up to 1.7, and of 2.0.0.
 _RA = ("arithmetic_average_roughness_flank", "arithmetic_mean_roughness_flank_iso_4287_1997")
 _RZ = ("averaged_peak_to_valley_height_flank", "mean_peak_to_valley_roughness_flank_iso_4287_1997")
@@ -34,7 +34,7 @@ def read_gears(said: Said, pinion: Component, gear: Component) -> None:
     for which, component in (("pinion", pinion), ("gear", gear)):
         _read_blank(said, which, component)
         for material in said.model.related(component, "reference", "origin", "referenced", "material"):
-            said.take_all(which, material, _MATERIAL)
+            said.take_all(which, material, MATERIAL)
         _read_shift(said, which, component)
     _read_rack(said, pinion, gear)
 

@@ -18,6 +18,7 @@ from validation.exchange.rexs.operation import driving_first, read_operating_poi
 from validation.exchange.rexs.record import recorded, restored
 from validation.exchange.rexs.relief import read_reliefs
 from validation.exchange.rexs.said import Said
+from validation.exchange.rexs.shafts import read_shafts
 from validation.exchange.rexs.stages import Stage, chosen, gears_of
 from validation.exchange.rexs.vocabulary import VERSIONS
 
@@ -89,6 +90,7 @@ def _standard(model: RexsModel, picked: Stage) -> tuple[GearPair, Said]:
     pair = without_contradiction(said, lambda: _validated(said, picked))
     find_doubts(said, stage, {"pinion": pinion, "gear": gear}, pair)
     read_reliefs(said, stage, {"pinion": pinion, "gear": gear}, pair.geometry)
+    read_shafts(said, pinion, gear, lambda: _validated(said, picked))
     if said.problems:
         raise ParameterError(said.problems, model.file)
     return with_sources(_validated(said, picked), said), said

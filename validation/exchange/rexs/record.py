@@ -91,12 +91,15 @@ def restored(said: Said, pair: GearPair, reference: GearPair, record: GearPair) 
 def _changes(said: Said, pair: GearPair, reference: GearPair) -> dict[str, Any]:
     """Return field path -> value of what the file says otherwise than the record's export did."""
     now, then = leaf_paths(pair), leaf_paths(reference)
-    changed: dict[str, Any] = {p: now[p] for p in said.values if p in now and now[p] != then.get(p)}
+    known = [path for path in said.values if not path.startswith("shafts.")]
+    changed: dict[str, Any] = {p: now[p] for p in known if p in now and now[p] != then.get(p)}
     if any(path.startswith("lubricant.") for path in changed):  # one oil replaces the other as a whole
         changed = {p: v for p, v in changed.items() if not p.startswith("lubricant.")}
         for key in ("viscosity_law", "viscosity"):
             if key in (oil := pair.to_mapping()["lubricant"]):
                 changed[f"lubricant.{key}"] = oil[key]
+    if pair.shafts is not None:  # an export has none outside its record
+        changed["shafts"] = pair.to_mapping()["shafts"]
     for which in ("pinion", "gear"):
         for kind in KINDS:
             gone = getattr(getattr(reference, which), kind) is not None

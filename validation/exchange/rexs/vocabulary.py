@@ -34,6 +34,8 @@ UNITS: dict[str, tuple[str, str, Decimal]] = {
     "rad": ("deg", "rad", Decimal("0.0174532925199432957692")),
     "1 / min": ("rpm", "rpm", Decimal(1)),
     "N m": ("N*m", "N*m", Decimal(1)),
+    "N / m": ("N/m", "N/m", Decimal(1)),
+    "N mm / rad": ("N*m/rad", "N*mm/rad", Decimal("1e3")),
     "kg": ("kg", "kg", Decimal(1)),
     "kg / dm^3": ("kg/m**3", "kg/dm**3", Decimal("1e-3")),
     "N / mm^2": ("GPa", "N/mm**2", Decimal("1e3")),
@@ -72,6 +74,12 @@ _PLACE = {
     "u_axis_vector": Known("mm", "floating_point_array"),
     "w_axis_vector": Known("mm", "floating_point_array"),
 }
+_BEARING = {
+    "u_coordinate_on_shaft_inner_side": _MM,
+    "u_coordinate_on_shaft_outer_side": _MM,
+    "radial_stiffness": Known("N / m"),
+    "bending_stiffness": Known("N mm / rad"),
+}
 #: Component type -> attribute id -> what the database says about it.
 ATTRIBUTES: dict[str, dict[str, Known]] = {
     "gear_unit": {"number_of_gears": _COUNT, "gear_shift_index": _COUNT, **_PLACE},
@@ -93,6 +101,7 @@ ATTRIBUTES: dict[str, dict[str, Known]] = {
         "normal_module": _MM,
         "helix_angle_reference_diameter": _DEG,
         "face_width": _MM,
+        "u_coordinate_on_shaft": _MM,
         "tip_diameter": _MM,
         "root_diameter": _MM,
         "inner_diameter": _MM,
@@ -122,6 +131,17 @@ ATTRIBUTES: dict[str, dict[str, Known]] = {
         "operating_pressure_angle_in_the_transverse_section": _DEG,
     },
     "shaft": {"rotational_speed": _SPEED, "defines_speed": _FLAG, **_PLACE},
+    "shaft_section": {
+        "u_coordinate_on_shaft": _MM,
+        "length": _MM,
+        "outer_diameter_begin": _MM,
+        "outer_diameter_end": _MM,
+        "inner_diameter_begin": _MM,
+        "inner_diameter_end": _MM,
+    },
+    "concept_bearing": _BEARING,
+    "rolling_bearing_with_catalog_geometry": _BEARING,
+    "rolling_bearing_with_detailed_geometry": _BEARING,
     "external_load": {
         "torque_around_u_axis": _TORQUE,
         "power": Known("kW"),
