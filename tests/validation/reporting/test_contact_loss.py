@@ -11,6 +11,7 @@ import floquet
 import lumped
 from floquet.gear.jump_removal import JumpRemoval
 from validation.reporting import words
+from validation.reporting.blocks import Text
 from validation.reporting.chapters import contact_loss
 from validation.reporting.results import Results
 from validation.validity.beyond_contact_loss import jumps_about_operation
@@ -56,6 +57,18 @@ def test_the_chapter_is_there_only_where_teeth_part(results):
     assert held.parting is None
     assert contact_loss.write(held) is None
     assert words.parted(held) == ""
+
+
+def test_the_chapter_says_which_motion_is_compared(results, monkeypatch):
+    """Loaded 28/28: one pair pulls by 216 N, but with the other it presses by 900 N all the time."""
+    said = {block.text for block in contact_loss.write(results).blocks if isinstance(block, Text)}
+    assert any(text.endswith("compares this motion.") for text in said)
+    loaded = Results(results.pair.with_(mesh__contact="loaded"), results.effort)
+    unjudged = dataclasses.replace(results.parting, judged=False)
+    monkeypatch.setattr(loaded, "parting", unjudged, raising=False)
+    assert "together push" in contact_loss._compared(loaded)
+    monkeypatch.setattr(results, "parting", unjudged, raising=False)
+    assert "only where it is stable" in contact_loss._compared(results)
 
 
 def test_the_chapter_tells_jumps_and_what_removes_them(results, monkeypatch):

@@ -8,12 +8,13 @@ import numpy as np
 
 from floquet.gear.jump_removal import jumps_removed_by
 from floquet.gear.response import ResponseBranches
+from lumped.model.results import load_range
 from validation.plots.jumps import jump_map_figure
 from validation.plots.response import response_figure
 from validation.reporting.blocks import Block, Content, Picture, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.formatting import number, quantity
-from validation.reporting.results import Results
+from validation.reporting.results import Parting, Results
 from validation.reporting.words import jumps, parted
 
 #: Most jumps of which it is looked for what removes them: some seconds each.
@@ -50,12 +51,7 @@ def write(results: Results) -> Content | None:
             "The motion of the linear model needs tooth pairs that pull by up to "
             f"{quantity(abs(float(loads.min())), 'N', 3)}. {parted(results)} Between losing and finding "
             "contact the motion is exact, and its multipliers say that "
-            f"{stable} (largest {number(orbit.spectral_radius, 3)} per mesh cycle). "
-            + (
-                "The cross-check compares this motion."
-                if found.judged
-                else "The cross-check compares motions of one mesh cycle that are stable; this one is not."
-            )
+            f"{stable} (largest {number(orbit.spectral_radius, 3)} per mesh cycle). {_compared(results)}"
         ),
         table_of(
             "contact_loss",
@@ -70,6 +66,17 @@ def write(results: Results) -> Content | None:
         ),
     ]
     return Content((*blocks, *_over_speed(results)))
+
+
+def _compared(results: Results) -> str:
+    """Which motion the cross-check compares, and why."""
+    found, linear = results.parting, results.motion
+    if isinstance(found, Parting) and found.judged:
+        return "The cross-check compares this motion."
+    loads = linear["normal_load"].to_numpy(), linear["contact"].to_numpy()
+    if load_range(results.pair.mesh.contact, *loads)[1] >= 0.0:
+        return "All tooth pairs together push all the time, so the cross-check compares the linear motion."
+    return "The cross-check compares it only where it is stable and no back sides of teeth touch."
 
 
 def _over_speed(results: Results) -> list[Block]:

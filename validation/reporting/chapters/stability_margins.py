@@ -65,7 +65,9 @@ def write(results: Results) -> Content:
         (
             "damping_at_speed",
             "mesh damping ratio above which this speed is stable",
-            "none, not even 0" if m.damping_at_speed is None else m.damping_at_speed,
+            0.0 if m.damping_at_speed is None else m.damping_at_speed,
+            "",
+            "stable even without" if m.damping_at_speed is None else "",
         ),
         (
             "friction_coefficient",

@@ -38,6 +38,11 @@ from validation.reporting.words import cautions, largest_load, lawful, objection
 _ORDERS = 10
 
 
+#: Sentences of a caption, where the figure has what they explain.
+_DOTTED = " Dotted: speeds at which the mesh frequency meets a natural frequency of the averaged pair."
+_NEGATIVE = " Where the smallest load is negative the teeth would separate and the lumped model is not valid."
+
+
 def write(results: Results) -> Content:
     """Write the chapter."""
     pair, g, motion, multipliers = results.pair, results.geometry, results.motion, results.multipliers
@@ -116,9 +121,9 @@ def _over_speed(results: Results) -> list[Block]:
     blocks: list[Block] = [
         Picture(
             "speed_sweep",
-            "Periodic motion over pinion speed. Dotted: speeds at which the mesh frequency meets a natural "
-            "frequency of the averaged pair. Where the smallest load is negative the teeth would separate "
-            "and the lumped model is not valid."
+            "Periodic motion over pinion speed."
+            + (_DOTTED if any(speed[0] <= place <= speed[-1] for place in places) else "")
+            + (_NEGATIVE if results.separating_share else "")
             + (" Crosses: unstable motions, which a pair leaves." if unstable.any() else ""),
             lambda: sweep_figure(sweep, results.operating_rpm, results.static_load, places),
         ),
