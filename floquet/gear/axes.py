@@ -9,7 +9,7 @@ from typing import get_args
 
 import numpy as np
 
-from floquet.engine.chart import ChartAxis
+from floquet.engine.chart import Axes, ChartAxis, checked_axes
 from lumped.arguments import one_of
 from lumped.errors import refuse
 from lumped.fields.units import SIValue, to_stated
@@ -173,6 +173,21 @@ def gear_axis(name: str) -> GearAxis:
     ParameterError : unknown name
     """
     return GEAR_AXES[one_of("axes", name, GEAR_AXES)]
+
+
+def gear_grid(axes: Axes, supports: Supports = "springs") -> dict[str, FloatArray]:
+    """Axes of gear-pair parameters as 1-D arrays.
+
+    Raises
+    ------
+    ParameterError : unknown name, values outside the range of their axis, or an axis of other supports
+    """
+    grid = checked_axes(axes)
+    for name, values in grid.items():
+        gear_axis(name).check(name, values)
+    if supports == "shafts" and "bearing_stiffness" in grid:
+        raise refuse("axes", "bearing_stiffness", "not with shafts", "Their bearings are fields of [shafts].")
+    return grid
 
 
 def axis_coordinates(grid: Mapping[str, FloatArray]) -> dict[str, Coordinate]:

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from floquet.engine.chart import checked_axes
 from floquet.engine.intervals import UnstableInterval, seeded_nodes, unstable_intervals
 from floquet.engine.tongues import Tongue, combinations, label_tongue, tongue_coordinates
-from floquet.gear.axes import GearVariation, axis_coordinates, gear_axis, vary
+from floquet.gear.axes import GearVariation, axis_coordinates, gear_grid, vary
 from floquet.gear.block import gear_block
 from floquet.gear.chart import stability_chart
 from floquet.rank_one.batch import fast_monodromies
@@ -122,12 +121,10 @@ def stability_boundaries(
     low, high = checked_range(speed_rpm)
     nodes = whole_number("nodes", nodes, 0, 1_000_000)
     xtol = real_number("xtol", xtol, 1e-15, 0.1)
-    checked = checked_axes(axes) if axes is not None else {}
+    checked = gear_grid(axes, supports) if axes is not None else {}
     if axes is not None and (len(checked) != 1 or "speed_rpm" in checked):
         raise refuse("axes", ", ".join(checked), "one other than speed_rpm", "Scan other axes one at a time.")
     name, values = next(iter(checked.items())) if axes else ("value", np.array([np.nan]))
-    if axes:
-        gear_axis(name).check(name, values)
     found: dict[Tongue, dict[int, list[UnstableInterval]]] = {}
     complete = np.ones(values.size, dtype=bool)
     for index, value in enumerate(values):

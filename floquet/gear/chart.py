@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from floquet.engine.chart import Axes, chart_dataset, checked_axes, scan
+from floquet.engine.chart import Axes, chart_dataset, scan
 from floquet.engine.propagators.base import Propagator
 from floquet.engine.propagators.registry import PROPAGATORS
 from floquet.engine.spectrum import Spectrum
-from floquet.gear.axes import GearVariation, gear_axis, vary
+from floquet.gear.axes import GearVariation, gear_axis, gear_grid, vary
 from floquet.gear.feedback import feedback_system, separate_modes
 from floquet.gear.multipliers import gear_pair_multipliers
 from floquet.gear.plane import Plane, Store, plane_multipliers
@@ -87,11 +87,7 @@ def stability_chart(
         A point fails; the message names it.
     """
     variation = GearVariation.of(load_gear_pair(pair), supports)
-    pair, grid = variation.pair, checked_axes(axes)
-    for name, values in grid.items():
-        gear_axis(name).check(name, values)
-    if supports == "shafts" and "bearing_stiffness" in grid:
-        raise refuse("axes", "bearing_stiffness", "not with shafts", "Their bearings are fields of [shafts].")
+    pair, grid = variation.pair, gear_grid(axes, supports)
     points = math.prod(values.size for values in grid.values())
     if points > _LARGEST:
         raise refuse("points of the chart", points, f"at most {_LARGEST}", "Give the axes smaller counts.")

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from floquet.engine.chart import Axes, checked_axes
-from floquet.gear.axes import axis_coordinates
+from floquet.engine.chart import Axes
+from floquet.gear.axes import axis_coordinates, gear_grid
 from floquet.gear.chart import stability_chart
 from lumped.arguments import some_of
 from lumped.errors import refuse
@@ -59,7 +59,7 @@ def friction_effect(
     ParameterError : unknown law, or an unusable axis
     """
     pair = load_gear_pair(pair)
-    grid = checked_axes(axes)
+    grid = gear_grid(axes)
     laws = some_of("laws", laws, LAWS, kept=file_name)
     reference = law_named(reference, "reference").name
     if "friction_coefficient" in grid and reference == "none":

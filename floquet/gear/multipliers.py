@@ -6,6 +6,7 @@ Sources: docs/theory/floquet.md, "Structure".
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import get_args
 
 import numpy as np
@@ -18,8 +19,7 @@ from floquet.gear.axes import GearVariation
 from floquet.gear.block import gear_block
 from floquet.gear.feedback import feedback_system, separate_modes
 from floquet.rank_one.batch import fast_multipliers
-from lumped.arguments import one_of
-from lumped.errors import NumericalError
+from lumped.arguments import one_of, real_number
 from lumped.model.periodic_system import Form, LTVSystem, Supports, periodic_system
 from lumped.schema.files import AnyPair
 from lumped.typing import ComplexArray, FloatArray
@@ -39,13 +39,20 @@ class GearPairMultipliers(Spectrum):
         on shafts those of the other modes, each by itself
     rigid_body : (2,) of the free rotation, a defective double +1 that the relative coordinate q removes; no
         part of ``multipliers``, the radius or the verdict, since it means a free choice of angle and speed
-    liouville_residual : of the feedback block by the general engine, see `Monodromy`
+    variation : the pair, as it was varied
+    rtol : wanted error of the monodromy matrix relative to its norm
     """
 
     feedback: ComplexArray
     oloa: ComplexArray
     rigid_body: ComplexArray
-    liouville_residual: float
+    variation: GearVariation
+    rtol: float
+
+    @cached_property
+    def liouville_residual(self) -> float:
+        """Of the feedback block by the general engine, see `Monodromy`; takes seconds below some 10 rpm."""
+        return monodromy(gear_pair_system(self.variation, "feedback"), self.rtol).liouville_residual
 
 
 def gear_pair_system(
@@ -156,8 +163,7 @@ def gear_pair_multipliers(
     ----------
     source : a gear pair, or a variation from a chart
     rtol : wanted error of the monodromy matrix relative to its norm, 1e-13 to 1e-1
-    method : "taylor", the compiled kernel, whose bound is proven (an estimate by the general engine where
-        speed is too low for the kernel); or a method of `monodromy` on A(t) as a
+    method : "taylor", the compiled kernel, whose bound is proven; or a method of `monodromy` on A(t) as a
         callable, for an independent estimate
     supports : of a pair: "springs", its ``bearings``, or its "shafts"
 
@@ -167,30 +173,29 @@ def gear_pair_multipliers(
 
     Raises
     ------
+    ParameterError : rtol out of range, unknown method or supports
     NumericalError : as in `monodromy`
     """
     variation = GearVariation.of(source, supports)
+    rtol = real_number("rtol", rtol, 1e-13, 0.1)
     own: Spectrum
     if isinstance(method, str) and method == "taylor":
-        block = monodromy(gear_pair_system(variation, "feedback"), rtol)
-        try:
-            own = _proven(variation, rtol)
-        except NumericalError:  # more steps than the kernel takes
-            own = block
+        own = _proven(variation, rtol)
     else:
-        own = block = monodromy(gear_pair_system(variation, "feedback"), rtol, method=method)
-    (oloa,), (oloa_errors,) = OffLineOfAction.of(variation).multipliers(np.array([block.period]))
+        own = monodromy(gear_pair_system(variation, "feedback"), rtol, method=method)
+    (oloa,), (oloa_errors,) = OffLineOfAction.of(variation).multipliers(np.array([own.period]))
     values = np.concatenate([own.multipliers, oloa])
     errors = np.concatenate([own.multiplier_errors, oloa_errors])
     order = np.argsort(-np.abs(values), kind="stable")
     return GearPairMultipliers(
         multipliers=values[order],
         multiplier_errors=errors[order],
-        period=block.period,
+        period=own.period,
         feedback=own.multipliers,
         oloa=oloa,
         rigid_body=np.ones(2, dtype=complex),
-        liouville_residual=block.liouville_residual,
+        variation=variation,
+        rtol=rtol,
         certificate=own.certificate,
     )
 

@@ -55,6 +55,15 @@ def test_every_propagator_finds_the_multipliers(pair, method: str) -> None:
     assert found.error < 100 * rtol
 
 
+def test_low_speeds_are_proven_too(pair) -> None:
+    """All but the slowest decay of a bearing have died away after a mesh cycle at 5 rpm."""
+    found = gear_pair_multipliers(pair.with_(operating__pinion_speed=5))
+    assert (found.certificate, found.verdict) == ("proven", "stable")
+    assert found.spectral_radius + found.error < 1e-90
+    with pytest.raises(ParameterError, match="rtol"):
+        gear_pair_multipliers(pair, 1e-14)
+
+
 def test_against_an_independent_integrator(pair) -> None:
     # scipy's DOP853 column by column from switch to switch, on matrices from lumped's own scalar interface.
     slow = pair.with_(operating__pinion_speed=3000)

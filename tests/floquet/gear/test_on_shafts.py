@@ -103,5 +103,7 @@ def test_what_shafts_do_not_have_is_refused(slender: GearPair) -> None:
         stability_chart("nasa_28_28", {"speed_rpm": [9000.0]}, supports="shafts")
     with pytest.raises(ParameterError, match="bearing_stiffness"):
         stability_chart(slender, {"bearing_stiffness": [1e8]}, supports="shafts")
+    with pytest.raises(ParameterError, match="bearing_stiffness"):
+        stability_boundaries(slender, (900.0, 1e3), axes={"bearing_stiffness": [1e8]}, supports="shafts")
     with pytest.raises(ParameterError, match="supports"):
         gear_pair_multipliers(slender, supports="rubber")
