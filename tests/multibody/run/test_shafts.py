@@ -43,7 +43,11 @@ SHAFTS = {
     "load": {"position": 120, "inertia": 0.02, "coupling_stiffness": 2e4},
 }
 PAIR = lumped.load_gear_pair("nasa_28_28").with_(
-    mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.06, shafts=SHAFTS, gear__bore=40,
+    mesh__relief="ignored",
+    friction__law="coulomb",
+    friction__coefficient=0.06,
+    shafts=SHAFTS,
+    gear__bore=40,
     mesh__stiffness={"model": "finite_elements"},
 )
 
