@@ -232,6 +232,14 @@ class Results:
         return _or_why_not(partial(contact_forms, samples=samples, exact=exact), self.pair)
 
     @cached_property
+    def lifting(self) -> xr.Dataset | None:
+        """The loaded form's motion with pairs that push only, where one pulls while all together push."""
+        found, forms = self.parting, self.forms
+        if not isinstance(found, Parting) or found.judged or isinstance(forms, str) or forms.own == "paper":
+            return None
+        return found.orbit.sampled(forms.motions["exact"].sizes["time"])
+
+    @cached_property
     def multipliers(self) -> GearPairMultipliers:
         """Floquet multipliers at the operating point."""
         return gear_pair_multipliers(self.pair)

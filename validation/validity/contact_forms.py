@@ -39,15 +39,22 @@ class ContactForms:
     ----------
     own : the form of the pair itself, a key of ``FORMS``
     motions : form, and "exact" -> periodic motion at the same times
-    difference : form -> largest difference of the transmission error from the exact contact, over the peak to
-        peak of that
     powers : form -> mean powers
     """
 
     own: str
     motions: dict[str, xr.Dataset]
-    difference: dict[str, float]
     powers: dict[str, MeanPowers]
+
+    @property
+    def difference(self) -> dict[str, float]:
+        """Form -> how far it is `off`."""
+        return {form: self.off(self.motions[form]) for form in FORMS}
+
+    def off(self, motion: xr.Dataset) -> float:
+        """Largest difference of a transmission error from the exact contact's, over that one's swing."""
+        exact = self.motions["exact"]["dte"].to_numpy()
+        return float(np.abs(motion["dte"].to_numpy() - exact).max() / np.ptp(exact))
 
     def spans(self, period: float) -> dict[str, float]:
         """Peak to peak of each motion's transmission error [m], from the mesh period [s]."""
@@ -72,12 +79,9 @@ def contact_forms(pair: GearPair, samples: int = 256, exact: xr.Dataset | None =
     if exact is None:
         exact = multibody.steady_state(pairs["loaded"], samples_per_cycle=samples)
     motions["exact"] = exact
-    dte = exact["dte"].to_numpy()
-    swing = float(np.ptp(dte))
-    difference = {form: float(np.abs(motions[form]["dte"].to_numpy() - dte).max()) / swing for form in FORMS}
     solutions = {form: periodic_cycle(of, 8) for form, of in pairs.items()}
     powers = {form: mean_powers(solution) for form, solution in solutions.items()}
-    return ContactForms(pair.mesh.contact, motions, difference, powers)
+    return ContactForms(pair.mesh.contact, motions, powers)
 
 
 def losses_over_speed(pair: GearPair, speeds_rpm: FloatArray, progress: Progress | None = None) -> xr.Dataset:

@@ -15,6 +15,7 @@ from validation.reporting.blocks import Text
 from validation.reporting.chapters import contact_loss
 from validation.reporting.results import Results
 from validation.validity.beyond_contact_loss import jumps_about_operation
+from validation.validity.contact_forms import contact_forms
 
 
 @pytest.fixture(scope="module")
@@ -67,6 +68,13 @@ def test_the_chapter_says_which_motion_is_compared(results, monkeypatch):
     unjudged = dataclasses.replace(results.parting, judged=False)
     monkeypatch.setattr(loaded, "parting", unjudged, raising=False)
     assert "together push" in contact_loss._compared(loaded)
+    # That pair makes the linear motion a tenth wrong; with pairs that push only a hundredth is left.
+    forms = contact_forms(loaded.pair, 128)
+    monkeypatch.setattr(loaded, "forms", forms, raising=False)
+    orbit = floquet.periodic_orbit(loaded.pair)
+    monkeypatch.setattr(loaded, "parting", dataclasses.replace(unjudged, orbit=orbit), raising=False)
+    assert forms.off(loaded.lifting) < 0.02 < 0.1 < forms.difference["loaded"]
+    assert words.contact_off(loaded).startswith("one tooth pair lifts off while another carries")
     monkeypatch.setattr(results, "parting", unjudged, raising=False)
     assert "only where it is stable" in contact_loss._compared(results)
 

@@ -22,7 +22,11 @@ def write(results: Results) -> Content:
     found = results.forms
     if isinstance(found, str):
         return Content((Text(f"The exact contact has no motion to compare with: {found}"),))
-    spans = found.spans(results.geometry.mesh_period)
+    spans, motions, off = found.spans(results.geometry.mesh_period), dict(found.motions), found.difference
+    names = FORMS | {"exact": "exact contact", "pushing": "loaded form, no pair pulls"}
+    if (pushing := results.lifting) is not None:
+        motions["pushing"], off["pushing"] = pushing, found.off(pushing)
+        spans["pushing"] = pushing.attrs["dte_peak_to_peak"]
     statics = "its teeth touch from A to D by decree, with a stiffness that does not know its load"
     blocks: list[Block] = [
         Text(
@@ -39,24 +43,21 @@ def write(results: Results) -> Content:
         table_of(
             "contact_forms",
             "The same gear pair in both forms and with the exact contact.",
-            list(found.motions),
+            list(motions),
             {
-                "form": ("model", lambda form: FORMS.get(form, "exact contact")),
-                "difference": (
-                    "largest difference from exact / peak to peak",
-                    lambda form: found.difference.get(form),
-                ),
+                "form": ("model", names.get),
+                "difference": ("largest difference from exact / peak to peak", off.get),
                 "dte": (
                     "transmission error, peak to peak",
                     lambda form: Quantity(spans[form], "m"),
                 ),
                 "largest_load": (
                     "largest load of a pair",
-                    lambda form: Quantity(float(found.motions[form]["normal_load"].max()), "N"),
+                    lambda form: Quantity(float(motions[form]["normal_load"].max()), "N"),
                 ),
                 "brake_torque": (
                     "brake torque",
-                    lambda form: Quantity(float(found.motions[form].attrs["brake_torque"]), "N m"),
+                    lambda form: Quantity(float(motions[form].attrs["brake_torque"]), "N m"),
                 ),
             },
             marked=lambda form: form == found.own,
