@@ -245,27 +245,6 @@ def stability(results: Results) -> str:
     return f"{over} {jumps(results)}".rstrip()
 
 
-def contact_form(results: Results) -> str:
-    """How far the form of the contact is off the exact one, and what the other form gives."""
-    forms = results.forms
-    if isinstance(forms, str):
-        return ""
-    spans = forms.spans(results.geometry.mesh_period)
-    off = {name: number(100 * value, 2) for name, value in forms.difference.items()}
-    told = {name: quantity(value, "m", 3) for name, value in spans.items()}
-    if forms.own == "loaded":
-        return (
-            "The contact follows the load: this form is off the exact contact by up to "
-            f"{off['loaded']}\u00a0% of the transmission error's peak to peak, the paper's form by "
-            f"{off['paper']}\u00a0%."
-        )
-    return (
-        "The paper's contact, which begins by decree, is off the exact contact "
-        f"({told['exact']} peak to peak) by up to {off['paper']}\u00a0% of that; for the same pair the "
-        f"loaded form gives {told['loaded']} and is off by {off['loaded']}\u00a0%."
-    )
-
-
 def lawful(results: Results) -> bool:
     """Whether the laws of nature hold in both models, and their powers agree."""
     return all(j.within for j in results.check.nature)
