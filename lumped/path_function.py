@@ -29,6 +29,8 @@ Array = TypeVar("Array", NDArray[np.float64], NDArray[np.longdouble])
 #: rounding errors, 2.5e-13 at degree 8, so the fit stays below its tolerances.
 FIT_DEGREE = 8
 _MAX_CUTS = 44
+#: Pieces of this share of the interval and longer err by the tolerance at most, see ``PathFunction.fit``.
+_FULL_LENGTH = 0.125
 #: Cutting without end means rounding noise or an undeclared kink; a table of 1000 rows has 1000 pieces.
 _MAX_PIECES = 4000
 
@@ -127,6 +129,7 @@ class PathFunction:
         switches: Sequence[float] | FloatArray = (),
         *,
         tolerance: float,
+        by_length: bool = False,
         cut: Callable[[FloatArray, FloatArray], FloatArray] = lambda low, high: 0.5 * (low + high),
     ) -> PathFunction:
         """Fit a vectorised callable by polynomials, cutting pieces in two until the error is small enough.
@@ -140,6 +143,8 @@ class PathFunction:
         breaks : end points and inner breaks [m]
         switches : the breaks that are jumps or kinks [m]
         tolerance : largest absolute error at the probes between the nodes, in the function's own unit
+        by_length : whether pieces shorter than an eighth of the interval may err the more the shorter they
+            are, as a motion sees error times length
         cut : ends of pieces -> where to cut them [m]; by default in the middle
 
         Raises
@@ -155,6 +160,8 @@ class PathFunction:
             series = _values(function, low, half, _NODES) @ _TO_SERIES
             error = np.abs(series @ _AT_PROBES - _values(function, low, half, _PROBES)).max(axis=1)
             # A piece at the resolution of positions cannot be cut further.
+            if by_length:
+                error *= np.minimum(1.0, 2.0 * half / (_FULL_LENGTH * (breaks[-1] - breaks[0])))
             good = error <= (1e3 * tolerance if last else tolerance)
             found.append((low[good], half[good], series[good]))
             if good.all():

@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.gear_geometry.geometry import Geometry
+from lumped.model.kernels import laws_at
 from lumped.model.mesh_elements import MeshElements, mesh_elements
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.typing import FloatArray
+from lumped.typing import BoolArray, FloatArray
 
 #: One-sided limits are taken this fraction of a base pitch inside a segment.
 _INSIDE = 1e-12
@@ -37,7 +38,7 @@ class PairState:
     """
 
     position: FloatArray
-    contact: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]
+    contact: BoolArray
     stiffness: FloatArray
     damping: FloatArray
     friction: FloatArray
@@ -135,6 +136,14 @@ class MeshCycle:
         fixed = np.isin(marks, self.edges)
         return np.asarray(np.delete(marks, [j if fixed[j + 1] else j + 1 for j in close]), dtype=np.float64)
 
+    @cached_property
+    def _contact(self) -> BoolArray:
+        """Which pairs can touch in which smooth segment (pairs, segments); it cannot change inside."""
+        g = self.geometry
+        middle = 0.5 * (self.edges[:-1] + self.edges[1:]) * g.omega_pinion * g.base_radius_pinion
+        place = self.offsets[:, None] + middle
+        return np.asarray((place >= self.start) & (place <= self.end))
+
     @property
     def events(self) -> dict[str, float]:
         """Times in [0, T_m) at which a pair is at A, B, P, C or D [s]."""
@@ -166,24 +175,12 @@ class MeshCycle:
         speed, inside = g.omega_pinion * g.base_radius_pinion, _INSIDE * g.base_pitch
         low, high = speed * self.edges[index] + inside, speed * self.edges[index + 1] - inside
         shift = np.clip(speed * tau, low, high)
-        xi = self.offsets[:, None] + shift
-        # Which pairs touch is decided in the middle of the segment: it cannot change inside.
-        middle = self.offsets[:, None] + 0.5 * (low + high)
-        contact = (middle >= self.start) & (middle <= self.end)
-        e = self.elements
-
-        def of(values: FloatArray) -> FloatArray:
-            return np.where(contact, values, 0.0)
-
-        return PairState(
-            position=self.offsets[:, None] + speed * tau,
-            contact=contact,
-            stiffness=of(e.stiffness(xi)),
-            damping=of(e.damping(xi)),
-            friction=of(e.friction(xi)),
-            error=of(e.error(xi)),
-            error_rate=of(e.error_slope(xi) * speed),
-        )
+        contact, e = self._contact[:, index], self.elements
+        laws = (e.stiffness, e.damping, e.friction, e.error, e.error_slope)
+        tables = [part for law in laws for part in (law.breaks, law.coefficients)]
+        k, c, mu, error, slope = laws_at(self.offsets, shift, contact, *tables)
+        position = self.offsets[:, None] + speed * tau
+        return PairState(position, contact, k, c, mu, error, error_rate=slope * speed)
 
 
 def mesh_cycle(pair: AnyPair) -> MeshCycle:

@@ -97,7 +97,9 @@ def _loaded_elements(pair: GearPair, mass: float) -> MeshElements:
         stiffness=contact.stiffness,
         damping=PathFunction.constant(0.0, low, high)
         if largest == 0.0
-        else PathFunction.fit(damping, breaks, engaged.switches, tolerance=_DAMPING_TOLERANCE * largest),
+        else PathFunction.fit(
+            damping, breaks, engaged.switches, tolerance=_DAMPING_TOLERANCE * largest, by_length=True
+        ),
         friction=friction_path_function(pair, interval=(low, high)),
         error=contact.error,
         gap=contact.gap,

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal, get_args
 
 import numpy as np
@@ -116,16 +117,20 @@ class LTVSystem:
         """Breaks of the coefficients strictly inside the period [s]."""
         return self.cycle.breaks[1:-1]
 
+    @cached_property
+    def per_load(self) -> FloatArray:
+        """Accelerations (3, m) of z per unit N, F and F xi of a tooth pair."""
+        s = self.structure
+        return np.vstack([s.normal, s.friction_arm.T]) / s.mass @ self.reduction.T
+
     def gain(self, time: ArrayLike, segment: int | NDArray[np.int64] | None = None) -> MeshGain:
         """Rank-one feedback of the mesh at times (k,) [s]; ``segment`` as in ``MeshCycle.sample``."""
         pairs = self.cycle.sample(time, segment)
-        s = self.structure
-        # Accelerations per unit N, F and F xi.
-        basis = np.vstack([s.normal, s.friction_arm.T]) / s.mass @ self.reduction.T
 
         def acceleration(load: FloatArray) -> FloatArray:
             friction = pairs.friction * load
-            return np.stack([v.sum(0) for v in (load, friction, friction * pairs.position)], axis=-1) @ basis
+            loads = np.stack([v.sum(0) for v in (load, friction, friction * pairs.position)], axis=-1)
+            return loads @ self.per_load
 
         error = pairs.stiffness * pairs.error + pairs.damping * pairs.error_rate
         return MeshGain(acceleration(pairs.stiffness), acceleration(pairs.damping), -acceleration(error))

@@ -19,8 +19,10 @@ STEP_ANGLE = 0.5
 STAGES = 4
 #: Rounding of times over the period.
 _ROUNDING = 1e-15
-#: Steps solved together, a bound on memory.
-_BLOCK = 1024
+#: A step passes over joints of pieces that are no shorter than this share of it.
+_SHORT_PIECE = 0.5
+#: Steps solved together, and most intervals of a cycle of which every step is one: bounds on memory.
+_BLOCK, _MOST_INTERVALS = 1024, 16384
 #: Most steps of a mesh cycle: some ten seconds of work.
 _MAX_STEPS = 1_000_000
 
@@ -62,15 +64,13 @@ def _merged(maps: FloatArray, group: IntArray) -> FloatArray:
 def fastest_frequency(system: LTVSystem) -> float:
     """Bound on the fastest natural frequency over the cycle [rad/s].
 
-    Frozen-time eigenvalues at the stiffest of three times on each polynomial piece, in each smooth segment.
+    Frozen-time eigenvalues at the stiffest of three times on each polynomial piece.
     """
-    switches, marks = system.cycle.edges, system.cycle.breaks
+    marks = system.cycle.breaks
     times = (marks[:-1] + np.multiply.outer([0.05, 0.5, 0.95], np.diff(marks))).ravel()
-    segment = np.searchsorted(switches, times, side="right") - 1
+    segment = np.searchsorted(system.cycle.edges, times, side="right") - 1
     stiffness = np.abs(system.gain(times, segment).stiffness @ system.deflection)
-    order = np.lexsort((stiffness, segment))
-    stiffest = order[np.flatnonzero(np.diff(segment[order], append=-1))]
-    values = np.linalg.eigvals(system.matrices(times[stiffest]))
+    values = np.linalg.eigvals(system.matrices(times[[np.argmax(stiffness)]])[0])
     return float(np.abs(values).max()) * 1.1
 
 
@@ -79,6 +79,7 @@ def step_maps(
     extra: FloatArray,
     *,
     outputs: FloatArray | None = None,
+    every_step: bool = False,
     step_angle: float = STEP_ANGLE,
     stages: int = STAGES,
 ) -> StepMaps:
@@ -89,6 +90,7 @@ def step_maps(
     system : the periodic system
     extra : (n, columns) constant forcings of the rates to carry beside the system's own
     outputs : times in [0, T_m] that end an interval [s]; by default there is one interval
+    every_step : whether every step ends one, as long as there are not too many for the memory
     step_angle : largest angle of the fastest frequency per step [rad]
     stages : of the Gauss method; the order is twice as large
 
@@ -96,7 +98,7 @@ def step_maps(
     ------
     NumericalError : the result is not finite
     """
-    grid = _step_grid(system, np.empty(0) if outputs is None else outputs, step_angle)
+    grid = _step_grid(system, np.empty(0) if outputs is None else outputs, every_step, step_angle)
     parts, groups = [], []
     for low in range(0, grid.length.size, _BLOCK):
         block = slice(low, low + _BLOCK)
@@ -245,32 +247,48 @@ class _StepGrid:
     times: FloatArray
 
 
-def _step_grid(system: LTVSystem, outputs: FloatArray, step_angle: float) -> _StepGrid:
-    """Steps that end at every switch, knot and output."""
-    period, switches = system.period, system.cycle.edges
-    # Within a step each coefficient is one polynomial: where a law varies fast, its pieces are short.
-    marks = np.union1d(system.cycle.breaks, outputs)
-    # Marks that differ by rounding are one, and a switch stays where it is exactly.
-    close = np.flatnonzero(np.diff(marks) < 1e-13 * period)
-    marks = np.delete(marks, np.where(np.isin(marks[close + 1], switches), close, close + 1))
+def _step_grid(system: LTVSystem, outputs: FloatArray, every_step: bool, step_angle: float) -> _StepGrid:
+    """Steps that end at every switch and output, and wherever the pieces of a law are short."""
+    period, switches, breaks = system.period, system.cycle.edges, system.cycle.breaks
     largest = step_angle / fastest_frequency(system)
-    pieces = np.maximum(1.0, np.ceil(np.diff(marks) / largest))
-    if not pieces.sum() <= _MAX_STEPS:
+    marks = _distinct(np.union1d(switches, outputs), system)
+    # Joints join pieces of one smooth law, which varies fast where its pieces are short.
+    pieces, gaps = np.diff(breaks), np.diff(marks)
+    at = np.clip(np.searchsorted(marks, breaks[1:-1], side="right") - 1, 0, gaps.size - 1)
+    short = np.minimum(pieces[:-1], pieces[1:]) < _SHORT_PIECE * np.minimum(gaps, largest)[at]
+    marks = _distinct(np.union1d(marks, breaks[1:-1][short]), system)
+    parts = np.maximum(1.0, np.ceil(np.diff(marks) / largest))
+    if not parts.sum() <= _MAX_STEPS:
         raise NumericalError(
-            f"A mesh cycle of {period:.3g} s takes {pieces.sum():.3g} steps at the fastest vibration, more "
+            f"A mesh cycle of {period:.3g} s takes {parts.sum():.3g} steps at the fastest vibration, more "
             f"than {_MAX_STEPS}: raise the speed, or lower stiffness or damping where they are extreme."
         )
-    count = pieces.astype(np.int64)
+    count = parts.astype(np.int64)
     first = np.concatenate([[0], np.cumsum(count)])
     length = np.repeat(np.diff(marks) / count, count)
-    start = np.repeat(marks[:-1], count) + length * (np.arange(first[-1]) - np.repeat(first[:-1], count))
-    ends = np.searchsorted(marks, outputs - 1e-13 * period)
-    ends = np.unique(np.concatenate([[0], ends, [count.size]]))
-    mark = np.repeat(np.arange(count.size), count)
+    number = np.arange(first[-1]) - np.repeat(first[:-1], count)
+    edges = np.append(np.repeat(marks[:-1], count) + length * number, period)
+    if every_step:
+        together = -(-length.size // _MOST_INTERVALS)
+        ends = (number + 1) % together == 0
+        ends[first[1:] - 1] = True
+    else:
+        ends = np.zeros(length.size, dtype=bool)
+        ends[first[np.searchsorted(marks, outputs[outputs > 0.0] - 1e-13 * period)] - 1] = True
+        ends[-1] = True
     return _StepGrid(
-        edges=np.append(start, marks[-1]),
+        edges=edges,
         length=length,
-        segment=np.searchsorted(switches, marks[mark], side="right") - 1,
-        interval=np.searchsorted(ends, mark, side="right") - 1,
-        times=marks[ends],
+        segment=np.searchsorted(switches, edges[:-1], side="right") - 1,
+        interval=np.cumsum(ends) - ends,
+        times=np.append(0.0, edges[1:][ends]),
     )
+
+
+def _distinct(marks: FloatArray, system: LTVSystem) -> FloatArray:
+    """Increasing times of which those that differ by rounding are one; a switch stays where it is exactly."""
+    close = np.flatnonzero(np.diff(marks) < 1e-13 * system.period)
+    if close.size == 0:
+        return marks
+    fixed = np.isin(marks[close + 1], system.cycle.edges)
+    return np.asarray(np.delete(marks, np.where(fixed, close, close + 1)), dtype=np.float64)

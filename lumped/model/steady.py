@@ -11,7 +11,7 @@ from lumped.errors import NumericalError
 from lumped.model.equations import COORDINATES
 from lumped.model.extremes import peak_to_peak
 from lumped.model.periodic_system import LTVSystem, Supports, periodic_system
-from lumped.model.propagation import STAGES, STEP_ANGLE, fastest_frequency, step_maps
+from lumped.model.propagation import STAGES, step_maps
 from lumped.model.results import response
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -19,8 +19,6 @@ from lumped.typing import FloatArray
 #: A largest multiplier above this is an instability. Without damping it is 1, and steps and rounding move a
 #: defective multiplier by up to the root of their error, 1e-12.
 UNSTABLE = 1.0 + 1e-6
-#: Most times at which extremes are looked for, beside those asked for.
-_MOST_NODES = 16384
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,8 +90,7 @@ def periodic_solution(
     NumericalError : the speed sits on a stability boundary, where no periodic motion exists
     """
     torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
-    outputs = _with_nodes(system, times)
-    maps = step_maps(system, torques, outputs=outputs)
+    maps = step_maps(system, torques, outputs=times, every_step=True)
     transition, forced = maps.over_all()
     initial, weights = balanced_start(system, transition, forced)
     states = maps.states(initial, weights)
@@ -102,7 +99,7 @@ def periodic_solution(
     result = states[at]
     error = None
     if estimate_error:
-        low = step_maps(system, torques, outputs=outputs, stages=STAGES - 1)
+        low = step_maps(system, torques, outputs=times, every_step=True, stages=STAGES - 1)
         other = low.states(*balanced_start(system, *low.over_all()))[at]
         m = len(system.coordinates)
         dte, dte_low = result[:, :m] @ system.deflection, other[:, :m] @ system.deflection
@@ -137,20 +134,6 @@ def periodic_cycle(pair: GearPair, samples: int, *, supports: Supports = "spring
     """
     system = periodic_system(pair, "absolute", supports=supports)
     return periodic_solution(system, sample_times(system.period, samples), estimate_error=False)
-
-
-def _with_nodes(system: LTVSystem, times: FloatArray) -> FloatArray:
-    """The times, the ends of the pieces of the laws, and equal parts of each gap between these.
-
-    The fastest vibration turns by half a radian at most in a part.
-    """
-    marks = np.union1d(times, system.cycle.breaks)
-    largest = max(STEP_ANGLE / fastest_frequency(system), system.period / _MOST_NODES)
-    gaps = np.diff(marks)
-    parts = np.maximum(1.0, np.ceil(gaps / largest * (1.0 - 1e-9))).astype(np.int64)
-    of = np.repeat(np.arange(gaps.size), parts)
-    number = np.arange(of.size) - (np.cumsum(parts) - parts)[of]
-    return np.append(marks[of] + number * (gaps / parts)[of], marks[-1])
 
 
 def _peaks(system: LTVSystem, times: FloatArray, states: FloatArray) -> dict[str, float]:

@@ -264,9 +264,6 @@ def _loaded_contact(pair: GearPair) -> LoadedContact:
     marks = np.add.outer(np.concatenate([kinks, contact.ravel(), corners]), mesh.shifts)
     inside = np.unique(marks[(marks > low + near) & (marks < high - near)])
     inside = inside[np.diff(inside, prepend=-np.inf) > near]
-    bends, full = np.concatenate([[low], inside, [high]]), FULL_DAMPING * mesh.force
-    for left, right in itertools.pairwise(bends):
-        inside = np.union1d(inside, _roots(lambda x: mesh.static(x).load - full, left, right))
     smooth = law.stiffness.breaks[(law.stiffness.breaks > low) & (law.stiffness.breaks < high)]
     breaks = np.concatenate([[low], inside, [high]])
     pieces = np.union1d(breaks, smooth)
@@ -274,20 +271,30 @@ def _loaded_contact(pair: GearPair) -> LoadedContact:
     deflection = mesh.force / largest
     relative = max(_TOLERANCE, _LENGTH / (FULL_DAMPING * deflection))
 
+    # With a linear law of pairs that stand alone the pieces are those of the stiffness.
+    ends = pieces if law.softening == 0.0 and not mesh.neighbours else breaks
+
     def fitted(value: Callable[[FloatArray], FloatArray], scale: float) -> PathFunction:
-        # With a linear law of pairs that stand alone the pieces are those of the stiffness.
-        ends = pieces if law.softening == 0.0 and not mesh.neighbours else breaks
-        return PathFunction.fit(value, ends, inside, tolerance=relative * scale)
+        return PathFunction.fit(value, ends, inside, tolerance=relative * scale, by_length=True)
+
+    stiffness = fitted(lambda xi: mesh.static(xi).tangent, largest)
+    # Only the damper bends where it is whole. Its pieces are cut where those of the stiffness are: laws that
+    # are cut at the same phases leave few pieces of a mesh cycle.
+    full, bends = FULL_DAMPING * mesh.force, inside
+    for left, right in itertools.pairwise(breaks):
+        bends = np.union1d(bends, _roots(lambda x: mesh.static(x).load - full, left, right))
+    cuts = np.union1d(stiffness.breaks, bends)
 
     def engagement(xi: FloatArray) -> FloatArray:
         share = np.clip(mesh.static(xi).load / full, 0.0, 1.0)
         return np.asarray(share * share * (3.0 - 2.0 * share), dtype=np.float64)
 
+    engaged = PathFunction.fit(engagement, cuts, bends, tolerance=relative, by_length=True)
     return LoadedContact(
-        stiffness=restricted(fitted(lambda xi: mesh.static(xi).tangent, largest), contact),
+        stiffness=restricted(stiffness, contact),
         error=fitted(lambda xi: mesh.static(xi).error, deflection),
         gap=fitted(lambda xi: mesh.static(xi).gap, deflection),
-        engagement=restricted(fitted(engagement, 1.0), contact),
+        engagement=restricted(engaged, contact),
         secant=PathFunction.fit(law.held, pieces, inside, tolerance=_TOLERANCE * largest),
         contact=contact,
     )

@@ -134,15 +134,19 @@ def test_a_jump_at_an_edge_costs_no_order():
 
 
 class TestSteps:
-    def test_switches_knots_and_outputs_are_edges(self, nasa):
+    def test_switches_outputs_and_short_pieces_end_steps(self, nasa):
         system = periodic_system(nasa, "absolute")
         outputs = np.linspace(0.0, system.period, 37, endpoint=False)
         edges = step_maps(system, np.zeros((12, 0)), outputs=outputs).edges
-        for wanted in (system.cycle.breaks, outputs):
-            nearest = np.abs(edges[:, None] - wanted).min(axis=0)
-            assert nearest.max() < 1e-12 * system.period
+        off = np.abs(edges[:, None] - outputs).min(axis=0)
+        assert off.max() < 1e-12 * system.period
         assert set(system.cycle.edges) <= set(edges)  # bit for bit: a step must not straddle a switch
         assert np.all(np.diff(edges) > 0)
+        pieces, breaks = np.diff(system.cycle.breaks), system.cycle.breaks[1:-1]
+        passed = np.abs(edges[:, None] - breaks).min(axis=0) > 1e-12 * system.period
+        step = np.diff(edges)[np.searchsorted(edges, breaks) - 1]
+        assert passed.any()
+        assert np.all(np.minimum(pieces[:-1], pieces[1:])[passed] >= 0.5 * step[passed])
 
     @pytest.mark.parametrize("off", [-1e-14, -1e-15, 1e-15, 1e-14])
     def test_outputs_beside_a_switch_do_not_move_it(self, nasa, off):
