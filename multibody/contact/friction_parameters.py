@@ -113,7 +113,9 @@ def friction_switches(p: FloatArray) -> list[tuple[float, float]]:
             return _branch(p, p[kn.L_XP] + side * distance)
 
         steps = np.geomspace(0.5 * _CLOSEST, reach * (1.0 - 1e-12), _SEARCHED)
-        for low, high in itertools.pairwise(steps.tolist()):
+        branches = np.array([at(distance) for distance in steps.tolist()])
+        for step in np.flatnonzero(np.diff(branches)):
+            low, high = steps[step : step + 2].tolist()
             while (before := at(low)) != at(high):
                 low = _change(at, low, high, before)
                 kind = SLIDING if before in _LAW_TWO and at(low) in _LAW_TWO else SWITCH

@@ -123,15 +123,19 @@ class Orbit:
     machine : numbers of the pair, with the brake torque that balances this motion
     flow : its flow map
     closure : largest change of the state over one cycle, relative to its scale
+    matrix : of the step that found it; near the motion, of the steps to others near by
     """
 
     state: FloatArray
     machine: Machine
     flow: Flow
     closure: float
+    matrix: FloatArray
 
 
-def find_orbit(setup: Setup, cycles: int = 1, *, near_lumped: bool = True) -> Orbit:
+def find_orbit(
+    setup: Setup, cycles: int = 1, *, near_lumped: bool = True, near: Orbit | None = None
+) -> Orbit:
     """Periodic motion near the initial state of ``setup``, with the brake torque as unknown.
 
     Broyden's method starts from the monodromy matrix of the lumped model, on shafts from that of the model's
@@ -144,6 +148,7 @@ def find_orbit(setup: Setup, cycles: int = 1, *, near_lumped: bool = True) -> Or
     setup : model ready to run
     cycles : mesh cycles after which the motion repeats
     near_lumped : False where the lumped model has no such motion: then the matrix is that of differences
+    near : motion of the pair with other effects, to start from with its matrix
 
     References
     ----------
@@ -154,8 +159,42 @@ def find_orbit(setup: Setup, cycles: int = 1, *, near_lumped: bool = True) -> Or
     ------
     NumericalError : the iteration does not close the cycle
     """
-    scale = _scale(setup)
-    state, machine = _packed(setup.machine, setup.q, setup.v), setup.machine
+    scale, machine = _scale(setup), setup.machine
+    if near is None:
+        state = _packed(machine, setup.q, setup.v)
+        matrix = _first_matrix(setup, state, scale, cycles, near_lumped)
+    else:
+        state, matrix = near.state, near.matrix
+        machine = replace(machine, torque_gear=near.machine.torque_gear)
+    best, age = Orbit(state, machine, Flow(setup, machine, cycles), np.inf, matrix), 0
+    change = np.zeros(state.size + 1)
+    for step in range(_ITERATIONS + 1):
+        flow = Flow(setup, machine, cycles)
+        mismatch = np.append((flow(state) - state) / scale, 0.0)
+        closure = float(np.abs(mismatch).max())
+        if closure < best.closure:
+            best, age = Orbit(state, machine, flow, closure, matrix), step
+        if closure < _CLOSED * setup.rtol or step - age > _PATIENCE:
+            break
+        if step > 0:  # Broyden: along the last change the matrix must explain all of the mismatch left
+            matrix = matrix - np.outer(mismatch, change) / (change @ change)
+        change = np.linalg.solve(matrix, mismatch)
+        state = state + change[:-1] * scale
+        machine = replace(machine, torque_gear=machine.torque_gear * (1.0 + float(change[-1])))
+    if not best.closure < _ACCEPTED:
+        raise NumericalError(
+            f"No periodic multibody motion near the {'lumped one' if near_lumped else 'start'} (mismatch "
+            f"{best.closure:.1e}): the pair may separate or sit on a stability boundary. Change the speed or "
+            "the torque, or run multibody.simulate."
+        )
+    return best
+
+
+def _first_matrix(
+    setup: Setup, state: FloatArray, scale: FloatArray, cycles: int, near_lumped: bool
+) -> FloatArray:
+    """Matrix of the first step to a periodic motion, from the state of ``setup``; see ``find_orbit``."""
+    machine = setup.machine
     if near_lumped and setup.motion is not None:
         transition, by_torque = setup.motion.transition, setup.motion.by_torque
     elif near_lumped:
@@ -171,31 +210,8 @@ def find_orbit(setup: Setup, cycles: int = 1, *, near_lumped: bool = True) -> Or
             more.torque_gear - machine.torque_gear
         )
     if machine.train is None:
-        matrix = _bordered(transition, by_torque, machine, scale)
-    else:
-        matrix = bordered(transition, by_torque, machine.train, scale, machine.torque_gear)
-    best, age = Orbit(state, machine, Flow(setup, machine, cycles), np.inf), 0
-    change = np.zeros(state.size + 1)
-    for step in range(_ITERATIONS + 1):
-        flow = Flow(setup, machine, cycles)
-        mismatch = np.append((flow(state) - state) / scale, 0.0)
-        closure = float(np.abs(mismatch).max())
-        if closure < best.closure:
-            best, age = Orbit(state, machine, flow, closure), step
-        if closure < _CLOSED * setup.rtol or step - age > _PATIENCE:
-            break
-        if step > 0:  # Broyden: along the last change the matrix must explain all of the mismatch left
-            matrix -= np.outer(mismatch, change) / (change @ change)
-        change = np.linalg.solve(matrix, mismatch)
-        state = state + change[:-1] * scale
-        machine = replace(machine, torque_gear=machine.torque_gear * (1.0 + float(change[-1])))
-    if not best.closure < _ACCEPTED:
-        raise NumericalError(
-            f"No periodic multibody motion near the {'lumped one' if near_lumped else 'start'} (mismatch "
-            f"{best.closure:.1e}): the pair may separate or sit on a stability boundary. Change the speed or "
-            "the torque, or run multibody.simulate."
-        )
-    return best
+        return _bordered(transition, by_torque, machine, scale)
+    return bordered(transition, by_torque, machine.train, scale, machine.torque_gear)
 
 
 def steady_state(
@@ -243,6 +259,11 @@ def steady_state(
         supports=supports,
     )
     orbit = find_orbit(setup, cycles, near_lumped=initial is None and cycles == 1)
+    return cycles_of(orbit, samples_per_cycle, cycles)
+
+
+def cycles_of(orbit: Orbit, samples_per_cycle: int, cycles: int = 1) -> xr.Dataset:
+    """What ``steady_state`` returns of an orbit."""
     q, v = _unpacked(orbit.machine, orbit.state)
     setup = replace(orbit.flow.setup, q=q, v=v)
     run, _, _ = record(setup, cycles, samples_per_cycle, run=orbit.flow.again)

@@ -14,7 +14,8 @@ from lumped.model.results import provenance
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import Progress
 from multibody.contact.effects import CAUSES, EFFECTS, default_effects
-from multibody.run.flow_map import steady_state
+from multibody.run.flow_map import Orbit, cycles_of, find_orbit
+from multibody.run.setup import prepare
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -52,8 +53,16 @@ def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Datase
     """
     pair = load_gear_pair(pair)
 
-    def motion(effects: set[str]) -> xr.Dataset:
-        return steady_state(pair, effects=effects, samples_per_cycle=_SAMPLES, rtol=_RTOL)
+    orbits: dict[frozenset[str], tuple[Orbit, xr.Dataset]] = {}
+
+    def motion(effects: set[str], near: set[str] | None = None) -> xr.Dataset:
+        """Motion with these effects, looked for from that with the effects ``near``."""
+        names = frozenset(effects)
+        if names not in orbits:
+            start = None if near is None else orbits[frozenset(near)][0]
+            orbit = find_orbit(prepare(pair, "exact", "periodic", effects, _RTOL), near=start)
+            orbits[names] = orbit, cycles_of(orbit, _SAMPLES)
+        return orbits[names][1]
 
     every = set(default_effects(pair.mesh.contact))
     groups = {cause: {name for name in EFFECTS if EFFECTS[name].cause == cause} for cause in CAUSES}
@@ -62,7 +71,8 @@ def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Datase
         held = groups["contact_energy"] | groups.pop("entry_shift")
     groups["all"] = every
     base = motion(set())
-    contact = motion(held) if held else base
+    contact = motion(held, set())
+    motion(every, held)
     table = {kind: np.full((len(groups), len(_QUANTITIES)), np.nan) for kind in _KINDS}
     for row, (cause, own) in enumerate(groups.items()):
         itself = own <= held and bool(held)
@@ -72,7 +82,7 @@ def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Datase
         ):
             if kind == "without" and (itself or not own <= every):
                 continue  # there is no exact contact without it, or it is no part of the whole
-            run = contact if effects == held else motion(effects)
+            run = motion(effects, held if kind == "alone" else every)
             for column, name in enumerate(_QUANTITIES):
                 swing = float(np.ptp(base[name].to_numpy()))
                 change = float(np.abs(run[name] - start[name]).max())

@@ -64,8 +64,8 @@ __all__ = [
 #: Cycles at the end of a run over which the exact model is compared where it has no periodic motion.
 COMPARED_CYCLES = 4
 _ORDERS = 10
-#: Cycles of the unlike twin, and samples in each.
-_TWIN_CYCLES, _TWIN_SAMPLES = 6, 64
+#: Cycles of the unlike twin where its exact motion repeats, else as many more; and samples in each.
+_TWIN_CYCLES, _TWIN_SAMPLES = (2, 6), 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,8 +206,20 @@ def crosscheck(
     ParameterError : arguments out of range
     NumericalError : a model fails; the text says what to try
     """
-    pair = load_gear_pair(pair)
     _check(cycles, samples_per_cycle, fidelities, quantities)
+    return _compared(load_gear_pair(pair), cycles, samples_per_cycle, fidelities, quantities, twin, progress)
+
+
+def _compared(
+    pair: GearPair,
+    cycles: int,
+    samples_per_cycle: int,
+    fidelities: Sequence[Fidelity] = FIDELITIES,
+    quantities: Sequence[str] = QUANTITIES,
+    twin: bool = False,
+    progress: Progress | None = None,
+) -> CrossCheck:
+    """What ``crosscheck`` returns; where both motions repeat themselves, two cycles tell as much as many."""
     other = unlike_twin(pair) if twin and len(fidelities) == len(FIDELITIES) else None
     runs = 1 + len(fidelities) + (other is not None)
 
@@ -320,11 +332,14 @@ def crosscheck(
 
 def _check_twin(pair: GearPair, progress: Progress) -> CrossCheck | None:
     """Cross-check of the twin; None where a model refuses it or cannot compute it."""
-    options = {"cycles": _TWIN_CYCLES, "samples_per_cycle": _TWIN_SAMPLES}
     try:
-        return crosscheck(pair, **options, twin=False, progress=progress)  # type: ignore[arg-type]
+        for cycles in _TWIN_CYCLES:
+            found = _compared(pair, cycles, _TWIN_SAMPLES, progress=progress)
+            if found.periodic:
+                break
     except SpurcheckError:
         return None
+    return found
 
 
 def _orders(

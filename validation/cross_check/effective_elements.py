@@ -132,9 +132,12 @@ class Lines:
     ) -> Lines:
         """Lines broken at the places (k,) and where their image (k,) meets a mark, on an interval [m]."""
         low, high = interval
-        before, after = image[:-1, None] - marks, image[1:, None] - marks
-        crossing = np.nonzero(before * after < 0.0)
-        share, piece = before[crossing] / (before[crossing] - after[crossing]), crossing[0]
+        marks = np.sort(marks)
+        first = np.searchsorted(marks, np.minimum(image[:-1], image[1:]), side="right")
+        count = np.maximum(np.searchsorted(marks, np.maximum(image[:-1], image[1:])) - first, 0)
+        piece = np.repeat(np.arange(count.size), count)
+        met = marks[np.arange(piece.size) + np.repeat(first - np.cumsum(count) + count, count)]
+        share = (image[piece] - met) / (image[piece] - image[piece + 1])
         nodes = np.concatenate([place, place[piece] + share * np.diff(place)[piece], [low, high]])
         nodes = np.unique(nodes[(nodes >= low) & (nodes <= high)])
         nodes = nodes[np.diff(nodes, prepend=-np.inf) > _SAME]

@@ -69,7 +69,14 @@ class PushedSystem(LTVSystem):
 
 @dataclass(frozen=True, eq=False)
 class LoadedModel(ShiftedModel):
-    """The loaded form of one pair, linear about a motion instead of the static one."""
+    """The loaded form of one pair, linear about a motion instead of the static one.
+
+    Attributes
+    ----------
+    approaches : places (k,) as bytes -> static approach there (k,) [m]; many motions ask for the same
+    """
+
+    approaches: dict[bytes, FloatArray] = field(default_factory=dict, kw_only=True, repr=False)
 
     settling: ClassVar[tuple[str, ...]] = ("slides_as", "overlap")
 
@@ -95,7 +102,10 @@ class LoadedModel(ShiftedModel):
 
     def static_overlap(self, place: FloatArray) -> FloatArray:
         """Approach of the static motion at places of one pair (k,) [m]."""
-        return self.mesh.approach(place)
+        key = place.tobytes()
+        if key not in self.approaches:
+            self.approaches[key] = self.mesh.approach(place)
+        return self.approaches[key]
 
     def _ends(self, way: FloatArray, reach: FloatArray, further: FloatArray) -> tuple[float, float]:
         """Where contact begins and ends is decided by its gap."""

@@ -93,12 +93,16 @@ MADE_UP = {
 def test_changes_alone_and_without_are_told_apart(monkeypatch):
     """Effects that simply add: alone is the own part, without is the rest, each over the motion's span."""
 
-    def motion(pair, *, effects, **options):
+    def motion(effects, samples):
         # The largest change is at one time only, with either sign.
         values = np.array([0.0, 10.0, 5.0 + sum(MADE_UP[name] for name in effects)])
         return xr.Dataset(dict.fromkeys(("dte", "x_p", "y_p", "theta_p"), ("time", values)))
 
-    monkeypatch.setattr("multibody.study.causes.steady_state", motion)
+    monkeypatch.setattr(
+        "multibody.study.causes.prepare", lambda pair, fidelity, initial, effects, rtol: effects
+    )
+    monkeypatch.setattr("multibody.study.causes.find_orbit", lambda effects, *, near: effects)
+    monkeypatch.setattr("multibody.study.causes.cycles_of", motion)
     loaded = multibody.attribution(JUMPS.with_(mesh__contact="loaded")).sel(quantity="x_p")
     every = sum(MADE_UP[name] for name in default_effects("loaded"))
     held = MADE_UP["entry_shift"] + sum(
