@@ -48,7 +48,7 @@ FRICTION_LOAD, PATH_WORK, TIP_CONTACT, CONTACT_LAW, NEIGHBOURS, CLEARANCE = 128,
 # Places in the parameter vector. Lengths in m, angles in rad, speeds in rad/s.
 (
     RADIUS_P, RADIUS_G, PITCH, TIP_P, TIP_G,  # base radii, base pitch, tangent lengths of the tip circles
-    CHI_P, CHI_G, CHI_P_BACK, CHI_G_BACK,  # angles of the flanks in their bodies: drive and coast side
+    CHI_P, APART, CHI_P_BACK, APART_BACK,  # chi_p and overlap of mesh_phase: drive and coast side
     CENTRE_PX, CENTRE_PY, CENTRE_GX, CENTRE_GY,  # nominal centres
     L_XA, L_XP, L_XD, L_XY,  # nominal path of contact
     OMEGA_P, OMEGA_G,  # nominal speeds
@@ -208,24 +208,20 @@ def mesh_position(
     """
     rp, rg = p[RADIUS_P], p[RADIUS_G]
     tau = min(max(t, p[T_LOW]), p[T_HIGH])
-    turn_p, turn_g = -p[OMEGA_P] * tau, p[OMEGA_G] * tau
+    rolled = p[OMEGA_P] * tau * rp
     moving = (flags & MOVING_LINE) != 0
-    px, py, gx, gy = p[CENTRE_PX], p[CENTRE_PY], p[CENTRE_GX], p[CENTRE_GY]
-    if moving:
-        px, py, gx, gy = px + q[0], py + q[1], gx + q[3], gy + q[4]
-    chi_p, chi_g = (p[CHI_P], p[CHI_G]) if flank > 0.0 else (p[CHI_P_BACK], p[CHI_G_BACK])
-    ex, ey, length, psi = line_of_action(px, py, gx, gy, rp + rg, flank)
-    first, delta = mesh_phase(
-        psi, length, turn_p + q[2], turn_g + q[5], rp, rg, p[PITCH], chi_p, chi_g, flank
-    )
+    along, off = (q[3] - q[0], q[4] - q[1]) if moving else (0.0, 0.0)
+    chi, apart = (p[CHI_P], p[APART]) if flank > 0.0 else (p[CHI_P_BACK], p[APART_BACK])
+    ex, ey, grown, psi = line_of_action(along, off, p[L_XY], rp + rg, flank)
+    first, delta = mesh_phase(psi, grown, q[2], q[5], rolled, rp, rg, p[PITCH], chi, apart, flank)
     beyond = delta  # excess of rho_p + rho_g over the length, which places the contact point
     if not moving:
         delta += ex * (q[0] - q[3]) + ey * (q[1] - q[4])
     if not flags & ROTATION_PHASE:
-        first, beyond = mesh_phase(psi, length, turn_p, turn_g, rp, rg, p[PITCH], chi_p, chi_g, flank)
-    xi = first + 0.5 * (p[L_XY] - length - beyond)
-    rho = xi + 0.5 * (length - p[L_XY] + delta) if flags & (ENTRY_SHIFT | TIP_CONTACT) else xi
-    return ex, ey, length, delta, rho, xi
+        first, beyond = mesh_phase(psi, grown, 0.0, 0.0, rolled, rp, rg, p[PITCH], chi, apart, flank)
+    xi = first - 0.5 * (grown + beyond)
+    rho = xi + 0.5 * (grown + delta) if flags & (ENTRY_SHIFT | TIP_CONTACT) else xi
+    return ex, ey, p[L_XY] + grown, delta, rho, xi
 
 
 @compiled
@@ -296,7 +292,8 @@ def contact_forces(
         if not math.isfinite(delta):
             return -1
         pairs = engaged(rho, delta, length, p, flags, arms)
-        rate = overlap_rate(ex, ey, vx, vy, omega_p, omega_g, rp, rg, flank)
+        # The nominal speeds roll, and would only blur it.
+        rate = overlap_rate(ex, ey, vx, vy, v[2], v[5], rp, rg, flank)
         # d(psi)/dt = s n . (v_g - v_p)/L, from differentiating e.
         psi_rate = length_rate = 0.0
         if flags & MOVING_LINE:

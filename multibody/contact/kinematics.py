@@ -52,26 +52,38 @@ MAX_PAIRS = 4
 
 @compiled
 def line_of_action(
-    px: float, py: float, gx: float, gy: float, base_sum: float, flank: float
+    along: float, off: float, nominal: float, base_sum: float, flank: float
 ) -> tuple[float, float, float, float]:
-    """Unit vector e (from X to Y), length L [m] and angle psi [rad] of the actual line of action.
+    """Unit vector e (from X to Y), growth L - L_0 [m] and angle psi [rad] of the actual line of action.
+
+    The gear's centre stands at d = (L_0 + u_x, R + u_y) from the pinion's. The nominal d gives the length L_0
+    and, on the drive flank, the x axis; changes are made of u alone, as those of micrometres would else drown
+    in the rounding of L_0.
 
     Parameters
     ----------
-    px, py, gx, gy : actual centre positions [m]
+    along, off : u_x, u_y [m]
+    nominal : L_0 [m]
     base_sum : sum R of the base radii [m]; the centre distance must be larger
     flank : +1 drive, -1 coast
 
     Returns
     -------
-    (ex, ey, length, psi); length is NaN when the base circles overlap
+    (ex, ey, grown, psi), NaN when the base circles overlap
     """
-    dx, dy = gx - px, gy - py
-    square = dx * dx + dy * dy
-    length = math.sqrt(square - base_sum * base_sum) if square > base_sum * base_sum else math.nan
-    ex = (length * dx + flank * base_sum * dy) / square
-    ey = (length * dy - flank * base_sum * dx) / square
-    return ex, ey, length, math.atan2(ey, ex)
+    dx, dy = nominal + along, base_sum + off
+    longer = along * (along + 2.0 * nominal) + off * (off + 2.0 * base_sum)  # L^2 - L_0^2
+    square = nominal * nominal + longer
+    if not square > 0.0:
+        return math.nan, math.nan, math.nan, math.nan
+    grown = longer / (nominal + math.sqrt(square))
+    length = nominal + grown
+    across = length * dy + base_sum * dx
+    if flank > 0.0:  # L dy - R dx without the nominal part, which is zero
+        across = nominal * off + grown * dy - base_sum * along
+    centres = dx * dx + dy * dy
+    ex, ey = (length * dx + flank * base_sum * dy) / centres, across / centres
+    return ex, ey, grown, math.atan2(ey, ex)
 
 
 @compiled
@@ -83,26 +95,33 @@ def wrap(value: float, period: float) -> float:
 @compiled
 def mesh_phase(
     psi: float,
-    length: float,
+    grown: float,
     phi_p: float,
     phi_g: float,
+    rolled: float,
     radius_p: float,
     radius_g: float,
     pitch: float,
     chi_p: float,
-    chi_g: float,
+    overlap: float,
     flank: float,
 ) -> tuple[float, float]:
     """Where the teeth stand on the line of action.
 
-    Every pinion flank is paired with the nearest gear flank, so whole turns and whole pitches drop out.
+    Every pinion flank is paired with the nearest gear flank, so whole turns and whole pitches drop out. What
+    the base circles have rolled off each other leaves the overlap as it is; so do the constants of both
+    flanks and L_0 but for one number. They stay out of it, as the overlap, micrometres, would else be a
+    difference of metres.
 
     Parameters
     ----------
-    psi, length : angle [rad] and length [m] of the line of action
-    phi_p, phi_g : rotation angles [rad]
+    psi, grown : angle [rad] and growth [m] of the line of action
+    phi_p, phi_g : rotation angles beyond the rolling [rad]
+    rolled : arc by which both base circles have turned in the drive sense, pinion clockwise [m]
     radius_p, radius_g, pitch : base radii and base pitch [m]
-    chi_p, chi_g : angles [rad] of the flanks' constants
+    chi_p : angle of the pinion's flank [rad]
+    overlap : what the flanks would overlap by at psi = phi_p = phi_g = 0 and L = L_0 [m], which is
+        -s (r_bp chi_p + r_bg (chi_g - pi)) - L_0
     flank : +1 drive, -1 coast
 
     Returns
@@ -111,9 +130,9 @@ def mesh_phase(
         whole pitches; overlap delta [m] of the flanks, positive when pressed
     """
     rho_p = flank * radius_p * (psi - phi_p - chi_p)
-    rho_g = flank * radius_g * (psi + math.pi - phi_g - chi_g)
+    turned = (radius_p + radius_g) * psi - radius_p * phi_p - radius_g * phi_g
     # % is exact for any number of turns; subtracting whole pitches leaves metres after 1e16 of them.
-    return rho_p % pitch, wrap(rho_p + rho_g - length, pitch)
+    return (rho_p + flank * rolled) % pitch, wrap(flank * turned - grown + overlap, pitch)
 
 
 @compiled

@@ -158,11 +158,13 @@ def machine(pair: GearPair, flags: int = 0, supports: Supports = "springs") -> M
     p = np.zeros(kn.N_PARAMETERS)
     p[kn.RADIUS_P], p[kn.RADIUS_G], p[kn.PITCH] = r_p, r_g, pitch
     p[kn.TIP_P], p[kn.TIP_G] = tip_p, tip_g
-    # At t = 0 the line of action is the x axis and one pair touches at A: rho_p = L_XA, rho_g = L_XY - L_XA.
-    p[kn.CHI_P], p[kn.CHI_G] = -l_xa / r_p, math.pi - tip_g / r_g
+    # At t = 0 the line of action is the x axis and one pair touches at A: rho_p = L_XA, rho_g = L_XY - L_XA,
+    # so chi_g = pi - rho_g/r_bg, and the flanks are neither apart nor pressed.
+    p[kn.CHI_P] = -l_xa / r_p
     # The other flank of the same tooth starts one base tooth thickness further on (see kinematics).
     p[kn.CHI_P_BACK] = p[kn.CHI_P] + math.pi + base_tooth_angle(pair, pair.pinion, r_p)
-    p[kn.CHI_G_BACK] = p[kn.CHI_G] + math.pi + base_tooth_angle(pair, pair.gear, r_g)
+    chi_g = math.pi + base_tooth_angle(pair, pair.gear, r_g) - tip_g / r_g
+    p[kn.APART_BACK] = r_p * p[kn.CHI_P_BACK] + r_g * chi_g - l_xy
     p[kn.CENTRE_PY], p[kn.CENTRE_GX], p[kn.CENTRE_GY] = -r_p, l_xy, r_g
     p[kn.L_XA], p[kn.L_XP], p[kn.L_XD], p[kn.L_XY] = l_xa, l_xp, tip_p, l_xy
     p[kn.OMEGA_P], p[kn.OMEGA_G] = omega_p, omega_p * r_p / r_g
@@ -268,19 +270,16 @@ def loaded_phase(machine: Machine, flags: int, q: FloatArray) -> Machine:
     q : (6,) static state
     """
     p = machine.parameters.copy()
-    px, py, gx, gy = p[kn.CENTRE_PX], p[kn.CENTRE_PY], p[kn.CENTRE_GX], p[kn.CENTRE_GY]
-    if flags & kn.MOVING_LINE:
-        px, py, gx, gy = px + q[0], py + q[1], gx + q[3], gy + q[4]
+    along, off = (q[3] - q[0], q[4] - q[1]) if flags & kn.MOVING_LINE else (0.0, 0.0)
     phi_p, phi_g = (q[2], q[5]) if flags & kn.ROTATION_PHASE else (0.0, 0.0)
-    _, _, length, psi = line_of_action(px, py, gx, gy, p[kn.RADIUS_P] + p[kn.RADIUS_G], DRIVE)
+    _, _, grown, psi = line_of_action(along, off, p[kn.L_XY], p[kn.RADIUS_P] + p[kn.RADIUS_G], DRIVE)
     radii = (p[kn.RADIUS_P], p[kn.RADIUS_G])
     first, beyond = mesh_phase(
-        psi, length, phi_p, phi_g, *radii, p[kn.PITCH], p[kn.CHI_P], p[kn.CHI_G], DRIVE
+        psi, grown, phi_p, phi_g, 0.0, *radii, p[kn.PITCH], p[kn.CHI_P], p[kn.APART], DRIVE
     )
-    moved = wrap(first + 0.5 * (p[kn.L_XY] - length - beyond) - p[kn.L_XA], p[kn.PITCH])
+    moved = wrap(first - 0.5 * (grown + beyond) - p[kn.L_XA], p[kn.PITCH])
     # rho_p falls and rho_g grows by what the contact has moved; the overlap stays.
     p[[kn.CHI_P, kn.CHI_P_BACK]] += moved / radii[0]
-    p[[kn.CHI_G, kn.CHI_G_BACK]] -= moved / radii[1]
     return replace(machine, parameters=p)
 
 

@@ -29,6 +29,9 @@ from multibody.run.model import ExudynModel, accelerations, stored
 #: cannot shrink enough to be accepted and the solver tries it for ever.
 _STEP_FLOOR = 1e-14
 _FIRST_STEP = 1e-4
+#: A run stands still when some hundred force evaluations advance the time by less than this, over the mesh
+#: cycle; at the call limit they advance it a thousand times as much.
+_STANDSTILL = 1e-6
 #: Most predictions in one interval. A mesh cycle takes some ten; friction that holds the teeth at zero
 #: sliding would take them without end.
 _MOST_EVENTS = 64
@@ -212,9 +215,9 @@ def _towards(
 
     ``bent``: an event has just been passed, behind which the step size is not known.
     """
-    parts, first = [], step
+    parts, first, ti = [], step, s.timeIntegration
     if (bent or stop - start <= FEW * step) and model.drive is None and model.machine.train is None:
-        m, ti = model.machine, s.timeIntegration
+        m = model.machine
         times, states = np.full(_BRIDGED + 1, start), np.empty((3, _BRIDGED + 1, 6))
         states[:, 0] = q, v, a
         rtol, atol = ti.relativeTolerance, ti.absoluteTolerance
@@ -224,9 +227,14 @@ def _towards(
         model.budget.calls += calls
         parts = [Segment(times[:rows], *states[:, :rows])]
         start, q, v = float(times[rows - 1]), states[0, rows - 1], states[1, rows - 1]
-    if start < stop:
+    atol, share = ti.absoluteTolerance, 1.0
+    while start < stop:
+        ti.absoluteTolerance = share * atol
         parts.append(_run(model, s, q, v, start, stop, first))
-        step = _middle_step(parts[-1], step)
+        step = first = _middle_step(parts[-1], step)
+        start, q, v = float(parts[-1].times[-1]), parts[-1].q[-1], parts[-1].v[-1]
+        share = 1.5 - share  # where it stands still, the other of a half and the whole
+    ti.absoluteTolerance = atol
     return Segment.joined(parts), step
 
 
@@ -257,7 +265,15 @@ def _run(
     stop: float,
     step: float,
 ) -> Segment:
+    """Run exudyn from start to stop, or to where it stands still.
+
+    Its error is scaled by atol + rtol max(x, x before), without taking the size of x. A negative coordinate
+    or rate therefore meets a place, x = -atol/rtol, where no error is small enough: a step leads across only
+    if what rounding leaves of the error is small against the step. Where it stands still the steps so far
+    hold; with another atol that place is elsewhere.
+    """
     ti, system, budget = s.timeIntegration, model.system, model.budget
+    budget.watch(start, _STANDSTILL * model.machine.period)
     ti.startTime, ti.endTime = start, stop
     ti.initialStepSize = min(step, stop - start)
     system.systemData.SetODE2Coordinates(q.tolist(), configuration=exu.ConfigurationType.Initial)
@@ -268,7 +284,9 @@ def _run(
     except Exception as error:  # exudyn wraps whatever a user function raises in its own types
         if "KeyboardInterrupt" in str(error):  # Ctrl-C lands in the user function and is wrapped as well
             raise KeyboardInterrupt from None
-        raise _failure(model, start, stop) from error
+        if budget.reason != "standstill":
+            raise _failure(model, start, stop) from error
+        finished, stop = True, start
     if not finished:
         raise _failure(model, start, stop)
     times, states_q, states_v = stored(model)

@@ -8,6 +8,7 @@ speed about each body's own centre of mass adds no inertia terms in the plane.
 
 from __future__ import annotations
 
+import math
 import struct
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -25,6 +26,14 @@ from multibody.run.drive import DriveTables, drive_torques
 from multibody.shafts.train import Train
 
 
+class _Stop(Exception):
+    """Leaves exudyn's solver from inside a user function."""
+
+
+#: Calls in which the time must advance: some 80 steps, tried or taken.
+_WATCHED = 600
+
+
 @dataclass
 class CallBudget:
     """Counts force evaluations, so that no run can hang, and remembers why one was stopped.
@@ -33,21 +42,41 @@ class CallBudget:
     ----------
     limit : most calls allowed in one interval
     calls, before : calls since the start, and those before the present interval
-    reason : empty, or the first problem met ("not finite", "too many calls")
+    reason : empty, or the last problem met ("not finite", "too many calls", "standstill")
+    look : calls at which the next look is due
+    seen, least : time of the last look, and by how much it must have advanced until the next [s]
     """
 
     limit: int
     calls: int = 0
     before: int = 0
     reason: str = ""
+    look: int = 0
+    seen: float = -math.inf
+    least: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.look = self.limit
 
     def reset(self) -> None:
         """Allow ``limit`` more calls."""
         self.before = self.calls
 
+    def watch(self, t: float, least: float) -> None:
+        """Stop also if the time t [s] advances by less than ``least`` in some hundred calls."""
+        self.reason, self.seen, self.least = "", t, least
+        self.look = min(self.calls + _WATCHED, self.before + self.limit)
 
-class _Stop(Exception):
-    """Leaves exudyn's solver from inside a user function."""
+    def check(self, t: float) -> None:
+        """The look that is due at time t [s]; raises to leave exudyn's solver."""
+        if self.calls > self.before + self.limit:
+            self.reason = "too many calls"
+        elif t - self.seen < self.least:
+            self.reason = "standstill"
+        else:
+            self.watch(t, self.least)
+            return
+        raise _Stop
 
 
 @dataclass(eq=False)
@@ -245,15 +274,14 @@ def _force_function(
         _system: exu.MainSystem, t: float, _item: int, coordinates: list[float], rates: list[float]
     ) -> list[float]:
         budget.calls += 1
+        if budget.calls > budget.look:
+            budget.check(t)
         pack(buffer, 0, *coordinates, *rates)
         if turning:  # the core wants rates beyond the nominal speeds
             v[2] += p[kn.OMEGA_P]
             v[5] -= p[kn.OMEGA_G]
         if tooth_forces(t, q, v, p, flags, table, wrench, contacts) < 0:
             budget.reason = "not finite"
-            raise _Stop
-        if budget.calls - budget.before > budget.limit:
-            budget.reason = "too many calls"
             raise _Stop
         if drive is not None:
             add_drive(drive, t, q, v, wrench)

@@ -41,10 +41,9 @@ _MOST_VIBRATIONS = 500
 #: Largest static deflection over the base pitch: the pairing of flanks is lost at half a pitch.
 _MOST_DEFLECTION = 0.25
 #: exudyn has one absolute tolerance for coordinates and rates. It is set for the rates: this share of a
-#: static deflection per mesh cycle, times rtol. With a tenth of it the step shrinks to nothing where little
-#: moves off the line of action (50/50 pair, law III, low speed and torque, rtol 1e-9); with much less, a rate
-#: that is zero when an impact starts would have to be found to the last bit. The coordinates are the rates'
-#: integrals and no less accurate for it.
+#: static deflection per mesh cycle, times rtol. With much less, a rate that is zero when an impact starts
+#: would have to be found to the last bit. The coordinates are the rates' integrals and no less accurate for
+#: it.
 _ATOL_SHARE = 0.1
 #: On shafts a hundred times that: else their fastest modes, which hardly move, set the step. At rtol 1e-8 the
 #: transmission error then errs by 1e-8 of itself, and a mesh cycle takes half the time.

@@ -29,6 +29,13 @@ def flank_points(radius: float, chi: float, flank: float, rho: FloatArray) -> Fl
     return np.asarray(radius * n + rho[:, None] * e, dtype=np.float64)
 
 
+def flank_angles(p: FloatArray, flank: float) -> tuple[float, float]:
+    """Angles chi of one side of pinion and gear [rad], from the parameters of the contact core."""
+    chi, apart = (p[kn.CHI_P], p[kn.APART]) if flank > 0.0 else (p[kn.CHI_P_BACK], p[kn.APART_BACK])
+    arc = flank * (p[kn.L_XY] + apart) + p[kn.RADIUS_P] * chi
+    return float(chi), float(math.pi - arc / p[kn.RADIUS_G])
+
+
 def gear_outline(pair: GearPair, which: str, points: int = 16) -> FloatArray:
     """Closed outline of one gear in its body's frame, counter-clockwise, (k, 2) [m].
 
@@ -44,8 +51,8 @@ def gear_outline(pair: GearPair, which: str, points: int = 16) -> FloatArray:
     g = pair.geometry
     p = machine(pair).parameters
     pinion = which == "pinion"
-    places = (kn.RADIUS_P, kn.CHI_P, kn.CHI_P_BACK) if pinion else (kn.RADIUS_G, kn.CHI_G, kn.CHI_G_BACK)
-    radius, drive, coast = (float(p[i]) for i in places)
+    radius = float(p[kn.RADIUS_P if pinion else kn.RADIUS_G])
+    drive, coast = (flank_angles(p, flank)[0 if pinion else 1] for flank in (DRIVE, COAST))
     teeth = pair.pinion.teeth if pinion else pair.gear.teeth
     tip, root = (getattr(g, f"{end}_radius_{which}") for end in ("tip", "root"))
     form = max(getattr(g, f"form_radius_{which}"), radius)

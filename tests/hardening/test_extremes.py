@@ -184,7 +184,7 @@ def test_an_answer_or_a_refusal(within, name, analysis):
 def test_the_phase_of_the_mesh_stays_within_a_pitch_after_any_number_of_turns(turns):
     # The loop over the pairs in contact adds pitches to the phase: a phase far outside would never end it.
     pitch = 9.373e-3
-    rho, _ = mesh_phase(1.2, 30e-3, 2 * math.pi * turns, 0.3, 41e-3, 41e-3, pitch, 0.1, 0.2, 1.0)
+    rho, _ = mesh_phase(1.2, 30e-3, 2 * math.pi * turns, 0.3, 0.0, 41e-3, 41e-3, pitch, 0.1, 0.2, 1.0)
     assert 0.0 <= rho <= pitch
 
 

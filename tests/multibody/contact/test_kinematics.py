@@ -24,12 +24,19 @@ def random_pose(teeth, rng, flank):
     return pose
 
 
+def line_of_action(teeth, pose, flank):
+    base_sum = teeth.radius_p + teeth.radius_g
+    along, off = pose[3:5] - pose[:2]
+    return kin.line_of_action(along, off - base_sum, 0.0, base_sum, flank)
+
+
 def phase(teeth, pose, flank):
     """Line of action, place of the first pinion flank on it, overlap."""
-    base_sum = teeth.radius_p + teeth.radius_g
-    line = kin.line_of_action(pose[0], pose[1], pose[3], pose[4], base_sum, flank)
-    radii = teeth.radius_p, teeth.radius_g, teeth.pitch
-    return line, *kin.mesh_phase(line[3], line[2], pose[2], pose[5], *radii, *teeth.chi[flank], flank)
+    line = line_of_action(teeth, pose, flank)
+    radii, (chi_p, chi_g) = (teeth.radius_p, teeth.radius_g), teeth.chi[flank]
+    apart = -flank * (radii[0] * chi_p + radii[1] * (chi_g - math.pi))
+    at = (line[3], line[2], pose[2], pose[5], 0.0)
+    return line, *kin.mesh_phase(*at, *radii, teeth.pitch, chi_p, apart, flank)
 
 
 def overlap(teeth, pose, flank):
@@ -85,7 +92,7 @@ def test_wrench_is_minus_gradient_of_overlap(teeth, rng, flank):
 def test_overlap_rate_is_time_derivative(teeth, rng, flank):
     for _ in range(20):
         pose, velocity = random_pose(teeth, rng, flank), rng.normal(size=6)
-        line = kin.line_of_action(pose[0], pose[1], pose[3], pose[4], teeth.radius_p + teeth.radius_g, flank)
+        line = line_of_action(teeth, pose, flank)
         rate = kin.overlap_rate(
             *line[:2],
             *(velocity[:2] - velocity[3:5]),
@@ -191,7 +198,7 @@ def test_drawn_flanks_touch_where_the_formulas_say(teeth, rng, flank):
 
         def drawn(rho, teeth=teeth, pose=pose, arms=arms):
             # The pinion flank in contact is the one whose string is arms[0, 0] long on the line of action.
-            _, _, _, psi = kin.line_of_action(*pose[:2], *pose[3:5], teeth.radius_p + teeth.radius_g, flank)
+            _, _, _, psi = line_of_action(teeth, pose, flank)
             chi = psi - pose[2] - flank * arms[0, 0] / teeth.radius_p
             return involute_flank(pose[:2], pose[2], teeth.radius_p, chi, flank, np.atleast_1d(rho))
 
@@ -262,4 +269,4 @@ def test_number_of_pairs_averages_to_the_contact_ratio(teeth):
 
 
 def test_overlapping_base_circles_give_nan():
-    assert math.isnan(kin.line_of_action(0.0, 0.0, 0.08, 0.0, 0.0835, kin.DRIVE)[2])
+    assert math.isnan(kin.line_of_action(0.08, -0.0835, 0.0, 0.0835, kin.DRIVE)[2])

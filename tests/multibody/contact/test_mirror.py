@@ -39,13 +39,11 @@ def make(pinion_bearing, gear_bearing, bores):
 def on_flank(machine, flank):
     """Distances of the two flanks from their tangent points at t = 0, without deviations [m]."""
     p = machine.parameters
-    chi_p, chi_g = (kn.CHI_P, kn.CHI_G) if flank > 0 else (kn.CHI_P_BACK, kn.CHI_G_BACK)
-    centres = [p[i] for i in (kn.CENTRE_PX, kn.CENTRE_PY, kn.CENTRE_GX, kn.CENTRE_GY)]
-    psi = kinematics.line_of_action(*centres, p[kn.RADIUS_P] + p[kn.RADIUS_G], flank)[3]
-    return (
-        flank * p[kn.RADIUS_P] * (psi - p[chi_p]),
-        flank * p[kn.RADIUS_G] * (psi + np.pi - p[chi_g]),
-    )
+    chi_p, apart = (kn.CHI_P, kn.APART) if flank > 0 else (kn.CHI_P_BACK, kn.APART_BACK)
+    psi = kinematics.line_of_action(0.0, 0.0, p[kn.L_XY], p[kn.RADIUS_P] + p[kn.RADIUS_G], flank)[3]
+    rho_p = flank * p[kn.RADIUS_P] * (psi - p[chi_p])
+    overlap = flank * (p[kn.RADIUS_P] + p[kn.RADIUS_G]) * psi + p[apart]
+    return rho_p, p[kn.L_XY] + overlap - rho_p
 
 
 def test_swapping_pinion_and_gear_mirrors_the_run():
