@@ -113,7 +113,10 @@ def main() -> None:
     gc.set_threshold(100_000)
     _open_streams()
     interrupt_once()  # to the end of the process: an impatient Ctrl-C prints no traceback
-    app(prog_name="spurcheck")
+    try:
+        app(prog_name="spurcheck")
+    finally:
+        gc.freeze()  # or else Python searches all of them once more before it ends
 
 
 if __name__ == "__main__":

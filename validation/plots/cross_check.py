@@ -77,5 +77,4 @@ def cross_check_figure(
     bottom.set_ylabel(f"{' and '.join(drawn)} -\nlumped [{difference_label}]")
     bottom.set(xlabel="time, last cycles of the run [mesh cycles]", xlim=(0.0, _SHOWN_CYCLES))
     legend_above(top, 1 + len(others))
-    figure.align_ylabels()
     return figure

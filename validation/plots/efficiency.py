@@ -9,11 +9,9 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from lumped import Geometry
-from validation.plots.path_of_contact import film_parameter
 from validation.plots.style import (
     BLACK,
     BLUE,
-    GREEN,
     GREY,
     RED,
     legend_above,
@@ -78,25 +76,4 @@ def sliding_power_figure(
     right.axhline(100.0, color=GREY, linewidth=0.6)
     right.set(xlim=(0.0, 1.0), xlabel="time [mesh cycles]", ylabel="instantaneous efficiency [%]")
     legend_above(right, 2)
-    return figure
-
-
-def film_figure(g: Geometry, profile: xr.Dataset, thresholds: tuple[float, ...]) -> Figure:
-    """Film thickness, and film parameter in its regimes, over the path of contact.
-
-    Parameters
-    ----------
-    g : geometry of the pair
-    profile : dataset of ``lumped.path_of_contact.friction_profile``
-    thresholds : film parameters at which the regime changes
-    """
-    figure, axes = new_figure(1, 2, height=2.8)
-    left, right = axes[0]
-    xi = 1e3 * profile["xi"].to_numpy()
-    left.plot(xi, 1e6 * profile["film_thickness"], color=GREEN)
-    left.set_ylabel("central film thickness [µm]")
-    left.set_ylim(0.0, 1.2 * 1e6 * float(profile["film_thickness"].max()))
-    film_parameter(right, profile, thresholds)
-    for ax in (left, right):
-        path_axis(ax, g, xi)
     return figure

@@ -63,7 +63,10 @@ def label_above(ax: Axes, names: Sequence[str], places: Sequence[float], weights
     moved = spread([places[i] for i in kept], gap, low, high)
     upper = ax.get_xaxis_transform()
     for index, x in zip(kept, moved, strict=True):
-        ax.plot([places[index], x], [1.0, 1.035], color=GREY, linewidth=0.6, transform=upper, clip_on=False)
+        ax.plot(
+            [places[index], x], [1.0, 1.035], color=GREY, linewidth=0.6, transform=upper, clip_on=False,
+            in_layout=False,
+        )  # fmt: skip
         ax.annotate(
             pretty(names[index]), (x, 1.04), xycoords=upper, ha="center", va="bottom", rotation=90,
             fontsize=_FONT, color=BLACK,

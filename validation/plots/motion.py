@@ -51,7 +51,6 @@ def history_figure(g: Geometry, result: xr.Dataset) -> Figure:
     bottom.axhline(0.0, color=GREY, linewidth=0.6)
     bottom.set(ylabel=f"normal load [{unit}]", xlabel="time [mesh cycles]", xlim=(x[0], x[-1]))
     legend_above(bottom, len(load))
-    figure.align_ylabels()
     return figure
 
 

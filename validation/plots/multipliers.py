@@ -73,6 +73,7 @@ def multiplier_paths_figure(paths: xr.Dataset, operating: float | None = None) -
         right.plot(parameter[outside], np.abs(track[outside]), ".", color=RED, markersize=3)
     left.set_aspect("equal", anchor="N")
     text = axis_label(paths, name)
+    figure.set_layout_engine("constrained")  # one bar below both panels
     bar = figure.colorbar(
         ScalarMappable(norm, drawn.get_cmap()), ax=[left, right], location="bottom", shrink=0.6, aspect=45
     )

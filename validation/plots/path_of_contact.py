@@ -40,13 +40,13 @@ def path_figure(g: Geometry, profile: xr.Dataset, thresholds: tuple[float, ...])
     left.plot(xi, profile["sliding_velocity"], color=RED, linestyle=DASHES[1], label="sliding")
     left.set(ylabel="velocity [m/s]", ylim=(0.0, None))
     legend_above(left, 2, letters=True)
-    film_parameter(right, profile, thresholds)
+    _film_parameter(right, profile, thresholds)
     for ax in (left, right):
         path_axis(ax, g, xi)
     return figure
 
 
-def film_parameter(ax: Axes, profile: xr.Dataset, thresholds: tuple[float, ...]) -> None:
+def _film_parameter(ax: Axes, profile: xr.Dataset, thresholds: tuple[float, ...]) -> None:
     """Film parameter over the path of contact, with its lubrication regimes shaded and named."""
     parameter = profile["film_parameter"].to_numpy()
     ax.plot(1e3 * profile["xi"], parameter, color=BLUE)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from lumped import Geometry, MeshCycle
 from lumped.typing import FloatArray
 from validation.files.output import whole_file
+from validation.plots.layout import MeasuredLayout
 
 #: Okabe and Ito's palette, distinguishable with every common colour vision deficiency.
 BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PURPLE = (
@@ -70,16 +71,20 @@ def new_figure(
     **options : of ``Figure.subplots``
     """
     with mpl.rc_context(_RC):
-        figure = Figure(figsize=(WIDTH, height), layout="constrained")
+        figure = Figure(figsize=(WIDTH, height), layout=MeasuredLayout())
         axes = figure.subplots(rows, columns, squeeze=False, **options)
     for ax in axes.flat:
+        # From the size at first, so that the layout, which changes it, has to measure the ticks only once.
+        width, tall = WIDTH * ax.get_position().width, height * ax.get_position().height
+        ax.locator_params(axis="x", nbins=max(3, min(round(2.6 * width), 9)), steps=(1, 2, 5, 10))
+        ax.locator_params(axis="y", nbins=max(3, min(round(4.0 * tall), 6)), steps=(1, 2, 5, 10))
         ax.spines[["top", "right"]].set_visible(False)
         ax.grid(True, color="#d9d9d9", linewidth=0.5)
         ax.set_axisbelow(True)
         ax.tick_params(width=0.6, length=3)
         for spine in ax.spines.values():
             spine.set_linewidth(0.6)
-            spine.set_in_layout(False)  # lies on the frame; to measure it makes all ticks anew, four times
+            spine.set_in_layout(False)  # lies on the frame; to measure it makes all ticks anew
     return figure, axes
 
 

@@ -121,7 +121,7 @@ def again(written, hostile, tmp_path_factory):
     folder = tmp_path_factory.mktemp("again")
     (folder / "earlier.json").write_text(json.dumps(earlier))
     told = []
-    draw, places = build._draw, ("answer", "path_of_contact", "film", "sliding_power")
+    draw, places = build._draw, ("answer", "path_of_contact", "motions", "sliding_power")
 
     def some(pictures, *rest):
         return defaultdict(str, draw(tuple(p for p in pictures if p.key in places), *rest))

@@ -22,7 +22,7 @@ from lumped.losses import (
 )
 from lumped.lubrication.viscosity import ZERO_CELSIUS
 from lumped.path_of_contact import contact_path
-from validation.plots.efficiency import efficiency_figure, film_figure, sliding_power_figure
+from validation.plots.efficiency import efficiency_figure, sliding_power_figure
 from validation.reporting.blocks import (
     Badge,
     Block,
@@ -129,20 +129,14 @@ def _numbers(pair: GearPair) -> tuple[FactRow, ...]:
 
 
 def _film(results: Results) -> list[Block]:
-    pair, g, profile = results.pair, results.geometry, results.profile
+    profile = results.profile
     names = str(profile["regime"].attrs["flag_meanings"]).split(", ")
     xi, regime = profile["xi"].to_numpy(), profile["regime"].to_numpy()
     # Share of the length of the path: each position stands for half the way to its neighbours.
     weight = np.gradient(xi)
     shares = [float(weight[regime == index].sum() / weight.sum()) for index in range(len(names))]
     return [
-        Picture(
-            "film",
-            "Central film thickness and film parameter over the path of contact; shaded: the regimes of the "
-            "pair's thresholds.",
-            lambda: film_figure(g, profile, tuple(pair.friction.thresholds)),
-        ),
-        facts("lubricant", *_lubricant(pair)),
+        facts("lubricant", *_lubricant(results.pair)),
         Table(
             "film_regimes",
             "Lubrication regimes along the path of contact.",

@@ -43,7 +43,8 @@ def write(results: Results) -> Content:
     blocks: list[Block] = [
         Picture(
             "path_of_contact",
-            "Velocities and film parameter over the path of contact at nominal speed. A to D: start of "
+            "Velocities and film parameter (central film thickness over composite roughness; shaded: the "
+            "regimes of the pair's thresholds) over the path of contact at nominal speed. A to D: start of "
             "contact, lowest point of single contact, pitch point P, highest point of single contact, end "
             "of contact.",
             lambda: path_figure(g, profile, pair.friction.thresholds),
