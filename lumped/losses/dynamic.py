@@ -13,7 +13,8 @@ from lumped.errors import ParameterError, refuse
 from lumped.friction import FRICTIONAL, LAWS
 from lumped.labelling import labelled_dataset
 from lumped.losses.quasi_static import quasi_static_losses
-from lumped.model.solution import steady_state
+from lumped.model.powers import balance
+from lumped.model.steady import periodic_cycle
 from lumped.schema.files import AnyPair, load_gear_pair
 
 if TYPE_CHECKING:
@@ -123,8 +124,8 @@ def losses_of_laws(pair: AnyPair, *, dynamic: bool = True) -> xr.Dataset:
             static = quasi_static_losses(pair, name, samples_per_cycle=8).attrs
             rows[name] = {key: static[key] for key in ("mesh_efficiency", "power_loss", "mean_coefficient")}
             if dynamic:
-                run = steady_state(pair.with_(friction__law=name), samples_per_cycle=8)
-                rows[name]["mesh_efficiency_dynamic"] = run.attrs["mesh_efficiency"]
+                run = periodic_cycle(pair.with_(friction__law=name), 8)
+                rows[name]["mesh_efficiency_dynamic"] = balance(run)["mesh_efficiency"]
         except ParameterError as error:
             left_out.append(f"{LAWS[name].title}: {error}")
     units = {"power_loss": "W"}

@@ -61,7 +61,7 @@ CALLS = {
         {"pair": PAIR, "fidelity": "linear"},
         "samples_per_cycle fidelity effects rtol friction_velocity",
     ),
-    multibody.monodromy: ({"pair": PAIR}, "fidelity effects"),
+    multibody.monodromy: ({"pair": PAIR}, "fidelity effects rtol"),
     multibody.speed_sweep: (
         {"pair": PAIR, "speeds_rpm": [4000.0]},
         "speeds_rpm settle cycles samples_per_cycle fidelity effects rtol",

@@ -111,12 +111,12 @@ def _closure(pair: GearPair) -> Refinement:
 def _multibody(pair: GearPair) -> Refinement:
     def dte(rtol: float) -> FloatArray:
         run = multibody.simulate(
-            pair, _CYCLES, samples_per_cycle=_SAMPLES, rtol=rtol, initial="periodic", friction_velocity=None
+            pair, 1, samples_per_cycle=_SAMPLES, rtol=rtol, initial="periodic", friction_velocity=None
         )
         return np.asarray(run["dte"].to_numpy(), dtype=np.float64)
 
     levels = _over_tolerance(_against(dte, 1e-10), 1e-5, 1e-6, 1e-8)
-    return refinement("multibody", levels, cycles=_CYCLES)
+    return refinement("multibody", levels)
 
 
 def _monodromy(pair: GearPair) -> Refinement:

@@ -22,6 +22,8 @@ from validation.verification.checks import Check, check
 
 #: Rows of q, x_p, x_g and of y_p, y_g, with their rates, among the ten relative states.
 _FEEDBACK, _OLOA = [0, 1, 2, 5, 6, 7], [3, 4, 8, 9]
+#: Tolerance of the runs: a hundredth of the limits and less.
+_RTOL = 1e-8
 #: Places in each piece of the fitted gains.
 _PLACES = 25
 
@@ -57,7 +59,7 @@ def stability_routes(pair: GearPair) -> StabilityRoutes:
     ------
     NumericalError : the flow map cannot be computed
     """
-    flow = multibody.monodromy(pair, fidelity="linear")
+    flow = multibody.monodromy(pair, fidelity="linear", rtol=_RTOL)
     general = monodromy(gear_pair_system(pair, "relative"), rtol=1e-9).matrix
     period = pair.geometry.mesh_period
     rates = np.concatenate([np.ones(5), np.full(5, period / (2.0 * np.pi))])
