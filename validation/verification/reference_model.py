@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 #: Mesh cycles of the third build.
-_CYCLES = 3
+_CYCLES = 2
 
 
 @dataclass(frozen=True, eq=False)
