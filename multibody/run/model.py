@@ -45,6 +45,7 @@ class CallBudget:
     reason : empty, or the last problem met ("not finite", "too many calls", "standstill")
     look : calls at which the next look is due
     seen, least : time of the last look, and by how much it must have advanced until the next [s]
+    last : time of the last call, or NaN where its force may not hold any more [s]
     """
 
     limit: int
@@ -54,6 +55,7 @@ class CallBudget:
     look: int = 0
     seen: float = -math.inf
     least: float = 0.0
+    last: float = math.nan
 
     def __post_init__(self) -> None:
         self.look = self.limit
@@ -64,7 +66,7 @@ class CallBudget:
 
     def watch(self, t: float, least: float) -> None:
         """Stop also if the time t [s] advances by less than ``least`` in some hundred calls."""
-        self.reason, self.seen, self.least = "", t, least
+        self.reason, self.seen, self.least, self.last = "", t, least, math.nan
         self.look = min(self.calls + _WATCHED, self.before + self.limit)
 
     def check(self, t: float) -> None:
@@ -269,13 +271,20 @@ def _force_function(
     contacts = np.empty((2 * MAX_PAIRS, kn.N_RECORD))
     table, pack = machine.table, struct.Struct("12d").pack_into
     as_list = wrench.tolist
+    last_coordinates: list[float] = []
+    last_rates, found = last_coordinates, last_coordinates
 
     def forces(
         _system: exu.MainSystem, t: float, _item: int, coordinates: list[float], rates: list[float]
     ) -> list[float]:
+        nonlocal last_coordinates, last_rates, found
         budget.calls += 1
         if budget.calls > budget.look:
             budget.check(t)
+        # The last stage of a step is the first of the next.
+        if t == budget.last and coordinates == last_coordinates and rates == last_rates:
+            return found
+        budget.last, last_coordinates, last_rates = t, coordinates, rates
         pack(buffer, 0, *coordinates, *rates)
         if turning:  # the core wants rates beyond the nominal speeds
             v[2] += p[kn.OMEGA_P]
@@ -285,7 +294,8 @@ def _force_function(
             raise _Stop
         if drive is not None:
             add_drive(drive, t, q, v, wrench)
-        return as_list()
+        found = as_list()
+        return found
 
     return forces
 

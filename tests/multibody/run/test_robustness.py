@@ -19,7 +19,7 @@ import multibody.run.integration
 from lumped.model.averaged import modes
 from multibody.contact import kernels as kn
 from multibody.contact.machine import machine
-from multibody.run.model import build
+from multibody.run.model import CallBudget, _force_function, build
 from multibody.run.setup import prepare
 
 PAIR = lumped.load_gear_pair("nasa_28_28").with_(mesh__relief="ignored")
@@ -78,6 +78,20 @@ def test_a_run_goes_on_where_exudyn_allows_no_error():
     setup = prepare(pair, rtol=1e-10)
     setup.run(np.array([0.0, 0.48]) * setup.machine.period, lambda *_: None)
     assert setup.model.budget.calls < 100_000  # 75,000; the limit is 1.8 million
+
+
+def test_a_repeated_state_is_evaluated_again_in_a_new_run():
+    """The last stage of a step is the first of the next; a new run may have other parameters."""
+    setup, budget = prepare(PAIR, fidelity="linear"), CallBudget(100)
+    p, t = setup.model.parameters, 0.3 * setup.machine.period
+    forces = _force_function(setup.machine, setup.model.flags, p, budget, None, False)
+    state = setup.q.tolist(), [0.1] * 6
+    before = forces(None, t, 0, *state)
+    p[kn.DAMPING] *= 2.0
+    assert forces(None, t, 0, *state) == before
+    budget.watch(t, 0.0)
+    assert forces(None, t, 0, *state) != before
+    assert budget.calls == 3
 
 
 @pytest.mark.parametrize("fidelity", ["linear", "exact"])
