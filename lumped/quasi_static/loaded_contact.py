@@ -26,6 +26,7 @@ from lumped.quasi_static.intervals import positive_intervals, restricted
 from lumped.quasi_static.kernels import approaches, gaps_at, middle_loads
 from lumped.quasi_static.load_sharing import coupled
 from lumped.quasi_static.tooth_error import relief_error, relief_starts
+from lumped.schema.contact import Friction
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
 
@@ -35,8 +36,8 @@ _REACH = 0.4
 _SAME = 1e-9
 #: Fit errors over the largest value; lengths are positions' differences, known to some 1e-17 m.
 _TOLERANCE, _LENGTH = 1e-10, 2e-17
-#: Speed of the pair by which contacts are kept [rpm].
-_ANY_SPEED = 1000.0
+#: Speed [rad/s] and friction of the pairs by which contacts are kept: any.
+_SPEED, _FRICTION = 100.0, Friction.model_construct(law="none")
 #: Below this share of the mean load Hertz's contact is held linear, see ``ContactLaw``.
 LEAST_LOAD = 1e-3
 #: A ramp ends without stiffness; so much of the largest one is left, below the fit error of every law.
@@ -238,8 +239,17 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
     ParameterError : a relief starts outside the active flank
     NumericalError : at some position no pair can carry the load, or contact reaches too far beyond the tips
     """
-    # The static mesh knows no speed: a sweep over speed computes it once.
-    return _loaded_contact(pair.with_(operating__pinion_speed=_ANY_SPEED))
+    # The static mesh knows neither speed nor friction nor dampers: sweeps and comparisons of laws share one.
+    fields = {name: getattr(pair, name) for name in GearPair.model_fields}
+    fields |= {
+        "name": "",
+        "description": "",
+        "sources": (),
+        "friction": _FRICTION,
+        "mesh": pair.mesh.model_copy(update={"damping_ratio": 0.0}),
+        "operating": pair.operating.model_copy(update={"pinion_speed": _SPEED}),
+    }
+    return _loaded_contact(GearPair.model_construct(**fields))
 
 
 @lru_cache(maxsize=32)
