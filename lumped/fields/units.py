@@ -9,7 +9,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import Decimal, DivisionByZero, InvalidOperation, Overflow
-from functools import cache
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -265,6 +265,11 @@ class Quantity(Read):
         )
         return [(sign, key, bound, holds) for sign, key, bound, holds in every if bound is not None]
 
+    @cached_property
+    def _limits(self) -> list[tuple[Callable[[float, float], bool], float]]:
+        """Comparison and bound in SI, converted like values: a value at a bound equals it bit for bit."""
+        return [(holds, to_si(bound, self.unit)) for _, _, bound, holds in self._bounds]
+
     def parse(self, value: object) -> float | None:
         """Read a number, text with a unit or an `SIValue` into SI, or raise pydantic's error."""
         if value is None and self.optional:
@@ -278,13 +283,11 @@ class Quantity(Read):
         except (ValueError, OverflowError) as error:
             action = str(error)
             raise self._refusal(shown(repr(value)), action[:1].upper() + action[1:] + ".") from None
-        bare = not isinstance(value, (str, SIValue))
-        text = f"{value!r} {self.unit}".removesuffix(" 1") if bare else shown(value)
-        if not math.isfinite(si):
-            raise self._refusal(text, "Give a finite number.")
-        # Bounds are converted like values, so a value at a bound equals it bit for bit.
-        if not all(holds(si, to_si(bound, self.unit)) for _, _, bound, holds in self._bounds):
-            raise self._refusal(text, self.action)
+        finite = math.isfinite(si)
+        if not finite or not all(holds(si, limit) for holds, limit in self._limits):
+            bare = not isinstance(value, (str, SIValue))
+            text = f"{value!r} {self.unit}".removesuffix(" 1") if bare else shown(value)
+            raise self._refusal(text, self.action if finite else "Give a finite number.")
         return si if self.unit == "1" else SIValue(si, UNITS[self.unit][0])
 
     def json_schema(self) -> JsonSchemaValue:
