@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Circle, FancyArrowPatch, Rectangle
+from matplotlib.patches import Circle, FancyArrowPatch, Polygon, Rectangle
 
 from lumped.errors import refuse
 from lumped.schema.pair import GearPair
@@ -78,7 +78,9 @@ def _draw(
         for outline, angle, centre, face, edge in zip(outlines, angles, centres, _FACES, _EDGES, strict=True):
             c, s = np.cos(angle), np.sin(angle)
             xy = 1e3 * (outline @ np.array([[c, s], [-s, c]]) + centre)
-            axes.fill(xy[:, 0], xy[:, 1], facecolor=face, edgecolor=edge, linewidth=0.8)
+            # Unlike axes.fill, without a long search for extremes of curves between the corners.
+            axes.add_artist(Polygon(xy, facecolor=face, edgecolor=edge, linewidth=0.8))
+            axes.update_datalim(xy)
         axes.axline((0.0, 0.0), slope=0.0, **_LINE)
         axes.set_aspect("equal")
         axes.set_xlabel("x along the line of action [mm]")

@@ -52,6 +52,11 @@ _RC: Any = {
     "legend.fontsize": 8.5,
     "axes.titlesize": 9.0,
     "mathtext.fontset": "dejavusans",
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
     # Text as paths and ids from a fixed salt: the same bytes everywhere, and no font needed to read them.
     "svg.fonttype": "path",
     "svg.hashsalt": "spurcheck",
@@ -78,12 +83,8 @@ def new_figure(
         width, tall = WIDTH * ax.get_position().width, height * ax.get_position().height
         ax.locator_params(axis="x", nbins=max(3, min(round(2.6 * width), 9)), steps=(1, 2, 5, 10))
         ax.locator_params(axis="y", nbins=max(3, min(round(4.0 * tall), 6)), steps=(1, 2, 5, 10))
-        ax.spines[["top", "right"]].set_visible(False)
-        ax.grid(True, color="#d9d9d9", linewidth=0.5)
-        ax.set_axisbelow(True)
-        ax.tick_params(width=0.6, length=3)
+        ax.tick_params(width=0.6, length=3, grid_color="#d9d9d9", grid_linewidth=0.5)
         for spine in ax.spines.values():
-            spine.set_linewidth(0.6)
             spine.set_in_layout(False)  # lies on the frame; to measure it makes all ticks anew
     return figure, axes
 
