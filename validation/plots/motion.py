@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from lumped import Geometry, mesh_cycle
@@ -71,7 +68,12 @@ def transmission_error_figure(pair: GearPair, g: Geometry, motion: xr.Dataset, o
     left.axhline(float(dte.mean()) / factor, color=GREY, linewidth=0.8, linestyle=":")
     left.set(xlim=(0.0, 1.0), xlabel="time [mesh cycles]", ylabel=f"dynamic transmission error [{unit}]")
     mark_switches(left, switches_in_cycles(mesh_cycle(pair)))
-    _bars(right, {"": orders}, 0.6, "amplitude")
+    amplitude = orders.amplitude[1:]
+    factor, unit = scaled(amplitude, unit="m")
+    right.bar(orders.order[1:], amplitude / factor, width=0.6, color=BLUE)
+    right.set_xticks(orders.order[1:])
+    right.set(xlabel="mesh order [-]", ylabel=f"amplitude [{unit}]")
+    right.grid(False, axis="x")
     return figure
 
 
@@ -103,9 +105,6 @@ def tooth_forces_figure(pair: GearPair, g: Geometry, motion: xr.Dataset) -> Figu
     return figure
 
 
-_PANELS = (("x", "along the line of action"), ("y", "off the line of action"))
-
-
 def motions_figure(g: Geometry, motion: xr.Dataset) -> Figure:
     """Displacements of both gears about their means, along (LOA) and off (OLOA) the line of action.
 
@@ -115,8 +114,9 @@ def motions_figure(g: Geometry, motion: xr.Dataset) -> Figure:
     motion : dataset of ``lumped.steady_state``
     """
     figure, axes = new_figure(1, 2, height=2.7)
+    panels = (("x", "along the line of action"), ("y", "off the line of action"))
     x = mesh_cycles(motion, g)
-    for ax, (axis, label) in zip(axes[0], _PANELS, strict=True):
+    for ax, (axis, label) in zip(axes[0], panels, strict=True):
         curves = {gear: motion[f"{axis}_{gear}"].to_numpy() for gear in "pg"}
         moving = {gear: values - values.mean() for gear, values in curves.items()}
         factor, unit = scaled(*moving.values(), unit="m")
@@ -127,29 +127,3 @@ def motions_figure(g: Geometry, motion: xr.Dataset) -> Figure:
         ax.set(xlim=(0.0, 1.0), xlabel="time [mesh cycles]", ylabel=f"{label}\nabout the mean [{unit}]")
         legend(ax, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=1)
     return figure
-
-
-def orders_figure(orders: Mapping[str, MeshOrders]) -> Figure:
-    """Amplitudes of the displacements by mesh order.
-
-    Parameters
-    ----------
-    orders : mesh orders of x_p, x_g, y_p, y_g
-    """
-    figure, axes = new_figure(1, 2, height=2.5)
-    for ax, (axis, label) in zip(axes[0], _PANELS, strict=True):
-        chosen = {gear: orders[f"{axis}_{gear[0]}"] for gear in ("pinion", "gear")}
-        _bars(ax, chosen, 0.38, f"{label}\namplitude")
-    legend_above(axes[0, 0], 2)
-    return figure
-
-
-def _bars(ax: Axes, found: Mapping[str, MeshOrders], width: float, label: str) -> None:
-    """Amplitudes by mesh order, side by side for each name."""
-    factor, unit = scaled(*(one.amplitude[1:] for one in found.values()), unit="m")
-    for place, ((name, one), colour) in enumerate(zip(found.items(), (BLUE, RED), strict=False)):
-        shift = 0.4 * place - 0.2 * (len(found) - 1)
-        ax.bar(one.order[1:] + shift, one.amplitude[1:] / factor, width=width, color=colour, label=name)
-        ax.set_xticks(np.asarray(one.order[1:]))
-    ax.set(xlabel="mesh order [-]", ylabel=f"{label} [{unit}]")
-    ax.grid(False, axis="x")

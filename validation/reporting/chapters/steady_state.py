@@ -13,7 +13,6 @@ from lumped.model.steady import UNSTABLE
 from validation.cross_check.metrics import mesh_orders
 from validation.plots.motion import (
     motions_figure,
-    orders_figure,
     tooth_forces_figure,
     transmission_error_figure,
 )
@@ -79,7 +78,7 @@ def write(results: Results) -> Content:
         {"order": "order", **{name: VARIABLES[name][2] for name in names}},
         tuple(
             (order, *(Quantity(float(found[name].amplitude[order]), "m") for name in names))
-            for order in range(1, 7)
+            for order in range(1, _ORDERS + 1)
         ),
     )
     blocks: list[Block] = [
@@ -102,7 +101,6 @@ def write(results: Results) -> Content:
             "Motion of the gear centres along (left) and off (right) the line of action.",
             lambda: motions_figure(g, motion),
         ),
-        Picture("motions_by_order", "The same motions by mesh order.", lambda: orders_figure(found)),
         orders,
         *_over_speed(results),
     ]
