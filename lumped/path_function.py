@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TypeVar
 
@@ -29,6 +30,9 @@ Array = TypeVar("Array", NDArray[np.float64], NDArray[np.longdouble])
 #: rounding errors, 2.5e-13 at degree 8, so the fit stays below its tolerances.
 FIT_DEGREE = 8
 _MAX_CUTS = 44
+#: A function is smooth at a break if the polynomial before it holds beyond, for this share of the shorter
+#: piece and to so much of the largest value.
+_BEYOND, _SMOOTH = 0.25, 1e-6
 #: Pieces of this share of the interval and longer err by the tolerance at most, see ``PathFunction.fit``.
 _FULL_LENGTH = 0.125
 #: Cutting without end means rounding noise or an undeclared kink; a table of 1000 rows has 1000 pieces.
@@ -92,10 +96,25 @@ class PathFunction:
         at = np.asarray(xi, dtype=float)
         return _evaluated(self.breaks, self.coefficients, at.ravel()).reshape(at.shape)
 
-    def derivative(self) -> PathFunction:
+    @cached_property
+    def slope(self) -> PathFunction:
         """The piecewise derivative df/dxi."""
         poly = PPoly(self.coefficients, self.breaks).derivative()
         return PathFunction(self.breaks, poly.c, self.switches)
+
+    @cached_property
+    def bends(self) -> FloatArray:
+        """Inner breaks behind which the function does not go on as the polynomial before them says [m].
+
+        Switches, and the knots of a table. At the other breaks, which a fit has cut, it is smooth.
+        """
+        pieces = np.diff(self.breaks)
+        beyond = _BEYOND * np.minimum(pieces[:-1], pieces[1:])
+        before = shifted(self.coefficients[:, :-1], pieces[:-1])
+        powers = np.arange(len(before) - 1, -1, -1)[:, None]
+        off = np.sum(np.abs(before - self.coefficients[:, 1:]) * beyond**powers, axis=0)
+        found: FloatArray = self.breaks[1:-1][off > _SMOOTH * np.abs(self.coefficients[-1]).max()]
+        return found
 
     def mean(self) -> float:
         """Mean value over the interval."""

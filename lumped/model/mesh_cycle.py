@@ -122,6 +122,13 @@ class MeshCycle:
         return np.asarray(np.unique(np.mod((positions - g.L_XA) / g.base_pitch, 1.0)), dtype=np.float64)
 
     @cached_property
+    def bends(self) -> FloatArray:
+        """Times strictly inside (0, T_m) at which a law of a pair is not smooth, switches included [s]."""
+        e = self.elements
+        bends = [f.bends for f in (e.stiffness, e.damping, e.friction, e.error)]
+        return np.union1d(self.switch_times, self._times(bends))
+
+    @cached_property
     def breaks(self) -> FloatArray:
         """Ends of the pieces in which every law of every pair is one polynomial, 0 and T_m included [s].
 
@@ -175,7 +182,7 @@ class MeshCycle:
         speed, inside = g.omega_pinion * g.base_radius_pinion, _INSIDE * g.base_pitch
         low, high = speed * self.edges[index] + inside, speed * self.edges[index + 1] - inside
         shift = np.clip(speed * tau, low, high)
-        contact, e = self._contact[:, index], self.elements
+        contact, e = np.take(self._contact, index, axis=1), self.elements
         laws = (e.stiffness, e.damping, e.friction, e.error, e.error_slope)
         tables = [part for law in laws for part in (law.breaks, law.coefficients)]
         k, c, mu, error, slope = laws_at(self.offsets, shift, contact, *tables)

@@ -6,7 +6,6 @@ Sources: Abbas Al-Zubaidi 2008, eqs. 3 and 4; damping c_i = 2 zeta sqrt(k_i m_e)
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -48,10 +47,10 @@ class MeshElements:
     error: PathFunction
     gap: PathFunction | None = None
 
-    @cached_property
+    @property
     def error_slope(self) -> PathFunction:
         """E' over xi, that the damper sees: of the gap itself where e is the tangent's [-]."""
-        return (self.error if self.gap is None else self.gap).derivative()
+        return (self.error if self.gap is None else self.gap).slope
 
 
 def mesh_elements(pair: AnyPair) -> MeshElements:

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import one_of
 from lumped.model.equations import COORDINATES, Structure, structure
-from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
+from lumped.model.mesh_cycle import MeshCycle, PairState, mesh_cycle
 from lumped.model.shafted import ShaftedPair, shafted_pair
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
@@ -35,11 +35,13 @@ class MeshGain:
     stiffness : acceleration per unit dynamic transmission error [1/s^2] (rotations: [rad/(m s^2)])
     damping : acceleration per unit rate of it
     error : acceleration by the unloaded tooth error
+    pairs : the tooth pairs that it is of
     """
 
     stiffness: FloatArray
     damping: FloatArray
     error: FloatArray
+    pairs: PairState
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +135,9 @@ class LTVSystem:
             return loads @ self.per_load
 
         error = pairs.stiffness * pairs.error + pairs.damping * pairs.error_rate
-        return MeshGain(acceleration(pairs.stiffness), acceleration(pairs.damping), -acceleration(error))
+        return MeshGain(
+            acceleration(pairs.stiffness), acceleration(pairs.damping), -acceleration(error), pairs
+        )
 
     def matrices(self, time: ArrayLike) -> FloatArray:
         """A at times (k,) [s] -> (k, 2m, 2m)."""

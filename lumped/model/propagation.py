@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -9,8 +10,8 @@ import numpy as np
 
 from lumped.errors import NumericalError
 from lumped.gauss_legendre import gauss_tableau
-from lumped.model.kernels import chained, gauss_steps, states_along
 from lumped.model.periodic_system import LTVSystem
+from lumped.model.step_kernels import chained, free_steps, gauss_steps, states_along
 from lumped.typing import FloatArray, IntArray
 
 #: Largest angle per step of the fastest frequency [rad]. With 4 stages (order 8) the local error constant is
@@ -21,10 +22,28 @@ STAGES = 4
 _ROUNDING = 1e-15
 #: A step passes over joints of pieces that are no shorter than this share of it.
 _SHORT_PIECE = 0.5
-#: Steps solved together, and most intervals of a cycle of which every step is one: bounds on memory.
-_BLOCK, _MOST_INTERVALS = 1024, 16384
+#: Bounds on memory: steps solved together, most that are kept, and most intervals where every step is one.
+_BLOCK, _MOST_KEPT, _MOST_INTERVALS = 1024, 4096, 16384
 #: Most steps of a mesh cycle: some ten seconds of work.
 _MAX_STEPS = 1_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Steps:
+    """Consecutive Gauss steps with s stages.
+
+    Attributes
+    ----------
+    length : (k,) [s]
+    maps : (k, n, n + columns) transition, then forced for each forcing
+    inside : (k, 2, s, n + columns) maps to the dynamic transmission error and its rate at the stages
+    teeth : (4, pairs, k, s) k, c, e and e' there, as in ``PairState``
+    """
+
+    length: FloatArray
+    maps: FloatArray
+    inside: FloatArray
+    teeth: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,11 +56,13 @@ class StepMaps:
     times : (intervals + 1,) ends of the intervals, 0 and the period included [s]
     maps : (intervals, n, n + columns) transition, then forced for each forcing: the own one and one per unit
         of each extra column
+    steps : all steps in blocks; computed anew where they would fill the memory
     """
 
     edges: FloatArray
     times: FloatArray
     maps: FloatArray
+    steps: Callable[[], Iterable[Steps]]
 
     def over_all(self) -> tuple[FloatArray, FloatArray]:
         """Map over all steps: transition (n, n) and forced (n, columns)."""
@@ -53,6 +74,24 @@ class StepMaps:
         """States (intervals + 1, n) at ``times`` from x(0) and the weight (columns,) of each forcing."""
         found: FloatArray = states_along(self.maps, initial, weights)
         return found
+
+    def unpaid(self, initial: FloatArray, weights: FloatArray) -> float:
+        """Mean power that losses take beyond what torques bring [W], of the periodic motion from x(0).
+
+        The tooth forces N_i do the work N_i delta' on the bodies, with both gears' rigid rotation none; the
+        dampers take c_i (delta' - e_i')^2. The rest, -k_i (delta - e_i) delta' - c_i (delta' - e_i') e_i', is
+        of no energy: in the mean all other powers cancel.
+        """
+        state, work = initial, 0.0
+        for steps in self.steps():
+            states = states_along(steps.maps, state, weights)
+            held = np.concatenate([states[:-1], np.tile(weights, (len(states) - 1, 1))], axis=1)
+            dte, rate = np.einsum("jdsi,ji->djs", steps.inside, held, order="C")
+            k, c, e, e_rate = steps.teeth
+            power = (k * (dte - e)).sum(axis=0) * rate + (c * (rate - e_rate) * e_rate).sum(axis=0)
+            work += float(steps.length @ power @ gauss_tableau(power.shape[1])[1])
+            state = states[-1]
+        return -work / float(self.times[-1])
 
 
 def _merged(maps: FloatArray, group: IntArray) -> FloatArray:
@@ -99,25 +138,31 @@ def step_maps(
     NumericalError : the result is not finite
     """
     grid = _step_grid(system, np.empty(0) if outputs is None else outputs, every_step, step_angle)
-    parts, groups = [], []
-    for low in range(0, grid.length.size, _BLOCK):
-        block = slice(low, low + _BLOCK)
-        maps = _steps(system, grid.segment[block], grid.edges[:-1][block], grid.length[block], extra, stages)
-        group = grid.interval[block]
-        parts.append(_merged(maps, group - group[0]))
+
+    def steps() -> Iterator[Steps]:
+        for low in range(0, grid.length.size, _BLOCK):
+            at = slice(low, low + _BLOCK)
+            yield _steps(system, grid.segment[at], grid.edges[:-1][at], grid.length[at], extra, stages)
+
+    kept = list(steps()) if grid.length.size <= _MOST_KEPT else None
+    parts, groups, low = [], [], 0
+    for block in kept or steps():
+        group = grid.interval[low : low + _BLOCK]
+        parts.append(_merged(block.maps, group - group[0]))
         groups.append(np.unique(group))
+        low += _BLOCK
     maps = _merged(np.concatenate(parts), np.concatenate(groups)) if len(parts) > 1 else parts[0]
     if not np.isfinite(maps).all():
         raise NumericalError(
             "The mesh cycle could not be integrated: check stiffness and inertia for extremes."
         )
-    return StepMaps(grid.edges, grid.times, maps)
+    return StepMaps(grid.edges, grid.times, maps, steps if kept is None else lambda: kept)
 
 
 def _steps(
     system: LTVSystem, segment: IntArray, start: FloatArray, h: FloatArray, extra: FloatArray, stages: int
-) -> FloatArray:
-    """Maps (k, 2m, 2m + columns) of Gauss steps of lengths h (k,) from the times ``start``.
+) -> Steps:
+    """Gauss steps of lengths h (k,) from the times ``start``.
 
     In x = (z, v) with z' = v only the stage accelerations W_i are unknown. With the constant part (K, C) of
     A, the deflections delta = u.z and delta' = u.v at the stages and the mesh's feedback (g_k, g_c, g_0),
@@ -139,8 +184,10 @@ def _steps(
     times = (start[:, None] + h[:, None] * gauss[2]).ravel()
     gain = system.gain(times, np.repeat(segment, stages))
     gains = (values.reshape(k, stages, m) for values in (gain.stiffness, gain.damping, gain.error))
-    maps: FloatArray = gauss_steps(which, *fixed, *gains)
-    return maps
+    maps, inside = gauss_steps(which, *fixed, *gains)
+    pairs = gain.pairs
+    teeth = np.stack([pairs.stiffness, pairs.damping, pairs.error, pairs.error_rate])
+    return Steps(h, maps, inside, teeth.reshape(*teeth.shape[:2], k, stages))
 
 
 def _without_mesh(
@@ -156,47 +203,25 @@ def _without_mesh(
     n_i (k, s, s + 2m, m); stage deflections, then their rates, by the start (k, 2s, columns) and by p
     (k, 2s, s)
     """
-    a, b, c = gauss
-    s, m, k, u = c.size, system.size // 2, h.size, system.deflection
-    if _couples(system.constant[m:, :m]) or _couples(system.constant[m:, m:]):
+    m = system.size // 2
+    stiffness, damping = system.constant[m:, :m], system.constant[m:, m:]
+    if _couples(stiffness) or _couples(damping):
         return _coupled_without_mesh(system, h, extra, gauss)
-    supports = np.stack([np.diag(system.constant[m:, :m]), np.diag(system.constant[m:, m:])])
-    # Few differ: rotations have none, and a bearing is alike along x and y.
-    (stiffness, damping), alike = np.unique(supports, axis=1, return_inverse=True)
     forces = np.column_stack([system.torque_pinion * system.pinion_torque, extra])[m:]
-    h = h[:, None, None, None]
-    left = np.eye(s) - h**2 * stiffness[:, None, None] * (a @ a) - h * damping[:, None, None] * a
-    inverse = np.linalg.inv(left)
-    # Accelerations at the stages by z and by v at the start, and by a unit force
-    right = np.zeros((k, stiffness.size, s, 3))
-    right[..., 0] = stiffness[:, None]
-    right[..., 1] = h[..., 0] * stiffness[:, None] * c + damping[:, None]
-    right[..., 2] = 1.0
-    accelerations = (inverse @ right)[:, alike]  # (k, m, s, 3)
-    inverse = inverse[:, alike]  # (k, m, s, s)
-    to_end = np.stack([h[:, 0, 0] ** 2 * (b @ a), h[:, 0, 0] * b], axis=1)  # (k, 2, s)
-    ends = np.einsum("kds,kmsx->kdmx", to_end, accelerations)
-    h = h[..., 0]
-    diagonal = np.arange(m)
-    end = np.zeros((k, 2, m, 2 * m + forces.shape[1]))
-    end[:, :, diagonal, diagonal] = ends[..., 0]
-    end[:, :, diagonal, m + diagonal] = ends[..., 1]
-    end[..., 2 * m :] = ends[..., 2, None] * forces
-    end = end.reshape(k, 2 * m, -1)
-    end[:, :, : 2 * m] += np.eye(2 * m)
-    end[:, :m, m : 2 * m] += h * np.eye(m)
-    moved = (u[:, None, None] * accelerations).swapaxes(1, 2)  # (k, s, m, 3)
-    p = np.concatenate([moved[..., 0], moved[..., 1], moved[..., 2] @ forces], axis=2)
-    start = np.zeros((k, 2 * s, p.shape[2]))
-    start[:, :s, :m] = start[:, s:, m : 2 * m] = u
-    start[:, :s, m : 2 * m] = h * np.multiply.outer(c, u)
-    by_feedback = np.zeros((k, s, s + 2 * m, m))
-    by_feedback[:, :, :s] = (u[:, None, None] * inverse).transpose(0, 3, 2, 1)
-    moves = to_end[:, None] @ inverse  # (k, m, 2, s)
-    by_feedback[:, :, s + diagonal, diagonal] = moves[:, :, 0].swapaxes(1, 2)
-    by_feedback[:, :, s + m + diagonal, diagonal] = moves[:, :, 1].swapaxes(1, 2)
-    by_p = np.concatenate([h**2 * (a @ a), h * a], axis=1)
-    return end, p, by_feedback, start, by_p
+    a, b, c = gauss
+    found: tuple[FloatArray, ...] = free_steps(
+        h,
+        np.diag(stiffness).copy(),
+        np.diag(damping).copy(),
+        system.deflection,
+        forces,
+        a,
+        a @ a,
+        b,
+        b @ a,
+        c,
+    )
+    return found
 
 
 def _couples(block: FloatArray) -> bool:
@@ -248,10 +273,11 @@ class _StepGrid:
 
 
 def _step_grid(system: LTVSystem, outputs: FloatArray, every_step: bool, step_angle: float) -> _StepGrid:
-    """Steps that end at every switch and output, and wherever the pieces of a law are short."""
+    """Steps that end at outputs, wherever a law is not smooth, and wherever its pieces are short."""
     period, switches, breaks = system.period, system.cycle.edges, system.cycle.breaks
+    marks = np.union1d(switches, system.cycle.bends)
     largest = step_angle / fastest_frequency(system)
-    marks = _distinct(np.union1d(switches, outputs), system)
+    marks = _distinct(np.union1d(marks, outputs), system)
     # Joints join pieces of one smooth law, which varies fast where its pieces are short.
     pieces, gaps = np.diff(breaks), np.diff(marks)
     at = np.clip(np.searchsorted(marks, breaks[1:-1], side="right") - 1, 0, gaps.size - 1)

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lumped.gear_geometry.geometry import Geometry
 from lumped.labelling import Variable, labelled_dataset
 from lumped.model.equations import COORDINATES
 from lumped.model.periodic_system import LTVSystem
@@ -186,7 +185,12 @@ def response(
     if normal is None:
         normal = pairs.stiffness * (dte - pairs.error) + pairs.damping * (dte_dot - pairs.error_rate)
     friction = pairs.friction * normal
-    sliding = sliding_velocity(g, pairs.position, rates)
+    arm_g = g.L_XY - pairs.position
+    sliding = (
+        (g.omega_pinion + rates[:, 0]) * pairs.position
+        - (g.omega_gear + rates[:, 1]) * arm_g
+        - (rates[:, 4] - rates[:, 5])
+    )
     if system.shafts is None:
         bearing = -(s.stiffness * z + s.damping * rates)
     else:
@@ -205,12 +209,6 @@ def response(
         "friction_force": friction,
         "sliding_velocity": np.where(pairs.contact, sliding, 0.0),
         "friction_power": np.where(pairs.contact, -friction * sliding, 0.0),
-        "friction_power_nominal": -friction * sliding_velocity(g, pairs.position, np.zeros((1, 6))),
+        "friction_power_nominal": -friction * (g.omega_pinion * pairs.position - g.omega_gear * arm_g),
     }
     return values
-
-
-def sliding_velocity(geometry: Geometry, position: FloatArray, rates: FloatArray) -> FloatArray:
-    """Sliding velocity of pairs at xi (pairs, k) [m], of gears whose coordinates have rates (k, 6) [m/s]."""
-    pinion, gear = geometry.omega_pinion + rates[:, 0], geometry.omega_gear + rates[:, 1]
-    return pinion * position - gear * (geometry.L_XY - position) - (rates[:, 4] - rates[:, 5])

@@ -221,13 +221,13 @@ def rate_function(
     constants = [*tables, s.mass, s.damping, s.stiffness, s.deflection, s.normal, s.friction_arm, external]
 
     def of(segment: int) -> Callable[[float, FloatArray], FloatArray]:
-        margin = 1e-12 * g.base_pitch
+        margin, ends = 1e-12 * g.base_pitch, (cycle.start, cycle.end)
         start = speed * float(cycle.edges[segment]) + margin
         end = speed * float(cycle.edges[segment + 1]) - margin
 
         def rate(time: float, state: FloatArray) -> FloatArray:
             values: FloatArray = kernels.state_rate(
-                time, state, start, end, cycle.offsets, speed, cycle.start, cycle.end, *constants
+                time, state, start, end, cycle.offsets, speed, *ends, *constants
             )
             return values
 

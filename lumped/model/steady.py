@@ -37,6 +37,7 @@ class PeriodicSolution:
         motion is unstable, and a pair leaves it
     peak_to_peak : variable -> its peak to peak over the whole cycle [m], with switches and extremes between
         samples
+    unpaid : mean power that the losses take beyond what the torques bring, see ``StepMaps.unpaid`` [W]
     cycle_time, cycle_states : (i,) [s], 0, the period and all switches included, and (i, n): close enough to
         resolve the fastest vibration
     """
@@ -50,6 +51,7 @@ class PeriodicSolution:
     error: float | None
     spectral_radius: float
     peak_to_peak: dict[str, float]
+    unpaid: float
     cycle_time: FloatArray
     cycle_states: FloatArray
 
@@ -114,6 +116,7 @@ def periodic_solution(
         error=error,
         spectral_radius=relative_spectral_radius(system, transition),
         peak_to_peak=_peaks(system, maps.times, states),
+        unpaid=maps.unpaid(initial, weights),
         cycle_time=maps.times,
         cycle_states=states,
     )

@@ -125,7 +125,7 @@ def written_out():
     def accelerations(pair, geometry, masses, t, state, elements, torque, brake):
         """Elements are k, c, mu, e over xi; state is theta_p, theta_g, x_p, x_g, y_p, y_g and rates."""
         k, c, mu, e = elements.stiffness, elements.damping, elements.friction, elements.error
-        e_slope = e.derivative()
+        e_slope = e.slope
         th_p, th_g, x_p, x_g, y_p, y_g, dth_p, dth_g, dx_p, dx_g, dy_p, dy_g = state
         r_bp, r_bg = geometry.base_radius_pinion, geometry.base_radius_gear
         lam, omega = geometry.base_pitch, geometry.omega_pinion

@@ -103,7 +103,7 @@ def test_coefficients_are_continuous_between_switches(cycle):
             (state.damping, e.damping),
             (state.friction, e.friction),
         ):
-            slope = np.abs(function.derivative()(np.linspace(g.L_XA, g.L_XD, 20001))).max() * speed
+            slope = np.abs(function.slope(np.linspace(g.L_XA, g.L_XD, 20001))).max() * speed
             scale = np.abs(values).max()
             steps = np.abs(np.diff(values, axis=1)).max()
             assert steps <= 1.5 * slope * (high - low) / 2000 + 1e-9 * scale

@@ -31,15 +31,20 @@ def system_of(constant, gain, deflection, edges):
         a[:, size // 2 :] += lower
         return a
 
+    def no_pairs(t):
+        none = np.zeros((0, t.size))
+        return SimpleNamespace(stiffness=none, damping=none, error=none, error_rate=none)
+
+    ends = np.asarray(edges, dtype=float)
     return System(
         size=size,
         period=float(edges[-1]),
-        cycle=SimpleNamespace(edges=np.asarray(edges, dtype=float), breaks=np.asarray(edges, dtype=float)),
+        cycle=SimpleNamespace(edges=ends, breaks=ends, bends=ends[:0]),
         constant=constant,
         deflection=column,
         torque_pinion=np.zeros(size),
         pinion_torque=0.0,
-        gain=lambda t, segment: MeshGain(*gain(t)),
+        gain=lambda t, segment: MeshGain(*gain(t), no_pairs(t)),
         matrices=matrices,
     )
 
@@ -192,10 +197,13 @@ class TestSteps:
         assert maps.maps.shape[0] == 4
         np.testing.assert_allclose(maps.times, [*outputs, system.period], rtol=1e-12)
         monkeypatch.setattr(propagation, "_BLOCK", 7)
+        monkeypatch.setattr(propagation, "_MOST_KEPT", 0)
         again = step_maps(system, np.zeros((12, 0)), outputs=outputs)
         a, b = (m.states(x, np.array([1.0])) for m in (maps, again))
         # Rounding over some hundred steps.
         assert np.all(np.abs(a - b) <= 1e-10 * np.abs(a).max(axis=0))
+        kept, anew = (m.unpaid(x, np.array([1.0])) for m in (maps, again))
+        assert kept == pytest.approx(anew, rel=1e-9)
 
     def test_a_standstill_is_refused_before_memory_runs_out(self, nasa):
         system = periodic_system(nasa.with_(operating__pinion_speed=1e-3), "absolute")

@@ -156,7 +156,7 @@ def test_all_losses_are_paid_by_the_moments_and_the_force_along_the_path(name):
     touching = motion["contact"].to_numpy() > 0
     # Elastic loads follow e, the approach at which their tangents vanish; the dampers follow the gaps.
     elastic = e.stiffness(xi) * pressed
-    path = elastic * contact.error.derivative()(xi) - 0.5 * e.stiffness.derivative()(xi) * pressed**2
+    path = elastic * contact.error.slope(xi) - 0.5 * e.stiffness.slope(xi) * pressed**2
     path += (motion["normal_load"].to_numpy() - elastic) * e.error_slope(xi)
     by_path = np.where(touching, path, 0.0).sum(axis=0).mean() * g.base_radius_pinion * g.omega_pinion
     # The motion swings about the static one: what is stored where a pair comes or goes jumps with all k_t.

@@ -50,7 +50,7 @@ def test_parabola_has_its_peak_in_the_middle_and_its_ends():
     k = parabola(LOW, HIGH, PEAK, 0.6)
     middle = 0.5 * (LOW + HIGH)
     assert k(middle) == pytest.approx(PEAK, rel=ROUNDING)
-    assert k.derivative()(middle) == pytest.approx(0.0, abs=ROUNDING * PEAK / (HIGH - LOW))
+    assert k.slope(middle) == pytest.approx(0.0, abs=ROUNDING * PEAK / (HIGH - LOW))
     assert k([LOW, HIGH]) == pytest.approx(0.6 * PEAK, rel=ROUNDING)
     offset = np.linspace(0.0, 0.99, 30) * (HIGH - LOW) / 2
     assert k(middle - offset) == pytest.approx(k(middle + offset), rel=ROUNDING)
@@ -85,7 +85,7 @@ def test_iso_end_ratio_limits():
 @pytest.mark.parametrize("ramp", [0.3e-3, 2e-3, (HIGH - LOW) / 2])
 def test_ramp_rises_from_zero_and_is_smooth(ramp):
     k = parabola(LOW, HIGH, PEAK, 0.7, ramp)
-    slope = k.derivative()
+    slope = k.slope
     scale = PEAK / ramp
     edges = 1e-15
     assert k([LOW + edges, HIGH - edges]) == pytest.approx(0.0, abs=ROUNDING * PEAK)
@@ -110,7 +110,7 @@ def test_ramp_makes_the_total_stiffness_continuous():
     tau = np.linspace(0.0, g.base_pitch, 4001)
     total = sum(k(g.L_XA + i * g.base_pitch + tau) for i in range(g.pairs + 1))
     steps = np.abs(np.diff(total))
-    steepest = np.abs(k.derivative()(np.linspace(g.L_XA, g.L_XD, 2001))).max()
+    steepest = np.abs(k.slope(np.linspace(g.L_XA, g.L_XD, 2001))).max()
     assert steps.max() <= 1.01 * steepest * (tau[1] - tau[0])
     assert total[0] == pytest.approx(total[-1], rel=1e-9)
 
