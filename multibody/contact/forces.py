@@ -12,16 +12,17 @@ from multibody.contact.kernels_linear import linear_forces
 
 @compiled
 def tooth_forces(
-    t: float,
-    q: FloatArray,
-    v: FloatArray,
-    p: FloatArray,
-    flags: int,
-    table: FloatArray,
-    wrench: FloatArray,
-    contacts: FloatArray,
+    t: float, state: FloatArray, p: FloatArray, flags: int, table: FloatArray, contacts: FloatArray
 ) -> int:
-    """Wrench and contact records of one state; arguments and result as ``kernels.contact_forces``."""
+    """Wrench and contact records of one state.
+
+    Parameters
+    ----------
+    state : (3, 6) coordinates, velocities, and the wrench, which is written; one array, for Python pays for
+        every one that it hands over
+    t, p, flags, table, contacts : and the result, as ``kernels.contact_forces``
+    """
+    q, v, wrench = state[0], state[1], state[2]
     if flags & LINEAR:
         return linear_forces(t, q, v, p, flags, table, wrench, contacts)
     return contact_forces(t, q, v, p, flags, table, wrench, contacts)
@@ -47,7 +48,11 @@ def tooth_forces_over(
     contacts : (n, 2 MAX_PAIRS, N_RECORD)
     p, flags, table : as ``tooth_forces``
     """
-    counts = np.empty(times.size, np.int64)
+    counts, state = np.empty(times.size, np.int64), np.empty((3, 6))
     for i in range(times.size):
-        counts[i] = tooth_forces(times[i], q[i], v[i], p, flags, table, wrenches[i], contacts[i])
+        for j in range(6):
+            state[0, j], state[1, j] = q[i, j], v[i, j]
+        counts[i] = tooth_forces(times[i], state, p, flags, table, contacts[i])
+        for j in range(6):
+            wrenches[i, j] = state[2, j]
     return counts

@@ -71,7 +71,8 @@ def bridge(
     -------
     number of rows filled, step to go on with [s], number of force evaluations
     """
-    wrench, contacts = np.empty(6), np.empty((2 * MAX_PAIRS, kn.N_RECORD))
+    state, contacts = np.empty((3, 6)), np.empty((2 * MAX_PAIRS, kn.N_RECORD))
+    place, speed, wrench = state[0], state[1], state[2]
     speeds, rates = np.empty((7, 6)), np.empty((7, 6))
     q, v, a = states[0], states[1], states[2]
     step, rows, calls = ordinary, 1, 0
@@ -83,7 +84,6 @@ def bridge(
         h = left / equal
         for i in range(6):
             speeds[0, i], rates[0, i] = v[j, i], a[j, i]
-        place, speed = q[rows], v[rows]
         for stage in range(6):
             for i in range(6):
                 further = faster = 0.0
@@ -93,14 +93,14 @@ def bridge(
                 place[i], speed[i] = q[j, i] + h * further, v[j, i] + h * faster
             calls += 1
             t = times[j] + h * _TIMES[stage]
-            if tooth_forces(t, place, speed, p, flags, table, wrench, contacts) < 0:
+            if tooth_forces(t, state, p, flags, table, contacts) < 0:
                 return rows, step, calls
             for i in range(6):
                 force = wrench[i] + bodies[3, i] - bodies[1, i] * place[i] - bodies[2, i] * speed[i]
                 speeds[stage + 1, i], rates[stage + 1, i] = speed[i], force / bodies[0, i]
         worst = 0.0
         for i in range(6):
-            a[j + 1, i] = rates[6, i]
+            q[rows, i], v[rows, i], a[rows, i] = place[i], speed[i], rates[6, i]
             further = faster = 0.0
             for k in range(7):
                 further += _ERROR[k] * speeds[k, i]

@@ -265,12 +265,12 @@ def _force_function(
     It is called some thousand times per mesh cycle, so the two lists it gets are packed into one buffer,
     twice as fast as by assignment to arrays; exudyn reads a list sooner than an array.
     """
-    buffer = bytearray(struct.calcsize("12d"))
-    q, v = np.frombuffer(buffer).reshape(2, 6)
-    wrench = np.empty(6)
+    buffer = bytearray(struct.calcsize("18d"))
+    state = np.frombuffer(buffer).reshape(3, 6)
+    q, v, wrench = state
     contacts = np.empty((2 * MAX_PAIRS, kn.N_RECORD))
     table, pack = machine.table, struct.Struct("12d").pack_into
-    as_list = wrench.tolist
+    as_list: Callable[[], list[float]] = wrench.tolist
     last_coordinates: list[float] = []
     last_rates, found = last_coordinates, last_coordinates
 
@@ -289,7 +289,7 @@ def _force_function(
         if turning:  # the core wants rates beyond the nominal speeds
             v[2] += p[kn.OMEGA_P]
             v[5] -= p[kn.OMEGA_G]
-        if tooth_forces(t, q, v, p, flags, table, wrench, contacts) < 0:
+        if tooth_forces(t, state, p, flags, table, contacts) < 0:
             budget.reason = "not finite"
             raise _Stop
         if drive is not None:

@@ -161,10 +161,11 @@ def test_the_flag_of_the_linear_mesh_chooses_its_own_core(rng):
     different = 0
     for t in np.linspace(0.1, 0.9, 9) * numbers.period:
         q, v = pressed_state(numbers, rng)
-        found, linear = np.zeros((2, 6)), np.zeros(6)
+        found, linear, state = np.zeros((2, 6)), np.zeros(6), np.array([q, v, np.zeros(6)])
         records = np.zeros((2 * kin.MAX_PAIRS, kn.N_RECORD))
         for wrench, flags in zip(found, (kn.LINEAR, 0), strict=True):
-            tooth_forces(t, q, v, p, flags, table, wrench, records)
+            tooth_forces(t, state, p, flags, table, records)
+            wrench[:] = state[2]
         linear_forces(t, q, v, p, kn.LINEAR, table, linear, records)
         np.testing.assert_array_equal(found[0], linear)
         np.testing.assert_allclose(found[1], linear, rtol=1e-9, atol=1e-9 * np.abs(linear).max())

@@ -67,14 +67,15 @@ def test_exudyn_solves_the_equations_of_the_machine(setup, run):
     """scipy's DOP853 on M q'' + D q' + K q = f with the same tooth forces, from switch to switch."""
     m, train = setup.machine, setup.machine.train
     n, p = m.size, m.parameters.copy()
-    wrench, contacts = np.empty(6), np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
+    gears, contacts = np.empty((3, 6)), np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
     load = -np.array([m.torque_pinion, m.torque_gear]) @ train.torques
 
     def rates(t, state):
         q, v = state[:n], state[n:]
-        tooth_forces(t, q[:6], v[:6], p, kn.LINEAR, m.table, wrench, contacts)
+        gears[:2] = q[:6], v[:6]
+        tooth_forces(t, gears, p, kn.LINEAR, m.table, contacts)
         force = load - train.stiffness @ q - train.damping @ v
-        force[:6] += wrench
+        force[:6] += gears[2]
         return np.concatenate([v, np.linalg.solve(train.mass, force)])
 
     state, edges = np.concatenate([setup.q, setup.v]), setup.edges(1)
