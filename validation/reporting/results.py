@@ -71,7 +71,7 @@ class Effort:
     claim_samples: int
 
 
-FULL = Effort(512, 6, 240, 121, 25, 1e-6, 15, 5, 41, full=True, paper=True, claim_samples=100)
+FULL = Effort(512, 6, 240, 121, 17, 1e-6, 15, 5, 41, full=True, paper=True, claim_samples=100)
 QUICK = Effort(128, 16, 48, 16, 4, 1e-6, 7, 3, 13, full=False, paper=False, claim_samples=8)
 
 

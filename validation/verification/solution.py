@@ -22,7 +22,6 @@ from lumped.typing import FloatArray
 from validation.verification.checks import Level, Refinement, refinement
 
 _SAMPLES = 64
-_CYCLES = 2
 
 
 def refinements(pair: AnyPair, samples: int) -> tuple[Refinement, ...]:
@@ -90,11 +89,11 @@ def _against(dte: Callable[[float], FloatArray], finest: float) -> Callable[[flo
 
 def _transient(pair: GearPair) -> Refinement:
     def dte(rtol: float) -> FloatArray:
-        run = lumped.simulate(pair, _CYCLES, samples_per_cycle=_SAMPLES, rtol=rtol)
+        run = lumped.simulate(pair, 1, samples_per_cycle=_SAMPLES, rtol=rtol)
         return np.asarray(run["dte"].to_numpy(), dtype=np.float64)
 
     levels = _over_tolerance(_against(dte, 1e-12), 1e-6, 1e-8, 1e-10)
-    return refinement("transient", levels, cycles=_CYCLES)
+    return refinement("transient", levels)
 
 
 def _closure(pair: GearPair) -> Refinement:

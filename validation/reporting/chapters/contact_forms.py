@@ -14,7 +14,7 @@ from validation.reporting.results import Results
 from validation.validity.contact_forms import FORMS, PLACES, ContactForms, losses_over_speed
 
 #: Speeds of the figure of losses.
-_SPEEDS = 31
+_SPEEDS = 21
 
 
 def write(results: Results) -> Content:
