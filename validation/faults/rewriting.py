@@ -44,11 +44,8 @@ def applied(fault: Fault) -> Iterator[None]:
     if not fault.target:  # a wrong input is wrong in the parameter file
         yield
         return
-    owner, name = _place(fault)
-    original = vars(owner)[name]
-    replaced: dict[int, tuple[Any, Any]] = {
-        id(original): (original, _rewritten(fault, owner, name, original))
-    }
+    owner, original, wrong = fitted(fault)
+    replaced: dict[int, tuple[Any, Any]] = {id(original): (original, wrong)}
     if isinstance(original, Dispatcher):
         _with_callers(replaced)
     forget()
@@ -65,6 +62,18 @@ def applied(fault: Fault) -> Iterator[None]:
         for restore in reversed(undo):
             restore()
         forget()
+
+
+def fitted(fault: Fault) -> tuple[Any, Any, Any]:
+    """Module or class that holds the function of a fault, the function, and the wrong one, not yet compiled.
+
+    Raises
+    ------
+    FaultError : the function or its line is not there
+    """
+    owner, name = _place(fault)
+    original = vars(owner)[name]
+    return owner, original, _rewritten(fault, owner, name, original)
 
 
 def _not_kept(inputs: bytes, compute: Callable[[], dict[str, Any]]) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from validation.faults.catalogue import FAULTS, GROUPS
 from validation.faults.fault import Fault
 from validation.faults.judging import judge, pairs
 from validation.faults.quantities import change, quantities
-from validation.faults.rewriting import FaultError, applied
+from validation.faults.rewriting import FaultError, applied, fitted
 from validation.faults.sound import drawn
 from validation.faults.table import laws_that_act, sample, verdict
 from validation.reporting.results import QUICK, Results
@@ -58,9 +58,9 @@ def sound():
 def test_every_fault_fits_the_program():
     """A line that a fault changes is there, once; 60 faults and more, each with a name of its own."""
     assert len(FAULTS) == sum(len(faults) for faults in GROUPS.values()) >= 60
-    for fault in cheap():
-        with applied(fault):
-            pass
+    for fault in FAULTS.values():
+        if fault.target:
+            fitted(fault)
 
 
 def test_faults_leave_no_trace(sound):
