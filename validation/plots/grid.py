@@ -36,6 +36,7 @@ def grid_figure(result: xr.Dataset) -> Figure:
     exact = result.sel(fidelity="exact")
     usage = (exact["difference"] / exact["limit"]).where(judged).max("quantity")
     figure, axes = new_figure(2, 1, height=2.6 + 0.44 * shape[0], sharex=True)
+    figure.set_layout_engine("constrained")  # few rows leave less room than their words take
     for ax, values, label in (
         (
             axes[0, 0],
