@@ -133,7 +133,8 @@ def _between(solution: PeriodicSolution) -> tuple[FloatArray, FloatArray, FloatA
 
     Inside an interval, in which the fastest vibration turns by half a radian, the motion is the quintic that
     has its displacements, rates and accelerations at both ends: the losses err by some
-    1e-7 of themselves (1e-5 at a quarter of critical damping, 5e-5 at 3 rpm, where the number of intervals is bounded).
+    1e-7 of themselves (1e-5 at a quarter of critical damping, 5e-5 at 3 rpm, where the number of
+    intervals is bounded).
     """
     time, states = solution.cycle_time, solution.cycle_states
     m = len(solution.system.coordinates)
