@@ -1,10 +1,12 @@
 """The order of the tests; and whatever test saves a figure, its axes carry labels, with units for numbers."""
 
+import os
 import re
 import weakref
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 
@@ -25,6 +27,10 @@ LONG = (
 UNIT = re.compile(r"\[[^\]]+\]|\b(mesh cycles|mesh order|revolutions)\b")
 #: What a number on an axis may look like: 1, -2.5, 10^3 in mathematical text, 5e-4.
 NUMBER = re.compile(r"[-−+0-9.e\s×{}$^\\]*|.*mathdefault.*")
+
+#: The same examples in every run, so that a pass can be repeated; long runs (SPURCHECK_FUZZ) search anew.
+settings.register_profile("spurcheck", derandomize="SPURCHECK_FUZZ" not in os.environ)
+settings.load_profile("spurcheck")
 
 
 def pytest_collection_modifyitems(items):

@@ -166,20 +166,22 @@ def _proven(system: PeriodicSystem, known: KnownMatrix, rtol: float, max_substep
 
 
 def liouville_residual(system: PeriodicSystem, propagation: Propagation) -> float:
-    """|sum log det(step) - integral of tr A dt| over one period (Liouville's formula), dimensionless.
-
-    The integral is taken by an 8-point Gauss rule in every substep, independently of the propagator.
-    """
-    x, w = leggauss(8)
-    start, end = propagation.times[:-1], propagation.times[1:]
-    times = start[:, None] + (end - start)[:, None] * 0.5 * (x + 1.0)
-    total = 0.0
-    for first in range(0, start.size, 4096):
-        part = slice(first, first + 4096)
-        inside = system.inside(times[part], start[part, None], end[part, None])
-        trace = np.trace(system.evaluate(inside.ravel()), axis1=1, axis2=2).reshape(inside.shape)
-        total += float(((end - start)[part] * 0.5 * (trace @ w)).sum())
+    """|sum log det(step) - integral of tr A dt| over one period (Liouville's formula), dimensionless."""
     sign, log_det = np.linalg.slogdet(propagation.steps)
     if (sign <= 0).any():
         return math.inf
-    return abs(float(log_det.sum()) - total)
+    return abs(float(log_det.sum()) - integral_of_trace(system, propagation.times))
+
+
+def integral_of_trace(system: PeriodicSystem, times: FloatArray) -> float:
+    """Integral of tr A over times (N,) by an 8-point Gauss rule between each two, no propagator involved."""
+    x, w = leggauss(8)
+    start, end = times[:-1], times[1:]
+    at = start[:, None] + (end - start)[:, None] * 0.5 * (x + 1.0)
+    total = 0.0
+    for first in range(0, start.size, 4096):
+        part = slice(first, first + 4096)
+        inside = system.inside(at[part], start[part, None], end[part, None])
+        trace = np.trace(system.evaluate(inside.ravel()), axis1=1, axis2=2).reshape(inside.shape)
+        total += float(((end - start)[part] * 0.5 * (trace @ w)).sum())
+    return total

@@ -54,8 +54,10 @@ def least_separation(first: ComplexArray, second: ComplexArray) -> tuple[float, 
         W = np.linalg.inv(K)
     except np.linalg.LinAlgError:
         return 0.0, K
-    q = float(np.linalg.norm(np.eye(m * k) - W @ K)) + _rounding(m * k, W, K)
-    q += 4.0 * _U * float(np.linalg.norm(W)) * (float(np.linalg.norm(first)) + float(np.linalg.norm(second)))
+    with np.errstate(over="ignore", invalid="ignore"):  # of equal multipliers W is beyond floating point
+        q = float(np.linalg.norm(np.eye(m * k) - W @ K)) + _rounding(m * k, W, K)
+        norms = float(np.linalg.norm(first)) + float(np.linalg.norm(second))
+        q += 4.0 * _U * float(np.linalg.norm(W)) * norms
     return (1.0 - q) / _size(W) / _SLACK if q < 1.0 else 0.0, W.astype(complex)
 
 
@@ -88,6 +90,8 @@ def _cluster_bound(
     if m < n:
         corner, rest = T[:m, m:], T[m:, m:]
         sep, W = least_separation(block, rest)
+        if sep == 0.0:
+            return None
         X = -(W @ corner.T.ravel()).reshape(n - m, m).T
         left = float(np.linalg.norm(block @ X - X @ rest + corner))
         left += _rounding(n, block, X) + _rounding(n, X, rest) + 4.0 * _U * float(np.linalg.norm(corner))

@@ -1,6 +1,7 @@
 """Strategies for gear pairs, valid and hostile, and a watch against calls that do not end.
 
-The number of examples is multiplied by the environment variable SPURCHECK_FUZZ (default 1), for a long run.
+For a long run set the environment variable SPURCHECK_FUZZ: it multiplies the number of examples, which are
+then drawn anew in each run.
 """
 
 from __future__ import annotations
@@ -40,6 +41,7 @@ def bounded_memory() -> Iterator[None]:
 
 settings.register_profile(
     "hardening",
+    settings.get_profile("spurcheck"),
     deadline=None,  # the first call compiles; hangs are caught by `within`
     max_examples=25 * int(os.environ.get("SPURCHECK_FUZZ", "1")),
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large],

@@ -153,6 +153,13 @@ def test_the_separation_of_a_cluster_is_never_overestimated() -> None:
         assert 0.3 * true < separation <= true * (1.0 + 1e-12)  # rounding of the reference
 
 
+def test_multipliers_too_small_to_be_told_apart_share_a_bound() -> None:
+    """1/(difference) squared is beyond floating point: no warning, and no bound below the error of M."""
+    values, bounds = multipliers_with_bounds(np.array([[3e-170, 1e-171], [0.0, 1e-170]]), 1e-12)
+    assert (np.abs(values) < 1e-160).all()
+    assert (bounds >= 1e-12).all() and (bounds < 1e-5).all()
+
+
 def test_a_radius_whose_interval_ends_at_1_is_undecided() -> None:
     ends = [(0.75, 0.25), (1.25, 0.25), (1.0, 0.0)]
     inside = [(0.5, 0.25), (1.5, 0.25)]

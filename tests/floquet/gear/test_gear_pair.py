@@ -43,6 +43,8 @@ def test_block_and_closed_form_equal_the_ten_states(preset: str, law: str) -> No
     assert unmatched(parts.multipliers, whole.multipliers) < 1e-8
     assert abs(parts.spectral_radius - whole.spectral_radius) <= parts.error + whole.error
     assert parts.verdict == whole.verdict
+    # Both sides of Liouville's formula are 0.01 and less; each is right to some roundings.
+    assert parts.liouville_residual < 1e-14
 
 
 @pytest.mark.parametrize("method", PROPAGATORS)
