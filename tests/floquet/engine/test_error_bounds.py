@@ -157,7 +157,7 @@ def test_multipliers_too_small_to_be_told_apart_share_a_bound() -> None:
     """1/(difference) squared is beyond floating point: no warning, and no bound below the error of M."""
     values, bounds = multipliers_with_bounds(np.array([[3e-170, 1e-171], [0.0, 1e-170]]), 1e-12)
     assert (np.abs(values) < 1e-160).all()
-    assert (bounds >= 1e-12).all() and (bounds < 1e-5).all()
+    assert ((bounds >= 1e-12) & (bounds < 1e-5)).all()
 
 
 def test_a_radius_whose_interval_ends_at_1_is_undecided() -> None:
