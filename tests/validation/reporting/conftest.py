@@ -48,9 +48,15 @@ def check(computed):
 
 @pytest.fixture(scope="package")
 def sharing(computed):
-    """Makes results of a quick report that take the long ones of ``computed``."""
+    """Makes results of a quick report that take the long ones of ``computed``.
 
-    def make(pair, names=("check", "sweep", "margins", "routes", "reference")):
+    All of them are computed here: a test may put a fault into the program before it asks for one.
+    """
+    shared = ("check", "sweep", "margins", "routes", "reference")
+    for name in shared:
+        getattr(computed, name)
+
+    def make(pair, names=shared):
         made = Results(pair, TINY)
         for name in names:
             setattr(made, name, getattr(computed, name))

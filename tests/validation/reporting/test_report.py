@@ -28,14 +28,10 @@ def hostile(pair):
 
 @pytest.fixture(scope="module")
 def written(hostile, sharing, tmp_path_factory):
-    """A report whose long results are those of another one of the same numbers.
-
-    Not the margins: computed long before, they may differ in the last digit from those of ``again``.
-    """
+    """A report whose long results are those of another one of the same numbers, computed long before."""
     out = tmp_path_factory.mktemp("reports") / "new" / "report"
-    shared = ("check", "sweep", "routes", "reference")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(build, "Results", lambda pair, _: sharing(pair, shared))
+        patch.setattr(build, "Results", lambda pair, _: sharing(pair))
         return reporting.report(hostile, out, quick=True)
 
 
