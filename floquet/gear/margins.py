@@ -47,9 +47,6 @@ _LARGEST_DAMPING = 1.0  # what the schema allows for a mesh
 _SPEED_NODES = 400
 _PAST = 0.1  # how far past the highest line its tongue may reach
 _EDGE_ROWS, _EDGE_SPEEDS, _EDGE_ROUNDS = 25, 49, 14
-#: Digits of a tongue's tip. Multipliers meet there, and where memory lies moves such eigenvalues by the root
-#: of rounding: further digits would change from run to run.
-_DIGITS = 9
 
 
 @dataclass(frozen=True, eq=False)
@@ -284,7 +281,6 @@ def _tongue(
         tip = TongueTip(_LARGEST_DAMPING, interval.peak)
     else:
         tip = tongue_tip(excess, window, (0.0, _LARGEST_DAMPING))
-    tip = TongueTip(*(float(f"{value:.{_DIGITS}g}") for value in (tip.damping, tip.place)))
     damping, left, right = _edges(radius, interval, window, tip)
     return TongueMargin(
         label=str(label_variation(vary(pair, {"damping_ratio": 0.0, "speed_rpm": interval.peak}))),

@@ -166,10 +166,18 @@ def _vectors(matrices: FloatArray) -> tuple[ComplexArray, ComplexArray, ComplexA
     values, X = (np.asarray(part, dtype=complex) for part in np.linalg.eig(matrices))
     try:
         Y = np.linalg.inv(X)
-    except np.linalg.LinAlgError:  # of those that are defective to the last digit no inverse will do
-        Y = np.linalg.pinv(X)
+    except np.linalg.LinAlgError:  # one by one: no matrix may feel with which others it was given
+        Y = np.stack([_inverse(one) for one in X])
     length = np.sqrt(np.linalg.norm(Y, axis=2))[:, :, None]
     return values, np.ascontiguousarray(np.swapaxes(X, 1, 2) * length), np.ascontiguousarray(Y / length)
+
+
+def _inverse(X: ComplexArray) -> ComplexArray:
+    """Inverse of eigenvectors (n, n); of those that are defective to the last digit no inverse will do."""
+    try:
+        return np.asarray(np.linalg.inv(X))
+    except np.linalg.LinAlgError:
+        return np.asarray(np.linalg.pinv(X))
 
 
 def _factors(

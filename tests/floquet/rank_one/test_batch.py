@@ -19,6 +19,7 @@ from floquet import (
     stability_chart,
 )
 from floquet.gear.axes import GearVariation
+from floquet.rank_one.batch import multipliers_of
 from floquet.rank_one.kernels.disks import spectra
 from floquet.rank_one.system import Gains
 from lumped import load_gear_pair, preset_names
@@ -256,6 +257,20 @@ def test_separate_disks_are_of_first_order() -> None:
         if np.abs(lam[:, None] - lam + 10 * np.eye(6)).min() > 0.05:
             assert (radii[i] <= 1.03 * delta * kappa[order]).all()  # 1.01, and the second order
             assert (radii[i] >= delta * kappa[order] * (1.0 - 1e-6)).all()
+
+
+def test_multipliers_do_not_feel_with_which_others_they_are_computed() -> None:
+    # The eigenvectors of a nilpotent matrix of two entries are singular to the last digit; ten states are
+    # more than the compiled eigenvalues take.
+    rng = np.random.default_rng(0)
+    M = np.concatenate([rng.normal(size=(3, 10, 10)), np.zeros((1, 10, 10))])
+    M[3, [0, 1], [1, 2]] = 1.0
+    with pytest.raises(np.linalg.LinAlgError):
+        np.linalg.inv(np.linalg.eig(M[3])[1])
+    errors = np.full(4, 1e-14)
+    alone, together = multipliers_of(M[:3], errors[:3]), multipliers_of(M, errors)
+    assert np.array_equal(together.multipliers[:3], alone.multipliers)
+    assert np.array_equal(together.errors[:3], alone.errors)
 
 
 def test_varied_gains_add_with_their_factor() -> None:
