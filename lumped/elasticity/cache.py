@@ -1,8 +1,9 @@
 """Results that are kept between runs in the user's cache folder.
 
-A result is a file of numbers, named after everything that it depends on: what was computed and the source of
-what computes it. Files appear whole or not at all, so runs side by side do no harm; one that cannot be read
-is computed again, and a folder that cannot be written is done without.
+A result is a file of numbers, named after everything that its digits depend on: what was computed, source and
+libraries of what computes it, processor, threads of BLAS. Files appear whole or not at all, so runs side by
+side do no harm; one that cannot be read is computed again, and a folder that cannot be written is done
+without.
 """
 
 from __future__ import annotations
@@ -13,11 +14,13 @@ import os
 import tempfile
 from collections.abc import Callable
 from functools import cache
+from importlib import metadata
 from pathlib import Path
 
 import numpy as np
 from platformdirs import user_cache_path
 
+from lumped.processor import blas_threads, processor
 from lumped.typing import FloatArray
 
 
@@ -26,10 +29,10 @@ def kept(inputs: bytes, compute: Callable[[], dict[str, FloatArray]]) -> dict[st
 
     Parameters
     ----------
-    inputs : everything that the result depends on apart from the source of this folder
+    inputs : everything that the result depends on apart from source, libraries and machine
     compute : arrays of finite numbers by name
     """
-    key = hashlib.sha256(_source() + inputs)
+    key = hashlib.sha256(_made_by() + blas_threads().encode() + b"\0" + inputs)
     path = user_cache_path("spurcheck", appauthor=False) / "elasticity" / f"{key.hexdigest()}.npz"
     # Whatever is wrong with a file, its numbers are not needed.
     with contextlib.suppress(Exception), path.open("rb") as stream, np.load(stream) as file:
@@ -61,6 +64,7 @@ def _sum(result: dict[str, FloatArray]) -> str:
 
 
 @cache
-def _source() -> bytes:
+def _made_by() -> bytes:
     files = sorted(Path(__file__).parent.glob("*.py"))
-    return hashlib.sha256(b"".join(file.read_bytes() for file in files)).digest()
+    machine = [metadata.version("numpy"), metadata.version("scipy"), processor()]
+    return hashlib.sha256(b"".join(file.read_bytes() for file in files) + repr(machine).encode()).digest()

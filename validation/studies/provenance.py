@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import lumped
+from lumped.processor import processor
 
 _PACKAGES = ("lumped", "multibody", "floquet", "validation")
 _LIBRARIES = ("spurcheck", "numpy", "scipy", "numba", "llvmlite", "exudyn")
@@ -47,12 +48,4 @@ def provenance() -> Provenance:
     root = Path(lumped.__file__).parent.parent
     for path in sorted(file for name in _PACKAGES for file in (root / name).rglob("*.py")):
         digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes())
-    return Provenance(", ".join(parts), digest.hexdigest(), _processor())
-
-
-def _processor() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-        return next(line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
-    except (OSError, StopIteration):
-        return platform.processor() or platform.machine()
+    return Provenance(", ".join(parts), digest.hexdigest(), processor())

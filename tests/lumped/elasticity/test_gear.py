@@ -88,3 +88,12 @@ def test_a_changed_tooth_is_another_result(folder, monkeypatch):
         flank_compliance.__wrapped__(one)
         flank_compliance.__wrapped__(one)
     assert len(count) == 3 * 2
+
+
+def test_what_is_kept_has_the_digits_that_this_process_would_compute(folder, monkeypatch):
+    # Two threads of BLAS cut the sums of a product in another place than one; so does another processor.
+    def kept_by(threads):
+        monkeypatch.setenv("OPENBLAS_NUM_THREADS", threads)
+        return float(kept(b"gear", lambda: {"a": np.array(float(threads))})["a"])
+
+    assert [kept_by("1"), kept_by("2"), kept_by("1")] == [1.0, 2.0, 1.0]

@@ -43,8 +43,9 @@ def write(results: Results) -> Content:
     )
     text = Text(
         "The same parameters and software give the same report.json, byte for byte, apart from its "
-        "timestamps block. The folder beside this page holds every figure (figures/, SVG), the data "
-        "behind them (data/, NetCDF) and the parameter file that reproduces the report "
+        "timestamps block, on processors of one type with as many threads of BLAS (the command takes one); "
+        "others may differ in the last digits. The folder beside this page holds every figure (figures/, "
+        "SVG), the data behind them (data/, NetCDF) and the parameter file that reproduces the report "
         "(data/parameters.toml)."
     )
     return Content((text, made, versions))
