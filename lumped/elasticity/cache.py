@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 from platformdirs import user_cache_path
 
-from lumped.processor import blas_threads, processor
+from lumped.elasticity.processor import blas_threads, processor
 from lumped.typing import FloatArray
 
 

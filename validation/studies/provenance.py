@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import lumped
-from lumped.processor import processor
+from lumped.elasticity.processor import processor
 
 _PACKAGES = ("lumped", "multibody", "floquet", "validation")
 _LIBRARIES = ("spurcheck", "numpy", "scipy", "numba", "llvmlite", "exudyn")
