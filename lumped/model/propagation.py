@@ -10,6 +10,7 @@ import numpy as np
 
 from lumped.errors import NumericalError
 from lumped.gauss_legendre import gauss_tableau
+from lumped.model.mesh_cycle import among
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.step_kernels import chained, free_steps, gauss_steps, states_along
 from lumped.typing import FloatArray, IntArray
@@ -316,5 +317,5 @@ def _distinct(marks: FloatArray, system: LTVSystem) -> FloatArray:
     close = np.flatnonzero(np.diff(marks) < 1e-13 * system.period)
     if close.size == 0:
         return marks
-    fixed = np.isin(marks[close + 1], system.cycle.edges)
+    fixed = among(marks[close + 1], system.cycle.edges)
     return np.asarray(np.delete(marks, np.where(fixed, close, close + 1)), dtype=np.float64)

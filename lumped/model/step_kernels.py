@@ -41,23 +41,28 @@ def free_steps(
     end, p = np.zeros((h.size, 2 * m, columns)), np.zeros((h.size, s, columns))
     by_feedback, start = np.zeros((h.size, s, s + 2 * m, m)), np.zeros((h.size, 2 * s, columns))
     by_p = np.empty((h.size, 2 * s, s))
-    left, right = np.empty((s, s)), np.empty((s, 3 + s))
+    left, solved = np.empty((s, s)), np.empty((m, s, 3 + s))
     for j in range(h.size):
         t = h[j]
         for i in range(m):
             # Accelerations at the stages by z and by v at the start, by a unit force, and by a force at each.
-            u = deflection[i]
-            for row in range(s):
-                for column in range(s):
-                    unit = 1.0 if row == column else 0.0
-                    left[row, column] = (
-                        unit - t**2 * stiffness[i] * aa[row, column] - t * damping[i] * a[row, column]
-                    )
-                    right[row, 3 + column] = unit
-                right[row, 0] = stiffness[i]
-                right[row, 1] = t * stiffness[i] * c[row] + damping[i]
-                right[row, 2] = 1.0
-            _solve(left, right)
+            # Most coordinates are held like one before.
+            u, like = deflection[i], 0
+            while like < i and (stiffness[like] != stiffness[i] or damping[like] != damping[i]):
+                like += 1
+            right = solved[like]
+            if like == i:
+                for row in range(s):
+                    for column in range(s):
+                        unit = 1.0 if row == column else 0.0
+                        left[row, column] = (
+                            unit - t**2 * stiffness[i] * aa[row, column] - t * damping[i] * a[row, column]
+                        )
+                        right[row, 3 + column] = unit
+                    right[row, 0] = stiffness[i]
+                    right[row, 1] = t * stiffness[i] * c[row] + damping[i]
+                    right[row, 2] = 1.0
+                _solve(left, right)
             end[j, i, i], end[j, i, m + i], end[j, m + i, m + i] = 1.0, t, 1.0
             for row in range(s):
                 to_z, to_v = t**2 * ba[row], t * b[row]

@@ -15,7 +15,7 @@ from lumped.errors import refuse
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
 from lumped.friction.benedict_kelley import friction_number
 from lumped.friction.fitted import average_coefficient, fit_signed
-from lumped.friction.registry import law_named
+from lumped.friction.registry import LAWS, law_named
 from lumped.lubrication import film
 from lumped.lubrication.roughness import composite_roughness, mean_roughness
 from lumped.path_function import PathFunction
@@ -92,7 +92,7 @@ def friction_path_function(
     settings: FrictionSettings = pair.friction
     if interval not in (None, (path.L_XA, path.L_XD)):
         longer = replace(path, L_XA=interval[0], L_XD=interval[1])
-        if _reads_average(law_named(name), longer, settings):  # mu_avg stays the mean from A to D
+        if _reads_average(LAWS[name], longer, settings):  # mu_avg stays the mean from A to D
             settings = pair.friction.model_copy(update={"coefficient": average_coefficient(path, settings)})
         path = longer
     function = fit_law(path, settings, name)
@@ -129,7 +129,7 @@ def _name(pair: GearPair, law: str | None) -> str:
 @lru_cache(maxsize=256)
 def fit_law(path: ContactPath, settings: FrictionSettings, name: str) -> PathFunction:
     """mu(xi) of one law; cached, because charts over damping or stiffness ask for it at every node."""
-    law = law_named(name)
+    law = LAWS[name]
     _must_be_friction(path, settings, law)
     return fit_signed(law, path, settings)
 
@@ -156,7 +156,7 @@ def _positions(path: ContactPath) -> FloatArray:
 @lru_cache(maxsize=256)
 def violations_of(path: ContactPath, settings: FrictionSettings, name: str) -> tuple[RangeViolation, ...]:
     """Validity ranges that a contact leaves under a law."""
-    law = law_named(name)
+    law = LAWS[name]
     xi = _positions(path)
     if law.parts is None:
         return range_violations(law.title, law.ranges, _arguments(path, xi))
