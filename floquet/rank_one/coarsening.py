@@ -23,6 +23,7 @@ Sources: docs/theory/floquet.md, "Computing M".
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -72,17 +73,18 @@ def coarsened(
             "factors", shown(factors), f"{len(system.parts) - 1} numbers", "Give one for each varied part."
         )
     most = np.concatenate([[1.0], varied])
-    fine = _Fine.of(system, longest, damping, most)
+    given = _given(system)
+    search = _Search.of(given, longest, damping, most)
     bounds, pieces = [0], []
-    while bounds[-1] < fine.pieces:
-        piece = fine.longest_piece(bounds[-1], tolerance)
+    while bounds[-1] < system.phases.size - 1:
+        piece = search.longest_piece(bounds[-1], tolerance)
         pieces.append(piece)
         bounds.append(piece.stop)
     m, Q = system.v.size, len(system.parts)
     powers = np.stack([piece.powers for piece in pieces]).reshape(len(pieces), 2, Q, m, _DEGREE + 1)
     misfits = np.stack([piece.misfits for piece in pieces])
     parts = [
-        Gains(trimmed(powers[:, 0, q]), trimmed(powers[:, 1, q]), misfits[:, :, q], fine.edges[bounds, :, q])
+        Gains(trimmed(powers[:, 0, q]), trimmed(powers[:, 1, q]), misfits[:, :, q], given.edges[bounds, :, q])
         for q in range(Q)
     ]
     return replace(
@@ -101,83 +103,64 @@ class _Piece(NamedTuple):
     error: float
 
 
-class _Fine(NamedTuple):
-    """The given pieces, as the search for longer ones needs them.
+class _Merged(NamedTuple):
+    """Several of the given pieces as one, whatever the period; the axes (2, Q) are w and wd of all parts.
 
     Attributes
     ----------
+    series : (d+1, 2, Q, m) Legendre coefficients: the moments
+    powers : (2, Q, m, d+1) the same in powers
+    sizes : (d+1, 2, Q) their norms
+    missing : (d+1, 2, Q) mean moduli of what is missing at each degree, at most
+    misfit : (2, Q) integral over the phase of the errors of the given pieces
+    rounding : (2, Q) rounding of a moment
+    """
+
+    series: FloatArray
+    powers: FloatArray
+    sizes: FloatArray
+    missing: FloatArray
+    misfit: FloatArray
+    rounding: FloatArray
+
+
+class _Given:
+    """The given pieces, as the search for longer ones needs them, and those tried so far.
+
+    Attributes
+    ----------
+    form : modal form of the system
     phases : (P+1,)
     powers : (P, 2, Q, m, d+1) of w and wd
     values : (P, s, 2, Q, m) at Gauss nodes
     misfits, edges : (P, 2, Q), (P+1, 2, Q) fit and edge errors of the given pieces
-    weights : (2, Q) what turns the norm of a gain into that of A times the longest period
-    reference : (m,) constant part of w that is none of A's
     root : (m,) square roots of the metric
-    calm, drive : max omega + |C| + |G|/T, and how fast these let energy grow, times the longest period
     """
 
-    phases: FloatArray
-    powers: FloatArray
-    values: FloatArray
-    misfits: FloatArray
-    edges: FloatArray
-    weights: FloatArray
-    reference: FloatArray
-    root: FloatArray
-    calm: float
-    drive: float
-
-    @classmethod
-    def of(cls, system: RankOneSystem, longest: float, damping: float, most: FloatArray) -> _Fine:
-        form = system.modal()
-        powers = np.stack(
+    def __init__(self, system: RankOneSystem) -> None:
+        self.form, self.phases, self.root = system.modal(), system.phases, np.sqrt(system.metric)
+        self.powers = np.stack(
             [
                 np.stack([padded(getattr(part, key), _DEGREE + 1) for part in system.parts], axis=1)
                 for key in ("w", "wd")
             ],
             axis=1,
         )
-        rows = np.array([np.linalg.norm(form.v / form.omega), damping * np.linalg.norm(form.v)])
-        misfits = np.stack([part.fit_errors for part in system.parts], axis=2)
+        self.values = np.einsum("ijqmk,sk->isjqm", self.powers, _NODES[:, None] ** np.arange(_DEGREE + 1))
+        self.misfits = np.stack([part.fit_errors for part in system.parts], axis=2)
         none = np.zeros((system.phases.size, 2))
         edges = [none if part.edge_errors is None else part.edge_errors for part in system.parts]
-        return cls(
-            phases=system.phases,
-            powers=powers,
-            values=np.einsum("ijqmk,sk->isjqm", powers, _NODES[:, None] ** np.arange(_DEGREE + 1)),
-            misfits=misfits,
-            edges=np.stack(edges, axis=2),
-            weights=longest * rows[:, None] * most,
-            reference=form.shapes @ form.reference,
-            root=np.sqrt(system.metric),
-            calm=longest * float(form.omega.max() + np.linalg.norm(form.C))
-            + float(np.linalg.norm(form.gyroscopic)),
-            drive=longest * form.drive + form.gyroscopic_drive,
-        )
+        self.edges = np.stack(edges, axis=2)
+        self._merged: dict[tuple[int, int], _Merged] = {}
 
-    @property
-    def pieces(self) -> int:
-        """Number of pieces."""
-        return self.phases.size - 1
+    def merged(self, start: int, stop: int) -> _Merged:
+        """Pieces from ``start`` to ``stop`` as one; the same for every period."""
+        found = self._merged.get((start, stop))
+        if found is None:
+            found = self._merged[start, stop] = self._merge(start, stop)
+        return found
 
-    def longest_piece(self, start: int, tolerance: float) -> _Piece:
-        """Join as many pieces from ``start`` on as the tolerance allows: by doubling, then by bisection."""
-        best, step = self._single(start), 1
-        bad = self.pieces + 1
-        while best.stop < self.pieces and best.stop + 1 < bad:
-            stop = min(best.stop + step, self.pieces) if bad > self.pieces else (best.stop + bad) // 2
-            piece = self._joined(start, stop, tolerance)
-            if piece is None:
-                bad = stop
-            else:
-                best, step = piece, 2 * step
-        return best
-
-    def _single(self, start: int) -> _Piece:
-        return _Piece(start + 1, self.powers[start], self.misfits[start], 0.0)
-
-    def _joined(self, start: int, stop: int, tolerance: float) -> _Piece | None:
-        """One piece in place of several, of the smallest degree that will do; None where none will."""
+    def _merge(self, start: int, stop: int) -> _Merged:
         low, high = self.phases[start], self.phases[stop]
         length = high - low
         widths = np.diff(self.phases[start : stop + 1])
@@ -186,35 +169,93 @@ class _Fine(NamedTuple):
         weight = (widths / length)[:, None] * 0.5 * _WEIGHTS  # they sum to one
         P = legendre.legvander(u.ravel(), _DEGREE)
         values = self.values[start:stop].reshape(u.size, -1)
-        series = (2.0 * np.arange(_DEGREE + 1) + 1.0)[:, None] * ((P * weight.reshape(-1, 1)).T @ values)
-        shape = (_DEGREE + 1, *self.values.shape[2:])
-        powers = np.einsum("kd,djqm->jqmk", _POWERS, series.reshape(shape))
+        flat = (2.0 * np.arange(_DEGREE + 1) + 1.0)[:, None] * ((P * weight.reshape(-1, 1)).T @ values)
+        series = flat.reshape(_DEGREE + 1, *self.values.shape[2:])
         # The mean square over the piece bounds the square of the mean modulus. What is missing at degree d is
         # the rest beyond degree 8 and the terms between.
-        rest = np.square((values - P @ series).reshape(u.size, *shape[1:]) * self.root).sum(axis=3)
+        rest = np.square((values - P @ flat).reshape(u.size, *series.shape[1:]) * self.root).sum(axis=3)
         beyond = np.einsum("s,sjq->jq", weight.ravel(), rest)
-        terms = np.square(series.reshape(shape) * self.root).sum(axis=3)
-        terms /= (2.0 * np.arange(_DEGREE + 1) + 1.0)[:, None, None]
+        squares = np.square(series * self.root).sum(axis=3)
+        terms = squares / (2.0 * np.arange(_DEGREE + 1) + 1.0)[:, None, None]
         missing = beyond + np.concatenate(
             [np.cumsum(terms[:0:-1], axis=0)[::-1], np.zeros((1, *beyond.shape))]
         )
-        eta = length * (np.sqrt(missing) * self.weights).sum(axis=(1, 2))  # (d,)
         # At an edge that goes, both sides count.
         lost = (widths[:, None, None] * self.misfits[start:stop]).sum(axis=0)
-        misfit = float(((lost + 2.0 * self.edges[start + 1 : stop].sum(axis=0)) * self.weights).sum())
-        allowed = tolerance * max(length, _SHORT)
-        # Rounding of the moments, of the places of the nodes in the piece, and of the change to powers.
-        largest = np.sqrt(
-            (np.square(values).reshape(u.size, *shape[1:]) * self.root**2).sum(axis=3).max(axis=0)
+        # Rounding of the moments and of the places of the nodes in the piece.
+        squared = (np.square(values).reshape(u.size, *series.shape[1:]) * self.root**2).sum(axis=3)
+        return _Merged(
+            series=series,
+            powers=np.einsum("kd,djqm->jqmk", _POWERS, series),
+            sizes=np.sqrt(squares),
+            missing=np.sqrt(missing),
+            misfit=lost + 2.0 * self.edges[start + 1 : stop].sum(axis=0),
+            rounding=_U * (u.size + 40.0 + 300.0 / length) * np.sqrt(squared.max(axis=0)),
         )
-        sizes = np.sqrt(np.square(series.reshape(shape) * self.root).sum(axis=3))
-        for degree in np.flatnonzero(self._errors(powers, length, eta, misfit) <= allowed):
-            orders = 2.0 * np.arange(degree + 1) + 1.0
-            rounding = _U * orders.sum() * (u.size + 40.0 + 300.0 / length) * largest
+
+
+@lru_cache(maxsize=4)
+def _given(system: RankOneSystem) -> _Given:
+    """Kept, since the bands of a chart join the pieces of one system."""
+    return _Given(system)
+
+
+class _Search(NamedTuple):
+    """The search for longer pieces, for all periods up to one.
+
+    Attributes
+    ----------
+    given : the pieces
+    weights : (2, Q) what turns the norm of a gain into that of A times the longest period
+    reference : (m,) constant part of w that is none of A's
+    calm, drive : max omega + |C| + |G|/T, and how fast these let energy grow, times the longest period
+    """
+
+    given: _Given
+    weights: FloatArray
+    reference: FloatArray
+    calm: float
+    drive: float
+
+    @classmethod
+    def of(cls, given: _Given, longest: float, damping: float, most: FloatArray) -> _Search:
+        form = given.form
+        rows = np.array([np.linalg.norm(form.v / form.omega), damping * np.linalg.norm(form.v)])
+        return cls(
+            given=given,
+            weights=longest * rows[:, None] * most,
+            reference=form.shapes @ form.reference,
+            calm=longest * float(form.omega.max() + np.linalg.norm(form.C))
+            + float(np.linalg.norm(form.gyroscopic)),
+            drive=longest * form.drive + form.gyroscopic_drive,
+        )
+
+    def longest_piece(self, start: int, tolerance: float) -> _Piece:
+        """Join as many pieces from ``start`` on as the tolerance allows: by doubling, then by bisection."""
+        given, pieces, step = self.given, self.given.phases.size - 1, 1
+        best, bad = _Piece(start + 1, given.powers[start], given.misfits[start], 0.0), pieces + 1
+        while best.stop < pieces and best.stop + 1 < bad:
+            stop = min(best.stop + step, pieces) if bad > pieces else (best.stop + bad) // 2
+            piece = self._joined(start, stop, tolerance)
+            if piece is None:
+                bad = stop
+            else:
+                best, step = piece, 2 * step
+        return best
+
+    def _joined(self, start: int, stop: int, tolerance: float) -> _Piece | None:
+        """One piece in place of several, of the smallest degree that will do; None where none will."""
+        one, length = self.given.merged(start, stop), self.given.phases[stop] - self.given.phases[start]
+        eta = length * (one.missing * self.weights).sum(axis=(1, 2))  # (d,)
+        misfit = float((one.misfit * self.weights).sum())
+        allowed = tolerance * max(length, _SHORT)
+        for degree in np.flatnonzero(self._errors(one.powers, length, eta, misfit) <= allowed):
+            # Rounding of the moments and of the change to powers.
+            rounding = (2.0 * np.arange(degree + 1) + 1.0).sum() * one.rounding
             change = np.abs(_POWERS).sum(axis=0)[: degree + 1]
-            rounding += 16.0 * _U * np.einsum("d,djq->jq", change, sizes[: degree + 1])
+            rounding += 16.0 * _U * np.einsum("d,djq->jq", change, one.sizes[: degree + 1])
             # The bound is that of the polynomials that are kept, of this degree.
-            kept = np.einsum("kd,djqm->jqmk", _POWERS[:, : degree + 1], series.reshape(shape)[: degree + 1])
+            kept = np.einsum("kd,djqm->jqmk", _POWERS[:, : degree + 1], one.series[: degree + 1])
             missed = eta + length * float((rounding * self.weights).sum())
             error = self._errors(kept, length, missed, misfit)[degree]
             if error <= allowed:
@@ -234,7 +275,7 @@ class _Fine(NamedTuple):
         """Bounds (d+1,) on the coefficients of A in powers of u, times the longest period."""
         centred = powers.copy()
         centred[0, 0, :, 0] -= self.reference
-        norms = np.sqrt(np.square(centred * self.root[:, None]).sum(axis=2))  # (2, Q, d+1)
+        norms = np.sqrt(np.square(centred * self.given.root[:, None]).sum(axis=2))  # (2, Q, d+1)
         a = np.einsum("jq,jqk->k", self.weights, norms)
         a[0] += self.calm
         return np.asarray(a)

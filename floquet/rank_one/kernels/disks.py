@@ -18,7 +18,7 @@ _EPS = 2.220446049250313e-16
 _U = 0.5 * _EPS
 
 
-@compiled()
+@compiled(_nrt=False, forceinline=True)
 def _vectors_of(
     LU: ComplexArray,
     pivots: npt.NDArray[np.int64],
@@ -98,7 +98,7 @@ def _vectors_of(
         x[0] = math.nan
 
 
-@compiled()
+@compiled(_nrt=False, forceinline=True)
 def _normalise(x: ComplexArray) -> None:
     """Scale x to length one."""
     square = 0.0
@@ -115,7 +115,7 @@ def _normalise(x: ComplexArray) -> None:
         x[i] *= factor
 
 
-@compiled()
+@compiled(_nrt=False, forceinline=True)
 def _partners(values: ComplexArray, partner: npt.NDArray[np.int64]) -> None:
     """Which value is the conjugate of each; conjugates stand side by side."""
     for p in range(values.size):
@@ -129,7 +129,7 @@ def _partners(values: ComplexArray, partner: npt.NDArray[np.int64]) -> None:
             partner[p], partner[p - 1] = p - 1, p
 
 
-@compiled()
+@compiled(_nrt=False, forceinline=True)
 def _eigenvectors(
     A: FloatArray,
     values: ComplexArray,
@@ -150,13 +150,13 @@ def _eigenvectors(
             _vectors_of(LU, pivots, A, values[p], X[p], Y[p])
 
 
-@compiled()
+@compiled(_nrt=False, forceinline=True)
 def _modulus(z: complex) -> float:
     """|z|, rounded up a little: faster than a careful abs where nothing overflows."""
     return math.sqrt(z.real * z.real + z.imag * z.imag) * (1.0 + 4.0 * _EPS) + 1e-150
 
 
-@compiled()
+@compiled(_nrt=False, forceinline=True)
 def _entries(
     A: FloatArray, values: ComplexArray, X: ComplexArray, Y: ComplexArray, partner: npt.NDArray[np.int64],
     delta: float, sizes: FloatArray, work: ComplexArray, f: FloatArray,
@@ -231,7 +231,7 @@ def _entries(
     return worst
 
 
-@compiled()
+@compiled(_nrt=False, forceinline=True)
 def _disks(values: ComplexArray, f: FloatArray, rows: FloatArray, radii: FloatArray) -> None:
     """Radii by Gershgorin's theorem for diag(values) + F, |F_ij| <= f_ij.
 
@@ -256,7 +256,7 @@ def _disks(values: ComplexArray, f: FloatArray, rows: FloatArray, radii: FloatAr
         radii[i] = (f[i, i] + min(tau, 1.0) * (rows[i] - f[i, i])) * (1.0 + 1e-12)
 
 
-@compiled()
+@compiled(_nrt=False, forceinline=True)
 def _join(values: ComplexArray, radii: FloatArray, scratch: FloatArray, group: npt.NDArray[np.int64]) -> None:
     """Widen the radii of overlapping disks: a union of k disks apart from the others holds k eigenvalues."""
     n = values.size
@@ -302,7 +302,7 @@ def spectra(
         for i in range(n):
             for j in range(n):
                 A[i, j] = M[point, i, j]
-        found = eigenvalues(A, values[point])
+        found = eigenvalues(A, values[point], sizes[0])
         _partners(values[point], partner)
         _eigenvectors(M[point], values[point], LU, pivots, X, Y, partner)
         q = _entries(M[point], values[point], X, Y, partner, delta[point], sizes, LU, f)
@@ -333,7 +333,7 @@ def _square(n: int) -> ComplexArray:
     return np.empty((n, n), np.complex128)
 
 
-@compiled()
+@compiled(_nrt=False)
 def _trusted(q: float, sizes: FloatArray) -> bool:
     """Whether the vectors are good enough; beyond this, values that nearly meet do better as a cluster."""
     good = q < 0.01

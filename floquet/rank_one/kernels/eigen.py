@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from floquet.rank_one.kernels.compiled import compiled
 from lumped.typing import ComplexArray, FloatArray
 
@@ -17,11 +15,10 @@ _EPS = 2.220446049250313e-16
 _MAX_SWEEPS = 60
 
 
-@compiled()
-def _hessenberg(A: FloatArray) -> None:
-    """Reduce A (n, n) to upper Hessenberg form in place by Householder reflections."""
+@compiled(_nrt=False)
+def _hessenberg(A: FloatArray, u: FloatArray) -> None:
+    """Reduce A (n, n) to upper Hessenberg form in place by Householder reflections; u (n,) is scratch."""
     n = A.shape[0]
-    u = np.zeros(n)
     for k in range(n - 2):
         norm = 0.0
         for i in range(k + 1, n):
@@ -57,7 +54,7 @@ def _hessenberg(A: FloatArray) -> None:
             A[i, k] = 0.0
 
 
-@compiled()
+@compiled(_nrt=False)
 def _francis(H: FloatArray, lo: int, hi: int, sum_: float, product: float) -> None:
     """One implicit double-shift QR sweep on rows lo..hi; the shifts have this sum and product."""
     x = H[lo, lo] * H[lo, lo] + H[lo, lo + 1] * H[lo + 1, lo] - sum_ * H[lo, lo] + product
@@ -101,11 +98,14 @@ def _francis(H: FloatArray, lo: int, hi: int, sum_: float, product: float) -> No
             z = H[k + 3, k] if k + 3 <= hi else 0.0
 
 
-@compiled()
-def eigenvalues(A: FloatArray, values: ComplexArray) -> bool:
-    """Eigenvalues of A (overwritten); conjugate pairs stand side by side. False: no convergence."""
+@compiled(_nrt=False)
+def eigenvalues(A: FloatArray, values: ComplexArray, scratch: FloatArray) -> bool:
+    """Eigenvalues of A (overwritten); conjugate pairs stand side by side. False: no convergence.
+
+    ``scratch`` is (n,).
+    """
     n = A.shape[0]
-    _hessenberg(A)
+    _hessenberg(A, scratch)
     scale = 0.0
     for i in range(n):
         for j in range(n):

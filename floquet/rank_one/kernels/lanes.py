@@ -113,3 +113,35 @@ def plus_square(typing: Any, x: Any, total: Any) -> Any:
         return builder.fadd(product, args[1], flags=_CONTRACT)
 
     return _lanes(_lanes, _lanes), code
+
+
+def _folded(builder: Any, value: Any, join: Any) -> Any:
+    """All eight joined into one, in a tree of three."""
+    blank, kind = ir.Constant(_VECTOR, ir.Undefined), ir.VectorType(ir.IntType(32), LANES)
+    for width in (4, 2, 1):
+        across = ir.Constant(kind, [(lane + width) % LANES for lane in range(LANES)])
+        value = join(value, builder.shuffle_vector(value, blank, across))
+    return builder.extract_element(value, ir.Constant(ir.IntType(32), 0))
+
+
+@intrinsic
+def total(typing: Any, x: Any) -> Any:
+    """total(x): sum of the eight."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return _folded(builder, args[0], builder.fadd)
+
+    return types.float64(_lanes), code
+
+
+@intrinsic
+def least(typing: Any, x: Any, y: Any) -> Any:
+    """least(x, y): the smallest of the sixteen."""
+
+    def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        def smaller(one: Any, other: Any) -> Any:
+            return builder.select(builder.fcmp_ordered("<", one, other), one, other)
+
+        return _folded(builder, smaller(args[0], args[1]), smaller)
+
+    return types.float64(_lanes, _lanes), code

@@ -17,15 +17,13 @@ import math
 import numpy as np
 
 from floquet.rank_one.kernels.compiled import compiled
-from floquet.rank_one.kernels.lanes import LANES, load, plus, scaled, store
+from floquet.rank_one.kernels.lanes import LANES, least, load, plus
 from lumped.typing import FloatArray
 
 MAX_TERMS = 64
 """Largest Taylor degree."""
-RADII = np.concatenate([[1.0], np.geomspace(1.3, 60.0, 2 * LANES - 1)])
-"""The R at which the bound is tried, after R = 1, which gives the sum of all r_k."""
-_LOGS = np.log(RADII[1:])
-_LOWER = np.log(RADII[1:] - 1.0)
+RADII = np.geomspace(1.3, 60.0, 2 * LANES)
+"""The R at which the bound is tried."""
 
 
 @compiled(_nrt=False)
@@ -39,18 +37,22 @@ def norm(row: FloatArray) -> float:
 
 @compiled()
 def powers_of_radii(count: int) -> FloatArray:
-    """R^(j+1)/(j+1), j = 0..count-1, for all RADII in two rows of lanes: (2, count, LANES)."""
-    powers = np.empty((2, count, LANES))
+    """What p at all RADII in two rows of lanes is made of, (2, count + 2, LANES).
+
+    R^(j+1)/((j+1) log R) for a_j, j = 0..count-1; 1/log R for the logarithm of 1/tolerance; and what is left.
+    """
+    powers = np.empty((2, count + 2, LANES))
     for i in range(2 * LANES):
+        R, row, lane = RADII[i], i // LANES, i % LANES
         for j in range(count):
-            powers[i // LANES, j, i % LANES] = RADII[i] ** (j + 1) / (j + 1)
+            powers[row, j, lane] = R ** (j + 1) / (j + 1) / math.log(R)
+        powers[row, count, lane] = 1.0 / math.log(R)
+        powers[row, count + 1, lane] = -math.log(R - 1.0) / math.log(R)
     return powers
 
 
-@compiled(fastmath={"contract"}, _nrt=False)
-def enough_terms(
-    a: FloatArray, degree: int, log_tolerance: float, powers: FloatArray, work: FloatArray
-) -> tuple[int, float]:
+@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+def enough_terms(a: FloatArray, degree: int, log_tolerance: float, powers: FloatArray) -> tuple[int, float]:
     """Degree p after which the neglected terms sum to less than the tolerance; -1 above MAX_TERMS.
 
     Parameters
@@ -59,23 +61,19 @@ def enough_terms(
     degree : d
     log_tolerance : logarithm of the tolerance
     powers : as of `powers_of_radii`
-    work : (2, LANES) scratch
 
     Returns
     -------
     p; sum of all r_k, which measures rounding
     """
-    first, second = scaled(a[0], load(powers, (0, 0))), scaled(a[0], load(powers, (1, 0)))
-    for j in range(1, degree + 1):
+    last = powers.shape[1] - 1
+    first = plus(-log_tolerance, load(powers, (0, last - 1)), load(powers, (0, last)))
+    second = plus(-log_tolerance, load(powers, (1, last - 1)), load(powers, (1, last)))
+    exponent = 0.0
+    for j in range(degree + 1):
         first, second = plus(a[j], load(powers, (0, j)), first), plus(a[j], load(powers, (1, j)), second)
-    store(work, (0,), first)
-    store(work, (1,), second)
-    best = 1.0 + MAX_TERMS
-    for i in range(_LOGS.size):
-        terms = (work[(i + 1) // LANES, (i + 1) % LANES] - _LOWER[i] - log_tolerance) / _LOGS[i]
-        if terms < best:
-            best = terms
-    size = math.exp(work[0, 0])
+        exponent += a[j] / (j + 1.0)
+    best, size = least(first, second), math.exp(exponent)
     if not best <= MAX_TERMS:
         return -1, size
     return max(1, math.ceil(best)), size

@@ -5,32 +5,29 @@ from __future__ import annotations
 import math
 
 from floquet.rank_one.kernels.compiled import compiled
-from floquet.rank_one.kernels.lanes import LANES, load, plus, plus_square, scaled, store, zero
+from floquet.rank_one.kernels.lanes import LANES, load, plus, plus_square, scaled, store, total, zero
 from lumped.typing import FloatArray
 
 BLOCKS = 34
 """Blocks of steps held at once at most: enough for 2^32 steps."""
 _EPS = 2.220446049250313e-16
+_PIVOT = 0.1  # of the norm of a matrix: larger diagonal elements are pivots without a search
 _SLACK = 1.0 + 1e-11  # rounding of a bound itself
 _FLOOR = 1e-150  # squares of what is smaller may be lost
 
 
-@compiled(_nrt=False)
-def frobenius(rows: FloatArray, scratch: FloatArray) -> float:
-    """Bound on the norm of rows[:, 0:n], by way of ``scratch[0]``: squares may be lost to underflow."""
+@compiled(_nrt=False, forceinline=True)
+def frobenius(rows: FloatArray) -> float:
+    """Bound on the norm of rows[:, 0:n], zero beyond; squares may be lost to underflow."""
     n = rows.shape[0]
-    total = zero()
+    squares = zero()
     for c in range(0, n, LANES):
         for i in range(n):
-            total = plus_square(load(rows, (i, c)), total)
-    store(scratch, (0,), total)
-    square = 0.0
-    for lane in range(min(n, LANES)):
-        square += scratch[0, lane]
-    return math.sqrt(square) + _FLOOR
+            squares = plus_square(load(rows, (i, c)), squares)
+    return math.sqrt(total(squares)) + _FLOOR
 
 
-@compiled(_nrt=False)
+@compiled(_nrt=False, forceinline=True)
 def copy(given: FloatArray, out: FloatArray) -> None:
     """Out = given, as many rows as out has."""
     n = out.shape[0]
@@ -39,32 +36,35 @@ def copy(given: FloatArray, out: FloatArray) -> None:
             store(out, (i, c), load(given, (i, c)))
 
 
-@compiled(_nrt=False)
+@compiled(_nrt=False, forceinline=True)
 def multiply(left: FloatArray, right: FloatArray, out: FloatArray) -> None:
     """Out = left[:, 0:n] @ right, all (n, lanes)."""
     n = left.shape[0]
     for c in range(0, n, LANES):
         for i in range(n):
-            total = zero()
+            row = zero()
             for q in range(n):
-                total = plus(left[i, q], load(right, (q, c)), total)
-            store(out, (i, c), total)
+                row = plus(left[i, q], load(right, (q, c)), row)
+            store(out, (i, c), row)
 
 
-@compiled(_nrt=False)
+@compiled(_nrt=False, forceinline=True)
 def invert(A: FloatArray, unit: FloatArray, work: FloatArray, out: FloatArray) -> None:
     """Out[:, 0:n] = inverse of A[:, 0:n], (n, lanes), by Gauss-Jordan elimination with row pivots.
 
-    Not finite where A is singular. ``unit`` has the rows of the unit matrix, ``work`` is scratch like A.
+    Not finite where A is singular. ``unit`` has the rows of the unit matrix, ``work`` is scratch like A. The
+    diagonal is taken as it is where it is not small: over a short step A is next to the unit matrix.
     """
     n, lanes = A.shape[0], A.shape[1]
     copy(A, work)
     copy(unit, out)
+    small = _PIVOT * frobenius(A)
     for k in range(n):
         p = k
-        for i in range(k + 1, n):
-            if abs(work[i, k]) > abs(work[p, k]):
-                p = i
+        if abs(work[k, k]) < small:
+            for i in range(k + 1, n):
+                if abs(work[i, k]) > abs(work[p, k]):
+                    p = i
         factor, own = 1.0 / work[p, k], k - k % LANES
         if p != k:
             for c in range(0, lanes, LANES):
@@ -85,7 +85,7 @@ def invert(A: FloatArray, unit: FloatArray, work: FloatArray, out: FloatArray) -
                     store(out, (i, c), plus(turned, right, load(out, (i, c))))
 
 
-@compiled(_nrt=False)
+@compiled(_nrt=False, forceinline=True)
 def divide(
     end: FloatArray, start: FloatArray, unit: FloatArray, scratch: FloatArray, step: FloatArray
 ) -> tuple[float, float]:
@@ -110,34 +110,34 @@ def divide(
     for c in range(0, n, LANES):
         for i in range(n):
             store(back, (i, c), plus(-1.0, load(end, (i, c)), load(back, (i, c))))
-    residual, size = frobenius(back, inverse), frobenius(step, inverse)
-    residual += (n + 1.0) * _EPS * size * frobenius(start, inverse)
+    residual, size = frobenius(back), frobenius(step)
+    residual += (n + 1.0) * _EPS * size * frobenius(start)
     return size, residual
 
 
-@compiled(_nrt=False)
+@compiled(_nrt=False, forceinline=True)
 def _gram(A: FloatArray, out: FloatArray) -> None:
     """Out = A^T A of A[:, 0:n], (n, lanes)."""
     n = A.shape[0]
     for c in range(0, n, LANES):
         for i in range(n):
-            total = zero()
+            row = zero()
             for q in range(n):
-                total = plus(A[q, i], load(A, (q, c)), total)
-            store(out, (i, c), total)
+                row = plus(A[q, i], load(A, (q, c)), row)
+            store(out, (i, c), row)
 
 
-@compiled(_nrt=False)
-def spectral(A: FloatArray, square: FloatArray, scratch: FloatArray) -> float:
+@compiled(_nrt=False, forceinline=True)
+def spectral(A: FloatArray, square: FloatArray) -> float:
     """Bound on the 2-norm of A[:, 0:n]: |A|^2 <= |A^T A|_F, too large by at most the fourth root of n.
 
     |A|_F where the fourth powers in that would be lost to underflow.
     """
-    size = frobenius(A, scratch)
+    size = frobenius(A)
     if size < 1e-60:
         return size * _SLACK
     _gram(A, square)
-    return math.sqrt(frobenius(square, scratch)) * _SLACK
+    return math.sqrt(frobenius(square)) * _SLACK
 
 
 @compiled(_nrt=False)
@@ -166,7 +166,7 @@ def carry(
     layout : (count, 5) as from ``steps_of_period``
     flow : (n, lanes), out: the product
     before : (count,) scratch: bounds on |Q_j|
-    work : (2 BLOCKS + 2, n, lanes) scratch
+    work : (2 BLOCKS + 1, n, lanes) scratch
     table : (5, BLOCKS) scratch: norm, error, rank of the blocks; norm, error of their product
 
     Returns
@@ -174,14 +174,14 @@ def carry(
     bound on the Frobenius norm of the error of the product, rounding of the multiplications included
     """
     n = flow.shape[0]
-    product, scratch = work[0], work[1]
+    product = work[0]
     copy(steps[0], flow)
     before[0] = math.sqrt(n) * _SLACK
     for k in range(1, count):
-        before[k] = frobenius(flow, scratch)
+        before[k] = frobenius(flow)
         multiply(steps[k], flow, product)
         copy(product, flow)
-    top, total, inner, wrong, norm = 0, 0.0, 1.0, 0.0, 0.0
+    top, bound, inner, wrong, norm = 0, 0.0, 1.0, 0.0, 0.0
     for k in range(count - 1, -1, -1):
         # n eps |P| is the rounding of multiplying by this step.
         own, size = local[k], layout[k, 4]
@@ -192,22 +192,22 @@ def carry(
             # The steps of such a piece make one block, whose norm while it grows is the product of theirs.
             if part == parts - 1:
                 inner = 1.0
-                copy(steps[k], work[2 + top])
+                copy(steps[k], work[1 + top])
                 wrong, norm = own, size
             else:
-                multiply(work[2 + top], steps[k], product)
-                copy(product, work[2 + top])
+                multiply(work[1 + top], steps[k], product)
+                copy(product, work[1 + top])
                 wrong = wrong * (size + own) + norm * own + n * _EPS * norm * size
                 norm *= size
-            total += after * inner * error * before[k]
+            bound += after * inner * error * before[k]
             inner *= size + own
             if part > 0:
                 continue
-            total += after * extra * before[k]
+            bound += after * extra * before[k]
             wrong += extra
         else:
-            total += after * (error + extra * (1.0 if part == parts - 1 else 0.0)) * before[k]
-            copy(steps[k], work[2 + top])
+            bound += after * (error + extra * (1.0 if part == parts - 1 else 0.0)) * before[k]
+            copy(steps[k], work[1 + top])
             wrong = own + extra
             norm = size
         rank = 0
@@ -216,21 +216,21 @@ def carry(
         while top > 1 and table[2, top - 2] == rank:
             one, two = top - 2, top - 1
             a, b, da, db = table[0, one], table[0, two], table[1, one], table[1, two]
-            multiply(work[2 + one], work[2 + two], product)
-            copy(product, work[2 + one])
+            multiply(work[1 + one], work[1 + two], product)
+            copy(product, work[1 + one])
             rank += 1
-            table[0, one] = frobenius(product, scratch)
+            table[0, one] = frobenius(product)
             table[1, one] = a * db + da * b + da * db + n * _EPS * a * b
             table[2, one] = rank
             top = one + 1
         # The product of all blocks, which is the flow from here to the end, and its error.
-        last, base = top - 1, 2 + BLOCKS
+        last, base = top - 1, 1 + BLOCKS
         if last == 0:
-            copy(work[2], work[base])
+            copy(work[1], work[base])
             table[4, 0] = table[1, 0]
         else:
-            multiply(work[base + last - 1], work[2 + last], work[base + last])
+            multiply(work[base + last - 1], work[1 + last], work[base + last])
             a, da, b, db = table[3, last - 1], table[4, last - 1], table[0, last], table[1, last]
             table[4, last] = a * db + da * (b + db) + n * n * _EPS * a * b
-        table[3, last] = spectral(work[base + last], product, scratch)
-    return total * _SLACK
+        table[3, last] = spectral(work[base + last], product)
+    return bound * _SLACK

@@ -44,7 +44,7 @@ from lumped.typing import FloatArray
 _U = 0.5 * 2.220446049250313e-16
 
 
-@compiled(fastmath={"contract"}, _nrt=False)
+@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
 def _series(piece: Piece, terms: int, h: float, ratio: float) -> None:
     """Fill Z[k] (3, LANES), the Taylor coefficients in step time, k = 2..terms+1, from Z[0] and Z[1].
 
@@ -135,7 +135,7 @@ def _series_of_many(piece: Piece, terms: int, h: float, ratio: float) -> None:
             here = there
 
 
-@compiled(_nrt=False)
+@compiled(_nrt=False, forceinline=True)
 def _unit_states(problem: Problem, piece: Piece, h: float) -> None:
     """Unit initial states x = (omega eta, eta') in the first 2m columns."""
     m = problem.v.size
@@ -145,7 +145,7 @@ def _unit_states(problem: Problem, piece: Piece, h: float) -> None:
             store(piece.Z, (1, q, c), scaled(h, load(piece.unit, (m + q, c))))
 
 
-@compiled(fastmath={"contract"}, _nrt=False)
+@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
 def _ends_of_step(
     problem: Problem, piece: Piece, terms: int, h: float, end: FloatArray, start: FloatArray
 ) -> None:
@@ -210,7 +210,7 @@ def steps_of_period(
                 return -1
             h = 0.5 * length / parts
             degree = load_step(problem, piece, part, parts, h, ratio)
-            terms, size = enough_terms(piece.a, degree, log_tolerance, piece.powers, piece.ends[0])
+            terms, size = enough_terms(piece.a, degree, log_tolerance, piece.powers)
             if terms < 0:
                 # The polynomials vary too much within the step: begin the piece again with half of it.
                 count = begin
@@ -243,7 +243,7 @@ def steps_of_period(
                 off += first
             if part == parts - 1:
                 off += last
-            spread = back * back * math.exp(off)
+            spread = back * back * (1.0 + 2.0 * off if off < 1.0 else math.exp(off))  # exp(off) at least
             # 1 + 1e-6: rounding of the bound itself, of the number of terms above all.
             error = (residual + (1.0 + size_step) * (limits.tolerance + rounding)) * back * (1.0 + 1e-6)
             local[count] = error + off * spread
@@ -281,7 +281,7 @@ def propagate_points(
     steps = np.empty((most, n, lanes))
     local, layout = np.empty(most), np.empty((most, 5))
     before, table = np.empty(most), np.zeros((5, BLOCKS))
-    work, flow = np.zeros((2 * BLOCKS + 2, n, lanes)), np.zeros((n, lanes))
+    work, flow = np.zeros((2 * BLOCKS + 1, n, lanes)), np.zeros((n, lanes))
     for point in range(periods.size):
         count = steps_of_period(
             problem, gains[point], damping_factor[point], periods[point], limits, piece, steps, local, layout
