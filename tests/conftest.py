@@ -1,14 +1,18 @@
 """The order of the tests; and whatever test saves a figure, its axes carry labels, with units for numbers."""
 
+from __future__ import annotations
+
 import os
 import re
 import weakref
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
-from hypothesis import settings
-from matplotlib.axis import Axis
-from matplotlib.figure import Figure
+
+if TYPE_CHECKING:
+    from matplotlib.axis import Axis
+    from matplotlib.figure import Figure
 
 #: What takes long, as two workers begin: the first half and the second. Each compiles other kernels, which
 #: the other one finds compiled later; short tests come last, for they leave nobody waiting for one long test.
@@ -28,9 +32,28 @@ UNIT = re.compile(r"\[[^\]]+\]|\b(mesh cycles|mesh order|revolutions)\b")
 #: What a number on an axis may look like: 1, -2.5, 10^3 in mathematical text, 5e-4.
 NUMBER = re.compile(r"[-−+0-9.e\s×{}$^\\]*|.*mathdefault.*")
 
-#: The same examples in every run, so that a pass can be repeated; long runs (SPURCHECK_FUZZ) search anew.
-settings.register_profile("spurcheck", derandomize="SPURCHECK_FUZZ" not in os.environ)
-settings.load_profile("spurcheck")
+
+def pytest_sessionstart(session):
+    """Draw the same random examples in every run, so that a pass can be repeated.
+
+    For a long run set the environment variable SPURCHECK_FUZZ: it multiplies the number of examples, which
+    are then drawn anew. The process that only hands out the tests needs none of this, and its workers wait
+    for what it imports.
+    """
+    if session.config.pluginmanager.hasplugin("dsession"):
+        return
+    from hypothesis import HealthCheck, settings
+
+    fuzz = os.environ.get("SPURCHECK_FUZZ")
+    settings.register_profile(
+        "spurcheck",
+        derandomize=fuzz is None,
+        deadline=None,  # the first call compiles
+        max_examples=25 * int(fuzz or "1"),
+        suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large],
+        print_blob=True,
+    )
+    settings.load_profile("spurcheck")
 
 
 def pytest_collection_modifyitems(items):
@@ -81,6 +104,8 @@ def missing_labels(figure: Figure) -> list[str]:
 @pytest.fixture(autouse=True, scope="session")
 def labelled_figures():
     """Check every figure when it is saved: then it has been drawn, so that its ticks are known."""
+    from matplotlib.figure import Figure
+
     save, seen = Figure.savefig, weakref.WeakSet()
 
     def checked(figure, *args, **options):

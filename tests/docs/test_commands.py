@@ -148,7 +148,7 @@ def shortened(arguments: list[str]) -> list[str]:
         view = arguments[arguments.index("--view") + 1] if "--view" in arguments else "chart"
         given = {axis.split("=")[0] for axis in arguments if "=" in axis and ":" in axis}
         axes = AXES_OF_VIEW.get(view, []) if view in ("campbell", "boundaries") or not given else []
-        extra = [word for axis in axes if axis not in given for word in ("--axis", SMALL[axis])]
+        return arguments + [word for axis in axes if axis not in given for word in ("--axis", SMALL[axis])]
     return arguments + [word for word in extra if extra[0] not in arguments]
 
 

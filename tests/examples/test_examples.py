@@ -10,6 +10,7 @@ from scipy.special import mathieu_a, mathieu_b
 
 import floquet
 import lumped
+from floquet.gear.response import ResponseBranches
 from validation.studies import load_study, read_results, run_sweep
 
 
@@ -74,9 +75,11 @@ def test_05_the_best_relief_is_best_near_its_design_torque(example):
     assert (np.diff(result["involute"] / result["torque"]) < 0.0).all()
 
 
-def test_06_the_separating_pair_has_two_motions_and_the_linear_one(example):
+def test_06_the_separating_pair_has_two_motions_and_the_linear_one(example, monkeypatch):
     module = example(6)
-    result = module.compute(speeds=[2380.0, 2460.0, 2540.0, 2620.0])
+    # Long runs, which the picture has no use for; tests/floquet/gear/test_orbits.py judges them.
+    monkeypatch.setattr(ResponseBranches, "jumps", ())
+    result = module.compute(speeds=[2460.0, 2540.0])
     labelled(module.draw(result))
     # Just below the jump of the rising sweep. How far down the large motion is kept hangs on rounding.
     at = result.sel(speed=2460.0)

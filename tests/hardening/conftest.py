@@ -1,7 +1,6 @@
 """Strategies for gear pairs, valid and hostile, and a watch against calls that do not end.
 
-For a long run set the environment variable SPURCHECK_FUZZ: it multiplies the number of examples, which are
-then drawn anew in each run.
+For a long run set the environment variable SPURCHECK_FUZZ, see tests/conftest.py.
 """
 
 from __future__ import annotations
@@ -9,7 +8,6 @@ from __future__ import annotations
 import contextlib
 import copy
 import math
-import os
 import signal
 import sys
 from collections.abc import Callable, Iterator
@@ -17,7 +15,6 @@ from contextlib import AbstractContextManager
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 
 from lumped import GearPair, load_gear_pair, preset_names
@@ -37,17 +34,6 @@ def bounded_memory() -> Iterator[None]:
     yield
     # Other tests of the same process start programs that want more addresses, as browsers do.
     resource.setrlimit(resource.RLIMIT_AS, before)
-
-
-settings.register_profile(
-    "hardening",
-    settings.get_profile("spurcheck"),
-    deadline=None,  # the first call compiles; hangs are caught by `within`
-    max_examples=25 * int(os.environ.get("SPURCHECK_FUZZ", "1")),
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large],
-    print_blob=True,
-)
-settings.load_profile("hardening")
 
 
 class Hang(BaseException):

@@ -153,7 +153,7 @@ def broken(draw, texts):
 
 
 @given(text=broken([preset_text(name) for name in preset_names()]))
-@settings(max_examples=2 * settings.get_profile("hardening").max_examples)
+@settings(max_examples=2 * settings().max_examples)
 def test_broken_parameter_files(within, tmp_path_factory, text):
     file = tmp_path_factory.mktemp("toml") / "pair.toml"
     file.write_text(text, encoding="utf-8", errors="surrogatepass", newline="")
@@ -162,7 +162,7 @@ def test_broken_parameter_files(within, tmp_path_factory, text):
 
 
 @given(text=broken([STUDY]))
-@settings(max_examples=2 * settings.get_profile("hardening").max_examples)
+@settings(max_examples=2 * settings().max_examples)
 def test_broken_study_files(within, tmp_path_factory, text):
     file = tmp_path_factory.mktemp("toml") / "study.toml"
     file.write_text(text, encoding="utf-8", errors="surrogatepass", newline="")

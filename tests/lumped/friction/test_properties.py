@@ -34,7 +34,7 @@ def operating_points(draw):
 
 
 @pytest.mark.parametrize("law", [name for name in LAWS if name != "none"])
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(pair=operating_points(), where=st.lists(st.floats(-8.0, -2.2), min_size=5, max_size=30))
 def test_any_operating_point(law, pair, where):
     path, parameters = contact_path(pair), pair.friction

@@ -201,7 +201,7 @@ pairs = st.builds(
 )
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(pair=pairs)
 def test_any_pair_that_exists(pair):
     assume(pair is not None)
@@ -217,7 +217,7 @@ def test_any_pair_that_exists(pair):
     assert g.normal_backlash >= 0.0
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(pair=pairs)
 def test_exchanging_the_gears_mirrors_the_line_of_action(pair):
     assume(pair is not None)

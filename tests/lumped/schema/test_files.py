@@ -75,7 +75,7 @@ SI = {
 }
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(values=st.fixed_dictionaries(FIELDS))
 def test_any_si_values_survive_toml_bit_for_bit(values):
     nasa = load_gear_pair("nasa_28_28")
@@ -95,7 +95,7 @@ def test_any_si_values_survive_toml_bit_for_bit(values):
 readable = st.characters(exclude_categories=("Cc", "Cs")) | st.sampled_from("\t\n\r")
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(text=st.text(readable, max_size=200))
 def test_any_text_survives(text):
     pair = load_gear_pair("nasa_28_28").with_(description=text, sources={"mesh": text})

@@ -198,10 +198,14 @@ def test_disc_defaults_are_those_of_solid_steel(nasa):
     assert b.inertia_pinion == pytest.approx(3.06e-4, abs=5e-7)
 
 
+@pytest.fixture(scope="module")
+def schema():
+    return json_schema()
+
+
 class TestJsonSchema:
-    def test_every_quantity_carries_its_unit(self, quantity_field):
+    def test_every_quantity_carries_its_unit(self, quantity_field, schema):
         path, quantity = quantity_field
-        schema = json_schema()
         node = schema
         for part in path.split("."):
             if part.isdigit():
@@ -217,12 +221,11 @@ class TestJsonSchema:
         assert number.get("exclusiveMaximum") == quantity.below
         assert number.get("maximum") == quantity.at_most
 
-    def test_brake_torque_carries_its_unit_too(self):
-        node = json_schema()["$defs"]["OperatingPoint"]["properties"]["brake_torque"]
+    def test_brake_torque_carries_its_unit_too(self, schema):
+        node = schema["$defs"]["OperatingPoint"]["properties"]["brake_torque"]
         assert (node["unit"], node["si_unit"]) == ("N*m", "N*m")
 
-    def test_shafts_conform(self, nasa, shaft_tables):
-        schema = json_schema()
+    def test_shafts_conform(self, nasa, shaft_tables, schema):
         pair = nasa.with_(shafts=shaft_tables)
         assert list(_violations(pair.to_mapping(), schema, schema, "")) == []
         wrong = copy.deepcopy(shaft_tables)
@@ -232,14 +235,12 @@ class TestJsonSchema:
         )
 
     @pytest.mark.parametrize("name", ["nasa_28_28", "nasa_art_25_31", "kahraman_blankenship_50_50", "fzg_c"])
-    def test_presets_conform(self, name):
-        schema = json_schema()
+    def test_presets_conform(self, name, schema):
         # As written in the file, and as written back by the schema.
         for data in (tomllib.loads(preset_text(name)), load_gear_pair(name).to_mapping()):
             assert list(_violations(data, schema, schema, "")) == []
 
-    def test_a_default_written_out_changes_nothing(self):
-        schema = json_schema()
+    def test_a_default_written_out_changes_nothing(self, schema):
         silent, written = (tomllib.loads(preset_text("nasa_28_28")) for _ in range(2))
         count = 0
         for key, reference in schema["properties"].items():
@@ -256,8 +257,7 @@ class TestJsonSchema:
         assert rack["pressure_angle"]["default"] == 20.0
         assert "default" not in schema["properties"]["centre_distance"]
 
-    def test_the_check_itself_can_fail(self, edited):
-        schema = json_schema()
+    def test_the_check_itself_can_fail(self, edited, schema):
         for path, value in [("pinion.teeth", "many"), ("pinion.teth", 3), ("pinion.face_width", ...)]:
             assert list(_violations(edited(path, value), schema, schema, ""))
 

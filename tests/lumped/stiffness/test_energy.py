@@ -294,7 +294,7 @@ def test_ramped_energy_stiffness_rises_from_zero():
     bore=st.tuples(st.sampled_from([0.0, 0.2, 0.5, 0.8]), st.sampled_from([0.0, 0.2, 0.5, 0.8])),
     hertz=st.sampled_from(["linear", "weber_banaschek"]),
 )
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_every_pair_that_can_mesh_has_a_stiffness(teeth, pressure_angle, fillet, shift, bore, hertz):
     try:
         pair = load_gear_pair("nasa_28_28").with_(

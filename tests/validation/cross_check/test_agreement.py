@@ -34,26 +34,6 @@ def test_both_models_return_the_same_table():
         assert linear.attrs[key] == reference.attrs[key]
 
 
-@pytest.mark.parametrize(
-    ("law", "stiffness"),
-    [
-        ("coulomb", "rectangular"),
-        ("coulomb", "parabolic"),
-        ("benedict_kelley", "parabolic"),
-        ("xu_kahraman", "rectangular"),
-        ("smoothed_coulomb", "parabolic"),
-        ("composite", "rectangular"),
-    ],
-)
-def test_linear_level_solves_the_lumped_equations(law, stiffness):
-    """Two assemblies and two integrators of one set of equations."""
-    pair = BASE.with_(friction__law=law, mesh__stiffness={"model": stiffness})
-    linear, reference = multibody.simulate(pair, 20, fidelity="linear"), lumped.simulate(pair, 20)
-    # 1e-6 of the peak to peak is asked for; rtol 1e-8 per step leaves some 1e-8.
-    for name in ("dte", "x_p", "x_g", "y_p", "y_g", "theta_p", "theta_g", "normal_load", "friction_force"):
-        assert difference(linear, reference, name) < 3e-7
-
-
 @pytest.mark.parametrize("options", [{"fidelity": "linear"}, {"effects": ()}], ids=["linear", "effects off"])
 def test_all_effects_off_equals_lumped_to_integration_tolerance(options):
     """Involute geometry at the nominal pose is the lumped geometry: 1e-8 at rtol 1e-10."""

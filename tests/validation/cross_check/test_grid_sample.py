@@ -22,9 +22,13 @@ STIFFNESS = {
 }
 CYCLES, SAMPLES = 10, 64
 PRESETS = lumped.preset_names()
-#: Every preset with two laws, every law with two presets and more; every preset with one stiffness, and the
-#: default pair with all. The rest of the grid runs by ``spurcheck crosscheck --grid``.
-WITH_LAWS = [(name, LAWS[(i + step) % 5]) for i, name in enumerate(PRESETS) for step in (0, 2)]
+#: Every preset with two laws, every law with two presets, jumps of stiffness and parabola; every preset with
+#: one stiffness, and the default pair with all. The rest of the grid runs by ``spurcheck crosscheck --grid``.
+WITH_LAWS = [
+    (name, LAWS[(i + step) % 5], stiffness)
+    for i, name in enumerate(PRESETS)
+    for step, stiffness in ((0, "rectangular"), (2, "parabolic"))
+]
 WITH_STIFFNESS = {("nasa_28_28", name) for name in STIFFNESS}
 WITH_STIFFNESS |= {(name, list(STIFFNESS)[i % 3]) for i, name in enumerate(PRESETS)}
 
@@ -38,11 +42,12 @@ def difference(run, reference, name):
     return float(np.abs(run[name] - reference[name]).max() / np.ptp(reference[name].to_numpy()))
 
 
-@pytest.mark.parametrize(("preset", "law"), WITH_LAWS)
-def test_linear_level(preset, law):
-    pair = lumped.load_gear_pair(preset).with_(friction__law=law)
+@pytest.mark.parametrize(("preset", "law", "stiffness"), WITH_LAWS)
+def test_linear_level(preset, law, stiffness):
+    """Two assemblies and two integrators of one set of equations."""
+    pair = lumped.load_gear_pair(preset).with_(friction__law=law, mesh__stiffness=STIFFNESS[stiffness])
     run, reference = runs(pair, fidelity="linear")
-    for name in ("dte", "x_p", "x_g", "theta_p", "theta_g", "normal_load"):
+    for name in ("dte", "x_p", "x_g", "y_p", "y_g", "theta_p", "theta_g", "normal_load", "friction_force"):
         assert difference(run, reference, name) < 1e-6, name
 
 

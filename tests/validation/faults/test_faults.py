@@ -138,7 +138,8 @@ def test_every_law_of_nature_sees_a_fault_on_every_model_that_it_judges():
 
 
 def test_sound_pairs_are_drawn_alike_by_one_seed():
-    first, again = ([pair.to_toml() for pair in drawn(5, "7")] for _ in range(2))
+    many = list(drawn(8, "7"))
+    first, again = ([pair.to_toml() for pair in found] for found in (many[:3], drawn(3, "7")))
     assert first == again
-    assert len(set(first)) == 5
-    assert np.unique([pair.mesh.stiffness.model for pair in drawn(20, "7")]).size >= 2
+    assert len(set(first)) == 3
+    assert np.unique([pair.mesh.stiffness.model for pair in many]).size >= 2

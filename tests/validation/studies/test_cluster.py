@@ -238,10 +238,8 @@ def test_no_scheduler_is_refused(study, tmp_path, monkeypatch):
 
 
 # The last test of the module, for the scheduler is gone then.
-def test_the_command_says_in_one_line_that_the_scheduler_died(
-    make_study, tmp_path, scheduler
-):  # the last one
-    process, address, _ = scheduler
+def test_the_command_says_in_one_line_that_the_scheduler_died(make_study, tmp_path, scheduler):
+    process, address, worker = scheduler
     long = make_study(
         analysis="multibody",
         outputs=["dte_rms"],
@@ -257,6 +255,7 @@ def test_the_command_says_in_one_line_that_the_scheduler_died(
         while not any(client.processing().values()):
             assert sweep.poll() is None, sweep.communicate()[0]
             time.sleep(0.1)
+    worker.send_signal(signal.SIGSTOP)  # it computes no more while the command ends
     process.kill()
     text, _ = sweep.communicate(timeout=60)
     assert sweep.returncode == 3

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import random
+import shutil
 import sqlite3
 import sys
 from pathlib import Path
@@ -129,13 +130,26 @@ def content(folder):
     return {path.name: path.read_bytes() for path in folder.glob("store.sqlite") if path.is_file()}
 
 
+@pytest.fixture(scope="module")
+def swept(study, tmp_path_factory):
+    """Folder of a finished sweep, to copy."""
+    folder = tmp_path_factory.mktemp("swept") / "out"
+    run_sweep(study, folder)
+    return folder
+
+
+@pytest.fixture
+def finished(swept, tmp_path):
+    """Folder of a finished sweep, to damage."""
+    return shutil.copytree(swept, tmp_path / "out")
+
+
 @pytest.mark.parametrize("kind", FAULTS)
 def test_a_damaged_store_is_refused_and_left_as_it_is_or_mended(
-    study, tmp_path, undisturbed, sweep_command, kind
+    finished, tmp_path, undisturbed, sweep_command, kind
 ):
     change, words = FAULTS[kind]
-    out = tmp_path / "out"
-    run_sweep(study, out)
+    out = finished
     change(out / STORE)
     damaged = content(out)
     code, text = sweep_command("other")  # first, for it must not take the folder as its own
@@ -157,18 +171,17 @@ def test_a_damaged_store_is_refused_and_left_as_it_is_or_mended(
 
 
 @pytest.mark.parametrize("seed", range(int(os.environ.get("SPURCHECK_FUZZ", "5"))))
-def test_flipped_bits_are_noticed_or_cost_nothing(study, tmp_path, undisturbed, sweep_command, seed):
+def test_flipped_bits_are_noticed_or_cost_nothing(finished, undisturbed, sweep_command, seed):
     random.seed(seed)
-    run_sweep(study, tmp_path / "out")
-    flipped(tmp_path / "out" / STORE)
-    damaged = content(tmp_path / "out")
+    flipped(finished / STORE)
+    damaged = content(finished)
     assert sweep_command("other")[0] in (REFUSED, STOPPED)
     code, text = sweep_command("same")
     if code == 1:
-        assert (tmp_path / "out" / "results.nc").read_bytes() == undisturbed
+        assert (finished / "results.nc").read_bytes() == undisturbed
     else:
         assert code in (REFUSED, STOPPED), text
-        assert content(tmp_path / "out") == damaged
+        assert content(finished) == damaged
 
 
 @pytest.mark.parametrize("what", ["cut", "emptied", "removed"])
