@@ -21,8 +21,21 @@ SETTINGS = {
 }
 
 
-def test_the_command_prints_the_jump_to_the_beats():
+@pytest.fixture(scope="module")
+def branches():
+    pair = lumped.load_gear_pair("nasa_28_28").with_(SETTINGS)
+    return floquet.response_branches(pair, periods=[1], seeds=0)
+
+
+def test_the_command_prints_the_jump_to_the_beats(branches, monkeypatch):
     """On running up the pair jumps at the fold to beats; speeds without a stable motion are named."""
+
+    def known(pair, speeds, periods, *, seeds, back_side, progress):
+        assert pair == branches.pair
+        assert (speeds, [*periods], seeds, back_side) == (None, [1], 0, False)
+        return branches
+
+    monkeypatch.setattr(floquet, "response_branches", known)
     done = CliRunner().invoke(app, ["response", *PAIR, "--periods", "1", "--seeds", "0", "--json"])
     assert done.exit_code == 0, done.output
     found = json.loads(done.stdout)
@@ -36,10 +49,8 @@ def test_the_command_prints_the_jump_to_the_beats():
     assert restless["kind"] == "beats"
 
 
-def test_the_figure_shows_branches_jumps_and_the_operating_range(tmp_path):
-    found = floquet.response_branches(
-        lumped.load_gear_pair("nasa_28_28").with_(SETTINGS), periods=[1], seeds=0
-    )
+def test_the_figure_shows_branches_jumps_and_the_operating_range(branches):
+    found = branches
     figure = response_figure(found.dataset)
     top, bottom = figure.axes
     stable = [line for line in top.lines if line.get_linestyle() == "-"]
