@@ -104,6 +104,10 @@ def simulate(
         "mesh_efficiency": float(result.attrs["mesh_efficiency"]),
         "brake_torque": float(result.attrs["brake_torque"]),
     }
+    # The paper's brake pays for sliding alone; what else is lost nobody pays.
+    paper = gear_pair.mesh.contact == "paper"
+    if paper and "power_unpaid" in result.attrs:
+        numbers["power_unpaid"] = float(result.attrs["power_unpaid"])
     if as_json:
         print_json({"gear_pair": gear_pair.name, "model": model, "supports": supports} | numbers)
     else:
@@ -114,10 +118,12 @@ def simulate(
             "largest load of a tooth pair": quantity(numbers["normal_load_max"], "N"),
             "smallest load of a tooth pair": quantity(numbers["normal_load_min"], "N"),
             "largest load over static load": number(numbers["load_factor"]),
-            "mesh efficiency": f"{number(100.0 * numbers['mesh_efficiency'])} %",
+            f"mesh efficiency{', sliding alone' * paper}": f"{number(100.0 * numbers['mesh_efficiency'])} %",
             "brake torque that holds the speed": quantity(numbers["brake_torque"], "N m", 6),
         }.items():
             shown.add_row(name, value)
+        if "power_unpaid" in numbers:
+            shown.add_row("losses that no torque pays", quantity(numbers["power_unpaid"], "W"))
         stdout().print(shown)
     separation = contact_loss(gear_pair, g, last)
     if separation.state != "ok" and (model == "lumped" or fidelity == "linear"):

@@ -33,6 +33,42 @@ def test_power_balance_closes(options):
     assert balance.bearings > 0
 
 
+@pytest.mark.parametrize(
+    ("preset", "changes"),
+    [
+        ("nasa_28_28", {"mesh.stiffness": {"model": "energy"}}),
+        ("nasa_28_28", {"mesh.stiffness": {"model": "energy"}, "mesh.relief": "static"}),
+        ("nasa_28_28", {"operating.pinion_speed": 500.0}),
+        ("nasa_28_28", {"operating.pinion_speed": 18000.0, "mesh.stiffness": {"model": "energy"}}),
+        ("fzg_c", {"mesh.stiffness": {"model": "energy"}}),
+        ("nasa_art_25_31", {"mesh.stiffness": {"model": "parabolic"}}),
+        ("kahraman_blankenship_50_50", {"friction": {"law": "coulomb", "coefficient": 0.0}}),
+        ("high_contact_ratio_29_47", {}),
+        ("high_contact_ratio_29_47", {"mesh.stiffness": {"model": "energy"}}),
+    ],
+)
+def test_the_first_law_holds_without_a_source(preset, changes):
+    """Driving power is braking power, stored energy and losses; nothing is left to be called unpaid."""
+    pair = lumped.load_gear_pair(preset).with_({"mesh.contact": "loaded"} | changes)
+    ledger = multibody.power_balance(pair, 3, rtol=1e-10, friction_velocity=0.05)
+    assert abs(ledger.residual) < 1e-9 * ledger.driving
+    assert ledger.unpaid == 0.0
+    # The energy does not jump: contact begins and ends where the teeth carry nothing.
+    assert abs(ledger.mesh_jump) < 1e-10 * ledger.driving
+    assert ledger.mesh_damping > 0.0
+    assert ledger.bearings > 0.0
+
+
+def test_without_path_work_and_tip_contact_the_ledger_needs_a_source():
+    pair = lumped.load_gear_pair("nasa_28_28").with_(
+        mesh__relief="ignored", mesh__stiffness={"model": "energy"}
+    )
+    ledger = multibody.power_balance(pair, 3, rtol=1e-10, friction_velocity=0.05)
+    assert abs(ledger.residual) < 1e-9 * ledger.driving
+    assert ledger.mesh_jump > 1e-4 * ledger.driving
+    assert abs(ledger.unpaid) > 1e-6 * ledger.driving
+
+
 @pytest.mark.parametrize("fidelity", ["linear", "exact"])
 def test_power_balance_closes_with_a_motor_and_torque_histories(fidelity):
     """A run-up behind a damped spring, both torques given as histories with kinks."""

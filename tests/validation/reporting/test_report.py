@@ -88,7 +88,7 @@ def test_hostile_names_are_text(page, written):
     assert "<script" not in (written.folder / "index.html").read_text(encoding="utf-8")
 
 
-def test_report_json_is_strict_and_says_what_the_page_says(written, page):
+def test_report_json_is_strict_and_says_what_the_page_says(written, page, hostile):
     def refuse(constant):
         raise AssertionError(constant)
 
@@ -111,6 +111,11 @@ def test_report_json_is_strict_and_says_what_the_page_says(written, page):
     )
     # Four digits are shown.
     assert shown == pytest.approx(1e6 * steady["dte_peak_to_peak"]["value"]["value"], rel=1e-3)
+    # The paper's brake pays for sliding alone, but the efficiency that is told leaves no loss out.
+    attrs = lumped.steady_state(hostile).attrs
+    driving = attrs["pinion_torque"] * hostile.operating.pinion_speed
+    every_loss = attrs["mesh_efficiency"] - attrs["power_unpaid"] / driving
+    assert steady["mesh_efficiency"]["value"] == pytest.approx(every_loss, abs=1e-8)
 
 
 @pytest.fixture(scope="module")

@@ -9,9 +9,9 @@ import numpy as np
 from validation.plots.contact_forms import contact_forms_figure, losses_over_speed_figure
 from validation.reporting.blocks import Block, Content, Picture, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
-from validation.reporting.formatting import number, quantity
 from validation.reporting.results import Results
-from validation.validity.contact_forms import FORMS, PLACES, ContactForms, losses_over_speed
+from validation.reporting.words import contact_form
+from validation.validity.contact_forms import FORMS, PLACES, losses_over_speed
 
 #: Speeds of the figure of losses.
 _SPEEDS = 21
@@ -30,7 +30,7 @@ def write(results: Results) -> Content:
     statics = "its teeth touch from A to D by decree, with a stiffness that does not know its load"
     blocks: list[Block] = [
         Text(
-            f"{_off(results, found)} In the paper's form {statics}; the exact contact follows from the gap "
+            f"{contact_form(results)} In the paper's form {statics}; the exact contact follows from the gap "
             "of flanks and tip corners and from an elastic energy. The loaded form is linear about the "
             "motion under the static load, in contact where that load closes the gap, beyond A and D too."
         ),
@@ -104,24 +104,6 @@ def write(results: Results) -> Content:
             )
         )
     return Content(tuple(blocks), data=data)
-
-
-def _off(results: Results, forms: ContactForms) -> str:
-    """How far the form of the contact is off the exact one, and what the other form gives."""
-    spans = forms.spans(results.geometry.mesh_period)
-    off = {name: number(100 * value, 2) for name, value in forms.difference.items()}
-    told = {name: quantity(value, "m", 3) for name, value in spans.items()}
-    if forms.own == "loaded":
-        return (
-            "The contact follows the load: this form is off the exact contact by up to "
-            f"{off['loaded']}\u00a0% of the transmission error's peak to peak, the paper's form by "
-            f"{off['paper']}\u00a0%."
-        )
-    return (
-        "The paper's contact, which begins by decree, is off the exact contact "
-        f"({told['exact']} peak to peak) by up to {off['paper']}\u00a0% of that; for the same pair the "
-        f"loaded form gives {told['loaded']} and is off by {off['loaded']}\u00a0%."
-    )
 
 
 CHAPTER = Chapter("contact_forms", "The form of the contact", write, front=("contact_forms",), seconds=4)

@@ -48,9 +48,11 @@ def write(results: Results) -> Content:
     dte, attrs, largest = motion["dte"], motion.attrs, largest_load(results)[0]
     friction = float(motion["friction_power"].sum("pair").mean())
     radius = f"largest multiplier {multipliers.spectral_radius:.4g}"
-    counted, unpaid = "friction losses only", "of bearings and tooth dampers, left out by the paper's brake"
+    places = ("power_sliding", "power_tooth_dampers", "power_bearings")
+    lost = sum(float(attrs[place]) for place in places) / (attrs["pinion_torque"] * g.omega_pinion)
+    unpaid, paid = "of bearings and tooth dampers, left out by the paper's brake", "pays for sliding alone"
     if pair.mesh.contact == "loaded":
-        counted, unpaid = "all losses", "the brake pays for every loss"
+        unpaid, paid = "the brake pays for every loss", ""
     key_results = facts(
         "key_results",
         ("stability", "this periodic motion is", Badge(multipliers.verdict), "", radius),
@@ -61,12 +63,12 @@ def write(results: Results) -> Content:
         (
             "mesh_efficiency",
             "mesh efficiency",
-            float(attrs["mesh_efficiency"]),
+            1.0 - lost,
             "",
-            counted if lawful(results) else f"do not rely on it: {unlawful(results)}",
+            "all losses counted" if lawful(results) else f"do not rely on it: {unlawful(results)}",
         ),
         ("power_unpaid", "unpaid power", float(attrs["power_unpaid"]), "W", unpaid),
-        ("brake_torque", "brake torque that holds the speed", attrs["brake_torque"], "N m"),
+        ("brake_torque", "brake torque that holds the speed", attrs["brake_torque"], "N m", paid),
         ("friction_power", "mean friction power", friction, "W", "negative: it is lost"),
         ("error_estimate", "estimated relative error of the motion", float(attrs["error_estimate"])),
     )
