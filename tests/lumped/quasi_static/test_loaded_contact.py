@@ -58,7 +58,7 @@ def test_the_loads_of_the_fitted_laws_make_the_mean_load(name):
 
 @pytest.mark.parametrize("relief", [0.0, 2.0])
 def test_contact_begins_beyond_a_where_the_corner_has_closed_its_gap(relief):
-    """The gap is that of the corner, where deflection shifts it to, the neighbour's, and relief as at the tip."""
+    """The gap is the corner's, where deflection shifts it, the neighbour's, and relief as at the tip."""
     amounts = {f"{gear}.tip_relief.amount": relief for gear in ("pinion", "gear")}
     soft = {"bearings.pinion.loa_stiffness": 3e7, "bearings.gear.loa_stiffness": 7e7}
     pair = FORMS["linear"].with_({"mesh.relief": "static"} | amounts | soft)
@@ -96,6 +96,20 @@ def test_neighbours_soften_double_contact_as_two_coupled_springs():
     assert softer == pytest.approx(np.full(7, 0.135), abs=0.01)
 
 
+def test_pairs_two_pitches_apart_move_each_other_too():
+    pair = FORMS["unequal"].with_(mesh__stiffness={"model": "energy", "hertz": "linear"})
+    mesh, g = StaticMesh(pair), lumped.geometry(pair)
+    last = 0.5 * (g.L_XA + g.L_XD) - g.base_pitch
+    xi = last + np.arange(3) * g.base_pitch
+    three = mesh.static(xi)
+    assert three.load.min() > 0.0
+    w, far = mesh.neighbours[0](xi[:2]), float(mesh.neighbours[1](xi[0]))
+    compliance = np.diag(1.0 / mesh.law.held(xi))
+    compliance += np.array([[0.0, w[0], far], [w[0], 0.0, w[1]], [far, w[1], 0.0]])
+    assert compliance @ three.load == pytest.approx(three.approach - three.gap, rel=1e-10)
+    assert abs(far) > 1e-3 * w[0]
+
+
 def test_tangent_of_hertz_contact_is_stiffer_than_its_secant():
     """k_t = 1/(1/k - D ln(N/N_0) - D): at the full load k/(1 - D k)."""
     mesh, g = StaticMesh(PAIR), lumped.geometry(PAIR)
@@ -115,7 +129,7 @@ def test_corner_contact_grows_with_the_root_of_the_load():
 
 
 def damper_power(torque, rpm):
-    """Of a linear pair with corners, and the pair itself; so damped that one corner's swing ends by the next."""
+    """Of a linear pair with corners, and the pair; so damped that one corner's swing ends by the next."""
     pair = FORMS["rectangular"].with_(
         friction__law="none",
         mesh__damping_ratio=0.2,
