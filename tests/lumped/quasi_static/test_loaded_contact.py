@@ -233,6 +233,14 @@ def test_all_losses_are_paid_by_the_moments_and_the_force_along_the_path(name):
     assert motion.attrs["mesh_efficiency"] == pytest.approx(powers.efficiency, abs=1e-9)
 
 
+def test_the_brake_of_unequal_gears_takes_what_no_loss_takes():
+    pair, powers = FORMS["unequal"], mean_powers(solution(FORMS["unequal"]))
+    found = lumped.steady_state(pair, samples_per_cycle=16).attrs
+    taken = found["brake_torque"] * lumped.geometry(pair).omega_gear
+    assert found["power_unpaid"] == 0.0
+    assert taken == pytest.approx(powers.driving - powers.lost, rel=1e-9)
+
+
 def test_the_damper_follows_the_gap_and_not_the_error_of_the_tangent():
     """Relief grows linearly over the roll angle, 23 um from 24 deg to the tip of the pinion."""
     pair, g = FORMS["relief"], lumped.geometry(FORMS["relief"])

@@ -69,6 +69,15 @@ def test_without_path_work_and_tip_contact_the_ledger_needs_a_source():
     assert abs(ledger.unpaid) > 1e-6 * ledger.driving
 
 
+@pytest.mark.parametrize("relief", ["ignored", "static"])
+def test_the_ledger_of_the_linear_mesh_in_the_loaded_form_closes(relief):
+    """Its springs follow the tangent's error its dampers the gap; with Hertz's contact these differ."""
+    pair = PAIR.with_(mesh__stiffness={"model": "energy"}, mesh__contact="loaded", mesh__relief=relief)
+    balance = multibody.power_balance(pair, 3, fidelity="linear", rtol=1e-11)
+    assert abs(balance.residual) < 1e-10 * balance.driving
+    assert abs(balance.unpaid) > 1e-5 * balance.driving
+
+
 @pytest.mark.parametrize("fidelity", ["linear", "exact"])
 def test_power_balance_closes_with_a_motor_and_torque_histories(fidelity):
     """A run-up behind a damped spring, both torques given as histories with kinks."""
