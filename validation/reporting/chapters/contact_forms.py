@@ -9,8 +9,8 @@ import numpy as np
 from validation.plots.contact_forms import contact_forms_figure, losses_over_speed_figure
 from validation.reporting.blocks import Block, Content, Picture, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
+from validation.reporting.contact_words import contact_form
 from validation.reporting.results import Results
-from validation.reporting.words import contact_form
 from validation.validity.contact_forms import FORMS, PLACES, losses_over_speed
 
 #: Speeds of the figure of losses.
