@@ -102,6 +102,7 @@ def crosscheck(
 
 
 def _print(check: CrossCheck) -> None:
+    from validation.cross_check.parted_motion import why_teeth_pull
     from validation.reporting.formatting import number
 
     console = stdout()
@@ -119,6 +120,8 @@ def _print(check: CrossCheck) -> None:
             "predicted, so the most that it can change is allowed in what is left.",
             soft_wrap=True,
         )
+    if check.failures and check.orbit is None and (why := why_teeth_pull(check.pair)):
+        console.print(why, soft_wrap=True)
     for failure in check.failures:
         text = f"fails: {failure.check} {number(failure.value, 3)}, limit {number(failure.limit, 3)}"
         console.print(f"{text} ({failure.reason})", soft_wrap=True, markup=False)

@@ -13,6 +13,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from lumped import GearPair
+from lumped.errors import NumericalError
 from lumped.friction import (
     LAWS,
     ContactPath,
@@ -71,10 +72,18 @@ def law_ratio(
     slides_as : (k,) where the nominal motion slides as fast as the teeth do [m]
     rolling : (k,) sum of the rolling velocities [m/s]
     arm_pinion, arm_gear : (k,) distances of the contact from both tangent points [m]
+
+    Raises
+    ------
+    NumericalError : the flanks roll backwards, where the laws have no value
     """
     path, settings, name = contact_path(pair), pair.friction, pair.friction.law
     if name not in ("benedict_kelley", "xu_kahraman", "composite"):  # one coefficient, whatever the contact
         return np.ones_like(slides_as)
+    if rolling.min() <= 0.0:
+        raise NumericalError(
+            "Vibration makes the flanks roll backwards; lower the torque or raise the speed."
+        )
     if name == "composite":
         settings = settings.model_copy(update={"coefficient": average_coefficient(path, settings)})
     nominal = {field.name: getattr(path, field.name) for field in fields(path)}

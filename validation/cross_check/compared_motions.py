@@ -12,13 +12,20 @@ import multibody
 from floquet.gear.orbit import GearOrbit
 from lumped import GearPair
 from lumped.errors import NumericalError
-from lumped.typing import Progress
+from lumped.typing import FloatArray, Progress
 from multibody.contact.machine import machine
 from multibody.contact.reversal import friction_velocity
+from validation.cross_check import metrics
 from validation.cross_check.agreement import Fidelity
+from validation.cross_check.tolerances import GROUPS, LINEAR
 
-#: Tolerances of the integrations: far below the limits they are used to check.
-RTOL: Mapping[str, float] = {"lumped": 1e-10, "linear": 1e-9, "exact": 1e-8}
+#: Tolerances of the integrations: far below the limits they are used to check, where a motion has an ordinary
+#: size: the smallest limit over the deflection, as a share of that of the transmission error.
+_RTOL: Mapping[str, float] = {"lumped": 1e-10, "linear": 1e-9, "exact": 1e-8}
+_ORDINARY = 0.2
+#: Most by which the first two are tightened for a smaller motion. The exact model need not be: its limits are
+#: shares of the shift of the contact.
+_TIGHTER = 0.001
 #: Cycles over which the lumped integrator carries the periodic motion, until a stable one repeats.
 _CARRIED_CYCLES = (2, 6)
 #: A cycle repeats the one before to this share of peak to peak, a hundredth of the limits of the comparison.
@@ -33,6 +40,28 @@ PARTED: Mapping[Fidelity, Mapping[str, bool] | Sequence[str]] = {
     "linear": ["contact_loss"],
     "exact": {"clearance": True},
 }
+
+
+def integration_tolerances(values: Mapping[str, FloatArray]) -> dict[str, float]:
+    """Relative tolerances of "lumped", "linear" and "exact" for a motion of this size.
+
+    An integrator errs in proportion to the deflection. The limits at fidelity "linear" are shares of the peak
+    to peak, which above the resonances is a thousandth of the deflection and less, and smallest off the line
+    of action. So the tolerance follows the smallest limit.
+
+    Parameters
+    ----------
+    values : quantity -> lumped history over a mesh cycle
+    """
+    deflection = abs(float(np.mean(values["dte"])))
+    limits = [
+        LINEAR[GROUPS[name]].limit * float(np.ptp(values[name]))
+        for name in ("dte", "x_p", "x_g", "y_p", "y_g")
+        if not metrics.is_constant(values[name])
+    ]
+    share = min(limits, default=np.inf) / (LINEAR["dte"].limit * max(deflection, np.finfo(float).tiny))
+    tighter = float(np.clip(share / _ORDINARY, _TIGHTER, 1.0))
+    return {name: value if name == "exact" else value * tighter for name, value in _RTOL.items()}
 
 
 def periodic_motion(
@@ -80,26 +109,24 @@ def periodic_motion(
 
 
 def near_periodic(
-    pair: GearPair, fidelity: Fidelity, samples: int, passes: bool, orbit: GearOrbit | None
+    pair: GearPair, fidelity: Fidelity, samples: int, rtol: float, passes: bool, orbit: GearOrbit | None
 ) -> xr.Dataset | None:
-    """The same at the accuracy of the cross-check; None where there is none near the lumped one."""
+    """The same; None where there is none near the lumped one."""
     try:
-        return periodic_motion(
-            pair, fidelity, samples=samples, rtol=RTOL[fidelity], passes=passes, orbit=orbit
-        )
+        return periodic_motion(pair, fidelity, samples=samples, rtol=rtol, passes=passes, orbit=orbit)
     except NumericalError:
         return None
 
 
 def lumped_motion(
-    pair: GearPair, cycles: int, samples: int, stable: bool, progress: Progress | None
+    pair: GearPair, cycles: int, samples: int, rtol: float, stable: bool, progress: Progress | None
 ) -> xr.Dataset:
     """The lumped motion from the periodic solution on, over whole cycles.
 
     A stable one repeats its last simulated cycle, if that repeats the one before: where mu(xi) is steep the
     periodic solution itself may be off by some 1e-6, which the motion then forgets.
     """
-    options = {"samples_per_cycle": samples, "initial": "periodic", "rtol": RTOL["lumped"]}
+    options = {"samples_per_cycle": samples, "initial": "periodic", "rtol": rtol}
     for carried in [n for n in _CARRIED_CYCLES if stable and n < cycles] + [cycles]:
         run = lumped.simulate(pair, carried, **options, progress=progress)  # type: ignore[arg-type]
         if carried == cycles:

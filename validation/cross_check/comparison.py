@@ -20,6 +20,7 @@ from lumped.model.results import VARIABLES
 from lumped.model.steady import UNSTABLE, periodic_cycle
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray, Progress
+from multibody.contact.machine import machine
 from validation.cross_check import metrics
 from validation.cross_check.agreement import (
     FIDELITIES,
@@ -33,7 +34,7 @@ from validation.cross_check.agreement import (
 from validation.cross_check.compared_motions import (
     BLUNT,
     PARTED,
-    RTOL,
+    integration_tolerances,
     lumped_motion,
     near_periodic,
     repeated,
@@ -51,7 +52,6 @@ __all__ = [
     "FIDELITIES",
     "MEANINGS",
     "QUANTITIES",
-    "RTOL",
     "Agreement",
     "CrossCheck",
     "Fidelity",
@@ -64,6 +64,11 @@ __all__ = [
 #: Cycles at the end of a run over which the exact model is compared where it has no periodic motion.
 COMPARED_CYCLES = 4
 _ORDERS = 10
+#: Samples in a swing of the fastest mode, at least: then half of them, which tell the error of a quadrature,
+#: still are two in a swing (Nyquist's rate).
+_PER_SWING = 4
+#: Samples of the motion that tells its size.
+_COARSE = 64
 #: Cycles of the unlike twin where its exact motion repeats, else as many more; and samples in each.
 _TWIN_CYCLES, _TWIN_SAMPLES = (2, 6), 64
 
@@ -97,6 +102,7 @@ class CrossCheck:
     multibody : fidelity -> dataset of the multibody model, at the same times
     periodic : whether "exact" is the periodic motion of that model, repeated over the times, and not a run
     cycles, compared_cycles : numbers of mesh cycles simulated, and of those at the end compared for "exact"
+    rtol : relative tolerance of the integration of "lumped", "linear" and "exact"
     contact_shift : mean shift of the contact by finite motions, over the base pitch
     finite_motion : what finite motions must change, predicted from the lumped model; None without "exact"
     effects : what each finite-motion effect can change and changes; None without "exact"
@@ -117,6 +123,7 @@ class CrossCheck:
     periodic: bool
     cycles: int
     compared_cycles: int
+    rtol: Mapping[str, float]
     contact_shift: float
     finite_motion: FiniteMotion | None
     effects: Effects | None
@@ -191,7 +198,8 @@ def crosscheck(
     ----------
     pair : a validated gear pair
     cycles : mesh cycles to simulate, 6 to 100000
-    samples_per_cycle : output times per mesh cycle, at least 32
+    samples_per_cycle : output times per mesh cycle, at least 32; more are compared where the fastest mode
+        swings so fast that these would not show it
     fidelities : of the multibody model, out of ``FIDELITIES``
     quantities : out of ``QUANTITIES``
     twin : whether to check a variation of the pair in which nothing is symmetric too, with few cycles
@@ -222,6 +230,9 @@ def _compared(
     """What ``crosscheck`` returns; where both motions repeat themselves, two cycles tell as much as many."""
     other = unlike_twin(pair) if twin and len(fidelities) == len(FIDELITIES) else None
     runs = 1 + len(fidelities) + (other is not None)
+    # So many times as many samples as asked for, that the vibration is seen.
+    every = -int(-_PER_SWING * machine(pair).vibrations_per_cycle // samples_per_cycle)
+    samples = every * samples_per_cycle
 
     def part(done: int) -> Progress:
         def tell(fraction: float, stage: str = "", /) -> None:
@@ -230,16 +241,19 @@ def _compared(
 
         return tell
 
-    options = {"cycles": cycles, "samples_per_cycle": samples_per_cycle}
     orbit = parted_orbit(pair)
     if orbit is None:
-        stable = periodic_cycle(pair, 32).spectral_radius <= UNSTABLE
-        reference = lumped_motion(pair, cycles, samples_per_cycle, stable, part(0))
+        motion = periodic_cycle(pair, _COARSE)
+        stable = motion.spectral_radius <= UNSTABLE
+        rtol = integration_tolerances(motion.values)
+        reference = lumped_motion(pair, cycles, samples, rtol["lumped"], stable, part(0))
     else:
         stable = True
-        reference = repeated(orbit.sampled(samples_per_cycle), cycles)
+        one_cycle = orbit.sampled(samples)
+        rtol = integration_tolerances({name: one_cycle[name].to_numpy() for name in QUANTITIES})
+        reference = repeated(one_cycle, cycles)
     shift = contact_shift(pair, reference)
-    last = reference.isel(time=slice(-samples_per_cycle - 1, -1))
+    last = reference.isel(time=slice(-samples - 1, -1))
     results: dict[Fidelity, xr.Dataset] = {}
     predicted: FiniteMotion | None = None
     effects: Effects | None = None
@@ -248,31 +262,32 @@ def _compared(
         if fidelity == "exact":
             predicted = finite_motion(pair, last, orbit=orbit)
             if stable:
-                one = near_periodic(pair, fidelity, samples_per_cycle, predicted.settled, orbit)
+                one = near_periodic(pair, fidelity, samples, rtol[fidelity], predicted.settled, orbit)
             if one is not None and one.attrs["friction_velocity"] == BLUNT:  # a choice of the numerics
                 predicted = finite_motion(pair, last, friction_velocity=BLUNT, orbit=orbit)
             effects = first_order(predicted)
         found = one
         if fidelity == "linear" and orbit is not None:
-            found = near_periodic(pair, fidelity, samples_per_cycle, True, orbit)
+            found = near_periodic(pair, fidelity, samples, rtol[fidelity], True, orbit)
         if found is not None:
             results[fidelity] = repeated(found, cycles)
             part(done)(1.0)
             continue
         results[fidelity] = multibody.simulate(
             pair,
-            **options,  # type: ignore[arg-type]
+            cycles=cycles,
+            samples_per_cycle=samples,
             initial="periodic" if orbit is None else orbit.states[0],
             effects=None if orbit is None else PARTED[fidelity],
             fidelity=fidelity,
-            rtol=RTOL[fidelity],
+            rtol=rtol[fidelity],
             progress=part(done),
         )
     compared = min(COMPARED_CYCLES, cycles // 2) if one is None else 1
     agreements: list[Agreement] = []
     orders: list[OrderComparison] = []
     for fidelity, result in results.items():
-        first = 0 if fidelity == "linear" else (cycles - compared) * samples_per_cycle
+        first = 0 if fidelity == "linear" else (cycles - compared) * samples
         shifts = predicted.shifts if fidelity == "exact" and predicted is not None else None
         beyond = 0.0 if shifts is None else shifts.beyond / pair.geometry.base_pitch
         keep = off_switch_samples(pair, reference["time"].to_numpy(), beyond)
@@ -298,7 +313,7 @@ def _compared(
                         {effect: changes[quantity] for effect, changes in effects.alone.items()},
                     )
                 )
-            orders.append(_orders(quantity, fidelity, result, reference, compared, samples_per_cycle))
+            orders.append(_orders(quantity, fidelity, result, reference, compared, samples))
     checks: tuple[Judgement, ...] = ()
     powers: Mapping[str, Mapping[str, float]] = {}
     if effects is not None and len(fidelities) == len(FIDELITIES):
@@ -307,18 +322,19 @@ def _compared(
             checks, powers = laws_of_nature(pair, last, one, results, effects.powers, shift, push)
         else:
             checks, powers = laws_where_teeth_part(pair, last, one, results, shift, push)
-    unsettled = {f: _unsettled(r, samples_per_cycle) for f, r in results.items()}
+    unsettled = {f: _unsettled(r, samples) for f, r in results.items()}
     if one is not None:
         unsettled["exact"] = float(one.attrs["closure"])
     return CrossCheck(
         pair=pair,
         agreements=tuple(agreements),
         orders=tuple(orders),
-        lumped=reference,
-        multibody=results,
+        lumped=reference.isel(time=slice(None, None, every)),
+        multibody={f: run.isel(time=slice(None, None, every)) for f, run in results.items()},
         periodic=one is not None,
         cycles=cycles,
         compared_cycles=compared,
+        rtol=rtol,
         contact_shift=shift,
         finite_motion=predicted,
         effects=effects,

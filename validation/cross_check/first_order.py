@@ -24,7 +24,8 @@ sign more often than that in the zone moves less, because its pushes cancel. The
 in its piece alone, by at most twice its size, and with the normal load.
 
 Where teeth part a motion with one effect alone may be another motion. There an effect counts by what it
-changes beside all others; what late entry changes then is the whole change.
+changes beside all others; what late entry changes then is the whole change. Friction that is not predicted
+counts as above, with teeth that push only.
 """
 
 from __future__ import annotations
@@ -36,6 +37,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lumped.errors import NumericalError
+from lumped.gear_geometry.geometry import Geometry
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.results import response
@@ -47,7 +49,7 @@ from validation.cross_check.agreement import relative_size
 from validation.cross_check.effective_elements import reversed_within
 from validation.cross_check.finite_motion import PREDICTED, FiniteMotion
 from validation.cross_check.ledger import LOSSES, losses
-from validation.cross_check.parted_motion import PartedLoadedModel, PartedModel
+from validation.cross_check.parted_motion import PartedLoadedModel, PartedModel, unilateral_motion
 from validation.cross_check.shifted_motion import Motion, ShiftedModel, Shifts
 from validation.cross_check.tolerances import GROUPS
 
@@ -118,7 +120,7 @@ def first_order(predicted: FiniteMotion) -> Effects:
     Effects
     """
     if isinstance(predicted.model, PartedModel | PartedLoadedModel):
-        return _where_teeth_part(predicted)
+        return _where_teeth_part(predicted, predicted.model)
     cycle = predicted.model.cycle
     pitch = cycle.geometry.base_pitch
     every = replace(
@@ -203,14 +205,14 @@ def first_order(predicted: FiniteMotion) -> Effects:
     return Effects(relative, most, alone, powers, beyond, held, read)
 
 
-def _where_teeth_part(predicted: FiniteMotion) -> Effects:
+def _where_teeth_part(predicted: FiniteMotion, model: PartedModel | PartedLoadedModel) -> Effects:
     """The same where teeth part: the motion with all effects less that without one of them."""
     shifts = predicted.shifts
     if shifts is None:
-        nothing = {name: dict.fromkeys(GROUPS, np.inf) for name in predicted.model.effects}
+        nothing = {name: dict.fromkeys(GROUPS, np.inf) for name in model.effects}
         return Effects({}, nothing, {}, {}, 0.0, {}, 0.0)
-    times = sample_times(predicted.model.cycle.period, _TIMES)
-    model = replace(predicted.model, times=times)
+    times = sample_times(model.cycle.period, _TIMES)
+    model = replace(model, times=times)
 
     def change(after: Motion, before: Motion) -> dict[str, float]:
         one, other = model.response(after, times), model.response(before, times)
@@ -226,7 +228,42 @@ def _where_teeth_part(predicted: FiniteMotion) -> Effects:
             slides_as=shifts.stands_at if effect == "sliding_velocity" else shifts.slides_as,
         )
         most[effect] = change(every, replace(model, effects=model.effects - {effect}).motion(without))
-    return Effects({}, most, most, {}, 0.0, {}, 0.0)
+    if predicted.settled:
+        return Effects({}, most, most, {}, 0.0, {}, 0.0)
+    sliding, held = _sliding_where_teeth_part(model)
+    return Effects({}, most | {"sliding_velocity": sliding}, most, {}, 0.0, held, 0.0)
+
+
+def _sliding_where_teeth_part(
+    model: PartedModel | PartedLoadedModel,
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Largest changes by displaced friction, and by friction that holds the teeth, of all that may part."""
+    g, times = model.cycle.geometry, model.times
+    every = replace(model, effects=frozenset(PREDICTED[model.pair.mesh.contact]), friction_velocity=0.0)
+    found = every.shifts_after(every.unmoved())
+    reach = float(np.abs(found.slides_as - found.place).max())
+    after_pitch = np.where(found.place < g.L_XP, -1.0, 1.0)
+
+    def values(friction: PathFunction) -> dict[str, FloatArray]:
+        turned = MeshCycle(g, replace(model.cycle.elements, friction=friction))
+        system = periodic_system(model.pair, "absolute", cycle=turned)
+        states, loads = unilateral_motion(model.orbit, system, times)
+        return response(system, times, states, loads)
+
+    def displaced(pattern: FloatArray | float) -> dict[str, float]:
+        slides_as = found.place + pattern * reach
+        return change(values(every.displaced_friction(replace(found, slides_as=slides_as))))
+
+    def change(after: Mapping[str, FloatArray]) -> dict[str, float]:
+        return {name: relative_size(after[name] - before[name], name, before) for name in GROUPS}
+
+    law = model.cycle.elements.friction
+    before = values(law)
+    each = [displaced(pattern) for pattern in (1.0, -1.0, after_pitch, -after_pitch)]
+    pieces, zone = _pieces(g, reach)
+    held = [change(values(reversed_within(law, *piece))) for piece in pieces]
+    most = {name: max(one[name] for one in each) for name in GROUPS}
+    return most, _with_turned_force({name: sum(one[name] for one in held) for name in GROUPS}, before, zone)
 
 
 def _jumps_beside(law: PathFunction, pitch_point: float) -> bool:
@@ -258,15 +295,27 @@ def _held(every: ShiftedModel, reach: float, numbers: Machine, driving: float) -
         states = periodic_solution(system, times, estimate_error=False).states
         return response(system, times, states) | _losses(system, numbers, driving, times, states)
 
-    before, low, high = values(every.nominal), max(g.L_XA, g.L_XP - reach), min(g.L_XD, g.L_XP + reach)
-    ends = np.linspace(low, high, _PIECES + 1)
+    before, (pieces, zone) = values(every.nominal), _pieces(g, reach)
     found = dict.fromkeys((*GROUPS, *LOSSES), 0.0)
-    for first, last in itertools.pairwise(ends.tolist()):
-        friction = reversed_within(cycle.elements.friction, first, last)
+    for piece in pieces:
+        friction = reversed_within(cycle.elements.friction, *piece)
         turned = MeshCycle(g, replace(cycle.elements, friction=friction))
         changes = _changes(before, values(periodic_system(every.pair, "absolute", cycle=turned)))
         found = {name: found[name] + change for name, change in changes.items()}
+    return _with_turned_force(found, before, zone)
+
+
+def _pieces(g: Geometry, reach: float) -> tuple[list[tuple[float, float]], tuple[float, float]]:
+    """Pieces of the zone in which friction may hold the teeth, and the zone itself [m]."""
+    zone = max(g.L_XA, g.L_XP - reach), min(g.L_XD, g.L_XP + reach)
+    return list(itertools.pairwise(np.linspace(*zone, _PIECES + 1).tolist())), zone
+
+
+def _with_turned_force(
+    found: dict[str, float], before: Mapping[str, FloatArray], zone: tuple[float, float]
+) -> dict[str, float]:
+    """The changes with that of the friction force: twice its size in the zone, and with the normal load."""
     place, force = before["position"], before["friction_force"]
-    turned_over = np.where((place > low) & (place < high), 2.0 * force, 0.0)
-    found["friction_force"] = found["normal_load"] + relative_size(turned_over, "friction_force", before)
-    return found
+    turned_over = np.where((place > zone[0]) & (place < zone[1]), 2.0 * force, 0.0)
+    own = relative_size(turned_over, "friction_force", before)
+    return found | {"friction_force": found["normal_load"] + own}

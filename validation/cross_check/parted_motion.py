@@ -24,6 +24,9 @@ from validation.cross_check.loaded_motion import LoadedModel
 from validation.cross_check.shifted_motion import Motion, ShiftedModel
 from validation.validity.flags import LOAD_NOISE
 
+_PULL = "The lumped motion that was compared needs teeth that pull, which real teeth cannot:"
+_ADVICE = "More torque or damping, or another speed, keeps the teeth in contact."
+
 
 def parted_orbit(pair: GearPair) -> GearOrbit | None:
     """The stable motion of one mesh cycle with loss of contact that the multibody model is compared with.
@@ -31,19 +34,36 @@ def parted_orbit(pair: GearPair) -> GearOrbit | None:
     None where the teeth of the linear motion push all the time, or where no such motion is found: neither
     near the linear motion, nor where a run settles that starts there.
     """
+    return _sought(pair)[0]
+
+
+def why_teeth_pull(pair: GearPair) -> str:
+    """Why a motion is compared in which teeth pull, in a sentence; empty where it is not."""
+    return _sought(pair)[1]
+
+
+def _sought(pair: GearPair) -> tuple[GearOrbit | None, str]:
     motion = lumped.steady_state(pair, samples_per_cycle=512)
     loads = motion["normal_load"].to_numpy(), motion["contact"].to_numpy()
     least = -LOAD_NOISE * pair.operating.pinion_torque / pair.geometry.base_radius_pinion
     if load_range(pair.mesh.contact, *loads)[1] >= least:
-        return None
+        return None, ""
     try:
         orbit = periodic_orbit(pair)
         if not orbit.stable:
             settled = long_run(pair).orbit
             orbit = orbit if settled is None else GearOrbit(pair, settled)
     except NumericalError:
-        return None
-    return orbit if orbit.stable and orbit.n == 1 and not orbit.reaches_back_side else None
+        return None, f"{_PULL} no periodic motion with teeth that part was found. {_ADVICE}"
+    if not orbit.stable or orbit.n > 1:
+        return None, f"{_PULL} with teeth that part no motion of one mesh cycle is stable. {_ADVICE}"
+    if orbit.reaches_back_side:
+        backlash = f"{pair.geometry.normal_backlash * 1e6:.3g} um"
+        return None, (
+            f"{_PULL} with teeth that part their backs strike, beyond the normal backlash of {backlash}. "
+            f"State the real mesh.backlash if that is too little. {_ADVICE}"
+        )
+    return orbit, ""
 
 
 @dataclass(frozen=True, eq=False)

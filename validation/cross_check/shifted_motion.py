@@ -292,10 +292,11 @@ class ShiftedModel:
 
     def _system(self, shifts: Shifts) -> LTVSystem:
         """Equations of motion with the element laws as they act after these shifts."""
-        elements = replace(self._contact(shifts), friction=self._friction(shifts))
+        elements = replace(self._contact(shifts), friction=self.displaced_friction(shifts))
         return periodic_system(self.pair, "absolute", cycle=MeshCycle(self.cycle.geometry, elements))
 
-    def _friction(self, shifts: Shifts) -> PathFunction:
+    def displaced_friction(self, shifts: Shifts) -> PathFunction:
+        """The friction law as it acts after these shifts."""
         g, friction = self.cycle.geometry, self.cycle.elements.friction
         if friction.coefficients.any():
             width = self.friction_velocity / (g.omega_pinion + g.omega_gear)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from typing import Any
 
-from lumped.errors import refuse
+from lumped.errors import ParameterError, refuse
 from lumped.friction.registry import LAWS
 from lumped.schema.files import load_gear_pair
-from lumped.schema.pair import leaf_paths
+from lumped.schema.pair import GearPair, leaf_paths
 from validation.exchange.commented_toml import parameter_text
 from validation.exchange.rexs.assumptions import completed
 
@@ -24,14 +25,14 @@ _WHY = {
     "addendum_coefficient": "standard basic rack, ISO 53",
     "dedendum_coefficient": "standard basic rack, ISO 53",
     "fillet_radius_coefficient": "standard basic rack, ISO 53",
-    "profile_shift": "no shift",
+    "profile_shift": "no shift; for few teeth the least that keeps the involute whole",
     "bore": "solid disc",
     "viscosity_law.density": "mineral oil",
     "density": "steel",
     "youngs_modulus": "steel",
     "poisson_ratio": "steel",
     "stiffness.model": "constant stiffness by ISO 6336-1; 'energy' computes it from the tooth form",
-    "backlash": "none beyond that of the centre distance",
+    "backlash": "least by ISO/TR 10064-2 for module and centre distance, up to a tenth of the module",
     "viscosity": "oil warm from running",
     "temperature": "sump of an enclosed gear",
     "viscosity_index": "mineral oil",
@@ -64,7 +65,9 @@ def own_pair_text(name: str, given: Mapping[str, Any]) -> str:
     ParameterError : what is malformed, or a pair that cannot exist
     """
     values = _values(given)
-    pair = load_gear_pair({"name": name} | completed(values))
+    pair = _whole({"name": name}, values)
+    if "mesh.backlash" not in values:
+        pair = pair.with_({"mesh.backlash": _backlash(pair)})
     paths = [path for path in leaf_paths(pair) if path not in ("name", "description")]
     sources = {path: GIVEN if path in values else f"assumed: {_why(path)}" for path in paths}
     assumed = set(paths) - set(values)
@@ -73,6 +76,39 @@ def own_pair_text(name: str, given: Mapping[str, Any]) -> str:
         f"{len(values)} values are given, {len(assumed)} assumed: replace what you know, first the bearings.",
     ]
     return parameter_text(load_gear_pair(pair.to_mapping() | {"sources": sources}).to_mapping(), notes)
+
+
+def _whole(named: dict[str, Any], values: dict[str, Any]) -> GearPair:
+    """The pair of these values; where it cannot exist so, with the least profile shift that few teeth need.
+
+    Below z = 2/sin^2(alpha) teeth the straight flank of the rack, which reaches a module below its pitch
+    line, cuts into the involute, unless it is withdrawn by x = 1 - z sin^2(alpha)/2 modules (ISO 21771).
+    """
+    try:
+        return load_gear_pair(named | completed(values))
+    except ParameterError as error:
+        shifts = {}
+        for name in ("pinion", "gear"):
+            teeth = values.get(f"{name}.teeth")
+            if isinstance(teeth, int):
+                least = math.ceil(100.0 * (1.0 - 0.5 * teeth * math.sin(math.radians(20.0)) ** 2)) / 100.0
+                shifts[f"{name}.profile_shift"] = max(least, 0.0)
+        if not any(shifts.values()) or any(path in values for path in shifts):
+            raise
+        try:
+            return load_gear_pair(named | completed(values | shifts))
+        except ParameterError:
+            raise error from None
+
+
+def _backlash(pair: GearPair) -> float:
+    """Least normal backlash of industrial gears [mm].
+
+    j = 2/3 (0.06 + 0.0005 a + 0.03 m) mm for centre distance a and module m from 1.5 mm on (ISO/TR 10064-2,
+    annex A); a tenth of the module where that is less, as with fine teeth.
+    """
+    module, centre = 1e3 * pair.basic_rack.module, 1e3 * pair.geometry.centre_distance
+    return round(min((0.06 + 0.0005 * centre + 0.03 * module) / 1.5, 0.1 * module), 4)
 
 
 def _values(given: Mapping[str, Any]) -> dict[str, Any]:

@@ -22,6 +22,8 @@ _PRESSURE = 4.2e9
 _SOFT = 2e6
 #: Share of the module that a loaded mesh may give way.
 _GIVES_WAY = 0.1
+#: Backlash of teeth that are to have none, over the module: the rounding of lengths.
+_ROUNDING = 1e-9
 #: Oscillations of the fastest mode in a mesh cycle from which on the multibody model takes minutes a cycle.
 _OSCILLATIONS = 1000.0
 #: Speed below which a point that parts thousands is likelier than the speed [rpm].
@@ -118,7 +120,7 @@ def _load(pair: GearPair) -> Iterator[str]:
             f"{torque} makes the teeth give way by {give * 1e3:.3g} mm, more than a tenth of the module. "
             "Check torque, face width and Young's modulus, and their units."
         )
-    elif 0.0 < g.normal_backlash < give:
+    elif _ROUNDING * pair.basic_rack.module < g.normal_backlash < give:
         yield (
             f"{torque} makes the teeth give way by {give * 1e6:.3g} um, more than the backlash of "
             f"{g.normal_backlash * 1e6:.3g} um: the backs of the teeth would touch. Check mesh.backlash."

@@ -113,3 +113,28 @@ def test_entries_of_lists_have_their_units_and_remarks():
     assert load_gear_pair(tomllib.loads(text)) == pair.with_(stated)
     places = [line.split("#")[1].strip() for line in text.splitlines() if line.startswith("position = ")]
     assert places == ["mm", "mm", "mm", "mm, assumed"]
+
+
+@pytest.mark.parametrize(
+    ("teeth", "shift"),
+    # 1 - z sin^2(20 deg)/2 = 0.2397 at 13 teeth and 0.0642 at 16; 20 teeth need none.
+    [("13/55", 0.24), ("16/72", 0.07), ("20/90", 0.0)],
+)
+def test_few_teeth_get_the_profile_shift_that_they_need(teeth, shift):
+    given = {"teeth": teeth, "basic_rack.module": 3.0, "gears.face_width": 30.0}
+    given |= {"operating.pinion_speed": 1500.0, "operating.pinion_torque": 100.0}
+    pair = load_gear_pair(tomllib.loads(own_pair_text("x", given)))
+    assert (pair.pinion.profile_shift, pair.gear.profile_shift) == (shift, 0.0)
+    assert dict(pair.sources)["pinion.profile_shift"].startswith("assumed: ")
+
+
+@pytest.mark.parametrize(
+    ("module", "backlash"),
+    # 2/3 (0.06 + 0.0005 x 75 + 0.03 x 2.5) mm; at module 0.5 that is 0.065 mm, more than a tenth of it.
+    [(2.5, 0.115), (0.5, 0.05)],
+)
+def test_an_own_pair_has_the_backlash_of_industrial_gears(module, backlash):
+    given = {"teeth": "19/41", "basic_rack.module": module, "gears.face_width": 8.0 * module}
+    given |= {"operating.pinion_speed": 1450.0, "operating.pinion_torque": 0.1}
+    pair = load_gear_pair(tomllib.loads(own_pair_text("x", given)))
+    assert pair.geometry.normal_backlash == pytest.approx(1e-3 * backlash)

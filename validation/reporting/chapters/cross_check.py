@@ -9,11 +9,12 @@ import numpy as np
 import xarray as xr
 
 from lumped.model.results import VARIABLES
-from validation.cross_check.comparison import MEANINGS, RTOL, Agreement, CrossCheck, off_switch_samples
+from validation.cross_check.comparison import MEANINGS, Agreement, CrossCheck, off_switch_samples
 from validation.cross_check.first_order import EFFECT_WORDS, Effects
 from validation.cross_check.judgement import Judgement
 from validation.cross_check.ledger import POWERS
 from validation.cross_check.nature import fed_back
+from validation.cross_check.parted_motion import why_teeth_pull
 from validation.plots.cross_check import cross_check_figure
 from validation.reporting.blocks import (
     Answer,
@@ -101,7 +102,7 @@ def write(results: Results) -> Content:
                 ),
                 *(
                     Fact(f"rtol_{name}", f"relative tolerance of the integration, {name}", value)
-                    for name, value in RTOL.items()
+                    for name, value in check.rtol.items()
                 ),
             ),
         ),
@@ -122,10 +123,11 @@ def _linear_motion(check: CrossCheck) -> str:
             "Teeth part, so the lumped motion is the one with teeth that push only. The linear model has "
             "such teeth as well, and is compared in its own periodic motion."
         )
-    return (
+    told = (
         "The linear model starts from the lumped periodic motion and is compared over "
         f"{check.cycles} mesh cycles."
     )
+    return f"{told} {why_teeth_pull(check.pair)}".rstrip() if check.failures else told
 
 
 def _exact_motion(check: CrossCheck) -> str:
