@@ -57,7 +57,7 @@ HELD = own(
 
 
 def test_a_motion_small_beside_its_deflection_is_integrated_more_tightly():
-    """Far above the resonances y moves by 1/6000 of the deflection, to which integrators err in proportion."""
+    """Far above the resonances y moves by 1/6000 of the deflection, by which the integrators' errors go."""
     pair = own(
         "81/84", 2.0, 21.6, 11586.9, 1320.0, pinion__profile_shift=0.305, gear__profile_shift=-0.102,
         mesh__contact="paper", lubricant__viscosity=12.0,
