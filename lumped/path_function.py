@@ -118,6 +118,10 @@ class PathFunction:
 
     def mean(self) -> float:
         """Mean value over the interval."""
+        return self._mean
+
+    @cached_property
+    def _mean(self) -> float:  # of a stiffness each speed asks for it
         low, high = self.interval
         integral = PPoly(self.coefficients, self.breaks).integrate(low, high)
         return float(integral) / (high - low)
