@@ -109,8 +109,8 @@ def main() -> None:
     """Entry point of the installed command."""
     # Before numpy is imported: the matrices are small, threads inside BLAS only wait for each other.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    # Results live to the end: to search them for cycles as often as Python does takes a 25th of a report.
-    gc.set_threshold(100_000)
+    # Results live to the end: to search them for cycles as often as Python does takes a 20th of a report.
+    gc.set_threshold(1_000_000)
     _open_streams()
     interrupt_once()  # to the end of the process: an impatient Ctrl-C prints no traceback
     try:

@@ -22,7 +22,7 @@ from floquet.gear.axes import operating_rpm, vary
 from floquet.gear.block import gear_block
 from floquet.gear.boundaries import checked_range, label_variation, predicted_lines
 from floquet.gear.chart import stability_chart
-from floquet.rank_one.batch import fast_multipliers
+from floquet.rank_one.batch import spectral_radii
 from lumped import GearPair
 from lumped.friction import mean_coefficient
 from lumped.labelling import labelled_dataset
@@ -245,13 +245,13 @@ def feedback_radius(pair: GearPair) -> Radius:
 
     def radius(speeds: npt.ArrayLike, dampings: npt.ArrayLike) -> FloatArray:
         rpm, zeta = np.broadcast_arrays(np.asarray(speeds, dtype=float), np.asarray(dampings, dtype=float))
-        found = fast_multipliers(
+        found = spectral_radii(
             block,
             block.period * operating_rpm(pair) / rpm.ravel(),
             zeta.ravel() / _LARGEST_DAMPING,
             tolerance=1e-3 * _RTOL,
         )
-        return np.asarray(np.abs(found.multipliers).max(axis=1).reshape(rpm.shape))
+        return found.reshape(rpm.shape)
 
     return radius
 

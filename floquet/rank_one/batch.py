@@ -24,7 +24,7 @@ from floquet.rank_one.packing import own, packed
 from floquet.rank_one.system import Coarsening, RankOneSystem
 from lumped.arguments import real_array, real_number, real_numbers
 from lumped.errors import NumericalError, refuse, shown
-from lumped.typing import ComplexArray, FloatArray
+from lumped.typing import BoolArray, ComplexArray, FloatArray
 
 _T = TypeVar("_T")
 
@@ -145,10 +145,36 @@ def fast_multipliers(
     )
 
 
+def spectral_radii(
+    system: RankOneSystem, periods: npt.ArrayLike, damping_factors: npt.ArrayLike, *, tolerance: float
+) -> FloatArray:
+    """Largest moduli (N,) of the multipliers, as of `fast_multipliers` but without bounds on them.
+
+    Multipliers of a motion that nearly dies out within a period are often too close together for the kernel,
+    and to bound those takes a hundred times as long.
+    """
+    flow = fast_monodromies(system, periods, damping_factors, tolerance=tolerance)
+
+    def largest(part: slice) -> FloatArray:
+        values, _, safe = _quick(flow.matrices[part], flow.errors[part])
+        values[~safe] = np.linalg.eigvals(flow.matrices[part][~safe])
+        return np.asarray(np.abs(values).max(axis=1))
+
+    return np.concatenate(in_threads(largest, flow.errors.size))
+
+
 def multipliers_of(
     matrices: FloatArray, errors: FloatArray, certificate: Certificate = "proven"
 ) -> FastMultipliers:
     """Eigenvalues of monodromy matrices (N, n, n), each with a bound, when these are wrong by errors (N,)."""
+    values, radii, safe = _quick(matrices, errors)
+    for point in np.flatnonzero(~safe):
+        values[point], radii[point] = multipliers_with_bounds(matrices[point], float(errors[point]))
+    return FastMultipliers(values, radii, certificate)
+
+
+def _quick(matrices: FloatArray, errors: FloatArray) -> tuple[ComplexArray, FloatArray, BoolArray]:
+    """Eigenvalues (N, n), bounds on their errors (N, n), and where the bounds hold (N,)."""
     values, radii = np.empty(matrices.shape[:2], dtype=complex), np.empty(matrices.shape[:2])
     safe = np.empty(errors.size, dtype=bool)
     if matrices.shape[1] <= _SMALL:
@@ -156,9 +182,7 @@ def multipliers_of(
     else:
         values, X, Y = _vectors(matrices)
         spectra_by(matrices, errors, values, X, Y, radii, safe)
-    for point in np.flatnonzero(~safe):
-        values[point], radii[point] = multipliers_with_bounds(matrices[point], float(errors[point]))
-    return FastMultipliers(values, radii, certificate)
+    return values, radii, safe
 
 
 def _vectors(matrices: FloatArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:

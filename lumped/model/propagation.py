@@ -27,6 +27,10 @@ _SHORT_PIECE = 0.5
 _BLOCK, _MOST_KEPT, _MOST_INTERVALS = 1024, 4096, 16384
 #: Most steps of a mesh cycle: some ten seconds of work.
 _MAX_STEPS = 1_000_000
+#: Most stretches of the mesh cycle on which the stiffness is looked at, beside those between switches.
+_MOST_LOOKS = 512
+#: Columns of maps are filled up with zeros to a multiple of this, for a processor multiplies as many at once.
+_TOGETHER = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +40,7 @@ class Steps:
     Attributes
     ----------
     length : (k,) [s]
-    maps : (k, n, n + columns) transition, then forced for each forcing
+    maps : (k, n, n + columns) transition, then forced for each forcing, then columns of zeros
     inside : (k, 2, s, n + columns) maps to the dynamic transmission error and its rate at the stages
     teeth : (4, pairs, k, s) k, c, e and e' there, as in ``PairState``
     """
@@ -55,24 +59,25 @@ class StepMaps:
     ----------
     edges : (steps + 1,) ends of the steps [s]
     times : (intervals + 1,) ends of the intervals, 0 and the period included [s]
-    maps : (intervals, n, n + columns) transition, then forced for each forcing: the own one and one per unit
-        of each extra column
+    forcings : the own one and one per unit of each extra column
+    maps : (intervals, n, n + columns) transition, then forced for each forcing, then columns of zeros
     steps : all steps in blocks; computed anew where they would fill the memory
     """
 
     edges: FloatArray
     times: FloatArray
+    forcings: int
     maps: FloatArray
     steps: Callable[[], Iterable[Steps]]
 
     def over_all(self) -> tuple[FloatArray, FloatArray]:
-        """Map over all steps: transition (n, n) and forced (n, columns)."""
+        """Map over all steps: transition (n, n) and forced (n, forcings)."""
         whole = chained(self.maps, np.zeros(self.maps.shape[0], dtype=np.int64))[0]
         n = whole.shape[0]
-        return whole[:, :n], whole[:, n:]
+        return whole[:, :n], whole[:, n : n + self.forcings]
 
     def states(self, initial: FloatArray, weights: FloatArray) -> FloatArray:
-        """States (intervals + 1, n) at ``times`` from x(0) and the weight (columns,) of each forcing."""
+        """States (intervals + 1, n) at ``times`` from x(0) and the weight (forcings,) of each."""
         found: FloatArray = states_along(self.maps, initial, weights)
         return found
 
@@ -86,8 +91,12 @@ class StepMaps:
         state, work = initial, 0.0
         for steps in self.steps():
             states = states_along(steps.maps, state, weights)
-            held = np.concatenate([states[:-1], np.tile(weights, (len(states) - 1, 1))], axis=1)
-            dte, rate = np.einsum("jdsi,ji->djs", steps.inside, held, order="C")
+            count, _, stages, columns = steps.inside.shape
+            held = np.zeros((count, columns, 1))
+            held[:, : state.size, 0] = states[:-1]
+            held[:, state.size : state.size + weights.size, 0] = weights
+            moved = steps.inside.reshape(count, 2 * stages, columns) @ held
+            dte, rate = moved[:, :stages, 0], moved[:, stages:, 0]
             k, c, e, e_rate = steps.teeth
             power = (k * (dte - e)).sum(axis=0) * rate + (c * (rate - e_rate) * e_rate).sum(axis=0)
             work += float(steps.length @ power @ gauss_tableau(power.shape[1])[1])
@@ -104,9 +113,11 @@ def _merged(maps: FloatArray, group: IntArray) -> FloatArray:
 def fastest_frequency(system: LTVSystem) -> float:
     """Bound on the fastest natural frequency over the cycle [rad/s].
 
-    Frozen-time eigenvalues at the stiffest of three times on each polynomial piece.
+    Frozen-time eigenvalues at the stiffest of three times on each polynomial piece; where pieces are many, on
+    each stretch of several without a jump.
     """
-    marks = system.cycle.breaks
+    breaks = system.cycle.breaks
+    marks = np.union1d(system.cycle.edges, breaks[:: -(-breaks.size // _MOST_LOOKS)])
     times = (marks[:-1] + np.multiply.outer([0.05, 0.5, 0.95], np.diff(marks))).ravel()
     segment = np.searchsorted(system.cycle.edges, times, side="right") - 1
     stiffness = np.abs(system.gain(times, segment).stiffness @ system.deflection)
@@ -139,6 +150,8 @@ def step_maps(
     NumericalError : the result is not finite
     """
     grid = _step_grid(system, np.empty(0) if outputs is None else outputs, every_step, step_angle)
+    forcings = 1 + extra.shape[1]
+    extra = np.pad(extra, ((0, 0), (0, -(system.size + forcings) % _TOGETHER)))
 
     def steps() -> Iterator[Steps]:
         for low in range(0, grid.length.size, _BLOCK):
@@ -157,7 +170,7 @@ def step_maps(
         raise NumericalError(
             "The mesh cycle could not be integrated: check stiffness and inertia for extremes."
         )
-    return StepMaps(grid.edges, grid.times, maps, steps if kept is None else lambda: kept)
+    return StepMaps(grid.edges, grid.times, forcings, maps, steps if kept is None else lambda: kept)
 
 
 def _steps(
@@ -201,7 +214,7 @@ def _without_mesh(
     Returns
     -------
     end (k, 2m, columns) and p (k, s, columns) without feedback; what p, then the end take from the feedback
-    n_i (k, s, s + 2m, m); stage deflections, then their rates, by the start (k, 2s, columns) and by p
+    n_i (k, s, m, s + 2m); stage deflections, then their rates, by the start (k, 2s, columns) and by p
     (k, 2s, s)
     """
     m = system.size // 2
@@ -254,10 +267,10 @@ def _coupled_without_mesh(
     start = np.zeros((k, 2 * s, columns))
     start[:, :s, :m] = start[:, s:, m : 2 * m] = u
     start[:, :s, m : 2 * m] = h * np.multiply.outer(c, u)
-    by_feedback = np.zeros((k, s, s + 2 * m, m))
-    by_feedback[:, :, :s] = np.einsum("m,krmsi->ksri", u, inverse)
-    moves = np.einsum("kdr,krmsi->ksdmi", to_end, inverse)
-    by_feedback[:, :, s:] = moves.reshape(k, s, 2 * m, m)
+    by_feedback = np.zeros((k, s, m, s + 2 * m))
+    by_feedback[..., :s] = np.einsum("m,krmsi->ksir", u, inverse)
+    moves = np.einsum("kdr,krmsi->ksidm", to_end, inverse)
+    by_feedback[..., s:] = moves.reshape(k, s, m, 2 * m)
     by_p = np.concatenate([h**2 * (a @ a), h * a], axis=1)
     return end, p, by_feedback, start, by_p
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from lumped.errors import NumericalError
 from lumped.model.equations import COORDINATES
 from lumped.model.extremes import peak_to_peak
 from lumped.model.periodic_system import LTVSystem, Supports, periodic_system
-from lumped.model.propagation import STAGES, step_maps
+from lumped.model.propagation import STAGES, StepMaps, step_maps
 from lumped.model.results import response
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -31,13 +32,7 @@ class PeriodicSolution:
     time : (k,) [s]
     states : (k, n)
     pinion_torque, brake_torque : mean torques that hold the mean speed [N m]
-    closure : largest mismatch of state and state one cycle later, over the largest displacement or rate
     error : estimate of the largest relative error of the dynamic transmission error; None where not asked for
-    spectral_radius : largest modulus of the Floquet multipliers, the rigid rotation taken out; above 1 the
-        motion is unstable, and a pair leaves it
-    peak_to_peak : variable -> its peak to peak over the whole cycle [m], with switches and extremes between
-        samples
-    unpaid : mean power that the losses take beyond what the torques bring, see ``StepMaps.unpaid`` [W]
     cycle_time, cycle_states : (i,) [s], 0, the period and all switches included, and (i, n): close enough to
         resolve the fastest vibration
     """
@@ -47,13 +42,35 @@ class PeriodicSolution:
     states: FloatArray
     pinion_torque: float
     brake_torque: float
-    closure: float
     error: float | None
-    spectral_radius: float
-    peak_to_peak: dict[str, float]
-    unpaid: float
     cycle_time: FloatArray
     cycle_states: FloatArray
+    _maps: StepMaps = field(repr=False)
+    _transition: FloatArray = field(repr=False)
+    _weights: FloatArray = field(repr=False)
+
+    @cached_property
+    def closure(self) -> float:
+        """Largest mismatch of state and state one cycle later, over the largest displacement or rate."""
+        return _closure(self.system, self.cycle_states)
+
+    @cached_property
+    def spectral_radius(self) -> float:
+        """Largest modulus of the Floquet multipliers, the rigid rotation taken out.
+
+        Above 1 the motion is unstable, and a pair leaves it.
+        """
+        return relative_spectral_radius(self.system, self._transition)
+
+    @cached_property
+    def peak_to_peak(self) -> dict[str, float]:
+        """Variable -> its peak to peak over the cycle [m], with switches and extremes between samples."""
+        return _peaks(self.system, self.cycle_time, self.cycle_states)
+
+    @cached_property
+    def unpaid(self) -> float:
+        """Mean power that the losses take beyond what the torques bring, see ``StepMaps.unpaid`` [W]."""
+        return self._maps.unpaid(self.cycle_states[0], self._weights)
 
     @property
     def values(self) -> dict[str, FloatArray]:
@@ -96,7 +113,6 @@ def periodic_solution(
     transition, forced = maps.over_all()
     initial, weights = balanced_start(system, transition, forced)
     states = maps.states(initial, weights)
-    closure = _closure(system, states)
     at = np.searchsorted(maps.times, times - 1e-9 * system.period)
     result = states[at]
     error = None
@@ -112,13 +128,12 @@ def periodic_solution(
         states=result,
         pinion_torque=system.pinion_torque + float(weights[1]),
         brake_torque=float(weights[2]),
-        closure=closure,
         error=error,
-        spectral_radius=relative_spectral_radius(system, transition),
-        peak_to_peak=_peaks(system, maps.times, states),
-        unpaid=maps.unpaid(initial, weights),
         cycle_time=maps.times,
         cycle_states=states,
+        _maps=maps,
+        _transition=transition,
+        _weights=weights,
     )
 
 

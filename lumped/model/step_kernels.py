@@ -39,7 +39,7 @@ def free_steps(
     """
     s, m, columns = c.size, deflection.size, 2 * deflection.size + forces.shape[1]
     end, p = np.zeros((h.size, 2 * m, columns)), np.zeros((h.size, s, columns))
-    by_feedback, start = np.zeros((h.size, s, s + 2 * m, m)), np.zeros((h.size, 2 * s, columns))
+    by_feedback, start = np.zeros((h.size, s, m, s + 2 * m)), np.zeros((h.size, 2 * s, columns))
     by_p = np.empty((h.size, 2 * s, s))
     left, solved = np.empty((s, s)), np.empty((m, s, 3 + s))
     for j in range(h.size):
@@ -76,9 +76,9 @@ def free_steps(
                     end[j, m + i, 2 * m + f] += to_v * by_force
                     p[j, row, 2 * m + f] += u * by_force
                 for stage in range(s):
-                    by_feedback[j, stage, row, i] = u * right[row, 3 + stage]
-                    by_feedback[j, stage, s + i, i] += to_z * right[row, 3 + stage]
-                    by_feedback[j, stage, s + m + i, i] += to_v * right[row, 3 + stage]
+                    by_feedback[j, stage, i, row] = u * right[row, 3 + stage]
+                    by_feedback[j, stage, i, s + i] += to_z * right[row, 3 + stage]
+                    by_feedback[j, stage, i, s + m + i] += to_v * right[row, 3 + stage]
                 start[j, row, i], start[j, s + row, m + i], start[j, row, m + i] = u, u, t * c[row] * u
         for row in range(s):
             for column in range(s):
@@ -111,7 +111,7 @@ def gauss_steps(
     k, stages, m = stiffness.shape
     rows, columns = stages + 2 * m, free_end.shape[2]
     maps = np.empty((k, 2 * m, columns))
-    to, fixed = np.empty((rows, 2 * stages)), np.empty(rows)
+    to, fixed = np.empty((2 * stages, rows)), np.empty(rows)
     matrix, p = np.empty((stages, stages)), np.empty((stages, columns))
     inside = np.empty((k, 2, stages, columns))
     for j in range(k):
@@ -121,14 +121,14 @@ def gauss_steps(
             fixed[row] = 0.0
         for stage in range(stages):
             for row in range(rows):
-                by_k, by_c, by_e = 0.0, 0.0, 0.0
-                for i in range(m):
-                    factor = by_feedback[of, stage, row, i]
-                    by_k += factor * stiffness[j, stage, i]
-                    by_c += factor * damping[j, stage, i]
-                    by_e += factor * error[j, stage, i]
-                to[row, stage], to[row, stages + stage] = by_k, by_c
-                fixed[row] += by_e
+                to[stage, row], to[stages + stage, row] = 0.0, 0.0
+            for i in range(m):
+                by_k, by_c, by_e = stiffness[j, stage, i], damping[j, stage, i], error[j, stage, i]
+                for row in range(rows):
+                    factor = by_feedback[of, stage, i, row]
+                    to[stage, row] += factor * by_k
+                    to[stages + stage, row] += factor * by_c
+                    fixed[row] += factor * by_e
         for row in range(stages):
             for column in range(columns):
                 p[row, column] = free_p[of, row, column]
@@ -137,7 +137,7 @@ def gauss_steps(
                 matrix[row, column] = 0.0
             matrix[row, row] = 1.0
             for i in range(2 * stages):
-                factor = to[row, i]
+                factor = to[i, row]
                 for column in range(columns):
                     p[row, column] += factor * start[of, i, column]
                 for column in range(stages):
@@ -155,7 +155,7 @@ def gauss_steps(
                 maps[j, row, column] = free_end[of, row, column]
             maps[j, row, 2 * m] += fixed[stages + row]
             for i in range(2 * stages):
-                factor = to[stages + row, i]
+                factor = to[i, stages + row]
                 for column in range(columns):
                     maps[j, row, column] += factor * inner[i, column]
     return maps, inside
@@ -191,8 +191,11 @@ def _solve(matrix: FloatArray, right: FloatArray) -> None:
 
 @compiled
 def states_along(maps: FloatArray, initial: FloatArray, weights: FloatArray) -> FloatArray:
-    """States (k + 1, n) from x(0) (n,) by k affine maps (k, n, n + columns), forcings weighted (columns,)."""
-    k, n, width = maps.shape
+    """States (k + 1, n) from x(0) (n,) by k affine maps (k, n, n + columns), forcings weighted (forcings,).
+
+    Columns without a weight are zeros.
+    """
+    k, n = maps.shape[0], maps.shape[1]
     x = np.empty((k + 1, n))
     for row in range(n):
         x[0, row] = initial[row]
@@ -201,8 +204,8 @@ def states_along(maps: FloatArray, initial: FloatArray, weights: FloatArray) -> 
             value = 0.0
             for column in range(n):
                 value += maps[j, row, column] * x[j, column]
-            for column in range(n, width):
-                value += maps[j, row, column] * weights[column - n]
+            for forcing in range(weights.size):
+                value += maps[j, row, n + forcing] * weights[forcing]
             x[j + 1, row] = value
     return x
 

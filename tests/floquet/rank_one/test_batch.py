@@ -19,6 +19,7 @@ from floquet import (
     stability_chart,
 )
 from floquet.gear.axes import GearVariation
+from floquet.rank_one import batch
 from floquet.rank_one.batch import multipliers_of
 from floquet.rank_one.kernels.disks import spectra
 from floquet.rank_one.system import Gains
@@ -305,6 +306,30 @@ def test_eigenvalue_kernel_in_awkward_cases(kind: str) -> None:
     exact = np.linalg.eigvals(block)
     assert np.abs(np.sort_complex(values[0]) - np.sort_complex(exact)).max() < 1e-7  # sqrt(eps) if defective
     assert bool(safe[0]) == (kind in ("diagonal", "rotation"))  # the others go to the careful bound
+
+
+def test_radii_without_bounds_are_those_with_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where the kernel does not tell the multipliers apart, as of most motions below 400 rpm here, or
+    where it finds none at all.
+    """
+    system = gear_block(load_gear_pair("nasa_28_28"))
+    periods = system.period * np.geomspace(0.5, 30.0, 60)
+    flow = fast_monodromies(system, periods, tolerance=1e-11)
+    values, radii = np.empty(flow.matrices.shape[:2], dtype=complex), np.empty(flow.matrices.shape[:2])
+    safe = np.empty(periods.size, dtype=bool)
+    spectra(flow.matrices, flow.errors, values, radii, safe)
+    assert safe.any()
+    assert not safe.all()
+    expected = np.abs(fast_multipliers(system, periods, tolerance=1e-11).multipliers).max(axis=1)
+    found = batch.spectral_radii(system, periods, 1.0, tolerance=1e-11)
+    np.testing.assert_allclose(found, expected, rtol=1e-10)
+
+    def finds_nothing(matrices, errors, values, radii, safe) -> None:
+        values[:], safe[:] = np.nan, False
+
+    monkeypatch.setattr(batch, "spectra", finds_nothing)
+    found = batch.spectral_radii(system, periods, 1.0, tolerance=1e-11)
+    np.testing.assert_allclose(found, expected, rtol=1e-10)
 
 
 def test_limits_are_reported() -> None:
