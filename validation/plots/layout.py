@@ -17,6 +17,7 @@ from matplotlib.transforms import Bbox, ScaledTranslation
 from lumped.typing import FloatArray
 
 _PAD = 3.0 / 72.0  # around every panel with its words [inch]
+_LEAST = 0.2  # of the figure that its panels keep, however much room the words want
 
 
 class MeasuredLayout(LayoutEngine):
@@ -115,8 +116,13 @@ def _with_words(ax: Axes, ticks: Mapping[Axis, Bbox], renderer: RendererAgg) -> 
 
 
 def _share(length: float, before: FloatArray, after: FloatArray) -> tuple[float, float, float]:
-    """Start and end of a line of panels with margins [pixel], over its length, and its gaps, over a panel."""
+    """Start and end of a line of panels with margins [pixel], over its length, and its gaps, over a panel.
+
+    Where the figure is too small for its words they lie over panels or leave the figure.
+    """
     gap = float(np.max(after[:-1] + before[1:], initial=0.0))
-    start, end = float(before[0]), length - float(after[-1])
-    panel = (end - start - gap * (before.size - 1)) / before.size
-    return start / length, end / length, gap / panel
+    start, end = float(before[0]), float(after[-1])
+    margins = start + end + gap * (before.size - 1)
+    short = min(1.0, (1.0 - _LEAST) * length / margins)
+    panel = (length - short * margins) / before.size
+    return short * start / length, 1.0 - short * end / length, short * gap / panel

@@ -62,7 +62,7 @@ def field_figure(
     values : over the vertical and the horizontal axis, rising
     chart : has the names of the axes
     norm, colours : of the values
-    words : beside the colour bar
+    words : beside the colour bar, before what the errors behind the chart are
     extend : ends of the colour bar beyond which there are values
     """
     figure, ax = one_panel(3.4)
@@ -71,8 +71,8 @@ def field_figure(
     drawn = field(ax, xs, ys, values.to_numpy(), norm, colours)
     ax.set(xlim=(xs[0], xs[-1]), ylim=(ys[0], ys[-1]))
     bar = figure.colorbar(drawn, ax=ax, pad=0.01, extend=extend)
-    bar.set_label(words, fontsize=8.5)
-    note_certificate(ax, chart)
+    # Not above the axes: the names of tongues stand there.
+    bar.set_label(f"{words}\n{_certificate(chart)}", fontsize=8.5)
     bar.outline.set_linewidth(0.5)
     ax.set(xlabel=axis_label(chart, x), ylabel=axis_label(chart, y))
     ax.grid(False)
@@ -134,16 +134,15 @@ def stability_line_figure(chart: xr.Dataset, x: str, value: float | None) -> Fig
     ax.fill_between(xs, 1.0, np.maximum(values, 1.0), color=UNSTABLE, linewidth=0.0)
     ax.set_xlim(xs[0], xs[-1])
     mark_operating_value(ax, value)
-    note_certificate(ax, chart)
+    ax.set_title(_certificate(chart), loc="right", fontsize=7.5, color=GREY)
     ax.set(xlabel=axis_label(chart, x), ylabel="spectral radius [-], unstable above 1")
     return figure
 
 
-def note_certificate(ax: Axes, chart: xr.Dataset) -> None:
-    """Say above the right end what the errors behind a chart are."""
-    words = {"mixed": "partly proven"}
+def _certificate(chart: xr.Dataset) -> str:
+    """What the errors behind a chart are, in words."""
     kind = str(chart.attrs["certificate"])
-    ax.set_title(f"error bounds: {words.get(kind, kind)}", loc="right", fontsize=7.5, color=GREY)
+    return f"error bounds: {'partly proven' if kind == 'mixed' else kind}"
 
 
 def field(

@@ -27,3 +27,15 @@ def test_no_word_lies_over_another_panel_or_beside_the_figure():
     assert labels[0].x0 == pytest.approx(labels[1].x0, abs=0.5)  # in line beside the longer ticks
     assert labels[0].x1 < min(tick.get_window_extent(renderer).x0 for tick in axes[0, 0].get_yticklabels())
     assert axes[0, 0].bbox.width > 0.45 * figure.bbox.width
+
+
+def test_panels_keep_a_fifth_of_a_figure_that_is_too_small_for_its_words():
+    """matplotlib refuses panels without height: "bottom cannot be >= top"."""
+    figure, axes = new_figure(2, 1, height=0.8)
+    for ax in axes[:, 0]:
+        ax.set(xlabel="words\nof\nfour\nlines", ylabel="load [N]")
+    legend_outside(figure, axes[0, 0].plot([0.0, 1.0], [0.0, 1.0], label="name"), 1)
+    figure.draw_without_rendering()
+    upper, lower = (ax.bbox for ax in axes[:, 0])
+    assert upper.height + lower.height == pytest.approx(0.2 * figure.bbox.height, rel=1e-9)
+    assert lower.y1 < upper.y0

@@ -10,6 +10,7 @@ import xarray as xr
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import QuadMesh
 from matplotlib.contour import QuadContourSet
+from matplotlib.text import Text
 from typer.testing import CliRunner
 
 from floquet import predicted_lines, stability_chart
@@ -58,6 +59,23 @@ def test_tongues_are_named_in_the_chart(pair) -> None:
     )
     assert {"2ω₃/2", "2ω₃/5", "operating point", "operating range"} <= texts(figure)
     assert figure.axes[0].get_xlabel() == "pinion speed [rpm]"
+
+
+def test_names_of_tongues_touch_no_other_words(pair) -> None:
+    """A tongue at the right end: what the error bounds are stood there too."""
+    axes = {"speed_rpm": np.linspace(6000.0, 17000.0, 111), "damping_ratio": np.linspace(0.0, 0.03, 7)}
+    chart = stability_chart(pair, axes)
+    figure = tongue_chart_figure(chart, "damping_ratio", label_regions(pair, chart))
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    figure.draw_without_rendering()
+    ax, bar = figure.axes
+    assert "error bounds: " in bar.get_ylabel()
+    names = [text.get_window_extent(renderer) for text in ax.texts]
+    other = [text for one in figure.axes for text in one.findobj(Text) if text not in ax.texts]
+    boxes = [text.get_window_extent(renderer) for text in other if text.get_text() and text.get_visible()]
+    assert names
+    assert max(name.x1 for name in names) > 0.95 * ax.bbox.x1
+    assert not any(name.overlaps(box) for name in names for box in boxes)
 
 
 def test_names_moved_apart_keep_order_distance_and_mean() -> None:
@@ -142,7 +160,7 @@ def test_uneven_axes_and_falling_ones_are_drawn_at_their_values() -> None:
     x, y = np.array([3000.0, 1000.0, 1100.0]), np.array([0.0, 0.01, 0.05])
     values = np.array([[0.3, 0.3, 0.3], [0.1, 0.1, 0.1], [0.2, 0.2, 0.2]])
     ax = stability_figure(over_speed_and_damping(x, y, values), "speed_rpm", "damping_ratio", None).axes[0]
-    assert ax.get_title(loc="right") == "error bounds: partly proven"
+    assert ax.figure.axes[1].get_ylabel().endswith("\nerror bounds: partly proven")
     (mesh,) = [c for c in ax.collections if isinstance(c, QuadMesh)]
     assert np.allclose(mesh.get_array()[0], [0.1, 0.2, 0.3])
     assert ax.get_xlim() == (1000.0, 3000.0)
