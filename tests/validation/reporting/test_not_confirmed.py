@@ -53,7 +53,7 @@ def test_every_chapter_on_the_motion_warns_and_every_verdict_on_it_is_bad(report
     states = {key: chapter.get("verdict", {}).get("state") for key, chapter in data["chapters"].items()}
     assert states["losses"] == "violated"
     assert states["cross_check"] == states["stability"] == states["reference_model"] == "not confirmed"
-    note = data["chapters"]["steady_state"]["key_results"]["mesh_efficiency"]["note"]
+    note = data["chapters"]["steady_state"]["key_results"]["total_efficiency"]["note"]
     assert "do not rely on it" in note
     named = {case.name for case in failures(data)}
     assert {

@@ -61,8 +61,8 @@ def write(results: Results) -> Content:
         ("largest_load", "largest load of a tooth pair", largest, "N"),
         ("dynamic_factor", "that load over the static load", largest / results.static_load),
         (
-            "mesh_efficiency",
-            "mesh efficiency",
+            "total_efficiency",
+            "total efficiency",
             1.0 - lost,
             "",
             "all losses counted" if lawful(results) else f"do not rely on it: {unlawful(results)}",
