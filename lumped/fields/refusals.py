@@ -125,9 +125,11 @@ def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
         names = list(marker.names) if marker else [str(name) for name in get_args(info.annotation)]
         return [_choice(path, item.get("input"), names)]
     if kind in _RENAMED:
-        return [
-            FieldProblem(path or "file", value, f"{_RENAMED[kind]} of keys and values", "Write a section.")
-        ]
+        keys = [name for model in models for name in model.model_fields]
+        action = f"Set one of its keys: {path}.{keys[0]}." if parts and keys else "Write a section."
+        return [FieldProblem(path or "file", value, f"{_RENAMED[kind]} of keys and values", action)]
+    if kind == "string_too_short":
+        return [FieldProblem(path, value, "text that is not empty", "Write it.")]
     if parts and not models and field_of(root, path).annotation is int:
         point = isinstance(item.get("input"), float)
         action = "Write it without a point." if point else "Write a whole number in that range."

@@ -38,8 +38,11 @@ def parse_toml(text: str, source: str) -> dict[str, Any]:
         why = f"The TOML is malformed: {error}."
         if found_at := re.search(r"at line (\d+)", str(error)):
             line = text.splitlines()[int(found_at[1]) - 1].strip()
-            comma = re.search(r"=\s*[+-]?\d+,\d", line)
-            hint = " Decimals have a point, and text is put in quotes." if comma else ""
+            hint = ""
+            if re.search(r"=\s*[+-]?\d+,\d", line):
+                hint = " Decimals have a point, and text is put in quotes."
+            elif unit := re.search(r"=\s*([-+.\d][-+.\deE_]*\s*[A-Za-z][^#]*)", line):
+                hint = f" A number with a unit is text, in quotes: '{unit[1].strip()}'."
             why = f"Line {found_at[1]} is malformed: {shown(line)} ({error}).{hint}"
         raise refuse("file", source, "well-formed TOML", why) from None
 

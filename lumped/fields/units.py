@@ -153,7 +153,9 @@ def to_si(value: float | str, unit: str) -> float:
     except (InvalidOperation, Overflow, DivisionByZero):
         raise ValueError(f"'{value}' is no finite quantity; {advice}") from None
     except Exception as error:  # noqa: BLE001  (pint lets tokenizer, attribute and arithmetic errors through)
-        raise ValueError(f"'{value}' is no quantity ({type(error).__name__}); {advice}") from None
+        unknown = " and ".join(f"'{name}'" for name in getattr(error, "unit_names", ()))
+        why = f"has the unknown unit {unknown}" if unknown else "is no quantity"
+        raise ValueError(f"'{value}' {why}; {advice}") from None
     if unit != "1" and quantity.unitless:
         raise ValueError(f"'{value}' has no unit; {advice}")
     if unit == "1" and not quantity.unitless:
@@ -185,9 +187,11 @@ def to_file(value: float, unit: str) -> float | str:
 
 
 def to_stated(value: float, unit: str) -> float:
-    """Convert an SI number to the field's stated unit, for reading."""
+    """Convert an SI number to the field's stated unit, for reading: to the shortest number that means it."""
     number = Decimal(repr(float(value)))
-    return float(number - _ZERO_CELSIUS if unit == "degC" else number / UNITS[unit][1])
+    stated = number - _ZERO_CELSIUS if unit == "degC" else number / UNITS[unit][1]
+    short = float(f"{stated:.15g}")  # 3000 rpm, not 2999.9999999999998
+    return short if to_si(short, unit) == value else float(stated)
 
 
 class Read(ABC):

@@ -16,7 +16,8 @@ from lumped.gear_geometry.involute import tooth_half_angle
 #: Teeth of rounded published data may overlap by this much of a module before the pair is refused.
 _WEDGE_TOLERANCE = 1e-4
 _THROUGH_TANGENT_POINT = (
-    "The tip would pass the mate's tangent point (involute interference): lower it or shift the profiles."
+    "The tip would pass the mate's tangent point (involute interference): lower it, or raise the mate's "
+    "profile_shift."
 )
 _CUT_AWAY = (
     "The rack has cut the involute away there (undercut or fillet): raise the profile shift, "

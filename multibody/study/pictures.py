@@ -93,7 +93,7 @@ def _draw(
     _path_of_contact(close, pair)
     rpm = pair.operating.pinion_speed * 30.0 / np.pi
     figure.suptitle(
-        f"{pair.name}: {rpm:.4g} rpm, {pair.operating.pinion_torque:.4g} N m, "
+        f"{pair.name}: {rpm:.4g} rpm, {pair.operating.pinion_torque:.8g} N m, "
         f"after {t / g.mesh_period:.2f} mesh cycles",
         parse_math=False,  # a name is text, whatever it contains
     )

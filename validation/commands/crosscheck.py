@@ -152,7 +152,7 @@ def _tables(check: CrossCheck) -> list[Table]:
         linear.add_row(a.quantity, number(a.judged, 3), number(a.tolerance.limit, 3), verdict(a))
     exact = table(f"{name}: exact", "quantity", ">raw", ">limit", ">predicted", ">left", ">limit", "verdict")
     for a in check.of("exact"):
-        limit = math.nan if a.raw_limit is None else a.raw_limit.limit
+        limit = math.nan if a.whole_limit is None else a.whole_limit
         values = a.relative_l2, limit, a.predicted_l2, a.remainder_l2, a.tolerance.limit
         exact.add_row(a.quantity, *(number(value, 2) for value in values), verdict(a))
     nature = table(f"{name}: laws of nature", "check", ">value", ">limit", "verdict")

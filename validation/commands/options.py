@@ -93,18 +93,15 @@ def gear_pair(
     ParameterError : everything that a parameter file could be refused for, and a --set without '='
     """
     from lumped import load_gear_pair
-    from lumped.errors import ParameterError, refuse
+    from lumped.errors import ParameterError
     from validation.commands.terminal import note
     from validation.validity.plausibility import doubts
 
     changes: dict[str, Any] = {}
     options: dict[str, str] = {}
-    for item in settings or []:
-        path, separator, text = item.partition("=")
-        if not separator or not path.strip():
-            raise refuse("--set", item, "FIELD=VALUE", "For example --set mesh.damping_ratio=0.03.")
-        changes[path.strip()] = value_of(text.strip())
-        options[path.strip()] = f"--set {path.strip()}"
+    for path, text in set_fields(settings).items():
+        changes[path] = value_of(text)
+        options[path] = f"--set {path}"
     for option, path, text_or_none in (
         ("--speed", "operating.pinion_speed", speed),
         ("--torque", "operating.pinion_torque", torque),
@@ -122,6 +119,24 @@ def gear_pair(
     for doubt in doubts(pair):
         note(doubt)
     return pair
+
+
+def set_fields(settings: list[str] | None) -> dict[str, str]:
+    """Return field path -> text of its value of every --set.
+
+    Raises
+    ------
+    ParameterError : a --set without '='
+    """
+    from lumped.errors import refuse
+
+    found: dict[str, str] = {}
+    for item in settings or []:
+        path, separator, text = item.partition("=")
+        if not separator or not path.strip():
+            raise refuse("--set", item, "FIELD=VALUE", "For example --set mesh.damping_ratio=0.03.")
+        found[path.strip()] = text.strip()
+    return found
 
 
 def check_supports(pair: GearPair, supports: Literal["springs", "shafts"]) -> None:

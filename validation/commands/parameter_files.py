@@ -74,6 +74,7 @@ def init(
         str | None, typer.Option("--oil", help="With --teeth: ISO viscosity grade, vg220.")
     ] = None,
     law: opt.Law = None,
+    settings: opt.Settings = None,
     force: opt.Force = False,
 ) -> None:
     """Write a commented parameter file to edit.
@@ -93,8 +94,12 @@ def init(
     spurcheck init --from-rexs gearbox.rexs --stage 2 -o my_pair.toml
 
     spurcheck init --teeth 19/41 --module 2.5 --face-width 20 --speed 1450 --torque 80 --oil vg220
+
+    spurcheck init --teeth 13/41 --module 2.5 --face-width 20 --speed 1450 --torque 80
+    --set pinion.profile_shift=0.4 --set gear.face_width=18
     """
-    from lumped.schema.files import preset_text
+    from lumped.errors import refuse
+    from lumped.schema.files import preset_names, preset_text
     from validation.files.output import check_file, write_text
 
     own = {
@@ -106,7 +111,11 @@ def init(
         "--bearing-damping": ("bearings.damping_ratio", bearing_damping),
         "--oil": ("oil", oil),
         "--law": ("friction.law", law),
+        **{f"--set {path}": (path, value) for path, value in opt.set_fields(settings).items()},
     }
+    if preset not in preset_names() and Path(preset).exists():
+        allowed = "one of " + ", ".join(preset_names())
+        raise refuse("preset", preset, allowed, "This is a file already: edit it, or copy it.")
     text, name = preset_text(preset), preset
     if teeth is not None or any(value is not None for _, value in own.values()):
         stem = output.stem if output is not None and str(output) != "-" else None

@@ -87,20 +87,22 @@ def simulate(
                 progress=tell,
             )
     from lumped.model.extremes import cycle_peak_to_peak
+    from lumped.model.results import load_range
     from validation.reporting.formatting import number, quantity
     from validation.validity.flags import contact_loss
 
     g = gear_pair.geometry
     # A transient ends on the end of its last cycle, a periodic motion leaves its own out.
     last = result.isel(time=slice(-samples - (not steady), None))
-    load = last["normal_load"].to_numpy()[last["contact"].to_numpy() > 0]
+    form = gear_pair.mesh.contact
+    largest, smallest = load_range(form, last["normal_load"].to_numpy(), last["contact"].to_numpy())
     static = gear_pair.operating.pinion_torque / g.base_radius_pinion
     numbers = {
         "dte_peak_to_peak": cycle_peak_to_peak(last, "dte", g.mesh_period if steady else None),
         "dte_mean": float(last["dte"][:samples].mean()),
-        "normal_load_max": float(load.max()),
-        "normal_load_min": float(load.min()),
-        "load_factor": float(load.max()) / static,
+        "normal_load_max": largest,
+        "normal_load_min": smallest,
+        "load_factor": largest / static,
         "mesh_efficiency": float(result.attrs["mesh_efficiency"]),
         "brake_torque": float(result.attrs["brake_torque"]),
     }
@@ -113,12 +115,14 @@ def simulate(
     else:
         shown = table(f"{gear_pair.name} on {supports}, last mesh cycle", "quantity", ">value")
         for name, value in {
-            "transmission error, peak to peak": quantity(numbers["dte_peak_to_peak"], "m", 3),
+            "transmission error, peak to peak": quantity(numbers["dte_peak_to_peak"], "m", 3, measured=True),
             "transmission error, mean": quantity(numbers["dte_mean"], "m"),
-            "largest load of a tooth pair": quantity(numbers["normal_load_max"], "N"),
-            "smallest load of a tooth pair": quantity(numbers["normal_load_min"], "N"),
-            "largest load over static load": number(numbers["load_factor"]),
-            f"mesh efficiency{', sliding alone' * paper}": f"{number(100.0 * numbers['mesh_efficiency'])} %",
+            "largest load of a tooth pair": quantity(largest, "N", 3, measured=True),
+            f"smallest load of {'all pairs together' if form == 'loaded' else 'a tooth pair'}": quantity(
+                smallest, "N", 3, measured=True
+            ),
+            "largest load over static load": number(numbers["load_factor"], 3, measured=True),
+            f"mesh efficiency{', sliding alone' * paper}": f"{100.0 * numbers['mesh_efficiency']:.2f} %",
             "brake torque that holds the speed": quantity(numbers["brake_torque"], "N m", 6),
         }.items():
             shown.add_row(name, value)

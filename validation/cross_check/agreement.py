@@ -91,6 +91,13 @@ class Agreement:
         return tuple(found)
 
     @property
+    def whole_limit(self) -> float | None:
+        """Limit of ``relative_l2``: what finite motions explain, and whether it is the same motion at all."""
+        limits = [] if self.raw_limit is None else [self.raw_limit.limit]
+        limits += [j.limit for j in self.judgements if j.check == "same motion: dte"]
+        return min(limits, default=None)
+
+    @property
     def raw(self) -> tuple[Judgement, ...]:
         """The whole difference against its limit; beyond it, it needs an explanation."""
         limit = self.raw_limit

@@ -39,7 +39,7 @@ _WHY = {
     "pressure_viscosity_k": "mineral oil",
     "pressure_viscosity_s": "mineral oil",
     "law": f"law {LAWS['xu_kahraman'].title}, which knows load, speed, oil and roughness",
-    "relief": "perfect involutes",
+    "relief": "tip and root relief act where they are given",
     "contact": "a tooth pair touches where the mean load closes its gap",
     "sharpness": "read by law IV alone",
     "maximum": "bounds law II near the pitch point",
@@ -57,8 +57,8 @@ def own_pair_text(name: str, given: Mapping[str, Any]) -> str:
     Parameters
     ----------
     name : of the pair
-    given : ``teeth`` ("19/41"), ``oil`` ("vg220") and field paths -> values; ``gears.`` and ``bearings.``
-        in front of a field mean both gears, all four bearing directions
+    given : ``teeth`` ("19/41"), ``oil`` ("vg220") and field paths -> values; ``gears.`` in front of a field
+        means both gears, ``bearings.stiffness`` and ``bearings.damping_ratio`` all four bearing directions
 
     Raises
     ------
@@ -67,13 +67,16 @@ def own_pair_text(name: str, given: Mapping[str, Any]) -> str:
     values = _values(given)
     pair = _whole({"name": name}, values)
     if "mesh.backlash" not in values:
-        pair = pair.with_({"mesh.backlash": _backlash(pair)})
-    paths = [path for path in leaf_paths(pair) if path not in ("name", "description")]
-    sources = {path: GIVEN if path in values else f"assumed: {_why(path)}" for path in paths}
-    assumed = set(paths) - set(values)
+        pair = pair.with_(mesh__backlash=_backlash(pair))
+    sources = {
+        path: GIVEN if _is_given(path, values) else f"assumed: {_why(path)}"
+        for path in leaf_paths(pair)
+        if path not in ("name", "description")
+    }
+    told = sum(source == GIVEN for source in sources.values())
     notes = [
         "A bare number means the unit in the comment; text may carry any unit of that kind: '700 in-lb'.",
-        f"{len(values)} values are given, {len(assumed)} assumed: replace what you know, first the bearings.",
+        f"{told} values are given, {len(sources) - told} assumed: replace what you know, first the bearings.",
     ]
     return parameter_text(load_gear_pair(pair.to_mapping() | {"sources": sources}).to_mapping(), notes)
 
@@ -124,9 +127,16 @@ def _values(given: Mapping[str, Any]) -> dict[str, Any]:
             if found is None:
                 raise refuse("--oil", value, "an ISO viscosity grade", "For example --oil vg220.")
             values |= dict.fromkeys(fields_of(path), int(found[1]))
+        elif isinstance(value, dict):  # a section: mesh.stiffness = {model = "energy"}
+            values |= _values({f"{path}.{key}": part for key, part in value.items()})
         else:
             values |= dict.fromkeys(fields_of(path), value)
     return values
+
+
+def _is_given(path: str, values: Mapping[str, Any]) -> bool:
+    """Whether the user gave a field, or the list that it is in."""
+    return any(path == one or path.startswith(f"{one}.") for one in values)
 
 
 def fields_of(path: str) -> list[str]:
@@ -134,10 +144,10 @@ def fields_of(path: str) -> list[str]:
     section, _, key = path.partition(".")
     if path == "oil":
         return ["lubricant.viscosity_law.iso_vg"]
-    if section == "bearings":
+    if path in ("bearings.stiffness", "bearings.damping_ratio"):
         return [f"bearings.{gear}.{line}_{key}" for gear in ("pinion", "gear") for line in ("loa", "oloa")]
     return [f"{gear}.{key}" for gear in ("pinion", "gear")] if section == "gears" else [path]
 
 
 def _why(path: str) -> str:
-    return next(why for end, why in _WHY.items() if path.endswith(end))
+    return next((why for end, why in _WHY.items() if path.endswith(end)), "the schema's default")

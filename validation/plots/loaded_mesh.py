@@ -38,7 +38,7 @@ def load_sharing_figure(g: Geometry, static: xr.Dataset) -> Figure:
     shown = static["torque"].to_numpy()
     for index, torque in enumerate(shown):
         share = static["load_share"].sel(torque=torque).to_numpy().ravel()[order]
-        ax.plot(1e3 * place[order][near], share[near], **look(index), label=f"{torque:.4g} N m")
+        ax.plot(1e3 * place[order][near], share[near], **look(index), label=f"{_written(torque)} N m")
     ax.set(ylim=(0.0, 1.05), xlim=(1e3 * place[order][near][0], 1e3 * place[order][near][-1]))
     ax.set(xlabel="distance from X along the line of action [mm]", ylabel="share of one pair in the load [-]")
     mark_switches(ax, path_marks(g), letters=False)
@@ -63,7 +63,7 @@ def harris_figure(static: xr.Dataset, harris: xr.Dataset) -> Figure:
     factor, unit = scaled(te, unit="m")
     cycles = np.concatenate([phase, phase + 1.0])
     for index, torque in enumerate(static["torque"].to_numpy()):
-        left.plot(cycles, np.tile(te[index], 2) / factor, **look(index), label=f"{torque:.4g} N m")
+        left.plot(cycles, np.tile(te[index], 2) / factor, **look(index), label=f"{_written(torque)} N m")
     left.set(xlim=(0.0, 2.0), ylim=(0.0, 1.45 * float(te.max()) / factor))
     left.set(xlabel="mesh cycles after a pair was at A", ylabel=f"static transmission error [{unit}]")
     legend(left, reverse=True, loc="upper right", ncols=2, fontsize=7.5)
@@ -104,3 +104,8 @@ def relief_figure(relief: xr.Dataset, optimum: OptimalRelief) -> Figure:
     ax.set_ylabel("amount at the tip [µm]")
     ax.tick_params(color=GREY)
     return figure
+
+
+def _written(torque: float) -> str:
+    """A torque in four digits, never as 2e+04."""
+    return f"{float(f'{torque:.4g}'):.12g}"

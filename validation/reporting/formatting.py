@@ -22,8 +22,11 @@ def digits(error: float, most: int = 3) -> int:
     return most if error <= 0.0 else max(1, min(most, math.floor(1.0 - math.log10(2.0 * error))))
 
 
-def number(value: float, digits: int = 4) -> str:
-    """A number with significant digits; powers of ten outside 0.001 to 99999."""
+def number(value: float, digits: int = 4, *, measured: bool = False) -> str:
+    """A number with significant digits; powers of ten outside 0.001 to 99999.
+
+    Zeros at the end are left out, but where the number is good to that many digits (``measured``).
+    """
     if not math.isfinite(value):
         return "n/a"
     if value == 0.0:
@@ -32,16 +35,16 @@ def number(value: float, digits: int = 4) -> str:
         # Digits before the point are never rounded away: 16663 stays 16660 at four digits, not 1.666e+04.
         places = max(digits - 1 - math.floor(math.log10(abs(value))), 0)
         text = f"{float(f'{value:.{digits}g}'):.{places}f}"
-        text = text.rstrip("0").rstrip(".") if "." in text else text
+        text = text.rstrip("0").rstrip(".") if "." in text and not measured else text
         return text.replace("-", _MINUS)
     mantissa, exponent = f"{value:.{min(digits, 3) - 1}e}".split("e")
     return f"{mantissa}{_SPACE}×{_SPACE}10{str(int(exponent)).translate(_SUPERSCRIPT)}".replace("-", _MINUS)
 
 
-def quantity(value: float, unit: str, digits: int = 4) -> str:
-    """A number in SI with its unit, prefixed where that is usual."""
+def quantity(value: float, unit: str, digits: int = 4, *, measured: bool = False) -> str:
+    """A number in SI with its unit, prefixed where that is usual; arguments as those of ``number``."""
     if unit == "1" or value == 0.0:  # nothing has no unit that a reader would miss
-        return number(value, digits)
+        return number(value, digits, measured=measured)
     if unit in _PREFIXED and math.isfinite(value):
         exponent = 3 * math.floor(math.log10(abs(value)) / 3)
         exponent = min(max(exponent, -12), 9)
@@ -49,8 +52,8 @@ def quantity(value: float, unit: str, digits: int = 4) -> str:
         if abs(float(f"{scaled:.{digits}g}")) >= 1000.0 and exponent < 9:  # 999.99 rounds to 1000
             exponent += 3
             scaled = value / 10.0**exponent
-        return f"{number(scaled, digits)}{_SPACE}{_PREFIXES[exponent]}{unit.replace(' ', _SPACE)}"
-    return f"{number(value, digits)}{_SPACE}{unit.replace(' ', _SPACE)}"
+        value, unit = scaled, f"{_PREFIXES[exponent]}{unit}"
+    return f"{number(value, digits, measured=measured)}{_SPACE}{unit.replace(' ', _SPACE)}"
 
 
 def cell(value: Cell, digits: int = 4) -> str:

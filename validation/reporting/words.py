@@ -6,27 +6,12 @@ import numpy as np
 import xarray as xr
 
 from lumped import GearPair
-from validation.cross_check.comparison import CrossCheck
-from validation.cross_check.judgement import Judgement
 from validation.reporting.blocks import Text
 from validation.reporting.contact_words import contact_form
+from validation.reporting.cross_check_words import failed_checks, percent
 from validation.reporting.formatting import digits, number, quantity
 from validation.reporting.results import Parting, Results
-
-#: Short names of the quantities that the models are compared by.
-NAMES = {
-    "dte": "transmission error",
-    "x_p": "pinion x",
-    "x_g": "gear x",
-    "y_p": "pinion y",
-    "y_g": "gear y",
-    "normal_load": "normal load",
-    "friction_force": "friction force",
-}
-
-
-#: Kind of a check that compares motions -> what its value is.
-_DIFFERENCES = {"linear": "off with the same equations", "remainder": "off beyond what is understood"}
+from validation.validity.four_springs import LIMITS, FourSprings
 
 #: Largest difference of the transmission error from exact contact, over its peak to peak, that the first
 #: words pass over.
@@ -37,7 +22,7 @@ def headline(results: Results) -> str:
     """The first words of the report: whether the prediction can be relied on, and every reason against it."""
     if wrong := objections(results):
         return f"Do not rely on this prediction: {'; '.join(wrong)}."
-    here = f"At {results.operating_rpm:.5g} rpm and {results.pair.operating.pinion_torque:.4g} N m"
+    here = f"At {results.operating_rpm:.5g} rpm and {number(results.pair.operating.pinion_torque)} N m"
     if off := contact_off(results):
         return f"{here} the equations are solved right, but {off}."
     near = [f"“{flag.name.lower()}” is near its limit" for flag in results.flags if flag.state == "warning"]
@@ -101,7 +86,7 @@ def motion(results: Results) -> str:
     if found := confirmed_parting(results):
         return f"{with_loss_of_contact(results, found)}{ignored_relief(results.pair)}"
     load, error = largest_load(results)
-    factor = number(load / results.static_load, digits(error / load))
+    factor = number(load / results.static_load, digits(error / load), measured=True)
     numbers = (
         f"transmission error {span(results)} peak to peak, tooth load up to {factor} times the static load, "
         f"{efficiency(results)}."
@@ -109,7 +94,7 @@ def motion(results: Results) -> str:
     numbers += ignored_relief(results.pair)
     if objections(results):
         told = f"Computed, but not what a gear pair would show: {numbers}"
-        return f"{told} {parted(results)}".rstrip()
+        return f"{told} {parted(results) if pulls(results) else ''}".rstrip() + on_shafts(results)
     return numbers[0].upper() + numbers[1:]
 
 
@@ -160,6 +145,20 @@ def jumps(results: Results) -> str:
     )
 
 
+def on_shafts(results: Results) -> str:
+    """The transmission error on shafts, where four springs do not stand for them; else nothing."""
+    found = results.four_springs
+    if not isinstance(found, FourSprings) or found.off_here("springs") <= LIMITS[1]:
+        return ""
+    span = found.here("shafts", "dte")
+    return f" On its shafts: {quantity(span, 'm', 3)} peak to peak." if np.isfinite(span) else ""
+
+
+def pulls(results: Results) -> bool:
+    """Whether the linear motion at the operating point needs teeth that pull."""
+    return any(flag.key == "contact_loss" and flag.state != "ok" for flag in results.flags)
+
+
 def parted(results: Results) -> str:
     """What the pair does instead where the linear motion needs teeth that pull; empty where it does not."""
     found = results.parting
@@ -193,7 +192,8 @@ def ignored_relief(pair: GearPair) -> str:
 def span(results: Results) -> str:
     """Peak to peak of the transmission error, in digits that its error allows."""
     attrs = results.motion.attrs
-    return quantity(attrs["dte_peak_to_peak"], "m", digits(float(attrs["error_estimate"])))
+    certain = digits(float(attrs["error_estimate"]))
+    return quantity(attrs["dte_peak_to_peak"], "m", certain, measured=True)
 
 
 def efficiency(results: Results) -> str:
@@ -215,10 +215,10 @@ def agreement(results: Results) -> str:
     exact = check.of("exact")
     dte = next((a for a in exact if a.quantity == "dte"), exact[0])
     same = "with the same contact " if check.pair.mesh.contact == "paper" else ""
-    left = _percent(check.worst("exact").remainder_l2)
+    left = percent(check.worst("exact").remainder_l2)
     told = (
         f"A second, independent model {same}agrees: its transmission error differs by "
-        f"{_percent(dte.relative_l2)}, and at most {left} of any motion is unexplained."
+        f"{percent(dte.relative_l2)}, and at most {left} of any motion is unexplained."
     )
     if objections(results):
         told = (
@@ -334,61 +334,3 @@ def validity(results: Results) -> str:
         f"{text}; from {low:.0f} to {high:.0f} rpm teeth would separate at {100 * share:.2g}\u00a0% of the "
         "speeds, where the linear model does not hold."
     )
-
-
-def failed_checks(check: CrossCheck, most: int = 3) -> str:
-    """The first checks that fail, with value and limit."""
-    failed = check.failures
-    told = [_failed(j) for j in failed[:most]]
-    more = [f"and {len(failed) - most} more"] if len(failed) > most else []
-    return "; ".join(told + more)
-
-
-def _failed(judgement: Judgement) -> str:
-    """One check that fails; a difference of the motions in words."""
-    value, limit = judgement.value, judgement.limit
-    check = judgement.check.removeprefix("twin: ")
-    kind, _, quantity_name = check.partition(": ")
-    if kind not in _DIFFERENCES or quantity_name not in NAMES:
-        return f"{judgement.check} {number(value, 2)}, limit {number(limit, 2)}"
-    of = " of its unlike twin" if check != judgement.check else ""
-    return f"{NAMES[quantity_name]}{of} {_percent(value)} {_DIFFERENCES[kind]}, limit {_percent(limit)}"
-
-
-def same_equations(check: CrossCheck) -> str:
-    """How well the multibody model agrees when it holds the equations of the lumped model."""
-    worst = check.worst("linear")
-    verb = "agrees" if worst.within else "does not agree"
-    return (
-        f"With the same equations the multibody model {verb}: {NAMES[worst.quantity]} to "
-        f"{number(worst.judged, 2)} of its peak to peak, tolerance {number(worst.tolerance.limit, 2)}."
-    )
-
-
-def finite_motions(check: CrossCheck) -> str:
-    """How much the exact model differs, in the transmission error and in whatever differs most.
-
-    The text also says how much of the difference follows from the lumped motion. A difference is stated
-    whatever the verdict is: also one that is understood, and so within its tolerance.
-    """
-    exact = check.of("exact")
-    # To the digits printed: the bodies of a 1:1 pair differ by rounding, and the first is named every time.
-    largest = max(exact, key=lambda a: float(f"{a.relative_l2:.2g}"))
-    dte = next((a for a in exact if a.quantity == "dte"), largest)
-    most = ""
-    if largest.quantity != dte.quantity:
-        most = f" and {NAMES[largest.quantity]}, most of all, by {_percent(largest.relative_l2)}"
-    worst = check.worst("exact")
-    left, limit = _percent(worst.remainder_l2), _percent(worst.tolerance.limit)
-    accounts = f"accounts for all but {left} (tolerance {limit})"
-    if worst.remainder_l2 > 0.5 * worst.relative_l2:
-        accounts = f"does not account for this ({left} left, tolerance {limit})"
-    return (
-        f"Its contact follows the actual motion, which changes the {NAMES[dte.quantity]} by "
-        f"{_percent(dte.relative_l2)}{most} (rms of the change over rms of the motion); the lumped motion "
-        f"alone {accounts}."
-    )
-
-
-def _percent(ratio: float) -> str:
-    return quantity(100 * ratio, "%", 2)

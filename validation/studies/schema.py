@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, PlainSerializer, model_validator
 
 from lumped.errors import FieldProblem, ParameterError, shown
+from lumped.fields.refusals import nearest
 from lumped.fields.section import Section, Text
 from lumped.schema.pair import GearPair
 from validation.studies.analyses import ANALYSES, AnalysisName, Settings
@@ -122,7 +123,12 @@ class Study(Section):
 def _output_problems(study: Study) -> list[FieldProblem]:
     known = ANALYSES[study.analysis].outputs
     problems = [
-        FieldProblem(f"outputs.{j}", shown(repr(name)), "one of " + ", ".join(known), "Correct the name.")
+        FieldProblem(
+            f"outputs.{j}",
+            shown(repr(name)),
+            "one of " + ", ".join(known),
+            nearest(name, known) or "Correct the name.",
+        )
         for j, name in enumerate(study.outputs)
         if name not in known
     ]

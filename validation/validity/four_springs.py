@@ -98,8 +98,16 @@ class FourSprings:
 
     def off_here(self, model: str) -> float:
         """The same at the operating speed."""
-        speeds = self.over_speed["speed"].to_numpy()
-        return float(self.off(model)[int(np.argmin(np.abs(speeds - operating_rpm(self.pair))))])
+        return float(self.off(model)[self._operating])
+
+    def here(self, model: str, name: str) -> float:
+        """A quantity of a model at the operating speed; NaN where there is none."""
+        return float(self.over_speed[name].sel(model=model)[self._operating])
+
+    @property
+    def _operating(self) -> int:
+        """Number of the operating speed."""
+        return int(np.argmin(np.abs(self.over_speed["speed"].to_numpy() - operating_rpm(self.pair))))
 
     def holds(self, model: str) -> BoolArray:
         """Speeds at which four springs hold, (k,)."""

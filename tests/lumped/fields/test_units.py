@@ -200,6 +200,12 @@ def test_stated_value_is_shown_as_it_was_given(unit, stated):
     assert to_stated(to_si(stated, unit), unit) == pytest.approx(stated, rel=4 * ULP, abs=1e-13)
 
 
+@given(stated=st.floats(min_value=1e-6, max_value=1e9).map(lambda value: float(f"{value:.12g}")))
+def test_a_number_of_few_digits_reads_back_in_its_own_digits(stated):
+    """Not 2999.9999999999998 rpm for 3000, nor its rad/s in a file."""
+    assert to_stated(to_si(stated, "rpm"), "rpm") == to_file(to_si(stated, "rpm"), "rpm") == stated
+
+
 def test_a_field_that_may_be_a_word_has_its_unit_too():
     assert stated_unit("operating.brake_torque") == "N*m"
     assert stated_unit("mesh.damping_ratio") == "1"

@@ -33,6 +33,8 @@ def folder(tmp_path_factory):
         "comma": pair.replace("module = 3.175", "module = 3,175"),
         "quote": pair.replace('name = "nasa_28_28"', "name = nasa"),
         "typo": pair.replace("face_width", "facewidth"),
+        "bare_unit": pair.replace("module = 3.175", "module = 3.175 mm"),
+        "output": STUDY.replace("operating.torque", "operating.pinion_torque").replace("_radius", "_radus"),
         "missing": pair.replace("teeth = 28\n", "", 1),
         "own": own.replace("module = 3.175", "module = 2.5"),
     }.items():

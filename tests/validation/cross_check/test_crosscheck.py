@@ -18,6 +18,7 @@ from validation.cross_check.agreement import (
 from validation.cross_check.comparison import crosscheck
 from validation.cross_check.finite_motion import PREDICTED
 from validation.cross_check.tolerances import LOST, tolerance
+from validation.reporting.cross_check_words import failed_checks
 
 
 def test_linear_fidelity_solves_the_same_equations(check):
@@ -127,6 +128,14 @@ def _with(agreements, fidelity, quantity, **changes):
         dataclasses.replace(a, **changes) if (a.fidelity, a.quantity) == (fidelity, quantity) else a
         for a in agreements
     )
+
+
+def test_another_motion_is_beyond_the_limit_that_is_shown_and_told_in_words(check):
+    apart = dataclasses.replace(check, agreements=_with(check.agreements, "exact", "dte", relative_l2=0.73))
+    (dte,) = [a for a in apart.of("exact") if a.quantity == "dte"]
+    assert dte.relative_l2 > dte.whole_limit
+    told = failed_checks(apart).replace("\u00a0", " ")
+    assert told == "transmission error 73 % off, which is another motion, limit 50 %"
 
 
 def test_verdict_follows_from_the_agreements(check):

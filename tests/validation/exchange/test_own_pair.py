@@ -39,6 +39,23 @@ def test_the_file_holds_what_was_given_and_says_why_the_rest_is_assumed(tmp_path
     assert "centre_distance" not in found
 
 
+def test_what_options_do_not_name_is_set_and_counts_as_given():
+    """Profile shift, unlike face widths, a section as a table, one bearing of four, a backlash of one's own."""
+    relief = "pinion.tip_relief={amount = 15, start_roll_angle = 36}"
+    more = ["pinion.profile_shift=0.4", "gear.face_width=18", "mesh.stiffness.model=energy", relief]
+    more += ["bearings.pinion.loa_stiffness='200 N/um'", "mesh.backlash=0.05"]
+    result = init(*[part for one in more for part in ("--set", one)], "--teeth", "13/41", "-o", "-")
+    pair = load_gear_pair(tomllib.loads(result.output))
+    assert (pair.pinion.profile_shift, pair.gear.profile_shift) == (0.4, 0.0)
+    assert (pair.pinion.face_width, pair.gear.face_width) == (0.02, 0.018)
+    assert (pair.bearings.pinion.loa_stiffness, pair.bearings.gear.loa_stiffness) == (2e8, 1e8)
+    assert (pair.mesh.stiffness.model, pair.mesh.backlash) == ("energy", 0.05e-3)
+    given = {path for path, source in dict(pair.sources).items() if source == GIVEN}
+    assert given >= {"pinion.profile_shift", "gear.face_width", "mesh.stiffness.model"}
+    assert given >= {"pinion.tip_relief.amount", "bearings.pinion.loa_stiffness"}
+    assert not given & {"gear.profile_shift", "bearings.gear.loa_stiffness", "mesh.stiffness.scale"}
+
+
 def test_nothing_of_a_preset_is_in_it():
     text = init("-o", "-").output
     for name in preset_names():

@@ -29,9 +29,10 @@ from validation.reporting.chapters import (
     stability,
 )
 from validation.reporting.compare import compare
+from validation.reporting.cross_check_words import finite_motions
 from validation.reporting.page import layers, numbered
 from validation.reporting.results import FULL, QUICK
-from validation.reporting.words import finite_motions, sentence
+from validation.reporting.words import sentence
 from validation.verification import code_checks, order_checks, refinements
 
 ASKED = [

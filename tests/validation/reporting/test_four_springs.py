@@ -7,7 +7,9 @@ import pytest
 
 import lumped
 from validation.reporting.chapters.four_springs import CHAPTER
+from validation.reporting.formatting import quantity
 from validation.reporting.results import Results
+from validation.reporting.words import on_shafts
 from validation.validity.flags import supports
 from validation.validity.four_springs import LIMITS, four_springs, valid_ranges
 
@@ -102,3 +104,10 @@ def test_without_shafts_there_is_no_chapter(pair, tiny):
     assert results.four_springs is None
     assert results.on_shafts == ()
     assert CHAPTER.write(results) is None
+
+
+def test_page_1_states_the_transmission_error_on_the_shafts(slender, stiff):
+    """Of slender shafts that four springs do not stand for; the number of the chapter's table."""
+    span = slender.four_springs.here("shafts", "dte")
+    assert on_shafts(slender) == f" On its shafts: {quantity(span, 'm', 3)} peak to peak."
+    assert on_shafts(stiff) == ""

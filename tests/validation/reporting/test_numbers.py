@@ -30,6 +30,12 @@ def test_numbers(value, text):
     assert number(value) == text
 
 
+def test_digits_that_a_number_is_good_to_are_kept():
+    assert number(1.1023, 3, measured=True) == "1.10"
+    assert quantity(9.296e-6, "m", 3, measured=True).replace(NBSP, " ") == "9.30 µm"
+    assert quantity(12.0e-6, "m", 2, measured=True).replace(NBSP, " ") == "12 µm"
+
+
 @pytest.mark.parametrize(
     ("value", "unit", "text"),
     [

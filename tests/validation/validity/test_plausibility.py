@@ -37,6 +37,16 @@ def test_a_value_that_hardly_can_be_meant_is_named_with_its_cause(nasa_pair, cha
     assert any(said in one for one in found), found
 
 
+def test_no_backlash_but_for_rounding_is_not_doubted():
+    """The centre distance of standard gears is the mean of their pitch circles: 0.5 (17 + 53) / 2 mm."""
+    own = {"basic_rack.module": 0.5, "pinion.teeth": 17, "gear.teeth": 53, "operating.pinion_torque": 0.15}
+    own |= {f"{gear}.{key}": None for gear in ("pinion", "gear") for key in ("tip_relief", "mass", "inertia")}
+    own |= {"description": "", "mesh.backlash": 0, "operating.speed_range": None}
+    for centre_distance in (None, 17.5):
+        pair = load_gear_pair("nasa_28_28").with_(own | {"centre_distance": centre_distance})
+        assert not any("backlash" in one for one in doubts(pair))
+
+
 @pytest.fixture(scope="module")
 def nasa_pair():
     return load_gear_pair("nasa_28_28")

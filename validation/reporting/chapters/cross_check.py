@@ -32,9 +32,10 @@ from validation.reporting.blocks import (
 )
 from validation.reporting.causes import attribution, causes, meshing_teeth
 from validation.reporting.chapter import Chapter
+from validation.reporting.cross_check_words import NAMES, finite_motions, same_equations
 from validation.reporting.formatting import number
 from validation.reporting.results import Results
-from validation.reporting.words import NAMES, agreement, cautions, finite_motions, same_equations
+from validation.reporting.words import agreement, cautions
 
 _SHOWN = ("dte", "x_p", "y_p", "normal_load", "friction_force")
 _CAPTIONS = {
@@ -164,7 +165,7 @@ def _judged(check: CrossCheck) -> list[Block]:
             {
                 "quantity": ("quantity", lambda a: NAMES[a.quantity]),
                 "raw": ("difference", lambda a: a.relative_l2),
-                "raw_limit": ("its limit", lambda a: _raw_limit(a)),
+                "raw_limit": ("its limit", lambda a: a.whole_limit),
                 "predicted": ("predicted", lambda a: a.predicted_l2),
                 "value": ("left", lambda a: a.remainder_l2),
                 "tolerance": ("its limit", lambda a: a.tolerance.limit),
@@ -256,10 +257,6 @@ def _twin(check: CrossCheck) -> list[Block]:
             },
         ),
     ]
-
-
-def _raw_limit(agreement: Agreement) -> float | None:
-    return None if agreement.raw_limit is None else agreement.raw_limit.limit
 
 
 def _verdict(agreement: Agreement) -> str:

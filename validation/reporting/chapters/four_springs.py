@@ -137,18 +137,12 @@ def _reference(results: Results) -> str:
 
 
 def _here(found: FourSprings, model: str, name: str, unit: str) -> Quantity | None:
-    value = float(found.over_speed[name].sel(model=model)[_operating(found)])
+    value = found.here(model, name)
     return Quantity(value, unit) if np.isfinite(value) else None
 
 
-def _operating(found: FourSprings) -> int:
-    """Number of the operating speed."""
-    at = found.pair.operating.pinion_speed * 30.0 / np.pi
-    return int(np.argmin(np.abs(found.over_speed["speed"].to_numpy() - at)))
-
-
 def _radius(found: FourSprings, model: str) -> float | None:
-    value = float(found.over_speed["spectral_radius"].sel(model=model)[_operating(found)])
+    value = found.here(model, "spectral_radius")
     return value if np.isfinite(value) else None
 
 
