@@ -257,7 +257,7 @@ REFUSED = {
     "pair of no possible name": (["gear_pair"], "a\0b", "gear_pair", "a file that exists"),
     "pair of a name too long": (["gear_pair"], "a" * 1001, "gear_pair", "a file that exists"),
     "pair is a number": (["gear_pair"], 3, "gear_pair", "table"),
-    "no name": (["name"], "", "name", "1 character"),
+    "no name": (["name"], "", "name", "text that is not empty"),
 }
 
 
