@@ -63,7 +63,8 @@ def first_figure(
     bottom.set(xlabel="pinion speed [rpm]", ylabel=f"peak to peak [{unit}]", ylim=(0.0, None))
     bottom.set_xlim(speed[0], speed[-1])
     mark_operation(bottom, operating_rpm, "")
-    here = float(np.ptp(lumped["dte"].to_numpy()[last])) / factor
-    bottom.plot([operating_rpm], [here], "o", color=RED, markersize=5, label="operating point")
+    if speed[0] <= operating_rpm <= speed[-1]:
+        here = float(np.ptp(lumped["dte"].to_numpy()[last])) / factor
+        bottom.plot([operating_rpm], [here], "o", color=RED, markersize=5, label="operating point")
     legend_above(bottom, 2 if branches is not None else 3)
     return figure
