@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from validation.plots.answer import answer_figure
+from validation.plots.answer import first_figure
 
 
 @pytest.mark.parametrize(("operating", "named"), [(1450.0, True), (5000.0, False)])
@@ -16,6 +16,6 @@ def test_the_operating_point_is_named_where_it_is_in_the_range(operating, named)
         {"dte_peak_to_peak": ones, "normal_load_min": ones, "spectral_radius": ("speed", np.full(2, 0.5))},
         {"speed": speed},
     )
-    figure = answer_figure(motion, motion, 1e-3, sweep, operating, 1.0)
+    figure = first_figure(motion, motion, 1e-3, sweep, operating, 1.0)
     legends = [text.get_text() for ax in figure.axes if ax.get_legend() for text in ax.get_legend().texts]
     assert ("operating point" in legends) == named
