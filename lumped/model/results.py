@@ -16,7 +16,7 @@ from lumped.model.equations import COORDINATES
 from lumped.model.periodic_system import LTVSystem
 from lumped.model.shafted import ShaftedPair
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray
+from lumped.typing import BoolArray, FloatArray
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -168,6 +168,27 @@ def load_range(contact_form: str, load: FloatArray, contact: FloatArray) -> tupl
     touching = load[contact > 0]
     least = load.sum(axis=0) if contact_form == "loaded" else touching
     return float(touching.max()), float(least.min())
+
+
+def farthest_reversal(distance: FloatArray, sliding: FloatArray, loaded: BoolArray) -> float:
+    """Largest distance from the pitch point at which a loaded pair slides backwards [m]; 0 if none does.
+
+    Between two samples of which one slides backwards the velocity is a straight line.
+
+    Parameters
+    ----------
+    distance : (pairs, k) from the pitch point, signed [m]
+    sliding : (pairs, k) sliding velocity [m/s], nominally of the sign of ``distance``
+    loaded : (pairs, k) whether the pair carries load
+    """
+    forwards = sliding * np.sign(distance)
+    farthest = float(np.where(loaded & (forwards < 0.0), np.abs(distance), 0.0).max())
+    before, after = np.s_[:, :-1], np.s_[:, 1:]
+    turns = (forwards[before] * forwards[after] < 0.0) & (distance[before] * distance[after] > 0.0)
+    turns &= loaded[before] & loaded[after]
+    v0, v1 = forwards[before][turns], forwards[after][turns]
+    d0, d1 = distance[before][turns], distance[after][turns]
+    return float(np.abs(d0 + v0 / (v0 - v1) * (d1 - d0)).max(initial=farthest))
 
 
 def response(

@@ -18,7 +18,7 @@ from lumped.model.mesh_cycle import MeshCycle
 from lumped.model.mesh_elements import MeshElements, mesh_elements
 from lumped.model.periodic_system import LTVSystem, Supports, periodic_system
 from lumped.model.powers import balance
-from lumped.model.results import load_range, provenance
+from lumped.model.results import farthest_reversal, load_range, provenance
 from lumped.model.steady import periodic_solution, sample_times
 from lumped.path_of_contact import friction_path_function
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -125,10 +125,8 @@ def systems_over_speed(pairs: Iterable[GearPair], supports: Supports = "springs"
 
 def _reversal(run: Mapping[str, FloatArray], pitch_point: float) -> float:
     """Largest distance from the pitch point at which a loaded pair slides backwards [m], or 0."""
-    distance = run["position"] - pitch_point
     loaded = (run["contact"] > 0) & (run["normal_load"] > 0)
-    backwards = loaded & (run["sliding_velocity"] * np.sign(distance) < 0.0)
-    return float(np.where(backwards, np.abs(distance), 0.0).max())
+    return farthest_reversal(run["position"] - pitch_point, run["sliding_velocity"], loaded)
 
 
 def running_speeds(speeds_rpm: Iterable[float]) -> FloatArray:

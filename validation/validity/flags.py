@@ -16,6 +16,7 @@ import xarray as xr
 from lumped import GearPair, Geometry
 from lumped.arguments import of_type
 from lumped.friction import LAWS
+from lumped.model.results import farthest_reversal
 from lumped.path_of_contact import contact_path, law_range_violations
 from lumped.ranges import RangeViolation
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -160,14 +161,13 @@ def sliding_reversal(g: Geometry, motion: xr.Dataset) -> Flag:
     loaded = (motion["contact"].to_numpy() > 0) & (motion["normal_load"].to_numpy() > 0)
     sliding = motion["sliding_velocity"].to_numpy()
     reversed_ = loaded & (sliding * np.sign(position - g.L_XP) < 0.0)
-    distance = np.where(reversed_, np.abs(position - g.L_XP), 0.0)
-    farthest = float(distance.max())
+    farthest = farthest_reversal(position - g.L_XP, sliding, loaded)
     state = _state(farthest / g.base_pitch, REVERSAL_LIMITS)
     if reversed_.any():
         share = reversed_.sum() / max(int(loaded.sum()), 1)
         detail = (
-            f"sliding is reversed up to {1e3 * farthest:.4g} mm from the pitch point "
-            f"({100 * farthest / g.base_pitch:.3g} % of a base pitch), over {100 * share:.3g} % of the time "
+            f"sliding is reversed up to {1e3 * farthest:.2g} mm from the pitch point "
+            f"({100 * farthest / g.base_pitch:.2g} % of a base pitch), over {100 * share:.2g} % of the time "
             f"in contact"
         )
     else:

@@ -46,11 +46,21 @@ def test_sliding_is_reversed_where_friction_feeds_energy_in(nasa):
         g, run = geometry(at), steady_state(at, samples_per_cycle=512)
         offset, loaded = run["position"] - g.L_XP, (run["contact"] > 0) & (run["normal_load"] > 0)
         fed = np.abs(offset).where(loaded & (run["friction_power"] > 0), 0.0)
-        assert distance == pytest.approx(float(fed.max()), rel=1e-12, abs=0.0)
+        assert 0.0 <= distance - float(fed.max()) <= g.base_pitch / 512  # it ends between two samples
         rate = g.omega_pinion + g.omega_gear
         vibration = (run["sliding_velocity"] - rate * offset).where(run["contact"] > 0, 0.0)
         assert distance <= float(np.abs(vibration).max()) / rate
     assert found[0] > 0.0
+
+
+def test_how_far_sliding_is_reversed_does_not_depend_on_the_samples(nasa):
+    """The largest of the samples alone is up to a step off: 1/64 of a base pitch, of a reversal of 1/26."""
+    pair = nasa.with_({"mesh.damping_ratio": 0.01})
+    few, many = (
+        float(speed_sweep(pair, [600.0], samples_per_cycle=n)["sliding_reversal"][0]) for n in (64, 4096)
+    )
+    assert many > 0.0
+    assert few == pytest.approx(many, rel=0.02)  # error of a straight line over a step, of second order
 
 
 def test_labels(sweep):

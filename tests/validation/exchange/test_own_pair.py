@@ -40,7 +40,7 @@ def test_the_file_holds_what_was_given_and_says_why_the_rest_is_assumed(tmp_path
 
 
 def test_what_options_do_not_name_is_set_and_counts_as_given():
-    """Profile shift, unlike face widths, a section as a table, one bearing of four, a backlash of one's own."""
+    """Profile shift, unlike face widths, a section as a table, one bearing of four, a given backlash."""
     relief = "pinion.tip_relief={amount = 15, start_roll_angle = 36}"
     more = ["pinion.profile_shift=0.4", "gear.face_width=18", "mesh.stiffness.model=energy", relief]
     more += ["bearings.pinion.loa_stiffness='200 N/um'", "mesh.backlash=0.05"]

@@ -95,7 +95,7 @@ function sweepText() {
   const law = sweep.laws[now.law], j = now.speed;
   const start = `Cursor: ${rpm(sweep.speed[j])}, friction law ${law.name}: `;
   if (law.dte[j] === null) return `${start}no periodic motion.`;
-  const slide = law.reversal[j] > 0 ? `reversed up to ${plain(100 * law.reversal[j], 3)} % of a base pitch from the pitch point` : "never reversed";
+  const slide = law.reversal[j] > 0 ? `reversed up to ${plain(100 * law.reversal[j], 2)} % of a base pitch from the pitch point` : "never reversed";
   return `${start}transmission error ${plain(law.dte[j], 4)} µm and off-line-of-action vibration ${plain(law.oloa[j], 4)} µm ` +
     `peak to peak, lowest tooth load ${plain(law.load[j], 3)} of the static load, sliding ${slide}. ` +
     `Model ${sweep.states[law.state[j]]}, motion ${law.radius[j] > 1 ? "unstable" : "stable"}.`;
