@@ -32,9 +32,8 @@ _FIRST_STEP = 1e-4
 #: A run stands still when some hundred force evaluations advance the time by less than this, over the mesh
 #: cycle; at the call limit they advance it a thousand times as much.
 _STANDSTILL = 1e-6
-#: Most predictions of turning sliding, and of all other events, in one interval. A mesh cycle takes some ten;
-#: friction that holds the teeth at zero sliding would take them without end, and must not use up those of
-#: teeth that enter and leave.
+#: Most predictions in one interval. A mesh cycle takes some ten; friction that holds the teeth at zero
+#: sliding would take them without end.
 _MOST_EVENTS = 64
 #: A Taylor polynomial of second order foretells vibration over this share of a swing of the fastest mode.
 _NEAR = 0.2
@@ -173,14 +172,11 @@ def _interval(
     if not np.isfinite(a).all():
         model.budget.reason = "not finite"
         raise _failure(model, start, stop)
-    bent, events, turns = False, m.events, 0
-    for _ in range(2 * _MOST_EVENTS if locate else 0):
-        if turns == _MOST_EVENTS:
-            events = m.events[m.events[:, 0] != SLIDING]
+    bent = False
+    for _ in range(_MOST_EVENTS if locate else 0):
         wait, kind = time_to_event(
-            t, q[gears], v[gears], a[gears], model.parameters, model.flags, m.table, events, _NEAR * swing
+            t, q[gears], v[gears], a[gears], model.parameters, model.flags, m.table, m.events, _NEAR * swing
         )
-        turns += kind == SLIDING
         if wait < close:
             beyond = t + wait + 1e-12 * m.period + 1e-15 * t
             if not beyond < stop:

@@ -26,8 +26,8 @@ from multibody.run.setup import MOST_CYCLES, Fidelity, prepare
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 #: A step over less than this share of the mesh cycle leads across an event. So does one over less than the
-#: second in which the number of contacts changes: a jump that was not foreseen, as where soft bearings move
-#: it far or friction holds the teeth, shrinks the step. What loads do in it is a thousandth of that at most.
+#: second in which the number of contacts changes, where contact begins with a load: a jump that was not
+#: foreseen, as where soft bearings move it far or friction holds the teeth, shrinks the step.
 _HAIR, _SHRUNK = 1e-11, 1e-6
 
 
@@ -106,7 +106,7 @@ def power_balance(
             contact_state(setup.model, segment.times[j], segment.q[j], segment.v[j])[2]
             for j in (short, short + 1)
         )
-        if not setup.model.flags & kn.TIP_CONTACT:  # else contact begins without a load, and no energy jumps
+        if not setup.model.flags & kn.TIP_CONTACT:
             across[short] |= before != after
         return np.asarray(across, dtype=np.bool_)
 
