@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -127,15 +127,24 @@ def _print(check: CrossCheck) -> None:
         console.print(f"{text} ({failure.reason})", soft_wrap=True, markup=False)
 
 
-def _data(check: CrossCheck) -> dict[str, object]:
-    """Verdict, failures and agreements as plain data."""
+def _data(check: CrossCheck) -> Any:
+    """Verdict, failures and agreements as plain data; a limit that is infinite becomes null."""
     from dataclasses import asdict
 
-    return {
-        "verdict": check.verdict,
-        "failures": [asdict(failure) for failure in check.failures],
-        "agreements": [asdict(a) | {"judged": a.judged, "within": a.within} for a in check.agreements],
-    }
+    from validation.reporting.blocks import plain
+
+    def finite(data: Any) -> Any:
+        if isinstance(data, dict):
+            return {key: finite(value) for key, value in data.items()}
+        return [finite(value) for value in data] if isinstance(data, list) else plain(data)
+
+    return finite(
+        {
+            "verdict": check.verdict,
+            "failures": [asdict(failure) for failure in check.failures],
+            "agreements": [asdict(a) | {"judged": a.judged, "within": a.within} for a in check.agreements],
+        }
+    )
 
 
 def _tables(check: CrossCheck) -> list[Table]:

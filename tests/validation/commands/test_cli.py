@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from dataclasses import replace
 
 import pytest
 import xarray as xr
@@ -178,6 +179,16 @@ def test_crosscheck_exits_by_its_verdict(check, monkeypatch, tmp_path, verdict, 
     assert result.exit_code == code
     assert verdict in result.stdout
     assert json.loads(path.read_text())["verdict"] == verdict
+
+
+def test_a_limit_without_end_is_null_in_json(check, monkeypatch):
+    # Where the prediction finds no motion nothing bounds what finite motions may change.
+    first, *others = check.agreements
+    endless = replace(first, tolerance=replace(first.tolerance, limit=math.inf))
+    found = replace(check, agreements=(endless, *others))
+    monkeypatch.setattr("validation.cross_check.comparison.crosscheck", lambda *_, **__: found)
+    data = json.loads(run("crosscheck", "--json").stdout)
+    assert data["agreements"][0]["tolerance"]["limit"] is None
 
 
 def test_stability_exits_by_the_operating_point(tmp_path):
