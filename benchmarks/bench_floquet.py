@@ -98,9 +98,9 @@ def charts(size: int) -> float:
 
 
 def forms(size: int) -> None:
-    """Charts in both forms of contact, of energy stiffness; the paper's form is the base of the ratio."""
+    """Charts in both forms of contact, of energy stiffness; prescribed contact is the base of the ratio."""
     base = math.nan
-    for form in ("paper", "loaded"):
+    for form in ("prescribed", "loaded"):
         pair = PAIR.with_({"mesh.stiffness": {"model": "energy"}, "mesh.contact": form})
         energy_chart(pair, size)()
         seconds = min(cpu(energy_chart(pair, size))[1] for _ in range(3))
@@ -108,7 +108,7 @@ def forms(size: int) -> None:
         row(
             f"chart {size} x {size}, energy stiffness, {form} form",
             f"{CORES * size**2 / seconds:.0f} points/s",
-            f"{seconds / size**2 * 1e6:.1f} us/point, {seconds / base:.2f} of the paper's form",
+            f"{seconds / size**2 * 1e6:.1f} us/point, {seconds / base:.2f} of prescribed contact",
         )
 
 

@@ -5,7 +5,7 @@
 DOP853 gets every help: the right-hand side is compiled, and the integration restarts at the switches of the
 element laws (without that it would lose its order). All solvers take turns, so that a busy machine slows all
 of them alike; CPU time without set-up, the best of the repeats counts. The aim is an exact cycle, with the
-contact's energy and all effects (the loaded form) too, within twice DOP853's.
+contact's energy and all effects (loaded contact) too, within twice DOP853's.
 
 The last column is what that time buys: the largest error of the transmission error at the ends of the mesh
 cycles, against the same model at rtol 1e-11, over its range there from rest (a start that vibrates).
@@ -85,15 +85,15 @@ def with_outputs(setup: Setup, cycles: int) -> tuple[int, np.ndarray]:
     return setup.model.budget.calls - before, np.empty((0, 6))
 
 
-#: What an exact cycle of the loaded form is measured by.
+#: What an exact cycle of loaded contact is measured by.
 PAPER = "multibody exact"
 #: Name -> (form of the contact, fidelity, run); the first is the base of the ratios.
 SOLVERS: dict[str, tuple[str, str, Callable[[Setup, int], tuple[int, np.ndarray]]]] = {
-    "scipy DOP853, lumped equations": ("paper", "linear", dop853),
-    "multibody linear": ("paper", "linear", multibody_run),
-    PAPER: ("paper", "exact", multibody_run),
-    "multibody exact, 256 outputs": ("paper", "exact", with_outputs),
-    "multibody exact, loaded form": ("loaded", "exact", multibody_run),
+    "scipy DOP853, lumped equations": ("prescribed", "linear", dop853),
+    "multibody linear": ("prescribed", "linear", multibody_run),
+    PAPER: ("prescribed", "exact", multibody_run),
+    "multibody exact, 256 outputs": ("prescribed", "exact", with_outputs),
+    "multibody exact, loaded contact": ("loaded", "exact", multibody_run),
 }
 
 

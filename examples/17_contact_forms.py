@@ -2,10 +2,10 @@
 The form of the contact
 =======================
 
-How does a tooth pair begin its contact? In the paper's form by decree, at A, with a stiffness that jumps. In
-the loaded form where the static load has closed the gap of the tip corner. The multibody model, whose contact
-follows from the gap and from an elastic energy, decides: at low speed the loaded form is off by a hundredth
-of the peak to peak, the paper's form by more than all of it.
+How does a tooth pair begin its contact? with prescribed contact by decree, at A, with a stiffness that jumps. In
+loaded contact where the static load has closed the gap of the tip corner. The multibody model, whose contact
+follows from the gap and from an elastic energy, decides: at low speed loaded contact is off by a hundredth
+of the peak to peak, prescribed contact by more than all of it.
 """
 
 import numpy as np
@@ -26,7 +26,7 @@ def compute() -> xr.Dataset:
     found = [contact_forms(pair.with_(operating__pinion_speed=speed), samples=128) for speed in SPEEDS]
     shown = found[SPEEDS.index(2000.0)].motions
     result = xr.Dataset(
-        {form: ("speed", [one.difference[form] for one in found]) for form in ("paper", "loaded")},
+        {form: ("speed", [one.difference[form] for one in found]) for form in ("prescribed", "loaded")},
         coords={"speed": list(SPEEDS)},
     )
     for name, motion in shown.items():
@@ -40,8 +40,8 @@ def draw(result: xr.Dataset) -> Figure:
     left, right = figure.subplots(1, 2)
     for name, words, line in (
         ("exact", "exact contact", "k-"),
-        ("loaded", "loaded form", "C0--"),
-        ("paper", "paper's form", "C1:"),
+        ("loaded", "loaded contact", "C0--"),
+        ("prescribed", "prescribed contact", "C1:"),
     ):
         left.plot(result["cycles"], 1e6 * result[f"dte_{name}"], line, label=words)
         if name != "exact":
@@ -54,5 +54,5 @@ def draw(result: xr.Dataset) -> Figure:
 
 if __name__ == "__main__":
     found = compute()
-    print((100 * found[["paper", "loaded"]]).to_dataframe().round(2))
+    print((100 * found[["prescribed", "loaded"]]).to_dataframe().round(2))
     draw(found).savefig("contact_forms.png", dpi=150)

@@ -73,7 +73,7 @@ def torque_series() -> xr.Dataset:
 
 def matrix_difference(pair: GearPair, matrix: np.ndarray) -> float:
     """Norm of the difference to the Floquet matrix over the norm; rates per radian of the mesh cycle."""
-    system = floquet.gear_pair_system(pair, "relative")
+    system = floquet.gear_pair_system(pair, "elastic")
     reference = floquet.monodromy(system, 1e-11).matrix
     d = np.concatenate([np.ones(5), np.full(5, lumped.geometry(pair).mesh_period / (2.0 * np.pi))])
     a, b = (m * d[:, None] / d for m in (matrix, reference))

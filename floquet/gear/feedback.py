@@ -79,7 +79,7 @@ def separate_modes(variation: GearVariation) -> tuple[FloatArray, FloatArray]:
 
 def _ranked(variation: GearVariation) -> tuple[Feedback, Feedback]:
     """The coordinates that are kept coupled, and the others."""
-    system = periodic_system(variation.pair, "feedback", cycle=variation.cycle(), supports=variation.supports)
+    system = periodic_system(variation.pair, "mesh", cycle=variation.cycle(), supports=variation.supports)
     m = system.deflection.size
     if system.shafts is None:
         whole = Feedback(system, np.zeros((m, m)))

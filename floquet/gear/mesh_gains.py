@@ -91,7 +91,7 @@ class _Law:
 
 
 class MeshGains:
-    """Gains on the coordinates of a "feedback" form as `fit_pieces` asks for them.
+    """Gains on the coordinates of a "mesh" form as `fit_pieces` asks for them.
 
     In this order: feedback of deflection and of its rate by normal loads (with their friction, unless it is
     apart), the same by each part of friction. The parts of friction are mu less the sum of the ``levels``,

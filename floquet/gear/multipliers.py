@@ -54,27 +54,27 @@ class GearPairMultipliers(Spectrum):
         The integral takes A(t) of the lumped model, which the compiled kernel does not see. Where damping
         leaves little of a motion in one period, both are next to 0 and the residual says little.
         """
-        system = gear_pair_system(self.variation, "feedback")
+        system = gear_pair_system(self.variation, "mesh")
         edges = np.array([0.0, *system.breakpoints, system.period])
         expected = np.exp(integral_of_trace(system, edges))
         return float(abs(np.prod(self.feedback) - expected))
 
 
 def gear_pair_system(
-    source: AnyPair | GearVariation, form: Form = "relative", *, supports: Supports = "springs"
+    source: AnyPair | GearVariation, form: Form = "elastic", *, supports: Supports = "springs"
 ) -> PeriodicSystem:
     """Return the gear pair (or a variation of it) as a `PeriodicSystem`.
 
     Parameters
     ----------
     source : the pair
-    form : "relative" (10 states), "feedback" (6) or "absolute" (12), as in ``lumped.periodic_system``; on
-        shafts more, and "feedback" with the modes that count only, see `gear_pair_multipliers`
+    form : "elastic" (10 states), "mesh" (6) or "full" (12), as in ``lumped.periodic_system``; on
+        shafts more, and "mesh" with the modes that count only, see `gear_pair_multipliers`
     supports : of a pair: "springs", its ``bearings``, or its "shafts"
     """
     variation = GearVariation.of(source, supports)
     one_of("form", form, get_args(Form))
-    if form == "feedback":
+    if form == "mesh":
         system = feedback_system(variation).system
     else:
         pair, supports = variation.pair, variation.supports
@@ -187,7 +187,7 @@ def gear_pair_multipliers(
     if isinstance(method, str) and method == "taylor":
         own = _proven(variation, rtol)
     else:
-        own = monodromy(gear_pair_system(variation, "feedback"), rtol, method=method)
+        own = monodromy(gear_pair_system(variation, "mesh"), rtol, method=method)
     (oloa,), (oloa_errors,) = OffLineOfAction.of(variation).multipliers(np.array([own.period]))
     values = np.concatenate([own.multipliers, oloa])
     errors = np.concatenate([own.multiplier_errors, oloa_errors])

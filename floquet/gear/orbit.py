@@ -138,7 +138,7 @@ class GearOrbit:
         if o.start.size == 2 * _WHOLE:
             return o
         return find_orbit(
-            unilateral_system(self.pair, form="relative"), _wide(o.start), o.period, o.n, o.parameter
+            unilateral_system(self.pair, form="elastic"), _wide(o.start), o.period, o.n, o.parameter
         )
 
     @cached_property
@@ -161,7 +161,7 @@ class GearOrbit:
         phases = np.arange(samples_per_cycle) / samples_per_cycle
         run = o.system.run(o.start, o.period, o.n, o.parameter, samples=phases)
         states = absolute_states(self.pair, cycle, o, run)
-        system = periodic_system(self.pair, "absolute", cycle=cycle)
+        system = periodic_system(self.pair, "full", cycle=cycle)
         time, drive = run.phases * o.period, cycle.offsets.size
         values = response(system, time, states, run.loads[:, :drive].T)
         values["contact"] = (values["normal_load"] > 0.0).astype(float)
@@ -296,7 +296,7 @@ def long_run(
 
 def form_with(*, back_side: bool) -> ContactForm:
     """The fewest coordinates that hold the motion."""
-    return "back_side" if back_side else "feedback"
+    return "back_side" if back_side else "mesh"
 
 
 def static_deflection(pair: GearPair) -> float:
@@ -312,7 +312,7 @@ def largest_motion(pair: GearPair) -> float:
 def start_of(
     pair: GearPair,
     start: ArrayLike | GearOrbit | None,
-    form: ContactForm = "feedback",
+    form: ContactForm = "mesh",
     elements: MeshElements | None = None,
 ) -> tuple[FloatArray, float]:
     """Coordinates of the form with phase rates, and the balanced torque, to start from.
@@ -328,7 +328,7 @@ def start_of(
     torque = operating.pinion_torque * (1.0 if given else g.omega_pinion / g.omega_gear)
     states = np.zeros(12)
     cycle = MeshCycle(pair.geometry, mesh_elements(pair) if elements is None else elements)
-    absolute = periodic_system(pair, "absolute", cycle=cycle)
+    absolute = periodic_system(pair, "full", cycle=cycle)
     if start is not None:
         states = real_array("start", start)
         if states.shape != (12,):
@@ -340,14 +340,14 @@ def start_of(
             states, torque = linear.states[0], linear.pinion_torque if given else linear.brake_torque
         except NumericalError:
             states[2] = static_deflection(pair)
-    reduction = periodic_system(pair, "relative", cycle=cycle).reduction
+    reduction = periodic_system(pair, "elastic", cycle=cycle).reduction
     wide = np.concatenate([reduction @ states[:6], reduction @ states[6:] * period])
     return _of_form(wide, form), torque
 
 
 def _of_form(wide: FloatArray, form: ContactForm) -> FloatArray:
     """A start in five coordinates, those of the form kept."""
-    return wide[[0, 1, 2, 5, 6, 7]] if form == "feedback" else wide
+    return wide[[0, 1, 2, 5, 6, 7]] if form == "mesh" else wide
 
 
 def _wide(start: FloatArray) -> FloatArray:

@@ -38,7 +38,7 @@ _LAPACK = 1e-13
 def extended_monodromy(pair: AnyPair) -> FloatArray:
     """Monodromy matrix (6, 6) of (q, x_p, x_g) and their rates over ``RATE``, all in units of m."""
     pair = load_gear_pair(pair)
-    system = periodic_system(pair, "feedback")
+    system = periodic_system(pair, "mesh")
     lengths, w, wd = _steps(system)
     L, D = (-system.constant[3:, part].astype(_LD) for part in (slice(3), slice(3, 6)))
     flows = extended_transitions(lengths, w, wd, L, D, system.deflection.astype(_LD), RATE)

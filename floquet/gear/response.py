@@ -343,7 +343,7 @@ def period_behind(branch: Branch, b: Bifurcation) -> float | None:
     return b.orbit.period * (1.0 - _BEYOND if rising else 1.0 + _BEYOND)
 
 
-def member(pair: GearPair, low: float, high: float, form: ContactForm = "feedback") -> Member:
+def member(pair: GearPair, low: float, high: float, form: ContactForm = "mesh") -> Member:
     """What the search for branches needs of a gear pair, for speeds of a range.
 
     Parameters

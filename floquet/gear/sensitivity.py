@@ -52,7 +52,7 @@ def gear_sensitivities(
     Dataset over ``parameter``: ``value`` and ``derivative`` d(spectral radius)/dp, in the units of coordinate
     ``units``; ``relative`` = p d(spectral radius)/dp, the change for a change of p by 100 %;
     ``multipliers`` and ``multiplier_derivatives`` of the feedback block over ``multiplier``. Attributes:
-    spectral_radius, and largest ("feedback" or "oloa"), the block of the largest multiplier.
+    spectral_radius, and largest ("mesh" or "oloa"), the block of the largest multiplier.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def gear_sensitivities(
         {
             "title": f"sensitivity of the largest multiplier of {pair.name}",
             "spectral_radius": whole.spectral_radius,
-            "largest": "oloa" if oloa else "feedback",
+            "largest": "oloa" if oloa else "mesh",
         },
     ).assign_coords(units=("parameter", np.array([axis.units for axis in axes], dtype=object)))  # fmt: skip
 
@@ -115,8 +115,8 @@ def _coefficients(
     pair: GearPair, name: str, value: float, points: list[tuple[float, float]]
 ) -> tuple[PeriodicSystem, _Difference]:
     """Feedback block in segment time at the parameter, and its derivative."""
-    base = segment_time(gear_pair_system(vary(pair, {name: value}), "feedback"))
-    near = [(w, segment_time(gear_pair_system(vary(pair, {name: p}), "feedback"))) for w, p in points]
+    base = segment_time(gear_pair_system(vary(pair, {name: value}), "mesh"))
+    near = [(w, segment_time(gear_pair_system(vary(pair, {name: p}), "mesh"))) for w, p in points]
     if any(system.edges.size != base.edges.size for _, system in near):
         raise NumericalError(
             f"at {name} = {value:g} two switches of the mesh cycle coincide, where the largest multiplier "

@@ -28,7 +28,7 @@ from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
-ContactForm = Literal["feedback", "relative", "back_side"]
+ContactForm = Literal["mesh", "elastic", "back_side"]
 
 _SPEEDS = 33
 #: Pieces shorter than this part of a cycle are none.
@@ -36,13 +36,13 @@ _SAME = 1e-13
 
 
 def unilateral_system(
-    pair: AnyPair, cycle: MeshCycle | None = None, form: ContactForm = "feedback"
+    pair: AnyPair, cycle: MeshCycle | None = None, form: ContactForm = "mesh"
 ) -> ContactSystem:
     """Return a gear pair with one unilateral contact for each tooth pair.
 
     A contact carries k (delta - e) + c (delta' - e') where the flanks overlap and that is positive, as the
     multibody effect ``contact_loss``. Relief is clearance e; static loads cut nothing. Friction acts with its
-    nominal sign. In the loaded form the contact is the tangent at the static load, within the places where
+    nominal sign. With loaded contact the contact is the tangent at the static load, within the places where
     the static load reaches.
 
     The rigid rotation, r_bg theta_g, is the accumulated row; the parameter is the torque that holds the mean
@@ -52,7 +52,7 @@ def unilateral_system(
     ----------
     pair : the gear pair
     cycle : mesh cycle with other element laws; None: ``contact_cycle``
-    form : "feedback": (q, x_p, x_g), whose motion decides that of y; "relative": (q, x_p, x_g, y_p, y_g);
+    form : "mesh": (q, x_p, x_g), whose motion decides that of y; "elastic": (q, x_p, x_g, y_p, y_g);
         "back_side": the same, and the back sides of the teeth touch after the backlash, with the laws of the
         driving flanks
 
@@ -62,7 +62,7 @@ def unilateral_system(
     """
     pair = load_gear_pair(pair)
     cycle = cycle or contact_cycle(pair)
-    base = periodic_system(pair, "feedback" if form == "feedback" else "relative", cycle=cycle)
+    base = periodic_system(pair, "mesh" if form == "mesh" else "elastic", cycle=cycle)
     s, g = base.structure, pair.geometry
     # Acceleration per unit generalised force, of the coordinates and of r_bg theta_g.
     rows = np.vstack([base.reduction, [0.0, g.base_radius_gear, 0.0, 0.0, 0.0, 0.0]]) / s.mass
@@ -164,7 +164,7 @@ def _contact(pair: GearPair, cycle: MeshCycle, phases: FloatArray, flank: _Flank
     sign: tuple[npt.ArrayLike, npt.ArrayLike] | None = None
     if zeta == 0.0:
         sign = (1.0, 0.0)
-    elif pair.mesh.contact == "paper":  # k/c = c/(4 zeta^2 m_e)
+    elif pair.mesh.contact == "prescribed":  # k/c = c/(4 zeta^2 m_e)
         sign = (c / (4.0 * zeta**2 * bodies(pair).effective_mass), 1.0)
     return Contact(
         direction=flank.direction,
@@ -179,7 +179,7 @@ def _contact(pair: GearPair, cycle: MeshCycle, phases: FloatArray, flank: _Flank
 
 
 def unilateral_family(
-    pair: AnyPair, slowest_rpm: float, fastest_rpm: float, form: ContactForm = "feedback"
+    pair: AnyPair, slowest_rpm: float, fastest_rpm: float, form: ContactForm = "mesh"
 ) -> Family:
     """Return the unilateral system over its period, for speeds of a range.
 

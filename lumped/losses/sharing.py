@@ -81,5 +81,5 @@ def springs(pair: GearPair, sharing: Sharing) -> Springs:
     if sharing == "loaded":
         mesh = loaded_mesh(pair)
         return Springs(mesh.stiffness, mesh.error, force)
-    elements = mesh_elements(pair.with_(mesh__contact="paper"))  # the positions are those from A to D
+    elements = mesh_elements(pair.with_(mesh__contact="prescribed"))  # the positions are those from A to D
     return Springs(elements.stiffness, elements.error, force)

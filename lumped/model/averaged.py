@@ -32,13 +32,13 @@ def averaged_matrix(system: LTVSystem) -> FloatArray:
     return total / system.period
 
 
-def averaged_state_space(pair: GearPair, form: Form = "relative") -> control.StateSpace:
+def averaged_state_space(pair: GearPair, form: Form = "elastic") -> control.StateSpace:
     """Time-averaged linear model from the torques T_p, T_g to the transmission error and the LOA motions.
 
     Parameters
     ----------
     pair : a validated gear pair
-    form : "relative" (10 states) or "feedback" (6 states); the rigid rotation is left out
+    form : "elastic" (10 states) or "mesh" (6 states); the rigid rotation is left out
 
     Returns
     -------
@@ -46,11 +46,11 @@ def averaged_state_space(pair: GearPair, form: Form = "relative") -> control.Sta
 
     Raises
     ------
-    ParameterError : form "absolute", whose rigid rotation has no frequency response at rest
+    ParameterError : form "full", whose rigid rotation has no frequency response at rest
     """
     import control  # takes longer to import than all else of lumped; modes do without
 
-    one_of("form", form, ("relative", "feedback"), "The rigid rotation has no steady response.")
+    one_of("form", form, ("elastic", "mesh"), "The rigid rotation has no steady response.")
     system = periodic_system(pair, form)
     m = len(system.coordinates)
     b = np.stack([system.torque_pinion, system.torque_gear], axis=1)
@@ -94,7 +94,7 @@ def modes(pair: GearPair) -> tuple[Mode, ...]:
     ------
     NumericalError : a mode of the averaged system is overdamped, so it has no natural frequency
     """
-    system = periodic_system(pair, "relative")
+    system = periodic_system(pair, "elastic")
     m = len(system.coordinates)
     values, vectors = np.linalg.eig(averaged_matrix(system))
     found = []

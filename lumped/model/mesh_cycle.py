@@ -71,12 +71,12 @@ class MeshCycle:
 
     @property
     def start(self) -> float:
-        """Where a pair can first touch: A, or before it in the loaded form [m]."""
+        """Where a pair can first touch: A, or before it with loaded contact [m]."""
         return self.elements.stiffness.interval[0]
 
     @property
     def end(self) -> float:
-        """Where a pair can last touch: D, or behind it in the loaded form [m]."""
+        """Where a pair can last touch: D, or behind it with loaded contact [m]."""
         return self.elements.stiffness.interval[1]
 
     @cached_property

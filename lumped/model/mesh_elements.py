@@ -28,7 +28,7 @@ _DAMPING_TOLERANCE_FROM_ZERO = 1e-7
 class MeshElements:
     """Element laws of one tooth pair over the interval of xi in which it can touch; zero outside.
 
-    That is [L_XA, L_XD] in the paper's form, and reaches beyond in the loaded form.
+    That is [L_XA, L_XD] with prescribed contact, and reaches beyond with loaded contact.
 
     N = k (delta - e) + c (delta' - e'), F = mu N (docs/theory/equations.md, eqs. 3 and 4).
 
@@ -38,7 +38,7 @@ class MeshElements:
     damping : c = 2 zeta sqrt(k m_e) [N s/m]
     friction : mu at nominal speed [-], signed by s = sgn(xi - L_XP)
     error : e, unloaded tooth error, positive where the teeth come too late to touch [m]
-    gap : the gap that closes at the first touch, where e is not that gap (loaded form, Hertz's contact) [m]
+    gap : the gap that closes at the first touch, where e is not that gap (loaded contact, Hertz's contact) [m]
     """
 
     stiffness: PathFunction

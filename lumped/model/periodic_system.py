@@ -21,7 +21,7 @@ from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
-Form = Literal["absolute", "relative", "feedback"]
+Form = Literal["full", "elastic", "mesh"]
 #: What holds the gears: springs of their own, or the elastic shafts of the parameter file in their bearings.
 Supports = Literal["springs", "shafts"]
 
@@ -51,10 +51,10 @@ class LTVSystem:
     Attributes
     ----------
     pair : the gear pair
-    form : "absolute" (theta_p, theta_g, x_p, x_g, y_p, y_g: 12 states, with the rigid rotation),
-        "relative" (q = r_bp theta_p - r_bg theta_g instead of the rotations: 10 states) or
-        "feedback" (q, x_p, x_g: the 6 states that decide stability). On shafts z are modal coordinates of
-        the shafts with the teeth apart, in "absolute" the common rotation first and the relative one second,
+    form : "full" (theta_p, theta_g, x_p, x_g, y_p, y_g: 12 states, with the rigid rotation),
+        "elastic" (q = r_bp theta_p - r_bg theta_g instead of the rotations: 10 states) or
+        "mesh" (q, x_p, x_g: the 6 states that decide stability). On shafts z are modal coordinates of
+        the shafts with the teeth apart, in "full" the common rotation first and the relative one second,
         without the common one in the other two, as gyroscopic moments couple y
     coordinates : names of z, (m,)
     cycle : mesh cycle with positions, switch times and coefficients of the tooth pairs
@@ -90,7 +90,7 @@ class LTVSystem:
     def gear_motion(self, states: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The six coordinates and their rates, (k, 6) each, of states (k, 2m); see ``gears``."""
         m = len(self.coordinates)
-        if self.form == "absolute" and self.shafts is None:
+        if self.form == "full" and self.shafts is None:
             return states[:, :m], states[:, m:]
         return states[:, :m] @ self.gears.T, states[:, m:] @ self.gears.T
 
@@ -166,7 +166,7 @@ class LTVSystem:
 
 def periodic_system(
     pair: AnyPair,
-    form: Form = "relative",
+    form: Form = "elastic",
     *,
     as_printed: Collection[int] = (),
     cycle: MeshCycle | None = None,
@@ -177,7 +177,7 @@ def periodic_system(
     Parameters
     ----------
     pair : a validated gear pair
-    form : coordinates, see ``LTVSystem``; the rigid rotation is only in "absolute"
+    form : coordinates, see ``LTVSystem``; the rigid rotation is only in "full"
     as_printed : equations out of 1, 2, 7, 9 whose printed sign is used; every form stays exact, because all
         forces depend on the rotations through the dynamic transmission error only
     cycle : the pair's mesh cycle where it is known already
@@ -194,11 +194,11 @@ def periodic_system(
     if supports == "shafts":
         return _on_shafts(pair, form, s, cycle or mesh_cycle(pair))
     g = pair.geometry
-    if form == "absolute":
+    if form == "full":
         names: tuple[str, ...] = COORDINATES
         reduction = np.eye(6)
     else:
-        size = 5 if form == "relative" else 3
+        size = 5 if form == "elastic" else 3
         names = ("q", "x_p", "x_g", "y_p", "y_g")[:size]
         reduction = np.zeros((size, 6))
         reduction[0, :2] = g.base_radius_pinion, -g.base_radius_gear
@@ -213,7 +213,7 @@ def periodic_system(
     torque = np.zeros((2, 2 * m))
     torque[0, m:] = reduction[:, 0] / s.mass[0]
     torque[1, m:] = -reduction[:, 1] / s.mass[1]
-    deflection = np.array([1.0, 1.0, -1.0, 0.0, 0.0])[:m] if form != "absolute" else s.deflection
+    deflection = np.array([1.0, 1.0, -1.0, 0.0, 0.0])[:m] if form != "full" else s.deflection
     return LTVSystem(
         pair=pair,
         form=form,
@@ -231,7 +231,7 @@ def periodic_system(
 
 def _on_shafts(pair: GearPair, form: Form, s: Structure, cycle: MeshCycle) -> LTVSystem:
     shafted = shafted_pair(pair)
-    kept = slice(0 if form == "absolute" else 1, None)
+    kept = slice(0 if form == "full" else 1, None)
     names, gears = shafted.names[kept], shafted.gears[:, kept]
     m = len(names)
     constant = np.zeros((2 * m, 2 * m))
@@ -240,7 +240,7 @@ def _on_shafts(pair: GearPair, form: Form, s: Structure, cycle: MeshCycle) -> LT
     damping = shafted.damping + pair.geometry.omega_pinion * shafted.gyroscopic
     constant[m:, m:] = -damping[kept, kept]
     deflection = s.deflection @ gears
-    if form == "absolute":
+    if form == "full":
         deflection[0] = 0.0  # but for rounding
     torque = np.zeros((2, 2 * m))
     torque[:, m:] = shafted.torque_pinion[kept], shafted.torque_gear[kept]

@@ -72,13 +72,13 @@ class MeanPowers:
 def balance(solution: PeriodicSolution, *, paid: bool | None = None) -> dict[str, float]:
     """Torques that hold the mean speed [N m] and efficiency, by name.
 
-    The paper's form balances moments: its brake torque and efficiency count sliding friction alone. The
-    loaded form pays for every loss.
+    prescribed contact balances moments: its brake torque and efficiency count sliding friction alone. The
+    loaded contact pays for every loss.
 
     Parameters
     ----------
-    solution : periodic motion of the "absolute" system
-    paid : whether every loss is paid; default in the loaded form
+    solution : periodic motion of the "full" system
+    paid : whether every loss is paid; default with loaded contact
     """
     if not (pays(solution) if paid is None else paid):
         return solution.balance
@@ -114,7 +114,7 @@ def mean_powers(solution: PeriodicSolution) -> MeanPowers:
 
     Parameters
     ----------
-    solution : periodic motion of the "absolute" system
+    solution : periodic motion of the "full" system
     """
     times, states, weights = _between(solution)
     power = _powers(solution, times, states) @ weights

@@ -109,11 +109,11 @@ def labelled(
 def dataset(
     system: LTVSystem, time: FloatArray, states: FloatArray, attributes: Mapping[str, Any]
 ) -> xr.Dataset:
-    """Return states of the "absolute" system with all loads and velocities that follow from them.
+    """Return states of the "full" system with all loads and velocities that follow from them.
 
     Parameters
     ----------
-    system : the "absolute" system of a gear pair
+    system : the "full" system of a gear pair
     time : (k,) [s]
     states : (k, n)
     attributes : of the dataset
@@ -157,7 +157,7 @@ def _sums_of_bearings(shafts: ShaftedPair, forces: FloatArray) -> FloatArray:
 def load_range(contact_form: str, load: FloatArray, contact: FloatArray) -> tuple[float, float]:
     """Largest load of a tooth pair, and smallest load: negative where the teeth would separate [N].
 
-    In the paper's form every pair in contact must press. In the loaded form, where pairs begin and end their
+    with prescribed contact every pair in contact must press. With loaded contact, where pairs begin and end their
     contact gradually, all pairs together must.
 
     Parameters

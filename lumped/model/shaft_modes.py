@@ -55,7 +55,7 @@ def shaft_modes(pair: AnyPair) -> xr.Dataset:
     ParameterError : the pair has no shafts
     """
     pair = load_gear_pair(pair)
-    system = periodic_system(pair, "relative", supports="shafts")
+    system = periodic_system(pair, "elastic", supports="shafts")
     m, u = len(system.coordinates), system.deflection
     cycle = system.cycle
     share = (cycle.end - cycle.start) / pair.geometry.base_pitch

@@ -76,13 +76,13 @@ def simulate(
     pair = load_gear_pair(pair)
     cycles = whole_number("cycles", cycles, 1, 100_000)
     rtol = real_number("rtol", rtol, 1e-13, 1e-2)
-    system = periodic_system(pair, "absolute", as_printed=as_printed, supports=supports)
+    system = periodic_system(pair, "full", as_printed=as_printed, supports=supports)
     grid = sample_times(system.period, samples_per_cycle)
     _refuse_slow(system)
     # The torques that hold the mean speed are those of the repaired equations: a printed sign then shows up
     # as a drift instead of being balanced away.
     repaired = (
-        system if not as_printed else periodic_system(pair, "absolute", cycle=system.cycle, supports=supports)
+        system if not as_printed else periodic_system(pair, "full", cycle=system.cycle, supports=supports)
     )
     balance = periodic_solution(repaired, grid[:1], estimate_error=False)
     state = initial_state(system, initial, balance)
@@ -166,7 +166,7 @@ def static_deflection(system: LTVSystem, pinion_torque: float | None = None) -> 
 
     Parameters
     ----------
-    system : the "absolute" system of a gear pair
+    system : the "full" system of a gear pair
     pinion_torque : T_p [N m]; default the operating point's
     """
     g, s = system.pair.geometry, system.structure
@@ -302,7 +302,7 @@ def steady_state(
     xarray.Dataset as of ``simulate`` over one cycle; the attributes carry ``brake_torque`` and
     ``pinion_torque`` [N m] that hold the mean speed, ``mesh_efficiency`` = T_g Omega_g / (T_p Omega_p),
     the mean losses ``power_sliding``, ``power_tooth_dampers`` and ``power_bearings`` [W], ``power_unpaid``,
-    what of them the brake torque leaves out in the paper's form [W],
+    what of them the brake torque leaves out in prescribed contact [W],
     ``error_estimate``, the relative error of the dynamic transmission error, ``dte_peak_to_peak`` [m], its
     peak to peak whatever the sampling (and so for the translations), and ``spectral_radius``, the
     largest modulus of the Floquet multipliers: above 1 the motion is unstable, and a pair leaves it
@@ -312,7 +312,7 @@ def steady_state(
     NumericalError : the speed sits on a stability boundary, where no periodic motion exists
     """
     pair = load_gear_pair(pair)
-    system = periodic_system(pair, "absolute", as_printed=as_printed, supports=supports)
+    system = periodic_system(pair, "full", as_printed=as_printed, supports=supports)
     times = sample_times(system.period, samples_per_cycle)
     solution = periodic_solution(system, times)
     attributes = provenance(pair, samples_per_cycle=samples_per_cycle, as_printed=tuple(as_printed))

@@ -28,7 +28,7 @@ class PeriodicSolution:
 
     Attributes
     ----------
-    system : the "absolute" system, of n states: 12, or more on shafts
+    system : the "full" system, of n states: 12, or more on shafts
     time : (k,) [s]
     states : (k, n)
     pinion_torque, brake_torque : mean torques that hold the mean speed [N m]
@@ -100,7 +100,7 @@ def periodic_solution(
 
     Parameters
     ----------
-    system : the "absolute" system of a gear pair
+    system : the "full" system of a gear pair
     times : increasing, within [0, T_m) [s]
     estimate_error : whether to compute ``error``, by a second integration of lower order
 
@@ -150,7 +150,7 @@ def periodic_cycle(pair: GearPair, samples: int, *, supports: Supports = "spring
     ------
     NumericalError : the speed sits on a stability boundary, where no periodic motion exists
     """
-    system = periodic_system(pair, "absolute", supports=supports)
+    system = periodic_system(pair, "full", supports=supports)
     return periodic_solution(system, sample_times(system.period, samples), estimate_error=False)
 
 
@@ -174,14 +174,14 @@ def _closure(system: LTVSystem, states: FloatArray) -> float:
 
 
 def relative_spectral_radius(system: LTVSystem, phi: FloatArray) -> float:
-    """Largest modulus of the multipliers of the map of an "absolute" system without its rigid rotation.
+    """Largest modulus of the multipliers of the map of an "full" system without its rigid rotation.
 
     Nothing depends on the rotations but through q = r_bp theta_p - r_bg theta_g, so with S from all states
     to those of q and the translations, S phi = phi_rel S; any right inverse R of S gives phi_rel = S phi R.
 
     Parameters
     ----------
-    system : the "absolute" system
+    system : the "full" system
     phi : (n, n) map of the states over one mesh cycle
     """
     m = len(system.coordinates)

@@ -120,7 +120,7 @@ def systems_over_speed(pairs: Iterable[GearPair], supports: Supports = "springs"
             elements = replace(
                 elements, friction=friction_path_function(at, interval=elements.stiffness.interval)
             )
-        yield periodic_system(at, "absolute", cycle=MeshCycle(g, elements), supports=supports)
+        yield periodic_system(at, "full", cycle=MeshCycle(g, elements), supports=supports)
 
 
 def _reversal(run: Mapping[str, FloatArray], pitch_point: float) -> float:

@@ -5,7 +5,7 @@ the mate's flank. About that static state N_i = k_t,i (delta - e_i) is linear ag
 stiffness, all pairs approaching together, and e the approach at which the tangent would carry nothing. Where
 the stiffness model has it, the load of a pair moves its neighbours.
 
-Sources: docs/theory/contact_energy.md, "The loaded form of the linear model".
+Sources: docs/theory/contact_energy.md, "Loaded contact of the linear model".
 """
 
 from __future__ import annotations

@@ -82,7 +82,7 @@ def mesh_positions(pair: AnyPair, *, phases: int = 256, extended: bool = True) -
     e = corner_gap(g, xi) + relief_error(pair, np.clip(xi, g.L_XA, g.L_XD))
     margin = reach * g.base_pitch + inside
     apart = (xi < g.L_XA - margin) | (xi > g.L_XD + margin)
-    # As in the dynamics: in the paper's form pairs stand alone.
+    # As in the dynamics: with prescribed contact pairs stand alone.
     neighbours = pair.mesh.stiffness.neighbours(pair) if pair.mesh.contact == "loaded" else ()
     return MeshPositions(
         phase,
@@ -105,7 +105,7 @@ def static_transmission_error(
 
     At each position the rigid approach delta and the loads N_i = k_i max(delta - e_i - sum_j w_ij N_j, 0)
     satisfy sum_i N_i = T/r_bp; w_ij is how far pairs move each other, where the stiffness model knows it and
-    the mesh is in the loaded form. Stiffness with Weber and Banaschek's contact is taken at each torque;
+    the mesh is with loaded contact. Stiffness with Weber and Banaschek's contact is taken at each torque;
     other stiffness does not depend on it.
 
     Parameters

@@ -25,10 +25,10 @@ class Mesh(Section):
         description="'static': tip and root relief, where given, enter as unloaded error, and a pair touches "
         "where it carries load at the mean torque; 'ignored': perfect involutes from A to D",
     )
-    contact: Literal["paper", "loaded"] = Field(
+    contact: Literal["prescribed", "loaded"] = Field(
         "loaded",
         description="'loaded': a pair touches where its gap closes under the mean load, with its tangent "
-        "stiffness there, and the brake pays for every loss; 'paper': it touches from A to D at any load",
+        "stiffness there, and the brake pays for every loss; 'prescribed': it touches from A to D at any load",
     )
     backlash: Annotated[float, Quantity("mm", at_least=0)] = Field(
         0.0, description="normal backlash by tooth thinning, beyond that of the centre distance"

@@ -6,8 +6,8 @@ linearised contact of the literature makes it a quarter larger. ``scale = "iso63
 standard's.
 
 The curve is of a pair alone. Pairs that touch together share the two bodies; how far they move each other is
-``EnergyStiffness.neighbours``. The paper's form of the model leaves it out, as most of the literature does,
-so that its stiffness is an upper estimate in double contact; the loaded form takes it.
+``EnergyStiffness.neighbours``. Prescribed contact of the model leaves it out, as most of the literature does,
+so that its stiffness is an upper estimate in double contact; loaded contact takes it.
 """
 
 from __future__ import annotations

@@ -123,19 +123,19 @@ def default_effects(contact: str) -> tuple[str, ...]:
 
     Parameters
     ----------
-    contact : ``mesh.contact`` of the pair: "paper", or "loaded" whose contact has an energy
+    contact : ``mesh.contact`` of the pair: "prescribed", or "loaded" whose contact has an energy
     """
     energy = ("contact_energy", "path_work") if contact == "loaded" else ()
     return tuple(name for name, e in EFFECTS.items() if e.default or e.cause in energy)
 
 
-def effect_flags(effects: Collection[str] | Mapping[str, bool] | None, contact: str = "paper") -> int:
+def effect_flags(effects: Collection[str] | Mapping[str, bool] | None, contact: str = "prescribed") -> int:
     """Return the kernel's switch bits.
 
     Parameters
     ----------
     effects : names of the effects that act, or a mapping name -> bool; names that a mapping
-        leaves out, or all of them with None, act if they are ``DEFAULT_EFFECTS``, in the loaded form of the
+        leaves out, or all of them with None, act if they are ``DEFAULT_EFFECTS``, with loaded contact of the
         model those of the contact's energy too
     contact : ``mesh.contact`` of the pair
 

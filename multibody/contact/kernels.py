@@ -56,7 +56,7 @@ FRICTION_LOAD, PATH_WORK, TIP_CONTACT, CONTACT_LAW, NEIGHBOURS, CLEARANCE = 128,
     T_LOW, T_HIGH,  # the nominal phase is clamped to this open time interval (a smooth segment)
     DAMPING,  # c/sqrt(k) of a tooth pair, 2 zeta sqrt(m_e) [sqrt(kg)]
     SOFTENING, NOMINAL_FORCE,  # D of Hertz's contact [m/N], and the load at which the table's k holds [N]
-    K_ROWS, C_ROWS, E_ROWS,  # rows of k, c, e in the table of the linear mesh in the loaded form, or 0
+    K_ROWS, C_ROWS, E_ROWS,  # rows of k, c, e in the table of the linear mesh with loaded contact, or 0
     RELIEFS,  # number of reliefs that act
     FIRST_RELIEF,  # of each: gear, roll angles of start and end [rad], amount [m], power of growth
 ) = range(30)  # fmt: skip

@@ -75,7 +75,7 @@ def linear_forces(
         slide = (p[kn.OMEGA_P] - v[2]) * xi - (p[kn.OMEGA_G] + v[5]) * gear_arm - (v[1] - v[4])
         record[kn.SLIDE] = slide
         record[kn.ELASTIC], record[kn.ENERGY] = stiffness * pressed, 0.5 * stiffness * pressed**2
-        # The damper works on the gap itself, the spring on the error that stands for it in the loaded form.
+        # The damper works on the gap itself, the spring on the error that stands for it with loaded contact.
         error_slope = stiffness_and_slope(table[k + c : k + c + e], xi)[1] if loaded else slope
         elastic = stiffness * pressed
         path = elastic * error_slope + (normal - elastic) * slope

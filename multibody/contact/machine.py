@@ -229,9 +229,9 @@ def _highest(machine: Machine) -> float:
 
 
 def _loaded_laws(pair: GearPair, p: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Table of the lumped loaded form's k, c, e and gap, one below the other, and its switches as phases.
+    """Table of the lumped loaded contact's k, c, e and gap, one below the other, and its switches as phases.
 
-    The linear mesh in the loaded form checks the equations alone: it reads the lumped element laws.
+    The linear mesh with loaded contact checks the equations alone: it reads the lumped element laws.
     """
     cycle = mesh_cycle(pair)
     e = cycle.elements

@@ -140,7 +140,7 @@ def prepare(
         flags |= kn.LINEAR
     numbers = machine(pair, flags, supports)
     call_limit = _call_limit(numbers)
-    system = periodic_system(pair, "absolute")
+    system = periodic_system(pair, "full")
     if pair.mesh.contact == "loaded":
         offsets, start = system.cycle.offsets, system.cycle.geometry.L_XA
         ahead = round((float(offsets[0]) - start) / system.cycle.geometry.base_pitch)

@@ -42,7 +42,7 @@ SHARED: tuple[Shared, ...] = (
     ),
     Shared(
         "how far the load of a tooth pair moves the next pairs",
-        "rigid bodies have no elasticity; it acts only in the loaded form",
+        "rigid bodies have no elasticity; it acts only with loaded contact",
         "plane finite elements of three teeth, the published deflection of the body, reciprocity",
         ("tests/lumped/stiffness", "docs/theory/contact_energy.md"),
     ),

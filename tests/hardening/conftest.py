@@ -112,7 +112,7 @@ def gear_pairs(draw: Callable[..., Any]) -> GearPair:
                 "stiffness": draw(STIFFNESS),
                 "damping_ratio": draw(st.floats(0.0, 0.3)),
                 "backlash": 0.02 * module,
-                "contact": draw(st.sampled_from(["paper", "loaded"])),
+                "contact": draw(st.sampled_from(["prescribed", "loaded"])),
             },
             "lubricant": {"viscosity": draw(st.floats(4.0, 50.0))},
             "friction": draw(FRICTION),

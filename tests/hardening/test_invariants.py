@@ -53,7 +53,7 @@ def test_contact_positions(pairs, data):
         return
     times = np.linspace(0.0, g.mesh_period, 41)[:-1]
     sample = cycle.sample(times)
-    # The path of contact reaches from A to D; in the loaded form deflections move both ends.
+    # The path of contact reaches from A to D; with loaded contact deflections move both ends.
     loaded = pair.mesh.contact == "loaded"
     start, end = (cycle.start, cycle.end) if loaded else (g.L_XA, g.L_XD)
     assert max(abs(start - g.L_XA), abs(end - g.L_XD)) < 0.5 * g.base_pitch
@@ -159,7 +159,7 @@ def test_a_pair_without_friction_and_with_equal_gears_runs_symmetrically(pairs, 
     scale = np.abs(run["x_p"].to_numpy()).max()
     np.testing.assert_allclose(run["x_g"], -run["x_p"], rtol=0, atol=1e-9 * scale)
     assert np.abs(run["y_p"].to_numpy()).max() == 0.0
-    # The paper's brake pays for friction alone; that of the loaded form for the dampers too.
+    # The paper's brake pays for friction alone; that of loaded contact for the dampers too.
     dampers = run.attrs["power_tooth_dampers"] + run.attrs["power_bearings"]
     driving = run.attrs["pinion_torque"] * same.operating.pinion_speed
     lost = dampers / driving if same.mesh.contact == "loaded" else 0.0

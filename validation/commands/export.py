@@ -13,7 +13,7 @@ from validation.commands.terminal import guarded, stderr
 if TYPE_CHECKING:
     from lumped import GearPair
 
-Form = Literal["relative", "feedback"]
+Form = Literal["elastic", "mesh"]
 
 
 @guarded
@@ -91,7 +91,7 @@ def _export_pair(
     if output.suffix.lower() in STATE_SPACE_SUFFIXES:
         if rexs_version is not None:
             raise refuse("--rexs-version", f"with {output.suffix}", "a REXS file", "Leave it out.")
-        write_state_space(pair, output, form or "relative", force=force)
+        write_state_space(pair, output, form or "elastic", force=force)
         return
     if not output.name.lower().endswith(tuple(FORMS)):
         allowed = "a name ending in " + ", ".join([*FORMS, *STATE_SPACE_SUFFIXES])

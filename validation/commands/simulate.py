@@ -107,7 +107,7 @@ def simulate(
         "brake_torque": float(result.attrs["brake_torque"]),
     }
     # The paper's brake pays for sliding alone; what else is lost nobody pays.
-    paper = form == "paper"
+    paper = form == "prescribed"
     if paper and "power_unpaid" in result.attrs:
         numbers["power_unpaid"] = float(result.attrs["power_unpaid"])
     if as_json:

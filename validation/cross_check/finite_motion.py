@@ -69,7 +69,7 @@ from validation.cross_check.shifted_motion import ShiftedModel, Shifts
 _COARSE, _FINE = 1024, 4096
 #: ``mesh.contact`` -> effects that are predicted; names as in ``multibody.EFFECTS``.
 PREDICTED: Mapping[str, tuple[str, ...]] = {
-    "paper": ("rotation_phase", "moving_line", "sliding_velocity", "entry_shift"),
+    "prescribed": ("rotation_phase", "moving_line", "sliding_velocity", "entry_shift"),
     "loaded": ("rotation_phase", "moving_line", "sliding_velocity", "tip_contact", "path_work"),
 }
 _CHANGED = ("dte", "x_p", "x_g", "y_p", "y_g", "normal_load", "friction_force")
@@ -88,7 +88,7 @@ class FiniteMotion:
         nothing is predicted
     model : the lumped model with the effects that are predicted
     shifts : what the predicted motion moves; None where nothing is predicted
-    jumps : (n,) times in the mesh cycle near which a predicted load jumps (loaded form) [s]
+    jumps : (n,) times in the mesh cycle near which a predicted load jumps (loaded contact) [s]
     push : (6,) mean generalised forces of the teeth beside those of normal load and friction [N m, N]
     """
 
@@ -145,7 +145,7 @@ def finite_motion(
     known = PREDICTED[pair.mesh.contact]
     effects = known if effects is None else some_of("effects", effects, known, "Name predicted effects.")
     nominal = mesh_cycle(pair) if orbit is None else contact_cycle(pair)
-    system = periodic_system(pair, "absolute", cycle=nominal)
+    system = periodic_system(pair, "full", cycle=nominal)
     balance = periodic_solution(system, np.zeros(1), estimate_error=False)
     every = -(-_FINE // cycle.sizes["time"])
     coarse = sample_times(nominal.period, _COARSE)

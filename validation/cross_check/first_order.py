@@ -246,7 +246,7 @@ def _sliding_where_teeth_part(
 
     def values(friction: PathFunction) -> dict[str, FloatArray]:
         turned = MeshCycle(g, replace(model.cycle.elements, friction=friction))
-        system = periodic_system(model.pair, "absolute", cycle=turned)
+        system = periodic_system(model.pair, "full", cycle=turned)
         states, loads = unilateral_motion(model.orbit, system, times)
         return response(system, times, states, loads)
 
@@ -300,7 +300,7 @@ def _held(every: ShiftedModel, reach: float, numbers: Machine, driving: float) -
     for piece in pieces:
         friction = reversed_within(cycle.elements.friction, *piece)
         turned = MeshCycle(g, replace(cycle.elements, friction=friction))
-        changes = _changes(before, values(periodic_system(every.pair, "absolute", cycle=turned)))
+        changes = _changes(before, values(periodic_system(every.pair, "full", cycle=turned)))
         found = {name: found[name] + change for name, change in changes.items()}
     return _with_turned_force(found, before, zone)
 

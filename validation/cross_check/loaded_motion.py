@@ -1,11 +1,11 @@
-"""The loaded form's motion with contacts that follow the motion, as the exact contact does.
+"""Loaded contact's motion with contacts that follow the motion, as the exact contact does.
 
-The loaded form is linear about the static motion. Here the pairs of teeth are linear about the motion that
+Loaded contact is linear about the static motion. Here the pairs of teeth are linear about the motion that
 was found before: N = k_t (delta - e) with k_t and e of the contact law at the actual compression, where the
 contact stands. A motion that repeats itself obeys the contact law itself; each repetition is a step of
 Newton's method.
 
-Sources: docs/theory/contact_energy.md, "What the exact contact changes in the loaded form".
+Sources: docs/theory/contact_energy.md, "What the exact contact changes with loaded contact".
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ class PushedSystem(LTVSystem):
 
 @dataclass(frozen=True, eq=False)
 class LoadedModel(ShiftedModel):
-    """The loaded form of one pair, linear about a motion instead of the static one.
+    """Loaded contact of one pair, linear about a motion instead of the static one.
 
     Attributes
     ----------

@@ -66,7 +66,7 @@ def laws_of_nature(
     -------
     the checks, and model -> power -> mean over the mesh cycle [W]
     """
-    m, system = machine(pair), periodic_system(pair, "absolute")
+    m, system = machine(pair), periodic_system(pair, "full")
     times, weights = quadrature(system)
     own = periodic_solution(system, times, estimate_error=False)
     powers = {"lumped": lumped_powers(own, m, weights)}
@@ -116,7 +116,7 @@ def laws_where_teeth_part(
         found += _action_and_reaction(m, name, motion)
         found += _statics(m, name, motion, pair.operating.pinion_torque, allowed, variation, beside)
     if exact is not None:
-        powers["exact"] = _exact_powers(pair, periodic_system(pair, "absolute"), exact, m.period)
+        powers["exact"] = _exact_powers(pair, periodic_system(pair, "full"), exact, m.period)
         found += _first_law("exact", powers["exact"])
     return tuple(found), powers
 

@@ -1,7 +1,7 @@
 """Motions with loss of contact: which one is compared, and how finite motions change it.
 
 Where teeth part the lumped model is taken with teeth that push only (``floquet.periodic_orbit``). Finite
-motions shift its element laws as they do without loss of contact; in the loaded form the motion is linear
+motions shift its element laws as they do without loss of contact; with loaded contact the motion is linear
 about itself, and a place at which teeth have parted carries nothing.
 
 Sources: docs/theory/validity.md, "Beyond contact loss".
@@ -83,7 +83,7 @@ class PartedModel(ShiftedModel):
 
 @dataclass(frozen=True, eq=False)
 class PartedLoadedModel(LoadedModel):
-    """The loaded form near one of its motions with loss of contact.
+    """Loaded contact near one of its motions with loss of contact.
 
     Attributes
     ----------
@@ -115,7 +115,7 @@ def unilateral_motion(
     NumericalError : the shifted laws have no such motion
     """
     near = orbit.whole
-    contacts = unilateral_system(orbit.pair, system.cycle, "relative")
+    contacts = unilateral_system(orbit.pair, system.cycle, "elastic")
     found = find_orbit(contacts, near.start, near.period, 1, near.parameter)
     run = contacts.run(found.start, found.period, 1, found.parameter, samples=times / found.period)
     return absolute_states(orbit.pair, system.cycle, found, run), run.loads.T

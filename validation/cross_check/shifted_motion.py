@@ -293,7 +293,7 @@ class ShiftedModel:
     def _system(self, shifts: Shifts) -> LTVSystem:
         """Equations of motion with the element laws as they act after these shifts."""
         elements = replace(self._contact(shifts), friction=self.displaced_friction(shifts))
-        return periodic_system(self.pair, "absolute", cycle=MeshCycle(self.cycle.geometry, elements))
+        return periodic_system(self.pair, "full", cycle=MeshCycle(self.cycle.geometry, elements))
 
     def displaced_friction(self, shifts: Shifts) -> PathFunction:
         """The friction law as it acts after these shifts."""

@@ -54,7 +54,7 @@ def prediction_holds(pair: GearPair) -> bool:
     """Whether the lumped motion holds by its own numbers: it is stable, and teeth in contact touch and press.
 
     Teeth that approach each other may press by damping before they touch: in the lumped model alone. In the
-    loaded form, where a pair begins and ends its contact gradually, all pairs together must press.
+    loaded contact, where a pair begins and ends its contact gradually, all pairs together must press.
 
     Raises
     ------

@@ -17,7 +17,7 @@ from validation.files.output import check_file, save_mat, whole_file
 STATE_SPACE_SUFFIXES = (".mat", ".npz")
 
 
-def scipy_state_space(pair: AnyPair, form: Form = "relative") -> scipy.signal.StateSpace:
+def scipy_state_space(pair: AnyPair, form: Form = "elastic") -> scipy.signal.StateSpace:
     """Return the time-averaged pair as a SciPy state space.
 
     For python-control, ``lumped.model.averaged.averaged_state_space`` returns the same model with named
@@ -26,7 +26,7 @@ def scipy_state_space(pair: AnyPair, form: Form = "relative") -> scipy.signal.St
     Parameters
     ----------
     pair : a validated gear pair
-    form : "relative" (10 states) or "feedback" (6 states)
+    form : "elastic" (10 states) or "mesh" (6 states)
 
     Returns
     -------
@@ -34,7 +34,7 @@ def scipy_state_space(pair: AnyPair, form: Form = "relative") -> scipy.signal.St
 
     Raises
     ------
-    ParameterError : form "absolute", which has no steady response
+    ParameterError : form "full", which has no steady response
     """
     pair = load_gear_pair(pair)
     plant = averaged_state_space(pair, form)
@@ -42,7 +42,7 @@ def scipy_state_space(pair: AnyPair, form: Form = "relative") -> scipy.signal.St
 
 
 def write_state_space(
-    pair: AnyPair, path: str | Path, form: Form = "relative", *, force: bool = False
+    pair: AnyPair, path: str | Path, form: Form = "elastic", *, force: bool = False
 ) -> Path:
     """Write the time-averaged pair as a file of its matrices.
 
@@ -53,7 +53,7 @@ def write_state_space(
     ----------
     pair : a validated gear pair
     path : .mat (MATLAB 5) or .npz (NumPy, without pickled objects)
-    form : "relative" (10 states) or "feedback" (6 states)
+    form : "elastic" (10 states) or "mesh" (6 states)
     force : overwrite an existing file
 
     Returns
@@ -63,7 +63,7 @@ def write_state_space(
 
     Raises
     ------
-    ParameterError : form "absolute", an unknown suffix, or an existing file without ``force``
+    ParameterError : form "full", an unknown suffix, or an existing file without ``force``
     """
     pair = load_gear_pair(pair)
     path = check_file(file_path("path", path), STATE_SPACE_SUFFIXES, force=force)

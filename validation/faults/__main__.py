@@ -20,7 +20,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--seed", default="0", help="text that chooses the sample or the sound pairs")
     parser.add_argument("--sound", type=int, metavar="N", help="cross-check N random sound pairs instead")
     parser.add_argument("--relief", action="store_true", help="only sound pairs whose tip relief acts")
-    parser.add_argument("--loaded", action="store_true", help="sound pairs in the loaded form")
+    parser.add_argument("--loaded", action="store_true", help="sound pairs with loaded contact")
     parser.add_argument(
         "--thorough", action="store_true", help="ask every part, also after the first that sees it"
     )

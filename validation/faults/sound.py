@@ -39,7 +39,7 @@ def drawn(count: int, seed: str, *, relief: bool = False, loaded: bool = False) 
     seed : text that the numbers come from
     relief : whether only pairs are taken whose tip relief acts; among all they are rare, because many of them
         let their teeth separate
-    loaded : whether the pairs are in the loaded form; else they are in the paper's
+    loaded : whether the pairs are with loaded contact; else they are in the paper's
     """
     rng = random.Random(seed)
     names, found = sorted(preset_names()), 0
@@ -48,7 +48,7 @@ def drawn(count: int, seed: str, *, relief: bool = False, loaded: bool = False) 
     while found < count:
         try:
             pair = _varied(load_gear_pair(names[found % len(names)]), rng)
-            pair = pair.with_({"mesh.contact": "loaded" if loaded else "paper"})
+            pair = pair.with_({"mesh.contact": "loaded" if loaded else "prescribed"})
             if (relief and pair.mesh.relief != "static") or not _holds(pair):
                 continue
         except (ParameterError, NumericalError):

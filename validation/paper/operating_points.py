@@ -40,7 +40,7 @@ TORQUE_2B = FIGURE_2A.torque
 
 def papers_pair(pair: AnyPair) -> GearPair:
     """The pair with what the paper assumes: contact from A to D by decree, flanks without relief."""
-    return load_gear_pair(pair).with_({"mesh.contact": "paper", "mesh.relief": "ignored"})
+    return load_gear_pair(pair).with_({"mesh.contact": "prescribed", "mesh.relief": "ignored"})
 
 
 def second_pair(pair: GearPair) -> GearPair:

@@ -38,7 +38,7 @@ def contact_forms_figure(pair: GearPair, found: ContactForms) -> Figure:
     looks = {
         "exact": (BLACK, "-", "exact contact, all effects"),
         "loaded": (BLUE, (0, (5, 1.5)), FORMS["loaded"]),
-        "paper": (RED, (0, (1.2, 1.2)), FORMS["paper"]),
+        "prescribed": (RED, (0, (1.2, 1.2)), FORMS["prescribed"]),
     }
     for name, (colour, dashes, words) in looks.items():
         motion = found.motions[name]
@@ -50,7 +50,7 @@ def contact_forms_figure(pair: GearPair, found: ContactForms) -> Figure:
 
 
 def losses_over_speed_figure(losses: xr.Dataset, operating_rpm: float) -> Figure:
-    """Mean losses over the input power by place, left in the loaded and right in the paper's form.
+    """Mean losses over the input power by place, left in the loaded and right in prescribed contact.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def losses_over_speed_figure(losses: xr.Dataset, operating_rpm: float) -> Figure
     """
     figure, axes = new_figure(1, 2, height=3.0, sharey=True, sharex=True)
     speed = losses["speed"].to_numpy()
-    for ax, form in zip(axes[0], ("loaded", "paper"), strict=True):
+    for ax, form in zip(axes[0], ("loaded", "prescribed"), strict=True):
         of = losses.sel(form=form)
         for i, (name, words) in enumerate(PLACES.items()):
             if name == "unpaid" and form == "loaded":

@@ -9,7 +9,7 @@ from validation.reporting.results import Results
 def contact_form(results: Results) -> str:
     """How far the form of the contact is off the exact one, and what the other form gives.
 
-    Of the paper's form also what nobody pays for. Empty where the exact contact has no motion.
+    Of prescribed contact also what nobody pays for. Empty where the exact contact has no motion.
     """
     forms = results.forms
     if isinstance(forms, str):
@@ -20,13 +20,13 @@ def contact_form(results: Results) -> str:
     if forms.own == "loaded":
         return (
             "The contact follows the load: this form is off the exact contact by up to "
-            f"{off['loaded']}\u00a0% of the transmission error's peak to peak, the paper's form by "
-            f"{off['paper']}\u00a0%."
+            f"{off['loaded']}\u00a0% of the transmission error's peak to peak, prescribed contact by "
+            f"{off['prescribed']}\u00a0%."
         )
-    powers = forms.powers["paper"]
+    powers = forms.powers["prescribed"]
     return (
         f"Exact contact, from gaps and an elastic energy, gives {told['exact']} peak to peak. The paper's "
-        f"form, linear and with contact by decree, is off it by up to {off['paper']}\u00a0% of that and "
+        f"form, linear and with contact by decree, is off it by up to {off['prescribed']}\u00a0% of that and "
         f"leaves {quantity(powers.unpaid, 'W', 3)} of losses unpaid ({quantity(powers.driving, 'W', 3)} put "
-        f"in); the loaded form gives {told['loaded']} and is off by up to {off['loaded']}\u00a0%."
+        f"in); loaded contact gives {told['loaded']} and is off by up to {off['loaded']}\u00a0%."
     )

@@ -233,9 +233,9 @@ class Results:
 
     @cached_property
     def lifting(self) -> xr.Dataset | None:
-        """The loaded form's motion with pairs that push only, where one pulls while all together push."""
+        """Loaded contact's motion with pairs that push only, where one pulls while all together push."""
         found, forms = self.parting, self.forms
-        if not isinstance(found, Parting) or found.judged or isinstance(forms, str) or forms.own == "paper":
+        if not isinstance(found, Parting) or found.judged or isinstance(forms, str) or forms.own == "prescribed":
             return None
         return found.orbit.sampled(forms.motions["exact"].sizes["time"])
 

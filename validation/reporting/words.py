@@ -70,7 +70,7 @@ def contact_off(results: Results) -> str:
 
 
 def lifting(results: Results) -> xr.Dataset | None:
-    """The motion of pairs that push only, where the loaded form is off because it lets one of them pull."""
+    """The motion of pairs that push only, where loaded contact is off because it lets one of them pull."""
     motion, forms = results.lifting, results.forms
     return None if motion is None or isinstance(forms, str) or forms.off(motion) > _CONTACT_LIMIT else motion
 
@@ -214,7 +214,7 @@ def agreement(results: Results) -> str:
         return f"A second, independent model does not confirm it: {failed_checks(check)}."
     exact = check.of("exact")
     dte = next((a for a in exact if a.quantity == "dte"), exact[0])
-    same = "with the same contact " if check.pair.mesh.contact == "paper" else ""
+    same = "with the same contact " if check.pair.mesh.contact == "prescribed" else ""
     left = percent(check.worst("exact").remainder_l2)
     told = (
         f"A second, independent model {same}agrees: its transmission error differs by "

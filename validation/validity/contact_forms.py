@@ -1,7 +1,7 @@
 """The paper's contact and the loaded one of the same gear pair, against the exact contact with all effects.
 
 Both forms of the lumped model are judged by the same motion: that of the multibody model whose contact has an
-energy and follows from clearance. So the paper's form is not judged by a model that shares its contact.
+energy and follows from clearance. So prescribed contact is not judged by a model that shares its contact.
 
 Sources: docs/theory/contact_energy.md.
 """
@@ -26,7 +26,7 @@ from lumped.model.sweep import systems_over_speed
 from lumped.typing import FloatArray, Progress
 
 #: Form -> what it is in words.
-FORMS = {"paper": "paper's form", "loaded": "loaded form"}
+FORMS = {"prescribed": "prescribed contact", "loaded": "loaded contact"}
 #: Places of losses, attributes of ``MeanPowers`` -> words.
 PLACES = {"sliding": "sliding", "tooth_dampers": "tooth dampers", "bearings": "bearings", "unpaid": "unpaid"}
 

@@ -134,7 +134,7 @@ def _zone(g: Geometry, position: float) -> str:
 def contact_loss(pair: GearPair, g: Geometry, motion: xr.Dataset) -> Flag:
     """N_i >= 0 while in contact: the model glues teeth together that would separate.
 
-    In the loaded form, where pairs begin and end their contact gradually, all pairs together must press.
+    With loaded contact, where pairs begin and end their contact gradually, all pairs together must press.
     """
     contact: BoolArray = motion["contact"].to_numpy() > 0
     load = np.where(contact, motion["normal_load"].to_numpy(), np.inf)

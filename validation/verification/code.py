@@ -56,7 +56,7 @@ def code_checks(pair: AnyPair) -> tuple[Check, ...]:
 def _block_form(pair: GearPair) -> Check:
     """The multipliers of all ten states against those of the 6-state block and the closed form of y."""
     block = gear_pair_multipliers(pair, rtol=1e-9)
-    whole = monodromy(gear_pair_system(pair, "relative"), rtol=1e-9)
+    whole = monodromy(gear_pair_system(pair, "elastic"), rtol=1e-9)
     gap = np.abs(whole.multipliers[:, None] - block.multipliers[None, :]).min(axis=1)
     return check("block_form", float(gap.max()))
 
@@ -83,7 +83,7 @@ def _share_lost(pair: GearPair) -> float:
 
 
 def _owed(pair: GearPair) -> float:
-    """What friction takes at nominal sliding, in the loaded form what all losses take; over driving power."""
+    """What friction takes at nominal sliding, with loaded contact what all losses take; over driving power."""
     motion, weights = _motion(pair)
     if pair.mesh.contact == "loaded":
         lost = losses(motion.system, machine(pair), motion.time, motion.states, weights)
@@ -109,7 +109,7 @@ def _powers_error(pair: GearPair) -> float:
 
 def _motion(pair: GearPair) -> tuple[PeriodicSolution, FloatArray]:
     """Periodic motion at times of a quadrature over the cycle, and their weights."""
-    system = periodic_system(pair, "absolute")
+    system = periodic_system(pair, "full")
     times, weights = quadrature(system)
     return periodic_solution(system, times, estimate_error=False), weights
 

@@ -68,7 +68,7 @@ def _gear() -> GearPair:
 def _factor() -> float:
     """Deviation of the q row of the gear's equations from sum k_i (1 + s_i mu tan alpha)/m_e."""
     gear = _gear()
-    system, g = periodic_system(gear, "feedback"), gear.geometry
+    system, g = periodic_system(gear, "mesh"), gear.geometry
     times = np.concatenate([np.linspace(a, b, 9)[1:-1] for a, b in pairwise(system.cycle.edges)])
     pairs = system.cycle.sample(times)
     sign = np.where(pairs.position < g.L_XP, -1.0, 1.0)
@@ -80,7 +80,7 @@ def _factor() -> float:
 def _on_bearings(factor: float) -> float:
     """Distance of the closed form from the multipliers of the gear on bearings this much stiffer than k."""
     gear = _gear()
-    system, g = periodic_system(gear, "feedback"), gear.geometry
+    system, g = periodic_system(gear, "mesh"), gear.geometry
     k = float(system.cycle.sample(np.array([0.9 * system.period])).stiffness.max())
     omega = np.sqrt(k * g.contact_ratio / bodies(gear).effective_mass)
     exact = CoulombGearPair(g.contact_ratio, 0.0, MU, g.operating_pressure_angle)

@@ -54,7 +54,7 @@ def _periodic_state(system: LTVSystem, stages: int) -> FloatArray:
 
 
 def _stages(pair: GearPair) -> Refinement:
-    system = periodic_system(pair, "relative")
+    system = periodic_system(pair, "elastic")
     finest = _periodic_state(system, STAGES + 2)
     scale = np.abs(finest[: system.size // 2]).max()
     levels = []
@@ -120,7 +120,7 @@ def _multibody(pair: GearPair) -> Refinement:
 
 def _monodromy(pair: GearPair) -> Refinement:
     """By two methods: one against itself at a sharper tolerance takes the same steps, and tells nothing."""
-    system = gear_pair_system(pair, "feedback")
+    system = gear_pair_system(pair, "mesh")
     other, found = (monodromy(system, 1e-8, method=method).matrix for method in ("magnus6", "gauss"))
     error = float(np.linalg.norm(found - other)) / float(np.linalg.norm(other))
     return refinement("monodromy", (Level("rtol 1e-08, Gauss", error, True),))

@@ -60,7 +60,7 @@ def stability_routes(pair: GearPair) -> StabilityRoutes:
     NumericalError : the flow map cannot be computed
     """
     flow = multibody.monodromy(pair, fidelity="linear", rtol=_RTOL)
-    general = monodromy(gear_pair_system(pair, "relative"), rtol=1e-9).matrix
+    general = monodromy(gear_pair_system(pair, "elastic"), rtol=1e-9).matrix
     period = pair.geometry.mesh_period
     rates = np.concatenate([np.ones(5), np.full(5, period / (2.0 * np.pi))])
     a, b = (matrix * rates[:, None] / rates for matrix in (general, flow.matrix))
@@ -81,7 +81,7 @@ def fit_bound(pair: GearPair) -> Check:
     ----------
     pair : a validated gear pair
     """
-    block, system = gear_block(pair), periodic_system(pair, "feedback")
+    block, system = gear_block(pair), periodic_system(pair, "mesh")
     fitted, m = block.to_periodic_system(), block.v.size
     ends, u = block.phases * block.period, np.linspace(-1.0, 1.0, _PLACES + 2)[1:-1]
     used = 0.0

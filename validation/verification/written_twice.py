@@ -87,7 +87,7 @@ def _inside(pair: GearPair) -> FloatArray:
 
 
 def _damping(pair: GearPair) -> Iterator[Check]:
-    """Of the paper's form; that of the loaded form belongs to its static mesh."""
+    """Of prescribed contact; that of loaded contact belongs to its static mesh."""
     if pair.mesh.contact == "loaded":
         return
     elements, xi, p = mesh_elements(pair), _inside(pair), machine(pair).parameters

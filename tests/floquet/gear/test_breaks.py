@@ -32,7 +32,7 @@ def test_one_wild_sample_of_a_table_is_seen_by_every_route(points: int, factor: 
     exact = float(np.abs(np.linalg.eigvals(extended_monodromy(pair))).max())
     speed = {"speed_rpm": [pair.operating.pinion_speed * 30.0 / np.pi]}
     chart = stability_chart(pair, speed)
-    engine = monodromy(gear_pair_system(pair, "feedback"))
+    engine = monodromy(gear_pair_system(pair, "mesh"))
     assert abs(float(chart.spectral_radius[0]) - exact) <= float(chart.error[0])
     assert abs(engine.spectral_radius - exact) <= engine.error + 1e-11
     assert steady_state(pair).attrs["spectral_radius"] == pytest.approx(exact, rel=1e-6)
@@ -50,7 +50,7 @@ def test_breaks_hold_every_knot_of_every_law() -> None:
 
 
 def test_the_average_of_a_table_is_exact() -> None:
-    system = periodic_system(with_table(400, 50.0), "feedback")
+    system = periodic_system(with_table(400, 50.0), "mesh")
     mean = system.cycle.elements.stiffness.mean() * system.cycle.geometry.contact_ratio
     direct = averaged_matrix(system)[3:, :3] - system.constant[3:, :3]
     per_stiffness = (system.structure.normal / system.structure.mass) @ system.reduction.T
@@ -63,7 +63,7 @@ def test_the_misfit_holds_between_the_samples(factor: float) -> None:
 
     pair = with_table(60, 3.0).with_({"friction.law": "benedict_kelley", "mesh.damping_ratio": 0.1})
     block = gear_block(GearVariation(pair, stiffness_variation=factor), rtol=1e-6)
-    A = gear_pair_system(GearVariation(pair, stiffness_variation=factor), "feedback")
+    A = gear_pair_system(GearVariation(pair, stiffness_variation=factor), "mesh")
     fitted: PeriodicSystem = block.to_periodic_system()
     rng = np.random.default_rng(3)
     low, high = block.phases[:-1], block.phases[1:]
@@ -80,7 +80,7 @@ def test_the_misfit_holds_between_the_samples(factor: float) -> None:
 @pytest.mark.parametrize("ratio", [1.0, 1.0 - 1e-15, 1.0 + 1e-12, 0.3])
 def test_bearings_at_critical_damping_are_within_their_bound(ratio: float) -> None:
     pair = load_gear_pair("nasa_28_28").with_({"bearings.pinion.oloa_damping_ratio": min(ratio, 1.0)})
-    system = periodic_system(pair, "relative")
+    system = periodic_system(pair, "elastic")
     T = np.array([system.period])
     values, errors = OffLineOfAction.of(system).multipliers(T)
     s = system.structure

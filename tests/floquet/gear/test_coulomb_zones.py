@@ -27,7 +27,7 @@ def test_a_gear_pair_has_the_pieces_and_gains_of_its_equations() -> None:
     gear = load_gear_pair("nasa_28_28").with_(
         mesh__relief="ignored", friction__law="coulomb", friction__coefficient=MU
     )
-    system = periodic_system(gear, "feedback")
+    system = periodic_system(gear, "mesh")
     g, edges = geometry(gear), system.cycle.edges
     middle = 0.5 * (edges[:-1] + edges[1:])
     pair = coulomb_gear_pair(gear, MU)

@@ -37,7 +37,7 @@ def unmatched(computed: np.ndarray, reference: np.ndarray) -> float:
 def test_block_and_closed_form_equal_the_ten_states(preset: str, law: str) -> None:
     one = load_gear_pair(preset).with_(friction__law=law, bearings__gear__oloa_stiffness=1.7e8)
     parts = gear_pair_multipliers(one)
-    whole = monodromy(gear_pair_system(one, "relative"))
+    whole = monodromy(gear_pair_system(one, "elastic"))
     assert parts.multipliers.shape == (10,)
     # 1e-8: both runs at rtol 1e-10; where bearings make two multipliers coincide, rounding is magnified.
     assert unmatched(parts.multipliers, whole.multipliers) < 1e-8
@@ -69,7 +69,7 @@ def test_low_speeds_are_proven_too(pair) -> None:
 def test_against_an_independent_integrator(pair) -> None:
     # scipy's DOP853 column by column from switch to switch, on matrices from lumped's own scalar interface.
     slow = pair.with_(operating__pinion_speed=3000)
-    system = periodic_system(slow, "feedback")
+    system = periodic_system(slow, "mesh")
     edges = system.cycle.edges
     M = np.eye(6)
     scale = np.array([1, 1, 1, 1e4, 1e4, 1e4])  # rates are 1e4 rad/s times displacements
@@ -87,7 +87,7 @@ def test_against_an_independent_integrator(pair) -> None:
 
 
 def test_rigid_rotation_is_a_defective_double_one_in_twelve_states(pair) -> None:
-    whole = monodromy(gear_pair_system(pair, "absolute"))
+    whole = monodromy(gear_pair_system(pair, "full"))
     apart = np.abs(whole.multipliers - 1.0) < 1e-4  # a double multiplier splits by about sqrt(1e-10)
     assert apart.sum() == 2
     # One eigenvector only: M - I keeps rank 11 after the ten stable states are removed from the count.
@@ -106,7 +106,7 @@ def test_constant_stiffness_without_friction_is_lti(pair) -> None:
     # Both variations off, the mesh is a constant spring and the multipliers are exp(eig(A) T).
     quiet = pair.with_(friction__law="none", mesh__damping_ratio=0.0)
     variation = GearVariation(quiet, stiffness_variation=0.0)
-    system = gear_pair_system(variation, "feedback")
+    system = gear_pair_system(variation, "mesh")
     constant = system.evaluate(np.array([0.3 * system.period]))[0]
     d = np.repeat([1.0, 1e4], 3)
     exact = np.linalg.eigvals(expm(constant * system.period * d[None, :] / d[:, None]))
@@ -115,11 +115,11 @@ def test_constant_stiffness_without_friction_is_lti(pair) -> None:
 
 @pytest.mark.parametrize("factor", [0.0, 0.5, 1.0, 1.7])
 def test_stiffness_variation_keeps_the_mean(pair, factor: float) -> None:
-    system = periodic_system(pair, "feedback")
+    system = periodic_system(pair, "mesh")
     edges = system.cycle.edges
     times = np.concatenate([a + (b - a) * (np.arange(400) + 0.5) / 400 for a, b in pairwise(edges)])
     weights = np.repeat(np.diff(edges) / 400, 400)
-    total = -gear_pair_system(GearVariation(pair, stiffness_variation=factor), "feedback").evaluate(times)
+    total = -gear_pair_system(GearVariation(pair, stiffness_variation=factor), "mesh").evaluate(times)
     # Row of x_p: m_p x_p'' = -sum N_i, so the q column holds k(t)/m_p whatever the friction.
     k = total[:, 4, 0] * system.structure.mass[2]
     mean = system.cycle.mean_stiffness
@@ -135,8 +135,8 @@ def test_stiffness_variation_keeps_the_mean(pair, factor: float) -> None:
 
 def test_stiffness_variation_keeps_the_damping_law(pair) -> None:
     # c_i goes with sqrt(k_i): scaling every k_i by f scales every c_i by sqrt(f), in the same row of x_p.
-    given = gear_pair_system(pair, "feedback")
-    varied = gear_pair_system(GearVariation(pair, stiffness_variation=0.4), "feedback")
+    given = gear_pair_system(pair, "mesh")
+    varied = gear_pair_system(GearVariation(pair, stiffness_variation=0.4), "mesh")
     times = np.array([0.1, 0.5, 0.9]) * given.period
     before, after = given.evaluate(times)[:, 4], varied.evaluate(times)[:, 4]
     f = after[:, 0] / before[:, 0]
@@ -213,7 +213,7 @@ def test_motion_that_misses_the_mesh_keeps_its_bearing_damping(pair) -> None:
     # Without friction the two gears of equal mass and bearings can move together (x_p = x_g, q = 0) without
     # touching the mesh: a pure bearing oscillator, whatever the mesh does.
     result = gear_pair_multipliers(pair.with_(friction__law="none"))
-    s = periodic_system(pair, "feedback").structure
+    s = periodic_system(pair, "mesh").structure
     decay = s.damping[2] / (2 * s.mass[2])
     frequency = np.sqrt(s.stiffness[2] / s.mass[2] - decay**2)
     expected = np.exp((-decay + 1j * frequency) * result.period)

@@ -25,7 +25,7 @@ def test_tip_on_rigid_bearings_is_that_of_the_closed_form() -> None:
     base = load_gear_pair("nasa_28_28").with_(
         mesh__relief="ignored", friction__law="coulomb", friction__coefficient=MU, mesh__damping_ratio=0.004
     )
-    g, system = geometry(base), periodic_system(base, "feedback")
+    g, system = geometry(base), periodic_system(base, "mesh")
     k = float(system.cycle.sample(np.array([0.9 * system.period])).stiffness.max())
     omega = np.sqrt(k * g.contact_ratio / bodies(base).effective_mass)
     exact = CoulombGearPair(g.contact_ratio, 0.0, MU, g.operating_pressure_angle)

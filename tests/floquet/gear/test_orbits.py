@@ -37,7 +37,7 @@ def test_where_contact_holds_it_is_the_linear_motion(brake):
     assert orbit.motion.normal_load.sum("pair").values == pytest.approx(
         linear.normal_load.sum("pair").values[:256], rel=1e-9
     )
-    multipliers = floquet.monodromy(floquet.gear_pair_system(pair, "feedback")).multipliers
+    multipliers = floquet.monodromy(floquet.gear_pair_system(pair, "mesh")).multipliers
     assert orbit.spectral_radius == pytest.approx(np.abs(multipliers).max(), abs=1e-9)
     torque = linear.attrs["brake_torque" if brake == "balanced" else "pinion_torque"]
     assert orbit.balanced_torque == pytest.approx(torque, rel=1e-10)

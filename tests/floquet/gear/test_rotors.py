@@ -26,7 +26,7 @@ def rigid(which: str, moved: int) -> GearRotor:
     """A gear on its bearings, which are the same in all directions; its coordinates turned round."""
     body, bearings = lumped.bodies(PAIR), getattr(PAIR.bearings, which)
     m, J = getattr(body, f"mass_{which}"), getattr(body, f"inertia_{which}")
-    c = lumped.periodic_system(PAIR, "absolute").structure.damping[2 if which == "pinion" else 3]
+    c = lumped.periodic_system(PAIR, "full").structure.damping[2 if which == "pinion" else 3]
     M, C, K = (
         np.diag(np.roll(values, moved))
         for values in ([m, m, J], [c, c, 0.0], [bearings.loa_stiffness] * 2 + [0.0])

@@ -132,7 +132,7 @@ def test_parameters_at_the_end_of_their_range(pair) -> None:
         forward = np.dot([-1.5, 2.0, -0.5], radius) / h
         # 1e-4: (second order in) h; absolute: rtol over h.
         assert slope == pytest.approx(forward, rel=1e-4, abs=1e-4)
-        assert result.attrs["largest"] == "feedback"
+        assert result.attrs["largest"] == "mesh"
 
 
 def test_largest_multiplier_off_the_line_of_action(pair) -> None:

@@ -56,7 +56,7 @@ def test_modes_agree_with_python_control(symmetric):
 
 
 def test_static_receptance_is_the_mesh_deflection(symmetric):
-    plant = averaged_state_space(symmetric, "feedback")
+    plant = averaged_state_space(symmetric, "mesh")
     static = -plant.C @ np.linalg.solve(plant.A, plant.B)
     k = lumped.mesh_elements(symmetric).stiffness.mean() * lumped.geometry(symmetric).contact_ratio
     body, g = lumped.bodies(symmetric), lumped.geometry(symmetric)
@@ -68,7 +68,7 @@ def test_static_receptance_is_the_mesh_deflection(symmetric):
 
 def test_the_rigid_form_is_refused(symmetric):
     with pytest.raises(ParameterError, match="form"):
-        averaged_state_space(symmetric, "absolute")
+        averaged_state_space(symmetric, "full")
 
 
 def test_a_dot_in_the_name_of_a_pair_is_no_matter(symmetric):

@@ -29,7 +29,7 @@ def case(request, nasa, unequal):
         pair = request.getfixturevalue(request.param)
         cycle = mesh_cycle(pair)
     return SimpleNamespace(
-        pair=pair, cycle=cycle, system=periodic_system(pair, "absolute", cycle=cycle), g=geometry(pair)
+        pair=pair, cycle=cycle, system=periodic_system(pair, "full", cycle=cycle), g=geometry(pair)
     )
 
 
@@ -73,10 +73,10 @@ def test_batches_are_the_single_evaluations(case):
 
 
 @pytest.mark.parametrize("printed", [(), (1,), (2,), (7,), (9,)])
-@pytest.mark.parametrize("form", ["relative", "feedback"])
+@pytest.mark.parametrize("form", ["elastic", "mesh"])
 def test_reduced_forms_are_exact(case, form, printed):
     """With P the rows that make (z, z') of the 12 states, P A = A_reduced P and P b = b_reduced."""
-    full = periodic_system(case.pair, "absolute", cycle=case.cycle, as_printed=printed)
+    full = periodic_system(case.pair, "full", cycle=case.cycle, as_printed=printed)
     reduced = periodic_system(case.pair, form, cycle=case.cycle, as_printed=printed)
     rows = np.kron(np.eye(2), reduced.reduction)
     for t in random_times(case.cycle, 12):
@@ -90,7 +90,7 @@ def test_reduced_forms_are_exact(case, form, printed):
 def test_q_equation_of_the_model_page(case):
     """The row q'' written out: torques, normal loads over m_e, friction by its arms."""
     g, b = case.g, bodies(case.pair)
-    system = periodic_system(case.pair, "relative", cycle=case.cycle)
+    system = periodic_system(case.pair, "elastic", cycle=case.cycle)
     r_bp, r_bg = g.base_radius_pinion, g.base_radius_gear
     rng = np.random.default_rng(SEED)
     for t in random_times(case.cycle, 20):
@@ -114,7 +114,7 @@ def test_q_equation_of_the_model_page(case):
 def test_unity_ratio_multiplies_each_pair_by_its_friction_factor(nasa, mu):
     """J_p = J_g, z_p = z_g: k_i and c_i enter the q equation times 1 + s_i mu tan(alpha), nothing else."""
     pair = nasa.with_(friction__law="coulomb", friction__coefficient=mu)
-    system = periodic_system(pair, "relative")
+    system = periodic_system(pair, "elastic")
     g, m_e = geometry(pair), bodies(pair).effective_mass
     for t in random_times(system.cycle, 30):
         p = system.cycle.sample([t])
@@ -126,13 +126,13 @@ def test_unity_ratio_multiplies_each_pair_by_its_friction_factor(nasa, mu):
 
 
 def test_equal_pairs_cancel_in_double_contact(coulomb_pair):
-    system = periodic_system(coulomb_pair, "relative")
+    system = periodic_system(coulomb_pair, "elastic")
     p = system.cycle.sample(random_times(system.cycle, 200))
     times = random_times(system.cycle, 200)[p.contact.sum(axis=0) == 2]
     assert times.size > 20
     s = np.sign(p.position - geometry(coulomb_pair).L_XP)
     opposed = times[[(s[:, j].sum() == 0) for j in np.flatnonzero(p.contact.sum(axis=0) == 2)]]
-    frictionless = periodic_system(coulomb_pair.with_(friction__law="none"), "relative")
+    frictionless = periodic_system(coulomb_pair.with_(friction__law="none"), "elastic")
     np.testing.assert_allclose(
         system.gain(opposed).stiffness[:, 0], frictionless.gain(opposed).stiffness[:, 0], rtol=1e-13
     )
@@ -178,7 +178,7 @@ def test_rigid_rotation_is_a_jordan_chain(case):
 
 def test_static_deflection_is_an_equilibrium(unequal):
     """Without friction and with the mean stiffness for all times, every acceleration vanishes."""
-    g, system = geometry(unequal), periodic_system(unequal, "absolute")
+    g, system = geometry(unequal), periodic_system(unequal, "full")
     k, s = system.cycle.mean_stiffness, system.structure
     state = static_deflection(system)
     load = k * (s.deflection @ state[:6])

@@ -140,7 +140,7 @@ def test_a_jump_at_an_edge_costs_no_order():
 
 class TestSteps:
     def test_switches_outputs_and_short_pieces_end_steps(self, nasa):
-        system = periodic_system(nasa, "absolute")
+        system = periodic_system(nasa, "full")
         outputs = np.linspace(0.0, system.period, 37, endpoint=False)
         edges = step_maps(system, np.zeros((12, 0)), outputs=outputs).edges
         off = np.abs(edges[:, None] - outputs).min(axis=0)
@@ -155,7 +155,7 @@ class TestSteps:
 
     @pytest.mark.parametrize("off", [-1e-14, -1e-15, 1e-15, 1e-14])
     def test_outputs_beside_a_switch_do_not_move_it(self, nasa, off):
-        system = periodic_system(nasa, "absolute")
+        system = periodic_system(nasa, "full")
         outputs = system.cycle.switch_times + off * system.period
         edges = step_maps(system, np.zeros((12, 0)), outputs=outputs).edges
         assert set(system.cycle.edges) <= set(edges)
@@ -163,7 +163,7 @@ class TestSteps:
         assert np.diff(edges).min() > 1e-13 * system.period
 
     def test_no_step_exceeds_the_angle(self, nasa):
-        system = periodic_system(nasa.with_(operating__pinion_speed=300), "absolute")
+        system = periodic_system(nasa.with_(operating__pinion_speed=300), "full")
         edges = step_maps(system, np.zeros((12, 0)), step_angle=0.3).edges
         assert np.diff(edges).max() * fastest_frequency(system) <= 0.3 * (1 + 1e-9)
 
@@ -173,13 +173,13 @@ class TestSteps:
         stiffness = 1e8 + peak * np.exp(-(((phase - 0.6) / 0.05) ** 2))
         table = {"model": "table", "axis": "phase", "points": list(phase), "stiffness": list(stiffness)}
         for pair in (unequal, unequal.with_(mesh__stiffness=table)):
-            system = periodic_system(pair, "absolute")
+            system = periodic_system(pair, "full")
             times = np.linspace(0.0, system.period, 1000)
             fastest = np.abs(np.linalg.eigvals(system.matrices(times))).max()
             assert fastest <= fastest_frequency(system) <= 1.3 * fastest
 
     def test_states_follow_the_maps(self, unequal):
-        system = periodic_system(unequal, "absolute")
+        system = periodic_system(unequal, "full")
         maps = step_maps(system, np.zeros((12, 0)))
         x = np.linspace(-1e-5, 1e-5, 12)
         states = maps.states(x, np.array([1.0]))
@@ -189,7 +189,7 @@ class TestSteps:
         np.testing.assert_array_equal(states[0], x)
 
     def test_intervals_and_blocks_only_group_the_steps(self, unequal, monkeypatch):
-        system = periodic_system(unequal.with_(operating__pinion_speed=300), "absolute")
+        system = periodic_system(unequal.with_(operating__pinion_speed=300), "full")
         x, outputs = np.linspace(-1e-5, 1e-5, 12), np.array([0.0, 0.1, 0.15, 0.8]) * system.period
         maps = step_maps(system, np.zeros((12, 0)), outputs=outputs)
         # Memory goes with the intervals, however many steps a slow cycle takes.
@@ -206,7 +206,7 @@ class TestSteps:
         assert kept == pytest.approx(anew, rel=1e-9)
 
     def test_a_standstill_is_refused_before_memory_runs_out(self, nasa):
-        system = periodic_system(nasa.with_(operating__pinion_speed=1e-3), "absolute")
+        system = periodic_system(nasa.with_(operating__pinion_speed=1e-3), "full")
         with pytest.raises(NumericalError, match="raise the speed"):
             step_maps(system, np.zeros((12, 0)))
 
@@ -214,7 +214,7 @@ class TestSteps:
 @pytest.mark.parametrize("name", ["nasa", "unequal", "high_contact"])
 def test_rigid_rotation_is_a_defective_double_multiplier(name, request):
     """M v = v and M w = w + T_m v: a Jordan block at +1, to rounding; nothing else is at +1."""
-    system = periodic_system(request.getfixturevalue(name), "absolute")
+    system = periodic_system(request.getfixturevalue(name), "full")
     monodromy, _ = step_maps(system, np.zeros((12, 0))).over_all()
     g = geometry(request.getfixturevalue(name))
     v, w = np.zeros(12), np.zeros(12)
@@ -231,7 +231,7 @@ def test_rigid_rotation_is_a_defective_double_multiplier(name, request):
 @pytest.mark.parametrize("law", ["coulomb", "benedict_kelley", "smoothed_coulomb", "xu_kahraman"])
 def test_relative_map_is_the_reduced_absolute_map(nasa, law):
     pair = nasa.with_(friction__law=law, friction__coefficient=0.05 if "coulomb" in law else None)
-    full, relative = periodic_system(pair, "absolute"), periodic_system(pair, "relative")
+    full, relative = periodic_system(pair, "full"), periodic_system(pair, "elastic")
     m12, _ = step_maps(full, np.zeros((12, 0))).over_all()
     m10, _ = step_maps(relative, np.zeros((10, 0))).over_all()
     rows = np.kron(np.eye(2), relative.reduction)

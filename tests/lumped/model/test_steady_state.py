@@ -169,7 +169,7 @@ def test_the_estimate_bounds_the_error(nasa, law, speed, samples):
     """Against the same equations at steps 25 times shorter, far into the tail of order 8."""
     coefficient = 0.05 if "coulomb" in law else None
     pair = nasa.with_(friction__law=law, friction__coefficient=coefficient, operating__pinion_speed=speed)
-    system = periodic_system(pair, "absolute")
+    system = periodic_system(pair, "full")
     times = sample_times(system.period, samples)
     torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
     fine = step_maps(system, torques, outputs=times, step_angle=0.02)
@@ -200,7 +200,7 @@ def test_a_stability_boundary_is_refused(nasa):
         }
     )
     # y is a plain oscillator: its multiplier is at +1 where a whole number of periods fits the mesh cycle.
-    mass = periodic_system(stiff, "absolute").structure.mass[4]
+    mass = periodic_system(stiff, "full").structure.mass[4]
     speed = math.sqrt(1e8 / mass) * 60 / (2 * math.pi * 28) / 3
     with pytest.raises(NumericalError, match="Change the speed slightly or add damping"):
         steady_state(stiff.with_(operating__pinion_speed=speed), samples_per_cycle=8)

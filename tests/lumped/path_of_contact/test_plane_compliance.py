@@ -54,10 +54,10 @@ def test_the_transmission_error_takes_the_whole_matrix(nasa, free):
     phases = 2 * free.sizes["phase"]
     found = static_transmission_error(pair, extended=False, phases=phases).transmission_error.values[0, 1::2]
     assert force / found == pytest.approx(free.mesh_stiffness.values, rel=1e-9)
-    apart = static_transmission_error(pair.with_(mesh__contact="paper"), extended=False, phases=phases)
+    apart = static_transmission_error(pair.with_(mesh__contact="prescribed"), extended=False, phases=phases)
     alone = free.mesh_stiffness_alone.values
     assert force / apart.transmission_error.values[0, 1::2] == pytest.approx(alone, rel=1e-9)
-    # The loaded form, where no tip corner touches: one pair is the same; of two that share evenly each
+    # Loaded contact, where no tip corner touches: one pair is the same; of two that share evenly each
     # contact is softer by D ln 2, as it is taken at half the load.
     mesh, one = StaticMesh(pair), free.compliance.values[:, 1, 1] == 0.0
     alone, evenly = (int(np.flatnonzero(row)[row.sum() // 2]) for row in (one, ~one))

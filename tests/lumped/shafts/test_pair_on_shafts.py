@@ -31,7 +31,7 @@ def test_motion_on_elastic_shafts(shafted):
     assert run.attrs["power_shafts"] > 0.0
     assert list(run.bearing.to_numpy()) == ["pinion 1", "pinion 2", "gear 1"]
     # A transient from the periodic state stays, and one from rest does not.
-    system = periodic_system(shafted, "absolute", supports="shafts")
+    system = periodic_system(shafted, "full", supports="shafts")
     moved = simulate(shafted, 2, samples_per_cycle=64, initial="periodic", supports="shafts")
     for part in (moved.isel(time=slice(0, 64)), moved.isel(time=slice(64, 128))):
         size = float(np.abs(run.dte).max())
@@ -48,7 +48,7 @@ def test_motion_on_elastic_shafts(shafted):
 
 def test_every_form_is_the_same_system(shafted):
     whole, relative, feedback = (
-        periodic_system(shafted, form, supports="shafts") for form in ("absolute", "relative", "feedback")
+        periodic_system(shafted, form, supports="shafts") for form in ("full", "elastic", "mesh")
     )
     m = len(whole.coordinates)
     keep = np.delete(np.arange(2 * m), [0, m])

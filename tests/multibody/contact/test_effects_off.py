@@ -34,7 +34,7 @@ def lumped_forces(setup, motion, pair):
     return from_lumped_state(np.hstack([force, force]))[0]
 
 
-@pytest.mark.parametrize("contact", ["paper", "loaded"])
+@pytest.mark.parametrize("contact", ["prescribed", "loaded"])
 @pytest.mark.parametrize("stiffness", ["energy", "rectangular"])
 def test_with_all_effects_off_it_is_the_lumped_equations(stiffness, contact):
     """To rounding: of the static load 4e-14 at 500 to 4875 rpm, 2e-13 at 18000 rpm."""

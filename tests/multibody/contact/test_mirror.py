@@ -73,7 +73,7 @@ def test_swapping_pinion_and_gear_mirrors_the_run():
         pinion, gear = mirror @ np.array([x_g, y_g]), mirror @ np.array([x_p, y_p])
         return np.array([theta_g, theta_p, pinion[0], gear[0], pinion[1], gear[1]])
 
-    names = lumped.periodic_system(pair, "absolute").state_names
+    names = lumped.periodic_system(pair, "full").state_names
     history = np.stack([run[name].to_numpy() for name in names])
     expected, rates = mirrored(history[:6]), mirrored(history[6:])
     expected[:2] += np.array([turn_p, turn_g])[:, None]

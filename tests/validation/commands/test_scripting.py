@@ -26,9 +26,9 @@ def test_simulate_prints_its_numbers():
 
 
 def test_loads_are_those_of_the_response_over_speed():
-    """In the loaded form pairs begin their contact gradually: what must press is all of them together."""
+    """With loaded contact pairs begin their contact gradually: what must press is all of them together."""
     speed = lumped.load_gear_pair("fzg_c").operating.pinion_speed.to("rpm")
-    for form in ("paper", "loaded"):
+    for form in ("prescribed", "loaded"):
         pair = lumped.load_gear_pair("fzg_c").with_(mesh__contact=form)
         result = run("simulate", "fzg_c", "--set", f"mesh.contact={form}", "--json", "--steady")
         numbers, sweep = json.loads(result.stdout), lumped.speed_sweep(pair, [speed], samples_per_cycle=256)

@@ -40,7 +40,7 @@ def test_the_multibody_model_stays_on_the_periodic_motion(pair_beyond):
     assert loads == pytest.approx(orbit.motion.normal_load.sum("pair").values, abs=1e-6 * loads.max())
 
 
-@pytest.mark.parametrize("effects", ["loaded", "paper", "paper, exact kernel"])
+@pytest.mark.parametrize("effects", ["loaded", "prescribed", "prescribed, exact kernel"])
 def test_the_multibody_model_has_the_same_periodic_motion(effects):
     """With relief as clearance, friction and y; it finds the motion by Broyden's method from its own runs."""
     contact, _, kernel = effects.partition(", ")

@@ -164,7 +164,7 @@ def test_a_failure_names_check_value_and_limit(check):
 def test_raw_limits_are_what_the_effects_can_do_to_first_order(check):
     """Every quantity of the default pair is within; friction of the wrong sign would be twice itself away."""
     effects = check.effects
-    assert set(effects.most) == set(effects.alone) == set(PREDICTED["paper"])
+    assert set(effects.most) == set(effects.alone) == set(PREDICTED["prescribed"])
     for a in check.of("exact"):
         assert a.raw_limit.limit == effects.largest(a.quantity) + check.contact_shift
         assert a.relative_l2 < a.raw_limit.limit < 0.5, a.quantity

@@ -1,4 +1,4 @@
-"""Does the cross-check judge the loaded form: what it predicts meets the exact contact, and faults do not?"""
+"""Does the cross-check judge loaded contact: what it predicts meets the exact contact, and faults do not?"""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_the_exact_contact_is_met_from_the_lumped_model_alone(pair, effects):
 
 @pytest.mark.parametrize(("relief", "most"), [("ignored", 0.02), ("static", 0.03)])
 def test_the_loaded_form_meets_the_exact_contact(relief, most):
-    """Over peak to peak at 2000 rpm: 0.011 and 0.015 measured; the paper's form is off by 0.8 and 0.04."""
+    """Over peak to peak at 2000 rpm: 0.011 and 0.015 measured; prescribed contact is off by 0.8 and 0.04."""
     pair = lumped.load_gear_pair("nasa_28_28").with_(
         {
             "mesh.stiffness": {"model": "energy"},
@@ -143,7 +143,7 @@ def corners_push_along_the_line_alone(m):
     m.setattr(loaded_motion.PushedSystem, "forces", along)
 
 
-#: Other faults of the loaded form are judged by the catalogue of `validation.faults`, group "contact".
+#: Other faults of loaded contact are judged by the catalogue of `validation.faults`, group "contact".
 FAULTS = {
     softer: EQUAL,
     relief_halved: RELIEF,

@@ -48,11 +48,11 @@ def relief(amount, pinion, gear):
 
 SLOW = own(
     "48/84", 0.8, 11.9, 549.1, 29.4, friction__law="II", mesh__stiffness__model="energy",
-    mesh__contact="paper", mesh__damping_ratio=0.06, **bearings(0.737, 16.6, 1.31, 8.0),
+    mesh__contact="prescribed", mesh__damping_ratio=0.06, **bearings(0.737, 16.6, 1.31, 8.0),
 )  # fmt: skip
 HELD = own(
     "65/73", 0.6, 5.4, 2708.4, 17.3, friction__law="II", mesh__stiffness__model="parabolic",
-    mesh__contact="paper", **relief(12.91, 23.795, 23.514),
+    mesh__contact="prescribed", **relief(12.91, 23.795, 23.514),
 )  # fmt: skip
 
 
@@ -60,7 +60,7 @@ def test_a_motion_small_beside_its_deflection_is_integrated_more_tightly():
     """Far above the resonances y moves by 1/6000 of the deflection, by which the integrators' errors go."""
     pair = own(
         "81/84", 2.0, 21.6, 11586.9, 1320.0, pinion__profile_shift=0.305, gear__profile_shift=-0.102,
-        mesh__contact="paper", lubricant__viscosity=12.0,
+        mesh__contact="prescribed", lubricant__viscosity=12.0,
     )  # fmt: skip
     found = crosscheck(pair, cycles=6, samples_per_cycle=64, twin=False)
     assert found.failures == ()
@@ -116,7 +116,7 @@ def test_a_motion_in_which_flanks_roll_backwards_is_no_motion():
 def test_teeth_that_part_beyond_the_backlash_are_named_as_the_reason():
     wide = own(
         "52/90", 2.5, 27.3, 797.6, 69.2, pinion__profile_shift=0.391, gear__profile_shift=0.185,
-        friction__law="V", mesh__contact="paper",
+        friction__law="V", mesh__contact="prescribed",
     )  # fmt: skip
     assert parted_orbit(wide) is not None
     assert why_teeth_pull(wide) == ""

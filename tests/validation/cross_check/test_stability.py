@@ -30,7 +30,7 @@ def balanced_difference(matrix, reference, period):
 
 
 def floquet_matrix(pair):
-    return floquet.monodromy(floquet.gear_pair_system(pair, "relative"), 1e-11).matrix
+    return floquet.monodromy(floquet.gear_pair_system(pair, "elastic"), 1e-11).matrix
 
 
 @pytest.mark.parametrize("pair", [BASE, SMOOTH], ids=["jumps", "smooth"])
@@ -86,7 +86,7 @@ def growth(pair, cycles, size):
     left = np.linalg.inv(right)[least]
     direction = np.real(result.lift @ right[:, least])
     direction *= size * np.abs(result.state[2]) / np.abs(direction[2])
-    names = lumped.periodic_system(pair, "absolute").state_names
+    names = lumped.periodic_system(pair, "full").state_names
     runs = [
         multibody.simulate(pair, cycles, initial=state, rtol=1e-10, samples_per_cycle=8)
         for state in (result.state, result.state + direction)

@@ -48,7 +48,7 @@ def test_the_version_of_rexs_can_be_chosen(command, tmp_path):
     assert '<model version="1.4"' in (tmp_path / "pair.rexs").read_text("utf-8-sig")
 
 
-@pytest.mark.parametrize(("form", "size"), [("relative", 10), ("feedback", 6)])
+@pytest.mark.parametrize(("form", "size"), [("elastic", 10), ("mesh", 6)])
 def test_the_linear_model_opens_in_python_control_scipy_and_matlab(command, tmp_path, form, size):
     expected = averaged_state_space(lumped.load_gear_pair("nasa_28_28"), form)
     for name in ("model.npz", "model.mat"):
@@ -145,7 +145,7 @@ def test_a_sweep_becomes_one_table_with_its_axes_and_says_what_is_left_out(comma
         (["nasa_28_28", "-o", "old.rexs"], "--force"),
         (["nasa_28_28", "-o", "old.npz"], "--force"),
         (["nasa_28_28", "-o", "p.rexs", "--rexs-version", "2.0"], "1.4, 1.5, 1.6, 1.7"),
-        (["nasa_28_28", "-o", "p.rexs", "--form", "feedback"], "--form"),
+        (["nasa_28_28", "-o", "p.rexs", "--form", "mesh"], "--form"),
         (["nasa_28_28", "-o", "p.mat", "--rexs-version", "1.7"], "--rexs-version"),
         (["nonsense", "-o", "p.rexs"], "nonsense"),
         (["none.nc", "-o", "run.csv"], "exists"),

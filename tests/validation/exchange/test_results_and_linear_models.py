@@ -62,7 +62,7 @@ def test_files_are_not_overwritten_and_names_not_mangled(result, tmp_path):
     assert not (tmp_path / "bad.mat").exists()
 
 
-@pytest.mark.parametrize(("form", "size"), [("relative", 10), ("feedback", 6)])
+@pytest.mark.parametrize(("form", "size"), [("elastic", 10), ("mesh", 6)])
 def test_scipy_and_python_control_have_the_same_response(pair, form, size):
     model = scipy_state_space(pair, form)
     plant = averaged_state_space(pair, form)
@@ -90,6 +90,6 @@ def test_the_state_space_file_has_the_modes_of_the_pair_and_names(pair, tmp_path
 
 def test_the_rigid_rotation_is_refused(pair, tmp_path):
     with pytest.raises(ParameterError, match="rigid rotation"):
-        write_state_space(pair, tmp_path / "pair.mat", "absolute")
+        write_state_space(pair, tmp_path / "pair.mat", "full")
     with pytest.raises(ParameterError, match="rigid rotation"):
-        scipy_state_space(pair, "absolute")
+        scipy_state_space(pair, "full")

@@ -50,7 +50,7 @@ def evidence(chapter, equation, quantity):
 
 def losses(pair, r):
     """Mean friction, mesh damping and bearing damping power of a response, from its own histories [W]."""
-    d, s = r.cycle, periodic_system(pair, "absolute").structure
+    d, s = r.cycle, periodic_system(pair, "full").structure
     friction = (d["friction_force"] * d["sliding_velocity"]).sum("pair").mean()
     names = ("x_p", "x_g", "y_p", "y_g")
     bearings = sum(c * (d[f"{n}_dot"] ** 2).mean() for c, n in zip(s.damping[2:], names, strict=True))
@@ -216,7 +216,7 @@ def test_dimension_checks_say_which_equations_they_can_judge(chapter):
 
 
 def test_chapter_states_effects_on_multipliers_from_floquet(chapter, pair):
-    system = periodic_system(pair, "relative", as_printed=(7,))
+    system = periodic_system(pair, "elastic", as_printed=(7,))
     reference = monodromy(
         PeriodicSystem(system.matrices, system.period, tuple(system.breakpoints), vectorized=True),
         method="magnus6",

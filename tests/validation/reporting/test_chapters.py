@@ -54,7 +54,7 @@ ASKED = [
     "code_verification",
     "solution_verification",
     "reference_model",
-    "paper",
+    "prescribed",
     "errata",
     "provenance",
     "glossary",
@@ -103,7 +103,7 @@ def test_a_chapter_imports_no_other_chapter():
 def test_a_quick_report_says_nothing_of_paper_and_verification(pair, sharing):
     quick = sharing(pair)
     keys = {chapter.key for chapter, _ in written(quick, CHAPTERS)}
-    left = {"paper", "errata", "code_verification", "solution_verification", "contact_loss"}
+    left = {"prescribed", "errata", "code_verification", "solution_verification", "contact_loss"}
     assert set(ASKED) - keys == left
     assert sentence(quick)
     assert FULL.full
@@ -116,7 +116,7 @@ def test_a_pair_that_the_paper_does_not_suit_gets_the_reason_instead(computed):
     (text,) = paper.CHAPTER.write(refused).blocks
     assert text.text.endswith("with this gear pair: No periodic motion at 4875 rpm.")
     keys = [chapter.key for chapter, _ in written(refused, CHAPTERS[-4:])]
-    assert keys == ["paper", "provenance", "glossary"]
+    assert keys == ["prescribed", "provenance", "glossary"]
 
 
 def table_of(content, key):
@@ -124,10 +124,10 @@ def table_of(content, key):
 
 
 def test_claims_are_shown_with_their_number_of_samples(chapters, computed):
-    table = table_of(chapters["paper"], "claims")
+    table = table_of(chapters["prescribed"], "claims")
     assert len(table.rows) == len(computed.paper.claims.claims)
     samples = f"{computed.effort.claim_samples} samples"
-    assert any(samples in getattr(b, "text", "") for b in chapters["paper"].blocks)
+    assert any(samples in getattr(b, "text", "") for b in chapters["prescribed"].blocks)
     assert len(table_of(chapters["errata"], "errata").rows) == len(computed.paper.errata.errata)
 
 
@@ -277,7 +277,7 @@ def attributed():
     return xr.Dataset(
         {"alone": (("cause", "quantity"), values), "without": (("cause", "quantity"), 100.0 * values)},
         coords={"cause": [*CAUSES, "all"], "quantity": ["dte", "x_p", "y_p", "theta_p"]},
-        attrs={"largest": "entry_shift", "parts": "entry_shift, sliding_velocity", "contact": "paper"},
+        attrs={"largest": "entry_shift", "parts": "entry_shift, sliding_velocity", "contact": "prescribed"},
     )
 
 

@@ -177,7 +177,7 @@ def test_a_row_with_its_own_unit_is_judged_by_its_own_numbers(document):
 
 
 def test_a_row_that_measures_an_error_may_grow_tenfold(document):
-    document["chapters"]["paper"] = {
+    document["chapters"]["prescribed"] = {
         "title": "Paper",
         "figure7": [
             {"quantity": "800 rpm: largest load", "value": {"value": 2567.0, "unit": "N"}},
@@ -193,7 +193,7 @@ def test_a_row_that_measures_an_error_may_grow_tenfold(document):
     }
     for factor, fails in ((0.1, False), (9.0, False), (11.0, True)):
         new = copy.deepcopy(document)
-        new["chapters"]["paper"]["figure7"][1]["value"]["value"] *= factor
+        new["chapters"]["prescribed"]["figure7"][1]["value"]["value"] *= factor
         assert bool(compare(document, new).regressions) is fails, factor
         new = copy.deepcopy(document)
         new["chapters"]["code_verification"]["closed_forms"][0]["value"] *= factor

@@ -43,7 +43,7 @@ def test_the_first_page_says_the_motion_of_teeth_that_push(results):
 
 
 def test_page_1_judges_the_papers_form_by_the_exact_contact_and_says_what_is_unpaid(results):
-    """Also here, where the paper's form is off by less than a tenth and the first words pass over that."""
+    """Also here, where prescribed contact is off by less than a tenth and the first words pass over that."""
     told, pair = words.agreement(results), results.pair.with_(mesh__contact="loaded")
     exact, loaded = (model.steady_state(pair, samples_per_cycle=512) for model in (multibody, lumped))
     paper = lumped.steady_state(results.pair, samples_per_cycle=512)
@@ -52,8 +52,8 @@ def test_page_1_judges_the_papers_form_by_the_exact_contact_and_says_what_is_unp
     paper_off, loaded_off = (f"by up to {100 * float(one):.2g}\u00a0%" for one in off)
     assert words.contact_off(results) == ""
     assert f"gives {1e6 * swing:.2f}\u00a0µm peak to peak" in told
-    assert f"loaded form gives {1e6 * loaded.attrs['dte_peak_to_peak']:.2f}\u00a0µm" in told
-    assert told.index(paper_off) < told.index("loaded form") < told.index(loaded_off)
+    assert f"loaded contact gives {1e6 * loaded.attrs['dte_peak_to_peak']:.2f}\u00a0µm" in told
+    assert told.index(paper_off) < told.index("loaded contact") < told.index(loaded_off)
     assert f"{paper.attrs['power_unpaid']:.2f}\u00a0W of losses unpaid" in told
 
 

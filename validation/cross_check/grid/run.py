@@ -48,7 +48,7 @@ __all__ = ["AXES", "COMPARED", "SEPARATED", "STICKING", "STIFFNESS", "Grid", "cr
 
 _ENERGY = {"model": "energy"}
 #: Mesh of the grid -> fields of ``mesh``; those not named are the paper's. "smooth" rises from zero over 2 mm
-#: and has no jump; the loaded form has none either.
+#: and has no jump; loaded contact has none either.
 STIFFNESS: Mapping[str, Mapping[str, Any]] = MappingProxyType(
     {
         "rectangular": {"stiffness": {"model": "rectangular"}},
@@ -61,7 +61,7 @@ STIFFNESS: Mapping[str, Mapping[str, Any]] = MappingProxyType(
     }
 )
 #: What a mesh of the grid is where it says nothing.
-_PLAIN = {"contact": "paper", "relief": "ignored"}
+_PLAIN = {"contact": "prescribed", "relief": "ignored"}
 #: Laws whose coefficient does not depend on torque, so that the law of torque holds for them.
 CONSTANT_COEFFICIENT = tuple(name for name, law in LAWS.items() if law.coefficient)
 #: The law of torque is judged where the stiffness has no jump.

@@ -77,11 +77,11 @@ def response(
     if friction is not None:
         e = cycle.elements
         cycle = MeshCycle(cycle.geometry, MeshElements(e.stiffness, e.damping, friction, e.error))
-    absolute = periodic_system(pair, "absolute", as_printed=as_printed, cycle=cycle)
+    absolute = periodic_system(pair, "full", as_printed=as_printed, cycle=cycle)
     times = sample_times(cycle.period, samples_per_cycle)
     solution = periodic_solution(absolute, times, estimate_error=False)
     data = dataset(absolute, times, solution.states, {})
-    relative = periodic_system(pair, "relative", as_printed=as_printed, cycle=cycle)
+    relative = periodic_system(pair, "elastic", as_printed=as_printed, cycle=cycle)
     floquet = monodromy(
         PeriodicSystem(
             relative.matrices, relative.period, tuple(relative.breakpoints.tolist()), vectorized=True
@@ -116,7 +116,7 @@ def created_power(pair: GearPair, data: xr.Dataset, as_printed: Collection[int] 
     data : a result of the lumped model
     as_printed : equations whose printed sign is used
     """
-    s = periodic_system(pair, "absolute", as_printed=as_printed).structure
+    s = periodic_system(pair, "full", as_printed=as_printed).structure
     g = pair.geometry
     names = ("theta_p", "theta_g", "x_p", "x_g", "y_p", "y_g")
     rates = np.stack([data[f"{name}_dot"].to_numpy() for name in names], axis=-1)
@@ -148,7 +148,7 @@ def speed_drift(pair: GearPair, *, as_printed: Collection[int] = (), cycles: int
     """
     run = simulate(pair, cycles, samples_per_cycle=64, initial="periodic", rtol=1e-8, as_printed=as_printed)
     g = pair.geometry
-    s = periodic_system(pair, "absolute").structure
+    s = periodic_system(pair, "full").structure
     weights = s.mass[:2] / np.array([g.base_radius_pinion, g.base_radius_gear])
     rates = np.stack([run["theta_p_dot"].to_numpy(), run["theta_g_dot"].to_numpy()])
     rigid = weights @ rates / (weights @ np.array([1.0, g.omega_gear / g.omega_pinion]))

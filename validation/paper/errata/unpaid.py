@@ -19,7 +19,7 @@ from validation.paper.records import Erratum
 def erratum_3(pair: GearPair) -> Erratum:
     """Equation 3: a contact force without a potential."""
     smooth = pair.with_({"friction.law": "none"})
-    printed, repaired = (_motion(smooth.with_({"mesh.contact": form})) for form in ("paper", "loaded"))
+    printed, repaired = (_motion(smooth.with_({"mesh.contact": form})) for form in ("prescribed", "loaded"))
     g, powers = pair.geometry, mean_powers(printed)
     brake = printed.brake_torque * g.omega_gear
     paid = mean_powers(repaired)
@@ -45,4 +45,4 @@ def _missing(pair: GearPair) -> float:
 
 
 def _motion(pair: GearPair) -> PeriodicSolution:
-    return periodic_solution(periodic_system(pair, "absolute"), np.zeros(1), estimate_error=False)
+    return periodic_solution(periodic_system(pair, "full"), np.zeros(1), estimate_error=False)

@@ -1,4 +1,4 @@
-"""How far the paper's contact is off the exact one, and what the loaded form gives for the same pair."""
+"""How far the paper's contact is off the exact one, and what loaded contact gives for the same pair."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ def write(results: Results) -> Content:
     if isinstance(found, str):
         return Content((Text(f"The exact contact has no motion to compare with: {found}"),))
     spans, motions, off = found.spans(results.geometry.mesh_period), dict(found.motions), found.difference
-    names = FORMS | {"exact": "exact contact", "pushing": "loaded form, no pair pulls"}
+    names = FORMS | {"exact": "exact contact", "pushing": "loaded contact, no pair pulls"}
     if (pushing := results.lifting) is not None:
         motions["pushing"], off["pushing"] = pushing, found.off(pushing)
         spans["pushing"] = pushing.attrs["dte_peak_to_peak"]
     statics = "its teeth touch from A to D by decree, with a stiffness that does not know its load"
     blocks: list[Block] = [
         Text(
-            f"{contact_form(results)} In the paper's form {statics}; the exact contact follows from the gap "
-            "of flanks and tip corners and from an elastic energy. The loaded form is linear about the "
+            f"{contact_form(results)} with prescribed contact {statics}; the exact contact follows from the gap "
+            "of flanks and tip corners and from an elastic energy. Loaded contact is linear about the "
             "motion under the static load, in contact where that load closes the gap, beyond A and D too."
         ),
         Picture(
@@ -87,7 +87,7 @@ def write(results: Results) -> Content:
             marked=lambda form: form == found.own,
             note="The paper's brake torque balances moments and so pays for sliding alone. What bearings and "
             "tooth dampers turn to heat beside it is unpaid: a force N = k(ξ) δ has no potential, and feeds "
-            "in what the brake does not give (Oh, Grosh and Barber 2005). The loaded form's brake pays.",
+            "in what the brake does not give (Oh, Grosh and Barber 2005). Loaded contact's brake pays.",
         ),
     ]
     data = {f"contact_{name}": motion for name, motion in found.motions.items()}

@@ -230,7 +230,7 @@ def _powers(check: CrossCheck) -> Table:
         },
         note="The change of stiffness and profile along the path is a source in the equations of the lumped "
         "model: moving a loaded contact along its flank costs nothing there, and the books close only with "
-        "it. In the loaded form the exact contact has an energy; its brake pays for what the lumped "
+        "it. With loaded contact the exact contact has an energy; its brake pays for what the lumped "
         "equations get for nothing.",
     )
 

@@ -204,7 +204,7 @@ def _bearings(rng: np.random.Generator) -> list[Finding]:
         ratio = float(rng.choice([0.0, 1.0, rng.uniform(0.0, 1.0), 1.0 - 10.0 ** rng.uniform(-14.0, -2.0)]))
         changes[f"bearings.{gear}.oloa_damping_ratio"] = ratio
     pair = pair.with_(changes)
-    system = periodic_system(pair, "relative")
+    system = periodic_system(pair, "elastic")
     ctx.prec, s, truth = BITS, system.structure, []
     for mass, damping, stiffness in zip(s.mass[4:], s.damping[4:], s.stiffness[4:], strict=True):
         decay = ball(damping) / (2 * ball(mass))

@@ -40,7 +40,7 @@ def pieces(pair: GearPair, cycle: MeshCycle | None = None, factor: float = 1.0) 
     With a factor on the variation of the total stiffness k about its mean, every stiffness goes with
     f = (mean + factor (k - mean))/k and every damping with sqrt f.
     """
-    system = periodic_system(pair, "feedback", cycle=cycle)
+    system = periodic_system(pair, "mesh", cycle=cycle)
     cycle, s = system.cycle, system.structure
     g, laws = cycle.geometry, cycle.elements
     pitch, first, last = exact(g.base_pitch), exact(g.L_XA), exact(g.L_XD)
