@@ -235,7 +235,12 @@ class Results:
     def lifting(self) -> xr.Dataset | None:
         """Loaded contact's motion with pairs that push only, where one pulls while all together push."""
         found, forms = self.parting, self.forms
-        if not isinstance(found, Parting) or found.judged or isinstance(forms, str) or forms.own == "prescribed":
+        if (
+            not isinstance(found, Parting)
+            or found.judged
+            or isinstance(forms, str)
+            or forms.own == "prescribed"
+        ):
             return None
         return found.orbit.sampled(forms.motions["exact"].sizes["time"])
 

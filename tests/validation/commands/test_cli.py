@@ -236,7 +236,14 @@ def test_options_reach_the_report(asked, tmp_path):
     assert "It holds." in result.stdout
     assert asked["pair"].friction.law == "coulomb"
     assert asked["pair"].operating.pinion_speed == pytest.approx(100 * math.pi)
-    expected = {"out": out, "quick": True, "prescribed": False, "compare": old, "tolerance": 0.01, "force": False}
+    expected = {
+        "out": out,
+        "quick": True,
+        "prescribed": False,
+        "compare": old,
+        "tolerance": 0.01,
+        "force": False,
+    }
     assert asked | expected == asked
 
 
