@@ -2,8 +2,8 @@
 The form of the contact
 =======================
 
-How does a tooth pair begin its contact? with prescribed contact by decree, at A, with a stiffness that jumps. In
-loaded contact where the static load has closed the gap of the tip corner. The multibody model, whose contact
+How does a tooth pair begin its contact? Prescribed contact begins at A, with a stiffness that jumps. Loaded
+contact begins where the static load has closed the gap of the tip corner. The multibody model, whose contact
 follows from the gap and from an elastic energy, decides: at low speed loaded contact is off by a hundredth
 of the peak to peak, prescribed contact by more than all of it.
 """

@@ -1,7 +1,6 @@
 """Why a result is not there: a code with a text, in the place of strings and None.
 
-A function that may have no result returns ``A | Absent``; ``isinstance(found, Absent)`` tells. The pattern is that
-of the result codes of diffrax: the code is for programs, the text for people.
+A function that may have no result returns ``A | Absent``. The code is for programs, the text for people.
 """
 
 from __future__ import annotations

@@ -38,7 +38,7 @@ class MeshElements:
     damping : c = 2 zeta sqrt(k m_e) [N s/m]
     friction : mu at nominal speed [-], signed by s = sgn(xi - L_XP)
     error : e, unloaded tooth error, positive where the teeth come too late to touch [m]
-    gap : the gap that closes at the first touch, where e is not that gap (loaded contact, Hertz's contact) [m]
+    gap : the gap that closes at the first touch, where e is not that gap (loaded, Hertz) [m]
     """
 
     stiffness: PathFunction

@@ -157,8 +157,8 @@ def _sums_of_bearings(shafts: ShaftedPair, forces: FloatArray) -> FloatArray:
 def load_range(contact_form: str, load: FloatArray, contact: FloatArray) -> tuple[float, float]:
     """Largest load of a tooth pair, and smallest load: negative where the teeth would separate [N].
 
-    with prescribed contact every pair in contact must press. With loaded contact, where pairs begin and end their
-    contact gradually, all pairs together must.
+    With prescribed contact every pair in contact must press. With loaded contact, where pairs begin and end
+    their contact gradually, all pairs together must.
 
     Parameters
     ----------

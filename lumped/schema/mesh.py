@@ -28,7 +28,7 @@ class Mesh(Section):
     contact: Literal["prescribed", "loaded"] = Field(
         "loaded",
         description="'loaded': a pair touches where its gap closes under the mean load, with its tangent "
-        "stiffness there, and the brake pays for every loss; 'prescribed': it touches from A to D at any load",
+        "stiffness there, and the brake balances every loss; 'prescribed': it touches from A to D ",
     )
     backlash: Annotated[float, Quantity("mm", at_least=0)] = Field(
         0.0, description="normal backlash by tooth thinning, beyond that of the centre distance"

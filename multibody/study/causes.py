@@ -47,7 +47,7 @@ def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Datase
     "friction_load". The attribute ``largest`` names the part that changes the transmission error most. A
     quantity that does not move without effects (y_p without friction) is NaN.
 
-    With loaded contact the exact contact itself is the cause "contact_energy", and all others act on it: their
+    With loaded contact the exact contact itself is the cause "contact_energy", and others act on it: their
     ``alone`` is the change of the motion that it makes. Its own ``without`` is NaN, and there is no cause
     "entry_shift", because contact then begins by clearance.
     """

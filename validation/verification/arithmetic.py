@@ -121,7 +121,7 @@ def _forces(pair: GearPair) -> Check:
     rows.append((float(np.abs(found - wanted).max()) / size + 1.0, 1.0))
     if pair.operating.brake_torque == "balanced":
         rows.append((float(motion.attrs["pinion_torque"]), pair.operating.pinion_torque))
-    # A pair is in contact from A to D, with loaded contact where the static mesh has it; samples on either end
+    # A pair is in contact from A to D, loaded where the static mesh has it; samples on either end
     # may round to either side.
     g, place = pair.geometry, motion["position"].to_numpy()
     loaded = pair.mesh.contact == "loaded"

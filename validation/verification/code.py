@@ -83,7 +83,7 @@ def _share_lost(pair: GearPair) -> float:
 
 
 def _owed(pair: GearPair) -> float:
-    """What friction takes at nominal sliding, with loaded contact what all losses take; over driving power."""
+    """Power of friction at nominal sliding (loaded: of all losses) over the driving power."""
     motion, weights = _motion(pair)
     if pair.mesh.contact == "loaded":
         lost = losses(motion.system, machine(pair), motion.time, motion.states, weights)

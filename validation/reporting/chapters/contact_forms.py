@@ -30,7 +30,7 @@ def write(results: Results) -> Content:
     statics = "its teeth touch from A to D by decree, with a stiffness that does not know its load"
     blocks: list[Block] = [
         Text(
-            f"{contact_form(results)} with prescribed contact {statics}; the exact contact follows from the gap "
+            f"{contact_form(results)} With prescribed contact {statics}; the exact contact follows from gaps "
             "of flanks and tip corners and from an elastic energy. Loaded contact is linear about the "
             "motion under the static load, in contact where that load closes the gap, beyond A and D too."
         ),
