@@ -1,20 +1,34 @@
-"""numba with a typed decorator, and a disk cache that notices every edit.
+"""numba with a typed decorator, and compiled kernels on disk that belong to one state of the source.
 
-numba's cache looks only at the file a function is in. A function that calls another file's would keep the old
-code of that one after an edit or an upgrade of the package, and give wrong numbers without a word.
+numba's own cache looks only at the file a function is in and writes its index before the code: after an edit,
+a second process or a kill at that moment can leave old code under the new index for good. Here each kernel is
+one file, named after everything its code depends on and written whole, so no file can stand for another one.
 """
 
 from __future__ import annotations
 
 import contextlib
 import hashlib
+import os
+import pickle
+import shutil
+import sys
+import tempfile
+import warnings
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core.caching import FunctionCache
+from numba.core.compiler import CompileResult
+from numba.core.serialize import dumps
+from platformdirs import user_cache_path
 
 F = TypeVar("F", bound=Callable[..., Any])
+
+#: Folders of kernels that stay: one for each set of source files and each of its latest states.
+_MOST_FOLDERS = 40
 
 
 class Compiler:
@@ -26,15 +40,102 @@ class Compiler:
     """
 
     def __init__(self, files: Iterable[Path]) -> None:
-        self.stamp = hashlib.sha256(b"".join(path.read_bytes() for path in sorted(files))).hexdigest()
+        source = b"".join(path.read_bytes() for path in sorted(files))
+        version = f"{numba.__version__} {sys.version}".encode()
+        self.stamp = hashlib.sha256(version + source).hexdigest()
 
     def __call__(self, function: F, **options: Any) -> F:
-        """Compile with numba, cached on disk, IEEE arithmetic unless options say otherwise.
+        """Compile with numba, stored on disk, IEEE arithmetic unless options say otherwise.
 
         Without the wrapper for callers in C: there are none, and it takes a tenth of the time.
         """
-        dispatcher = numba.njit(cache=True, error_model="numpy", no_cfunc_wrapper=True, **options)(function)
-        with contextlib.suppress(AttributeError):  # no cache when the compiler is switched off
-            index = dispatcher._cache._cache_file
-            index._source_stamp = (index._source_stamp, self.stamp)
+        dispatcher = numba.njit(error_model="numpy", no_cfunc_wrapper=True, **options)(function)
+        if not numba.config.DISABLE_JIT:
+            dispatcher._cache = _KernelFiles(function, self.stamp)
         return cast(F, dispatcher)
+
+
+def kernel_folder() -> Path:
+    """Folder of all compiled kernels: in ``NUMBA_CACHE_DIR`` if set, else in the user's cache folder."""
+    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    return Path(chosen, "spurcheck") if chosen else user_cache_path("spurcheck", appauthor=False) / "kernels"
+
+
+class _KernelFiles(FunctionCache):  # type: ignore[misc]  # numba ships no types
+    """Compiled code of one function, under numba's key of signature, processor and bytecode."""
+
+    def __init__(self, function: Callable[..., Any], stamp: str) -> None:
+        self._py_func = function
+        self._stamp = stamp
+        self.enable()
+
+    @property
+    def cache_path(self) -> str:
+        return str(kernel_folder() / self._stamp[:24])
+
+    def _path(self, sig: Any, codegen: Any) -> Path:
+        function = self._py_func
+        key = repr((self._stamp, function.__module__, function.__qualname__, self._index_key(sig, codegen)))
+        digest = hashlib.sha256(key.encode()).hexdigest()
+        return Path(self.cache_path, f"{function.__name__}-{digest[:32]}.kernel")
+
+    def _load_overload(self, sig: Any, target_context: Any) -> Any:
+        try:
+            content = self._path(sig, target_context.codegen()).read_bytes()
+        except OSError:
+            return None
+        digest, data = content[:32], content[32:]
+        if hashlib.sha256(data).digest() != digest:  # cut short by a crash of the machine
+            return None
+        return CompileResult._rebuild(target_context, *pickle.loads(data))
+
+    def _save_overload(self, sig: Any, data: Any) -> None:
+        if not self._enabled or data.library.has_dynamic_globals:  # addresses of this process
+            return
+        path, content = self._path(sig, data.codegen), dumps(data._reduce())
+        try:
+            if not path.parent.exists():
+                path.parent.mkdir(parents=True, exist_ok=True)
+                _remove_old(path.parent.parent)
+            _write_whole(path, hashlib.sha256(content).digest() + content)
+        except OSError as error:
+            _warn_once(f"{path.parent}: {error.strerror}")
+
+    def flush(self) -> None:
+        """Remove the files of this function."""
+        for path in Path(self.cache_path).glob(f"{self._py_func.__name__}-*.kernel"):
+            path.unlink(missing_ok=True)
+
+
+def _write_whole(path: Path, content: bytes) -> None:
+    handle, name = tempfile.mkstemp(dir=path.parent, suffix=".part")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+        os.replace(name, path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.unlink(name)
+        raise
+
+
+def _remove_old(folder: Path) -> None:
+    """Remove the folders that have gone longest without a new kernel."""
+    folders = sorted(
+        (p for p in folder.iterdir() if p.is_dir()), key=lambda p: p.stat().st_mtime, reverse=True
+    )
+    for old in folders[_MOST_FOLDERS:]:
+        shutil.rmtree(old, ignore_errors=True)
+
+
+_warned: set[str] = set()
+
+
+def _warn_once(reason: str) -> None:
+    if not _warned:
+        _warned.add(reason)
+        warnings.warn(
+            f"Compiled code cannot be stored ({reason}), so every run compiles for about a minute. "
+            "Set NUMBA_CACHE_DIR to a folder that you can write.",
+            stacklevel=2,
+        )
