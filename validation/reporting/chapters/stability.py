@@ -121,7 +121,7 @@ def _routes(results: Results) -> tuple[Block, ...]:
     """The multipliers, beside those of the same states by a second route."""
     found, routes = results.multipliers, results.routes
     rows: Rows = []
-    parts = (("mesh: q, x_p, x_g", found.feedback, "mesh"), ("bearings: y_p, y_g", found.oloa, "oloa"))
+    parts = (("mesh: q, x_p, x_g", found.feedback, "feedback"), ("bearings: y_p, y_g", found.oloa, "oloa"))
     for part, values, name in parts:
         # By size, and of two of one size in an order that rounding cannot change.
         ours = np.array(sorted(values, key=lambda v: (-round(abs(v), 9), -round(v.real, 9), -v.imag)))
