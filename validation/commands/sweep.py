@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import os
-import sys
+import time
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import INTERRUPTED, NUMERICAL, fail, guarded, stderr, stdout
+from validation.commands.terminal import INTERRUPTED, fail, guarded, progress_bar, stderr, stdout, table
+
+if TYPE_CHECKING:
+    from validation.studies import Summary
 
 
 @guarded
@@ -45,7 +48,8 @@ def sweep(
     case_seconds: Annotated[
         float | None,
         typer.Option(
-            "--case-seconds", help="Longest time of a case in seconds; a longer one is ended and recorded."
+            "--case-seconds",
+            help="Longest time of a case in seconds on this machine; a longer one is ended and recorded.",
         ),
     ] = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Check the study and count its cases.")] = False,
@@ -66,22 +70,25 @@ def sweep(
 
     spurcheck sweep study.toml --scheduler tcp://head:8786
     """
-    from lumped.errors import ParameterError, SpurcheckError
     from validation.studies import load_study, run_sweep
-    from validation.studies.cli_sweep import SweepProgress, cores, print_summary
 
-    console = stderr()
     # The folder's name never comes from inside the file.
     folder = output if output is not None else Path(f"{study.stem}-sweep")
     wanted = load_study(study)
-    processes = cores() if workers is None else workers
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    processes = cores if workers is None else workers
     where = f"on {scheduler}" if scheduler is not None else f"on {processes} worker(s)"
-    text = f"{wanted.name}: {wanted.count} cases, {wanted.analysis}, {where} -> {folder}"
-    console.print(text, soft_wrap=True)
+    stderr().print(f"{wanted.name}: {wanted.count} cases, {wanted.analysis}, {where} -> {folder}")
     if dry_run:
         return
-    try:
-        with SweepProgress(console) as progress:
+    start = time.monotonic()
+    with progress_bar("sweep") as tell:
+
+        def progress(done: int, total: int, failed: int) -> None:
+            rate = done / max(time.monotonic() - start, 1e-9)
+            tell(done / total, f"{done}/{total}, {rate:.3g} cases/s, {failed} failed")
+
+        try:
             summary = run_sweep(
                 wanted,
                 folder,
@@ -92,19 +99,26 @@ def sweep(
                 other_code=other_code,
                 case_seconds=case_seconds,
                 progress=progress,
-                tell=progress.tell,
             )
-    except ParameterError:
-        raise
-    except SpurcheckError as error:  # storage or workers gone
-        fail(str(error), NUMERICAL)
-    except KeyboardInterrupt:
-        fail(f"Stopped. What was computed is in {folder}; run the same command with --resume.", INTERRUPTED)
-    try:
-        print_summary(summary, stdout())
-        sys.stdout.flush()
-    except OSError as error:
-        # Else what is left in the buffer fails again, and decides the exit code, when the process ends.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        fail(f"The results are whole, but what they are cannot be printed: {error.strerror}.", NUMERICAL)
+        except KeyboardInterrupt:
+            text = f"Stopped. What was computed is in {folder}; run the same command with --resume."
+            fail(text, INTERRUPTED)
+    _print(summary)
     raise typer.Exit(summary.exit_code)
+
+
+def _print(summary: Summary) -> None:
+    console = stdout()
+    counts = table("", "status", ">cases")
+    for status, number in summary.statuses:
+        counts.add_row(status.name.lower().replace("_", " "), str(number))
+    console.print(counts)
+    for case, text in summary.failures:
+        console.print(f"case {case}: {text.partition(chr(10))[0]}", style="red")
+    if summary.failed > len(summary.failures):
+        more = summary.failed - len(summary.failures)
+        console.print(f"... and {more} more: see status in the results")
+    console.print(
+        f"{summary.computed} computed, {summary.before} kept from before, in {summary.seconds:.3g} s "
+        f"-> {summary.results}"
+    )

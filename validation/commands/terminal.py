@@ -5,6 +5,8 @@ from __future__ import annotations
 import functools
 import inspect
 import json
+import os
+import sys
 import traceback
 import unicodedata
 import warnings
@@ -96,7 +98,7 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
             _quiet.reset(silent)
 
     def answered(*args: P.args, **kwargs: P.kwargs) -> None:
-        from lumped.errors import LawRangeWarning, NumericalError, ParameterError, StorageError
+        from lumped.errors import LawRangeWarning, ParameterError, SpurcheckError
 
         told: set[str] = set()
 
@@ -114,11 +116,17 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
         except ParameterError as error:
             problems = [replace(p, field=_OPTIONS.get(p.field, p.field)) for p in error.problems]
             fail(str(ParameterError(problems, error.source)), REFUSED)
-        except (NumericalError, StorageError) as error:
+        except SpurcheckError as error:
             fail(str(error), NUMERICAL)
         except OSError as error:
-            name = f"{error.filename}: " if error.filename else ""
-            fail(f"{name}{error.strerror or type(error).__name__}", REFUSED)
+            reason = error.strerror or type(error).__name__
+            if error.filename:
+                fail(f"{error.filename}: {reason}", REFUSED)
+            try:
+                sys.stdout.flush()
+            except OSError:  # what is left in its buffer would fail again, and decide the exit code
+                os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+            fail(f"the result cannot be printed: {reason}", NUMERICAL)
         except KeyboardInterrupt:
             fail("interrupted", INTERRUPTED)
         except MemoryError:

@@ -2,13 +2,11 @@
 
 from validation.studies.analyses import Settings
 from validation.studies.axes import Axis
-from validation.studies.evaluate import Status
-from validation.studies.load import load_study
-from validation.studies.pools import SweepStopped
 from validation.studies.results import read_results
 from validation.studies.runner import Summary, run_sweep
-from validation.studies.schema import Design, Study
-from validation.studies.storage import StoreError
+from validation.studies.schema import Design, Study, load_study
+from validation.studies.store import Status, StoreError
+from validation.studies.workers import SweepStopped
 
 __all__ = [
     "Axis",

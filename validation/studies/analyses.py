@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from importlib import import_module
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -61,16 +60,10 @@ class Analysis:
     ----------
     compute : the varied pair and the settings to the outputs
     outputs : name -> (unit, plain name); all are plain numbers
-    module : what is loaded before the first case
     """
 
     compute: Callable[[GearVariation, Settings], Values]
     outputs: Labels
-    module: str = "lumped"
-
-    def prepare(self) -> None:
-        """Load what it needs, so that the first case takes no longer than the others."""
-        import_module(self.module)
 
 
 _MOTIONS = {
@@ -180,6 +173,6 @@ def _motion(pair: GearPair, run: xr.Dataset) -> Values:
 ANALYSES: dict[AnalysisName, Analysis] = {
     "geometry": Analysis(_geometry, _GEOMETRY),
     "lumped": Analysis(_lumped, _LUMPED),
-    "multibody": Analysis(_multibody, _MOTION, "multibody"),
-    "floquet": Analysis(_floquet, _FLOQUET, "floquet.gear.multipliers"),
+    "multibody": Analysis(_multibody, _MOTION),
+    "floquet": Analysis(_floquet, _FLOQUET),
 }

@@ -139,10 +139,6 @@ class StudyEvaluator:
         fields = tuple(axis.field for axis in study.axes)
         return StudyEvaluator(study.gear_pair, fields, study.analysis, study.outputs, study.settings)
 
-    def prepare(self) -> None:
-        """Load what the analysis needs."""
-        ANALYSES[self.analysis].prepare()
-
     def variation(self, values: tuple[AxisValue, ...]) -> GearVariation:
         """Return the pair with the axes' values; the plain fields change at once, so they need only fit
         together.

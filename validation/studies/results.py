@@ -1,4 +1,4 @@
-"""The labelled results of a study, compiled from its store."""
+"""The labelled results of a study, compiled from its store, with Sobol indices where it asks for them."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ import xarray as xr
 
 from lumped.arguments import file_path
 from lumped.model.results import parameters_hash
-from validation.files.output import whole_file
+from lumped.typing import FloatArray
 from validation.studies.analyses import ANALYSES
 from validation.studies.axes import target_of
 from validation.studies.cases import CaseList
-from validation.studies.evaluate import Status
-from validation.studies.load import load_study
-from validation.studies.sensitivity import add_sensitivity
-from validation.studies.storage import STORE, storage_failure
-from validation.studies.store import Table, read_definition, read_table
+from validation.studies.schema import load_study
+from validation.studies.store import STORE, Status, Table, read_definition, read_table
 
 RESULTS = "results.nc"
+#: Resamplings of the confidence interval of Sobol indices.
+RESAMPLES = 200
+CONFIDENCE = 0.95
 
 
 def read_results(folder: str | Path) -> xr.Dataset:
@@ -49,11 +49,10 @@ def results_dataset(cases: CaseList, table: Table) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset with the study's outputs and ``status`` (flag meanings in its attributes); the failed cases
-    with their error text in ``failure_message`` over ``failure``, the first ``store.MAX_FAILURES`` of them;
+    with their error text in ``failure_message`` over ``failure``, the first ``MAX_FAILURES`` of them;
     the axes in the fields' stated units; sensitivity indices where the design asks for them
     """
     study = cases.study
-    assert table.values is not None
     dims, shape = cases.dims, cases.shape
     result = xr.Dataset(attrs=_attributes(cases, table))
     for label, coordinate in _coordinates(cases).items():
@@ -78,23 +77,7 @@ def results_dataset(cases: CaseList, table: Table) -> xr.Dataset:
     result["failure_message"] = xr.DataArray(
         text_type, dims="failure", attrs={"long_name": "why the case failed"}
     )
-    return add_sensitivity(result, cases, table.status, table.values.T)
-
-
-def write_results(folder: Path, result: xr.Dataset) -> Path:
-    """Write ``results.nc`` completely or not at all; the same results give the same bytes.
-
-    Raises
-    ------
-    StoreError : it cannot be written
-    """
-    path = folder / RESULTS
-    try:
-        with whole_file(path) as part:
-            result.to_netcdf(part, engine="h5netcdf", format="NETCDF4")
-    except (OSError, RuntimeError, ValueError) as error:  # HDF5 reports a failed write in several ways
-        raise storage_failure(path, "write it", error) from error
-    return path
+    return _with_sensitivity(result, cases, table)
 
 
 def _coordinates(cases: CaseList) -> dict[str, xr.DataArray]:
@@ -134,3 +117,79 @@ def _attributes(cases: CaseList, table: Table) -> dict[str, Any]:
         "code_sha256": "; ".join(dict.fromkeys(run.code for run in table.runs)),
         "processors": "; ".join(sorted({run.processor for run in table.runs})),
     }
+
+
+def _with_sensitivity(result: xr.Dataset, cases: CaseList, table: Table) -> xr.Dataset:
+    """Add ``sobol_first`` and ``sobol_total`` over (output, axis) with their bootstrap intervals.
+
+    A failed case would bias the estimators, so they are left out then; attribute ``sensitivity`` says why.
+    """
+    if not cases.study.design.sensitivity:
+        return result
+    failed = int(np.count_nonzero(table.status >= Status.REFUSED))
+    missing = int(np.count_nonzero(table.status == Status.MISSING))
+    if failed or missing:
+        text = f"no indices: {failed} of {cases.count} cases failed, {missing} are not computed yet"
+        return result.assign_attrs(sensitivity=text)
+    axes, values = [axis.label for axis in cases.study.axes], table.values.T
+    found = indices(values, len(axes), cases.study.design.seed)
+    result = result.assign_coords(
+        output=("output", np.array(cases.study.outputs, dtype=object)),
+        axis=("axis", np.array(axes, dtype=object)),
+    )
+    words = {"sobol_first": "first-order Sobol index", "sobol_total": "total Sobol index"}
+    for name, array in found.items():
+        base, _, end = name.partition("_ci_")
+        text = words[base] + (f", {end} end of its {100 * CONFIDENCE:g} % interval" if end else "")
+        result[name] = (("output", "axis"), array, {"units": "1", "long_name": text})
+    constant = [name for name, row in zip(cases.study.outputs, values, strict=True) if np.ptp(row) == 0.0]
+    note = f"; not defined for the constant {', '.join(constant)}" if constant else ""
+    return result.assign_attrs(sensitivity=f"scipy.stats.sobol_indices, bootstrap of {RESAMPLES}{note}")
+
+
+def indices(values: FloatArray, axes: int, seed: int) -> dict[str, FloatArray]:
+    """Sobol indices with percentile bootstrap intervals, each (outputs, axes); NaN for a constant output.
+
+    The estimators are those of Saltelli et al., Comput. Phys. Commun. 181 (2010) 259-270, Table 2 (b) and
+    (f), as in ``scipy.stats.sobol_indices``.
+
+    Parameters
+    ----------
+    values : (outputs, n (axes + 2)) in the blocks A, B, AB_1 ... AB_axes
+    axes : number of axes
+    seed : of the bootstrap
+    """
+    from scipy import stats  # takes a third of a second, and most studies have no use for it
+
+    names = ("sobol_first", "sobol_total")
+    found = {
+        f"{name}{end}": np.full((len(values), axes), np.nan)
+        for name in names
+        for end in ("", "_ci_low", "_ci_high")
+    }
+    varies = np.ptp(values, axis=1) > 0.0
+    if not varies.any():
+        return found
+    # The estimators are invariant under shift and scale. About a zero mean they lose fewer digits, and their
+    # squares of numbers of order 1 neither vanish nor overflow.
+    values = values[varies]
+    values = (values - values.mean(axis=1, keepdims=True)) / np.ptp(values, axis=1)[:, None]
+    blocks = values.reshape(len(values), axes + 2, -1).transpose(1, 0, 2)
+    n = blocks.shape[-1]
+
+    def both(which: Any) -> FloatArray:
+        func: Any = {"f_A": blocks[0][:, which], "f_B": blocks[1][:, which], "f_AB": blocks[2:][:, :, which]}
+        with np.errstate(invalid="ignore", divide="ignore"):
+            found: Any = stats.sobol_indices(func=func, n=n)
+        return np.stack([found.first_order, found.total_order])
+
+    # ``SobolResult.bootstrap`` takes no seed, and its BCa intervals n more evaluations.
+    best = both(np.arange(n))
+    options: Any = {"n_resamples": RESAMPLES, "confidence_level": CONFIDENCE, "batch": 1}
+    interval: Any = stats.bootstrap(
+        (np.arange(n),), both, vectorized=False, method="percentile", rng=seed, **options
+    ).confidence_interval
+    for j, name in enumerate(names):
+        found[name][varies] = best[j]
+        found[f"{name}_ci_low"][varies], found[f"{name}_ci_high"][varies] = interval.low[j], interval.high[j]
+    return found

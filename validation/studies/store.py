@@ -1,101 +1,143 @@
-"""The store of a study: one SQLite file, to which every batch of outcomes is added in one transaction.
+"""The store of a study: one SQLite file, one row a case, each chunk of cases in one transaction.
 
-Write-ahead log with ``synchronous=NORMAL``: a transaction that has ended survives the end of this process
-whatever ends it, and costs no wait for the disk. A power failure may take what was written since the last
-checkpoint; there is one every second. ``FULL`` waits for the disk at every batch, which a cluster of
-thousands of workers would feel. The labelled NetCDF file is compiled from the store, as often as wanted,
-with the same bytes each time.
-
-The outcomes of a run of consecutive cases are one row: a byte of status a case, then the outputs as
-little-endian doubles, with a CRC-32 that begins at the first case's number, for SQLite notices damage to its
-own structure only. That takes 1 + 8 outputs bytes a case, and what the pages leave empty.
+SQLite keeps it whole: after a crash it holds every chunk that was added. The labelled NetCDF file is compiled
+from the store, with the same bytes each time.
 """
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import os
+import platform
 import sqlite3
-import time
-import zlib
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
+from enum import IntEnum
+from functools import cache
+from importlib import metadata
 from pathlib import Path
-from typing import Any, Protocol, Self
+from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
-from lumped.errors import refuse
+import lumped
+from lumped.elasticity.processor import processor
+from lumped.errors import StorageError, refuse
 from lumped.typing import FloatArray
-from validation.stop_signals import undisturbed
-from validation.studies.evaluate import Batch, Status
-from validation.studies.provenance import Provenance, provenance
-from validation.studies.storage import STORE, StoreError, check_plain, damaged, locked, translated
 
-#: What is written reaches the disk itself at most this much later [s].
-SYNC_SECONDS = 1.0
-#: Error texts kept: those of the failed cases with the lowest numbers.
+STORE = "store.sqlite"
+#: Error texts in the results: those of the failed cases with the lowest numbers.
 MAX_FAILURES = 10_000
-_APPLICATION, _FORMAT = 0x53505243, 1
-_BEGIN = f"""
-CREATE TABLE about (key TEXT PRIMARY KEY, value);
-CREATE TABLE run (versions TEXT, code TEXT, processor TEXT);
-CREATE TABLE batch (id INTEGER PRIMARY KEY, first INTEGER, count INTEGER, crc INTEGER, data BLOB);
-CREATE TABLE failure (number INTEGER PRIMARY KEY, crc INTEGER, message BLOB);
-PRAGMA application_id={_APPLICATION};
-PRAGMA user_version={_FORMAT};
-"""
-_KEEP_FIRST = """DELETE FROM failure WHERE number >=
-(SELECT number FROM failure ORDER BY number LIMIT 1 OFFSET ?)"""
+_BEGIN = (
+    "CREATE TABLE about (key TEXT PRIMARY KEY, value TEXT)",
+    "CREATE TABLE run (versions TEXT, code TEXT, processor TEXT)",
+    "CREATE TABLE result (number INTEGER PRIMARY KEY, status INTEGER, outputs BLOB, message TEXT)",
+)
+_PACKAGES = ("lumped", "multibody", "floquet", "validation")
+_LIBRARIES = ("spurcheck", "numpy", "scipy", "numba", "llvmlite", "exudyn")
+#: Settings of numba that change what it makes of the same source.
+_COMPILER = ("NUMBA_DISABLE_JIT", "NUMBA_OPT", "NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES")
 
 
-class Cases(Protocol):
-    """A numbered list of cases that a store can belong to.
+class StoreError(StorageError):
+    """The store cannot be read or written; what it holds is kept, and the text says how to go on."""
+
+
+class Status(IntEnum):
+    """What became of a case; no code, kept in stores and results, ever gets another meaning."""
+
+    MISSING = -1
+    OK = 0
+    OUTSIDE_LAW_RANGE = 1
+    REFUSED = 2
+    NUMERICAL = 3
+    UNEXPECTED = 4
+    WORKER_DIED = 5
+    TIME_LIMIT = 6
+
+    @property
+    def failed(self) -> bool:
+        """Whether there are no outputs."""
+        return self >= Status.REFUSED
+
+
+class Provenance(NamedTuple):
+    """What the last digits of a result depend on.
 
     Attributes
     ----------
-    definition : text that says everything about them
-    sha256 : hash of the parameters of all cases
-    count : how many
-    outputs : names of the numbers that a case gives
+    versions : of Python and the libraries, the machine type, and settings of the compiler where set
+    code : hash of the source files of the four packages, which are the compiled kernels' source too
+    processor : its name; processors of different types may differ in the last digits
     """
+
+    versions: str
+    code: str
+    processor: str
+
+
+@cache
+def provenance() -> Provenance:
+    """Return the provenance of what this process computes."""
+    parts = [f"python {platform.python_version()}"]
+    parts += [f"{name} {metadata.version(name)}" for name in _LIBRARIES]
+    parts += [platform.machine()] + [f"{name}={os.environ[name]}" for name in _COMPILER if name in os.environ]
+    digest = hashlib.sha256()
+    root = Path(lumped.__file__).parent.parent
+    for path in sorted(file for name in _PACKAGES for file in (root / name).rglob("*.py")):
+        digest.update(path.relative_to(root).as_posix().encode() + b"\0" + path.read_bytes())
+    return Provenance(", ".join(parts), digest.hexdigest(), processor())
+
+
+class Cases(Protocol):
+    """A numbered list of cases: a text that defines them, a hash of their parameters, how many they are."""
 
     @property
     def definition(self) -> str: ...
-
     @property
     def sha256(self) -> str: ...
-
     @property
     def count(self) -> int: ...
-
     @property
     def outputs(self) -> tuple[str, ...]: ...
-
     def values(self, cases: Sequence[int]) -> Sequence[tuple[Any, ...]]:
         """Return the parameters of the cases of given numbers."""
         ...
 
 
+@dataclass(frozen=True)
+class Chunk:
+    """Outcomes of some cases.
+
+    Attributes
+    ----------
+    rows : (number of the case, status, outputs as bytes of doubles or None, error text or None)
+    seconds : time that they took
+    provenance : of the process that computed them
+    """
+
+    rows: list[tuple[int, int, bytes | None, str | None]]
+    seconds: float
+    provenance: Provenance
+
+
 @dataclass
 class Table:
-    """Outcomes of all cases; a later outcome of a case replaces the earlier one.
+    """Outcomes of all cases.
 
     Attributes
     ----------
     status : (cases,) ``Status`` codes
-    values : (cases, outputs), NaN where there is no result; None when not wanted
+    values : (cases, outputs), NaN where there is no result
     messages : case -> error text of failed ones, at most ``MAX_FAILURES``
-    damaged : batches and texts whose checksum is wrong; their cases count as not computed
     runs : what computed cases, in order, each once
     """
 
     status: np.ndarray[Any, np.dtype[np.int8]]
-    values: FloatArray | None
+    values: FloatArray
     messages: dict[int, str] = field(default_factory=dict)
-    damaged: int = 0
     runs: tuple[Provenance, ...] = ()
 
     def counts(self) -> Counter[Status]:
@@ -105,159 +147,84 @@ class Table:
 
 
 class Store:
-    """The store of a list of cases, opened for adding and locked against a second process.
+    """The store of a list of cases, opened for adding; the lock of its file keeps a second process out.
 
     Parameters
     ----------
     folder : where the file is or shall be; None: in memory
     cases : what it belongs to
     other_code : whether cases may be added that other code computes than those there are
-    new : whether it must hold nothing yet
 
     Raises
     ------
     ParameterError : it belongs to other cases, or other code began it
-    StoreError : it cannot be used, is damaged or of an earlier version, or another process writes to it
+    StoreError : it cannot be used, is damaged, or another process writes to it
     """
 
-    def __init__(
-        self, folder: Path | None, cases: Cases, *, other_code: bool = False, new: bool = False
-    ) -> None:
+    def __init__(self, folder: Path | None, cases: Cases, *, other_code: bool = False) -> None:
         self._cases = cases
-        self._path = Path(":memory:") if folder is None else folder / STORE
-        self._file: os.stat_result | None = None
-        self._begun = False  # to write
-        self._synced = time.monotonic()
-        with contextlib.ExitStack() as stack:
-            if folder is not None:
-                stack.enter_context(locked(folder))
-                check_plain(self._path)
-            with translated(self._path, "write it"):
-                self._db = stack.enter_context(
-                    contextlib.closing(sqlite3.connect(self._path, isolation_level=None))
+        self.path = Path(":memory:") if folder is None else folder / STORE
+        with _translated(self.path):
+            self._db = sqlite3.connect(self.path, isolation_level=None, timeout=0.5)
+        try:
+            with _translated(self.path):
+                self.new = not self._db.execute("SELECT * FROM sqlite_master").fetchall()
+                if not self.new:
+                    _check_same(self._db, self.path, cases)
+                self._db.execute("PRAGMA journal_mode=WAL")
+                self._db.execute("PRAGMA synchronous=NORMAL")
+                self._db.execute("BEGIN IMMEDIATE")  # the lock; every commit takes it again
+                if self.new:
+                    for statement in _BEGIN:
+                        self._db.execute(statement)
+                    self._db.executemany("INSERT INTO about VALUES (?, ?)", _about(cases).items())
+                    self._commit()
+                self._runs = set(_runs(self._db))
+            if not other_code and {run.code for run in self._runs} - {provenance().code}:
+                raise refuse(
+                    "output",
+                    self.path,
+                    "a store that this very code began",
+                    "Spurcheck was changed since: use the code that began it, begin anew in another folder, "
+                    "or mix results of both with --other-code.",
                 )
-                self._new = folder is None or _is_new(self._db, self._path)
-                self._runs: set[Provenance] = set()
-                if not self._new:
-                    self._go_on(other_code, new)
-            if folder is not None:
-                self._file = os.lstat(self._path)
-            self._open = stack.pop_all()
+        except BaseException:
+            self._db.close()
+            raise
 
-    def _go_on(self, other_code: bool, new: bool) -> None:
-        if new:  # since this run looked at the folder
-            raise StoreError(
-                f"{self._path}: another run wrote to it just now. Run the same command with --resume."
-            )
-        for (found,) in self._db.execute("PRAGMA quick_check(1)"):
-            if found != "ok":
-                raise damaged(self._path, found)
-        _check_same(self._db, self._path, self._cases)
-        self._runs.update(_runs(self._db))
-        if not other_code and {run.code for run in self._runs} - {provenance().code}:
-            raise refuse(
-                "output",
-                self._path,
-                "a store that this very code began",
-                "Spurcheck was changed since: use the code that began it, begin anew in another folder, or "
-                "mix results of both with --other-code.",
-            )
+    def _commit(self) -> None:
+        self._db.execute("COMMIT")
+        self._db.execute("BEGIN IMMEDIATE")
 
-    @contextlib.contextmanager
-    def _transaction(self) -> Iterator[None]:
-        with undisturbed(), translated(self._path, "write to it"):
-            self._db.execute("BEGIN IMMEDIATE")
-            try:
-                yield
-                self._db.execute("COMMIT")
-            except BaseException:
-                with contextlib.suppress(sqlite3.Error):  # SQLite may have done it already
-                    self._db.execute("ROLLBACK")
-                raise
-
-    def _begin(self) -> None:
-        """Make the tables where there are none, without a log yet: a file is empty or has them all."""
-        if self._new:
-            with self._transaction():
-                for statement in _BEGIN.strip().splitlines():
-                    self._db.execute(statement)
-                self._db.executemany("INSERT INTO about VALUES (?, ?)", _about(self._cases).items())
-        with translated(self._path, "write to it"):
-            self._db.execute("PRAGMA journal_mode=WAL")
-            self._db.execute("PRAGMA synchronous=NORMAL")
-        self._new, self._begun = False, True
-
-    def add(self, batch: Batch) -> None:
-        """Write the outcomes of a batch; once this returns they survive the end of this process.
+    def add(self, chunk: Chunk) -> None:
+        """Write the outcomes of a chunk; a later outcome of a case replaces the earlier one.
 
         Raises
         ------
         StoreError : they cannot be written; the store then is as before
         """
-        if not self._begun:
-            self._begin()
-        cases = np.asarray(batch.cases, np.int64)
-        with self._transaction():
-            if batch.provenance not in self._runs:
-                self._db.execute("INSERT INTO run VALUES (?, ?, ?)", batch.provenance)
-            for run in np.split(np.arange(cases.size), np.flatnonzero(np.diff(cases) != 1) + 1):
-                first, last = int(cases[run[0]]), int(cases[run[-1]])
-                data = batch.status[run].tobytes() + batch.values[run].astype("<f8").tobytes()
-                row = first, run.size, zlib.crc32(data, first), data
-                self._db.execute("INSERT INTO batch (first, count, crc, data) VALUES (?, ?, ?, ?)", row)
-                self._db.execute("DELETE FROM failure WHERE number BETWEEN ? AND ?", (first, last))
-            if batch.messages:
-                texts = ((case, text.encode()) for case, text in batch.messages.items())
-                rows = ((case, zlib.crc32(text, case), text) for case, text in texts)
-                self._db.executemany("INSERT INTO failure VALUES (?, ?, ?)", rows)
-                self._db.execute(_KEEP_FIRST, (MAX_FAILURES,))
-        self._runs.add(batch.provenance)
-        if time.monotonic() - self._synced > SYNC_SECONDS:
-            self.sync()
+        with _translated(self.path):
+            if chunk.provenance not in self._runs:
+                self._db.execute("INSERT INTO run VALUES (?, ?, ?)", chunk.provenance)
+                self._runs.add(chunk.provenance)
+            self._db.executemany("INSERT OR REPLACE INTO result VALUES (?, ?, ?, ?)", chunk.rows)
+            self._commit()
 
-    def sync(self) -> None:
-        """Make everything written so far survive a power failure.
-
-        Raises
-        ------
-        StoreError : it cannot, or the file is no longer where it was, so that nobody would find its cases
-        """
-        self._synced = time.monotonic()
-        if self._file is None:
-            return
-        try:
-            there = os.path.samestat(self._file, os.lstat(self._path))
-        except OSError as error:
-            there = not isinstance(error, FileNotFoundError)  # else nobody can say
-        if not there:
-            raise StoreError(
-                f"{self._path} was moved, deleted or replaced while the sweep ran. If it was moved, go on "
-                "there with --resume; else begin again in a new --output."
-            )
-        with translated(self._path, "write to it"):
-            self._db.execute("PRAGMA wal_checkpoint(PASSIVE)")
-
-    def table(self, *, with_values: bool = True) -> Table:
+    def table(self) -> Table:
         """Return the outcomes so far."""
-        with translated(self._path, "read it"):
-            return _table(None if self._new else self._db, self._cases, with_values)
+        with _translated(self.path):
+            return _table(self._db, self._cases)
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Put the log into the file, so that it is one file again, and unlock."""
-        with self._open, contextlib.suppress(sqlite3.Error):  # a reader may have it open, or the disk is full
-            self._db.execute("PRAGMA journal_mode=DELETE")
+        """Close the file and give its lock back."""
+        self._db.close()
 
 
 def read_definition(folder: Path) -> str:
-    """Return the text that says what a store belongs to.
-
-    Raises
-    ------
-    StoreError : no store, a damaged one or one of an earlier version
-    """
+    """Return the text that says what a store belongs to; raises StoreError where there is no store."""
     with _reader(folder) as db:
         return str(dict(db.execute("SELECT key, value FROM about"))["definition"])
 
@@ -271,50 +238,38 @@ def read_table(folder: Path, cases: Cases) -> Table:
     """
     with _reader(folder) as db:
         _check_same(db, folder / STORE, cases)
-        return _table(db, cases, with_values=True)
+        return _table(db, cases)
 
 
-@contextlib.contextmanager
+@contextmanager
 def _reader(folder: Path) -> Iterator[sqlite3.Connection]:
     path = folder / STORE
-    check_plain(path)
-    with translated(path, "read it"):
-        if not path.exists():
-            raise StoreError(f"{path}: no store of a study. Name the folder that a sweep wrote.")
-        db = sqlite3.connect(path.absolute().as_uri() + "?mode=ro", uri=True, isolation_level=None)
-        with contextlib.closing(db):
-            if _is_new(db, path):
-                raise StoreError(f"{path} holds nothing yet. Run its sweep again with --resume.")
-            yield db
+    if not path.exists():
+        raise StoreError(f"{path}: no store of a study. Name the folder that a sweep wrote.")
+    with _translated(path), closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True)) as db:
+        yield db
 
 
-def _is_new(db: sqlite3.Connection, path: Path) -> bool:
-    """Tell whether a file holds nothing yet, as after a kill before the first transaction.
+@contextmanager
+def _translated(path: Path) -> Iterator[None]:
+    """Give the errors of SQLite in the user's words."""
+    try:
+        yield
+    except sqlite3.Error as error:
+        if "locked" in str(error):
+            text = f"{path}: another run is writing to it. Wait for it, or choose another --output."
+        elif isinstance(error, sqlite3.OperationalError) and not str(error).startswith("no such"):
+            text = (
+                f"{path}: cannot be used: {error}. What was computed so far is kept; free space or restore "
+                "the permission, then run the same command with --resume."
+            )
+        else:
+            text = f"{path} is damaged or no store: {error}. It stays as it is: begin in a new --output."
+        raise StoreError(text) from error
 
-    A file with anything in it is never new, whatever its header says.
-    """
-    (application,) = db.execute("PRAGMA application_id").fetchone()
-    (version,) = db.execute("PRAGMA user_version").fetchone()
-    if path.stat().st_size == 0:
-        return True
-    if application != _APPLICATION:
-        raise damaged(path, "it belongs to another program")
-    if version != _FORMAT:
-        raise StoreError(
-            f"{path} has format {version}; this version of spurcheck uses {_FORMAT}. It stays as it is: use "
-            "the version that wrote it, or choose another --output."
-        )
-    return False
 
-
-def _about(cases: Cases) -> dict[str, str | int]:
-    return {
-        "definition": cases.definition,
-        "definition_sha256": hashlib.sha256(cases.definition.encode()).hexdigest(),
-        "cases_sha256": cases.sha256,
-        "count": cases.count,
-        "outputs": " ".join(cases.outputs),
-    }
+def _about(cases: Cases) -> dict[str, str]:
+    return {"definition": cases.definition, "cases_sha256": cases.sha256, "outputs": " ".join(cases.outputs)}
 
 
 def _check_same(db: sqlite3.Connection, path: Path, cases: Cases) -> None:
@@ -333,31 +288,18 @@ def _check_same(db: sqlite3.Connection, path: Path, cases: Cases) -> None:
 
 
 def _runs(db: sqlite3.Connection) -> list[Provenance]:
-    return [
-        Provenance(*row) for row in db.execute("SELECT versions, code, processor FROM run ORDER BY rowid")
-    ]
+    return [Provenance(*row) for row in db.execute("SELECT * FROM run ORDER BY rowid")]
 
 
-def _table(db: sqlite3.Connection | None, cases: Cases, with_values: bool) -> Table:
-    outputs = len(cases.outputs)
-    values = np.full((cases.count, outputs), np.nan) if with_values else None
-    table = Table(np.full(cases.count, Status.MISSING, np.int8), values)
-    if db is None:
-        return table
-    for first, count, crc, data in db.execute("SELECT first, count, crc, data FROM batch ORDER BY id"):
-        size = count * (1 + 8 * outputs)
-        if not isinstance(data, bytes) or len(data) != size or zlib.crc32(data, first) != crc:
-            table.damaged += 1
-            continue
-        table.status[first : first + count] = np.frombuffer(data, np.int8, count)
-        if table.values is not None:
-            found = np.frombuffer(data, "<f8", count * outputs, offset=count)
-            table.values[first : first + count] = found.reshape(count, outputs)
-    for case, crc, text in db.execute("SELECT number, crc, message FROM failure ORDER BY number"):
-        if not isinstance(text, bytes) or zlib.crc32(text, case) != crc:
-            table.damaged += 1
-            table.status[case : case + 1] = Status.MISSING
-        elif table.status[case] >= Status.REFUSED:
-            table.messages[case] = text.decode()
-    table.runs = tuple(dict.fromkeys(_runs(db)))
+def _table(db: sqlite3.Connection, cases: Cases) -> Table:
+    table = Table(
+        np.full(cases.count, Status.MISSING, np.int8), np.full((cases.count, len(cases.outputs)), np.nan)
+    )
+    for case, status, outputs, message in db.execute("SELECT * FROM result ORDER BY number"):
+        table.status[case] = status
+        if outputs is not None:
+            table.values[case] = np.frombuffer(outputs, "<f8")
+        elif len(table.messages) < MAX_FAILURES:
+            table.messages[case] = message
+    table.runs = tuple(_runs(db))
     return table

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-import os
+import errno
 import threading
 import warnings
-from types import SimpleNamespace
+from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
 
 from lumped import LawRangeWarning, NumericalError, geometry, load_gear_pair, speed_sweep
-from lumped.errors import ParameterError
+from lumped.errors import ParameterError, StorageError
 from lumped.model.extremes import cycle_peak_to_peak
 from lumped.schema.pair import field_at
-from validation.studies import Status, StoreError, dispatch, evaluate, read_results, run_sweep, runner
+from validation.studies import Status, StoreError, read_results, run_sweep, workers
 from validation.studies import store as stores
-from validation.studies.provenance import provenance
+from validation.studies.store import provenance
 
 
 def constant(**values):
@@ -30,7 +30,7 @@ def speed_of(variation):
 
 def test_the_result_is_labelled_and_right(study, tmp_path):
     summary = run_sweep(study, tmp_path / "out")
-    assert (summary.cases, summary.computed, summary.before, summary.damaged) == (120, 120, 0, 0)
+    assert (summary.cases, summary.computed, summary.before) == (120, 120, 0)
     with xr.open_dataset(summary.results, engine="h5netcdf") as result:
         assert result.contact_ratio.dims == ("operating_pinion_speed", "face_width", "centre_distance")
         assert result.operating_pinion_speed.attrs["units"] == "rpm"
@@ -102,11 +102,6 @@ def test_a_law_outside_its_range_is_flagged(study, tmp_path, replace_analysis):
     assert int(read_results(tmp_path / "out").contact_ratio.notnull().sum()) == 96
 
 
-def test_processes_give_the_same_bytes(study, tmp_path, undisturbed):
-    summary = run_sweep(study, tmp_path / "out", workers=2)
-    assert summary.results.read_bytes() == undisturbed
-
-
 def test_stopping_and_resuming_gives_the_same_bytes(study, tmp_path, undisturbed, replace_analysis):
     class Stop(Exception):
         pass
@@ -147,16 +142,15 @@ def test_failed_cases_are_computed_again_on_request(
     assert summary.results.read_bytes() == undisturbed
 
 
-@pytest.mark.parametrize("kind", [RuntimeError, ValueError, OSError])
-def test_a_result_that_cannot_be_written_is_told_however_hdf5_says_so(study, tmp_path, undisturbed, kind):
-    def failing(*arguments, **options):
-        raise kind("file write failed")
+def test_a_full_disk_under_the_result_is_told_and_the_store_keeps_all(study, tmp_path, undisturbed):
+    def full(path, content):
+        raise OSError(errno.ENOSPC, "No space left on device")
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(xr.Dataset, "to_netcdf", failing)
-        with pytest.raises(StoreError, match=r"results\.nc.*file write failed.*--resume") as caught:
+        patch.setattr(Path, "write_bytes", full)
+        with pytest.raises(StorageError, match=r"results\.nc.*No space left.*Free space"):
             run_sweep(study, tmp_path / "out")
-    assert str(caught.value).count("--resume") == 1  # told once, not wrapped in itself
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["store.sqlite"]
     summary = run_sweep(study, tmp_path / "out", resume=True)
     assert summary.computed == 0
     assert summary.results.read_bytes() == undisturbed
@@ -192,7 +186,7 @@ def test_code_that_was_changed_is_refused_unless_told(study, tmp_path, monkeypat
 
     with monkeypatch.context() as patch:
         old = provenance()._replace(code="0" * 64)
-        for module in (evaluate, dispatch, stores):
+        for module in (workers, stores):
             patch.setattr(module, "provenance", lambda: old)
         with pytest.raises(KeyboardInterrupt):
             run_sweep(study, out, progress=stop)
@@ -214,36 +208,11 @@ def test_a_folder_with_other_things_is_left_alone(study, tmp_path):
     (tmp_path / "study.toml").rename(tmp_path / "thesis.tex")
     with pytest.raises(ParameterError, match="A file has that name"):
         run_sweep(study, tmp_path / "thesis.tex")
-
-
-def test_a_sweep_that_cannot_fit_is_refused_before_it_starts(study, tmp_path, monkeypatch):
-    # Two outputs of 8 bytes and a status of 1, in the store and in the result.
-    need = 2 * 120 * (2 * 8 + 1)
-    monkeypatch.setattr(runner.shutil, "disk_usage", lambda path: SimpleNamespace(free=need - 1))
-    with pytest.raises(StoreError, match="Free space"):
-        run_sweep(study, tmp_path / "out")
-    monkeypatch.setattr(runner.shutil, "disk_usage", lambda path: SimpleNamespace(free=need))
-    assert run_sweep(study, tmp_path / "out", resume=True).computed == 120
-
-
-@pytest.mark.skipif(not hasattr(os, "sysconf"), reason="the system does not say how much memory it has")
-def test_a_sweep_whose_results_do_not_fit_in_memory_is_refused_before_it_starts(
-    make_study, tmp_path, monkeypatch
-):
-    # The largest study: 1e9 cases of two outputs need 27 GB.
-    axes = [
-        {"field": f"{gear}.density", "low": 1e3, "high": 9e3, "count": n}
-        for gear, n in (("pinion", 100_000), ("gear", 10_000))
-    ]
-    monkeypatch.setattr(runner.os, "sysconf", {"SC_PHYS_PAGES": 6_000_000, "SC_PAGE_SIZE": 4096}.get)
-    with pytest.raises(ParameterError, match="Split the study"):
-        run_sweep(make_study(axes=axes), tmp_path / "out")
-    # Of 1024 samples the values of the axis, as Python floats, take more than the outputs: 92 kB altogether.
-    axes = [{"field": "pinion.density", "low": 1e3, "high": 9e3}]
-    monkeypatch.setattr(runner.os, "sysconf", {"SC_PHYS_PAGES": 60, "SC_PAGE_SIZE": 1000}.get)
-    with pytest.raises(ParameterError, match="Split the study"):
-        run_sweep(make_study(axes=axes, design={"method": "sobol", "samples": 1024}), tmp_path / "out")
-    assert not (tmp_path / "out").exists()
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "store.sqlite").touch()
+    (tmp_path / "out" / "results.nc").write_text("of somebody else")
+    with pytest.raises(ParameterError, match=r"results\.nc of something else"):
+        run_sweep(study, tmp_path / "out", resume=True)
 
 
 @pytest.mark.parametrize("options", [{"workers": -1}, {"workers": 5000}, {"case_seconds": 0.0}])
@@ -335,3 +304,36 @@ def test_the_floquet_analysis_is_the_stability_chart(make_study, tmp_path):
     np.testing.assert_allclose(result.spectral_radius, chart.spectral_radius, rtol=1e-11)
     assert float(result.spectral_radius_error.max()) < 1e-8
     np.testing.assert_array_equal(result.verdict, chart.verdict)
+
+
+HOSTILE_NAMES = [
+    "../../outside",
+    "$(touch outside)",
+    "{{ cycler.__init__.__globals__.os.system('touch outside') }}",
+    "[/bold][link=file:///etc/passwd]x",
+    "=cmd|' /C calc'!A0",
+]
+
+
+def test_text_in_a_study_is_only_text(make_study, tmp_path, monkeypatch):
+    inner = tmp_path / "a" / "b"  # two folders deep, so that ../../outside is seen
+    inner.mkdir(parents=True)
+    monkeypatch.chdir(inner)
+    axes = [{"field": "speed_rpm", "values": [1000]}]
+    for number, name in enumerate(HOSTILE_NAMES):
+        pair = load_gear_pair("nasa_28_28").with_(name=name, description=name)
+        study = make_study(name=name, description=name, gear_pair=pair, axes=axes)
+        run_sweep(study, inner / str(number))
+        with pytest.raises(ParameterError, match=r"axes\.0\.name"):
+            make_study(axes=[axes[0] | {"name": name}])
+    found = {str(path.relative_to(inner)) for path in tmp_path.rglob("*") if path.is_file()}
+    assert found == {f"{n}/{f}" for n in range(len(HOSTILE_NAMES)) for f in ("results.nc", "store.sqlite")}
+
+
+def test_a_link_in_the_place_of_the_result_is_not_followed(study, tmp_path, undisturbed):
+    run_sweep(study, tmp_path / "out")
+    (tmp_path / "out" / "results.nc").unlink()
+    (tmp_path / "precious").write_text("do not touch")
+    (tmp_path / "out" / "results.nc").symlink_to(tmp_path / "precious")
+    assert run_sweep(study, tmp_path / "out", resume=True).results.read_bytes() == undisturbed
+    assert (tmp_path / "precious").read_text() == "do not touch"

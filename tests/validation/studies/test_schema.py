@@ -151,7 +151,7 @@ REFUSED = {
     ),
     "too many samples for indices": (
         ["design"],
-        {"method": "sobol", "samples": 2**29, "sensitivity": True},
+        {"method": "sobol", "samples": 2**26, "sensitivity": True},
         "design",
         "split the study",
     ),

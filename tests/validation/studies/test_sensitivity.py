@@ -10,7 +10,7 @@ import pytest
 
 from validation.studies import read_results, run_sweep
 from validation.studies.analyses import ANALYSES
-from validation.studies.sensitivity import indices
+from validation.studies.results import indices
 
 SAMPLES = 512
 A, B = 7.0, 0.1

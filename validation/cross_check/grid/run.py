@@ -42,6 +42,7 @@ from validation.cross_check.grid.point import (
 from validation.stop_signals import stopping_as_interrupt
 from validation.studies.runner import compute, wanted
 from validation.studies.store import Store, Table
+from validation.studies.workers import workers_of
 
 __all__ = ["AXES", "COMPARED", "SEPARATED", "STICKING", "STIFFNESS", "Grid", "crosscheck_grid"]
 
@@ -179,14 +180,18 @@ def crosscheck_grid(
             reason = error.strerror or type(error).__name__
             raise refuse("checkpoint", checkpoint, "a folder that can be written", f"{reason}.") from None
     cases = _GridCases(g)
-    with stopping_as_interrupt(), Store(checkpoint, cases) as store:
-        todo = wanted(store.table(with_values=False))
+    with (
+        stopping_as_interrupt(),
+        workers_of(workers, None, None, None) as (submit, slots),
+        Store(checkpoint, cases) as store,
+    ):
+        todo = wanted(store.table())
 
         def told(done: int, number: int, failed: int) -> None:
             if progress is not None:
                 progress((cases.count - number + done) / cases.count)
 
-        compute(cases, _GridEvaluator(g), store, todo, workers=workers, progress=told)
+        compute(cases, _GridEvaluator(g), store, todo, submit, slots, progress=told)
         table = store.table()
     resumed = cases.count - int(np.count_nonzero(todo))
     result = _dataset(g, table)
@@ -215,21 +220,17 @@ class _GridCases:
 
 @dataclass(frozen=True)
 class _GridEvaluator:
-    """What computes a point; see ``validation.studies.evaluate.Evaluator``."""
+    """What computes a point; see ``validation.studies.workers.Evaluator``."""
 
     grid: Grid
     outputs: ClassVar[tuple[str, ...]] = NUMBERS
     nan_allowed: ClassVar[bool] = True
-
-    def prepare(self) -> None:
-        """Everything is loaded with this module."""
 
     def __call__(self, values: tuple[Any, ...]) -> tuple[float, ...]:
         return compare_point(self.grid.pair(*values), self.grid.samples).numbers()
 
 
 def _dataset(g: Grid, table: Table) -> xr.Dataset:
-    assert table.values is not None
     numbers: dict[str, FloatArray] = dict(zip(NUMBERS, table.values.T, strict=True))
     status = [
         STATES[int(state)] if np.isfinite(state) else table.messages[case]

@@ -1,0 +1,168 @@
+"""Does a sweep give the same bytes wherever its cases run, and survive cases that end a worker?"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from lumped.errors import ParameterError
+from validation.studies import Status, StoreError, SweepStopped, run_sweep, runner, workers
+from validation.studies.cases import CaseList, StudyEvaluator
+from validation.studies.store import provenance, read_table
+
+#: Worker processes find the evaluators of ``odd_evaluators`` here.
+sys.path.insert(0, str(Path(__file__).parent))
+
+
+@pytest.fixture
+def odd(study, monkeypatch):
+    """Let case 41 of the study do something odd, in worker processes too; see ``odd_evaluators``."""
+    from odd_evaluators import Odd
+
+    def put(what):
+        evaluator = StudyEvaluator.of(study)
+        (values,) = CaseList(study).values([41])
+        changed = SimpleNamespace(of=lambda study: Odd(evaluator, what, values))
+        monkeypatch.setattr(runner, "StudyEvaluator", changed)
+
+    return put
+
+
+def test_processes_give_the_same_bytes_whatever_a_library_prints(study, tmp_path, odd, undisturbed):
+    odd("prints")
+    assert run_sweep(study, tmp_path, workers=2, case_seconds=60.0).results.read_bytes() == undisturbed
+
+
+@pytest.mark.parametrize(
+    ("what", "options", "status", "text"),
+    [
+        ("is_killed", {"workers": 2}, Status.WORKER_DIED, "the worker process died on this case"),
+        ("compiled_loop", {"case_seconds": 1.0}, Status.TIME_LIMIT, "longer than 1 s"),
+    ],
+)
+def test_a_case_that_ends_its_worker_costs_itself_alone(
+    study, tmp_path, odd, monkeypatch, undisturbed, what, options, status, text
+):
+    odd(what)
+    summary = run_sweep(study, tmp_path, **options)
+    assert dict(summary.statuses) == {Status.OK: 95, Status.REFUSED: 24, status: 1}
+    assert dict(summary.failures)[41] == text
+    monkeypatch.undo()
+    again = run_sweep(study, tmp_path, resume=True, retry_failed=True)
+    assert again.results.read_bytes() == undisturbed
+
+
+def test_any_executor_gives_the_same_bytes(study, tmp_path, undisturbed):
+    with ThreadPoolExecutor(2) as executor:
+        assert run_sweep(study, tmp_path, executor=executor, workers=2).results.read_bytes() == undisturbed
+        with pytest.raises(ParameterError, match="case_seconds"):
+            run_sweep(study, tmp_path / "limited", executor=executor, case_seconds=1.0)
+    with pytest.raises(SweepStopped, match="after shutdown"):
+        run_sweep(study, tmp_path / "closed", executor=executor)
+
+
+def test_workers_of_other_code_stop_the_sweep(study, tmp_path, monkeypatch):
+    old = provenance()._replace(code="0" * 64)
+    evaluate = workers.evaluate_chunk
+
+    def of_old_code(*arguments):
+        chunk = evaluate(*arguments)
+        return workers.Chunk(chunk.rows, chunk.seconds, old)
+
+    monkeypatch.setattr(workers, "evaluate_chunk", of_old_code)
+    with pytest.raises(SweepStopped, match="install the same code"):
+        run_sweep(study, tmp_path)
+
+
+def test_chunks_are_large_for_cheap_cases_and_small_at_the_end(make_study):
+    axis = {"field": "operating.pinion_speed", "low": 500, "high": 9000, "count": 10_000}
+    study = make_study(axes=[axis])
+    sizes = []
+
+    def submit(function, evaluator, cases, values):
+        sizes.append(len(cases))
+        rows = [(case, 0, b"", None) for case in cases]
+        return workers._here(lambda: workers.Chunk(rows, 1e-5 * len(cases), provenance()))
+
+    values = CaseList(study).values
+    chunks = workers.chunks_of(StudyEvaluator.of(study), values, iter(range(10_000)), 10_000, submit, 2, None)
+    assert sorted(case for chunk in chunks for case, *_ in chunk.rows) == list(range(10_000))
+    assert max(sizes) > 1000
+    assert sizes[-2:] == [1, 1]
+
+
+#: Run a sweep of the study in argv[1] into argv[2] with argv[3] workers; a case takes 20 ms in this process.
+PROGRAM = """
+import dataclasses, sys, time
+from validation.studies import analyses, load_study, run_sweep
+fast = analyses.ANALYSES["geometry"]
+def slow(variation, settings):
+    time.sleep(0.02)
+    return fast.compute(variation, settings)
+if sys.argv[3] == "0":
+    analyses.ANALYSES["geometry"] = dataclasses.replace(fast, compute=slow)
+run_sweep(load_study(open(sys.argv[1]).read()), sys.argv[2], workers=int(sys.argv[3]), resume=True)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="signals of Linux")
+@pytest.mark.parametrize(
+    ("number", "count"), [(signal.SIGKILL, 0), (signal.SIGKILL, 2), (signal.SIGINT, 2), (signal.SIGTERM, 0)]
+)
+def test_after_a_kill_or_an_interrupt_resuming_gives_the_same_bytes(
+    study, tmp_path, undisturbed, number, count
+):
+    (tmp_path / "study.toml").write_text(study.to_toml())
+    out = tmp_path / "out"
+
+    def finished():
+        try:
+            return int((read_table(out, CaseList(study)).status != Status.MISSING).sum())
+        except StoreError:  # none yet
+            return 0
+
+    command = [sys.executable, "-c", PROGRAM, str(tmp_path / "study.toml"), str(out), str(count)]
+    run = subprocess.Popen(command, text=True, stderr=subprocess.PIPE)
+    end = time.monotonic() + 400.0  # a process takes 5 s of processor time to start
+    while finished() < 5:
+        assert time.monotonic() < end, "no case was computed"
+        time.sleep(0.005)
+    run.send_signal(number)
+    run.communicate(timeout=30)
+    assert run.returncode != 0 or finished() == 120
+    before = finished()
+    summary = run_sweep(study, out, resume=True)
+    assert (summary.before, summary.computed) == (before, 120 - before)
+    assert summary.results.read_bytes() == undisturbed
+
+
+@pytest.mark.slow
+# The cluster's own event loop and sockets may outlive it by a moment.
+@pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning")
+def test_a_dask_cluster_gives_the_same_bytes_also_after_losing_a_worker(study, tmp_path, undisturbed):
+    distributed = pytest.importorskip("distributed", reason="needs distributed (extra: cluster)")
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, protocol="tcp", dashboard_address=":0", silence_logs=50
+    ) as cluster:
+        killed = []
+
+        def kill_one(done, total, failed):
+            if not killed:
+                killed.append(next(iter(cluster.workers.values())).pid)
+                os.kill(killed[0], signal.SIGKILL)
+
+        address = cluster.scheduler_address
+        summary = run_sweep(study, tmp_path, scheduler=address, progress=kill_one)
+        assert killed
+        assert summary.results.read_bytes() == undisturbed
+    with pytest.raises(ParameterError, match="scheduler"):
+        run_sweep(study, tmp_path / "none", scheduler="nonsense://x")
