@@ -17,12 +17,10 @@ from validation.commands.export import export
 from validation.commands.figures import figures
 from validation.commands.floquet import floquet
 from validation.commands.interactive import interactive
-from validation.commands.jumps import jumps
 from validation.commands.measurement import measurement
-from validation.commands.parameter_files import init, presets, schema
+from validation.commands.parameter_files import init, presets
 from validation.commands.report import report
 from validation.commands.response import response
-from validation.commands.reversal import reversal
 from validation.commands.simulate import simulate
 from validation.commands.stability import stability
 from validation.commands.sweep import sweep
@@ -75,16 +73,13 @@ COMMANDS = (
     simulate,
     export,
     crosscheck,
-    reversal,
     stability,
     floquet,
     response,
-    jumps,
     interactive,
     sweep,
     figures,
     measurement,
-    schema,
 )
 for command in COMMANDS:
     app.command(help=paragraphs(command.__doc__))(command)

@@ -33,7 +33,7 @@ SMALL = {
     "speed_rpm": "speed_rpm=16000:19000:9",
     "damping_ratio": "damping_ratio=0:0.02:5",
 }
-AXES_OF_VIEW = {"chart": SMALL, "laws": SMALL, "campbell": ["speed_rpm"], "boundaries": ["speed_rpm"]}
+AXES_OF_VIEW = {"chart": SMALL, "campbell": ["speed_rpm"], "boundaries": ["speed_rpm"]}
 #: Commands that are meant to be refused.
 REFUSED = re.compile(r"centre_distance=80$")
 #: What makes an interactive page small: tests/validation/interactive judges it.
@@ -136,9 +136,8 @@ def shortened(arguments: list[str]) -> list[str]:
     processes, branches of motions and jump maps cover a small range.
     """
     quicker = {"crosscheck": ["--cycles", "8", "--samples", "64"], "sweep": ["--workers", "0"]}
-    quicker["response"] = ["--periods", "1", "--seeds", "0", "--range", "12000..12100"]
-    quicker["jumps"] = ["--speeds", "3", "--range", "12000..12100"]
-    most = 2 if arguments[0] in ("jumps", "floquet") else 5
+    quicker["response"] = ["--periods", "1", "--seeds", "0", "--speeds", "3", "--range", "12000..12100"]
+    most = 2 if arguments[0] in ("response", "floquet") else 5
     arguments = [
         re.sub(r"(?<=:)\d+$", lambda nodes: str(min(int(nodes[0]), most)), word) if "=" in word else word
         for word in arguments

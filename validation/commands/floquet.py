@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from validation.commands import options as opt
-from validation.commands.axes import axes_values
 from validation.commands.terminal import FAILED, guarded, print_json, progress_bar, stderr, stdout, table
 
 if TYPE_CHECKING:
@@ -64,7 +63,7 @@ def floquet(
     from validation.files.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
 
     targets = [check_file(path, DATA_SUFFIXES + FIGURE_SUFFIXES, force=force) for path in output or []]
-    grid = axes_values(axes or [], FILE_AXES)
+    grid = opt.axes_values(axes or [], FILE_AXES)
     if targets and not grid:
         raise refuse("--output", targets[0], "a chart to write", "Give --axis, once or twice.")
     if len(grid) > 2 or {"period", "frequency"} <= set(grid):

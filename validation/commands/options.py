@@ -1,7 +1,8 @@
-"""Options that several commands share, and how they become a gear pair."""
+"""Options that several commands share, and how they become gear pairs, axes and files."""
 
 from __future__ import annotations
 
+import math
 import tomllib
 from dataclasses import replace
 from pathlib import Path
@@ -12,13 +13,17 @@ import typer
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    import numpy as np
     import xarray as xr
     from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
+    from floquet.engine.chart import ChartAxis
     from lumped import GearPair
     from lumped.errors import ParameterError
 
 DEFAULT_PAIR = "nasa_28_28"
+_LARGEST_COUNT = 5000
 
 PairArgument = Annotated[
     str,
@@ -186,3 +191,83 @@ def write_result(target: Path, data: xr.Dataset, draw: Callable[[], Figure]) -> 
         from validation.plots.style import save
 
         save(draw(), target)
+
+
+def axis_values(
+    text: str, known: Mapping[str, ChartAxis], option: str = "--axis"
+) -> tuple[str, NDArray[np.float64]]:
+    """Name and values of an axis written NAME=FROM:TO:COUNT.
+
+    Parameters
+    ----------
+    text : what was written
+    known : axes to choose from, name -> axis
+    option : name of the option, for the refusal
+
+    Raises
+    ------
+    ParameterError : an unknown name, or values that are no axis
+    """
+    import numpy as np
+
+    from lumped.errors import ParameterError, refuse
+    from lumped.fields.refusals import nearest
+
+    name, separator, values = (part.strip() for part in text.partition("="))
+    allowed = f"NAME=FROM:TO:COUNT with different ends and a count from 2 to {_LARGEST_COUNT}"
+    example = "speed_rpm=1000:20000:80" if "speed_rpm" in known else f"{next(iter(known))}=1:2:80"
+    wrong = refuse(option, text, allowed, f"For example {option} {example}.")
+    *ends, many = values.split(":")
+    if not separator or len(ends) != 2 or not many.strip().isdecimal():
+        raise wrong
+    if name not in known:
+        advice = nearest(name, known) or "Choose one of them."
+        raise refuse(option, name, "one of " + ", ".join(known), advice)
+    low, high = sorted(number_in(option, end, known[name].units) for end in ends)
+    if low == high or not 2 <= int(many) <= _LARGEST_COUNT:
+        raise wrong
+    found = np.linspace(low, high, int(many))
+    try:
+        known[name].check(name, found)
+    except ParameterError as error:
+        raise by_option(error, {f"axes[{name!r}]": f"{option} {name}"}, "") from None
+    return name, found
+
+
+def axes_values(texts: list[str], known: Mapping[str, ChartAxis]) -> dict[str, NDArray[np.float64]]:
+    """Axes by name, see `axis_values`; refuses a name that comes twice."""
+    from lumped.errors import refuse
+
+    grid: dict[str, NDArray[np.float64]] = {}
+    for text in texts:
+        name, values = axis_values(text, known)
+        if name in grid:
+            raise refuse("--axis", text, "an axis that is not there yet", f"{name} is given twice.")
+        grid[name] = values
+    return grid
+
+
+def number_in(option: str, text: str, unit: str) -> float:
+    """Number in a unit, of text that may carry another one of its kind.
+
+    Parameters
+    ----------
+    option : name of the option, for the refusal
+    text : what was written
+    unit : in which the number is wanted
+
+    Raises
+    ------
+    ParameterError : no finite number of that kind
+    """
+    from lumped.errors import refuse
+    from lumped.fields.units import to_si, to_stated
+
+    stated = unit.replace(" ", "*")
+    try:
+        number = to_stated(to_si(value_of(text.strip()), stated), stated)
+    except (ValueError, TypeError) as error:
+        raise refuse(option, text, f"a number in {unit}", f"{error}.") from None
+    if not math.isfinite(number):
+        raise refuse(option, text, f"a number in {unit}", "Correct it.")
+    return number

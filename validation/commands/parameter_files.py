@@ -1,8 +1,7 @@
-"""spurcheck presets, init, schema: parameter files to start from."""
+"""spurcheck presets, init: parameter files to start from."""
 
 from __future__ import annotations
 
-import json
 import re
 from pathlib import Path
 from typing import Annotated
@@ -170,27 +169,3 @@ def _text_from_rexs(path: Path | None, stage: int | None) -> tuple[str, str]:
     for text in notes:
         note(text)
     return parameter_text(mapping, notes), path.name.split(".")[0] or "rexs"
-
-
-@guarded
-def schema(
-    output: Annotated[Path | None, opt.output("File to write (.json); default: print it.")] = None,
-    force: opt.Force = False,
-) -> None:
-    """Print the JSON Schema of parameter files: every field with its unit, range and meaning.
-
-    Editors use it to complete and check a parameter file while it is written.
-
-    [bold]Example[/bold]
-
-    spurcheck schema -o spurcheck.schema.json
-    """
-    from lumped import json_schema
-    from validation.files.output import check_file, write_text
-
-    text = json.dumps(json_schema(), indent=2, ensure_ascii=False) + "\n"
-    if output is None:
-        typer.echo(text, nl=False)
-        return
-    write_text(check_file(output, (".json",), force=force), text)
-    stderr().print(f"wrote {output}")

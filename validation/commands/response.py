@@ -1,4 +1,4 @@
-"""spurcheck response: motions over speed where teeth may part, and the jumps between them."""
+"""spurcheck response: motions over speed with unilateral contact, the jumps between them, and their map."""
 
 from __future__ import annotations
 
@@ -12,12 +12,16 @@ from validation.commands import options as opt
 from validation.commands.terminal import guarded, note, print_json, progress_bar, stderr, stdout, table
 
 if TYPE_CHECKING:
+    import numpy as np
     import xarray as xr
+    from numpy.typing import NDArray
 
-    from floquet import ResponseBranches
+    from floquet import JumpRemoval, ResponseBranches
     from lumped import GearPair
 
 _LINEAR_SPEEDS = 400
+#: Values of the second axis of a map where none are given.
+_VALUES = 26
 
 
 @guarded
@@ -29,8 +33,22 @@ def response(
     ] = None,
     periods: Annotated[int, typer.Option(help="Look for motions that repeat after 1 to so many cycles.")] = 3,
     seeds: Annotated[
-        int, typer.Option(help="Speeds at which runs settle, to find motions apart from the others.")
-    ] = 40,
+        int | None,
+        typer.Option(
+            help="Speeds at which runs settle, to find motions apart from the others; default 40, with --map "
+            "none, else so many for each value."
+        ),
+    ] = None,
+    over: Annotated[
+        str | None,
+        typer.Option(
+            "--map",
+            metavar="NAME[=FROM:TO:COUNT]",
+            help="Map the jumps over speed and torque [N m], damping_ratio (mesh) or tip_relief, the amount "
+            f"[um], and find what removes them; default {_VALUES} values around the pair's own.",
+        ),
+    ] = None,
+    speeds: Annotated[int, typer.Option(help="With --map: number of speeds.")] = 800,
     multibody: Annotated[
         int, typer.Option(help="Speeds of multibody sweeps up and down, drawn as points; some seconds each.")
     ] = 0,
@@ -44,27 +62,42 @@ def response(
     as_json: opt.Json = False,
     force: opt.Force = False,
 ) -> None:
-    """Follow all motions over speed, stable and unstable, where teeth push and never pull.
+    """Follow all motions over speed, stable and unstable, with unilateral contact.
 
     Prints at which speeds the pair jumps from one motion to another on running up and down, and at which it
     beats or is chaotic. The figure shows the branches, the jumps, the linear model and the multipliers.
+
+    With --map the same over speed and torque, mesh damping or tip relief: where contact is lost, where
+    several motions exist side by side, at which speeds the pair jumps, and what removes the jumps.
 
     [bold]Examples[/bold]
 
     spurcheck response my_pair.toml --range 200..3000 -o response.png
 
     spurcheck response --multibody 40 -o response.svg
+
+    spurcheck response my_pair.toml --map torque=20:300:26 -o jumps.png
     """
     import floquet
+    from floquet.gear.axes import operating_rpm
     from lumped.arguments import whole_number
 
     target = opt.figure_or_data(output, force=force)
     gear_pair = opt.gear_pair(pair, None, torque, law, settings, speed_range)
+    if over is not None:
+        whole_number("--speeds", speeds, 2, 5000)
+        _map(gear_pair, over, speeds, seeds or 0, target, as_json)
+        return
     whole_number("--periods", periods, 1, 8)
     whole_number("--multibody", multibody, 0, 1000)
     with progress_bar("branches") as tell:
         found = floquet.response_branches(
-            gear_pair, None, range(1, periods + 1), seeds=seeds, back_side=back_side, progress=tell
+            gear_pair,
+            None,
+            range(1, periods + 1),
+            seeds=40 if seeds is None else seeds,
+            back_side=back_side,
+            progress=tell,
         )
     if as_json:
         print_json(
@@ -78,7 +111,7 @@ def response(
         )
     else:
         _print(gear_pair, found)
-    if not back_side and any(o.reaches_back_side for o in found.at(_operating(gear_pair))):
+    if not back_side and any(o.reaches_back_side for o in found.at(operating_rpm(gear_pair))):
         note("a motion at the operating speed is larger than the backlash: try --back-side.")
     if target is not None:
         from validation.plots.response import response_figure
@@ -86,12 +119,6 @@ def response(
         linear, runs = _others(gear_pair, found.speeds_rpm, multibody)
         opt.write_result(target, found.dataset, lambda: response_figure(found.dataset, linear, runs))
         stderr().print(f"wrote {target}")
-
-
-def _operating(pair: GearPair) -> float:
-    from floquet.gear.axes import operating_rpm
-
-    return operating_rpm(pair)
 
 
 def _others(
@@ -148,3 +175,94 @@ def _print(pair: GearPair, found: ResponseBranches) -> None:
             f"found; in the middle the run {'is chaotic' if one.kind == 'chaos' else words}"
             f", {quantity(one.dte_rms, 'm', 3)} rms"
         )
+
+
+def _map(pair: GearPair, axis: str, speeds: int, seeds: int, target: Path | None, as_json: bool) -> None:
+    """Map the jumps over speed and a second axis, and find what removes them."""
+    import numpy as np
+
+    import floquet
+    from floquet.gear.axes import speed_range
+
+    name, values = _axis(axis, pair)
+    axes = {"speed_rpm": np.linspace(*speed_range(pair), speeds), name: values}
+    with progress_bar("jump map") as tell:
+        found = floquet.jump_map(pair, axes, seeds=seeds, progress=tell)
+    with progress_bar("what removes jumps") as tell:
+        branches = floquet.response_branches(pair, periods=(1, 2), seeds=0, progress=tell)
+        removed = floquet.jumps_removed_by(branches, name)
+    if as_json:
+        print_json(
+            {
+                "gear_pair": pair.name,
+                "axis": name,
+                "values": values.tolist(),
+                "jumps": _rows(found),
+                "removed_by": [asdict(one) for one in removed],
+            }
+        )
+    else:
+        _print_map(pair, found, name, removed)
+    if target is not None:
+        from validation.plots.jumps import jump_map_figure
+
+        opt.write_result(target, found, lambda: jump_map_figure(found))
+        stderr().print(f"wrote {target}")
+
+
+def _axis(text: str, pair: GearPair) -> tuple[str, NDArray[np.float64]]:
+    """Name and values of the second axis."""
+    import numpy as np
+
+    from floquet.gear.jump_map import JUMP_AXES, checked_axis
+
+    name = text.partition("=")[0].strip()
+    if "=" in text:
+        name, values = opt.axis_values(text, JUMP_AXES, "--map")
+        checked_axis(pair, name)
+        return name, values
+    checked_axis(pair, name, "--map")
+    own = float(JUMP_AXES[name].own(pair))
+    ends = {
+        "torque": (0.2 * own, 3.0 * own),
+        "damping_ratio": (0.2 * own, min(1.0, max(0.1, 2.4 * own))),
+        "tip_relief": (0.0, max(20.0, 2.0 * own)),
+    }
+    return name, np.linspace(*ends[name], _VALUES)
+
+
+def _rows(found: xr.Dataset) -> list[dict[str, float]]:
+    names = [str(name) for name in found.data_vars if str(name).startswith("jump_")]
+    return [
+        {name.removeprefix("jump_"): found[name][j].item() for name in names}
+        for j in range(found.sizes["jump"])
+    ]
+
+
+def _print_map(pair: GearPair, found: xr.Dataset, name: str, removed: tuple[JumpRemoval, ...]) -> None:
+    from validation.reporting.formatting import number
+
+    unit = found[name].attrs["units"]
+    unit = "" if unit == "1" else f" {unit}"
+    title = f"{pair.name}: jumps over {found[name].attrs['long_name']}"
+    shown = table(title, f">{name}{unit and f' [{unit.strip()}]'}", "up at [rpm]", "down at [rpm]", ">share")
+    for value in found[name].to_numpy():
+        here = found["jump_" + name].to_numpy() == value
+        ways = found["jump_rising"].to_numpy().astype(bool)
+        speeds = found["jump_speed_rpm"].to_numpy()
+        several = float((found["motions"].sel({name: value}) > 1).mean())
+        shown.add_row(
+            number(float(value), 3),
+            *(", ".join(number(float(s), 5) for s in speeds[here & (ways == up)]) for up in (True, False)),
+            f"{100.0 * several:.0f} %",
+        )
+    stdout().print(shown)
+    stdout().print("share: of the speeds, where several motions exist side by side")
+    if not removed:
+        stdout().print("the pair itself has no folds: nothing is to be removed")
+    for one in removed:
+        if one.found:
+            text = f"no jumps are left from {name} = {number(one.value, 4)}{unit} on ({one.direction} values)"
+        else:
+            text = f"{one.direction} {name}, up to {number(one.limit, 3)}{unit}: jumps are left"
+        stdout().print(text)

@@ -3,17 +3,36 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from floquet.engine.propagators.registry import PROPAGATORS
 from validation.commands import options as opt
-from validation.commands.axes import axes_values, number_in
-from validation.commands.terminal import FAILED, guarded, print_json, stderr, stdout, table
+from validation.commands.terminal import FAILED, guarded, print_json, progress_bar, stderr, stdout, table
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+    from floquet.gear.margins import StabilityMargins, TongueMargin
     from floquet.gear.multipliers import GearPairMultipliers
+    from floquet.gear.tongues import LabelledRegion
+    from lumped import GearPair
+    from lumped.typing import FloatArray
+
+    #: What is written as data, and the figure.
+    View = tuple[xr.Dataset, Callable[[], Figure]]
+    Speeds = tuple[float, float]
+
+#: Speeds and damping ratios of a chart.
+_CHART = (401, 81)
+_AXES = {
+    "chart": "any axes",
+    "boundaries": "one axis other than speed_rpm, with or without speed_rpm,",
+    "campbell": "the one axis speed_rpm",
+}
 
 
 @guarded
@@ -30,9 +49,7 @@ def stability(
         str,
         typer.Option(
             help="What to show: chart (spectral radius over axes), boundaries (tongues traced over speed and "
-            "one more axis), campbell (frequencies over speed), paths (multipliers in the complex "
-            "plane along one axis), laws (difference chart of two friction laws), zones (one degree of "
-            "freedom with Coulomb friction, Vaishya and Singh)."
+            "one more axis), campbell (frequencies over speed)."
         ),
     ] = "chart",
     axes: Annotated[
@@ -60,20 +77,6 @@ def stability(
             "--operating-range", metavar="FROM:TO", help="Speeds of operation in rpm or '10Hz:50Hz', marked."
         ),
     ] = None,
-    against: Annotated[
-        str, typer.Option("--against", metavar="LAW", help="View laws: the law to compare with.")
-    ] = "none",
-    method: Annotated[
-        str,
-        typer.Option(
-            help="How a chart is computed: auto (the faster of the next two), taylor (every point), "
-            "chebyshev (interpolated between nodes, with checked error); or, as a slow, independent check, a "
-            f"propagator of the general engine: {', '.join(PROPAGATORS)}."
-        ),
-    ] = "auto",
-    multipliers: Annotated[
-        bool, typer.Option("--multipliers", help="Keep all multipliers of every chart point in the data.")
-    ] = False,
     supports: opt.Supports = "springs",
     speed: opt.Speed = None,
     torque: opt.Torque = None,
@@ -97,28 +100,20 @@ def stability(
 
     spurcheck stability --view boundaries --axis friction_coefficient=0:0.2:9 -o boundaries.nc
 
-    spurcheck stability --view laws --law composite --against coulomb -o difference.png
-
     spurcheck stability my_pair.toml --supports shafts --axis speed_rpm=500:20000:1000 -o on_shafts.png
     """
+    from functools import cache
+
     from floquet.gear.axes import GEAR_AXES
     from floquet.gear.multipliers import gear_pair_multipliers
-    from lumped.friction.registry import law_named
-    from validation.commands.stability_views import VIEWS, Request, show
     from validation.files.output import DATA_SUFFIXES, FIGURE_SUFFIXES, check_file
 
-    if view not in VIEWS:
-        from lumped.errors import refuse
-
-        raise refuse("--view", view, ", ".join(VIEWS), "For example --view campbell.")
     targets = [check_file(path, DATA_SUFFIXES + FIGURE_SUFFIXES, force=force) for path in output or []]
-    grid = axes_values(axes or [], GEAR_AXES)
-    speeds = None if operating_range is None else _range(operating_range)
+    grid = opt.axes_values(axes or [], GEAR_AXES)
+    marked = None if operating_range is None else _range(operating_range)
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings, speed_range)
     opt.check_supports(gear_pair, supports)
-    law_against = law_named(against, "--against").name
-    request = Request(gear_pair, grid, speeds, tongues, law_against, method, multipliers, targets, supports)
-    request.check(view)
+    _check(view, grid, targets, tongues, supports)
     found = gear_pair_multipliers(gear_pair, supports=supports)
     if as_json:
         radius = found.spectral_radius
@@ -128,11 +123,54 @@ def stability(
     else:
         _print_point(f"{gear_pair.name} on {supports}", found)
     if targets or axes or tongues or view != "chart":
-        show(view, request)
+        if view == "chart":
+            data, draw = _chart(gear_pair, grid, marked, tongues, supports)
+        elif view == "boundaries":
+            data, draw = _boundaries(gear_pair, grid, marked, supports)
+        else:
+            data, draw = _campbell(gear_pair, grid, marked)
+        draw_once = cache(draw)
         for target in targets:
+            opt.write_result(target, data, draw_once)
             stderr().print(f"wrote {target}")
     if found.verdict != "stable":
         raise typer.Exit(FAILED)
+
+
+def _check(
+    view: str,
+    axes: Mapping[str, FloatArray],
+    targets: list[Path],
+    tongues: bool,
+    supports: Literal["springs", "shafts"],
+) -> None:
+    """Refuse what cannot be shown, before any work."""
+    from lumped.errors import refuse
+    from validation.files.output import DATA_SUFFIXES
+
+    if view not in _AXES:
+        raise refuse("--view", view, ", ".join(_AXES), "For example --view campbell.")
+    others, with_speed = len(set(axes) - {"speed_rpm"}), "speed_rpm" in axes
+    fits = {"chart": True, "boundaries": others <= 1, "campbell": with_speed and not others}
+    if axes and not fits[view]:
+        raise refuse("--axis", ", ".join(axes), f"{_AXES[view]} for --view {view}", "Change the axes.")
+    figures = [path for path in targets if path.suffix.lower() not in DATA_SUFFIXES]
+    if figures and view == "chart" and len(axes) > 2:
+        raise refuse("--output", figures[0], "a chart of one or two axes for a figure", "Write .nc or .csv.")
+    if supports == "springs":
+        return
+    if view == "campbell":
+        action = "Take --view chart or boundaries, or --supports springs."
+        raise refuse("--view", view, "chart, boundaries with --supports shafts", action)
+    if tongues:
+        action = "Leave it out, or trace them over one axis with --view boundaries."
+        raise refuse("--tongues", "given", "not with --supports shafts", action)
+    if "bearing_stiffness" in axes:
+        action = "Change the bearings of the shafts by --set shafts.pinion.bearings.1.loa_stiffness=..."
+        raise refuse("--axis", "bearing_stiffness", "not with --supports shafts", action)
+    if view == "boundaries" and not others:
+        action = "For example --axis damping_ratio=0.005:0.05:5."
+        raise refuse("--axis", "none", "an axis other than speed_rpm with --supports shafts", action)
 
 
 def _print_point(pair: str, found: GearPairMultipliers) -> None:
@@ -147,14 +185,161 @@ def _print_point(pair: str, found: GearPairMultipliers) -> None:
     stdout().print(shown)
 
 
-def _range(text: str) -> tuple[float, float]:
+def _range(text: str) -> Speeds:
     """Range of speeds [rpm] written FROM:TO."""
     from lumped.errors import refuse
 
     ends = text.split(":")
     if len(ends) == 2:
-        low, high = (number_in("--operating-range", end, "rpm") for end in ends)
+        low, high = (opt.number_in("--operating-range", end, "rpm") for end in ends)
         if 0.0 < low < high:
             return low, high
     advice = "For example --operating-range 3000:8000."
     raise refuse("--operating-range", text, "FROM:TO in rpm, 0 < FROM < TO", advice)
+
+
+def _chart(
+    pair: GearPair,
+    axes: Mapping[str, FloatArray],
+    marked: Speeds | None,
+    tongues: bool,
+    supports: Literal["springs", "shafts"],
+) -> View:
+    from floquet import predicted_lines
+    from floquet.gear.axes import chart_axes, operating_value
+    from floquet.gear.chart import stability_chart
+    from floquet.gear.margins import margins_dataset
+    from validation.plots.stability import mark_operating_range, stability_figure, stability_line_figure
+    from validation.plots.tongues import tongue_chart_figure
+
+    grid = dict(axes) or chart_axes(pair, *_CHART)
+    with progress_bar("stability chart") as tell:
+        chart = stability_chart(pair, grid, rtol=1e-8, store="radius", supports=supports, progress=tell)
+    stable = chart["verdict"].to_numpy() == 1
+    radius = chart["spectral_radius"]
+    worst = radius.isel(radius.argmax(...))
+    stdout().print(
+        "chart: " + ", ".join(f"{n} {v.min():g} to {v.max():g} ({v.size} values)" for n, v in grid.items())
+        + f"\n{int(stable.sum())} of {stable.size} points are stable; "
+        + f"largest multiplier {float(worst):.6f} at "
+        + ", ".join(f"{name} {float(worst[name]):.5g}" for name in grid)
+        + f"\nlargest bound on an error {float(chart['error'].max()):.1e}, method {chart.attrs['method']}"
+    )  # fmt: skip
+    data = chart
+    regions: Sequence[TongueMargin | LabelledRegion] | None = None
+    if tongues and set(grid) == {"speed_rpm", "damping_ratio"}:
+        traced = _traced(pair, grid["speed_rpm"])
+        edges = margins_dataset(traced).rename(
+            damping_ratio="tongue_damping", lower="tongue_lower", upper="tongue_upper"
+        )
+        data, regions = chart.merge(edges, combine_attrs="override"), traced.tongues
+    elif tongues:
+        regions = _labelled(pair, chart)
+
+    def draw() -> Figure:
+        at = {name: operating_value(pair, name) for name in grid}
+        x, *others = sorted(grid, key=lambda name: name != "speed_rpm")  # speed runs to the right
+        if not others:
+            figure = stability_line_figure(chart, x, at[x])
+        elif regions is not None and x == "speed_rpm":
+            lines = {str(tongue): rpm for tongue, rpm in predicted_lines(pair).items()}
+            return tongue_chart_figure(
+                chart, others[0], regions, lines, point=(at[x], at[others[0]]), operating_range=marked
+            )
+        else:
+            figure = stability_figure(chart, x, others[0], (at[x], at[others[0]]))
+        if x == "speed_rpm":
+            mark_operating_range(figure.axes[0], marked)
+        return figure
+
+    return data, draw
+
+
+def _traced(pair: GearPair, speeds: FloatArray) -> StabilityMargins:
+    """Trace the tongues over a range of speeds, and print them by falling critical damping."""
+    from floquet.gear.margins import stability_margins
+
+    with progress_bar("tongues"):
+        found = stability_margins(pair, (float(speeds.min()), float(speeds.max())))
+    low, high = found.speed_range
+    if (above := found.above) is not None:
+        stdout().print(
+            f"next tongue above the range, without mesh damping: {above.label}, {above.lower:.0f} to "
+            f"{above.upper:.0f} rpm, closed by a mesh damping ratio of {above.critical_damping:.6f}"
+        )
+    if not found.tongues:
+        stdout().print(f"no tongue from {low:g} to {high:g} rpm, even without mesh damping")
+        return found
+    shown = table(
+        "tongues without mesh damping, and what closes them (rpm; w: natural frequencies)",
+        "tongue", ">from", ">to", ">multiplier", ">critical damping", ">closes at",
+    )  # fmt: skip
+    for tongue in sorted(found.tongues, key=lambda t: -t.critical_damping):
+        shown.add_row(
+            tongue.label, f"{tongue.lower:.1f}", f"{tongue.upper:.1f}", f"{tongue.radius:.6f}",
+            f"{tongue.critical_damping:.6f}", f"{tongue.tip_speed:.1f}",
+        )  # fmt: skip
+    stdout().print(shown)
+    stdout().print(
+        f"Friction is constant at its mean, {found.friction_coefficient:.4f}. Above a mesh damping ratio of "
+        f"{found.critical_damping:.6f} every speed is stable; this pair has {found.damping:g}."
+    )
+    return found
+
+
+def _labelled(pair: GearPair, chart: xr.Dataset) -> list[LabelledRegion]:
+    """Name the unstable regions of a chart, and print them."""
+    from floquet.gear.tongues import label_regions
+
+    regions, names = label_regions(pair, chart), list(map(str, chart["spectral_radius"].dims))
+    headings = ("tongue", *(f">{name}" for name in names), ">largest multiplier", ">points")
+    shown = table("unstable regions, by mode shape (w: natural frequencies)", *headings)
+    for region in regions:
+        place = [f"{region.point[name]:.6g}" for name in names]
+        shown.add_row(str(region.label), *place, f"{region.radius:.6f}", str(region.nodes))
+    stdout().print(shown)
+    return regions
+
+
+def _boundaries(
+    pair: GearPair,
+    axes: Mapping[str, FloatArray],
+    marked: Speeds | None,
+    supports: Literal["springs", "shafts"],
+) -> View:
+    from floquet import stability_boundaries
+    from floquet.gear.axes import GEAR_AXES, chart_axes
+    from floquet.gear.margins import margins_dataset
+    from validation.plots.tongues import boundaries_figure, tongues_figure
+
+    grid = dict(axes)
+    speeds = grid.pop("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"][[0, -1]])
+    name, values = next(iter(grid.items()), ("damping_ratio", speeds))
+    if name == "damping_ratio" and supports == "springs":
+        traced = _traced(pair, speeds)
+        return margins_dataset(traced), lambda: tongues_figure(traced, marked)
+    ends = float(speeds.min()), float(speeds.max())
+    with progress_bar("boundaries") as tell:
+        found = stability_boundaries(pair, ends, {name: values}, supports=supports, progress=tell)
+    headings = ("tongue", ">values", ">from, rpm", ">to, rpm", ">largest multiplier")
+    shown = table(f"tongues over {GEAR_AXES[name].long_name}", *headings)
+    for row in range(found.sizes["tongue"]):
+        part = found.isel(tongue=row)
+        edges = (f"{float(part['lower'].min()):.1f}", f"{float(part['upper'].max()):.1f}")
+        radius = f"{float(part['peak_radius'].max()):.6f}"
+        shown.add_row(str(part["label"].item()), str(int(part["present"].sum())), *edges, radius)
+    none = f"no unstable speed from {ends[0]:g} to {ends[1]:g} rpm at any value"
+    stdout().print(shown if found.sizes["tongue"] else none)
+    return found, lambda: boundaries_figure(found, name, marked)
+
+
+def _campbell(pair: GearPair, axes: Mapping[str, FloatArray], marked: Speeds | None) -> View:
+    from floquet.gear.axes import chart_axes, operating_rpm
+    from floquet.gear.campbell import campbell
+    from validation.plots.campbell import campbell_figure
+
+    speeds = axes.get("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"])
+    diagram = campbell(pair, speeds)
+    return diagram, lambda: campbell_figure(
+        diagram, operating_rpm=operating_rpm(pair), operating_range=marked
+    )

@@ -16,7 +16,7 @@ from validation.commands import options
 from validation.reporting import Report
 from validation.reporting.compare import Change, Comparison
 
-COMMANDS = ("report", "presets", "init", "simulate", "crosscheck", "stability", "schema")
+COMMANDS = ("report", "presets", "init", "simulate", "crosscheck", "stability")
 
 
 def run(*arguments):
@@ -63,11 +63,6 @@ def test_init_writes_a_file_that_loads_and_never_overwrites(tmp_path):
     assert path.read_text() == "edited"
     assert run("init", "-o", path, "--force").exit_code == 0
     assert lumped.load_gear_pair(path) == pair
-
-
-def test_schema_is_json_schema(tmp_path):
-    data = json.loads(run("schema").stdout)
-    assert data == lumped.json_schema()
 
 
 @pytest.mark.parametrize(
@@ -239,7 +234,7 @@ def test_options_reach_the_report(asked, tmp_path):
     expected = {
         "out": out,
         "quick": True,
-        "prescribed": False,
+        "paper": False,
         "compare": old,
         "tolerance": 0.01,
         "force": False,
