@@ -66,7 +66,6 @@ CALLS = {
         {"pair": PAIR, "speeds_rpm": [4000.0]},
         "speeds_rpm settle cycles samples_per_cycle fidelity effects rtol",
     ),
-    multibody.reversal_convergence: ({"pair": PAIR}, "cycles velocities"),
     floquet.PeriodicSystem: ({"A": SYSTEM.A, "period": 1.0}, "A period breakpoints b"),
     floquet.monodromy: ({"system": SYSTEM}, "rtol method max_substeps"),
     floquet.periodic_motion: ({"system": SYSTEM}, "times rtol method max_substeps"),

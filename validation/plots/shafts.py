@@ -1,15 +1,10 @@
-"""Both shafts of a pair to scale with gears, bearings, motor and load; modes of the machine."""
+"""Both shafts of a pair to scale with gears, bearings, motor and load."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
-
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from lumped import GearPair
@@ -19,27 +14,16 @@ from validation.plots.style import (
     GREY,
     RED,
     WIDTH,
-    legend_outside,
     new_figure,
     write_beside,
 )
 
 _STEEL, _GEARS = "#dfe3e8", ("#c9d7e8", "#e8dcc3")
 _COLOURS = (BLUE, RED)
-_DASHES: dict[str, Any] = {"loa": "-", "oloa": (0, (4, 1.5))}
-#: Heights of the panel of a mode, and of its title [inch].
-_PANEL, _TITLE = 1.2, 0.25
 
 
-def shafts_figure(pair: GearPair, modes: xr.Dataset | None = None, shown: Sequence[int] = ()) -> Figure:
-    """Side view of both shafts to scale, and modes of the machine below it.
-
-    Parameters
-    ----------
-    pair : a validated gear pair with shafts
-    modes : dataset of ``multibody.shaft_modes``
-    shown : modes to draw, numbers of its coordinate ``mode``
-    """
+def shafts_figure(pair: GearPair) -> Figure:
+    """Side view of both shafts of a pair to scale."""
     assert pair.shafts is not None
     shafts = (pair.shafts.pinion, pair.shafts.gear)
     # The middles of both faces are one place; z is counted from the end of the pinion's shaft.
@@ -50,13 +34,7 @@ def shafts_figure(pair: GearPair, modes: xr.Dataset | None = None, shown: Sequen
     bottom = -1e3 * pair.geometry.tip_radius_pinion - 0.2 * distance
     top = distance + 1e3 * pair.geometry.tip_radius_gear + 0.2 * distance
     tall = min(max(0.9 * WIDTH * (top - bottom) / (high - low), 2.0), 6.0)
-    figure, axes = new_figure(
-        1 + len(shown),
-        1,
-        0.6 + tall + (0.45 if shown else 0.0) + (_PANEL + _TITLE) * len(shown),
-        sharex=True,
-        height_ratios=[tall, *[_PANEL] * len(shown)],
-    )
+    figure, axes = new_figure(1, 1, 0.6 + tall)
     view = axes[0, 0]
     view.grid(visible=False)
     view.set(xlim=(low, high), ylim=(bottom, top))
@@ -89,17 +67,7 @@ def shafts_figure(pair: GearPair, modes: xr.Dataset | None = None, shown: Sequen
         if inertia is not None:
             _coupled(view, word, inertia, shaft, starts[i], height, distance)
     view.set_ylabel("height [mm]")
-    for ax, number in zip(axes[1:, 0], shown, strict=True):
-        assert modes is not None
-        _mode(ax, modes.sel(mode=number), shafts, starts)
-    axes[-1, 0].set_xlabel("along the shafts, from the end of the pinion's [mm]")
-    if shown:
-        handles = [
-            Line2D([], [], color=colour, linestyle=dash, label=f"{name}'s axis, {where}")
-            for name, colour in zip(("pinion", "gear"), _COLOURS, strict=True)
-            for where, dash in (("along the LOA", _DASHES["loa"]), ("off it", _DASHES["oloa"]))
-        ]
-        legend_outside(figure, handles, 2)
+    view.set_xlabel("along the shafts, from the end of the pinion's [mm]")
     return figure
 
 
@@ -172,20 +140,3 @@ def _diameter_at(shaft: Shaft, position: float) -> float:
     ends = np.cumsum([segment.length for segment in shaft.segments])
     number = min(int(np.searchsorted(ends, position * (1.0 - 1e-12))), len(shaft.segments) - 1)
     return shaft.segments[number].diameter
-
-
-def _mode(ax: Axes, mode: xr.Dataset, shafts: tuple[Shaft, Shaft], starts: tuple[float, float]) -> None:
-    """Axes of both shafts in one mode, at the instant of its largest deflection."""
-    ax.axhline(0.0, color=GREY, linewidth=0.6)
-    for shaft, start, name, colour in zip(shafts, starts, ("pinion", "gear"), _COLOURS, strict=True):
-        z = start + 1e3 * shaft.length * mode["place"].to_numpy()
-        for direction, dash in _DASHES.items():
-            shape = mode["shape"].sel(shaft=name, direction=direction).to_numpy()
-            ax.plot(z, shape, color=colour, linestyle=dash, linewidth=1.2)
-        at = shaft.gear_position / shaft.length
-        gear = mode["shape"].sel(shaft=name).interp(place=at).to_numpy()
-        ax.plot([start + 1e3 * shaft.gear_position] * 2, gear, "o", color=colour, markersize=3)
-    ax.set(ylim=(-1.15, 1.15), yticks=(-1, 0, 1), ylabel="shape [-]")
-    frequency, damping = float(mode["natural_frequency"]), float(mode["damping_ratio"])
-    words = f"mode {int(mode['mode'])}: {frequency:.5g} Hz, damping ratio {damping:.2g}"
-    ax.set_title(words, loc="left", pad=2, fontsize=8.5)

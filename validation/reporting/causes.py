@@ -1,8 +1,6 @@
-"""Part of the cross-check chapter: the teeth that the multibody model sees, and why the models differ."""
+"""Part of the cross-check chapter: why the models differ."""
 
 from __future__ import annotations
-
-from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -10,27 +8,10 @@ import xarray as xr
 import multibody
 from lumped import GearPair, NumericalError
 from multibody.contact.effects import CAUSES
-from multibody.study.pictures import gear_picture
-from validation.reporting.blocks import Block, Picture, Rows, Table, Text
-from validation.reporting.results import Results
+from validation.reporting.blocks import Block, Rows, Table, Text
 
 _CAUSES = CAUSES | {"all": "all together"}
 _QUANTITIES = {"dte": "transmission error", "x_p": "pinion x", "y_p": "pinion y"}
-
-
-def meshing_teeth(results: Results) -> Picture:
-    """Both gears and their contact forces a quarter of a mesh cycle after a pair was at A."""
-    check = results.check
-    run = check.multibody["exact"]
-    samples = (run.sizes["time"] - 1) // check.cycles
-    index = run.sizes["time"] - 1 - samples + samples // 4
-    return Picture(
-        "meshing_teeth",
-        "The gears as the exact multibody model sees them, to scale, a quarter of a mesh cycle after a pair "
-        "was at A. Right: the contacts on the line of action with the forces on the gear, friction enlarged "
-        "as the legend says.",
-        partial(gear_picture, results.pair, run, index),
-    )
 
 
 def attribution(pair: GearPair) -> xr.Dataset | None:

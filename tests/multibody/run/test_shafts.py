@@ -15,7 +15,6 @@ from lumped.stiffness.body import body_twist
 from multibody.contact import kernels as kn
 from multibody.contact.forces import tooth_forces
 from multibody.contact.kinematics import MAX_PAIRS
-from multibody.run.linear_motion import mesh_wrench
 from multibody.run.setup import prepare
 from multibody.run.simulation import record
 from multibody.shafts.train import disc
@@ -191,27 +190,6 @@ def test_on_shafts_too_the_brake_of_the_loaded_form_pays_for_every_loss():
     # Simpson's rule over steps in which dampers take hold leaves 6e-5; the paper's brake leaves out 5 %.
     assert machine.torque_pinion - machine.torque_gear == pytest.approx(lost, rel=2e-4)
     assert expected["power_sliding"] < 0.96 * lost * pair.operating.pinion_speed
-
-
-def test_modes_of_exudyn_are_those_of_the_matrices():
-    """exudyn differentiates the assembled forces; here the mesh adds its incidence to the own matrices."""
-    modes = multibody.shaft_modes(PAIR, 0.3)
-    m = prepare(PAIR, "linear", supports="shafts").machine
-    time = np.array([0.3 * m.period])
-    by_overlap, by_rate, _ = mesh_wrench(m, time, 0.0, m.period)
-    stiffness, damping = m.train.stiffness.copy(), m.train.damping.copy()
-    stiffness[:6, :6] -= np.outer(by_overlap[0], m.overlap)
-    damping[:6, :6] -= np.outer(by_rate[0], m.overlap)
-    n, inverse = m.size, np.linalg.inv(m.train.mass)
-    roots = np.linalg.eigvals(
-        np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ stiffness, -inverse @ damping]])
-    )
-    roots = roots[np.argsort(np.abs(roots))[2:]]
-    upper = roots[roots.imag > 0.0]
-    np.testing.assert_allclose(modes["natural_frequency"], np.abs(upper) / 2 / np.pi, rtol=1e-6)
-    np.testing.assert_allclose(modes["damping_ratio"], -upper.real / np.abs(upper), atol=1e-5)
-    np.testing.assert_allclose(modes["kinetic_share"].sum("part"), 1.0, rtol=1e-9)
-    assert modes.sel(shaft="gear")["whirl"].min() < -0.5 < 0.5 < modes.sel(shaft="gear")["whirl"].max()
 
 
 def test_finite_motions_on_shafts_fall_with_torque():

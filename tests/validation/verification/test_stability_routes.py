@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+import lumped
 import multibody
 from validation.verification import stability_routes as routes
 from validation.verification.stability_routes import fit_bound, stability_routes
@@ -62,7 +63,7 @@ def test_one_percent_of_the_lumped_masses_is_seen_in_the_whole_matrix(pair, one_
     true = routes.gear_pair_system
 
     def heavier(pair, form):
-        mass = pair.with_({"pinion.mass": 1.01 * multibody.blanks(pair)[0].taken_mass})
+        mass = pair.with_({"pinion.mass": 1.01 * lumped.bodies(pair).mass_pinion})
         return true(mass, form)
 
     monkeypatch.setattr(routes, "gear_pair_system", heavier)
@@ -77,7 +78,7 @@ def test_both_routes_give_the_same_multipliers(pair, one_flow):
     ours = routes.fast_multipliers(routes.gear_block(pair)).multipliers[0]
     assert np.abs(np.subtract.outer(ours, found.feedback)).min(axis=1).max() < 1e-8
     # Off the line of action a bearing alone: exp(-zeta w T) of each of both bodies.
-    omega = np.sqrt(pair.bearings.pinion.oloa_stiffness / multibody.blanks(pair)[0].taken_mass)
+    omega = np.sqrt(pair.bearings.pinion.oloa_stiffness / lumped.bodies(pair).mass_pinion)
     decay = np.exp(-pair.bearings.pinion.oloa_damping_ratio * omega * pair.geometry.mesh_period)
     np.testing.assert_allclose(np.abs(found.oloa), decay, rtol=1e-6)
 

@@ -30,7 +30,7 @@ from validation.reporting.blocks import (
     Text,
     table_of,
 )
-from validation.reporting.causes import attribution, causes, meshing_teeth
+from validation.reporting.causes import attribution, causes
 from validation.reporting.chapter import Chapter
 from validation.reporting.cross_check_words import NAMES, finite_motions, same_equations
 from validation.reporting.formatting import number
@@ -60,7 +60,6 @@ def write(results: Results) -> Content:
             f"{_linear_motion(check)} {_exact_motion(check)} "
             f"{same_equations(check)} {finite_motions(check)}"
         ),
-        meshing_teeth(results),
         *_judged(check),
         Text(
             "Why these tolerances:",

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.gear import Gear
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -24,13 +23,9 @@ _POINTS = 400
 
 @dataclass(frozen=True)
 class Blank:
-    """One gear body, by its outline and as the simulations take it.
+    """One gear body: mass [kg] and inertia [kg m^2] of its outline and as the simulations take them.
 
-    Attributes
-    ----------
-    mass, inertia : of the outline with bore and own face width [kg], [kg m^2]
-    error : of both by the polygon, relative [-]
-    taken_mass, taken_inertia : in the simulations: given in the schema, or the disc of reference diameter
+    ``error`` is that of both outline values by the polygon, relative.
     """
 
     mass: float
@@ -39,29 +34,13 @@ class Blank:
     taken_mass: float
     taken_inertia: float
 
-    @property
-    def mass_difference(self) -> float:
-        """What the simulations take, over the outline, less one."""
-        return self.taken_mass / self.mass - 1.0
 
-    @property
-    def inertia_difference(self) -> float:
-        """The same of the inertia."""
-        return self.taken_inertia / self.inertia - 1.0
-
-
-def blanks(pair: AnyPair) -> tuple[Blank, Blank]:
-    """Bodies of pinion and gear by their outlines, beside what the simulations take.
-
-    Parameters
-    ----------
-    pair : a validated gear pair
-    """
-    pair = load_gear_pair(pair)
+def blanks(pair: GearPair) -> tuple[Blank, Blank]:
+    """Bodies of pinion and gear by their outlines, beside what the simulations take."""
     mass, inertia = masses(pair)
     drawn = circles(pair)
     sides = ((pair.pinion, drawn.base_pinion, drawn.tip_pinion), (pair.gear, drawn.base_gear, drawn.tip_gear))
-    found = []
+    result = []
     for i, (gear, base, tip) in enumerate(sides):
         coarse, fine = (_integrals(half_tooth(pair, gear, base, tip, n)) for n in (_POINTS, 2 * _POINTS))
         # The polygon errs by the square of its steps: a third of the change is left in the finer one.
@@ -71,21 +50,14 @@ def blanks(pair: AnyPair) -> tuple[Blank, Blank]:
         area, polar = area - hole, polar - 0.5 * hole * (0.5 * gear.bore) ** 2
         weight = gear.density * gear.face_width
         error = float(np.abs(left / fine).max())
-        found.append(
+        result.append(
             Blank(float(weight * area), float(weight * polar), error, float(mass[i]), float(inertia[i]))
         )
-    return found[0], found[1]
+    return result[0], result[1]
 
 
 def half_tooth(pair: GearPair, gear: Gear, base: float, tip: float, points: int) -> FloatArray:
-    """Outline of half a tooth and half a space from the gear's centre, closed, (k, 2) [m].
-
-    Parameters
-    ----------
-    pair, gear : the pair and which of its gears
-    base, tip : base and tip radius [m]
-    points : on each part: tip circle, flank, fillet, root circle
-    """
+    """Outline of half a tooth and half a space from the gear's centre, closed, (k, 2) [m]."""
     profile = pair.wheels[0 if gear is pair.pinion else 1].tooth
     half = 0.5 * base_tooth_angle(pair, gear, base)
     thinned = profile.base_half_angle - half

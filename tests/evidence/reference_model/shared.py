@@ -10,10 +10,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from lumped.friction.registry import law_named
-from lumped.schema.pair import GearPair
-from multibody.contact.friction import LAWS
-
 
 @dataclass(frozen=True)
 class Shared:
@@ -79,7 +75,7 @@ SHARED: tuple[Shared, ...] = (
         "definitions of the schema; both sides work them out for themselves",
         "free vibration decays with the damping ratio of the schema (damping_check); the outline of each "
         "gear is integrated and the difference to the disc stated (blanks)",
-        ("multibody/study/free_vibration.py", "multibody/study/blanks.py"),
+        ("tests/evidence/reference_model/free_vibration.py", "tests/evidence/reference_model/blanks.py"),
     ),
     Shared(
         "on shafts: what the damping ratio means, the gear as a rigid disc, Cowper's shear coefficient",
@@ -95,22 +91,3 @@ SHARED: tuple[Shared, ...] = (
         ("multibody/run/flow_map.py",),
     ),
 )
-
-
-def shared_of(pair: GearPair) -> tuple[Shared, ...]:
-    """``SHARED``, and the friction coefficient where the multibody model does not have the law of the pair.
-
-    Parameters
-    ----------
-    pair : a validated gear pair
-    """
-    law = pair.friction.law
-    if law in LAWS:
-        return SHARED
-    own = Shared(
-        f"friction coefficient of the law {law_named(law).title}, along the path of contact",
-        "the multibody model has no formula of its own for this law",
-        "none: the comparison of the models says nothing about this coefficient",
-        ("lumped/friction/registry.py",),
-    )
-    return (own, *SHARED)

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 from multibody.contact import friction as fr
 from multibody.contact import kernels as kn
@@ -34,12 +34,8 @@ _RTOL = 1e-11
 class Decay:
     """One free vibration.
 
-    Attributes
-    ----------
-    motion : "mesh", or "pinion x" to "gear y": a body on its bearing along (x) and off (y) the line of action
-    frequency : undamped natural frequency, as measured [Hz]
-    measured : damping ratio from the decay [-]
-    given : damping ratio of the schema; of a mesh with several pairs in contact, that of their sum [-]
+    ``motion`` is "mesh", or "pinion x" to "gear y": a body on its bearing along (x) and off (y) the line of
+    action; ``measured`` and ``given`` are damping ratios, of a mesh with several pairs that of their sum.
     """
 
     motion: str
@@ -47,28 +43,12 @@ class Decay:
     measured: float
     given: float
 
-    @property
-    def decrement(self) -> float:
-        """Logarithmic decrement per swing as measured; infinite from critical damping on."""
-        rest = max(1.0 - self.measured**2, 0.0)
-        return 2.0 * np.pi * self.measured / np.sqrt(rest) if rest > 0.0 else np.inf
 
-
-def damping_check(pair: AnyPair) -> tuple[Decay, ...]:
-    """Measure the damping ratios of the mesh and of the four bearing directions by free decay.
-
-    Parameters
-    ----------
-    pair : a validated gear pair
-
-    Returns
-    -------
-    five ``Decay``, each of a run of the exudyn model
-    """
-    pair = load_gear_pair(pair)
+def damping_check(pair: GearPair) -> tuple[Decay, ...]:
+    """Measure the damping ratios of the mesh and of the four bearing directions by free decay."""
     numbers = _frozen(machine(pair))
     p = numbers.parameters
-    held = replace(numbers, mass=_HEAVY * numbers.mass)
+    fixed = replace(numbers, mass=_HEAVY * numbers.mass)
     q = np.zeros(6)
     q[2], q[5] = -_AMPLITUDE / p[kn.RADIUS_P], 0.0
     places = _in_contact(numbers)
@@ -76,7 +56,7 @@ def damping_check(pair: AnyPair) -> tuple[Decay, ...]:
     share = float(np.sum(np.sqrt(k)) / np.sqrt(np.sum(k)))  # of pairs side by side, each with its own ratio
     mobility = p[kn.RADIUS_P] ** 2 / numbers.inertia[0] + p[kn.RADIUS_G] ** 2 / numbers.inertia[1]
     omega, ratio = np.sqrt(k.sum() * mobility), pair.mesh.damping_ratio * share
-    found = [_decay("mesh", held, q, omega, ratio, numbers.overlap)]
+    found = [_decay("mesh", fixed, q, omega, ratio, numbers.overlap)]
     free = replace(numbers, table=np.column_stack([numbers.table[:, :2], 0.0 * numbers.table[:, 2:]]))
     for i, (name, bearing) in enumerate((("pinion", pair.bearings.pinion), ("gear", pair.bearings.gear))):
         ratios = (bearing.loa_damping_ratio, bearing.oloa_damping_ratio)

@@ -1,0 +1,162 @@
+"""Does the multibody model's own evidence hold: its damping, its bodies, its third build, its modes?"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import lumped
+from lumped.friction.registry import LAWS
+from multibody.contact import friction
+from multibody.contact import kernels as kn
+from multibody.contact.machine import machine
+from multibody.run.linear_motion import mesh_wrench
+from multibody.run.setup import prepare
+from tests.evidence.reference_model import third_build as turning
+from tests.evidence.reference_model.blanks import blanks
+from tests.evidence.reference_model.free_vibration import damping_check
+from tests.evidence.reference_model.frozen_modes import frozen_modes, held, linearised, modes_of
+from tests.evidence.reference_model.reversal_convergence import reversal_changes
+from tests.evidence.reference_model.shared import SHARED
+
+ROOT = Path(__file__).parents[3]
+PAIR = lumped.load_gear_pair("nasa_28_28").with_(mesh__relief="ignored")
+#: Nothing alike: teeth, shifts, all damping ratios and bearings.
+UNLIKE = lumped.load_gear_pair("fzg_c").with_(
+    mesh__damping_ratio=0.07,
+    mesh__stiffness={"model": "parabolic"},
+    bearings__pinion={
+        "loa_stiffness": 2e8,
+        "oloa_stiffness": 5e7,
+        "loa_damping_ratio": 0.02,
+        "oloa_damping_ratio": 0.4,
+    },
+    bearings__gear={
+        "loa_stiffness": 3e8,
+        "oloa_stiffness": 1e8,
+        "loa_damping_ratio": 1.2,
+        "oloa_damping_ratio": 0.03,
+    },
+)
+
+
+def test_free_vibration_decays_with_the_damping_ratios_of_the_schema():
+    """Under-damped and over-damped: the decay of an oscillator is known exactly."""
+    decays = damping_check(UNLIKE)
+    assert [d.motion for d in decays] == ["mesh", "pinion x", "pinion y", "gear x", "gear y"]
+    np.testing.assert_allclose([d.given for d in decays], [0.07, 0.02, 0.4, 1.2, 0.03], rtol=1e-14)
+    np.testing.assert_allclose([d.measured for d in decays], [d.given for d in decays], rtol=1e-6)
+    body, k = lumped.bodies(UNLIKE), UNLIKE.bearings.gear.loa_stiffness
+    assert decays[3].frequency == pytest.approx(np.sqrt(k / body.mass_gear) / (2 * np.pi), rel=1e-6)
+
+
+def test_a_wrong_damping_constant_is_seen_in_the_decay(monkeypatch):
+    def doubled(pair):
+        numbers = machine(pair)
+        p = numbers.parameters.copy()
+        p[kn.DAMPING] *= 2.0
+        return replace(numbers, parameters=p, bearing_damping=numbers.bearing_damping[:, ::-1])
+
+    monkeypatch.setattr("tests.evidence.reference_model.free_vibration.machine", doubled)
+    measured = [d.measured / d.given for d in damping_check(UNLIKE)]
+    assert measured[0] == pytest.approx(2.0, rel=1e-6)
+    assert all(abs(ratio - 1.0) > 0.2 for ratio in measured[1:])
+
+
+@pytest.mark.parametrize("name", lumped.preset_names())
+def test_bodies_by_their_outline(name):
+    """Discs stand for gears within a tenth."""
+    pair = lumped.load_gear_pair(name)
+    for which, blank in zip(("pinion", "gear"), blanks(pair), strict=True):
+        assert blank.error < 1e-6
+        assert abs(blank.taken_mass / blank.mass - 1.0) < 0.03
+        assert abs(blank.taken_inertia / blank.inertia - 1.0) < 0.1
+        body = lumped.bodies(pair)
+        assert blank.taken_mass == pytest.approx(getattr(body, f"mass_{which}"), rel=1e-12)
+        assert blank.taken_inertia == pytest.approx(getattr(body, f"inertia_{which}"), rel=1e-12)
+
+
+def test_a_bore_takes_its_disc_out_of_the_outline():
+    solid, bored = blanks(PAIR)[0], blanks(PAIR.with_(pinion__bore=40.0))[0]
+    hole = PAIR.pinion.density * PAIR.pinion.face_width * np.pi * 0.02**2
+    assert solid.mass - bored.mass == pytest.approx(hole, rel=1e-12)
+    assert solid.inertia - bored.inertia == pytest.approx(0.5 * hole * 0.02**2, rel=1e-12)
+
+
+def test_bodies_that_turn_move_like_those_that_deviate(monkeypatch):
+    """atol 1e-8 leaves some 1e-11 m, 1e-9 a tenth of that; one per cent of the mass leaves more."""
+    (loose, span), (sharp, _) = (turning.third_build(PAIR, 2, atol=atol) for atol in (1e-8, 1e-9))
+    assert loose < 3e-11
+    assert sharp < 0.3 * loose
+    assert span > 1e-5
+    true = turning.build
+    monkeypatch.setattr(
+        turning,
+        "build",
+        lambda numbers, *rest, **options: true(replace(numbers, mass=1.01 * numbers.mass), *rest, **options),
+    )
+    assert turning.third_build(PAIR, 1)[0] > 100.0 * loose
+
+
+def test_frozen_modes_are_the_lumped_ones_but_for_the_turned_line():
+    result = frozen_modes(PAIR, phase=0.3)
+    frozen, linear, exact, turned = (
+        result[name] for name in ("lumped frozen", "exudyn linear", "exudyn exact", "lumped turned line")
+    )
+    np.testing.assert_allclose(frozen[0, [0, -1]], [2237.677, 8691.553], atol=1e-3)
+    # exudyn differentiates numerically.
+    np.testing.assert_allclose(linear[0], frozen[0], rtol=1e-7)
+    np.testing.assert_allclose(linear[1], frozen[1], rtol=1e-6)
+    assert exact[0, 1] - frozen[0, 1] == pytest.approx(turned[0, 1] - frozen[0, 1], rel=0.01)
+    assert turned[0, 1] - frozen[0, 1] == pytest.approx(-1.27, abs=0.01)
+    np.testing.assert_allclose(exact[0, [0, 2, 3, 4]], frozen[0, [0, 2, 3, 4]], rtol=1e-6)
+
+
+def test_modes_on_shafts_are_those_of_the_matrices():
+    """exudyn differentiates the assembled forces; here the mesh adds its incidence to the own matrices."""
+    shaft = {
+        "segments": [{"length": 100, "diameter": 30}, {"length": 60, "diameter": 25, "bore": 8}],
+        "gear_position": 145,
+        "bearings": [
+            {"position": at, "loa_stiffness": 2e8, "oloa_stiffness": 1.6e8, "loa_damping": 300.0}
+            for at in (20, 90)
+        ],
+    }
+    motor = {"position": 0, "inertia": 0.004, "coupling_stiffness": 4e4, "coupling_damping": 0.2}
+    shafts = {"damping_ratio": 0.02, "max_frequency": 12e3, "pinion": shaft, "gear": shaft, "motor": motor}
+    setup = prepare(PAIR.with_(shafts=shafts), "linear", supports="shafts")
+    m = setup.machine
+    roots = linearised(held(setup, 0.3 * m.period), np.zeros(m.size))
+    by_overlap, by_rate, _ = mesh_wrench(m, np.array([0.3 * m.period]), 0.0, m.period)
+    stiffness, damping = m.train.stiffness.copy(), m.train.damping.copy()
+    stiffness[:6, :6] -= np.outer(by_overlap[0], m.overlap)
+    damping[:6, :6] -= np.outer(by_rate[0], m.overlap)
+    n, inverse = m.size, np.linalg.inv(m.train.mass)
+    expected = np.linalg.eigvals(
+        np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ stiffness, -inverse @ damping]])
+    )
+    expected = modes_of(expected[np.argsort(np.abs(expected))[2:]])
+    np.testing.assert_allclose(modes_of(roots)[0], expected[0], rtol=1e-6)
+    np.testing.assert_allclose(modes_of(roots)[1], expected[1], atol=1e-5)
+
+
+@pytest.mark.parametrize("quantity", ["dte", "y_p"])
+def test_the_motion_converges_as_the_sign_change_of_friction_sharpens(quantity):
+    """79.1 N m, 800 rpm: each halving of the velocity moves the motion by less, at about first order."""
+    slow = {"operating.pinion_torque": 79.1, "operating.pinion_speed": 800}
+    pair = lumped.load_gear_pair("nasa_28_28").with_(
+        slow, friction__law="coulomb", friction__coefficient=0.05
+    )
+    steps, orders = reversal_changes(pair, quantity)
+    assert np.all(orders > 0.26), steps  # a factor of 1.2 per halving
+    # What is left below 0.5 mm/s: a geometric series with the last ratio; the default is smaller still.
+    assert steps[-1] / (2.0 ** orders[-1] - 1) < 0.02
+
+
+def test_evidence_for_what_is_shared_exists():
+    assert len(SHARED) >= 6
+    assert all((ROOT / path).exists() for item in SHARED for path in item.where)
+    assert set(LAWS) == set(friction.LAWS)  # every law is written twice
