@@ -107,7 +107,7 @@ def validity() -> str:
 
 def explore() -> str:
     """The interactive page; its numbers are written beside it."""
-    results = compute("nasa_28_28")
+    results = compute(lumped.load_gear_pair("nasa_28_28"))
     write_dataset(results.dataset(), GENERATED / "pages" / "explore.nc")
     return render(results, "explore.nc")
 

@@ -32,7 +32,6 @@ def write_interactive_page(
     *,
     data: str | Path | None = None,
     sampling: Sampling = FINE,
-    multibody: xr.Dataset | None = None,
     progress: Progress | None = None,
 ) -> Path:
     """Write the interactive page of a gear pair and, as NetCDF, every number on it.
@@ -43,7 +42,6 @@ def write_interactive_page(
     path : the page, ``.html``; an earlier one is replaced
     data : the data file, ``.nc``; default beside the page, with its name
     sampling : how finely
-    multibody : motion of the multibody model at the operating point, see ``compute``
     progress : called with the finished fraction and what is being done
 
     Returns
@@ -59,7 +57,7 @@ def write_interactive_page(
     of_type("sampling", sampling, Sampling, "a Sampling")
     page = file_path("path", path)
     values = page.with_suffix(".nc") if data is None else file_path("data", data)
-    results = compute(pair, sampling, multibody=multibody, progress=progress)
+    results = compute(pair, sampling, progress)
     write_dataset(results.dataset(), values)
     write_text(page, render(results, values.name))
     return page

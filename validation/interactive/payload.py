@@ -13,9 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from floquet.gear.axes import operating_rpm
 from lumped import GearPair
 from lumped.friction import LAWS
-from validation.interactive.branches import SAMPLES
-from validation.interactive.results import PageResults
-from validation.interactive.slices import Slices
+from validation.interactive.results import SAMPLES, PageResults, Slices
 from validation.plots.labels import pretty
 from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
 from validation.validity.map import STATES
@@ -79,7 +77,7 @@ def _slices(slices: Slices) -> dict[str, Any]:
 
 
 def _sweep(results: PageResults) -> dict[str, Any]:
-    sweep, points = results.sweep, results.multibody
+    sweep = results.sweep
     micrometres = {"dte": "dte_peak_to_peak", "oloa": "y_p_peak_to_peak"}
     laws = []
     for index, law in enumerate(map(str, sweep["law"].to_numpy())):
@@ -102,12 +100,6 @@ def _sweep(results: PageResults) -> dict[str, Any]:
         "own": results.own_law,
         "states": list(STATES),
         "resonances": _numbers(results.resonances),
-        "multibody": None
-        if points is None
-        else {
-            "speed": _numbers(points["multibody_speed"]),
-            **{n: _numbers(1e6 * points[f"multibody_{v}"].to_numpy()) for n, v in micrometres.items()},
-        },
         "branches": _branches(results.branches) if isinstance(results.branches, xr.Dataset) else [],
     }
 

@@ -10,20 +10,19 @@ import numpy as np
 import xarray as xr
 
 import lumped
-from floquet.gear.axes import chart_axes, operating_rpm, speed_range
+from floquet.gear.axes import chart_axes, gear_axis, operating_value, speed_range, with_point
+from floquet.gear.chart import stability_chart
 from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
+from floquet.gear.response import ResponseBranches
+from floquet.gear.tongues import LabelledRegion, label_regions
 from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError
 from lumped.friction import LAWS
-from lumped.labelling import Variable, labelled_dataset
+from lumped.labelling import labelled_dataset
 from lumped.model.averaged import modes
-from lumped.model.extremes import cycle_peak_to_peak
 from lumped.model.resolved_sweep import resolved_sweep
 from lumped.model.results import provenance
 from lumped.path_of_contact import law_range_violations
-from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.typing import Progress
-from validation.interactive.branches import branch_dataset
-from validation.interactive.slices import SLICES, Slices
+from lumped.typing import FloatArray, Progress
 from validation.validity.beyond_contact_loss import (
     BRANCH_SPEEDS,
     MAP_SIZE,
@@ -32,6 +31,16 @@ from validation.validity.beyond_contact_loss import (
 )
 from validation.validity.flags import LOAD_NOISE
 from validation.validity.map import STATES, validity_state
+
+Grid = dict[str, FloatArray]
+
+#: Accuracy of the monodromy matrices; the page shows six decimals.
+_RTOL = 1e-7
+#: Factors on the bearing stiffness span what a change of bearing or housing does.
+_FACTORS = (0.25, 4.0)
+_LEAST_FRICTION_RANGE = 0.1
+#: Samples per mesh cycle of a motion, and most motions of a branch that are in the data.
+SAMPLES, _MOST = 48, 60
 
 
 @dataclass(frozen=True)
@@ -63,6 +72,24 @@ FINE = Sampling()
 
 
 @dataclass(frozen=True, eq=False)
+class Slices:
+    """Stability charts over speed and damping at several values of a third parameter.
+
+    Attributes
+    ----------
+    key : name of the third parameter
+    own : index of the value that the pair itself has
+    chart : spectral_radius and verdict over (key, damping_ratio, speed_rpm)
+    tongues : for each value the unstable regions, the largest first
+    """
+
+    key: str
+    own: int
+    chart: xr.Dataset
+    tongues: tuple[tuple[LabelledRegion, ...], ...]
+
+
+@dataclass(frozen=True, eq=False)
 class PageResults:
     """Content of the page.
 
@@ -78,9 +105,8 @@ class PageResults:
     notes : for each law of the sweep, where it is used outside its range; empty where it is not
     missing : law -> why it is not in the sweep
     resonances : speeds at which the mesh frequency meets a natural frequency of the averaged pair [rpm]
-    multibody : one or more points of the multibody model over ``multibody_speed``, or None
-    branches : motions of teeth that push only, see ``branch_dataset``; why there are none; None where the
-        linear model keeps contact at all speeds
+    branches : motions with unilateral contact, see ``branch_dataset``; why they are not available; None where
+        the linear model keeps contact at all speeds
     jumps : ``floquet.jump_map`` over speed and torque; None where there are no such motions
     """
 
@@ -92,7 +118,6 @@ class PageResults:
     notes: tuple[str, ...]
     missing: dict[str, str]
     resonances: tuple[float, ...]
-    multibody: xr.Dataset | None
     branches: xr.Dataset | str | None
     jumps: xr.Dataset | None
 
@@ -102,7 +127,7 @@ class PageResults:
             slices.chart.rename({name: f"{name}_over_{key}" for name in slices.chart.data_vars})
             for key, slices in self.stability.items()
         ]
-        parts += [self.sweep] + ([] if self.multibody is None else [self.multibody])
+        parts.append(self.sweep)
         parts += [self.branches] if isinstance(self.branches, xr.Dataset) else []
         if self.jumps is not None:
             names = [*self.jumps.variables, "jump"]
@@ -113,10 +138,8 @@ class PageResults:
 
 
 def compute(
-    pair: AnyPair,
+    pair: GearPair,
     sampling: Sampling = FINE,
-    *,
-    multibody: xr.Dataset | None = None,
     progress: Progress | None = None,
 ) -> PageResults:
     """Compute the content of the page.
@@ -125,15 +148,12 @@ def compute(
     ----------
     pair : the gear pair
     sampling : how finely
-    multibody : motion of the multibody model at the operating point over whole mesh cycles (``dte`` and
-        ``y_p`` with their rates over ``time``), to be shown beside the lumped response; None: not shown
     progress : called with the finished fraction and what is being done
 
     Raises
     ------
     NumericalError : the stability chart or the response with the pair's own law fails
     """
-    pair = load_gear_pair(pair)
     tell: Progress = progress or (lambda fraction, stage="", /: None)
     try:
         found = modes(pair)
@@ -173,7 +193,6 @@ def compute(
         notes=notes,
         missing=missing,
         resonances=tuple(mode.resonant_speed for mode in found),
-        multibody=None if multibody is None else _points(pair, multibody),
         branches=branches,
         jumps=jumps,
     )
@@ -182,7 +201,7 @@ def compute(
 def _branches(
     pair: GearPair, sampling: Sampling, own: xr.Dataset, tell: Callable[[float], None]
 ) -> xr.Dataset | str | None:
-    """Motions beyond contact loss where the linear model needs teeth that pull at some speed of its sweep."""
+    """Motions with unilateral contact, where the linear model has negative tooth loads at some speed."""
     if sampling.branches is None or not bool((own["lowest_load"] < -LOAD_NOISE).any()):
         return None
     found = branches_about_operation(pair, sampling.branches, lambda fraction, _="", /: tell(fraction))
@@ -231,11 +250,102 @@ _LABELS = {
 }
 
 
-def _points(pair: GearPair, motion: xr.Dataset) -> xr.Dataset:
-    """Response of the multibody model at the operating speed."""
-    variables: dict[str, Variable] = {}
-    for name, variable in (("dte_peak_to_peak", "dte"), ("y_p_peak_to_peak", "y_p")):
-        unit, text = _LABELS[name]
-        value = cycle_peak_to_peak(motion, variable)
-        variables[f"multibody_{name}"] = ("multibody_speed", [value], unit, f"{text}, multibody model")
-    return labelled_dataset(variables, {"multibody_speed": ([operating_rpm(pair)], "rpm", "pinion speed")})
+def _bearing_slices(pair: GearPair, grid: Grid, count: int) -> Slices:
+    """Charts with the stiffness of all bearings multiplied by one factor; 1 is the pair itself.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    grid : speed_rpm and damping_ratio
+    count : values of the factor; those that the schema refuses are left out
+    """
+    factors = with_point(np.geomspace(*_FACTORS, count), 1.0)
+    variants = {float(f): made for f in factors if (made := _stiffer(pair, float(f))) is not None}
+    charts = [stability_chart(variant, grid, rtol=_RTOL) for variant in variants.values()]
+    values = np.array(list(variants))
+    attrs = {"units": "1", "long_name": "bearing stiffness factor"}
+    axis = xr.DataArray(values, dims="bearing_factor", name="bearing_factor", attrs=attrs)
+    tongues = [tuple(label_regions(v, c)) for v, c in zip(variants.values(), charts, strict=True)]
+    chart = xr.concat([chart[_VARIABLES] for chart in charts], axis)
+    return Slices("bearing_factor", int(np.argmin(np.abs(values - 1.0))), _ordered(chart), tuple(tongues))
+
+
+def _friction_slices(pair: GearPair, grid: Grid, count: int) -> Slices:
+    """Charts with the friction law scaled to a mean coefficient that is the same at every speed.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    grid : speed_rpm and damping_ratio
+    count : values of the coefficient, from 0
+    """
+    name = "friction_coefficient"
+    own = operating_value(pair, name)
+    values = with_point(np.linspace(0.0, min(max(_LEAST_FRICTION_RANGE, 2.0 * own), 1.0), count), own)
+    chart = stability_chart(pair, {**grid, name: values}, rtol=_RTOL)
+    tongues = [tuple(label_regions(pair, chart.isel({name: [i]}))) for i in range(count)]
+    attrs = {"units": "1", "long_name": gear_axis(name).long_name}
+    chart[name].attrs.update(attrs)
+    return Slices(name, int(np.argmin(np.abs(values - own))), _ordered(chart[_VARIABLES]), tuple(tongues))
+
+
+#: Third parameter -> how its charts are made; the first is shown first.
+SLICES: dict[str, Callable[[GearPair, Grid, int], Slices]] = {
+    "bearing_factor": _bearing_slices,
+    "friction_coefficient": _friction_slices,
+}
+
+_VARIABLES = ["spectral_radius", "error", "verdict"]
+
+
+def _stiffer(pair: GearPair, factor: float) -> GearPair | None:
+    bearings = pair.bearings
+    own = {
+        f"bearings.{g}.{d}_stiffness": getattr(getattr(bearings, g), f"{d}_stiffness")
+        for g in ("pinion", "gear")
+        for d in ("loa", "oloa")
+    }
+    try:
+        return pair.with_({path: factor * value for path, value in own.items()})
+    except ParameterError:
+        return None
+
+
+def _ordered(chart: xr.Dataset) -> xr.Dataset:
+    return chart.transpose(..., "damping_ratio", "speed_rpm")
+
+
+def branch_dataset(found: ResponseBranches) -> xr.Dataset:
+    """Return ``dataset`` of the branches, over ``orbit``, and the transmission error of some orbits.
+
+    Variables carry ``branch_`` before their names. ``wave_dte`` [m] is over (wave, wave_phase in mesh
+    cycles), NaN behind the last cycle of a motion; ``wave_orbit`` says whose it is.
+    """
+    data = found.dataset
+    names = {name: f"branch_{name}" for name in data.data_vars if "point" in data[name].dims}
+    kept, waves, start = list[int](), list[FloatArray](), 0
+    for branch in found.branches:
+        count = len(branch.orbits)
+        for i in np.unique(np.linspace(0, count - 1, min(count, _MOST)).round().astype(int)):
+            orbit = branch.orbits[i]
+            run = orbit.system.run(
+                orbit.start, orbit.period, orbit.n, orbit.parameter, samples=np.arange(SAMPLES) / SAMPLES
+            )
+            kept.append(start + int(i))
+            waves.append(run.states[:, : orbit.system.size // 2] @ orbit.system.output)
+        start += count
+    length = SAMPLES * max((branch.n for branch in found.branches), default=0)
+    padded = np.full((len(waves), length), np.nan)
+    for row, wave in zip(padded, waves, strict=True):
+        row[: wave.size] = wave
+    motions = labelled_dataset(
+        {
+            "wave_orbit": ("wave", np.array(kept, dtype=int), "1", "orbit whose motion this is"),
+            "wave_dte": (("wave", "wave_phase"), padded, "m", "dynamic transmission error"),
+        },
+        {
+            "wave": (np.arange(len(waves)), "1", "motion"),
+            "wave_phase": (np.arange(length) / SAMPLES, "1", "mesh cycles"),
+        },
+    )
+    return xr.merge([data.rename(names | {"branch": "branch", "point": "orbit"}), motions])

@@ -65,42 +65,6 @@ def test_init_writes_a_file_that_loads_and_never_overwrites(tmp_path):
     assert lumped.load_gear_pair(path) == pair
 
 
-@pytest.mark.parametrize(
-    ("arguments", "expected"),
-    [
-        (("no_such_file.toml",), "file = no_such_file.toml"),
-        (("nasa_28_29",), "Did you mean 'nasa_28_28'?"),
-        (("--speed", "0"), "--speed = 0 rpm: allowed > 0 rpm"),
-        (("--speed", "-100"), "--speed = -100 rpm: allowed > 0 rpm"),
-        (("--speed", "3 kg"), "is not a rotational speed"),
-        (("--torque", "-5"), "--torque = -5 N*m: allowed >= 1e-09 N*m"),
-        (("--law", "sandpaper"), "--law = sandpaper"),
-        (("--set", "pinion.tip_diameter=90", "--set", "gear.tip_diameter=90"), "contact_ratio = 0.3"),
-        (("--set", "mesh.damping=3"), "Did you mean 'damping_ratio'?"),
-        (("--set", "mesh.damping_ratio"), "FIELD=VALUE"),
-        (
-            ("--law", "benedict_kelley", "--set", "pinion.roughness=1.13", "--set", "gear.roughness=1.13"),
-            "1.13 um (law II",
-        ),
-        (("--cycles", "0"), "cycles = 0: allowed"),
-        (("-o", "result.xlsx"), "output = result.xlsx"),
-        (("-o", "no/such/folder/result.nc"), "Make the folder"),
-        (("--steady", "--model", "multibody"), "--steady"),
-    ],
-)
-def test_bad_input_is_refused_with_field_value_and_range(arguments, expected):
-    assert expected in refused("simulate", *arguments)
-
-
-def test_malformed_toml_is_refused_with_its_place(tmp_path):
-    path = tmp_path / "bad.toml"
-    path.write_text("[pinion\nteeth = 28\n")
-    message = refused("report", path, "-o", tmp_path / "out")
-    assert "malformed" in message
-    assert "line 1" in message
-    assert not (tmp_path / "out").exists()
-
-
 def test_report_refuses_a_folder_with_content_and_one_that_cannot_be_written(tmp_path):
     (tmp_path / "notes.txt").write_text("mine")
     assert "--force" in refused("report", "-o", tmp_path)
@@ -197,19 +161,6 @@ def test_stability_exits_by_the_operating_point(tmp_path):
     assert len(path.read_text().splitlines()) == 5
 
 
-@pytest.mark.parametrize("axis", ["speed_rpm", "speed_rpm=1:2", "speed_rpm=1:2:x", "speed_rpm=1:1:5"])
-def test_axes_are_checked(axis):
-    assert "NAME=FROM:TO:COUNT" in refused("stability", "--axis", axis)
-
-
-def test_an_axis_without_a_name_is_told_the_names():
-    assert "one of speed_rpm, damping_ratio" in refused("stability", "--axis", "=1:2:3")
-
-
-def test_unknown_axes_are_refused():
-    assert "speed_rpm" in refused("stability", "--axis", "moon_phase=0:1:3")
-
-
 @pytest.fixture
 def asked(monkeypatch):
     """Arguments that reach the report, which is not computed; its failures can be set."""
@@ -260,21 +211,6 @@ def test_a_change_past_its_tolerance_exits_1(asked, tmp_path, fails):
     assert f"2 changed, {int(fails)} past tolerance" in result.stdout
     assert f"{'past tolerance' if fails else 'within'}  steady_state/dte: 1 -> 2 (50 %)" in result.stdout
     assert "the parameters differ: input/mesh/damping_ratio" in result.stdout
-
-
-@pytest.mark.parametrize(
-    ("text", "value"),
-    [
-        ("2000", 2000),
-        ("0.03", 0.03),
-        ("200 lbf*in", "200 lbf*in"),
-        ("coulomb", "coulomb"),
-        ('{ model = "parabolic" }', {"model": "parabolic"}),
-        ("[1.0, 4.0, 10.0]", [1.0, 4.0, 10.0]),
-    ],
-)
-def test_values_of_the_command_line_are_read_like_a_file(text, value):
-    assert options.value_of(text) == value
 
 
 def test_overrides_reach_the_pair():

@@ -58,48 +58,6 @@ def test_quiet_is_silent(command):
     assert run(*command).stdout, "silence ends with the command"
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("--speed", "-5"), "nasa_28_28: --speed = -5 rpm: allowed > 0 rpm"),
-        (("--torque", "80,5"), "--torque = '80,5'"),
-        (("--law", "VI"), "--law = VI: allowed one of none"),
-        (("--cycles", "0"), "error: --cycles = 0"),
-        (("--samples", "1"), "error: --samples = 1"),
-        (("--set", "pinion.teeth=2"), "--set pinion.teeth = 2"),
-        (("--set", "operating.torque=5"), "Did you mean 'pinion_torque' or 'brake_torque'?"),
-    ],
-)
-def test_a_refusal_names_the_option(arguments, message):
-    result = run("simulate", *arguments)
-    assert result.exit_code == 2
-    assert message in result.stderr
-
-
-def test_malformed_toml_shows_the_line(tmp_path):
-    path = tmp_path / "pair.toml"
-    path.write_text(lumped.load_gear_pair("nasa_28_28").to_toml().replace("module = 3.175", "module = 3,175"))
-    result = run("report", path, "-o", tmp_path / "report")
-    assert result.exit_code == 2
-    assert "Line 6 is malformed: module = 3,175" in result.stderr
-    assert "Decimals have a point" in result.stderr
-
-
-def test_a_file_of_another_kind_says_what_it_is(tmp_path):
-    study, pair = tmp_path / "study.toml", tmp_path / "pair.toml"
-    study.write_text('name = "s"\ngear_pair = "nasa_28_28"\nanalysis = "floquet"\n')
-    pair.write_text(lumped.load_gear_pair("nasa_28_28").to_toml())
-    assert (
-        "This is a study: run it with 'spurcheck sweep'" in run("report", study, "-o", tmp_path / "r").stderr
-    )
-    assert "This is a gear pair" in run("sweep", pair, "-o", tmp_path / "s").stderr
-
-
-def test_completion_is_offered():
-    result = run("--help")
-    assert "--install-completion" in result.output
-
-
 def test_the_study_of_the_readme_is_one(tmp_path, monkeypatch):
     readme = Path(__file__).parents[3] / "README.md"
     text = re.search(r"```toml\n(# study\.toml.*?)```", readme.read_text(encoding="utf-8"), re.DOTALL)[1]

@@ -167,34 +167,6 @@ def test_a_marked_range_may_carry_a_unit():
     assert _range("50Hz:8000") == pytest.approx((3000.0, 8000.0), rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("option", "first_words", "advice"),
-    [
-        (("--axis", "torqe=1:20:5"), "error: --axis = torqe:", "Did you mean 'torque'?"),
-        (("--axis", "speed=1:20:5"), "error: --axis = speed:", "Did you mean 'speed_rpm'?"),
-        (("--axis", "speed_rpm=1,5:20:5"), "error: --axis = 1,5:", "this is a decimal comma: write '1.5'"),
-        (("--axis", "speed_rpm=10 mm:20:5"), "error: --axis = 10 mm:", "is not a rotational speed"),
-        (("--axis", "torque=nan:20:5"), "error: --axis = nan:", "a number in N m"),
-        (
-            ("--operating-range", "3,000:8000"),
-            "error: --operating-range = 3,000:",
-            "decimal comma or part thousands",
-        ),
-        (("--operating-range", "8000:3000"), "error: --operating-range = 8000:3000:", "3000:8000"),
-        (("-o", "chart.txt"), "error: --output = chart.txt:", "The suffix chooses the format."),
-        (
-            ("-o", "no_folder/chart.nc"),
-            "error: --output = no_folder/chart.nc:",
-            "Make the folder no_folder first.",
-        ),
-    ],
-)
-def test_what_cannot_be_read_is_named_by_its_option_with_advice(option, first_words, advice):
-    message = refused(*option)
-    assert message.startswith(first_words)
-    assert advice in message
-
-
 def test_stability_on_shafts(tmp_path, shafted_file):
     data, on_shafts = tmp_path / "chart.nc", ("--supports", "shafts")
     axis = ("--axis", "speed_rpm=9000:10000:2")

@@ -37,9 +37,7 @@ def pair():
 
 @pytest.fixture(scope="session")
 def written(pair, folder):
-    """The page, with a lumped run in the place of the multibody one: a known answer."""
-    run = lumped.steady_state(pair, samples_per_cycle=96)
-    return write_interactive_page(pair, folder / "pair.html", sampling=SAMPLING, multibody=run)
+    return write_interactive_page(pair, folder / "pair.html", sampling=SAMPLING)
 
 
 @pytest.fixture(scope="session")

@@ -77,17 +77,6 @@ def test_hover_over_the_chart_shows_the_data_file(page, data):
         ]
 
 
-def test_hover_over_the_cut_shows_the_data_file(page, data):
-    own = int(np.argmin(np.abs(data["bearing_factor"].to_numpy() - 1.0)))
-    i, j = int(np.argmin(np.abs(data["damping_ratio"].to_numpy() - 0.016))), 17
-    value = chart(data, "bearing_factor")[own, i, j]
-    for name, chosen in (("axis", AXES.index("bearing_factor")), ("slice", own), ("damping", i)):
-        page.choose(name, chosen)
-    page.drawn("stability-plot", "1")
-    lines = page.hover("stability-plot", float(data["speed_rpm"][j]), float(value), "yaxis2")
-    assert lines == [f"{float(data['speed_rpm'][j]):.6g} rpm", f"largest multiplier {value:.6f}"]
-
-
 def test_the_slider_shows_every_slice_of_the_data_file(page, data):
     for key in AXES:
         page.choose("axis", AXES.index(key))
@@ -123,20 +112,6 @@ def test_a_law_shows_its_response_of_the_data_file(page, data):
             assert shown == six_digits(factor * one[variable].to_numpy()), (law, variable)
 
 
-def test_hover_over_the_response_shows_the_data_file(page, data):
-    page.choose("law", 1)
-    page.drawn("sweep-plot", "1")
-    for axis, variable, text in (
-        ("yaxis", "dte_peak_to_peak", "transmission error {} µm"),
-        ("yaxis2", "y_p_peak_to_peak", "off line of action {} µm"),
-        ("yaxis3", "lowest_load", "lowest load {}"),
-    ):
-        value = float(data[variable].isel(law=1)[5]) * (1.0 if variable == "lowest_load" else 1e6)
-        lines = page.hover("sweep-plot", float(data["speed"][5]), value, axis)
-        assert lines[0] == f"{float(data['speed'][5]):.6g} rpm"
-        assert lines[1].replace("−", "-") == text.format(f"{value:.6g}")
-
-
 def test_hover_over_a_branch_shows_its_load_and_multiplier(page, data):
     page.choose("law", list(data["law"].to_numpy()).index("xu_kahraman"))
     page.drawn("sweep-plot", "1")
@@ -161,7 +136,7 @@ def test_hover_over_a_branch_shows_its_load_and_multiplier(page, data):
     points = page.run("return document.querySelector('#motion-wave polyline').points.length")
     assert points == 49  # 48 samples and the first one again
     page.choose("law", 0)
-    assert page.drawn("sweep-plot", "plot.data.some(t => t.name?.startsWith('teeth push only'))") is False
+    assert page.drawn("sweep-plot", "plot.data.some(t => t.name?.startsWith('unilateral contact'))") is False
     assert page.run("return document.getElementById('motion').hidden") is True
 
 
@@ -199,18 +174,3 @@ def test_flags_of_the_strip_are_those_of_the_data_file(page, data):
     j = int(np.argmax(rows["separation"].to_numpy()))
     page.choose("sweep-speed", j)
     assert "Model violated" in page.text("sweep-text")
-
-
-def test_the_multibody_point_is_where_the_data_file_has_it(page, data):
-    """The stand-in is the lumped motion itself, so the point must lie on the curve of the pair's law."""
-    own = data.sel(law="xu_kahraman")
-    page.choose("law", list(data["law"].to_numpy()).index("xu_kahraman"))
-    j = int(np.argmin(np.abs(data["speed"].to_numpy() - 4875.0)))
-    for axis, variable in (("y", "dte_peak_to_peak"), ("y2", "y_p_peak_to_peak")):
-        marks = page.drawn(
-            "sweep-plot",
-            f"plot.data.filter(t => t.name === 'multibody model' && t.yaxis === '{axis}')"
-            ".map(t => [t.x, t.y])",
-        )
-        assert marks == [[[4875], six_digits(1e6 * data[f"multibody_{variable}"].to_numpy())]]
-        assert marks[0][1][0] == pytest.approx(1e6 * float(own[variable][j]), rel=1e-5)  # six digits shown

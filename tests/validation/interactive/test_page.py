@@ -20,10 +20,10 @@ from floquet.gear.chart import stability_chart
 from floquet.gear.multipliers import gear_pair_multipliers
 from lumped import NumericalError
 from validation.cli import app
-from validation.interactive import compute, page, write_interactive_page
+from validation.interactive import page, write_interactive_page
 from validation.interactive import results as interactive_results
 from validation.interactive.payload import payload, script_json
-from validation.interactive.results import Sampling
+from validation.interactive.results import Sampling, compute
 from validation.validity.beyond_contact_loss import branches_about_operation
 from validation.validity.map import validity_map
 
@@ -133,10 +133,10 @@ def test_the_page_has_the_motions_of_teeth_that_push_only(data, pair, text):
 
 def test_a_pair_without_such_motions_has_its_page_without_them(results, pair):
     assert payload(results)["sweep"]["branches"] == []
-    assert "teeth that push only" not in _static(page.render(results, "x.nc"))
+    assert "unilateral contact" not in _static(page.render(results, "x.nc"))
     none = dataclasses.replace(results, branches=branches_about_operation(pair, (30.0, 40.0)))
     assert payload(none)["sweep"]["branches"] == []
-    assert "No motions with teeth that push only: speeds" in _static(page.render(none, "x.nc"))
+    assert "No motions with unilateral contact: speeds" in _static(page.render(none, "x.nc"))
 
 
 def _static(text):

@@ -1,4 +1,4 @@
-// Motions of teeth that push only, over the linear response of the pair's own law: an orbit is [branch, place].
+// Motions with unilateral contact, over the linear response of the pair's own law: an orbit is [branch, place].
 const shownBranches = () => (now.law === sweep.own ? sweep.branches : []);
 
 function orbitWords([b, i]) {
@@ -34,7 +34,7 @@ function branchTraces(colours) {
     const lines = [2, 3, 4, 5, 6, 7].map((k) => `%{customdata[${k}]}`).join("<br>");
     return {
       type: "scatter", mode: "lines", x, y, customdata, yaxis: "y", connectgaps: false,
-      name: `teeth push only, ${stable ? "stable" : "unstable"}`, showlegend: true,
+      name: `unilateral contact, ${stable ? "stable" : "unstable"}`, showlegend: true,
       line: { color: colours.branch, width: stable ? 3.5 : 2, dash: stable ? "solid" : "dash" },
       hovertemplate: `${lines}<extra></extra>`,
     };
@@ -60,7 +60,7 @@ function showOrbit(orbit) {
   element("motion").hidden = !shownBranches().length;
   if (!orbit) {
     element("motion-wave").replaceChildren();
-    element("motion-text").textContent = "No motion with teeth that push only was looked for at the cursor's speed.";
+    element("motion-text").textContent = "No motion with unilateral contact was computed at the cursor's speed.";
     return;
   }
   const branch = sweep.branches[orbit[0]], kept = nearest(branch.drawn, orbit[1]), wave = branch.waves[kept];
@@ -75,7 +75,7 @@ function showOrbit(orbit) {
   svg.replaceChildren(
     ...cycles.map((x) => part("line", { x1: x, x2: x, y1: 0, y2: 80 })), part("polyline", { points }));
   element("motion-text").textContent =
-    `Motion with teeth that push only: ${orbitWords(orbit).join(", ")}. Curve: transmission error over ` +
+    `Motion with unilateral contact: ${orbitWords(orbit).join(", ")}. Curve: transmission error over ` +
     `${branch.n > 1 ? `${branch.n} mesh cycles` : "a mesh cycle"} at ${rpm(branch.speed[branch.drawn[kept]])}, ` +
     `${plain(low, 4)} to ${plain(low + span, 4)} µm.`;
 }

@@ -28,14 +28,6 @@ function sweepTraces(colours) {
       type: "scatter", mode: "lines", x, y: law[key], yaxis: axis, name: law.name, showlegend: key === "dte",
       line: { color: colours.curve, width: 2 }, hovertemplate: `%{x:.6~r} rpm<br>${VALUES[key]}<extra></extra>`,
     });
-    if (sweep.multibody && key in sweep.multibody && now.law === sweep.own) {
-      made.push({
-        type: "scatter", mode: "markers", x: sweep.multibody.speed, y: sweep.multibody[key], yaxis: axis,
-        name: "multibody model", showlegend: key === "dte",
-        marker: { symbol: "diamond-open", size: 11, color: colours.bad, line: { width: 2 } },
-        hovertemplate: `multibody model, %{x:.6~r} rpm<br>${VALUES[key]}<extra></extra>`,
-      });
-    }
     made.push({
       type: "scatter", mode: "markers", x: [x[now.speed]], y: [law[key][now.speed]], yaxis: axis, hoverinfo: "skip",
       showlegend: false, marker: { symbol: "circle-open", size: 12, color: colours.ink, line: { width: 2 } },
@@ -60,7 +52,7 @@ function sweepTraces(colours) {
 function drawSweep() {
   const colours = theme(), x = sweep.speed, law = sweep.laws[now.law], plot = element("sweep-plot");
   const axes = Object.fromEntries(PANELS.map(({ key, axis, domain }) => {
-    const both = [...law[key], ...sweep.laws[sweep.own][key], ...(sweep.multibody?.[key] ?? []),
+    const both = [...law[key], ...sweep.laws[sweep.own][key],
       ...(key === "dte" ? shownBranches() : []).flatMap((b) => b.dte)].filter((v) => v !== null);
     const low = Math.min(0, ...both), high = Math.max(...both);
     const span = high - low || 1;
