@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import conclude, guarded, print_json, progress_bar, stdout, table
+from validation.commands.terminal import conclude, guarded, print_json, progress_bar, stderr, stdout, table
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -98,8 +98,9 @@ def crosscheck(
     else:
         _print(check)
     if target is not None:
-        _write(check, target)
-    conclude(check.verdict, target, strict=strict, tell=not as_json)
+        _write(check, target, force)
+        stderr().print(f"wrote {target}")
+    conclude(check.verdict, strict=strict, tell=not as_json)
 
 
 def _print(check: CrossCheck) -> None:
@@ -185,19 +186,21 @@ def _word(within: bool, kept: str = "within") -> Text:
     return Text(kept, "green") if within else Text("outside", "red")
 
 
-def _write(check: CrossCheck, target: Path) -> None:
+def _write(check: CrossCheck, target: Path, force: bool) -> None:
     from validation.cross_check.agreement import off_switch_samples
     from validation.files.output import write_text
 
     if target.suffix.lower() == ".json":
-        write_text(target, json.dumps(_data(check), indent=1, allow_nan=False) + "\n")
+        write_text(target, json.dumps(_data(check), indent=1, allow_nan=False) + "\n", new=not force)
         return
     from validation.plots.cross_check import cross_check_figure
     from validation.plots.style import save
 
     keep = off_switch_samples(check.pair, check.lumped["time"].to_numpy())
     models = {str(fidelity): result for fidelity, result in check.multibody.items()}
-    save(cross_check_figure(check.pair.geometry, "dte", "m", check.lumped, models, keep), target)
+    save(
+        cross_check_figure(check.pair.geometry, "dte", "m", check.lumped, models, keep), target, new=not force
+    )
 
 
 def _grid(output: Path | None, checkpoint: Path | None, given: list[str], strict: bool, force: bool) -> None:
@@ -218,7 +221,7 @@ def _grid(output: Path | None, checkpoint: Path | None, given: list[str], strict
         if found.worst:
             causes = explain(Grid(), found.worst, lambda f, _="": tell(0.95 + 0.05 * f, "worst point"))
     if target is not None:
-        opt.write_result(target, result, lambda: grid_figure(result))
+        opt.write_result(target, result, lambda: grid_figure(result), force=force)
     console = stdout()
     console.print(_grid_tables(result))
     for line in _sentences(found, result):
@@ -230,7 +233,7 @@ def _grid(output: Path | None, checkpoint: Path | None, given: list[str], strict
         console.print(f"failed at {_named(point)}: {reason}", soft_wrap=True, markup=False)
     if causes is not None:
         _explain(found, causes)
-    conclude(found.verdict, target, strict=strict)
+    conclude(found.verdict, strict=strict)
 
 
 def _grid_tables(result: xr.Dataset) -> Group:

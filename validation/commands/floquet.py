@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import FAILED, guarded, print_json, progress_bar, stderr, stdout, table
+from validation.commands.terminal import FAILED, guarded, print_json, progress_bar, stdout, table
 
 if TYPE_CHECKING:
     from floquet import Monodromy
@@ -93,8 +93,7 @@ def floquet(
         for target in targets:
             from validation.plots.of_result import plot
 
-            opt.write_result(target, chart, lambda: plot(chart))
-            stderr().print(f"wrote {target}")
+            opt.write_result(target, chart, lambda: plot(chart), force=force)
     if found.verdict != "stable":
         raise typer.Exit(FAILED)
 

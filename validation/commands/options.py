@@ -181,16 +181,18 @@ def figure_or_data(output: Path | None, *, force: bool) -> Path | None:
     return None if output is None else check_file(output, DATA_SUFFIXES + FIGURE_SUFFIXES, force=force)
 
 
-def write_result(target: Path, data: xr.Dataset, draw: Callable[[], Figure]) -> None:
-    """Write data or the figure of it, as the suffix of the target says."""
+def write_result(target: Path, data: xr.Dataset, draw: Callable[[], Figure], *, force: bool) -> None:
+    """Write data or the figure of it, as the suffix of the target says, and say so."""
+    from validation.commands.terminal import stderr
     from validation.files.output import DATA_SUFFIXES, write_dataset
 
     if target.suffix.lower() in DATA_SUFFIXES:
-        write_dataset(data, target)
+        write_dataset(data, target, new=not force)
     else:
         from validation.plots.style import save
 
-        save(draw(), target)
+        save(draw(), target, new=not force)
+    stderr().print(f"wrote {target}")
 
 
 def axis_values(

@@ -125,7 +125,7 @@ def init(
         typer.echo(text, nl=False)
         return
     path = check_file(output or Path(f"{name}.toml"), (".toml",), force=force)
-    write_text(path, text)
+    write_text(path, text, new=not force)
     stderr().print(f"wrote {path}; next: spurcheck report {path} -o report")
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import guarded, note, print_json, progress_bar, stderr, stdout, table
+from validation.commands.terminal import guarded, note, print_json, progress_bar, stdout, table
 
 if TYPE_CHECKING:
     import numpy as np
@@ -86,7 +87,7 @@ def response(
     gear_pair = opt.gear_pair(pair, None, torque, law, settings, speed_range)
     if over is not None:
         whole_number("--speeds", speeds, 2, 5000)
-        _map(gear_pair, over, speeds, seeds or 0, target, as_json)
+        _map(gear_pair, over, speeds, seeds or 0, target, as_json, force)
         return
     whole_number("--periods", periods, 1, 8)
     whole_number("--multibody", multibody, 0, 1000)
@@ -117,8 +118,8 @@ def response(
         from validation.plots.response import response_figure
 
         linear, runs = _others(gear_pair, found.speeds_rpm, multibody)
-        opt.write_result(target, found.dataset, lambda: response_figure(found.dataset, linear, runs))
-        stderr().print(f"wrote {target}")
+        draw = partial(response_figure, found.dataset, linear, runs)
+        opt.write_result(target, found.dataset, draw, force=force)
 
 
 def _others(
@@ -177,7 +178,9 @@ def _print(pair: GearPair, found: ResponseBranches) -> None:
         )
 
 
-def _map(pair: GearPair, axis: str, speeds: int, seeds: int, target: Path | None, as_json: bool) -> None:
+def _map(
+    pair: GearPair, axis: str, speeds: int, seeds: int, target: Path | None, as_json: bool, force: bool
+) -> None:
     """Map the jumps over speed and a second axis, and find what removes them."""
     import numpy as np
 
@@ -206,8 +209,7 @@ def _map(pair: GearPair, axis: str, speeds: int, seeds: int, target: Path | None
     if target is not None:
         from validation.plots.jumps import jump_map_figure
 
-        opt.write_result(target, found, lambda: jump_map_figure(found))
-        stderr().print(f"wrote {target}")
+        opt.write_result(target, found, lambda: jump_map_figure(found), force=force)
 
 
 def _axis(text: str, pair: GearPair) -> tuple[str, NDArray[np.float64]]:

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import guarded, note, print_json, progress_bar, stderr, stdout, table
+from validation.commands.terminal import guarded, note, print_json, progress_bar, stdout, table
 
 Model = Literal["lumped", "multibody"]
 Fidelity = Literal["exact", "linear"]
@@ -145,5 +145,4 @@ def simulate(
     if target is not None:
         from validation.plots.motion import history_figure
 
-        opt.write_result(target, result, lambda: history_figure(g, result))
-        stderr().print(f"wrote {target}")
+        opt.write_result(target, result, lambda: history_figure(g, result), force=force)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from validation.commands import options as opt
-from validation.commands.terminal import FAILED, guarded, print_json, progress_bar, stderr, stdout, table
+from validation.commands.terminal import FAILED, guarded, print_json, progress_bar, stdout, table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -131,8 +131,7 @@ def stability(
             data, draw = _campbell(gear_pair, grid, marked)
         draw_once = cache(draw)
         for target in targets:
-            opt.write_result(target, data, draw_once)
-            stderr().print(f"wrote {target}")
+            opt.write_result(target, data, draw_once, force=force)
     if found.verdict != "stable":
         raise typer.Exit(FAILED)
 

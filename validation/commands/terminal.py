@@ -150,22 +150,12 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
     return run
 
 
-def conclude(verdict: str, target: Path | None, *, strict: bool, tell: bool = True) -> None:
-    """End a cross-check: its verdict in words, the file that was written, and the exit code.
-
-    Parameters
-    ----------
-    verdict : a key of ``validation.cross_check.judgement.MEANINGS``
-    target : the file
-    strict : fail on "explained" too
-    tell : print the verdict
-    """
+def conclude(verdict: str, *, strict: bool, tell: bool = True) -> None:
+    """End a cross-check by the exit code of its verdict, after its words; ``strict``: "explained" fails too."""
     from validation.cross_check.judgement import MEANINGS
 
     if tell:
         stdout().print(f"[bold]{verdict}[/bold]: {MEANINGS[verdict]}", markup=True, soft_wrap=True)
-    if target is not None:
-        stderr().print(f"wrote {target}", soft_wrap=True)
     if verdict == "not confirmed" or (strict and verdict != "confirmed"):
         raise typer.Exit(FAILED)
 

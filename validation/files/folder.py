@@ -65,7 +65,7 @@ def check_target(out: Path, *, force: bool, kind: Kind = REPORT) -> Path:
     """
     target = Path(os.path.abspath(out))
     if target.is_symlink():
-        target = Path(os.path.realpath(target))
+        raise refuse("output", out, "a folder", "This is a link: name the folder itself.")
     if target.exists() and not target.is_dir():
         raise refuse("output", out, "a folder", "This is a file; choose another name.")
     if target.is_dir() and _content(target):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import re
@@ -38,7 +39,7 @@ def check_file(path: Path, suffixes: tuple[str, ...], *, force: bool) -> Path:
         raise refuse("output", path, allowed, "The suffix chooses the format.")
     if path.is_dir():
         raise refuse("output", path, "a file", "This is a folder; add a file name.")
-    if path.exists() and not force:
+    if os.path.lexists(path) and not force:  # also a link to nothing
         raise refuse("output", path, "a new file", "It exists: choose another name, or give --force.")
     if not path.parent.is_dir():
         raise refuse(
@@ -60,14 +61,19 @@ def not_writable(path: Path, error: OSError) -> ParameterError:
 
 
 @contextmanager
-def whole_file(path: Path) -> Iterator[Path]:
+def whole_file(path: Path, *, new: bool = False) -> Iterator[Path]:
     """Give a temporary file beside ``path`` to write, and put it in place of ``path`` at the end.
 
     On any failure nothing is left behind and an existing file stays as it was.
 
+    Parameters
+    ----------
+    path : the file
+    new : whether a file that has appeared there meanwhile stays, too
+
     Raises
     ------
-    StorageError : the disk is full, or the place cannot be written any more
+    StorageError : the disk is full, the place cannot be written any more, or a file appeared there
     """
     temporary: Path | None = None
     try:
@@ -78,6 +84,8 @@ def whole_file(path: Path) -> Iterator[Path]:
         mask = os.umask(0)
         os.umask(mask)
         temporary.chmod(0o666 & ~mask)  # mkstemp makes it private
+        if new and os.path.lexists(path):
+            raise FileExistsError(errno.EEXIST, "a file of this name appeared meanwhile")
         temporary.replace(path)
     except StorageError:
         raise
@@ -88,15 +96,15 @@ def whole_file(path: Path) -> Iterator[Path]:
             temporary.unlink(missing_ok=True)
 
 
-def write_text(path: Path, text: str) -> None:
-    """Write a text file whole."""
-    with whole_file(path) as temporary:
+def write_text(path: Path, text: str, *, new: bool = False) -> None:
+    """Write a text file whole; ``new`` as for ``whole_file``."""
+    with whole_file(path, new=new) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
 
-def write_dataset(result: xr.Dataset, path: Path) -> None:
-    """Write a dataset as NetCDF, CSV or MATLAB file, by suffix, whole."""
-    with whole_file(path) as temporary:
+def write_dataset(result: xr.Dataset, path: Path, *, new: bool = False) -> None:
+    """Write a dataset as NetCDF, CSV or MATLAB file, by suffix, whole; ``new`` as for ``whole_file``."""
+    with whole_file(path, new=new) as temporary:
         if path.suffix.lower() == ".csv":
             _write_csv(result, temporary)
         elif path.suffix.lower() == ".mat":

@@ -198,19 +198,20 @@ def path_marks(g: Geometry) -> dict[str, float]:
     return {name: 1e3 * place for name, place in marks.items()}
 
 
-def save(figure: Figure, path: Path) -> None:
+def save(figure: Figure, path: Path, *, new: bool = False) -> None:
     """Write a figure whole as SVG, PDF or PNG; the same figure gives the same bytes, without dates.
 
     Parameters
     ----------
     figure : the figure
     path : its suffix names the format
+    new : as for ``validation.files.output.whole_file``
     """
     suffix = path.suffix.lower().removeprefix(".")
     dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None, "ModDate": None}}
     metadata: dict[str, Any] = dates.get(suffix, {"Software": None})
     layout = figure.get_layout_engine()
-    with whole_file(path) as temporary, mpl.rc_context(_RC):
+    with whole_file(path, new=new) as temporary, mpl.rc_context(_RC):
         if layout is not None:  # laid out once: with any engine, even "none", savefig draws everything twice
             layout.execute(figure)
             figure.set_layout_engine(None)

@@ -168,3 +168,9 @@ def test_a_folder_that_cannot_be_made_is_refused_before_work(tmp_path, monkeypat
     ):
         raise AssertionError("no folder should be given")
     assert names(tmp_path) == []
+
+
+def test_a_link_to_a_folder_is_not_followed(tmp_path):
+    (tmp_path / "link").symlink_to(tmp_path, target_is_directory=True)
+    with pytest.raises(ParameterError, match="This is a link"):
+        check_target(tmp_path / "link", force=True)

@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 
 from lumped import ParameterError
+from lumped.errors import StorageError
 from validation.files import output
 
 
@@ -119,9 +120,22 @@ def test_a_folder_that_cannot_be_written_is_refused_with_the_reason(tmp_path, mo
         output.check_file(tmp_path / "run.nc", output.DATA_SUFFIXES, force=False)
 
 
+def test_a_file_that_appears_while_the_result_is_computed_stays(tmp_path):
+    path = output.check_file(tmp_path / "run.txt", (".txt",), force=False)
+    path.write_text("of the user")
+    with pytest.raises(StorageError, match="appeared meanwhile"):
+        output.write_text(path, "result", new=True)
+    assert path.read_text() == "of the user"
+    assert list(tmp_path.iterdir()) == [path]
+
+
 def test_output_files_are_refused_before_any_work(tmp_path):
     existing = tmp_path / "old.nc"
     existing.write_text("")
+    link = tmp_path / "link.nc"
+    link.symlink_to(tmp_path / "nowhere.nc")
+    with pytest.raises(ParameterError, match="--force"):
+        output.check_file(link, output.DATA_SUFFIXES, force=False)
     (tmp_path / "folder.nc").mkdir()
     with pytest.raises(ParameterError, match="add a file name"):
         output.check_file(tmp_path / "folder.nc", output.DATA_SUFFIXES, force=True)
