@@ -151,7 +151,7 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
 
 
 def conclude(verdict: str, *, strict: bool, tell: bool = True) -> None:
-    """End a cross-check by the exit code of its verdict, after its words; ``strict``: "explained" fails too."""
+    """End a cross-check: its verdict in words and as exit code; ``strict``: "explained" fails too."""
     from validation.cross_check.judgement import MEANINGS
 
     if tell:

@@ -81,3 +81,12 @@ def test_an_encoding_without_box_drawing_characters_ends_no_command(tmp_path):
         run, env={**os.environ, "PYTHONIOENCODING": "ascii"}, capture_output=True, check=True
     )
     assert b"? ?" in shown.stdout
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="the full device of Linux")
+def test_a_full_output_is_a_failure_of_writing_not_a_refusal():
+    run = [sys.executable, "-m", "spurcheck", "presets"]
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(run, stdout=full, stderr=subprocess.PIPE, text=True)
+    assert done.returncode == 3
+    assert done.stderr == "error: the result cannot be printed: No space left on device\n"
