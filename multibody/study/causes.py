@@ -43,13 +43,12 @@ def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Datase
     xarray.Dataset over ``cause`` and ``quantity``: ``alone``, the largest change when only this cause acts,
     and ``without``, the largest change when all causes but this one act; both over the peak to peak of the
     motion without any, so they are shares of the difference from the lumped model. Cause "all" is the whole
-    difference: the effects that act by default. ``without`` is NaN for what is no part of it, as the cause
-    "friction_load". The attribute ``largest`` names the part that changes the transmission error most. A
-    quantity that does not move without effects (y_p without friction) is NaN.
+    difference: the effects that act by default. ``without`` is NaN for "friction_load", which is no part of
+    it. The attribute ``largest`` names the cause that alone changes the transmission error most. A quantity that does not move without effects (y_p without friction) is NaN.
 
-    With loaded contact the exact contact itself is the cause "contact_energy", and others act on it: their
-    ``alone`` is the change of the motion that it makes. Its own ``without`` is NaN, and there is no cause
-    "entry_shift", because contact then begins by clearance.
+    Contact that follows from clearance includes contact loss: without it teeth would pull over a gap. With
+    loaded contact this is one cause, "contact_energy", and the others act on it: their ``alone`` is the change
+    of the motion that it makes; its own ``without`` is NaN. With prescribed contact it is no cause.
     """
     pair = load_gear_pair(pair)
 
@@ -66,26 +65,27 @@ def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Datase
 
     every = set(default_effects(pair.mesh.contact))
     groups = {cause: {name for name in EFFECTS if EFFECTS[name].cause == cause} for cause in CAUSES}
-    held: set[str] = set()
-    if pair.mesh.contact == "loaded":
-        held = groups["contact_energy"] | groups.pop("entry_shift")
+    contact = groups["contact_energy"] | groups["entry_shift"] | groups["contact_loss"]
+    if contact <= every:
+        groups["contact_energy"] = contact
+        del groups["entry_shift"], groups["contact_loss"]
+    else:
+        contact = set()
+        del groups["contact_energy"], groups["path_work"]
     groups["all"] = every
     base = motion(set())
-    contact = motion(held, set())
-    motion(every, held)
+    on_contact = motion(contact, set())
+    motion(every, contact)
     table = {kind: np.full((len(groups), len(_QUANTITIES)), np.nan) for kind in _KINDS}
     for row, (cause, own) in enumerate(groups.items()):
-        itself = own <= held and bool(held)
-        for kind, effects, start in (
-            ("alone", held | own, base if itself or cause == "all" else contact),
-            ("without", every - own, base),
-        ):
-            if kind == "without" and (itself or not own <= every):
-                continue  # there is no exact contact without it, or it is no part of the whole
-            run = motion(effects, held if kind == "alone" else every)
+        start = base if own == contact or cause == "all" else on_contact
+        runs = {"alone": (motion(contact | own, contact), start)}
+        if own <= every and own != contact:
+            runs["without"] = (motion(every - own, every), base)
+        for kind, (run, reference) in runs.items():
             for column, name in enumerate(_QUANTITIES):
                 swing = float(np.ptp(base[name].to_numpy()))
-                change = float(np.abs(run[name] - start[name]).max())
+                change = float(np.abs(run[name] - reference[name]).max())
                 table[kind][row, column] = change / swing if swing > 0.0 else np.nan
         if progress is not None:
             progress((row + 1) / len(groups))
@@ -102,7 +102,7 @@ def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Datase
         },
         provenance(pair, samples_per_cycle=_SAMPLES)
         | {
-            "largest": max(parts, key=lambda cause: table["alone"][causes.index(cause), 0]),
+            "largest": causes[int(np.nanargmax(table["alone"][:-1, 0]))],
             "parts": ", ".join(parts),
             "contact": pair.mesh.contact,
         },

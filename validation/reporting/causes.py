@@ -47,7 +47,7 @@ def causes(found: xr.Dataset | None) -> list[Block]:
             "motion with the brake torque that balances it. With all of them off it solves the lumped "
             "equations. "
             + ("The exact contact acts in every row; what the others change, they change of it. " * loaded)
-            + f"Alone, this one changes the transmission error most: {largest}."
+            + f"The largest change of the transmission error: {largest}."
         ),
         Table(
             "causes",

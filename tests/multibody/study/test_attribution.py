@@ -16,6 +16,7 @@ from multibody.contact.effects import (
     default_effects,
     effect_flags,
 )
+from multibody.study import causes
 
 JUMPS = lumped.load_gear_pair("nasa_28_28").with_(
     mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.05
@@ -105,12 +106,11 @@ def test_changes_alone_and_without_are_told_apart(monkeypatch):
     monkeypatch.setattr("multibody.study.causes.cycles_of", motion)
     loaded = multibody.attribution(JUMPS.with_(mesh__contact="loaded")).sel(quantity="x_p")
     every = sum(MADE_UP[name] for name in default_effects("loaded"))
-    held = MADE_UP["entry_shift"] + sum(
-        MADE_UP[name] for name, effect in EFFECTS.items() if effect.cause == "contact_energy"
-    )
-    assert "entry_shift" not in loaded["cause"]
+    in_contact = ("entry_shift", "contact_loss", "contact_energy")
+    contact = sum(MADE_UP[name] for name, effect in EFFECTS.items() if effect.cause in in_contact)
+    assert not {"entry_shift", "contact_loss"} & set(loaded["cause"].values)
     for cause, alone, without in (
-        ("contact_energy", held, np.nan),  # without it there is no exact contact
+        ("contact_energy", contact, np.nan),  # without it there is no exact contact
         ("contact_position", 3.0, every - 3.0),
         ("path_work", 40.0, every - 40.0),
         ("friction_load", 30.0, np.nan),
@@ -122,16 +122,34 @@ def test_changes_alone_and_without_are_told_apart(monkeypatch):
     assert loaded.attrs["largest"] == "contact_energy"
     found = multibody.attribution(JUMPS).sel(quantity="x_p")
     total = sum(MADE_UP[name] for name in DEFAULT_EFFECTS)
-    for cause in CAUSES:
+    assert set(CAUSES) - set(found["cause"].values) == {"contact_energy", "path_work"}
+    for cause in found["cause"].values[:-1]:
         own = sum(MADE_UP[name] for name, effect in EFFECTS.items() if effect.cause == cause)
         assert float(found["alone"].sel(cause=cause)) == pytest.approx(abs(own) / 10.0), cause
-        if cause in ("friction_load", "contact_energy", "path_work"):  # no part of the whole difference
-            assert np.isnan(found["without"].sel(cause=cause))
-            continue
-        assert float(found["without"].sel(cause=cause)) == pytest.approx(abs(total - own) / 10.0), cause
+        expected = np.nan if cause == "friction_load" else abs(total - own) / 10.0
+        assert float(found["without"].sel(cause=cause)) == pytest.approx(expected, nan_ok=True), cause
     assert float(found["alone"].sel(cause="all")) == pytest.approx(abs(total) / 10.0)
-    assert float(found["without"].sel(cause="all")) == 0.0
-    assert found.attrs["largest"] == "sliding_velocity"
+    assert found.attrs["largest"] == "friction_load"
+
+
+@pytest.mark.parametrize("contact", ["prescribed", "loaded"])
+def test_no_teeth_pull_over_a_gap_and_the_largest_change_is_named(contact, monkeypatch):
+    """The 28/28 pair loses contact: without contact loss its exact contact would pull with 364 N."""
+    runs = []
+
+    def cycles_of(orbit, samples):
+        runs.append(causes_cycles_of(orbit, samples))
+        return runs[-1]
+
+    causes_cycles_of = causes.cycles_of
+    monkeypatch.setattr(causes, "cycles_of", cycles_of)
+    result = multibody.attribution(lumped.load_gear_pair("nasa_28_28").with_(mesh__contact=contact))
+    for run in runs:
+        if "clearance" in run.attrs["effects"] or "contact_loss" in run.attrs["effects"]:
+            assert float(run["normal_load"].min()) >= 0.0, run.attrs["effects"]
+    alone = result["alone"].sel(quantity="dte").drop_sel(cause="all")
+    assert result.attrs["largest"] == str(alone["cause"][int(alone.to_numpy().argmax())].item())
+    assert float(alone.max()) < 0.2
 
 
 def test_every_cause_has_an_effect():
