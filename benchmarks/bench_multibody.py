@@ -24,7 +24,7 @@ from scipy.integrate import solve_ivp
 
 import lumped
 from multibody.contact import kernels as kn
-from multibody.contact.kernels_linear import linear_forces
+from multibody.contact.kernels import linear_forces
 from multibody.contact.kinematics import MAX_PAIRS
 from multibody.run.integration import Segment
 from multibody.run.setup import Setup, prepare

@@ -1,16 +1,13 @@
 """Independent multibody reference of a spur gear pair in exudyn, at two fidelities."""
 
 from multibody.contact.effects import EFFECTS
-from multibody.run.drive import Drive
 from multibody.run.flow_map import FlowMap, monodromy, steady_state
-from multibody.run.simulation import simulate
-from multibody.run.sweep import speed_sweep
+from multibody.run.simulation import simulate, speed_sweep
 from multibody.study.balance import PowerBalance, power_balance
 from multibody.study.causes import attribution
 
 __all__ = [
     "EFFECTS",
-    "Drive",
     "FlowMap",
     "PowerBalance",
     "attribution",

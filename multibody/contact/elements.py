@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from lumped.typing import FloatArray
-from multibody.contact.compiled import compiled
+from multibody.contact.kinematics import compiled
 
 #: Below this share of the mean load a pair is linear: Hertz's logarithm would make it infinitely soft.
 _LINEAR_BELOW = 1e-3

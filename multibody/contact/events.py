@@ -16,12 +16,12 @@ import numpy as np
 from lumped.path_function import PathFunction
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
-from multibody.contact.compiled import compiled
 from multibody.contact.elements import compliances
 from multibody.contact.kernels import coupling_at, mesh_position, relief_at
 from multibody.contact.kinematics import (
     DRIVE,
     MAX_PAIRS,
+    compiled,
     corner_gap,
     corner_reach,
     overlap_rate,

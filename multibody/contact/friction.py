@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 
 from lumped.typing import FloatArray
-from multibody.contact.compiled import compiled
+from multibody.contact.kinematics import compiled
 
 # Places in the vector of friction parameters, all SI.
 (

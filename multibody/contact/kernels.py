@@ -15,9 +15,8 @@ import math
 import numpy as np
 
 from lumped.path_function import FIT_DEGREE
-from lumped.typing import FloatArray
+from lumped.typing import FloatArray, IntArray
 from multibody.contact import friction as fr
-from multibody.contact.compiled import compiled
 from multibody.contact.elements import (
     elastic_load,
     gradual,
@@ -33,6 +32,7 @@ from multibody.contact.kinematics import (
     Corners,
     add_gradient,
     add_wrench,
+    compiled,
     corners_at,
     line_of_action,
     mesh_phase,
@@ -392,3 +392,125 @@ def contact_forces(
     for i in range(6):
         total += wrench[i]
     return count if math.isfinite(total) else -1
+
+
+@compiled
+def linear_forces(
+    t: float,
+    q: FloatArray,
+    v: FloatArray,
+    p: FloatArray,
+    flags: int,
+    table: FloatArray,
+    wrench: FloatArray,
+    contacts: FloatArray,
+) -> int:
+    """Generalised forces on (x_p, y_p, phi_p, x_g, y_g, phi_g); arguments as ``kernels.contact_forces``.
+
+    The recorded sliding velocity does not act on the friction. With phi_p = -theta_p and phi_g = theta_g the
+    overlap is the dynamic transmission error delta = r_bp theta_p - r_bg theta_g + x_p - x_g. Of the flags
+    ``CONTACT_LOSS`` acts: a pair loads where its flanks overlap and that pushes. There are no back sides.
+    """
+    wrench[:] = 0.0
+    rp, rg, pitch = p[RADIUS_P], p[RADIUS_G], p[PITCH]
+    tau = min(max(t, p[T_LOW]), p[T_HIGH])
+    speed = p[OMEGA_P] * rp
+    advance = speed * tau
+    advance -= pitch * math.floor(advance / pitch)
+    delta = q[0] - q[3] - rp * q[2] - rg * q[5]
+    rate = v[0] - v[3] - rp * v[2] - rg * v[5]
+    count = 0
+    k, c, e = int(p[K_ROWS]), int(p[C_ROWS]), int(p[E_ROWS])
+    loaded = k > 0
+    first, last = (table[0, 0], table[k - 1, 1]) if loaded else (p[L_XA], p[L_XD])
+    xi = p[L_XA] + advance - pitch * math.floor((p[L_XA] + advance - first) / pitch)
+    while xi <= last:
+        mu = nominal_friction(p, xi)
+        if loaded:
+            stiffness, stiffness_slope = stiffness_and_slope(table[:k], xi)
+            damping = stiffness_at(table[k : k + c], xi)
+            error = stiffness_at(table[k + c : k + c + e], xi)
+            slope = stiffness_and_slope(table[k + c + e :], xi)[1]
+        else:
+            error, slope = relief_at(p, xi)
+            stiffness, stiffness_slope = stiffness_and_slope(table, xi)
+            damping = p[DAMPING] * math.sqrt(max(stiffness, 0.0))
+        pressed, pressing = delta - error, rate - slope * speed
+        normal = stiffness * pressed + damping * pressing
+        if flags & CONTACT_LOSS and (pressed <= 0.0 or normal < 0.0):
+            stiffness = damping = normal = 0.0
+        friction = mu * normal
+        wrench[0] -= normal
+        wrench[1] += friction
+        wrench[2] += rp * normal + xi * friction
+        wrench[3] += normal
+        wrench[4] -= friction
+        wrench[5] += rg * normal + (p[L_XY] - xi) * friction
+        record = contacts[count]
+        record[XI], record[LOAD], record[FRICTION_FORCE], record[MU] = xi, normal, friction, mu
+        record[K], record[C], record[FLANK] = stiffness, damping, 1.0
+        record[OVERLAP], record[OVERLAP_RATE], record[CLOSING] = pressed, pressing, rate
+        gear_arm = p[L_XY] - xi
+        slide = (p[OMEGA_P] - v[2]) * xi - (p[OMEGA_G] + v[5]) * gear_arm - (v[1] - v[4])
+        record[SLIDE] = slide
+        record[ELASTIC], record[ENERGY] = stiffness * pressed, 0.5 * stiffness * pressed**2
+        # The damper works on the gap itself, the spring on the error that stands for it with loaded contact.
+        error_slope = stiffness_and_slope(table[k + c : k + c + e], xi)[1] if loaded else slope
+        elastic = stiffness * pressed
+        path = elastic * error_slope + (normal - elastic) * slope
+        record[PATH] = path - 0.5 * stiffness_slope * pressed * pressed
+        record[PATH_RATE] = speed
+        count += 1
+        xi += pitch
+    total = 0.0
+    for i in range(6):
+        total += wrench[i]
+    return count if math.isfinite(total) else -1
+
+
+@compiled
+def tooth_forces(
+    t: float, state: FloatArray, p: FloatArray, flags: int, table: FloatArray, contacts: FloatArray
+) -> int:
+    """Wrench and contact records of one state.
+
+    Parameters
+    ----------
+    state : (3, 6) coordinates, velocities, and the wrench, which is written; one array, for Python pays for
+        every one that it hands over
+    t, p, flags, table, contacts : and the result, as ``kernels.contact_forces``
+    """
+    q, v, wrench = state[0], state[1], state[2]
+    if flags & LINEAR:
+        return linear_forces(t, q, v, p, flags, table, wrench, contacts)
+    return contact_forces(t, q, v, p, flags, table, wrench, contacts)
+
+
+@compiled
+def tooth_forces_over(
+    times: FloatArray,
+    q: FloatArray,
+    v: FloatArray,
+    p: FloatArray,
+    flags: int,
+    table: FloatArray,
+    wrenches: FloatArray,
+    contacts: FloatArray,
+) -> IntArray:
+    """``tooth_forces`` at n states; returns the numbers of contacts (n,).
+
+    Parameters
+    ----------
+    times : (n,) [s]
+    q, v, wrenches : (n, 6)
+    contacts : (n, 2 MAX_PAIRS, N_RECORD)
+    p, flags, table : as ``tooth_forces``
+    """
+    counts, state = np.empty(times.size, np.int64), np.empty((3, 6))
+    for i in range(times.size):
+        for j in range(6):
+            state[0, j], state[1, j] = q[i, j], v[i, j]
+        counts[i] = tooth_forces(times[i], state, p, flags, table, contacts[i])
+        for j in range(6):
+            wrenches[i, j] = state[2, j]
+    return counts

@@ -39,10 +39,15 @@ and gear are exchanged.
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import NamedTuple
 
+from lumped.compiler import Compiler
 from lumped.typing import FloatArray
-from multibody.contact.compiled import compiled
+
+_PACKAGE = Path(__file__).parents[1]
+compiled = Compiler(path for path in _PACKAGE.rglob("*.py") if b"@compiled" in path.read_bytes())
+
 
 #: Flanks: the one that drives in the pinion's running sense, and the back side.
 DRIVE, COAST = 1.0, -1.0

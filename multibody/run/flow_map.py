@@ -27,8 +27,7 @@ from multibody.contact import kernels as kn
 from multibody.contact.machine import Machine, Supports
 from multibody.run.integration import Segment, keep_inside
 from multibody.run.linear_motion import bordered, state_scale
-from multibody.run.model import build
-from multibody.run.records import from_lumped_state, to_lumped_state
+from multibody.run.model import build, from_lumped_state, to_lumped_state
 from multibody.run.setup import Fidelity, Setup, prepare
 from multibody.run.simulation import record
 

@@ -19,11 +19,25 @@ import numpy as np
 
 from lumped.typing import FloatArray, IntArray
 from multibody.contact import kernels as kn
-from multibody.contact.forces import tooth_forces, tooth_forces_over
+from multibody.contact.kernels import tooth_forces, tooth_forces_over
 from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import Machine
-from multibody.run.drive import DriveTables, drive_torques
 from multibody.shafts.train import Train
+
+# q = (x_p, y_p, phi_p, x_g, y_g, phi_g) out of (theta_p, theta_g, x_p, x_g, y_p, y_g): theta_p = -phi_p.
+_ORDER = np.array([2, 4, 0, 3, 5, 1])
+_SIGN = np.array([1.0, 1.0, -1.0, 1.0, 1.0, 1.0])
+_BACK = np.argsort(_ORDER)
+
+
+def from_lumped_state(state: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(q, v) of the multibody model, each (..., 6), from the 12 lumped states (..., 12)."""
+    return state[..., _ORDER] * _SIGN, state[..., 6 + _ORDER] * _SIGN
+
+
+def to_lumped_state(q: FloatArray, v: FloatArray) -> FloatArray:
+    """The 12 lumped states (..., 12) from q and v, each (..., 6)."""
+    return np.concatenate([(q * _SIGN)[..., _BACK], (v * _SIGN)[..., _BACK]], axis=-1)
 
 
 class _Stop(Exception):
@@ -94,7 +108,6 @@ class ExudynModel:
     sensors : numbers of the sensors that store coordinates and velocities at every step: of both gears, or of
         each shaft with its gear
     nodes : numbers of the nodes of pinion and gear
-    drive : torques beyond the constant ones
     parameters : the core's parameter vector, may be changed between runs
     budget : counter of force evaluations
     """
@@ -105,7 +118,6 @@ class ExudynModel:
     system: exu.MainSystem
     sensors: tuple[tuple[int, ...], tuple[int, ...]]
     nodes: tuple[int, int]
-    drive: DriveTables | None
     parameters: FloatArray
     budget: CallBudget
 
@@ -114,7 +126,6 @@ def build(
     machine: Machine,
     flags: int,
     call_limit: int,
-    drive: DriveTables | None = None,
     *,
     turning: bool = False,
 ) -> ExudynModel:
@@ -125,7 +136,6 @@ def build(
     machine : numbers of the gear pair
     flags : effect switches (bits of ``kernels``), or ``kernels.LINEAR``
     call_limit : most force evaluations of one integration interval
-    drive : torques beyond the constant ones; they act on the same two nodes as the contacts
     turning : the nodes hold whole angles and speeds, nominal rotation included, not deviations from it
     """
     container = exu.SystemContainer()
@@ -148,7 +158,7 @@ def build(
         items.ObjectGenericODE2(
             nodeNumbers=list(nodes),
             massMatrix=np.zeros((6, 6)),
-            forceUserFunction=_force_function(machine, flags, parameters, budget, drive, turning),
+            forceUserFunction=_force_function(machine, flags, parameters, budget, turning),
         )
     )
     position, velocity = (
@@ -163,7 +173,6 @@ def build(
         system=system,
         sensors=(position, velocity),
         nodes=(nodes[0], nodes[1]),
-        drive=drive,
         parameters=parameters,
         budget=budget,
     )
@@ -257,7 +266,6 @@ def _force_function(
     flags: int,
     p: FloatArray,
     budget: CallBudget,
-    drive: DriveTables | None,
     turning: bool,
 ) -> Callable[..., list[float]]:
     """Return the user function of the contact object; it writes into its own buffers.
@@ -267,7 +275,7 @@ def _force_function(
     """
     buffer = bytearray(struct.calcsize("18d"))
     state = np.frombuffer(buffer).reshape(3, 6)
-    q, v, wrench = state
+    v, wrench = state[1:]
     contacts = np.empty((2 * MAX_PAIRS, kn.N_RECORD))
     table, pack = machine.table, struct.Struct("12d").pack_into
     as_list: Callable[[], list[float]] = wrench.tolist
@@ -292,19 +300,10 @@ def _force_function(
         if tooth_forces(t, state, p, flags, table, contacts) < 0:
             budget.reason = "not finite"
             raise _Stop
-        if drive is not None:
-            add_drive(drive, t, q, v, wrench)
         found = as_list()
         return found
 
     return forces
-
-
-def add_drive(drive: DriveTables, t: float, q: FloatArray, v: FloatArray, wrench: FloatArray) -> None:
-    """Add a drive's torques to the wrench; both act against the counter-clockwise angles."""
-    driving, braking = drive_torques(t, -q[2], -v[2], drive.spring, drive.motor, drive.pinion, drive.gear)
-    wrench[2] -= driving
-    wrench[5] -= braking
 
 
 def contact_state(
@@ -344,9 +343,6 @@ def accelerations(model: ExudynModel, times: FloatArray, q: FloatArray, v: Float
     (n, size) second derivatives of the coordinates
     """
     force = contact_state(model, times, q, v)[0]
-    if model.drive is not None:
-        for i, t in enumerate(times):
-            add_drive(model.drive, t, q[i], v[i], force[i])
     train = model.machine.train
     if train is not None:
         whole = -(q @ train.stiffness.T + v @ train.damping.T)

@@ -22,12 +22,10 @@ from multibody.contact import kernels as kn
 from multibody.contact.effects import EFFECTS, active_effects, effect_flags
 from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import Machine, Supports, loaded_phase, machine
-from multibody.contact.reversal import friction_velocity as choose_friction_velocity
-from multibody.run.drive import Drive, drive_tables
+from multibody.contact.machine import friction_velocity as choose_friction_velocity
 from multibody.run.integration import Segment, integrate
 from multibody.run.linear_motion import LinearMotion, linear_motion, unpaid
-from multibody.run.model import ExudynModel, build
-from multibody.run.records import from_lumped_state
+from multibody.run.model import ExudynModel, build, from_lumped_state
 
 Fidelity = Literal["linear", "exact"]
 
@@ -90,6 +88,11 @@ class Setup:
         """Whether contact positions depend on time alone, so that the switches are known beforehand."""
         return bool(self.model.flags & kn.LINEAR) or not self.model.flags
 
+    def with_torques(self, pinion: float, gear: float) -> Setup:
+        """The same model and initial state under other constant torques, driving and braking [N m]."""
+        machine = replace(self.machine, torque_pinion=pinion, torque_gear=gear)
+        return replace(self, model=build(machine, self.model.flags, self.model.budget.limit))
+
     def edges(self, cycles: int) -> FloatArray:
         """Ends of the integration intervals [s]: at the switches where those are known, else whole cycles."""
         phases = self.machine.switches if self.position_is_nominal else np.zeros(1)
@@ -117,7 +120,6 @@ def prepare(
     effects: Collection[str] | Mapping[str, bool] | None = None,
     rtol: float = 1e-8,
     friction_velocity: float | None = None,
-    drive: Drive | None = None,
     supports: Supports = "springs",
 ) -> Setup:
     """Build the model and its initial state; arguments as ``simulate``."""
@@ -128,8 +130,6 @@ def prepare(
         friction_velocity = real_number(
             "friction_velocity", friction_velocity, 0.0, unit="m/s", action="0 switches at once."
         )
-    if not isinstance(drive, Drive | None):
-        raise refuse("drive", shown(drive), "a multibody.Drive", "Leave it out for constant torques.")
     flags = effect_flags(effects, pair.mesh.contact) or (kn.LINEAR if pair.mesh.contact == "loaded" else 0)
     if fidelity == "linear":
         if effects is None:
@@ -151,17 +151,6 @@ def prepare(
     numbers, q, v, mean_balance, motion = begin(pair, system, numbers, flags, initial)
     velocity, reason = _friction_velocity(numbers, flags, friction_velocity)
     numbers.parameters[kn.V_REG] = velocity
-    tables = None
-    if drive is not None:
-        if supports == "shafts":
-            raise refuse(
-                "drive", shown(drive), "none with supports='shafts'", "Use shafts.motor and shafts.load."
-            )
-        omega = numbers.parameters[kn.OMEGA_P]
-        tables = drive_tables(drive, omega, numbers.torque_pinion, numbers.torque_gear, -float(q[2]))
-        if isinstance(initial, str):  # both gears start at the motor's speed
-            v[2] -= tables.motor[0, 1]
-            v[5] += tables.motor[0, 1] * numbers.parameters[kn.OMEGA_G] / omega
     # With a brake near zero the mean torque that holds a relieved mesh may be below zero.
     deflection = abs(numbers.torque_pinion) / numbers.parameters[kn.RADIUS_P] / system.cycle.mean_stiffness
     if fidelity == "exact" and deflection > _MOST_DEFLECTION * numbers.parameters[kn.PITCH]:
@@ -178,7 +167,6 @@ def prepare(
         effects=names,
         rtol=rtol,
         friction_velocity=velocity,
-        drive=drive,
         supports=supports,
     )
     attributes |= mean_balance | {
@@ -190,7 +178,7 @@ def prepare(
         "friction_velocity_reason": reason,
     }
     return Setup(
-        model=build(numbers, flags, call_limit, tables),
+        model=build(numbers, flags, call_limit),
         system=system,
         q=q,
         v=v,

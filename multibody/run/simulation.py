@@ -5,25 +5,161 @@ Sources: docs/theory/multibody.md.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Collection, Iterable, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import whole_number
+from lumped.labelling import labelled_dataset
+from lumped.model.extremes import cycle_peak_to_peak
+from lumped.model.results import labelled, provenance
 from lumped.model.solution import Initial
 from lumped.model.steady import sample_times
+from lumped.model.sweep import running_speeds
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray, Progress
+from multibody.contact import kernels as kn
 from multibody.contact.machine import Supports
-from multibody.run.drive import Drive
 from multibody.run.integration import Segment
-from multibody.run.records import Recorder
+from multibody.run.model import ExudynModel, contact_state, to_lumped_state
 from multibody.run.setup import MOST_CYCLES, Fidelity, Setup, prepare
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+_COORDINATES = ("theta_p", "theta_g", "x_p", "x_g", "y_p", "y_g")
+#: Variables beyond those of the lumped model: name -> (dimensions, unit, plain name).
+EXTRA = {
+    "overlap": (("time",), "m", "overlap of the driving flanks along the actual line of action"),
+    "normal_load_back": (("pair", "time"), "N", "normal load on the back sides of the teeth"),
+}
+
+
+#: Per-pair variables that a contact record holds as they are.
+_COLUMNS = {
+    "mu": kn.MU,
+    "normal_load": kn.LOAD,
+    "friction_force": kn.FRICTION_FORCE,
+    "sliding_velocity": kn.SLIDE,
+    "position": kn.XI,
+}
+
+
+class Recorder:
+    """Collects states and contacts at the output times while the integration runs.
+
+    Parameters
+    ----------
+    model : the model that is integrated; its force core is evaluated again at the output times
+    time : (n,) output times, increasing [s]
+    """
+
+    def __init__(self, model: ExudynModel, time: FloatArray) -> None:
+        self.model, self.time = model, time
+        machine, p, n = model.machine, model.machine.parameters, time.size
+        self.q, self.v = np.zeros((n, machine.size)), np.zeros((n, machine.size))
+        phase = time / machine.period
+        self.advance = np.maximum(phase - np.floor(phase + 1e-9), 0.0) * p[kn.PITCH]
+        ahead = np.arange(machine.ahead, machine.ahead - machine.pairs, -1)[:, None] * p[kn.PITCH]
+        self.pairs = {
+            name: np.zeros((machine.pairs, n)) for name in (*_COLUMNS, "contact", "normal_load_back")
+        }
+        self.pairs["position"] += p[kn.L_XA] + ahead + self.advance  # a pair out of contact: nominal
+        self.stiffness, self.overlap = np.zeros(n), np.full(n, np.nan)
+
+    def visit(self, segment: Segment, start: float, stop: float) -> None:
+        """Record the output times in [start, stop)."""
+        slack = 1e-9 * self.model.machine.period
+        low, high = np.searchsorted(self.time, [start - slack, stop - slack])
+        if low == high:
+            return
+        inside = np.clip(self.time[low:high], segment.times[0], segment.times[-1])
+        self.q[low:high], self.v[low:high] = segment.at(inside)
+        self._contacts(int(low), int(high))
+
+    def finish(self, q: FloatArray, v: FloatArray, end: float) -> None:
+        """Record the last output time, as the first instant of the cycle that would follow."""
+        p, period = self.model.parameters, self.model.machine.period
+        self.q[-1], self.v[-1] = q, v
+        if np.isfinite(p[kn.T_LOW]):
+            p[kn.T_LOW], p[kn.T_HIGH] = end + 1e-12 * period, end + 1e-9 * period
+        self._contacts(self.time.size - 1, self.time.size)
+
+    def _contacts(self, low: int, high: int) -> None:
+        """Evaluate the contacts at output times low ... high - 1 and sort them into the pairs' slots."""
+        machine, part = self.model.machine, slice(low, high)
+        _, contacts, count = contact_state(self.model, self.time[part], self.q[part], self.v[part])
+        p, slots = machine.parameters, machine.pairs
+        for j in range(int(count.max(initial=0))):
+            found = np.flatnonzero(j < count)
+            record, rows = contacts[found, j], low + found
+            # Whole pitches ahead of the newest nominal position; a pair that enters early or leaves late
+            # takes the slot of the pair that is out of contact.
+            pitches = np.rint((record[:, kn.XI] - p[kn.L_XA] - self.advance[rows]) / p[kn.PITCH])
+            slot = np.mod(machine.ahead - pitches.astype(int), slots)
+            drive = record[:, kn.FLANK] > 0
+            at = (slot[drive], rows[drive])
+            for name, column in _COLUMNS.items():
+                self.pairs[name][at] = record[drive, column]
+            self.pairs["contact"][at] = 1.0
+            np.add.at(self.pairs["normal_load_back"], (slot[~drive], rows[~drive]), record[~drive, kn.LOAD])
+            self.stiffness[rows[drive]] += record[drive, kn.K]
+            self.overlap[rows[drive]] = record[drive, kn.OVERLAP]
+
+    def dataset(self, attributes: Mapping[str, Any]) -> xr.Dataset:
+        """Return everything recorded under the lumped model's names."""
+        import xarray as xr
+
+        p, per_pair = self.model.machine.parameters, dict(self.pairs)
+        back = per_pair.pop("normal_load_back")
+        values = self._motion() | per_pair
+        nominal = (p[kn.OMEGA_P] + p[kn.OMEGA_G]) * (per_pair["position"] - p[kn.L_XP])
+        values |= {
+            "friction_power_nominal": -per_pair["friction_force"] * nominal,
+            "mesh_stiffness": self.stiffness,
+            "friction_power": -per_pair["friction_force"] * per_pair["sliding_velocity"],
+        }
+        result = labelled(self.time, values, attributes)
+        overlap = np.where(np.isnan(self.overlap), values["dte"], self.overlap)
+        for name, data in (("overlap", overlap), ("normal_load_back", back)):
+            dims, unit, text = EXTRA[name]
+            result[name] = xr.DataArray(data, dims=dims, attrs={"units": unit, "long_name": text})
+        train = self.model.machine.train
+        if train is not None:
+            result["bearing_force"] = xr.DataArray(
+                train.bearing_force(self.q, self.v),
+                {"bearing": list(train.bearing_names), "direction": ["loa", "oloa"], "time": result["time"]},
+                dims=("bearing", "direction", "time"),
+                attrs={"units": "N", "long_name": "force of each bearing on its shaft"},
+            )
+        return result
+
+    def _motion(self) -> dict[str, FloatArray]:
+        """Coordinates, rates, transmission error and bearing forces."""
+        machine = self.model.machine
+        states = [f"{name}{suffix}" for suffix in ("", "_dot") for name in _COORDINATES]
+        q, v = self.q[:, :6], self.v[:, :6]
+        values = dict(zip(states, to_lumped_state(q, v).T, strict=True))
+        values |= {"dte": q @ machine.overlap, "dte_dot": v @ machine.overlap}
+        if machine.train is not None:
+            force, names = machine.train.bearing_force(self.q, self.v), machine.train.bearing_names
+            for gear, name in (("p", "pinion"), ("g", "gear")):
+                own = [i for i, bearing in enumerate(names) if bearing.startswith(name)]
+                for j, axis in enumerate("xy"):
+                    values[f"bearing_force_{axis}_{gear}"] = force[own, j].sum(axis=0)
+            return values
+        stiffness, damping = machine.bearing_stiffness, machine.bearing_damping
+        for i, gear in enumerate("pg"):
+            for j, axis in enumerate("xy"):
+                name = f"{axis}_{gear}"
+                values[f"bearing_force_{name}"] = -(
+                    stiffness[i, j] * values[name] + damping[i, j] * values[f"{name}_dot"]
+                )
+        return values
+
 
 #: Runs over intervals (m + 1,) and calls with each one's number and segment; the state at the end.
 Run = Callable[[FloatArray, Callable[[int, Segment], None]], tuple[FloatArray, FloatArray]]
@@ -39,7 +175,6 @@ def simulate(
     effects: Collection[str] | Mapping[str, bool] | None = None,
     rtol: float = 1e-8,
     friction_velocity: float | None = None,
-    drive: Drive | None = None,
     supports: Supports = "springs",
     progress: Progress | None = None,
 ) -> xr.Dataset:
@@ -60,9 +195,7 @@ def simulate(
     rtol : relative tolerance of the integration
     friction_velocity : sliding velocity over which friction changes its sign (tanh) [m/s]; 0 changes at
         once; None chooses, and the attribute ``friction_velocity_reason`` says why (see
-        ``multibody.contact.reversal``)
-    drive : motor, torque histories and run-up ramps, see ``multibody.Drive``; None keeps both torques
-        constant
+        ``multibody.contact.machine``)
     supports : "springs" of ``pair.bearings``, or the elastic "shafts" of ``pair.shafts`` with their own
         bearings, motor and load
     progress : called with the finished fraction
@@ -88,7 +221,7 @@ def simulate(
     """
     pair = load_gear_pair(pair)
     cycles = whole_number("cycles", cycles, 1, MOST_CYCLES)
-    setup = prepare(pair, fidelity, initial, effects, rtol, friction_velocity, drive, supports)
+    setup = prepare(pair, fidelity, initial, effects, rtol, friction_velocity, supports)
     run, _, _ = record(setup, cycles, samples_per_cycle, progress=progress)
     return run
 
@@ -136,3 +269,75 @@ def record(
         "force_evaluations": setup.model.budget.calls,
     }
     return recorder.dataset(attributes), q, v
+
+
+_VARIABLES = {
+    "dte_rms": ("m", "root mean square of the transmission error about its mean"),
+    "dte_peak_to_peak": ("m", "peak to peak of the transmission error"),
+    "overlap_min": ("m", "smallest overlap of the driving flanks; negative: the teeth separate"),
+    "separated": ("1", "share of time in which no driving flanks touch"),
+    "back_side": ("1", "share of time in which the back sides touch"),
+    "unsettled": ("1", "change of the root mean square from the first to the second half, relative"),
+}
+
+
+def speed_sweep(
+    pair: AnyPair,
+    speeds_rpm: Iterable[float],
+    *,
+    settle: int = 80,
+    cycles: int = 20,
+    samples_per_cycle: int = 128,
+    fidelity: Fidelity = "exact",
+    effects: Collection[str] | Mapping[str, bool] | None = None,
+    rtol: float = 1e-7,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Response over speed with the state carried from one speed to the next, in the order given.
+
+    Parameters
+    ----------
+    pair : a validated gear pair; its speed is replaced
+    speeds_rpm : pinion speeds in the order of the sweep, rising or falling [rpm]
+    settle : mesh cycles run at every speed before the response is taken
+    cycles : mesh cycles over which it is taken
+    samples_per_cycle : output times per mesh cycle
+    fidelity, effects, rtol : as ``multibody.simulate``
+    progress : called with the finished fraction
+
+    Returns
+    -------
+    xarray.Dataset over ``speed`` [rpm], in the order of the sweep. ``unsettled`` says where ``settle`` was
+    too short, as near the boundary of stability, or where the motion beats.
+
+    Raises
+    ------
+    ParameterError, NumericalError : as ``multibody.simulate``
+    """
+    pair = load_gear_pair(pair)
+    speeds = running_speeds(speeds_rpm)
+    settle = whole_number("settle", settle, 0, MOST_CYCLES)
+    cycles = whole_number("cycles", cycles, 1, MOST_CYCLES)
+    table = {name: np.full(speeds.size, np.nan) for name in _VARIABLES}
+    state: FloatArray | None = None
+    for j, rpm in enumerate(speeds):
+        at = pair.with_({"operating.pinion_speed": float(rpm)})
+        initial = "periodic" if state is None else state
+        setup = prepare(at, fidelity, initial, effects, rtol)
+        run, q, v = record(setup, settle + cycles, samples_per_cycle, first_cycle=settle)
+        # Whole cycles end at the phase they started with, so the deviations carry over as they are.
+        state = to_lumped_state(q, v)
+        # The last sample is the first of a next cycle: means over whole cycles are without it.
+        dte, overlap = run["dte"].to_numpy()[:-1], run["overlap"].to_numpy()[:-1]
+        table["dte_rms"][j], table["dte_peak_to_peak"][j] = np.std(dte), cycle_peak_to_peak(run, "dte")
+        table["overlap_min"][j], table["separated"][j] = overlap.min(), np.mean(overlap <= 0.0)
+        table["back_side"][j] = np.mean(run["normal_load_back"].to_numpy()[:, :-1].sum(0) > 0.0)
+        halves = [np.std(half) for half in np.split(dte, [cycles // 2 * samples_per_cycle]) if half.size]
+        table["unsettled"][j] = abs(halves[-1] - halves[0]) / np.std(dte)
+        if progress is not None:
+            progress((j + 1) / speeds.size)
+    return labelled_dataset(
+        {name: ("speed", values, *_VARIABLES[name]) for name, values in table.items()},
+        {"speed": (speeds, "rpm", "pinion speed")},
+        provenance(pair, fidelity=fidelity, settle=settle, cycles=cycles, rtol=rtol),
+    )

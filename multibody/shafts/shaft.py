@@ -25,8 +25,7 @@ from scipy.linalg import eigh
 
 from lumped.schema.shafts import CoupledInertia, Shaft
 from lumped.typing import FloatArray, IntArray
-from multibody.shafts.beam import Interval, bending, reading, torsion
-from multibody.shafts.reduction import Reduced, reduce_fields
+from multibody.shafts.beam import Interval, Reduced, bending, reading, reduce_fields, torsion
 
 #: Stations closer than this are one [m].
 _SAME = 1e-7

@@ -44,11 +44,12 @@ def attribution(pair: AnyPair, *, progress: Progress | None = None) -> xr.Datase
     and ``without``, the largest change when all causes but this one act; both over the peak to peak of the
     motion without any, so they are shares of the difference from the lumped model. Cause "all" is the whole
     difference: the effects that act by default. ``without`` is NaN for "friction_load", which is no part of
-    it. The attribute ``largest`` names the cause that alone changes the transmission error most. A quantity that does not move without effects (y_p without friction) is NaN.
+    it. The attribute ``largest`` names the cause that alone changes the transmission error most. A quantity
+    that does not move without effects (y_p without friction) is NaN.
 
     Contact that follows from clearance includes contact loss: without it teeth would pull over a gap. With
-    loaded contact this is one cause, "contact_energy", and the others act on it: their ``alone`` is the change
-    of the motion that it makes; its own ``without`` is NaN. With prescribed contact it is no cause.
+    loaded contact this is one cause, "contact_energy", and the others act on it: their ``alone`` is the
+    change of the motion that it makes; its own ``without`` is NaN. With prescribed contact it is no cause.
     """
     pair = load_gear_pair(pair)
 

@@ -167,14 +167,6 @@ def test_what_is_no_number_is_no_argument_of_a_law(value):
         friction.benedict_kelley(100, 10, 2, 10, 0.4, maximum=value)
 
 
-@pytest.mark.parametrize("argument", ["stiffness", "damping", "motor_speed", "pinion_torque", "brake_torque"])
-def test_a_malformed_drive_is_refused_by_name(argument):
-    for value in [*NOTHING.values(), -1.0, ([0.0], [1.0, 2.0]), ([1.0], [1.0]), ([0.0, 0.0], [1.0, 1.0])]:
-        drive = multibody.Drive(**{"stiffness": 1.0, argument: value})
-        with pytest.raises(ParameterError, match=rf"drive\.{argument}"):
-            multibody.simulate(PAIR, 1, drive=drive)
-
-
 @pytest.mark.parametrize("argument", ["periods", "damping_factors", "gain_factors", "tolerance"])
 def test_malformed_variants_are_refused_by_name(argument):
     block = floquet.gear_block(PAIR)

@@ -13,8 +13,7 @@ from floquet.gear.orbit import GearOrbit
 from lumped import GearPair
 from lumped.errors import NumericalError
 from lumped.typing import FloatArray, Progress
-from multibody.contact.machine import machine
-from multibody.contact.reversal import friction_velocity
+from multibody.contact.machine import friction_velocity, machine
 from validation.cross_check import metrics
 from validation.cross_check.agreement import Fidelity
 from validation.cross_check.tolerances import GROUPS, LINEAR

@@ -101,7 +101,7 @@ def paid_by_the_brake(powers: Mapping[str, float]) -> dict[str, float]:
 def multibody_powers(balance: multibody.PowerBalance, period: float) -> dict[str, float]:
     """The same of a multibody run over one mesh cycle; what it stored counts as driving power less [W]."""
     found = {name: float(getattr(balance, name)) / period for name in POWERS}
-    return found | {"driving": (balance.driving - balance.stored) / period}
+    return found | {"driving": (balance.driving - balance.kinetic) / period}
 
 
 def residual(powers: Mapping[str, float]) -> float:

@@ -20,6 +20,8 @@ from lumped.model.steady import PeriodicSolution, periodic_solution
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.machine import Machine, machine
+from multibody.run.setup import prepare
+from multibody.study.balance import balance_of
 from validation.cross_check.agreement import FIDELITIES, Fidelity
 from validation.cross_check.judgement import Judgement
 from validation.cross_check.ledger import (
@@ -146,16 +148,11 @@ def fed_back(reference: xr.Dataset) -> float:
 
 def _exact_powers(pair: GearPair, system: LTVSystem, exact: xr.Dataset, period: float) -> dict[str, float]:
     state = np.array([float(exact[name][0]) for name in system.state_names])
-    balance = multibody.power_balance(
-        pair,
-        1,
-        initial=state,
-        effects=str(exact.attrs["effects"]).split(", "),
-        rtol=1e-8,
-        friction_velocity=float(exact.attrs["friction_velocity"]),
-        drive=multibody.Drive(brake_torque=([0.0], [float(exact.attrs["brake_torque"])])),
-    )
-    return multibody_powers(balance, period)
+    effects = str(exact.attrs["effects"]).split(", ")
+    velocity = float(exact.attrs["friction_velocity"])
+    setup = prepare(pair, "exact", state, effects, friction_velocity=velocity)
+    setup = setup.with_torques(setup.machine.torque_pinion, float(exact.attrs["brake_torque"]))
+    return multibody_powers(balance_of(setup, 1), period)
 
 
 def _friction(m: Machine, name: str, motion: xr.Dataset) -> Judgement:

@@ -12,7 +12,7 @@ import numpy as np
 import multibody
 from lumped.schema.pair import GearPair
 
-#: Halved from 8 mm/s on [m/s]; the default of ``multibody.contact.reversal`` is smaller than the last.
+#: Halved from 8 mm/s on [m/s]; the default of ``multibody.contact.machine`` is smaller than the last.
 VELOCITIES = (8e-3, 4e-3, 2e-3, 1e-3, 5e-4)
 
 

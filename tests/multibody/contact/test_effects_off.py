@@ -12,8 +12,7 @@ from lumped.friction.registry import law_named
 from lumped.model.steady import periodic_solution
 from lumped.path_of_contact.friction import contact_path
 from multibody.contact import kernels as kn
-from multibody.run.model import accelerations
-from multibody.run.records import from_lumped_state
+from multibody.run.model import accelerations, from_lumped_state
 from multibody.run.setup import prepare
 
 

@@ -6,10 +6,10 @@ import numpy as np
 
 import lumped
 import multibody
-from multibody import Drive
 from multibody.contact import kernels as kn
 from multibody.contact import kinematics
 from multibody.run.setup import prepare
+from multibody.run.simulation import record
 
 FIRST, SECOND = {"loa": 1.0e8, "oloa": 1.0e8}, {"loa": 0.6e8, "oloa": 0.6e8}
 CYCLES = 6
@@ -77,18 +77,9 @@ def test_swapping_pinion_and_gear_mirrors_the_run():
     history = np.stack([run[name].to_numpy() for name in names])
     expected, rates = mirrored(history[:6]), mirrored(history[6:])
     expected[:2] += np.array([turn_p, turn_g])[:, None]
-    drive = Drive(
-        pinion_torque=([0.0], [-run.attrs["brake_torque"]]),
-        brake_torque=([0.0], [-run.attrs["pinion_torque"]]),
-    )
-    seen = multibody.simulate(
-        swapped,
-        CYCLES,
-        initial=np.concatenate([expected[:, 0], rates[:, 0]]),
-        drive=drive,
-        rtol=1e-10,
-        samples_per_cycle=64,
-    )
+    start = prepare(swapped, initial=np.concatenate([expected[:, 0], rates[:, 0]]), rtol=1e-10)
+    torques = -run.attrs["brake_torque"], -run.attrs["pinion_torque"]
+    seen, _, _ = record(start.with_torques(*torques), CYCLES, 64)
     # Two runs at rtol 1e-10 over some thousand steps. The image's rotations are far from zero, where a
     # relative tolerance allows more: 1e-10 x 0.01 rad x 42 mm = 4e-14 m per step, 1e-8 of the motion.
     for name, wanted in zip(names, np.concatenate([expected, rates]), strict=True):

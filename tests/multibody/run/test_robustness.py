@@ -31,9 +31,9 @@ def test_an_interrupt_inside_a_force_evaluation_comes_out_as_itself(monkeypatch)
     def interrupted(*_arguments):
         raise KeyboardInterrupt
 
-    setup = prepare(PAIR, drive=multibody.Drive(stiffness=1e3))
+    setup = prepare(PAIR)
     monkeypatch.setattr("multibody.run.integration.accelerations", lambda *_: np.zeros((1, 6)))
-    monkeypatch.setattr("multibody.run.model.add_drive", interrupted)
+    monkeypatch.setattr("multibody.run.model.tooth_forces", interrupted)
     with pytest.raises(KeyboardInterrupt):
         setup.run(setup.edges(1), lambda *_: None)
 
@@ -84,7 +84,7 @@ def test_a_repeated_state_is_evaluated_again_in_a_new_run():
     """The last stage of a step is the first of the next; a new run may have other parameters."""
     setup, budget = prepare(PAIR, fidelity="linear"), CallBudget(100)
     p, t = setup.model.parameters, 0.3 * setup.machine.period
-    forces = _force_function(setup.machine, setup.model.flags, p, budget, None, False)
+    forces = _force_function(setup.machine, setup.model.flags, p, budget, False)
     state = setup.q.tolist(), [0.1] * 6
     before = forces(None, t, 0, *state)
     p[kn.DAMPING] *= 2.0
@@ -173,9 +173,6 @@ def test_nothing_is_written_to_the_console(capfd):
         ({"effects": {"contact_loss": "no"}}, "effects.contact_loss"),
         ({"effects": 5}, "effects"),
         ({"effects": [["contact_loss"]]}, "effects"),
-        ({"drive": multibody.Drive(pinion_torque=5.0)}, "drive.pinion_torque"),
-        ({"drive": multibody.Drive(brake_torque=(["much"], [1.0]))}, "drive.brake_torque"),
-        ({"drive": multibody.Drive(pinion_torque=([0.0, 1.0], [1.0, np.nan]))}, "drive.pinion_torque"),
         ({"effects": {"entry_shift"}, "fidelity": "linear"}, "effects"),
         ({"friction_velocity": -1.0}, "friction_velocity"),
         ({"friction_velocity": float("nan")}, "friction_velocity"),

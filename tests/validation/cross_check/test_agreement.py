@@ -7,6 +7,8 @@ import pytest
 
 import lumped
 import multibody
+from multibody.run.setup import prepare
+from multibody.run.simulation import record
 
 BASE = lumped.load_gear_pair("nasa_28_28").with_(
     mesh__relief="ignored",
@@ -91,11 +93,11 @@ def test_steady_state_attracts():
     pair = SMOOTH.with_(mesh__damping_ratio=0.08)
     steady = multibody.steady_state(pair, samples_per_cycle=64)
     assert steady.attrs["closure"] < 1e-6
-    drive = multibody.Drive(brake_torque=([0.0], [steady.attrs["brake_torque"]]))
     names = lumped.periodic_system(pair, "full").state_names
     start = np.array([float(steady[name][0]) for name in names])
     start[2] += 2e-6  # the pinion, by a third of the swing of the transmission error
-    run = multibody.simulate(pair, 80, initial=start, drive=drive, samples_per_cycle=64, rtol=1e-9)
+    setup = prepare(pair, initial=start, rtol=1e-9)
+    run, _, _ = record(setup.with_torques(setup.machine.torque_pinion, steady.attrs["brake_torque"]), 80, 64)
     swing = float(np.ptp(steady["dte"].to_numpy()))
     off = [
         float(np.abs(run["dte"].to_numpy()[rows] - steady["dte"].to_numpy()).max()) / swing

@@ -41,7 +41,7 @@ def _missing(pair: GearPair) -> float:
     """Mean power that the exact contact with an energy leaves out of the books over a mesh cycle [W]."""
     books = multibody.power_balance(pair, 1, initial="periodic", rtol=1e-10)
     taken = books.braking + books.friction + books.bearings + books.mesh_damping
-    return (books.driving - books.stored - books.mesh_elastic - taken) / pair.geometry.mesh_period
+    return (books.driving - books.kinetic - books.mesh_elastic - taken) / pair.geometry.mesh_period
 
 
 def _motion(pair: GearPair) -> PeriodicSolution:
