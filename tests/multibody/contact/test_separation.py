@@ -67,7 +67,7 @@ def test_loads_never_pull_and_back_sides_strike():
         assert float(run["normal_load"].min()) >= 0.0
         assert float(run["normal_load_back"].min()) >= 0.0
         assert float((front * back).max()) == 0.0  # never both sides, and only a whole backlash behind
-        assert float(run["overlap"].where(back > 0).max()) < -0.97 * backlash  # bearings give way by some um
+        assert not (back > 0).where(run["overlap"] > -0.97 * backlash, False).any()  # bearings give way by um
     assert float(there["normal_load_back"].max()) > static  # an impact
     # Driving again: the teeth still rattle, but over 20 cycles their impacts carry the torque.
     front, back = (again[name].sum("pair")[-20 * 256 :] for name in ("normal_load", "normal_load_back"))
