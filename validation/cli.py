@@ -13,12 +13,11 @@ from typing import Annotated
 import typer
 
 from validation.commands.crosscheck import crosscheck
-from validation.commands.export import export
 from validation.commands.figures import figures
+from validation.commands.files import export, init, presets
 from validation.commands.floquet import floquet
 from validation.commands.interactive import interactive
 from validation.commands.measurement import measurement
-from validation.commands.parameter_files import init, presets
 from validation.commands.report import report
 from validation.commands.response import response
 from validation.commands.simulate import simulate

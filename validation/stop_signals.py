@@ -50,24 +50,3 @@ def stopping_as_interrupt() -> Iterator[None]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-
-
-@contextmanager
-def undisturbed() -> Iterator[None]:
-    """Keep the signals back until the end of the block, and Ctrl-C from processes that are started in it."""
-    late: list[int] = []
-    before = {number: signal.getsignal(number) for number in _signals()}
-    if not before:
-        yield
-        return
-    for number in before:
-        signal.signal(number, lambda number, frame: late.append(number))
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # what a new process inherits
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-        for number, handler in before.items():
-            signal.signal(number, handler)
-    if late:
-        signal.raise_signal(late[0])

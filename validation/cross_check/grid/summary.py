@@ -1,4 +1,4 @@
-"""What a regression grid says: verdict, worst points, what broke a rule, and why the worst point is worst."""
+"""What a regression grid says: verdict, worst points, and what broke a rule."""
 
 from __future__ import annotations
 
@@ -8,9 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-import multibody
-from lumped.typing import Progress
-from validation.cross_check.grid.run import AXES, COMPARED, SCALING_TOLERANCE, SEPARATED, STICKING, Grid
+from validation.cross_check.grid.run import AXES, COMPARED, SCALING_TOLERANCE, SEPARATED, STICKING
 from validation.cross_check.judgement import Verdict
 from validation.cross_check.tolerances import LOST
 from validation.validity.flags import LOAD_NOISE
@@ -164,18 +162,6 @@ def failures(result: xr.Dataset) -> list[tuple[dict[str, str | float], str]]:
         if reason not in (COMPARED, SEPARATED, STICKING):
             found.append(({axis: point[axis].item() for axis in AXES}, reason))
     return found
-
-
-def explain(grid: Grid, point: Mapping[str, str | float], progress: Progress | None = None) -> xr.Dataset:
-    """Which finite-motion effect makes the difference at one point, see ``multibody.attribution``."""
-    pair = grid.pair(
-        str(point["preset"]),
-        str(point["law"]),
-        str(point["stiffness"]),
-        float(point["speed"]),
-        float(point["torque"]),
-    )
-    return multibody.attribution(pair, progress=progress)
 
 
 def _place(values: xr.DataArray) -> dict[str, xr.DataArray]:
