@@ -68,8 +68,6 @@ import json, lumped, floquet
 from typer.testing import CliRunner
 from validation.cli import app
 from validation.cross_check.comparison import crosscheck
-from validation.reporting.chapters import reference_model
-from validation.reporting.results import QUICK, Results
 
 pair = lumped.load_gear_pair("nasa_28_28").with_(friction__law="rising", mesh__relief="ignored")
 assert lumped.load_gear_pair(__import__("tomllib").loads(pair.to_toml())) == pair
@@ -78,9 +76,6 @@ assert 0.98 < lumped.steady_state(pair, samples_per_cycle=64).attrs["mesh_effici
 assert floquet.gear_pair_multipliers(pair).spectral_radius < 1.0
 check = crosscheck(pair, cycles=6, samples_per_cycle=32, twin=False)
 assert not check.failures, check.failures
-chapter = reference_model.CHAPTER.write(Results(pair, QUICK))
-shared = next(block for block in chapter.blocks if getattr(block, "key", "") == "shared")
-assert shared.rows[0][0].startswith("friction coefficient of the law rising"), shared.rows[0]
 wrong = CliRunner().invoke(app, ["simulate", "nasa_28_28", "--law", "risin"])
 assert wrong.exit_code == 2 and "Did you mean 'rising'?" in wrong.output, wrong.output
 """
