@@ -1,6 +1,7 @@
 # make report   set up .venv if needed and write the verification report of the default gear pair to report/
 # make test     set up .venv if needed and run the tests
 # make lint     ruff and mypy --strict
+# make reproduce   compute figures, claims and errata of the published model again, in build/reproductions/
 # make package-check   build sdist and wheel, install and try the wheel on every Python 3.11 or later found here
 # make docs     set up .venv if needed and build the documentation to build/docs; warnings are errors
 # PYTHON=python3.12 chooses the interpreter, VENV=path another environment.
@@ -13,11 +14,14 @@ OUT ?= report
 export OPENBLAS_NUM_THREADS ?= 1
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: report test lint docs package-check clean
+.PHONY: report reproduce test lint docs package-check clean
 
 report: $(VENV)/.ready
 	$(BIN)/spurcheck report --output $(OUT) --force || test $$? -eq 1
 	@echo "Open $(OUT)/index.html"
+
+reproduce: $(VENV)/.ready
+	$(BIN)/python -m reproductions.he_cho_singh_2008 build/reproductions/he_cho_singh_2008
 
 test: $(VENV)/.ready-test
 	$(BIN)/python -m pytest -n 2

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE))
+sys.path[:0] = [str(HERE), str(HERE.parent)]  # computed, reproductions
 
 # Sphinx wants to see the folder of computed pages before they are computed.
 (HERE / "_generated" / "pages").mkdir(parents=True, exist_ok=True)

@@ -20,7 +20,7 @@ LONG = (
     (
         "floquet/orbits", "floquet/gear", "floquet/rank_one", "validation/reporting", "examples", "docs",
         "validation/commands", "validation/interactive", "packaging", "validation/verification",
-        "validation/paper", "lumped/friction",
+        "reproductions", "lumped/friction",
     ),
     (
         "multibody", "validation/cross_check", "validation/studies", "validation/files", "validation/faults",

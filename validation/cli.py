@@ -13,7 +13,6 @@ from typing import Annotated
 import typer
 
 from validation.commands.crosscheck import crosscheck
-from validation.commands.figures import figures
 from validation.commands.files import export, init, presets
 from validation.commands.floquet import floquet
 from validation.commands.interactive import interactive
@@ -77,7 +76,6 @@ COMMANDS = (
     response,
     interactive,
     sweep,
-    figures,
     measurement,
 )
 for command in COMMANDS:

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
 DOCS = Path(__file__).resolve().parents[1]
 GENERATED = DOCS / "_generated"
-_SOURCES = ("lumped", "multibody", "floquet", "validation", "docs/computed", "docs/verification")
+_PACKAGES = ("lumped", "multibody", "floquet", "validation", "reproductions")
+_SOURCES = (*_PACKAGES, "docs/computed", "docs/verification")
 
 
 def writers() -> Mapping[str, Callable[[], str]]:

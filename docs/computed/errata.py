@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import lumped
 from computed.markdown import Cell, greek, table, text
-from validation.paper.errata.catalogue import errata_chapter
+from reproductions.he_cho_singh_2008.errata.catalogue import errata_chapter
 
 
 def _value(value: float | str, unit: str) -> Cell:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import lumped
 from computed.markdown import Cell, greek, table, text
-from validation.paper.claims.judge import claims
+from reproductions.he_cho_singh_2008.claims.judge import claims
 
 _SAMPLES = 40
 

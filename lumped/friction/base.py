@@ -167,7 +167,6 @@ class FrictionLaw:
     coefficient : whether |mu| far from the pitch point is one number, ``friction.coefficient``
     varies : whether mu depends on speed, load, oil or flanks (a law with a coefficient: where none is given)
     fluid_film : whether the law was fitted to contacts that an oil film carries in part or in full
-    in_paper : whether the paper's comparisons of laws (figures 3 to 5) have it
     """
 
     name: str
@@ -183,7 +182,6 @@ class FrictionLaw:
     coefficient: bool = False
     varies: bool = True
     fluid_film: bool = False
-    in_paper: bool = False
 
     @property
     def title(self) -> str:

@@ -149,5 +149,4 @@ LAW = FrictionLaw(
     switches=_switches,
     ranges=RANGES,
     fluid_film=True,
-    in_paper=True,
 )

@@ -47,5 +47,4 @@ LAW = FrictionLaw(
     signed=_signed,
     switches=lambda path, settings: [path.L_XP],
     coefficient=True,
-    in_paper=True,
 )

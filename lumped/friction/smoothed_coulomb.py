@@ -52,5 +52,4 @@ LAW = FrictionLaw(
     signed=_signed,
     switches=lambda path, settings: [],
     coefficient=True,
-    in_paper=True,
 )

@@ -96,5 +96,4 @@ LAW = FrictionLaw(
     switches=lambda path, settings: [path.L_XP],
     ranges=RANGES,
     fluid_film=True,
-    in_paper=True,
 )

@@ -26,13 +26,6 @@ def report(
     quick: Annotated[
         bool, typer.Option("--quick", help="Coarser sampling and no verification, for a first look.")
     ] = False,
-    paper: Annotated[
-        bool | None,
-        typer.Option(
-            "--paper/--no-paper",
-            help="Compare with the paper: figures, claims, errata. Default for its gears, unless --quick.",
-        ),
-    ] = None,
     compare: Annotated[
         Path | None,
         typer.Option(
@@ -78,7 +71,6 @@ def report(
             output,
             force=force,
             quick=quick,
-            paper=paper,
             compare=compare,
             tolerance=tolerance,
             progress=tell,

@@ -46,7 +46,6 @@ class Kind:
 
 
 REPORT = Kind("report.json", FORMAT, "report")
-FIGURES = Kind("figures.json", "spurcheck-figures", "set of figures")
 MEASUREMENT = Kind("measurement.json", "spurcheck-measurement", "evaluation of a record")
 
 

@@ -29,11 +29,6 @@ STATES = {
     "unstable": "bad",
     "outside": "bad",
     "prediction": "plain",
-    # Verdicts on the paper, not on this gear pair: none of them is a failure of the model.
-    "reproduced": "good",
-    "not reproduced": "fair",
-    "cannot be judged": "plain",
-    "misprint": "plain",
 }
 
 

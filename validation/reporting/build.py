@@ -6,7 +6,7 @@ import base64
 import json
 import resource
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
@@ -18,7 +18,6 @@ from lumped.arguments import file_path
 from lumped.typing import Progress
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
-from validation.paper.subject import is_papers_pair
 from validation.plots.answer import first_figure
 from validation.plots.style import save
 from validation.reporting.baseline import load_report
@@ -64,7 +63,6 @@ def report(
     *,
     force: bool = False,
     quick: bool = False,
-    paper: bool | None = None,
     compare: str | Path | None = None,
     tolerance: float = TOLERANCE,
     progress: Progress | None = None,
@@ -82,8 +80,6 @@ def report(
     out : folder, new or empty
     force : replace an earlier report in that folder
     quick : coarser sampling and no verification, for a first look
-    paper : compare with the paper (its figures, claims and errata) for this pair; default: where the
-        paper is about these gears, unless quick
     compare : report.json of an earlier report, or its folder; the report then has a chapter of changes
     tolerance : relative change of a number that passes in this comparison
     progress : called with the finished fraction and what is being done
@@ -101,9 +97,7 @@ def report(
     if earlier is not None:
         compare_reports(earlier, earlier, tolerance=tolerance)  # refuses a tolerance before any work
     with whole_folder(target, force=force) as folder:
-        if paper is None:
-            paper = not quick and is_papers_pair(gear_pair)
-        effort = replace(QUICK if quick else FULL, paper=paper)
+        effort = QUICK if quick else FULL
         results = Results(gear_pair, effort)
         chapters = written(results, CHAPTERS, lambda f, stage="", /: tell(0.85 * f, stage))
         computed = time.perf_counter()

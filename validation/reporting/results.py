@@ -23,7 +23,6 @@ from lumped.model.resolved_sweep import resolved_sweep
 from lumped.path_of_contact import friction_profile
 from lumped.typing import BoolArray, Progress
 from validation.cross_check.comparison import CrossCheck, crosscheck
-from validation.reporting.paper_results import PaperResults, paper_results
 from validation.validity.beyond_contact_loss import branches_about_operation, jumps_about_operation
 from validation.validity.contact_forms import ContactForms, contact_forms
 from validation.validity.flags import LOAD_NOISE, Flag, speed_drift, supports, validity_flags
@@ -53,8 +52,6 @@ class Effort:
     shaft_speeds : at which four springs are compared with shafts
     full : whether to search the best tip relief, to solve the periodic motion of every law, to switch the
         finite-motion effects one at a time, to check the code against closed forms and to refine solutions
-    paper : whether to reproduce the paper's figures, judge its claims and show its errata with this pair
-    claim_samples : samples of what the paper leaves open, for that
     """
 
     samples: int
@@ -67,12 +64,10 @@ class Effort:
     map_torques: int
     shaft_speeds: int
     full: bool
-    paper: bool
-    claim_samples: int
 
 
-FULL = Effort(512, 6, 240, 121, 17, 1e-6, 15, 5, 41, full=True, paper=True, claim_samples=100)
-QUICK = Effort(128, 16, 48, 16, 4, 1e-6, 7, 3, 13, full=False, paper=False, claim_samples=8)
+FULL = Effort(512, 6, 240, 121, 17, 1e-6, 15, 5, 41, full=True)
+QUICK = Effort(128, 16, 48, 16, 4, 1e-6, 7, 3, 13, full=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -305,14 +300,6 @@ class Results:
         speeds = np.linspace(*self.speeds, self.effort.shaft_speeds)
         stage = self.stage("the pair on its shafts")
         return _or_why_not(partial(four_springs, speeds_rpm=speeds, progress=stage), self.pair)
-
-    @cached_property
-    def paper(self) -> PaperResults | str | None:
-        """The paper with this gear pair; why it does not suit the pair; None where it was not asked for."""
-        if not self.effort.paper:
-            return None
-        samples, stage = self.effort.claim_samples, self.stage("comparison with the paper")
-        return _or_why_not(partial(paper_results, samples=samples, progress=stage), self.pair)
 
 
 def _or_why_not(compute: Callable[[GearPair], T], pair: GearPair) -> T | str:

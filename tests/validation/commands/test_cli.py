@@ -176,7 +176,7 @@ def asked(monkeypatch):
 
 def test_options_reach_the_report(asked, tmp_path):
     out, old = tmp_path / "out", tmp_path / "old"
-    options = ("--quick", "--speed", "3000 rpm", "--law", "coulomb", "--no-paper", "--tolerance", "0.01")
+    options = ("--quick", "--speed", "3000 rpm", "--law", "coulomb", "--tolerance", "0.01")
     result = run("report", "fzg_c", "-o", out, *options, "--compare", old)
     assert result.exit_code == 0, result.stderr
     assert "It holds." in result.stdout
@@ -185,7 +185,6 @@ def test_options_reach_the_report(asked, tmp_path):
     expected = {
         "out": out,
         "quick": True,
-        "paper": False,
         "compare": old,
         "tolerance": 0.01,
         "force": False,

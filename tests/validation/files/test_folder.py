@@ -6,7 +6,7 @@ import pytest
 
 from lumped import ParameterError
 from lumped.errors import StorageError
-from validation.files.folder import CONTENTS, FIGURES, check_target, whole_folder
+from validation.files.folder import CONTENTS, Kind, check_target, whole_folder
 
 
 def write(out, files, **options):
@@ -86,7 +86,7 @@ def test_a_folder_without_a_list_of_ours_is_not_touched(tmp_path, content):
 
 def test_results_of_another_kind_are_not_replaced(tmp_path):
     out = tmp_path / "out"
-    write(out, {"x": "1"}, kind=FIGURES)
+    write(out, {"x": "1"}, kind=Kind("other.json", "spurcheck-other", "other result"))
     with pytest.raises(ParameterError, match="an earlier report"):
         check_target(out, force=True)
 

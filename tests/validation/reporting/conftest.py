@@ -31,7 +31,7 @@ def tiny():
 @pytest.fixture(scope="package")
 def computed(pair):
     """Results of everything that a full report computes."""
-    return Results(pair, dataclasses.replace(TINY, full=True, paper=True))
+    return Results(pair, dataclasses.replace(TINY, full=True))
 
 
 @pytest.fixture(scope="package")

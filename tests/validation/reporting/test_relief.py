@@ -1,7 +1,6 @@
-"""Does page 1 say that given relief is left out, and do the paper's chapters always leave it out?"""
+"""Does page 1 say that given relief is left out?"""
 
 import lumped
-from validation.paper.operating_points import papers_pair
 from validation.reporting.words import ignored_relief
 
 NASA = lumped.load_gear_pair("nasa_28_28")
@@ -15,8 +14,3 @@ def test_relief_that_is_given_acts_unless_page_1_says_otherwise():
     assert ignored_relief(NASA.with_(bare)) == ""
     root = {"amount": 5.0, "start_roll_angle": 14.0}
     assert "given but ignored" in ignored_relief(NASA.with_(bare | {"gear.root_relief": root}))
-
-
-def test_the_papers_pair_has_flanks_without_relief():
-    assert papers_pair(NASA).mesh.relief == "ignored"
-    assert papers_pair(NASA).pinion.tip_relief == NASA.pinion.tip_relief

@@ -45,7 +45,7 @@ def write(results: Results) -> Content:
     text = Text(
         f"Verification asks whether the equations are solved right; validation, whether they are the right "
         f"equations, and only measurements decide that. {assumed} of {len(stated)} parameter values of this "
-        "pair are assumed: no conclusion is firmer than these. Apart from the paper's claims this report "
+        "pair are assumed: no conclusion is firmer than these. This report "
         "does not vary them; a study says how far they move a result (spurcheck sweep)."
     )
     return Content((text, table, outside))
