@@ -1,6 +1,6 @@
 """Compute the publication again: ``python -m reproductions.he_cho_singh_2008 [FOLDER]``.
 
-Writes figures 2 to 7 (SVG; data as NetCDF and CSV), ``claims.json``, ``errata.json`` and small pictures (PNG).
+Writes figures 2 to 7 (SVG; data as NetCDF and CSV), ``claims.json``, ``errata.json`` and pictures (PNG).
 """
 
 from __future__ import annotations
