@@ -21,15 +21,12 @@ _LAST_STEP = 1e-8
 
 
 @compiled
-def stiffness_and_slope(table: FloatArray, xi: float) -> tuple[float, float]:
-    """Stiffness of one tooth pair at xi [N/m] and its slope [N/m^2], or of another tabulated law.
+def law_at(table: FloatArray, low: int, high: int, xi: float) -> tuple[float, float]:
+    """A law in the rows ``low`` to ``high`` of a table at xi, and its slope; beyond its path it is constant.
 
-    Beyond its path it is constant.
-
-    ``table`` has one row per polynomial piece: its left end, its right end, then coefficients, highest
-    power of (xi - left) first.
+    The table has one row per polynomial piece: its left end, its right end, then coefficients, highest power
+    of (xi - left) first.
     """
-    low, high = 0, table.shape[0] - 1
     x = min(max(xi, table[low, 0]), table[high, 1])
     while low < high:
         middle = (low + high + 1) // 2
@@ -43,6 +40,12 @@ def stiffness_and_slope(table: FloatArray, xi: float) -> tuple[float, float]:
         slope = slope * s + value
         value = value * s + table[low, column]
     return value, slope if x == xi else 0.0
+
+
+@compiled
+def stiffness_and_slope(table: FloatArray, xi: float) -> tuple[float, float]:
+    """Stiffness of one tooth pair at xi [N/m] and its slope [N/m^2], or another law that fills a table."""
+    return law_at(table, np.int64(0), table.shape[0] - 1, xi)
 
 
 @compiled
@@ -233,7 +236,7 @@ def shared_loads(
     softening, nominal : as ``compliances``
     loads : receives N_i [N]
     """
-    touch = 0
+    touch = np.int64(0)
     for i in range(count):
         loads[i] = 0.0
         if stiffness[i] > 0.0 and (pulls >> i & 1 or pressed[i] > 0.0):

@@ -257,9 +257,11 @@ def time_to_event(
     kind = float(events[which, 0]) if events.shape[0] else ENTRY
     if not wait < near:
         return wait, kind
+    later, moving = np.empty(6), np.empty(6)
     before = shift = 0.0
     for turn in range(_MOST_ITERATIONS):
-        later, moving = q + wait * (v + 0.5 * wait * a), v + wait * a
+        for j in range(6):
+            later[j], moving[j] = q[j] + wait * (v[j] + 0.5 * wait * a[j]), v[j] + wait * a[j]
         if coupled and kind >= FIRST_TOUCH:
             count = kn.contact_forces(t + wait, later, moving, p, flags, table, wrench, contacts)
         d = distance(kind, events[which, 1], t + wait, later, moving, p, flags, contacts, count)

@@ -20,6 +20,7 @@ from multibody.contact import friction as fr
 from multibody.contact.elements import (
     elastic_load,
     gradual,
+    law_at,
     shared_loads,
     stiffness_and_slope,
     stiffness_at,
@@ -285,7 +286,7 @@ def contact_forces(
     # One array, for each costs as much as a contact's geometry.
     state = np.empty((N_STATE, MAX_PAIRS))
     arms, coupling = state[ARMS:COUPLINGS].reshape((MAX_PAIRS, 2)), state[COUPLINGS:SLOPES]
-    count = 0
+    count = np.int64(0)
     for side in range(2 if flags & BACK_SIDE else 1):
         flank = DRIVE if side == 0 else COAST
         ex, ey, length, delta, rho, _ = mesh_position(t, q, p, flags, flank)
@@ -301,7 +302,7 @@ def contact_forces(
             length_rate = flank * (rp + rg) * psi_rate - (ex * vx + ey * vy)
         wp, wg = (omega_p, omega_g) if flags & ROTATION_PHASE else (-p[OMEGA_P], p[OMEGA_G])
         xi_rate = 0.5 * flank * (rp * (psi_rate - wp) - rg * (psi_rate - wg))
-        bound, candidates, pairs = 0, pairs, 0  # bound: bits of the pairs that cannot part
+        bound, candidates, pairs = np.int64(0), pairs, np.int64(0)  # bound: bits of pairs that cannot part
         for candidate in range(candidates):
             rho_p, rho_g, i = arms[candidate, 0], arms[candidate, 1], pairs
             xi = 0.5 * (rho_p - rho_g + p[L_XY])
@@ -427,10 +428,10 @@ def linear_forces(
     while xi <= last:
         mu = nominal_friction(p, xi)
         if loaded:
-            stiffness, stiffness_slope = stiffness_and_slope(table[:k], xi)
-            damping = stiffness_at(table[k : k + c], xi)
-            error = stiffness_at(table[k + c : k + c + e], xi)
-            slope = stiffness_and_slope(table[k + c + e :], xi)[1]
+            stiffness, stiffness_slope = law_at(table, np.int64(0), k - 1, xi)
+            damping = law_at(table, k, k + c - 1, xi)[0]
+            error = law_at(table, k + c, k + c + e - 1, xi)[0]
+            slope = law_at(table, k + c + e, table.shape[0] - 1, xi)[1]
         else:
             error, slope = relief_at(p, xi)
             stiffness, stiffness_slope = stiffness_and_slope(table, xi)
@@ -455,7 +456,7 @@ def linear_forces(
         record[SLIDE] = slide
         record[ELASTIC], record[ENERGY] = stiffness * pressed, 0.5 * stiffness * pressed**2
         # The damper works on the gap itself, the spring on the error that stands for it with loaded contact.
-        error_slope = stiffness_and_slope(table[k + c : k + c + e], xi)[1] if loaded else slope
+        error_slope = law_at(table, k + c, k + c + e - 1, xi)[1] if loaded else slope
         elastic = stiffness * pressed
         path = elastic * error_slope + (normal - elastic) * slope
         record[PATH] = path - 0.5 * stiffness_slope * pressed * pressed

@@ -27,19 +27,18 @@ from multibody.contact.kernels import tooth_forces
 from multibody.contact.kinematics import MAX_PAIRS, compiled
 from multibody.run.model import ExudynModel, accelerations, stored
 
-_TIMES = np.array([1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])
-_STAGES = np.array(
+#: Six stages: coefficients of the rates, last the time; then the result of fifth order less that of fourth.
+_TABLEAU = np.array(
     [
-        [1 / 5, 0, 0, 0, 0, 0],
-        [3 / 40, 9 / 40, 0, 0, 0, 0],
-        [44 / 45, -56 / 15, 32 / 9, 0, 0, 0],
-        [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729, 0, 0],
-        [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656, 0],
-        [35 / 384, 0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84],
+        [1 / 5, 0, 0, 0, 0, 0, 1 / 5],
+        [3 / 40, 9 / 40, 0, 0, 0, 0, 3 / 10],
+        [44 / 45, -56 / 15, 32 / 9, 0, 0, 0, 4 / 5],
+        [19372 / 6561, -25360 / 2187, 64448 / 6561, -212 / 729, 0, 0, 8 / 9],
+        [9017 / 3168, -355 / 33, 46732 / 5247, 49 / 176, -5103 / 18656, 0, 1.0],
+        [35 / 384, 0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84, 1.0],
+        [71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40],
     ]
 )
-#: Result of fifth order less that of fourth.
-_ERROR = np.array([71 / 57600, 0.0, -71 / 16695, 71 / 1920, -17253 / 339200, 22 / 525, -1 / 40])
 #: Part of the next step that the error of this one allows, and by what a step may change.
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 5.0
 #: What is left before an interval's end is bridged if it is no longer than so many ordinary steps.
@@ -60,6 +59,7 @@ def bridge(
     bodies: FloatArray,
     rtol: float,
     atol: float,
+    tableau: FloatArray,
 ) -> tuple[int, float, int]:
     """Steps from the first of the times until ``stop``, or until they are of ordinary length with far to go.
 
@@ -72,6 +72,7 @@ def bridge(
     p, flags, table : as ``kernels.contact_forces``
     bodies : (4, 6) as ``Machine.bodies``
     rtol, atol : largest error of a step: rtol times the value, and atol
+    tableau : ``_TABLEAU``; as a constant it would be compiled into unrolled loops
 
     Returns
     -------
@@ -94,11 +95,11 @@ def bridge(
             for i in range(6):
                 further = faster = 0.0
                 for k in range(stage + 1):
-                    further += _STAGES[stage, k] * speeds[k, i]
-                    faster += _STAGES[stage, k] * rates[k, i]
+                    further += tableau[stage, k] * speeds[k, i]
+                    faster += tableau[stage, k] * rates[k, i]
                 place[i], speed[i] = q[j, i] + h * further, v[j, i] + h * faster
             calls += 1
-            t = times[j] + h * _TIMES[stage]
+            t = times[j] + h * tableau[stage, 6]
             if tooth_forces(t, state, p, flags, table, contacts) < 0:
                 return rows, step, calls
             for i in range(6):
@@ -109,8 +110,8 @@ def bridge(
             q[rows, i], v[rows, i], a[rows, i] = place[i], speed[i], rates[6, i]
             further = faster = 0.0
             for k in range(7):
-                further += _ERROR[k] * speeds[k, i]
-                faster += _ERROR[k] * rates[k, i]
+                further += tableau[6, k] * speeds[k, i]
+                faster += tableau[6, k] * rates[k, i]
             worst = max(worst, h * abs(further) / (atol + rtol * abs(place[i])))
             worst = max(worst, h * abs(faster) / (atol + rtol * abs(speed[i])))
         change = _SAFETY * worst**-0.2 if worst > 0.0 else _GROW
@@ -324,7 +325,7 @@ def _towards(
         states[:, 0] = q, v, a
         rtol, atol = ti.relativeTolerance, ti.absoluteTolerance
         rows, first, calls = bridge(
-            stop, step, times, states, model.parameters, model.flags, m.table, m.bodies, rtol, atol
+            stop, step, times, states, model.parameters, model.flags, m.table, m.bodies, rtol, atol, _TABLEAU
         )
         model.budget.calls += calls
         parts = [Segment(times[:rows], *states[:, :rows])]
