@@ -25,8 +25,6 @@ _STEEPEST = 1.4
 class Circles:
     """Circles and path of contact of a pair [m].
 
-    Attributes
-    ----------
     base_pinion, base_gear : base radii
     pitch : base pitch
     tip_pinion, tip_gear : tip radii
@@ -57,12 +55,7 @@ class Circles:
 
 
 def circles(pair: GearPair) -> Circles:
-    """Circles of a pair.
-
-    Parameters
-    ----------
-    pair : a validated gear pair
-    """
+    """Circles of a pair."""
     rack = pair.basic_rack
     cosine = math.cos(rack.pressure_angle)
     r_p, r_g = (0.5 * rack.module * gear.teeth * cosine for gear in (pair.pinion, pair.gear))

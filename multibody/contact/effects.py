@@ -121,8 +121,6 @@ DEFAULT_EFFECTS: tuple[str, ...] = tuple(name for name, effect in EFFECTS.items(
 def default_effects(contact: str) -> tuple[str, ...]:
     """Names of the effects that act where none are named.
 
-    Parameters
-    ----------
     contact : ``mesh.contact`` of the pair: "prescribed", or "loaded" whose contact has an energy
     """
     energy = ("contact_energy", "path_work") if contact == "loaded" else ()
@@ -132,16 +130,11 @@ def default_effects(contact: str) -> tuple[str, ...]:
 def effect_flags(effects: Collection[str] | Mapping[str, bool] | None, contact: str = "prescribed") -> int:
     """Return the kernel's switch bits.
 
-    Parameters
-    ----------
     effects : names of the effects that act, or a mapping name -> bool; names that a mapping
         leaves out, or all of them with None, act if they are ``DEFAULT_EFFECTS``, with loaded contact of the
         model those of the contact's energy too
     contact : ``mesh.contact`` of the pair
-
-    Raises
-    ------
-    ParameterError : unknown effect
+    Raises ParameterError : unknown effect
     """
     default = default_effects(contact)
     if effects is None:

@@ -45,7 +45,7 @@ def law_at(table: FloatArray, low: int, high: int, xi: float) -> tuple[float, fl
 @compiled
 def stiffness_and_slope(table: FloatArray, xi: float) -> tuple[float, float]:
     """Stiffness of one tooth pair at xi [N/m] and its slope [N/m^2], or another law that fills a table."""
-    return law_at(table, np.int64(0), table.shape[0] - 1, xi)
+    return law_at(table, int(np.int64(0)), table.shape[0] - 1, xi)
 
 
 @compiled
@@ -63,16 +63,11 @@ def compliances(
     With Hertz's contact by Weber and Banaschek p = N (1/k - D/2 ln(S/N_0^2)) with S = N^2 + N_1^2: it grows
     stiffer with the load, and is linear below N_1. Pulled, in a mesh that cannot part, it is linear.
 
-    Parameters
-    ----------
     load : N [N]
     stiffness : k at the load ``nominal`` [N/m]
     softening : D [m/N]; 0 is a linear spring
     nominal : N_0 [N]
-
-    Returns
-    -------
-    p/N [m/N], dp/dN [m/N] and d^2p/dN^2/2 [m/N^2]
+    Returns p/N [m/N], dp/dN [m/N] and d^2p/dN^2/2 [m/N^2]
     """
     if softening == 0.0 or load <= 0.0:
         return 1.0 / stiffness, 1.0 / stiffness, 0.0
@@ -110,8 +105,6 @@ def stored_energy(
     U = N p - C with the integral C of p over N, of which k alone depends on the place
     (docs/theory/contact_energy.md, "Energy of one pair"). The slope is at constant compression.
 
-    Parameters
-    ----------
     load, stiffness, softening, nominal : as ``compliances``
     slope : of k over xi [N/m^2]
     """
@@ -227,8 +220,6 @@ def shared_loads(
     Solved for the pairs that touch; then those that would pull are let go and those that would overlap are
     taken in, until none is left. The energy is convex, so there is one answer.
 
-    Parameters
-    ----------
     count : number of pairs, the first entries of the arrays
     pressed, stiffness : approach less all gaps [m], and k [N/m]
     pulls : bits of the pairs that cannot part
@@ -236,7 +227,7 @@ def shared_loads(
     softening, nominal : as ``compliances``
     loads : receives N_i [N]
     """
-    touch = np.int64(0)
+    touch = int(np.int64(0))
     for i in range(count):
         loads[i] = 0.0
         if stiffness[i] > 0.0 and (pulls >> i & 1 or pressed[i] > 0.0):

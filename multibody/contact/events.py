@@ -57,8 +57,6 @@ def event_table(
 ) -> FloatArray:
     """Rows (kind, place) of what makes the force jump or bend once per mesh cycle, (n, 2).
 
-    Parameters
-    ----------
     stiffness : of a tooth pair over the path of contact
     bends : where a relief starts [m]
     friction : (kind, place) of the jumps and kinks of the friction law
@@ -119,8 +117,6 @@ def let_go(
     Where the compression falls at the rate u that is where the load is c u, or with the share x^2 (3 - 2 x)
     of a damper that acts gradually, at the load x N_f, where c u x (3 - 2 x) = N_f.
 
-    Parameters
-    ----------
     gap : approach of the flanks [m]
     stiffness : of the pair [N/m]
     ex, ey, length : line of action
@@ -155,8 +151,6 @@ def let_go(
 def moved_by_others(at: float, contacts: FloatArray, count: int, p: FloatArray) -> float:
     """How much of the approach of a pair at xi = ``at`` the loads of the others take [m].
 
-    Parameters
-    ----------
     at : where the pair will be at an event, the others being whole pitches off [m]
     contacts, count : records of the present contacts, see ``kernels.contact_forces``
     """
@@ -234,8 +228,6 @@ def time_to_event(
 ) -> tuple[float, float]:
     """Time to the next event [s] and its kind; infinite when there is none.
 
-    Parameters
-    ----------
     t : time [s]
     q, v, a : (6,) coordinates, velocities, accelerations
     p, flags, table : as ``kernels.contact_forces``

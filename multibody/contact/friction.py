@@ -65,8 +65,6 @@ def hertz_pressure(f: FloatArray, radius: float, w: float) -> float:
 def film_parameter(f: FloatArray, rolling: float, radius: float, w: float) -> float:
     """Film parameter Lambda, equation (21): Dowson and Toyoda's central film over the filtered roughness.
 
-    Parameters
-    ----------
     f : friction parameters
     rolling : v_e, sum of the rolling velocities [m/s]
     radius : reduced radius of curvature [m]
@@ -147,8 +145,6 @@ def magnitude(
 ) -> float:
     """Size of the friction coefficient at one contact.
 
-    Parameters
-    ----------
     f : (N_FRICTION,) parameters, in the order named above
     sliding : v_s >= 0 [m/s]
     rolling : v_e, sum of the rolling velocities [m/s]

@@ -166,8 +166,6 @@ def signed_friction(
     Without the effect of the actual sliding velocity the contact slides and rolls as in the nominal motion at
     xi, without that of the momentary load it carries w_n.
 
-    Parameters
-    ----------
     p, flags : as ``contact_forces``
     flank : +1 drive, -1 coast
     xi : position on the path of contact [m]
@@ -195,17 +193,11 @@ def mesh_position(
 ) -> tuple[float, float, float, float, float, float]:
     """Line of action of one side of the teeth, and where they stand on it.
 
-    Parameters
-    ----------
     t, q, p, flags : as ``contact_forces``
     flank : +1 drive, -1 coast
-
-    Returns
-    -------
-    (ex, ey, length, delta, rho, xi) : unit vector e from X to Y and length [m] of the line of action; overlap
-        [m]; flank distance rho_p [m] of one tooth pair from X, with which ``engaged`` finds the pairs in
-        contact, and the same pair's position [m] on the path of contact, where the element laws are read. The
-        other pairs follow at whole pitches
+    Returns (ex, ey, length, delta, rho, xi) : unit vector e from X to Y and length of the line of action;
+        overlap; flank distance rho_p of one tooth pair from X, with which ``engaged`` finds the pairs in
+        contact, and its position on the path of contact [m]. The other pairs follow at whole pitches
     """
     rp, rg = p[RADIUS_P], p[RADIUS_G]
     tau = min(max(t, p[T_LOW]), p[T_HIGH])
@@ -262,8 +254,6 @@ def contact_forces(
 ) -> int:
     """Wrench of all tooth contacts and one record per contact.
 
-    Parameters
-    ----------
     t : time [s]
     q, v : (6,) deviations from nominal position and rotation, and their rates [m, rad, s]
     p : (N_PARAMETERS,) parameters in the order named above
@@ -271,10 +261,7 @@ def contact_forces(
     table : the stiffness, see ``elements.stiffness_and_slope``
     wrench : (6,) receives (Fx, Fy, M) of pinion and gear [N, N m]
     contacts : (2 MAX_PAIRS, N_RECORD) receives the records, drive flank first; back sides only when pressed
-
-    Returns
-    -------
-    number of contacts, or -1 when a force is not finite
+    Returns number of contacts, or -1 when a force is not finite
     """
     wrench[:] = 0.0
     rp, rg = p[RADIUS_P], p[RADIUS_G]
@@ -286,7 +273,7 @@ def contact_forces(
     # One array, for each costs as much as a contact's geometry.
     state = np.empty((N_STATE, MAX_PAIRS))
     arms, coupling = state[ARMS:COUPLINGS].reshape((MAX_PAIRS, 2)), state[COUPLINGS:SLOPES]
-    count = np.int64(0)
+    count = int(np.int64(0))
     for side in range(2 if flags & BACK_SIDE else 1):
         flank = DRIVE if side == 0 else COAST
         ex, ey, length, delta, rho, _ = mesh_position(t, q, p, flags, flank)
@@ -302,7 +289,11 @@ def contact_forces(
             length_rate = flank * (rp + rg) * psi_rate - (ex * vx + ey * vy)
         wp, wg = (omega_p, omega_g) if flags & ROTATION_PHASE else (-p[OMEGA_P], p[OMEGA_G])
         xi_rate = 0.5 * flank * (rp * (psi_rate - wp) - rg * (psi_rate - wg))
-        bound, candidates, pairs = np.int64(0), pairs, np.int64(0)  # bound: bits of pairs that cannot part
+        bound, candidates, pairs = (
+            int(np.int64(0)),
+            pairs,
+            int(np.int64(0)),
+        )  # bound: bits of pairs that cannot part
         for candidate in range(candidates):
             rho_p, rho_g, i = arms[candidate, 0], arms[candidate, 1], pairs
             xi = 0.5 * (rho_p - rho_g + p[L_XY])
@@ -428,7 +419,7 @@ def linear_forces(
     while xi <= last:
         mu = nominal_friction(p, xi)
         if loaded:
-            stiffness, stiffness_slope = law_at(table, np.int64(0), k - 1, xi)
+            stiffness, stiffness_slope = law_at(table, int(np.int64(0)), k - 1, xi)
             damping = law_at(table, k, k + c - 1, xi)[0]
             error = law_at(table, k + c, k + c + e - 1, xi)[0]
             slope = law_at(table, k + c + e, table.shape[0] - 1, xi)[1]
@@ -475,8 +466,6 @@ def tooth_forces(
 ) -> int:
     """Wrench and contact records of one state.
 
-    Parameters
-    ----------
     state : (3, 6) coordinates, velocities, and the wrench, which is written; one array, for Python pays for
         every one that it hands over
     t, p, flags, table, contacts : and the result, as ``kernels.contact_forces``
@@ -500,8 +489,6 @@ def tooth_forces_over(
 ) -> IntArray:
     """``tooth_forces`` at n states; returns the numbers of contacts (n,).
 
-    Parameters
-    ----------
     times : (n,) [s]
     q, v, wrenches : (n, 6)
     contacts : (n, 2 MAX_PAIRS, N_RECORD)

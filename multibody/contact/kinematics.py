@@ -65,16 +65,11 @@ def line_of_action(
     and, on the drive flank, the x axis; changes are made of u alone, as those of micrometres would else drown
     in the rounding of L_0.
 
-    Parameters
-    ----------
     along, off : u_x, u_y [m]
     nominal : L_0 [m]
     base_sum : sum R of the base radii [m]; the centre distance must be larger
     flank : +1 drive, -1 coast
-
-    Returns
-    -------
-    (ex, ey, grown, psi), NaN when the base circles overlap
+    Returns (ex, ey, grown, psi), NaN when the base circles overlap
     """
     dx, dy = nominal + along, base_sum + off
     longer = along * (along + 2.0 * nominal) + off * (off + 2.0 * base_sum)  # L^2 - L_0^2
@@ -118,8 +113,6 @@ def mesh_phase(
     flanks and L_0 but for one number. They stay out of it, as the overlap, micrometres, would else be a
     difference of metres.
 
-    Parameters
-    ----------
     psi, grown : angle [rad] and growth [m] of the line of action
     phi_p, phi_g : rotation angles beyond the rolling [rad]
     rolled : arc by which both base circles have turned in the drive sense, pinion clockwise [m]
@@ -128,11 +121,8 @@ def mesh_phase(
     overlap : what the flanks would overlap by at psi = phi_p = phi_g = 0 and L = L_0 [m], which is
         -s (r_bp chi_p + r_bg (chi_g - pi)) - L_0
     flank : +1 drive, -1 coast
-
-    Returns
-    -------
-    (rho, delta) : distance rho [m] of the first pinion flank from X, in [0, pitch): the others follow at
-        whole pitches; overlap delta [m] of the flanks, positive when pressed
+    Returns (rho, delta) : distance of the first pinion flank from X in [0, pitch), the others follow at whole
+        pitches; overlap of the flanks, positive when pressed [m]
     """
     rho_p = flank * radius_p * (psi - phi_p - chi_p)
     turned = (radius_p + radius_g) * psi - radius_p * phi_p - radius_g * phi_g
@@ -225,8 +215,6 @@ def add_gradient(
     It obeys action and reaction in force and moment identically, because a rigid motion of both gears
     together changes none of the lengths (docs/theory/contact_energy.md, "Wrench").
 
-    Parameters
-    ----------
     wrench : (6,) as ``add_wrench``
     ex, ey, length : line of action
     by_p, by_g, by_length : minus the derivatives of the energy by the flank distances and the length [N]
@@ -254,17 +242,12 @@ def corner_gap(
     touches the mate's involute along a tangent of the mate's base circle (docs/theory/contact_energy.md,
     "Tip corner").
 
-    Parameters
-    ----------
     beyond : flank distance of the gear with the corner, less that of its tip circle [m]
     tip, radius : tangent length of the tip circle and base radius of the gear with the corner [m]
     length : of the line of action [m]
     mate : base radius of the other gear [m]
-
-    Returns
-    -------
-    (gap, by_distance, by_length) : the gap [m], zero up to the tip, and its derivatives by the flank distance
-        and by the length of the line of action
+    Returns (gap, by_distance, by_length) : the gap [m], zero up to the tip, and its derivatives by the flank
+        distance and by the length of the line of action
     """
     if beyond <= 0.0:
         return 0.0, 0.0, 0.0
@@ -310,15 +293,10 @@ def pairs_in_contact(
     A flank reaches from its base circle (rho = 0) to its tip circle (rho = tip_p, tip_g: the tangent length
     sqrt(r_a^2 - r_b^2)).
 
-    Parameters
-    ----------
     rho, delta, length, pitch : from ``mesh_phase`` and ``line_of_action`` [m]
     tip_p, tip_g : tangent lengths of the tip circles [m]
     arms : (MAX_PAIRS, 2) array that receives the flank distances (rho_p, rho_g), newest pair first [m]
-
-    Returns
-    -------
-    number of pairs
+    Returns number of pairs
     """
     count = 0
     rho_p = rho
@@ -335,8 +313,6 @@ def pairs_in_contact(
 class Corners(NamedTuple):
     """Gap that tip corners beyond the path of contact leave [m], and its derivatives.
 
-    Attributes
-    ----------
     gap : of both corners together [m]; only one is ever beyond its tip
     by_p, by_g, by_length : derivatives by the flank distances of pinion and gear and by the length of the
         line of action

@@ -47,8 +47,6 @@ _MESH_FREQUENCIES, _MESH_ORDERS = 4.0, 5.0
 class Machine:
     """Two gears in bearings, SI.
 
-    Attributes
-    ----------
     parameters : geometry, nominal motion and friction, in the order of ``kernels``; behind these the lumped
         model's friction coefficient as rows like ``table``, where the multibody model has no law of its own
     table : stiffness of a tooth pair as ``elements.stiffness_at`` reads it
@@ -142,8 +140,6 @@ class Machine:
 def machine(pair: GearPair, flags: int = 0, supports: Supports = "springs") -> Machine:
     """Describe a gear pair for the multibody model, both torques being that of the pinion.
 
-    Parameters
-    ----------
     pair : validated gear pair
     flags : effect switches of ``kernels``; with ``TIP_CONTACT`` or ``CLEARANCE``, and where teeth of the
         linear mesh may part, the stiffness holds wherever teeth touch; else relief takes it off where the
@@ -249,8 +245,6 @@ def _loaded_laws(pair: GearPair, p: FloatArray) -> tuple[FloatArray, FloatArray]
 def mesh_mass(p: FloatArray, inertia: FloatArray) -> float:
     """Mass that the rotations oppose to the mesh [kg], from the moments of a unit contact force.
 
-    Parameters
-    ----------
     p : parameters whose base radii are set
     inertia : (2,) pinion, gear [kg m^2]
     """
@@ -266,8 +260,6 @@ def loaded_phase(machine: Machine, flags: int, q: FloatArray) -> Machine:
     rotation of a free gear train is arbitrary, so that constant is no difference between models but a
     choice of the time origin; it is taken out.
 
-    Parameters
-    ----------
     machine : numbers whose flanks touch at A when unloaded
     flags : effect switches of the contact core: without moving contacts nothing is turned
     q : (6,) static state
@@ -294,8 +286,6 @@ def pack(law: PathFunction) -> FloatArray:
 def switch_phases(places: Sequence[float], l_xa: float, l_xd: float, pitch: float) -> FloatArray:
     """Phases of the nominal mesh cycle in [0, 1) where a pair meets a jump or a kink; 0 is always one.
 
-    Parameters
-    ----------
     places : of jumps and kinks on the path of contact [m]
     l_xa, l_xd, pitch : ends of the path, base pitch [m]
     """
@@ -324,9 +314,6 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 def fill_friction(pair: GearPair, p: FloatArray) -> None:
     """Write a pair's friction parameters behind its geometry and speeds.
 
-    Parameters
-    ----------
-    pair : a validated gear pair
     p : (kernels.N_PARAMETERS,) parameters, whose path of contact, base radii and speeds are set
     """
     law, f = pair.friction, p[kn.FRICTION :]
@@ -387,8 +374,6 @@ def friction_switches(p: FloatArray) -> list[tuple[float, float]]:
     The sign at the pitch point and the bounds of law II are met at a sliding velocity; law V changes over at
     a position, because the film hardly depends on sliding.
 
-    Parameters
-    ----------
     p : parameters of the machine
     """
     found: list[tuple[float, float]] = []
@@ -461,15 +446,12 @@ _PLACES = 101  # at which the largest coefficient is looked for
 
 
 def friction_velocity(machine: Machine) -> tuple[float, str]:
-    """Choose the velocity over which friction changes its sign.
+    """Choose the velocity over which friction changes its sign [m/s], 0 for the sign function; and say why.
 
-    Parameters
-    ----------
-    machine : numbers of the gear pair
-
-    Returns
-    -------
-    (velocity, reason) : [m/s], 0 for the sign function; and why, in words
+    At the pitch point sliding passes zero with a_s = (Omega_p + Omega_g) Omega_p r_bp. Friction that jumps
+    accelerates it by up to a_f = mu N/m_s, with 1/m_s = 1/m_p + 1/m_g + X_p^2/J_p + X_g^2/J_g. Where less
+    than a_f is left of a_s, friction can stick: sign() has no solution there. Vibration takes away at most
+    Q = 1/(2 zeta) times a_f, so sign() is safe where a_s > (1 + Q) a_f.
     """
     if _beside_pitch_point(machine) <= _CONTINUOUS * _largest(machine):
         return 0.0, "sign(): the friction law is continuous at the pitch point"

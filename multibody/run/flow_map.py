@@ -119,8 +119,6 @@ def monodromy(
 class Orbit:
     """A motion that closes after one mesh cycle.
 
-    Attributes
-    ----------
     state : (12,) lumped states at t = 0; on shafts (2n,) coordinates and velocities
     machine : numbers of the pair, with the brake torque that balances this motion
     flow : its flow map
@@ -145,21 +143,13 @@ def find_orbit(
     friction holds the teeth for a time. Each step runs the
     cycles and corrects the matrix along the way it went; the motion found does not depend on the matrix.
 
-    Parameters
-    ----------
     setup : model ready to run
     cycles : mesh cycles after which the motion repeats
     near_lumped : False where the lumped model has no such motion: then the matrix is that of differences
     near : motion of the pair with other effects, to start from with its matrix
-
-    References
-    ----------
     C. G. Broyden, "A class of methods for solving nonlinear simultaneous equations", Math. Comp. 19 (1965)
     577-593.
-
-    Raises
-    ------
-    NumericalError : the iteration does not close the cycle
+    Raises NumericalError : the iteration does not close the cycle
     """
     scale, machine = _scale(setup), setup.machine
     if near is None:

@@ -61,10 +61,11 @@ def bridge(
     atol: float,
     tableau: FloatArray,
 ) -> tuple[int, float, int]:
-    """Steps from the first of the times until ``stop``, or until they are of ordinary length with far to go.
+    """Steps of DOPRI5 from the first of the times until ``stop``, or until they are of ordinary length.
 
-    Parameters
-    ----------
+    To start exudyn's solver costs as much as three of its steps; behind an event the step size is found here.
+    Source: J. R. Dormand and P. J. Prince, J. Comput. Appl. Math. 6 (1980) 19-26.
+
     stop : where to arrive [s]
     ordinary : step of exudyn away from events, and the first to try [s]
     times : (n,) receives the ends of the steps; the first is given [s]
@@ -73,10 +74,7 @@ def bridge(
     bodies : (4, 6) as ``Machine.bodies``
     rtol, atol : largest error of a step: rtol times the value, and atol
     tableau : ``_TABLEAU``; as a constant it would be compiled into unrolled loops
-
-    Returns
-    -------
-    number of rows filled, step to go on with [s], number of force evaluations
+    Returns number of rows filled, step to go on with [s], number of force evaluations
     """
     state, contacts = np.empty((3, 6)), np.empty((2 * MAX_PAIRS, kn.N_RECORD))
     place, speed, wrench = state[0], state[1], state[2]
@@ -219,22 +217,14 @@ def integrate(
 ) -> tuple[FloatArray, FloatArray]:
     """Integrate over consecutive intervals.
 
-    Parameters
-    ----------
     model : assembled model
     q, v : (size,) initial state
     edges : (m + 1,) ends of the intervals [s]
     rtol, atol : tolerances of the step-size control
     clamp : evaluate the nominal phase strictly inside each interval (the edges are switches)
     visit : called with (interval number, its segment)
-
-    Returns
-    -------
-    (q, v) at the last edge
-
-    Raises
-    ------
-    NumericalError : a force or a state is not finite, or the force was evaluated more often than allowed
+    Returns (q, v) at the last edge
+    Raises NumericalError : a force or a state is not finite, or more evaluations of the force than allowed
     """
     s = settings(rtol, atol, model.machine.period)
     step = _FIRST_STEP * model.machine.period

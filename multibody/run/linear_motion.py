@@ -39,8 +39,6 @@ _A, _B, _C = (np.asarray(x, dtype=float) for x in (DOP853.A, DOP853.B, DOP853.C)
 class LinearMotion:
     """Periodic motion with the linear mesh.
 
-    Attributes
-    ----------
     state : (2n,) coordinates and velocities at t = 0
     torque_pinion, torque_gear : driving and braking torque that hold the mean speed [N m]
     transition : (2n, 2n) map of the states over one mesh cycle
@@ -57,14 +55,9 @@ class LinearMotion:
 def linear_motion(machine: Machine, brake: float | None) -> LinearMotion:
     """Find the periodic motion.
 
-    Parameters
-    ----------
     machine : numbers of a pair on shafts, for the linear mesh
     brake : braking torque, so that the driving one balances; None: the driving torque is the machine's
-
-    Raises
-    ------
-    NumericalError : the speed sits on a stability boundary
+    Raises NumericalError : the speed sits on a stability boundary
     """
     train = _train(machine)
     n = train.size
@@ -125,8 +118,6 @@ def _train(machine: Machine) -> Train:
 def unpaid(machine: Machine, motion: LinearMotion) -> float:
     """Losses by sliding, tooth dampers, bearings, shafts and couplings less the power that is missing [W].
 
-    Parameters
-    ----------
     machine, motion : numbers for the linear mesh, and its periodic motion
     """
     train, p = _train(machine), machine.parameters
@@ -154,8 +145,6 @@ def _propagated(
 
     Every interval yields its start, too.
 
-    Parameters
-    ----------
     machine : numbers for the linear mesh
     start : (2n, m)
     forcing : (3, k) weights of the three forcings in the last k columns
@@ -204,8 +193,6 @@ def mesh_wrench(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Wrench of the linear mesh per unit overlap, per unit rate of it, and without both, each (k, 6).
 
-    Parameters
-    ----------
     machine : numbers for the linear mesh
     times : (k,) [s]
     low, high : ends of the smooth interval that they lie in [s]

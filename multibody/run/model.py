@@ -52,8 +52,6 @@ _WATCHED = 600
 class CallBudget:
     """Counts force evaluations, so that no run can hang, and remembers why one was stopped.
 
-    Attributes
-    ----------
     limit : most calls allowed in one interval
     calls, before : calls since the start, and those before the present interval
     reason : empty, or the last problem met ("not finite", "too many calls", "standstill")
@@ -99,8 +97,6 @@ class CallBudget:
 class ExudynModel:
     """An assembled exudyn system and the buffers its user function writes.
 
-    Attributes
-    ----------
     machine : the numbers it was built from
     flags : effect switches of the force core, or ``kernels.LINEAR``
     system : exudyn MainSystem
@@ -131,8 +127,6 @@ def build(
 ) -> ExudynModel:
     """Assemble the exudyn system.
 
-    Parameters
-    ----------
     machine : numbers of the gear pair
     flags : effect switches (bits of ``kernels``), or ``kernels.LINEAR``
     call_limit : most force evaluations of one integration interval
@@ -311,14 +305,9 @@ def contact_state(
 ) -> tuple[FloatArray, FloatArray, IntArray]:
     """Evaluate the force core at given states, without exudyn.
 
-    Parameters
-    ----------
     times : (n,) [s]
     q, v : (n, size) coordinates and velocities, of which those of the gears are read
-
-    Returns
-    -------
-    (wrenches, contacts, counts) : (n, 6) contact wrench of pinion and gear [N, N m]; contact records
+    Returns (wrenches, contacts, counts) : (n, 6) contact wrench of pinion and gear [N, N m]; contact records
         (n, 2 MAX_PAIRS, kernels.N_RECORD), of which the first counts (n,) are valid
     """
     m = model.machine
@@ -333,14 +322,9 @@ def contact_state(
 def accelerations(model: ExudynModel, times: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
     """Accelerations from Newton's and Euler's laws at given states, without exudyn.
 
-    Parameters
-    ----------
     times : (n,) [s]
     q, v : (n, size) coordinates and velocities
-
-    Returns
-    -------
-    (n, size) second derivatives of the coordinates
+    Returns (n, size) second derivatives of the coordinates
     """
     force = contact_state(model, times, q, v)[0]
     train = model.machine.train

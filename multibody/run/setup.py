@@ -52,8 +52,6 @@ _ATOL_SHARE_ON_SHAFTS = 10.0
 class Setup:
     """A multibody model ready to run, with the lumped model's loads and initial state.
 
-    Attributes
-    ----------
     model : assembled exudyn model
     system : the lumped equations of motion
     q, v : (size,) initial state in the model's coordinates

@@ -51,8 +51,6 @@ _COLUMNS = {
 class Recorder:
     """Collects states and contacts at the output times while the integration runs.
 
-    Parameters
-    ----------
     model : the model that is integrated; its force core is evaluated again at the output times
     time : (n,) output times, increasing [s]
     """
@@ -237,18 +235,13 @@ def record(
 ) -> tuple[xr.Dataset, FloatArray, FloatArray]:
     """Run a model and keep the variables of the last cycles.
 
-    Parameters
-    ----------
     setup : model ready to run
     cycles : mesh cycles to run
     samples_per_cycle : output times per mesh cycle
     first_cycle : the first one whose variables are kept
     progress : called with the finished fraction
     run : visits the segments of a run that was made; None makes it
-
-    Returns
-    -------
-    (dataset, q, v) : the variables, and the state (size,) at the end in the model's coordinates
+    Returns (dataset, q, v) : the variables, and the state (size,) at the end in the model's coordinates
     """
     period = setup.machine.period
     grid = sample_times(period, samples_per_cycle)

@@ -27,8 +27,6 @@ from lumped.typing import FloatArray, IntArray
 class Interval:
     """A piece of a shaft between two stations, SI.
 
-    Attributes
-    ----------
     length, diameter, bore : [m]
     youngs_modulus, poisson_ratio, density : [Pa], [-], [kg/m^3]
     """
@@ -74,8 +72,6 @@ class Interval:
 class Bending:
     """Matrices of one plane of bending, coordinates (w at the stations, w inside, psi likewise).
 
-    Attributes
-    ----------
     mass, stiffness : (n, n) with rotary inertia and shear
     spin : (n, n) integral of the polar moment of inertia over psi psi; times the speed, it couples the planes
     rotation : number of the first coordinate of psi; psi of station i is ``rotation + i``
@@ -118,8 +114,6 @@ def field_size(order: int, count: int) -> int:
 def bending(intervals: Sequence[Interval], order: int) -> Bending:
     """Assemble one plane of bending.
 
-    Parameters
-    ----------
     intervals : from one end of the shaft to the other
     order : polynomial order of w, at least 2; psi has one less
     """
@@ -161,17 +155,6 @@ def torsion(intervals: Sequence[Interval], order: int) -> tuple[FloatArray, Floa
     return mass, stiffness
 
 
-def reading(intervals: Sequence[Interval], order: int, places: FloatArray) -> FloatArray:
-    """Rows (k, n) that read one field of an order at places along the shaft [m]."""
-    ends = np.cumsum([0.0] + [part.length for part in intervals])
-    rows = np.zeros((places.size, field_size(order, len(intervals))))
-    for row, z in zip(rows, places, strict=True):
-        i = int(np.clip(np.searchsorted(ends, z, side="right") - 1, 0, len(intervals) - 1))
-        xi = 2.0 * (z - ends[i]) / (ends[i + 1] - ends[i]) - 1.0
-        row[places_of(order, i, len(intervals))] = shape_functions(order, np.array([xi]))[0][:, 0]
-    return rows
-
-
 #: Largest change of a kept frequency from one order to the next but one, over the highest.
 FREQUENCY_ERROR = 1e-6
 #: Orders that are tried. Beyond the last, a shaft is too long beside the waves of its highest mode.
@@ -182,8 +165,6 @@ _FIRST_ORDER, _LAST_ORDER = 4, 24
 class Reduced:
     """One field on few coordinates.
 
-    Attributes
-    ----------
     basis : (n, 1 + m) coordinates of the field from the kept one and m modal ones
     frequencies : (m,) of the modes with the kept coordinate held [rad/s]
     """
@@ -201,20 +182,12 @@ def reduce_fields(
 ) -> tuple[tuple[Reduced, ...], int, float]:
     """Raise the order of all fields of a shaft until their kept modes stand, and reduce them.
 
-    Parameters
-    ----------
     fields : functions that make the matrices of each
     highest : modes above this are left out [rad/s]
     modal_masses : that of every mode of a field, so that modal coordinates have the size of the kept one
-
-    Returns
-    -------
-    (reduced, order, error) : the fields, the order of the polynomials, and the largest change of a kept
-        frequency by the last increase of the order, over the highest
-
-    Raises
-    ------
-    NumericalError : the modes do not stand up to the last order
+    Returns (reduced, order, error) : the fields, the order of the polynomials, and the largest change of a
+        retained frequency by the last increase of the order, over the highest
+    Raises NumericalError : the modes do not stand up to the last order
     """
     before = [_held(matrices(_FIRST_ORDER), highest)[0] for matrices in fields]
     for order in range(_FIRST_ORDER + 2, _LAST_ORDER + 1, 2):

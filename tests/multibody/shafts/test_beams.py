@@ -10,7 +10,7 @@ from scipy.linalg import eigh, expm
 
 from lumped.schema.shafts import CoupledInertia, Shaft, ShaftBearing, ShaftSegment
 from multibody.shafts.beam import Interval, bending, torsion
-from multibody.shafts.shaft import Disc, reduced_shaft
+from multibody.shafts.train import Disc, reduced_shaft
 
 #: A step, a bore and unlike lengths.
 STEPPED = (
@@ -157,11 +157,10 @@ def test_deflection_whirl_and_damping_of_a_disc_on_a_light_shaft():
             / (2 * disc.tilting)
             for side in (-1, 1)
         ]
-        places = np.array([0.05])
         for frequency, sense in zip(exact, (-1, 1), strict=True):
             one = int(np.abs(roots - 1j * frequency).argmin())
             assert roots[one].imag == pytest.approx(frequency, rel=1e-5)  # the shaft weighs 2e-5 of the disc
-            x, y = (row[0] @ vectors[:n, one] for row in shaft.reading(places))
+            x, y = (row @ vectors[:n, one] for row in shaft.bearings[0])
             turns = np.abs(x + 1j * y) - np.abs(x - 1j * y)  # > 0: counter-clockwise
             assert turns * sense * speed > 0.0
     damped = reduced_shaft(light, disc, None, speed=0.0, damping_ratio=0.03, highest=3e4)
