@@ -23,7 +23,7 @@ LONG = (
         "reproductions", "lumped/friction",
     ),
     (
-        "multibody", "validation/cross_check", "validation/studies", "validation/files", "validation/faults",
+        "multibody", "validation/cross_check", "validation/studies", "validation/files", "evidence",
         "lumped/quasi_static", "lumped/model",
     ),
 )  # fmt: skip

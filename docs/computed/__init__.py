@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 DOCS = Path(__file__).resolve().parents[1]
 GENERATED = DOCS / "_generated"
 _PACKAGES = ("lumped", "multibody", "floquet", "validation", "reproductions")
-_SOURCES = (*_PACKAGES, "docs/computed", "docs/verification")
+_SOURCES = (*_PACKAGES, "docs/computed", "docs/verification", "tests/evidence")
 
 
 def writers() -> Mapping[str, Callable[[], str]]:

@@ -1,4 +1,4 @@
-"""The table of faults and the sound pairs, as stored by ``python -m validation.faults``."""
+"""The table of faults and the sound pairs, as stored by ``python -m tests.evidence.faults``."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from computed.markdown import table
-from validation.faults.catalogue import GROUPS
-from validation.faults.table import counts, laws_that_act
+from tests.evidence.faults.fault import GROUPS
+from tests.evidence.faults.table import counts, laws_that_act
 
 FOLDER = Path(__file__).resolve().parents[1] / "verification"
 _MODELS = ("lumped", "linear", "exact")

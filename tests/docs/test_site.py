@@ -20,9 +20,9 @@ from extensions.mathml import mathml
 from extensions.scripts import pieces
 from sphinx.errors import ExtensionError
 
-from validation.faults.catalogue import FAULTS
-from validation.faults.judging import Outcome
-from validation.faults.table import row
+from tests.evidence.faults.fault import FAULTS
+from tests.evidence.faults.judging import Outcome
+from tests.evidence.faults.table import row
 
 
 def test_a_failing_check_stops_the_build():

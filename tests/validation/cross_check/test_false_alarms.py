@@ -7,9 +7,9 @@ from functools import lru_cache
 import pytest
 
 import lumped
+from tests.evidence.faults.sound import drawn
 from validation.cross_check.comparison import crosscheck
 from validation.cross_check.twin import unlike_twin
-from validation.faults.sound import drawn
 
 
 def bearings(*stiffness):

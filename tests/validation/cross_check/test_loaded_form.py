@@ -143,7 +143,7 @@ def corners_push_along_the_line_alone(m):
     m.setattr(loaded_motion.PushedSystem, "forces", along)
 
 
-#: Other faults of loaded contact are judged by the catalogue of `validation.faults`, group "contact".
+#: Other faults of loaded contact are judged by the catalogue of `tests.evidence.faults`, group "contact".
 FAULTS = {
     softer: EQUAL,
     relief_halved: RELIEF,

@@ -4,8 +4,8 @@ import re
 
 import pytest
 
-from validation.faults.catalogue import FAULTS
-from validation.faults.rewriting import applied
+from tests.evidence.faults.fault import FAULTS
+from tests.evidence.faults.rewriting import applied
 from validation.reporting.build import answer_figure, answers, document, written
 from validation.reporting.chapters import CHAPTERS
 from validation.reporting.judged import failures

@@ -1,4 +1,4 @@
-"""Judge the verdicts: ``python -m validation.faults``; see docs/verification/faults.md."""
+"""Judge the verdicts: ``python -m tests.evidence.faults``; see docs/verification/faults.md."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ import argparse
 import sys
 from pathlib import Path
 
-from validation.faults.catalogue import FAULTS
-from validation.faults.judging import judge
-from validation.faults.sound import sound_pairs
-from validation.faults.table import counts, row, sample, save, verdict
+from tests.evidence.faults.fault import FAULTS
+from tests.evidence.faults.judging import judge
+from tests.evidence.faults.sound import sound_pairs
+from tests.evidence.faults.table import counts, row, sample, save, verdict
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run faults, or sound pairs, and print what the verdicts say; 1 where one is wrong."""
-    parser = argparse.ArgumentParser(prog="python -m validation.faults", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m tests.evidence.faults", description=__doc__)
     parser.add_argument("keys", nargs="*", metavar="FAULT", help="faults to run; default all")
     parser.add_argument("--sample", type=int, metavar="N", help="only N faults, chosen by --seed")
     parser.add_argument("--seed", default="0", help="text that chooses the sample or the sound pairs")

@@ -12,9 +12,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from validation.faults.catalogue import FAULTS, GROUPS
-from validation.faults.fault import Fault
-from validation.faults.judging import Outcome
+from tests.evidence.faults.fault import FAULTS, GROUPS, Fault
+from tests.evidence.faults.judging import Outcome
 
 #: What ends the name of a law that is checked for each axis or bearing.
 _AXIS = re.compile(r" [xy](_[pg])?$")

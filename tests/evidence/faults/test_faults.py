@@ -11,13 +11,12 @@ import pytest
 
 import validation
 from lumped.errors import LawRangeWarning
-from validation.faults.catalogue import FAULTS, GROUPS
-from validation.faults.fault import Fault
-from validation.faults.judging import judge, pairs
-from validation.faults.quantities import change, quantities
-from validation.faults.rewriting import FaultError, applied, fitted
-from validation.faults.sound import drawn
-from validation.faults.table import laws_that_act, sample, verdict
+from tests.evidence.faults.fault import FAULTS, GROUPS, Fault
+from tests.evidence.faults.judging import judge, pairs
+from tests.evidence.faults.quantities import change, quantities
+from tests.evidence.faults.rewriting import FaultError, applied, fitted
+from tests.evidence.faults.sound import drawn
+from tests.evidence.faults.table import laws_that_act, sample, verdict
 from validation.reporting.results import QUICK, Results
 from validation.verification.code import code_checks
 
@@ -93,7 +92,7 @@ def test_a_fault_whose_line_is_gone_is_told():
 @pytest.mark.slow
 @pytest.mark.parametrize("fault", drawn_by_the_source(1), ids=lambda fault: fault.key)
 def test_faults_drawn_by_the_source_are_caught(fault):
-    """Another one at every change of the code; ``python -m validation.faults`` runs all."""
+    """Another one at every change of the code; ``python -m tests.evidence.faults`` runs all."""
     outcome = judge(fault, thorough=False)
     assert verdict(fault, outcome) in ("caught", "only measurement can tell")
 

@@ -24,7 +24,7 @@ import numba
 from numba.core.dispatcher import Dispatcher
 
 from lumped.elasticity import cache as elasticity_cache
-from validation.faults.fault import Fault
+from tests.evidence.faults.fault import Fault
 
 _PACKAGES = ("lumped", "multibody", "floquet", "validation")
 
@@ -85,7 +85,7 @@ def forget() -> None:
     for module in _modules():
         for value in list(vars(module).values()):
             clear = getattr(value, "cache_clear", None)
-            if clear is not None and not isinstance(value, type) and "faults" not in module.__name__:
+            if clear is not None and not isinstance(value, type):
                 clear()
 
 

@@ -11,10 +11,10 @@ from functools import lru_cache
 
 from lumped import GearPair, LawRangeWarning, load_gear_pair
 from lumped.typing import FloatArray
+from tests.evidence.faults.fault import Fault
+from tests.evidence.faults.quantities import FELT, change, quantities
+from tests.evidence.faults.rewriting import applied
 from validation.cross_check.comparison import crosscheck
-from validation.faults.fault import Fault
-from validation.faults.quantities import FELT, change, quantities
-from validation.faults.rewriting import applied
 from validation.reporting.results import QUICK, Results
 from validation.verification import Check, Refinement, code_checks, refinements
 

@@ -1,0 +1,72 @@
+"""Every fault: words, the line of code that it changes, and where its effect shows.
+
+``catalogue/`` has a TOML file a group, in it a table a fault, its name the key. ``without`` lists fields that
+the fault needs to be absent; a table ``on`` of the file itself holds for all its faults.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One fault.
+
+    Attributes
+    ----------
+    key : stable name
+    words : what is wrong
+    target : function that is changed, "module:name" or "module:Class.name"; empty for a wrong input
+    old, new : text of the function that is replaced; it occurs once
+    on : fields of the gear pair without which the changed line is not in use, path -> value
+    input : fields of the gear pair that are wrong in the file, for a wrong input
+    unseen : why only a measurement can tell; empty for a fault that the verdicts must see
+    """
+
+    key: str
+    words: str
+    target: str = ""
+    old: str = ""
+    new: str = ""
+    on: Mapping[str, Any] = field(default_factory=dict)
+    input: Mapping[str, Any] = field(default_factory=dict)
+    unseen: str = ""
+
+
+def _read(group: str) -> tuple[Fault, ...]:
+    file = Path(__file__).with_name("catalogue") / f"{group.replace(' ', '_')}.toml"
+    found, rows = [], tomllib.loads(file.read_text(encoding="utf-8"))
+    common = rows.pop("on", {})
+    for key, row in rows.items():
+        on = common | row.pop("on", {}) | dict.fromkeys(row.pop("without", ()))
+        found.append(Fault(key, on=on, **row))
+    return tuple(found)
+
+
+#: Group in words -> its faults.
+GROUPS: Mapping[str, tuple[Fault, ...]] = {
+    group: _read(group)
+    for group in (
+        "equations of motion",
+        "friction and film",
+        "geometry",
+        "bodies",
+        "teeth",
+        "elasticity",
+        "contact",
+        "contact loss",
+        "integration",
+        "stability",
+        "multibody model",
+        "shafts",
+        "report",
+        "input",
+    )
+}
+#: Key -> fault.
+FAULTS: Mapping[str, Fault] = {fault.key: fault for group in GROUPS.values() for fault in group}
