@@ -19,8 +19,7 @@ import lumped
 from lumped.losses import losses_of_laws, quasi_static_losses
 from lumped.path_of_contact import pair_stiffness
 from lumped.quasi_static import mesh_positions, optimal_relief, static_transmission_error
-from lumped.stiffness.contact import linear_hertz_compliance
-from lumped.stiffness.pair_compliance import pair_compliance
+from lumped.stiffness.energy import linear_hertz_compliance, pair_compliance
 
 POSITIONS = 65
 CURVES = 100

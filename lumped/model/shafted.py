@@ -18,7 +18,7 @@ from lumped.errors import refuse
 from lumped.model.bodies import bodies
 from lumped.schema.pair import GearPair
 from lumped.shafts.supported import Disc, SupportedShaft, supported_shaft
-from lumped.stiffness.body import body_twist
+from lumped.stiffness.foundation import body_twist
 from lumped.typing import FloatArray, IntArray
 
 #: Tooth stiffness of steel over face width [Pa], for the default of ``max_frequency``; ISO 6336-1, sec. 5.3.

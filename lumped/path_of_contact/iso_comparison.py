@@ -22,8 +22,7 @@ from lumped.labelling import labelled_dataset
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.stiffness import iso6336
-from lumped.stiffness.energy import energy_curve, foundation_violations
-from lumped.stiffness.pair_compliance import Contact
+from lumped.stiffness.energy import Contact, energy_curve, foundation_violations
 
 if TYPE_CHECKING:
     import xarray as xr

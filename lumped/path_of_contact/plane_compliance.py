@@ -15,16 +15,16 @@ from lumped.labelling import labelled_dataset
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.stiffness import iso6336
-from lumped.stiffness.body import thin_rims
-from lumped.stiffness.elastic_teeth import (
+from lumped.stiffness.finite_elements import (
     ElasticTooth,
     Plane,
     Support,
-    alone,
+    cross_compliance,
     elastic_teeth,
     pair_error,
-    together,
+    self_compliance,
 )
+from lumped.stiffness.foundation import thin_rims
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
@@ -103,7 +103,7 @@ def plane_compliance(
             "support": support,
             "mean": float(weight @ means[0]),
             "mean_alone": float(weight @ means[1]),
-            "largest_alone": float(np.max(1.0 / alone(pair, teeth, path))),
+            "largest_alone": float(np.max(1.0 / self_compliance(pair, teeth, path))),
             "iso_single": iso6336.single_of(pair),
             "iso_mean": iso6336.mean_of(pair),
             "relative_error": float(pair_error(pair, teeth, path).max()),
@@ -123,9 +123,9 @@ def _sampled(
     matrix = np.zeros((*xi.shape, g.pairs))
     for i in ahead:
         at = touching[:, i]
-        matrix[at, i, i] = alone(pair, teeth, xi[at, i])
+        matrix[at, i, i] = self_compliance(pair, teeth, xi[at, i])
         for j in range(i):
-            matrix[at, i, j] = matrix[at, j, i] = together(pair, teeth, int(i) - j, xi[at, j])
+            matrix[at, i, j] = matrix[at, j, i] = cross_compliance(pair, teeth, int(i) - j, xi[at, j])
     # A pair out of contact carries nothing, whatever its compliance.
     held = matrix + np.where(touching, 0.0, 1.0)[:, :, None] * np.eye(g.pairs)
     shares = np.linalg.solve(held, touching[..., None].astype(float))

@@ -14,7 +14,7 @@ from lumped.labelling import labelled_dataset
 from lumped.path_function import PathFunction
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.stiffness import iso6336
-from lumped.stiffness.pair_compliance import pair_compliance
+from lumped.stiffness.energy import pair_compliance
 
 if TYPE_CHECKING:
     import xarray as xr

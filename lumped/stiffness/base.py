@@ -1,4 +1,4 @@
-"""What every stiffness model shares: what it reads of a gear pair, and the section of the parameter file.
+"""What stiffness models share: what they read of a gear pair, their section, smooth engagement, fits.
 
 Sources: docs/theory/mesh_physics.md, "Stiffness of a tooth pair".
 """
@@ -6,33 +6,31 @@ Sources: docs/theory/mesh_physics.md, "Stiffness of a tooth pair".
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import Protocol
+from collections.abc import Callable
+from typing import Annotated, Protocol
 
+import numpy as np
+from numpy.polynomial import Chebyshev, Polynomial
+from pydantic import Field
+
+from lumped.errors import refuse
 from lumped.fields.section import Section
+from lumped.fields.units import Quantity
 from lumped.gear_geometry.geometry import Geometry, Wheel
 from lumped.path_function import PathFunction
 from lumped.ranges import RangeViolation
+from lumped.typing import FloatArray
 
 
 class Material(Protocol):
-    """Material of one gear, fields of ``pinion`` and ``gear`` in a parameter file.
-
-    Attributes
-    ----------
-    youngs_modulus, poisson_ratio : E [Pa], nu [-]
-    """
+    """Material of one gear, fields of ``pinion`` and ``gear`` in a parameter file: E [Pa], nu [-]."""
 
     youngs_modulus: float
     poisson_ratio: float
 
 
 class Operation(Protocol):
-    """Operating point, the fields of ``operating``.
-
-    Attributes
-    ----------
-    pinion_torque : torque driving the pinion [N m]
-    """
+    """Operating point, the fields of ``operating``: the torque driving the pinion [N m]."""
 
     pinion_torque: float
 
@@ -94,3 +92,75 @@ class StiffnessModel(Section):
         0 for stiffness that does not depend on the load.
         """
         return 0.0
+
+
+#: The field ``ramp_length`` of the stiffness models.
+RampLength = Annotated[
+    float,
+    Quantity("mm", at_least=0),
+    Field(description="length along the path over which a pair takes up its stiffness; 0 is a jump"),
+]
+#: Ramp in s from 0 to 1. The square of the cubic smoothstep, so that sqrt(k), and with it the damping
+#: 2 zeta sqrt(k m_e), is analytic on the ramp too; it starts like s^4 and ends with zero slope.
+RAMP = Polynomial([0.0, 0.0, 3.0, -2.0]) ** 2
+#: Shortest ramp over half of the path of contact: rounding of positions is then below the fit's tolerance.
+_SHORTEST = 2e-4
+#: Fit error of a ramped function over its largest value.
+_FIT_TOLERANCE = 1e-11
+
+
+def check_ramp_length(ramp_length: float, low: float, high: float) -> None:
+    """Refuse a ramp longer than half of the path of contact, or too short to be resolved."""
+    half = 0.5 * (high - low)
+    if ramp_length > half or 0.0 < ramp_length < _SHORTEST * half:
+        raise refuse(
+            "mesh.stiffness.ramp_length",
+            f"{ramp_length * 1e3:g} mm",
+            f"0, or {_SHORTEST * half * 1e3:.4f} to {half * 1e3:.4f} mm, half of the path of contact",
+            "Shorten the ramp." if ramp_length > half else "Write 0 for a jump.",
+        )
+
+
+def ramped(function: PathFunction, ramp_length: float) -> PathFunction:
+    """Multiply a function over the path of contact by the ramp at both ends, of this length [m].
+
+    The inner ends of the ramps, where the curvature jumps, are switches of the result.
+    """
+    if ramp_length == 0.0:
+        return function
+    low, high = function.interval
+    check_ramp_length(ramp_length, low, high)
+
+    def product(xi: FloatArray) -> FloatArray:
+        s = np.minimum(np.minimum(xi - low, high - xi) / ramp_length, 1.0)
+        return np.asarray(function(xi) * RAMP(np.maximum(s, 0.0)), dtype=np.float64)
+
+    inner = np.array([low + ramp_length, high - ramp_length])
+    scale = float(np.abs(function(np.linspace(low, high, 257))).max())
+    return PathFunction.fit(
+        product,
+        np.unique(np.concatenate([function.breaks, inner])),
+        np.union1d(function.switches, inner),
+        tolerance=_FIT_TOLERANCE * scale,
+    )
+
+
+#: Fit error over the largest value.
+_TOLERANCE = 1e-10
+#: Terms of the Chebyshev series over the path of contact that are tried.
+_TERMS = (64, 128)
+
+
+def fitted_series(function: Callable[[FloatArray], FloatArray], ends: tuple[float, float]) -> PathFunction:
+    """Fit a function (n,) -> (n,), analytic over the path, by its Chebyshev series from few evaluations.
+
+    Raises
+    ------
+    NumericalError : the function is not smooth or not finite
+    """
+    for terms in _TERMS:
+        series = Chebyshev.interpolate(function, terms - 1, ends)
+        tolerance = _TOLERANCE * float(np.abs(series.linspace(terms)[1]).max())
+        if np.abs(series.coef[-terms // 8 :]).max() <= 0.1 * tolerance:
+            return PathFunction.fit(series, ends, tolerance=tolerance)
+    return PathFunction.fit(function, ends, tolerance=tolerance)

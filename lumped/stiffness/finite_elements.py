@@ -1,19 +1,161 @@
-"""Stiffness of a tooth pair by plane finite elements of both whole gears, see ``elastic_teeth``."""
+"""Stiffness of a tooth pair by plane finite elements of both whole gears.
+
+The deflection of a tooth under a line load, less the half plane around the load, comes from the finite
+elements (``lumped.elasticity``); what a Hertzian pressure adds down to the tooth's centre line is Weber and
+Banaschek's contact, in plane strain. In plane strain their sum is the plane solution itself. No formula is
+shared with the energy method, so that each can judge the other.
+
+The angles and displacements of the model are the mean ones of the gear bodies. So a gear is free here: its
+load is balanced by its own inertia, and the deflection counts from its mean motion. What lies between mean
+motion and shaft, the twist and the translation of the body, is shared by all pairs and no part of k.
+"""
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass, replace
 from typing import Literal
 
+import numpy as np
 from pydantic import Field
 
+from lumped.elasticity.gear import FlankCompliance, PlaneGear, flank_compliance
+from lumped.errors import refuse
+from lumped.gear_geometry.geometry import Wheel
 from lumped.path_function import PathFunction
 from lumped.ranges import RangeViolation
-from lumped.stiffness.base import MeshingPair, StiffnessModel
-from lumped.stiffness.body import thin_rims
-from lumped.stiffness.contact import softening
-from lumped.stiffness.elastic_teeth import Plane, Support, alone, elastic_teeth, together
-from lumped.stiffness.neighbours import coupled_pairs
-from lumped.stiffness.series import fitted_series
+from lumped.stiffness.base import Material, MeshingPair, StiffnessModel, fitted_series
+from lumped.stiffness.energy import softening
+from lumped.stiffness.foundation import thin_rims
+from lumped.stiffness.neighbours import REACH, coupled_pairs
+from lumped.typing import FloatArray
+
+Plane = Literal["stress", "strain"]
+Support = Literal["free", "clamped", "untwisted"]
+
+
+@dataclass(frozen=True, eq=False)
+class ElasticTooth:
+    """One gear of a pair: its flank compliance with the lengths and moduli that make it one in m/N.
+
+    Lengths of ``flank`` are in modules. ``twist`` of the body, times modulus and face width [-], is taken off
+    the motion of all teeth.
+    """
+
+    wheel: Wheel
+    material: Material
+    plane: Plane
+    flank: FlankCompliance
+    twist: float
+
+    @property
+    def modulus(self) -> float:
+        """E in plane stress, E/(1 - nu^2) in plane strain [Pa]."""
+        e, nu = self.material.youngs_modulus, self.material.poisson_ratio
+        return e if self.plane == "stress" else e / (1.0 - nu**2)
+
+    def compliance(self, length: FloatArray, half_width: FloatArray) -> FloatArray:
+        """Deflection under the own load, contact included, at a flank length and half width [m]; [m^2/N]."""
+        module = self.wheel.tooth.module
+        _, h, _, angle = self.wheel.tooth.involute_points(length)
+        depth = h / np.cos(angle) / module
+        tooth = self.flank.deflection(length / module) - 2.0 / math.pi * np.log(depth) - self.twist
+        # The contact is narrow beside the face width: down to the depth the strain is plane in any case.
+        e, nu = self.material.youngs_modulus, self.material.poisson_ratio
+        contact = (2.0 * np.log(2.0 * depth * module / half_width) - nu / (1.0 - nu)) / math.pi
+        return tooth / self.modulus + contact * (1.0 - nu**2) / e
+
+    def moved(self, apart: int, loaded: FloatArray, length: FloatArray) -> FloatArray:
+        """Motion of the tooth ``apart`` >= 1 pitches ahead of a loaded one, times face width [m^2/N]."""
+        module = self.wheel.tooth.module
+        moved = self.flank.moved(apart, loaded / module, length / module)
+        return (moved - self.twist) / self.modulus
+
+
+def elastic_teeth(
+    pair: MeshingPair, plane: Plane = "stress", support: Support = "free", bore: float | None = None
+) -> tuple[ElasticTooth, ElasticTooth]:
+    """Pinion and gear as plane elastic bodies.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    plane : state of stress of the bodies, "stress" for narrow gears, "strain" for wide ones
+    support : "free"; "clamped" at the bore; "untwisted", clamped and less the twist of the ring
+    bore : root over bore radius of both gears, in the place of their own [-]
+
+    Raises
+    ------
+    ParameterError : a solid gear cannot be clamped at its bore
+    NumericalError : the teeth cannot be meshed
+    """
+    apart = math.floor(pair.geometry.contact_ratio + 2.0 * REACH)
+    found = []
+    for name, wheel, material in zip(("pinion", "gear"), pair.wheels, (pair.pinion, pair.gear), strict=True):
+        tooth, module = replace(wheel.tooth, module=1.0), wheel.tooth.module
+        radius = 0.5 * wheel.bore / module if bore is None else tooth.root_radius / bore
+        if support != "free" and radius == 0.0:
+            action = "Give the bore, or choose support = 'free'."
+            raise refuse("mesh.stiffness.support", support, f"'free', as the {name} has no bore", action)
+        nu = material.poisson_ratio
+        if plane == "strain":
+            nu = nu / (1.0 - nu)
+        reach = min(apart, tooth.teeth - 1)
+        blank = PlaneGear(
+            tooth, wheel.tip_radius / module, radius, nu, "free" if support == "free" else "clamped", reach
+        )
+        twist = 0.0
+        if support == "untwisted":
+            # Lame's ring, G = 1/(2 (1 + nu)).
+            inverse = (radius**-2 - tooth.root_radius**-2) / (2.0 * math.pi)
+            twist = tooth.base_radius**2 * (1.0 + nu) * inverse
+        found.append(ElasticTooth(wheel, material, plane, flank_compliance(blank), twist))
+    return found[0], found[1]
+
+
+def hertz_half_width(pair: MeshingPair, xi: FloatArray) -> FloatArray:
+    """Half width of the contact at positions xi of any shape [m], Johnson (1985), eq. (4.43).
+
+    Under the operating torque on a single pair; written here once more than in ``energy``, so that the two
+    ways to a stiffness share no formula.
+    """
+    g = pair.geometry
+    curvature = 1.0 / xi + 1.0 / (g.L_XY - xi)
+    effective = 1.0 / sum((1.0 - m.poisson_ratio**2) / m.youngs_modulus for m in (pair.pinion, pair.gear))
+    force = pair.operating.pinion_torque / (g.base_radius_pinion * g.face_width)
+    return np.asarray(np.sqrt(4.0 * force / (math.pi * effective * curvature)), dtype=np.float64)
+
+
+def self_compliance(
+    pair: MeshingPair, teeth: tuple[ElasticTooth, ElasticTooth], xi: FloatArray
+) -> FloatArray:
+    """Compliance of a tooth pair that carries the load self_compliance, at positions xi of any shape [m/N].
+
+    The contact is as wide as under the operating torque on a single pair.
+    """
+    g, half = pair.geometry, hertz_half_width(pair, xi)
+    total = teeth[0].compliance(xi, half) + teeth[1].compliance(g.L_XY - xi, half)
+    return np.asarray(total / g.face_width, dtype=np.float64)
+
+
+def cross_compliance(
+    pair: MeshingPair, teeth: tuple[ElasticTooth, ElasticTooth], apart: int, xi: FloatArray
+) -> FloatArray:
+    """Motion of the pair ``apart`` base pitches ahead of a loaded one, which is at xi, any shape [m/N]."""
+    g = pair.geometry
+    ahead = xi + apart * g.base_pitch
+    total = teeth[0].moved(apart, xi, ahead) + teeth[1].moved(apart, g.L_XY - ahead, g.L_XY - xi)
+    return np.asarray(total / g.face_width, dtype=np.float64)
+
+
+def pair_error(pair: MeshingPair, teeth: tuple[ElasticTooth, ElasticTooth], xi: FloatArray) -> FloatArray:
+    """Share of ``self_compliance`` by which a coarser mesh differs, at positions xi of any shape [-]."""
+    g = pair.geometry
+    off = sum(
+        tooth.flank.error(length / tooth.wheel.tooth.module) / tooth.modulus
+        for tooth, length in zip(teeth, (xi, g.L_XY - xi), strict=True)
+    )
+    return np.asarray(off / g.face_width / self_compliance(pair, teeth, xi), dtype=np.float64)
 
 
 class FiniteElementStiffness(StiffnessModel):
@@ -30,16 +172,10 @@ class FiniteElementStiffness(StiffnessModel):
     )
 
     def curve(self, pair: MeshingPair) -> PathFunction:
-        """Stiffness of a tooth pair from A to D by finite elements [N/m].
-
-        Raises
-        ------
-        ParameterError : a solid gear is clamped
-        NumericalError : the teeth cannot be meshed
-        """
+        """Stiffness of a tooth pair from A to D by finite elements [N/m]."""
         teeth = elastic_teeth(pair, self.plane, self.support)
         ends = pair.geometry.L_XA, pair.geometry.L_XD
-        return fitted_series(lambda xi: 1.0 / alone(pair, teeth, xi), ends)
+        return fitted_series(lambda xi: 1.0 / self_compliance(pair, teeth, xi), ends)
 
     def violations(self, pair: MeshingPair) -> tuple[RangeViolation, ...]:
         """Rims so thin that what holds them decides."""
@@ -48,10 +184,10 @@ class FiniteElementStiffness(StiffnessModel):
     def neighbours(self, pair: MeshingPair) -> tuple[PathFunction, ...]:
         """Motion of the next pairs by the load of one [m/N]."""
         teeth = elastic_teeth(pair, self.plane, self.support)
-        return coupled_pairs(pair, lambda apart, xi: together(pair, teeth, apart, xi))
+        return coupled_pairs(pair, lambda apart, xi: cross_compliance(pair, teeth, apart, xi))
 
     def softening(self, pair: MeshingPair) -> float:
-        """D of the contact, see ``contact.softening`` [m/N]."""
+        """D of the contact, see ``energy.softening`` [m/N]."""
         moduli = (pair.pinion.youngs_modulus, pair.gear.youngs_modulus)
         ratios = (pair.pinion.poisson_ratio, pair.gear.poisson_ratio)
         return softening(moduli, ratios) / pair.geometry.face_width

@@ -18,7 +18,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lumped.ranges import ValidityRange
+from lumped.ranges import RangeViolation, ValidityRange, range_violations
+from lumped.stiffness.base import MeshingPair
 from lumped.typing import FloatArray
 
 #: A to F of X* = A/theta^2 + B h^2 + C h/theta + D/theta + E h + F; rows L*, M*, P*, Q*.
@@ -47,15 +48,8 @@ BODY_RATIO = ValidityRange(
 
 
 def coefficients(ratio: ArrayLike, half_angle: ArrayLike) -> FloatArray:
-    """L*, M*, P*, Q* of the formula; (4, ...) [-].
+    """L*, M*, P*, Q* of the formula at root over bore radius h_f and half angle theta_f [rad]; (4, ...).
 
-    Parameters
-    ----------
-    ratio : h_f, root over bore radius [-], any shape
-    half_angle : theta_f [rad], same shape
-
-    Examples
-    --------
     >>> coefficients(4.0, 0.05).round(4).tolist()
     [6.9356, 1.3823, 5.9122, 0.346]
     """
@@ -67,19 +61,9 @@ def coefficients(ratio: ArrayLike, half_angle: ArrayLike) -> FloatArray:
 def torsional_stiffness(root_radius: float, bore_radius: float, modulus: float, poisson: float) -> float:
     """Torsional stiffness of the ring from bore to root circle over face width, 4 pi G/(1/r_i^2 - 1/r_f^2).
 
-    Lame's solution. A solid gear has no bore to turn against: infinite.
+    Lame's solution, in torque per angle and face width [N/rad]. A solid gear has no bore to turn against:
+    infinite.
 
-    Parameters
-    ----------
-    root_radius, bore_radius : r_f, r_i >= 0 [m]
-    modulus, poisson : E [Pa], nu [-]
-
-    Returns
-    -------
-    torque per angle and face width [N/rad]
-
-    Examples
-    --------
     >>> f"{torsional_stiffness(0.04, 0.01, 206e9, 0.3):.4e}"
     '1.0620e+08'
     """
@@ -97,21 +81,12 @@ def published_compliance(
     load_angle: FloatArray,
     modulus: float,
 ) -> FloatArray:
-    """Deflection of the tooth by the gear body along the line of action, the published formula.
+    """Deflection of the tooth by the gear body along the line of action, the published formula [m^2/N].
 
-    Parameters
-    ----------
-    base_radius, root_radius : [m]
-    ratio : h, root over bore radius, 1.4 to 7 [-]
-    half_angle : theta_f, half the tooth's angle on the root circle, 0.01 to 0.12 [rad]
-    load_angle : angle a between the load and the normal to the tooth's centre line [rad], any shape
-    modulus : E [Pa]
-
-    Returns
-    -------
-    compliance times face width [m^2/N], shape of ``load_angle``:
-        cos^2(a)/E (L* (u/S)^2 + M* u/S + P* (1 + Q* tan^2(a))), where u is the distance from the root circle
-        to the load's line on the centre line, r_b/cos(a) - r_f, and S = 2 r_f theta_f
+    cos^2(a)/E (L* (u/S)^2 + M* u/S + P* (1 + Q* tan^2(a))), times face width, where u is the distance from
+    the root circle to the load's line on the centre line, r_b/cos(a) - r_f, and S = 2 r_f theta_f. The fit
+    holds for ``ratio`` h from 1.4 to 7 and ``half_angle`` theta_f from 0.01 to 0.12 rad; ``load_angle`` a of
+    any shape is between the load and the normal to the tooth's centre line.
     """
     lever = (base_radius / np.cos(load_angle) - root_radius) / (2.0 * root_radius * half_angle)
     l_, m_, p_, q_ = coefficients(ratio, half_angle)
@@ -127,17 +102,34 @@ def foundation_compliance(
     modulus: float,
     poisson: float,
 ) -> FloatArray:
-    """Deflection of the tooth by the gear body without the body's twist: the local part of the formula.
-
-    Parameters
-    ----------
-    base_radius, root_radius, half_angle, load_angle, modulus : as in ``published_compliance``
-    poisson : nu [-]
-
-    Returns
-    -------
-    compliance times face width [m^2/N], shape of ``load_angle``
-    """
+    """Deflection by the gear body without its twist, times face width: the local part [m^2/N]."""
     whole = published_compliance(base_radius, root_radius, LOCAL_RATIO, half_angle, load_angle, modulus)
     twist = torsional_stiffness(root_radius, root_radius / LOCAL_RATIO, modulus, poisson)
     return whole - base_radius**2 / twist
+
+
+def body_twist(pair: MeshingPair) -> tuple[float, float]:
+    """Torsional stiffness of both gear bodies from root circle to bore [N m/rad]; infinite without a bore.
+
+    The angles of the model are those of the rims. Between rim and shaft acts this spring, in series with the
+    shaft: no part of the tooth stiffness, as all pairs share it. Over the square of the base radius it is a
+    stiffness along the line of action.
+    """
+    pinion, gear = (
+        wheel.face_width
+        * torsional_stiffness(
+            wheel.tooth.root_radius, 0.5 * wheel.bore, body.youngs_modulus, body.poisson_ratio
+        )
+        for wheel, body in zip(pair.wheels, (pair.pinion, pair.gear), strict=True)
+    )
+    return pinion, gear
+
+
+def thin_rims(pair: MeshingPair) -> tuple[RangeViolation, ...]:
+    """Bored gears whose rim is too thin for the stiffness of a solid body."""
+    found: list[RangeViolation] = []
+    for name, wheel in zip(("pinion", "gear"), pair.wheels, strict=True):
+        if wheel.bore > 0.0:
+            ratio = {BODY_RATIO.quantity: wheel.tooth.root_radius / (0.5 * wheel.bore)}
+            found += range_violations(f"rim of the {name}", (BODY_RATIO,), ratio)
+    return tuple(found)

@@ -13,7 +13,7 @@ import math
 
 from lumped.ranges import RangeViolation, ValidityRange, range_violations
 from lumped.stiffness.base import MeshingPair
-from lumped.stiffness.body import thin_rims
+from lumped.stiffness.foundation import thin_rims
 
 #: C1 to C9 of q', eq. (84), in the order of the terms.
 COEFFICIENTS = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)
@@ -37,17 +37,9 @@ RANGES = (
 def theoretical_single_stiffness(z_1: float, z_2: float, x_1: float, x_2: float) -> float:
     """Theoretical single stiffness c'_th = 1/q' of a pair of solid-disc gears [N/(mm um)], eqs (83), (84).
 
-    Parameters
-    ----------
-    z_1, z_2 : teeth of the smaller and the larger gear (virtual tooth numbers for helical gears) [-]
-    x_1, x_2 : profile shift coefficients [-]
+    z_1, z_2 are the teeth of the smaller and the larger gear, x_1, x_2 their profile shift coefficients;
+    valid in ``RANGES``.
 
-    Notes
-    -----
-    Valid for x1 >= x2 and -0.5 <= x1 + x2 <= 2 (``RANGES``).
-
-    Examples
-    --------
     >>> round(theoretical_single_stiffness(28, 28, 0.0, 0.0), 4)
     16.1303
     """
@@ -67,15 +59,8 @@ def theoretical_single_stiffness(z_1: float, z_2: float, x_1: float, x_2: float)
 
 
 def basic_rack_factor(dedendum: float, pressure_angle: float) -> float:
-    """Basic rack factor C_B [-], eq. (88).
+    """Basic rack factor C_B [-], eq. (88), of the dedendum over module and the pressure angle [deg].
 
-    Parameters
-    ----------
-    dedendum : dedendum of the basic rack over module, h_fP/m [-]
-    pressure_angle : of the basic rack [deg]
-
-    Examples
-    --------
     >>> round(basic_rack_factor(1.25, 20.0), 4)
     0.975
     """
@@ -83,14 +68,8 @@ def basic_rack_factor(dedendum: float, pressure_angle: float) -> float:
 
 
 def material_factor(modulus_1: float, modulus_2: float) -> float:
-    """Ratio E/E_St of c' to that of steel gears [-], eqs (90), (91), with E = 2 E1 E2/(E1 + E2).
+    """Ratio E/E_St of c' to that of steel gears [-], eqs (90), (91), with E = 2 E1 E2/(E1 + E2) [GPa].
 
-    Parameters
-    ----------
-    modulus_1, modulus_2 : Young's moduli [GPa]
-
-    Examples
-    --------
     >>> round(material_factor(206.0, 103.0), 4)
     0.6667
     """
@@ -106,14 +85,8 @@ def single_stiffness(
 ) -> float:
     """Single stiffness c' of solid discs, the largest of one tooth pair [N/(mm um)], eq. (82) with C_R = 1.
 
-    Parameters
-    ----------
-    theoretical : c'_th [N/(mm um)]
-    basic_rack, material : factors C_B and E/E_St [-]
-    helix : helix angle [deg]
+    ``helix`` is the helix angle [deg].
 
-    Examples
-    --------
     >>> round(single_stiffness(16.1303, basic_rack=0.975), 4)
     12.5816
     """
@@ -123,13 +96,6 @@ def single_stiffness(
 def mean_mesh_stiffness(single: float, contact_ratio: float) -> float:
     """Mean total mesh stiffness c_gamma_alpha = c' (0.75 eps_alpha + 0.25) [N/(mm um)], eq. (93).
 
-    Parameters
-    ----------
-    single : c' [N/(mm um)]
-    contact_ratio : transverse contact ratio, >= 1.2 in the standard [-]
-
-    Examples
-    --------
     >>> round(mean_mesh_stiffness(14.0, 1.6), 4)
     20.3
     """

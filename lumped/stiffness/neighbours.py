@@ -31,10 +31,8 @@ REACH = 0.45
 def neighbour_compliances(pair: MeshingPair) -> tuple[PathFunction, ...]:
     """Motion of one tooth pair along the line of action by a unit load on another, both gears together.
 
-    Returns
-    -------
-    one function for every number m = 1, 2, ... of base pitches between two pairs that may touch together:
-    w_m(xi) with the pair behind at xi and the one ahead at xi + m p_b [m/N]
+    One function for every number m = 1, 2, ... of base pitches between two pairs that may touch together:
+    w_m(xi) with the pair behind at xi and the one ahead at xi + m p_b [m/N].
     """
     g = pair.geometry
 
@@ -50,12 +48,9 @@ def neighbour_compliances(pair: MeshingPair) -> tuple[PathFunction, ...]:
 def coupled_pairs(
     pair: MeshingPair, moved: Callable[[int, FloatArray], FloatArray]
 ) -> tuple[PathFunction, ...]:
-    """Functions w_m(xi) for all m, as in ``neighbour_compliances``.
+    """Functions w_m(xi) for all m, as in ``neighbour_compliances``, from smooth (m, xi (n,)) -> w_m [m/N].
 
-    Parameters
-    ----------
-    pair : the gear pair
-    moved : (m, xi) -> w_m [m/N], smooth; xi (n,) reaches beyond A and D
+    xi reaches beyond A and D.
     """
     g = pair.geometry
     low, high = g.L_XA - REACH * g.base_pitch, g.L_XD + REACH * g.base_pitch
@@ -86,11 +81,8 @@ def _moved(wheel: Wheel, material: Material, length: FloatArray, apart: int, dis
 def foot_loads(angle: FloatArray, base_ratio: float, half_angle: float) -> FloatArray:
     """Forces across and along the centre line and couple at the foot of a tooth under a unit load; (3, n).
 
-    Parameters
-    ----------
-    angle : a, between the load and the normal to the centre line, (n,) [rad]
-    base_ratio : base over root radius [-]
-    half_angle : of the tooth on the root circle [rad]
+    ``angle`` (n,) is between the load and the normal to the centre line, ``base_ratio`` base over root
+    radius, ``half_angle`` that of the tooth on the root circle.
     """
     # The mean of evenly spread forces lies at sin(t)/t root radii.
     lever = base_ratio / np.cos(angle) - math.sin(half_angle) / half_angle
@@ -101,17 +93,10 @@ def foot_loads(angle: FloatArray, base_ratio: float, half_angle: float) -> Float
 def foot_compliance(ratio: float, poisson: float, half_angle: float, apart: float) -> FloatArray:
     """Motions of a foot on the ring by unit loads at another, times Young's modulus and face width; (3, 3).
 
-    Parameters
-    ----------
-    ratio : root over bore radius [-]
-    poisson : nu [-]
-    half_angle : of a tooth on the root circle, t [rad]
-    apart : angle between the centre lines, positive towards the flank that is loaded [rad]
-
-    Returns
-    -------
-    rows: displacements across and along the centre line, rotation; columns: forces across and along it,
-    couple; root radius 1. The matrix of -apart is the transpose
+    Rows: displacements across and along the centre line, rotation. Columns: forces across and along it,
+    couple; root radius 1. ``ratio`` is root over bore radius, ``half_angle`` that of a tooth on the root
+    circle, ``apart`` the angle between the centre lines, positive towards the loaded flank. The matrix of
+    -apart is the transpose.
     """
     n, t = np.arange(1.0, _HARMONICS + 1.0), half_angle
 

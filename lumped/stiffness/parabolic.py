@@ -17,8 +17,7 @@ from lumped.fields.units import Quantity
 from lumped.path_function import PathFunction
 from lumped.ranges import RangeViolation
 from lumped.stiffness import iso6336
-from lumped.stiffness.base import MeshingPair, StiffnessModel
-from lumped.stiffness.ramp import RAMP, RampLength, check_ramp_length
+from lumped.stiffness.base import RAMP, MeshingPair, RampLength, StiffnessModel, check_ramp_length
 
 
 def iso_end_ratio(contact_ratio: float) -> float:
@@ -27,12 +26,6 @@ def iso_end_ratio(contact_ratio: float) -> float:
     A parabola from r to 1 and back has the mean (2 + r)/3 over the path, so the mean total is eps (2 + r)/3
     times the peak; equating it to 0.75 eps + 0.25 gives r = 0.25 + 0.75/eps.
 
-    Parameters
-    ----------
-    contact_ratio : eps_alpha [-]
-
-    Examples
-    --------
     >>> iso_end_ratio(1.5)
     0.75
     """
@@ -42,19 +35,10 @@ def iso_end_ratio(contact_ratio: float) -> float:
 def parabola(
     low: float, high: float, peak: float, end_ratio: float, ramp_length: float = 0.0
 ) -> PathFunction:
-    """Parabola over the path of contact, times ramps at both ends.
+    """Parabola from low to high [m] with a peak in the middle, times ramps of a length [m] at both ends.
 
-    Parameters
-    ----------
-    low, high : L_XA, L_XD [m]
-    peak : value in the middle, in the result's unit
-    end_ratio : value at the ends over the peak [-]
-    ramp_length : length over which the value rises from 0 at each end [m]; 0 is a jump
-
-    Returns
-    -------
-    PathFunction : of degree 2 without ramps, with switches at the inner ends of the ramps otherwise (the
-        curvature jumps there)
+    ``end_ratio`` is the value at the ends over the peak. The inner ends of the ramps, where the curvature
+    jumps, are switches.
     """
     check_ramp_length(ramp_length, low, high)
     half = 0.5 * (high - low)
@@ -93,12 +77,7 @@ class ParabolicStiffness(StiffnessModel):
     ramp_length: RampLength = 0.0
 
     def curve(self, pair: MeshingPair) -> PathFunction:
-        """Stiffness of a tooth pair [N/m]: a parabola from A to D with its peak in the middle.
-
-        Raises
-        ------
-        ParameterError : the ramps are longer than half of the path of contact
-        """
+        """Stiffness of a tooth pair [N/m]: a parabola from A to D with its peak in the middle."""
         g = pair.geometry
         peak = iso6336.single_of(pair) if self.peak is None else self.peak
         ratio = iso_end_ratio(g.contact_ratio) if self.end_ratio is None else self.end_ratio

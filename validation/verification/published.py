@@ -19,10 +19,8 @@ import numpy as np
 
 from lumped import GearPair
 from lumped.gear_geometry.tooth_profile import ToothProfile
-from lumped.stiffness.contact import contact_half_width, local_compliance
+from lumped.stiffness.energy import beam_compliance, contact_half_width, local_compliance, pair_compliance
 from lumped.stiffness.foundation import foundation_compliance
-from lumped.stiffness.pair_compliance import pair_compliance
-from lumped.stiffness.tooth_beam import beam_compliance
 from lumped.typing import FloatArray
 from multibody.contact import friction as fr
 from multibody.contact import kernels as kn
@@ -46,7 +44,7 @@ FORMULAS: Mapping[str, frozenset[str]] = {
         "lubrication.roughness": "composite_roughness mean_roughness",
         "lubrication.viscosity": "walther_constants kinematic_viscosity oil_density",
         "lubrication.viscosity_grade": "viscosity_index viscosity_at_100 grade_viscosity",
-        "stiffness.contact": "linear_hertz_compliance contact_half_width local_compliance",
+        "stiffness.energy": "linear_hertz_compliance contact_half_width local_compliance",
         "stiffness.foundation": "coefficients torsional_stiffness",
         "stiffness.iso6336": "theoretical_single_stiffness basic_rack_factor material_factor "
         "single_stiffness mean_mesh_stiffness",

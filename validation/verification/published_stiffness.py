@@ -15,7 +15,7 @@ import numpy as np
 
 from lumped import GearPair, load_gear_pair, plane_compliance
 from lumped.stiffness import iso6336
-from lumped.stiffness.elastic_teeth import Plane, Support, alone, elastic_teeth
+from lumped.stiffness.finite_elements import Plane, Support, elastic_teeth, self_compliance
 
 #: Rim of pinion and gear of 17/43 teeth, module 1 mm, held at the bore [mm] -> c' at the pitch point by
 #: plane-strain finite elements of another program [N/(mm um)].
@@ -70,7 +70,7 @@ def held_rim(rims: tuple[float, float]) -> float:
     bores = [2.0 * (1e3 * w.tooth.root_radius - rim) for w, rim in zip(pair.wheels, rims, strict=True)]
     pair = pair.with_(pinion__bore=bores[0], gear__bore=bores[1])
     g = pair.geometry
-    compliance = alone(pair, elastic_teeth(pair, "strain", "clamped"), np.array([g.L_XP]))
+    compliance = self_compliance(pair, elastic_teeth(pair, "strain", "clamped"), np.array([g.L_XP]))
     return float(1.0 / compliance[0] / g.face_width / _UNIT)
 
 
@@ -103,7 +103,8 @@ def published_stiffness() -> Iterator[Beside]:
     force = pair.operating.pinion_torque / g.base_radius_pinion
     single_contact = np.linspace(g.L_XD - g.base_pitch, g.L_XA + g.base_pitch, 101)
     largest = float(
-        force * alone(pair, elastic_teeth(pair, support="untwisted", bore=5.0), single_contact).max()
+        force
+        * self_compliance(pair, elastic_teeth(pair, support="untwisted", bore=5.0), single_contact).max()
     )
     source = "Dias et al. 2024, energy method, tooth on the base circle"
     yield Beside("27/35", "largest approach of one pair", "µm", source, 1e6 * DIAS, 1e6 * largest)

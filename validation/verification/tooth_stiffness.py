@@ -20,19 +20,18 @@ from lumped import GearPair, ParameterError, plane_compliance
 from lumped.labelling import labelled_dataset
 from lumped.path_of_contact import pair_stiffness
 from lumped.stiffness import iso6336
-from lumped.stiffness.body import thin_rims
-from lumped.stiffness.contact import contact_half_width
-from lumped.stiffness.elastic_teeth import (
+from lumped.stiffness.energy import contact_half_width, energy_curve
+from lumped.stiffness.finite_elements import (
     ElasticTooth,
     Plane,
     Support,
-    alone,
+    cross_compliance,
     elastic_teeth,
     hertz_half_width,
     pair_error,
-    together,
+    self_compliance,
 )
-from lumped.stiffness.energy import energy_curve
+from lumped.stiffness.foundation import thin_rims
 from lumped.stiffness.neighbours import neighbour_compliances
 from lumped.typing import FloatArray
 from multibody.contact.drawing import circles
@@ -141,8 +140,8 @@ def tooth_stiffness(pair: GearPair) -> ToothStiffness:
     model, read = pair.mesh.stiffness, pair_stiffness(pair)
     elastic_free = elastic_teeth(pair)
     curves = {
-        "elastic, energy method's ring": 1.0 / alone(pair, ring, xi),
-        "elastic, free gears": 1.0 / alone(pair, elastic_free, xi),
+        "elastic, energy method's ring": 1.0 / self_compliance(pair, ring, xi),
+        "elastic, free gears": 1.0 / self_compliance(pair, elastic_free, xi),
         "energy method": energy_curve(pair)(xi),
         f"this report: {model.model}": read(xi),
     }
@@ -225,7 +224,7 @@ def _standard(pair: GearPair, mean: float, xi: FloatArray) -> Check:
         pinion__poisson_ratio=_STEEL_POISSON,
         gear__poisson_ratio=_STEEL_POISSON,
     )
-    elastic = 1.0 / alone(steel, elastic_teeth(steel, support="untwisted", bore=_RING), xi)
+    elastic = 1.0 / self_compliance(steel, elastic_teeth(steel, support="untwisted", bore=_RING), xi)
     ratio = mean / (g.contact_ratio * float(elastic.mean()))
     gears = sorted((w.tooth for w in pair.wheels), key=lambda tooth: (tooth.teeth, -tooth.profile_shift))
     teeth, shifts = [tooth.teeth for tooth in gears], [tooth.profile_shift for tooth in gears]
@@ -254,7 +253,7 @@ def _neighbours(pair: GearPair, ring: tuple[ElasticTooth, ElasticTooth]) -> Chec
     g = pair.geometry
     place = np.array([0.5 * (g.L_XA + g.L_XD - g.base_pitch)])
     by_fourier = neighbour_compliances(pair)[0](place)[0]
-    ratio = float(together(pair, ring, 1, place)[0] / by_fourier)
+    ratio = float(cross_compliance(pair, ring, 1, place)[0] / by_fourier)
     return check("neighbours_elastic", abs(ratio - 1.0), ratio=f"{ratio:.3f}")
 
 
@@ -282,7 +281,7 @@ def _read(pair: GearPair, mean: float, sampled: float, xi: FloatArray) -> Iterat
         return
     if model.model == "finite_elements":
         ratio = sampled / float(
-            np.mean(1.0 / alone(pair, elastic_teeth(pair, model.plane, model.support), xi))
+            np.mean(1.0 / self_compliance(pair, elastic_teeth(pair, model.plane, model.support), xi))
         )
     elif model.model == "energy" and model.scale == "none":
         ratio = mean / energy_curve(pair, model.hertz).mean()

@@ -8,7 +8,7 @@ import pytest
 from lumped import ParameterError, load_gear_pair, plane_compliance
 from lumped.quasi_static import static_transmission_error
 from lumped.quasi_static.loaded_contact import StaticMesh
-from lumped.stiffness.elastic_teeth import alone, elastic_teeth, hertz_half_width
+from lumped.stiffness.finite_elements import elastic_teeth, hertz_half_width, self_compliance
 from lumped.stiffness.neighbours import neighbour_compliances
 
 NEAR, FAR = 0.003, 0.008  # of a mesh with half as many freedoms, between few loads; of other end positions
@@ -38,7 +38,7 @@ def test_the_matrix_is_symmetric_and_makes_the_mesh_stiffness(nasa, free):
     # Equal gears: the cycle reads the same backwards from the pitch point.
     g = nasa.geometry
     xi = np.linspace(g.L_XA, g.L_XD, 7)
-    k = 1.0 / alone(nasa, elastic_teeth(nasa), xi)
+    k = 1.0 / self_compliance(nasa, elastic_teeth(nasa), xi)
     assert k == pytest.approx(k[::-1], rel=1e-9)
 
 
@@ -92,7 +92,7 @@ def test_in_plane_strain_the_contact_is_part_of_the_plane_solution(nasa):
         (tooth.flank.deflection(at / module) + (2.0 * np.log(2.0 / a) - nu) / math.pi) / tooth.modulus
         for tooth, at in zip(teeth, (xi, g.L_XY - xi), strict=True)
     )
-    assert alone(nasa, teeth, xi) * g.face_width == pytest.approx(plane, rel=1e-12)
+    assert self_compliance(nasa, teeth, xi) * g.face_width == pytest.approx(plane, rel=1e-12)
 
 
 def test_a_bore_moves_the_clamped_gear_only(nasa, free):

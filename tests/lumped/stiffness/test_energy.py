@@ -12,17 +12,21 @@ from lumped import ParameterError, geometry, load_gear_pair, preset_names
 from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.path_of_contact import pair_stiffness
 from lumped.stiffness import iso6336
-from lumped.stiffness.body import body_twist
-from lumped.stiffness.contact import contact_half_width, linear_hertz_compliance, local_compliance
-from lumped.stiffness.energy import foundation_violations
+from lumped.stiffness.energy import (
+    beam_compliance,
+    contact_half_width,
+    foundation_violations,
+    linear_hertz_compliance,
+    local_compliance,
+    pair_compliance,
+)
 from lumped.stiffness.foundation import (
+    body_twist,
     coefficients,
     foundation_compliance,
     published_compliance,
     torsional_stiffness,
 )
-from lumped.stiffness.pair_compliance import pair_compliance
-from lumped.stiffness.tooth_beam import beam_compliance
 
 
 def energy_pair(name="nasa_28_28", hertz="linear", **changes):
@@ -63,7 +67,7 @@ def test_gauss_integration_converges_exponentially():
     length = np.linspace(profile.form_length, 0.5 * profile.base_radius, 5)
 
     def flexibility(nodes):
-        from lumped.stiffness.tooth_beam import _integrals
+        from lumped.stiffness.energy import _integrals
 
         return np.concatenate(_integrals(profile, length, nodes))
 

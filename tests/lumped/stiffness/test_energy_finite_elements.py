@@ -17,9 +17,9 @@ from scipy.sparse.linalg import splu
 from lumped.elasticity.ring import compliances
 from lumped.elasticity.sector import sector, stations
 from lumped.gear_geometry.tooth_profile import ToothProfile
+from lumped.stiffness.energy import beam_compliance
 from lumped.stiffness.foundation import BODY_RATIO, foundation_compliance, torsional_stiffness
 from lumped.stiffness.neighbours import foot_compliance, foot_loads
-from lumped.stiffness.tooth_beam import beam_compliance
 
 NU = 0.3
 ACROSS, FILLET, FLANK, AROUND, DEEP = 8, 10, 16, 24, 12  # elements

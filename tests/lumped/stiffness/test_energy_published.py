@@ -11,9 +11,8 @@ import pytest
 from scipy.integrate import quad
 
 from lumped.gear_geometry.tooth_profile import ToothProfile
-from lumped.stiffness.contact import linear_hertz_compliance
+from lumped.stiffness.energy import beam_compliance, linear_hertz_compliance
 from lumped.stiffness.foundation import coefficients
-from lumped.stiffness.tooth_beam import beam_compliance
 
 E, NU = 206e9, 0.3
 

@@ -5,7 +5,7 @@ import pytest
 
 from lumped import GearPair, ParameterError, geometry, load_gear_pair
 from lumped.path_of_contact import pair_stiffness
-from lumped.stiffness.table_file import read_stiffness_table
+from lumped.stiffness.table import read_stiffness_table
 
 
 def curve(xi, g):

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 import lumped
 import multibody
 from lumped.errors import ParameterError
-from lumped.stiffness.body import body_twist
+from lumped.stiffness.foundation import body_twist
 from multibody.contact import kernels as kn
 from multibody.contact.kernels import tooth_forces
 from multibody.contact.kinematics import MAX_PAIRS

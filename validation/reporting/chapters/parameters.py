@@ -11,7 +11,7 @@ from lumped import GearPair, bodies, load_gear_pair, mesh_elements
 from lumped.friction import LAWS
 from lumped.schema.files import preset_names
 from lumped.schema.pair import field_at, leaf_paths, stated_unit
-from lumped.stiffness.body import body_twist
+from lumped.stiffness.foundation import body_twist
 from validation.reporting.blocks import Badge, Cell, Content, Text, facts, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
