@@ -21,7 +21,7 @@ PACKAGES = ("lumped", "multibody", "floquet", "validation")
 BOOKKEEPING = re.compile(
     r"lumped\.(errors|schema\.(pair|files))"
     r"|floquet\.engine\.chart"
-    r"|validation\.(files|exchange|studies|plots|reporting|commands|interactive|measurements\.(record|specification))\b.*"
+    r"|validation\.(files|exchange|studies|plots|reporting|commands|interactive|measurements\.record)\b.*"
     r"|validation\.paper\.(records|figure_record|reproduction|claims|plots|figures)\b.*"
     r"|validation\.verification\.checks"
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -14,9 +14,6 @@ from validation.commands.terminal import guarded, stderr, stdout, table
 
 if TYPE_CHECKING:
     from validation.measurements import Evaluation
-
-
-NormalLoad = Literal["measured", "predicted"]
 
 
 @guarded
@@ -35,10 +32,6 @@ def measurement(
             "as needed.",
         ),
     ] = None,
-    normal: Annotated[NormalLoad, typer.Option(help="Normal load used by the identification.")] = "measured",
-    zero: Annotated[
-        bool, typer.Option("--zero", help="Also identify a zero error of each friction channel.")
-    ] = False,
     shift: Annotated[
         float | None,
         typer.Option("--shift", help="Known mesh phase [mesh cycles]; default: found from the record."),
@@ -76,7 +69,7 @@ def measurement(
         _write_example(gear_pair, record, force=force)
         return
     measured = load_measurement(record)
-    found = evaluate(measured, gear_pair, identify=identify or (), normal=normal, zero=zero, shift=shift)
+    found = evaluate(measured, gear_pair, identify=identify or (), shift=shift)
     _show(found)
     if output is not None:
         with whole_folder(output, force=force, kind=MEASUREMENT) as folder:

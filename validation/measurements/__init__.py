@@ -1,12 +1,9 @@
 """Measurements beside predictions: import, alignment by mesh phase, overlay metrics, identification of mu."""
 
-from validation.measurements.alignment import Alignment, align, mesh_cycles
-from validation.measurements.evaluation import Evaluation, evaluate
-from validation.measurements.identification import Identification, identify_friction
-from validation.measurements.overlay import overlay, overlay_metrics
+from validation.measurements.comparison import Alignment, align, overlay, overlay_metrics
+from validation.measurements.identification import Evaluation, Identification, evaluate, identify_friction
 from validation.measurements.prediction import Prediction, predict
-from validation.measurements.record import Measurement, load_measurement
-from validation.measurements.specification import MeasurementSpec
+from validation.measurements.record import Measurement, MeasurementSpec, load_measurement
 from validation.measurements.synthetic import synthetic_measurement, write_measurement
 
 __all__ = [
@@ -20,7 +17,6 @@ __all__ = [
     "evaluate",
     "identify_friction",
     "load_measurement",
-    "mesh_cycles",
     "overlay",
     "overlay_metrics",
     "predict",

@@ -1,14 +1,13 @@
 """Friction coefficient from measured tooth forces, with a confidence interval.
 
-Model of one sample of pair i: F = beta g(xi) N + b, with g = sgn(xi - L_XP) for a constant coefficient
-(beta = mu) or g = mu_law(xi) for a scale on a friction law; b is a zero error of the friction channel. Both
-F and N carry noise. With normal noise of known standard deviations sigma_F and sigma_N, maximum likelihood
-minimises
+Model of one sample of pair i: F = beta g(xi) N, with g = sgn(xi - L_XP) for a constant coefficient
+(beta = mu) or g = mu_law(xi) for a scale on a friction law. Both F and N carry noise. With normal noise of
+known standard deviations sigma_F and sigma_N, maximum likelihood minimises
 
-    SUM (F - b - beta g N)^2 / (sigma_F^2 + beta^2 g^2 sigma_N^2),
+    SUM (F - beta g N)^2 / (sigma_F^2 + beta^2 g^2 sigma_N^2),
 
 which, unlike ordinary least squares on a noisy N, is not biased towards zero (Fuller, Measurement Error
-Models, 1987, section 1.3). The covariance is the sandwich estimator with Bartlett weights over the lags
+Models, 1987, section 1.3). The variance is the sandwich estimator with Bartlett weights over the lags
 (Newey and West 1987), prewhitened (Andrews and Monahan 1992), the number of lags by Andrews' (1991) rule, so
 that filtered sensor noise does not make the interval too narrow. Of 200 noise seeds
 (100 samples a mesh cycle) the 95 % interval holds the truth in 192 with white
@@ -18,27 +17,30 @@ noise that hardly changes while a tooth pair is in contact looks like friction.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, get_args
 
 import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
 from scipy.special import stdtrit
 
-from lumped.arguments import one_of, real_number
+from lumped.arguments import some_of
 from lumped.errors import NumericalError, refuse
 from lumped.friction import mean_coefficient
+from lumped.friction.registry import LAWS, file_name
 from lumped.path_of_contact import friction_path_function
+from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
-from validation.measurements.alignment import Alignment
-from validation.measurements.estimator import Samples, estimate_parameters, misfit, sandwich
-from validation.measurements.prediction import Prediction
-from validation.measurements.record import Measurement
-from validation.measurements.specification import PAIR_LABELS
-
-NormalSource = Literal["measured", "predicted"]
+from validation.measurements.comparison import Alignment, align, overlay, overlay_metrics
+from validation.measurements.prediction import Prediction, predict
+from validation.measurements.record import PAIR_LABELS, Measurement
 
 #: Level of the confidence interval.
 LEVEL = 0.95
+#: What may be identified besides a scale on a friction law.
+CONSTANT = "mu"
 _FEWEST = 20
 
 
@@ -52,12 +54,11 @@ class Identification:
     law : name of the friction law that is scaled; None for a constant
     estimate, standard_error : [-]
     low, high : ends of the 95 % confidence interval [-]
-    zero : identified zero error of each friction channel [N]; empty where it was not asked for
     mean_mu : mean of |mu| over the path of contact that the estimate means [-]
     samples : number of samples used
     lags : lags over which the noise was taken to be correlated
-    residual_rms : root mean square of F - b - beta g N [N]
-    normal : where N was taken from
+    residual_rms : root mean square of F - beta g N [N]
+    normal : where N was taken from, "measured" or "predicted"
     """
 
     parameter: str
@@ -66,12 +67,11 @@ class Identification:
     standard_error: float
     low: float
     high: float
-    zero: tuple[float, ...]
     mean_mu: float
     samples: int
     lags: int
     residual_rms: float
-    normal: NormalSource
+    normal: str
 
     @property
     def text(self) -> str:
@@ -83,46 +83,91 @@ class Identification:
         )
 
 
-def identify_friction(
-    measurement: Measurement,
-    prediction: Prediction,
-    alignment: Alignment,
-    *,
-    law: str | None = None,
-    normal: NormalSource = "measured",
-    zero: bool = False,
-    guard: float | None = None,
-) -> Identification:
-    """Identify the friction coefficient, constant or as a scale on a law, by least squares.
+@dataclass(frozen=True, eq=False)
+class Evaluation:
+    """A record beside its prediction.
+
+    Attributes
+    ----------
+    measurement : the record
+    prediction : at the record's speed and torque, with the pair's friction law
+    alignment : mesh phase of the record
+    points : measured and predicted over the phase, see ``overlay``
+    metrics : their distance with intervals, see ``overlay_metrics``
+    found : identified friction, in the order asked for
+    """
+
+    measurement: Measurement
+    prediction: Prediction
+    alignment: Alignment
+    points: xr.Dataset
+    metrics: xr.Dataset
+    found: tuple[Identification, ...]
+
+
+def evaluate(
+    measurement: Measurement, pair: AnyPair, *, identify: Sequence[str] = (), shift: float | None = None
+) -> Evaluation:
+    """Align a record, compare it with its prediction, and identify friction from it.
 
     Parameters
     ----------
-    measurement : a record with channels of ``friction_force`` and, for ``normal="measured"``,
-        ``normal_load`` of the same pairs; where all of them state their noise it weights the samples and
-        keeps noise on N from biasing the result
-    prediction, alignment : at the record's operating point, of the record
-    law : a friction law to be scaled; None: a constant coefficient
-    normal : take N from the record or from the prediction
-    zero : also identify a zero error of each friction channel
-    guard : samples closer to the pitch point than this are left out [m]; default three standard errors of the
-        alignment and one sample, because their sign is not certain. 0 for laws that vanish there is harmless.
+    measurement : the record
+    pair : the gear pair; speed and torque are the record's, the friction law is the pair's
+    identify : "mu" for a constant coefficient, or the name of a friction law for a scale on it
+    shift : known mesh phase, see ``align``
 
     Raises
     ------
-    ParameterError : channels are missing, or arguments out of range
+    ParameterError : something unknown to identify, or channels that it needs are missing
+    NumericalError : the record does not fit the prediction in any phase, or carries no friction
+    """
+    pair = load_gear_pair(pair)
+    laws = [name for name in LAWS if name != "none"]
+    advice = "Name mu, a constant coefficient, or a law to scale."
+    wanted = some_of("identify", identify, [CONSTANT, *laws], advice, file_name)
+    spec = measurement.spec
+    prediction = predict(pair, spec.pinion_speed, spec.pinion_torque, recurrence=spec.recurrence)
+    phase = align(measurement, prediction, shift=shift)
+    return Evaluation(
+        measurement=measurement,
+        prediction=prediction,
+        alignment=phase,
+        points=overlay(measurement, prediction, phase),
+        metrics=overlay_metrics(measurement, prediction, phase),
+        found=tuple(
+            identify_friction(measurement, prediction, phase, law=None if name == CONSTANT else name)
+            for name in wanted
+        ),
+    )
+
+
+def identify_friction(
+    measurement: Measurement, prediction: Prediction, alignment: Alignment, *, law: str | None = None
+) -> Identification:
+    """Identify the friction coefficient, constant or as a scale on a law, by least squares.
+
+    Samples closer to the pitch point than three standard errors of the alignment and one sample are left out:
+    their sign is not certain.
+
+    Parameters
+    ----------
+    measurement : a record with channels of ``friction_force``. N is ``normal_load`` of the same pairs; of the
+        prediction where the record has no normal loads. Where all channels state their noise it weights the
+        samples and keeps noise on N from biasing the result
+    prediction, alignment : at the record's operating point, of the record
+    law : a friction law to be scaled; None: a constant coefficient
+
+    Raises
+    ------
+    ParameterError : channels are missing, or an unknown law
     NumericalError : too few samples in contact, or samples that carry no friction
     """
-    one_of("normal", normal, get_args(NormalSource))
-    if guard is None:
-        guard = (3.0 * alignment.standard_error + alignment.sample_spacing) * prediction.geometry.base_pitch
-    guard = real_number("guard", guard, 0.0, unit="m", action="Use 0 to keep every sample.")
-    samples = _collect(measurement, prediction, alignment, law, normal, guard)
-    count = 1 + (int(samples.channel.max()) + 1 if zero else 0)
-    estimate = estimate_parameters(samples, count)
-    covariance, lags = sandwich(samples, estimate)
-    error = float(np.sqrt(covariance[0, 0]))
-    reach = float(stdtrit(samples.friction.size - count, 0.5 + 0.5 * LEVEL)) * error
-    beta = float(estimate[0])
+    s = _collected(measurement, prediction, alignment, law)
+    beta = _estimate(s)
+    variance, lags = _sandwich(s, beta)
+    error = float(np.sqrt(variance))
+    reach = float(stdtrit(s.friction.size - 1, 0.5 + 0.5 * LEVEL)) * error
     mean = 1.0 if law is None else mean_coefficient(friction_path_function(prediction.pair, law=law))
     return Identification(
         parameter="mu" if law is None else f"scale on {law}",
@@ -131,53 +176,128 @@ def identify_friction(
         standard_error=error,
         low=beta - reach,
         high=beta + reach,
-        zero=tuple(float(b) for b in estimate[1:]),
         mean_mu=abs(beta) * mean,
-        samples=samples.friction.size,
+        samples=s.friction.size,
         lags=lags,
-        residual_rms=float(np.sqrt(np.mean(misfit(samples, estimate) ** 2))),
-        normal=normal,
+        residual_rms=float(np.sqrt(np.mean((s.friction - beta * s.regressor) ** 2))),
+        normal="measured" if measurement.named("normal_load") else "predicted",
     )
 
 
-def _collect(
-    measurement: Measurement,
-    prediction: Prediction,
-    alignment: Alignment,
-    law: str | None,
-    normal: NormalSource,
-    guard: float,
-) -> Samples:
+@dataclass(frozen=True)
+class _Samples:
+    """Samples of all friction channels one after the other, each array (k,).
+
+    friction F [N], regressor g N [N], shape g, noise (standard deviations of F and N [N]), and block, the
+    number of the engagement.
+    """
+
+    friction: FloatArray
+    regressor: FloatArray
+    shape: FloatArray
+    noise_friction: FloatArray
+    noise_normal: FloatArray
+    block: NDArray[np.int64]
+
+    def variance(self, beta: float) -> FloatArray:
+        return np.asarray(self.noise_friction**2 + (beta * self.shape * self.noise_normal) ** 2)
+
+
+def _collected(
+    measurement: Measurement, prediction: Prediction, alignment: Alignment, law: str | None
+) -> _Samples:
     frictions = measurement.named("friction_force")
     if not frictions:
         raise refuse("channel", "none", "a channel of friction_force", "Add it to the description.")
     loads = {label: name for name, label in measurement.named("normal_load")}
-    shape = None if law is None else friction_path_function(prediction.pair, law=law)
+    law_shape = None if law is None else friction_path_function(prediction.pair, law=law)
     g, u = prediction.geometry, alignment.cycles
+    guard = (3.0 * alignment.standard_error + alignment.sample_spacing) * g.base_pitch
     noises = {name: value for name, value in measurement.noise.items() if value is not None}
-    needed = [*(name for name, _ in frictions), *(loads.values() if normal == "measured" else ())]
     # All or none: weights compare the channels with each other.
-    known = all(name in noises for name in needed)
+    known = all(name in noises for name in [*(name for name, _ in frictions), *loads.values()])
     parts: list[tuple[FloatArray, ...]] = []
     for number, (name, label) in enumerate(frictions):
         assert label is not None  # the description asks for it
-        if normal == "measured" and label not in loads:
-            raise refuse("channel", name, f"a normal_load of pair {label} too", "Or use normal='predicted'.")
+        if loads and label not in loads:
+            advice = "Leave out all normal loads to use predicted ones."
+            raise refuse("channel", name, f"a normal_load of pair {label} too", advice)
         xi = prediction.position(u, label)
         inside = prediction.contact(u, label) & (np.abs(xi - g.L_XP) > guard)
-        measured = normal == "measured"
-        load = measurement.channels[loads[label]] if measured else prediction.value("normal_load", u, label)
+        load = measurement.channels[loads[label]] if loads else prediction.value("normal_load", u, label)
         of_friction = noises[name] if known else 1.0
-        of_load = noises[loads[label]] if known and measured else 0.0
+        of_load = noises[loads[label]] if known and loads else 0.0
         xi, full = xi[inside], np.ones(np.count_nonzero(inside))
-        sides = np.sign(xi - g.L_XP) if shape is None else shape(xi)
+        shape = np.sign(xi - g.L_XP) if law_shape is None else law_shape(xi)
         engagement = np.floor((u[inside] - PAIR_LABELS.index(label)) / prediction.recurrence)
-        own = (of_friction * full, of_load * full, number * full, engagement + 1e9 * number)
-        parts.append((measurement.channels[name][inside], load[inside], sides, *own))
-    force, load, sides, noise_f, noise_n, channel, block = map(np.concatenate, zip(*parts, strict=True))
+        own = (of_friction * full, of_load * full, engagement + 1e9 * number)
+        parts.append((measurement.channels[name][inside], shape * load[inside], shape, *own))
+    force, regressor, shape, noise_f, noise_n, block = map(np.concatenate, zip(*parts, strict=True))
     if force.size < _FEWEST:
-        raise NumericalError(
-            f"Only {force.size} samples are in contact; check the alignment, the labels and the guard."
-        )
+        raise NumericalError(f"Only {force.size} samples are in contact; check the alignment and the labels.")
     blocks = np.unique(block, return_inverse=True)[1].astype(np.int64)
-    return Samples(force, load, sides, noise_f, noise_n, channel.astype(np.int64), blocks)
+    return _Samples(force, regressor, shape, noise_f, noise_n, blocks)
+
+
+def _estimate(s: _Samples) -> float:
+    """Maximum-likelihood estimate of beta."""
+    power = float(s.regressor @ s.regressor)
+    if not power > 0.0:
+        raise NumericalError(
+            "The samples carry no friction (normal load or law is zero); check the alignment."
+        )
+    start = float(s.regressor @ s.friction) / power
+    size = float(np.std(s.friction)) / float(np.sqrt(power / s.regressor.size))
+    scale = max(abs(start), size, 1e-12)
+
+    def residual(z: FloatArray) -> FloatArray:
+        beta = float(z[0]) * scale
+        return np.asarray((s.friction - beta * s.regressor) / np.sqrt(s.variance(beta)))
+
+    fit = least_squares(residual, [start / scale], method="lm", xtol=1e-12, ftol=1e-12, gtol=1e-12)
+    if not fit.success or not np.isfinite(fit.x).all():
+        raise NumericalError(f"The least-squares fit failed ({fit.message}); check signs and units.")
+    return float(fit.x[0] * scale)
+
+
+def _sandwich(s: _Samples, beta: float) -> tuple[float, int]:
+    """Variance of beta, and the number of lags over which the noise was correlated."""
+
+    def scores(beta: float) -> FloatArray:
+        """Slope of every sample's term r^2 / (2 v) over beta."""
+        r, v = s.friction - beta * s.regressor, s.variance(beta)
+        slope_v = 2.0 * beta * (s.shape * s.noise_normal) ** 2
+        return np.asarray(-r * s.regressor / v - 0.5 * (r / v) ** 2 * slope_v)
+
+    h = 1e-5 * (abs(beta) or 1.0)  # the summed slope is smooth in beta: central differences
+    curvature = (scores(beta + h).sum() - scores(beta - h).sum()) / (2.0 * h)
+    middle, lags = _long_run(scores(beta), s.block)
+    return float(middle / curvature**2), lags
+
+
+def _long_run(scores: FloatArray, block: NDArray[np.int64]) -> tuple[float, int]:
+    """Variance of the summed scores, correlated inside blocks, and the number of lags used.
+
+    Prewhitened by the first-order autocorrelation (Andrews and Monahan 1992): Bartlett weights alone come out
+    too small for strongly correlated noise.
+    """
+    same = block[1:] == block[:-1]
+    rho = _first_autocorrelation(scores, same)
+    white = (scores[1:] - rho * scores[:-1])[same] if rho > 0.0 else scores
+    where = block[1:][same] if rho > 0.0 else block
+    left = _first_autocorrelation(white, where[1:] == where[:-1])
+    alpha = 4.0 * left**2 / ((1.0 - left) ** 2 * (1.0 + left) ** 2)
+    shortest = int(np.bincount(where)[np.unique(where)].min())
+    lags = min(int(np.ceil(1.1447 * (alpha * white.size) ** (1.0 / 3.0))), max(shortest - 1, 0))
+    middle = float(white @ white)
+    for lag in range(1, lags + 1):
+        pairs = where[lag:] == where[:-lag]
+        middle += 2.0 * (1.0 - lag / (lags + 1.0)) * float(white[lag:][pairs] @ white[:-lag][pairs])
+    return middle * (scores.size / white.size / (1.0 - rho) ** 2), lags + int(rho > 0.0)
+
+
+def _first_autocorrelation(values: FloatArray, same: NDArray[np.bool_]) -> float:
+    """Lag-one autocorrelation inside blocks, 0 to 0.97; 0 where it is not two standard errors from zero."""
+    power = float(values @ values)
+    rho = float(values[1:][same] @ values[:-1][same]) / power if power > 0.0 else 0.0
+    return min(rho, 0.97) if rho > 2.0 / np.sqrt(max(values.size, 1)) else 0.0

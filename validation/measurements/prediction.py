@@ -18,7 +18,7 @@ from lumped.errors import refuse
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
-from validation.measurements.specification import PAIR_LABELS, QUANTITIES
+from validation.measurements.record import PAIR_LABELS, QUANTITIES
 
 _SAMPLES = 1024  # per mesh cycle
 

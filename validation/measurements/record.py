@@ -1,4 +1,4 @@
-"""A measured record: its samples in SI, and how it is read from CSV."""
+"""A measured record: the TOML file that describes it, and its samples in SI read from CSV."""
 
 from __future__ import annotations
 
@@ -8,26 +8,128 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
+from pydantic import Field, ValidationError, model_validator
 
+from lumped.arguments import file_path
 from lumped.errors import ParameterError, refuse, shown
-from lumped.fields.text_file import read_text
+from lumped.fields.refusals import translated
+from lumped.fields.section import OneOf, Section, Text
+from lumped.fields.text_file import parse_toml, read_text
+from lumped.fields.units import Quantity, to_si
 from lumped.typing import FloatArray
-from validation.measurements.specification import (
-    QUANTITIES,
-    MeasurementSpec,
-    read_specification,
-    si_factor,
-)
 
 if TYPE_CHECKING:
     import pandas as pd
 
-_MAX_BYTES = 2_000_000_000
+#: Quantity of a channel -> (SI unit, whether it belongs to one tooth pair). Names are those of the models'
+#: results.
+QUANTITIES: dict[str, tuple[str, bool]] = {
+    "normal_load": ("N", True),
+    "friction_force": ("N", True),
+    "dte": ("m", False),
+    "x_p": ("m", False),
+    "x_g": ("m", False),
+    "y_p": ("m", False),
+    "y_g": ("m", False),
+    "bearing_force_x_p": ("N", False),
+    "bearing_force_x_g": ("N", False),
+    "bearing_force_y_p": ("N", False),
+    "bearing_force_y_g": ("N", False),
+}
+PAIR_LABELS = "ABCDEFGH"
+#: Largest description and record read: a bound against a wrong path.
+_MAX_FILE_BYTES, _MAX_BYTES = 1_000_000, 2_000_000_000
 #: Values whose squares can be summed.
 _LARGEST = 1e100
+
+
+class Abscissa(Section):
+    """Where the samples lie: a column of times or roll angles, or a constant sampling rate."""
+
+    kind: Literal["time", "roll_angle", "sampled"] = Field(
+        description="time, pinion roll angle at the contact of pair A, or equidistant samples in time"
+    )
+    column: str | None = Field(None, description="column of the times or roll angles")
+    unit: str | None = Field(None, description="its unit; default the unit in the column's heading")
+    sampling_rate: Annotated[float | None, Quantity("Hz", above=0, optional=True)] = Field(
+        None, description="samples per second, for kind 'sampled'"
+    )
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        if self.kind == "sampled":
+            if self.sampling_rate is None or self.column is not None:
+                raise refuse(
+                    "sampling_rate",
+                    self.sampling_rate,
+                    "a rate and no column for kind 'sampled'",
+                    "Give sampling_rate, or use kind 'time'.",
+                )
+        elif self.column is None or self.sampling_rate is not None:
+            raise refuse(
+                "column", self.column, f"a column and no rate for kind '{self.kind}'", "Name the column."
+            )
+        return self
+
+
+class Channel(Section):
+    """One measured column; the physical value is gain * (cell - zero)."""
+
+    name: str = Field(min_length=1, max_length=60, pattern=r"^\w+$", description="name in results")
+    column: str = Field(min_length=1, description="heading of the column, without its unit")
+    quantity: Annotated[str, OneOf(tuple(QUANTITIES))] = Field(description="measured quantity")
+    unit: str | None = Field(None, description="unit of the cells; default the unit in the column's heading")
+    pair: str | None = Field(
+        None, pattern="^[A-H]$", description="tooth pair: A, or B that follows it one pitch later, ..."
+    )
+    gain: float = Field(1.0, description="factor on the cells; -1 turns the sign convention round")
+    zero: float = Field(0.0, description="reading at zero load, in the cells' unit")
+    noise: Annotated[float | None, Field(gt=0)] = Field(
+        None, description="standard deviation of the sensor noise, in the cells' unit"
+    )
+
+    @model_validator(mode="after")
+    def _pair_where_needed(self) -> Self:
+        if QUANTITIES[self.quantity][1] != (self.pair is not None):
+            wanted = "a label A to H" if QUANTITIES[self.quantity][1] else "none"
+            raise refuse("pair", self.pair, f"{wanted} for {self.quantity}", "Correct the channel.")
+        if self.gain == 0.0:
+            raise refuse("gain", 0.0, "any number but 0", "Correct the channel.")
+        return self
+
+
+class MeasurementSpec(Section):
+    """The description of one measured record."""
+
+    name: Text = Field(min_length=1, max_length=120, description="short name")
+    description: Text = Field("", description="what was measured and how")
+    source: Text = Field(min_length=1, description="who measured it, where it was published")
+    data: str = Field("", description="the CSV file, beside this file")
+    delimiter: str = Field(",", min_length=1, max_length=1, description="between the cells")
+    decimal: Literal[".", ","] = Field(".", description="decimal sign of the cells")
+    pinion_speed: Annotated[float, Quantity("rpm", above=0)] = Field(description="pinion speed of the record")
+    pinion_torque: Annotated[float, Quantity("N*m", above=0)] = Field(
+        description="pinion torque of the record"
+    )
+    recurrence: Annotated[int, Field(ge=1, le=1_000_000)] | None = Field(
+        None,
+        description="mesh cycles after which the same labelled pair is in contact again; default the "
+        "pinion's number of teeth (one instrumented pinion tooth)",
+    )
+    abscissa: Abscissa = Field(description="where the samples lie")
+    channel: tuple[Channel, ...] = Field(min_length=1, max_length=64, description="the measured columns")
+
+    @model_validator(mode="after")
+    def _different(self) -> Self:
+        names = [c.name for c in self.channel]
+        if len(set(names)) != len(names):
+            raise refuse("channel.name", ", ".join(names), "different names", "Rename one of the channels.")
+        if self.decimal == self.delimiter:
+            raise refuse("decimal", self.decimal, "not the delimiter", "Set delimiter = ';'.")
+        return self
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,24 +167,39 @@ def load_measurement(source: str | Path | Mapping[str, Any]) -> Measurement:
     ------
     ParameterError : the description or the data file cannot be used; the text names field, row or column
     """
-    spec, folder = read_specification(source)
+    if isinstance(source, Mapping):
+        data, folder, name = dict(source), Path(), "mapping"
+    else:
+        path = file_path("measurement", source)
+        folder, name = path.parent, str(path)
+        data = parse_toml(read_text(path, _MAX_FILE_BYTES, kind="TOML file"), name)
+    try:
+        spec = MeasurementSpec.model_validate(data)
+    except ParameterError as error:
+        raise ParameterError(list(error.problems), name) from None
+    except ValidationError as error:
+        raise ParameterError(translated(error, MeasurementSpec), name) from None
     if not spec.data:
         raise refuse("data", "", "the CSV file of the record", "Name it in the description.")
     path = folder / spec.data
     text = read_text(path, _MAX_BYTES, field="data", kind="CSV file")
     try:
-        return parse_measurement(spec, text)
+        return _parsed(spec, text)
     except ParameterError as error:
         raise ParameterError(list(error.problems), str(path)) from None
 
 
-def parse_measurement(spec: MeasurementSpec, text: str) -> Measurement:
-    """Read the samples of a record from CSV text: optional # lines, one line of headings, then numbers."""
+def _parsed(spec: MeasurementSpec, text: str) -> Measurement:
+    """Read CSV text: optional # lines, one line of headings, then numbers."""
     cells = _cells(spec, text)
-    columns = _columns([str(heading) for heading in cells.columns])
+    columns: dict[str, tuple[int, str | None]] = {}  # name, with and without its unit -> place, unit
+    for place, heading in enumerate(str(heading).strip() for heading in cells.columns):
+        name, unit = _name_and_unit(heading)
+        columns.setdefault(name, (place, unit))
+        columns.setdefault(heading, (place, unit))
     wanted = [(c.column, f"channel.{c.name}.column") for c in spec.channel]
     if spec.abscissa.column is not None:
-        wanted.insert(0, (spec.abscissa.column, "abscissa.column"))
+        wanted.append((spec.abscissa.column, "abscissa.column"))
     for column, field in wanted:
         if column not in columns:
             known = ", ".join(map(shown, columns))
@@ -91,18 +208,15 @@ def parse_measurement(spec: MeasurementSpec, text: str) -> Measurement:
     if table.shape[0] < 8:
         raise refuse("data", f"{table.shape[0]} rows", ">= 8 rows", "Check the file.")
     units = [columns[column][1] for column, _ in wanted]
-    if spec.abscissa.column is not None:
-        abscissa = _abscissa(spec, table[:, 0], units.pop(0))
-        table = table[:, 1:]
-    else:
-        assert spec.abscissa.sampling_rate is not None  # the description asks for it
+    if spec.abscissa.sampling_rate is not None:
         abscissa = np.arange(table.shape[0]) / spec.abscissa.sampling_rate
+    else:
+        abscissa = _abscissa(spec, table[:, -1], units[-1])
     channels: dict[str, FloatArray] = {}
     noise: dict[str, float | None] = {}
     for j, channel in enumerate(spec.channel):
-        field = f"channel.{channel.name}.unit"
-        unit = _unit(channel.unit, units[j], field)
-        factor = channel.gain * si_factor(unit, QUANTITIES[channel.quantity][0], field)
+        si_unit = QUANTITIES[channel.quantity][0]
+        factor = channel.gain * _si_factor(channel.unit, units[j], si_unit, f"channel.{channel.name}.unit")
         with np.errstate(over="ignore", invalid="ignore"):
             channels[channel.name] = values = factor * (table[:, j] - channel.zero)
         if not (np.abs(values) < _LARGEST).all():
@@ -110,16 +224,6 @@ def parse_measurement(spec: MeasurementSpec, text: str) -> Measurement:
             raise refuse(f"channel.{channel.name}", largest, f"< {_LARGEST:g}", "Check gain, zero and unit.")
         noise[channel.name] = None if channel.noise is None else abs(factor) * channel.noise
     return Measurement(spec, abscissa, channels, noise, hashlib.sha256(text.encode()).hexdigest())
-
-
-def _columns(headings: list[str]) -> dict[str, tuple[int, str | None]]:
-    """Name -> (place, unit in the heading), for headings such as ``normal A [N]``."""
-    found: dict[str, tuple[int, str | None]] = {}
-    for place, heading in enumerate(headings):
-        name, unit = _name_and_unit(heading.strip())
-        found.setdefault(name, (place, unit))
-        found.setdefault(heading.strip(), (place, unit))
-    return found
 
 
 def _name_and_unit(heading: str) -> tuple[str, str | None]:
@@ -178,25 +282,29 @@ def _numbers(spec: MeasurementSpec, cells: pd.DataFrame) -> FloatArray:
     return np.asarray(table, dtype=np.float64)
 
 
-def _unit(stated: str | None, heading: str | None, field: str) -> str:
+def _abscissa(spec: MeasurementSpec, cells: FloatArray, heading: str | None) -> FloatArray:
+    si_unit = "s" if spec.abscissa.kind == "time" else "rad"
+    values = cells * _si_factor(spec.abscissa.unit, heading, si_unit, "abscissa.unit")
+    back = np.flatnonzero(np.diff(values) <= 0.0)
+    if back.size:
+        place = f"row {back[0] + 2} is not beyond the row before"
+        raise refuse("abscissa.column", place, "increasing values", "Sort or cut the record.")
+    return np.asarray(values, dtype=np.float64)
+
+
+def _si_factor(stated: str | None, heading: str | None, si_unit: str, field: str) -> float:
+    """Factor from the unit that the description or the heading names to an SI unit of the same dimension."""
+
+    def factor(unit: str, to: str) -> float:
+        try:
+            return to_si(f"1 {unit}", to)
+        except ValueError as error:
+            raise refuse(field, unit, f"a unit that converts to {to}", f"{error}.") from None
+
     unit = stated or heading
     if unit is None:
         raise refuse(field, "none", "a unit, here or in the column's heading", "State the unit.")
     # Two names may still be one unit; two different units are a mistake somewhere.
-    if stated and heading and stated != heading and si_factor(stated, heading, field) != 1.0:
+    if stated and heading and stated != heading and factor(stated, heading) != 1.0:
         raise refuse(field, stated, f"the heading's unit {heading}", "Correct one of the two.")
-    return unit
-
-
-def _abscissa(spec: MeasurementSpec, cells: FloatArray, heading: str | None) -> FloatArray:
-    unit = _unit(spec.abscissa.unit, heading, "abscissa.unit")
-    values = cells * si_factor(unit, "s" if spec.abscissa.kind == "time" else "rad", "abscissa.unit")
-    back = np.flatnonzero(np.diff(values) <= 0.0)
-    if back.size:
-        raise refuse(
-            "abscissa.column",
-            f"row {back[0] + 2} is not beyond the row before",
-            "increasing values",
-            "Sort or cut the record.",
-        )
-    return np.asarray(values, dtype=np.float64)
+    return factor(unit, si_unit)

@@ -13,11 +13,9 @@ import tomli_w
 from scipy.signal import lfilter
 
 from lumped.arguments import file_path, real_number, whole_number
-from lumped.errors import refuse
 from lumped.typing import FloatArray
 from validation.measurements.prediction import Prediction
-from validation.measurements.record import Measurement
-from validation.measurements.specification import PAIR_LABELS, read_specification
+from validation.measurements.record import PAIR_LABELS, Measurement, MeasurementSpec
 
 
 def synthetic_measurement(
@@ -71,12 +69,9 @@ def synthetic_measurement(
         for quantity, values in clean.items():
             name = f"{quantity.split('_')[0]}_{label}"
             channels[name] = np.asarray(values + sizes[quantity] * _noise(rng, count, correlation))
-            entry: dict[str, Any] = {"name": name, "column": name, "quantity": quantity, "unit": "N"}
-            entry["pair"] = label
-            if sizes[quantity] > 0.0:
-                entry["noise"] = sizes[quantity]
-            entries.append(entry)
-    spec, _ = read_specification(
+            entry = {"name": name, "column": name, "quantity": quantity, "unit": "N", "pair": label}
+            entries.append(entry | {"noise": sizes[quantity] or None})
+    spec = MeasurementSpec.model_validate(
         {
             "name": "synthetic tooth forces",
             "source": f"computed, seed {seed}",
@@ -108,29 +103,16 @@ def write_measurement(measurement: Measurement, folder: str | Path) -> Path:
 
     Parameters
     ----------
-    measurement : with the channels' values in the units, gains and zeros that its description states: this
-        writes SI values, so units are SI, gains 1 and zeros 0 (as synthetic records have them)
+    measurement : of ``synthetic_measurement``: SI values, gains 1 and zeros 0
     folder : created if it does not exist
     """
     spec = measurement.spec
-    plain = all(c.gain == 1.0 and c.zero == 0.0 for c in spec.channel)
-    if not plain or spec.abscissa.column is None:
-        raise refuse("measurement", spec.name, "gains 1, zeros 0, a column of abscissae", "Rescale it first.")
     target = file_path("folder", folder)
     target.mkdir(parents=True, exist_ok=True)
     data = spec.model_dump(mode="json", exclude_none=True)
     data["pinion_speed"] = repr(spec.pinion_speed)
-    data["data"] = spec.data or "record.csv"
     (target / "measurement.toml").write_text(tomli_w.dumps(data), encoding="utf-8")
-    headings = [spec.abscissa.column, *(c.column for c in spec.channel)]
+    headings = ["time", *(c.column for c in spec.channel)]
     rows = np.column_stack([measurement.abscissa, *(measurement.channels[c.name] for c in spec.channel)])
-    np.savetxt(
-        target / data["data"],
-        rows,
-        delimiter=spec.delimiter,
-        header=spec.delimiter.join(headings),
-        comments="",
-        fmt="%.9g",
-        encoding="utf-8",
-    )
+    np.savetxt(target / spec.data, rows, delimiter=",", header=",".join(headings), comments="", fmt="%.9g")
     return target / "measurement.toml"

@@ -22,7 +22,7 @@ from reproductions.he_cho_singh_2008.twins import (
     twins,
 )
 from validation.measurements import Measurement, align, overlay, overlay_metrics, predict
-from validation.measurements.specification import PAIR_LABELS
+from validation.measurements.record import PAIR_LABELS
 
 LAW = "xu_kahraman"
 _CYCLES = 3
@@ -128,8 +128,8 @@ def figure7(
         points = measured_points(pair, measurement)
         data[f"measured{j + 1}"] = points
         for channel in points["channel"].to_numpy():
-            relative = 100 * float(points["relative_mean_absolute"].sel(channel=channel))
-            numbers[f"{measurement.spec.name}, {channel}: mean |measured - predicted|"] = Number(
+            relative = 100 * float(points["relative_rms"].sel(channel=channel))
+            numbers[f"{measurement.spec.name}, {channel}: rms of measured - predicted"] = Number(
                 relative, SPAN
             )
     return FigureRecord(

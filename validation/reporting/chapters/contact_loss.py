@@ -156,7 +156,7 @@ def _removed(results: Results) -> str:
     if not isinstance(found, ResponseBranches) or not found.jumps:
         return ""
     if len(found.jumps) > _FEW:
-        return "Which torque or damping removes them: spurcheck jumps."
+        return "Which torque or damping removes them: spurcheck response --map."
     told = []
     for axis, name, unit in (
         ("torque", "a torque", "N m"),

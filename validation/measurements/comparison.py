@@ -1,0 +1,275 @@
+"""A record beside its prediction: aligned by mesh phase, sample by sample, and as metrics with intervals.
+
+Sources: least squares over the phase, docs/theory/equations.md, "Frame", for what the phase is; bootstrap of
+whole blocks, Davison and Hinkley, Bootstrap Methods and their Application, 1997, section 8.2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from lumped.arguments import real_number, whole_number
+from lumped.errors import NumericalError
+from lumped.labelling import labelled_dataset
+from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
+from validation.measurements.prediction import Prediction
+from validation.measurements.record import PAIR_LABELS, QUANTITIES, Channel, Measurement
+
+_COARSE = 32  # trial shifts per mesh cycle
+_COARSE_SAMPLES = 2000
+_ZOOM = 4
+_FINEST = 1e-6  # mesh cycles
+_FARTHEST = 1e9  # mesh cycles, where double precision still resolves the finest shift
+
+#: Metric -> plain name. The first two are in the channel's unit.
+METRICS = {
+    "bias": "mean of measured - predicted",
+    "rms": "root mean square of measured - predicted",
+    "relative_rms": "rms over the prediction's peak to peak",
+    "correlation": "Pearson correlation of measured and predicted",
+}
+_RESAMPLES = 999
+
+
+@dataclass(frozen=True, eq=False)
+class Alignment:
+    """Where the samples of a record lie in the mesh cycle.
+
+    Attributes
+    ----------
+    cycles : (k,) mesh cycles since pair A was at point A
+    shift : what was added to the record's own cycles [mesh cycles]
+    standard_error : of the shift, for independent noise [mesh cycles]; 0 where the shift was given
+    share_explained : 1 - residual sum of squares over total sum of squares at the best shift
+    """
+
+    cycles: FloatArray
+    shift: float
+    standard_error: float
+    share_explained: float = 1.0
+
+    @property
+    def sample_spacing(self) -> float:
+        """Median distance of the samples [mesh cycles]."""
+        return float(np.median(np.diff(self.cycles)))
+
+
+def mesh_cycles(measurement: Measurement, pair: GearPair) -> FloatArray:
+    """Mesh cycles of the samples before alignment, (k,) [-].
+
+    From roll angles eps of pair A's contact on the pinion, xi = r_bp eps and u = (xi - L_XA)/lambda; from
+    times, u = t/T_m at the record's speed.
+
+    Parameters
+    ----------
+    measurement : the record
+    pair : the gear pair
+    """
+    g = pair.with_({"operating.pinion_speed": measurement.spec.pinion_speed}).geometry
+    if measurement.spec.abscissa.kind == "roll_angle":
+        return np.asarray(
+            (g.base_radius_pinion * measurement.abscissa - g.L_XA) / g.base_pitch, dtype=np.float64
+        )
+    return np.asarray(measurement.abscissa / g.mesh_period, dtype=np.float64)
+
+
+def align(measurement: Measurement, prediction: Prediction, *, shift: float | None = None) -> Alignment:
+    """Find the mesh phase of a record by least squares against the prediction.
+
+    For every trial shift each channel may have its own gain and zero, so that a calibration error does not
+    move the phase. Normal loads hardly depend on friction, so where a record has them they alone are aligned:
+    a friction coefficient found afterwards is not built into the alignment.
+
+    Parameters
+    ----------
+    measurement : the record
+    prediction : at the record's operating point
+    shift : a known shift [mesh cycles], e.g. 0 for exact roll angles; then nothing is searched
+
+    Raises
+    ------
+    ParameterError : a shift or abscissae beyond 1e9 mesh cycles
+    NumericalError : the channels do not vary, or the best shift explains less than half of their variation
+    """
+    raw = mesh_cycles(measurement, prediction.pair)
+    advice = "Check its unit."
+    farthest = float(np.abs(raw).max())
+    real_number("abscissa", farthest, 0.0, _FARTHEST, unit="mesh cycles", action=advice)
+    if shift is not None:
+        shift = real_number("shift", shift, -_FARTHEST, _FARTHEST, unit="mesh cycles", action=advice)
+        return Alignment(raw + shift, shift, 0.0)
+    every = measurement.spec.channel
+    chosen = [c for c in every if c.quantity == "normal_load"] or every
+    values = np.array([measurement.channels[c.name] for c in chosen])
+    values = values - values.mean(axis=1, keepdims=True)
+    spread = np.sqrt((values**2).mean(axis=1))
+    if not (spread > 0.0).all():
+        raise NumericalError(
+            "A channel to align by is constant: leave it out of the description, or give the shift."
+        )
+    values /= spread[:, None]
+
+    def misfit(trial: float, step: int = 1) -> float:
+        lost = 0.0
+        for channel, measured in zip(chosen, values[:, ::step], strict=True):
+            model = prediction.value(channel.quantity, raw[::step] + trial, channel.pair)
+            model = model - model.mean()
+            y = measured - measured.mean()
+            power = float(model @ model)
+            # A negative gain is the wrong phase, not a fit.
+            gain = 0.0 if power == 0.0 else max(float(model @ y) / power, 0.0)
+            lost += float(((y - gain * model) ** 2).sum())
+        return lost
+
+    coarse = max(raw.size // _COARSE_SAMPLES, 1)
+    reach = prediction.recurrence if any(c.pair is not None for c in chosen) else 1
+    trials = np.arange(reach * _COARSE) / _COARSE
+    best = float(trials[np.argmin([misfit(t, coarse) for t in trials])])
+    step = 1.0 / _COARSE
+    while step > _FINEST:
+        fine = best + step * np.linspace(-1.0, 1.0, 2 * _ZOOM + 1)
+        losses = np.array([misfit(float(t)) for t in fine])
+        # Sampled jumps make the misfit flat between samples: take the middle of the flat bottom.
+        bottom = fine[losses <= losses.min() * (1.0 + 1e-12)]
+        best = float(0.5 * (bottom[0] + bottom[-1]))
+        step /= _ZOOM
+    lost = misfit(best)
+    explained = 1.0 - lost / values.size
+    if explained < 0.5:
+        raise NumericalError(
+            f"The best shift explains only {100 * explained:.0f} % of the record's variation: check speed, "
+            "pair labels, signs (gain) and recurrence, or give the shift."
+        )
+    h = max(float(np.median(np.diff(raw))), 1.0 / prediction.cycle["time"].size)
+    rise = 0.5 * (misfit(best + h) + misfit(best - h)) - lost
+    # The sum of squares over the noise variance rises by 1 at one standard error.
+    error = h * float(np.sqrt(lost / values.size / rise)) if rise > 0.0 else h
+    best = float(np.mod(best, reach))
+    return Alignment(raw + best, best, error, explained)
+
+
+def overlay(
+    measurement: Measurement, prediction: Prediction, alignment: Alignment, *, bins: int = 64
+) -> xr.Dataset:
+    """Measured and predicted values over one engagement (pair channels) or one mesh cycle.
+
+    Parameters
+    ----------
+    measurement, prediction, alignment : the record, its prediction, its phase
+    bins : equal phase bins of the band
+
+    Returns
+    -------
+    Dataset over ``channel`` and ``bin`` with phase (middle of the bin, mesh cycles since A), measured (mean
+    of the bin), predicted (likewise), scatter (standard deviation of measured - predicted in the bin),
+    standard_error (of the bin's mean) and count; empty bins are NaN with count 0
+    """
+    bins = whole_number("bins", bins, 4, 4096)
+    rows = []
+    for channel in measurement.spec.channel:
+        age, y, p, _ = _samples(measurement, prediction, alignment, channel)
+        reach = prediction.geometry.contact_ratio if channel.pair else 1.0
+        place = np.minimum((age / reach * bins).astype(np.int64), bins - 1)
+        count = np.bincount(place, minlength=bins)
+        sums = np.stack([np.bincount(place, weights=v, minlength=bins) for v in (y, p, y - p, (y - p) ** 2)])
+        with np.errstate(invalid="ignore"):  # an empty bin has no mean
+            measured, predicted, error, square = sums / count
+        scatter = np.sqrt(np.maximum((square - error**2) * count / np.maximum(count - 1, 1), 0.0))
+        rows.append((measured, predicted, scatter, (np.arange(bins) + 0.5) * reach / bins, count))
+    measured, predicted, scatter, phase, count = (np.stack(column) for column in zip(*rows, strict=True))
+    dims, own = ("channel", "bin"), "SI, by channel"
+    units = [QUANTITIES[c.quantity][0] for c in measurement.spec.channel]
+    result = labelled_dataset(
+        {
+            "measured": (dims, measured, own, "mean of the measured values"),
+            "predicted": (dims, predicted, own, "mean of the predicted values"),
+            "scatter": (dims, scatter, own, "standard deviation of measured - predicted"),
+            "phase": (dims, phase, "1", "mesh cycles since A"),
+            "count": (dims, count, "1", "samples in the bin"),
+            "units": ("channel", units, "1", "SI unit of the channel"),
+        },
+        {"channel": ([c.name for c in measurement.spec.channel], "1", "channel")},
+        {"record": measurement.spec.name, "source": measurement.spec.source},
+    )
+    result["standard_error"] = result["scatter"] / np.sqrt(result["count"].where(result["count"] > 0))
+    return result
+
+
+def overlay_metrics(measurement: Measurement, prediction: Prediction, alignment: Alignment) -> xr.Dataset:
+    """How far a record is from its prediction, with 95 % percentile intervals of a bootstrap.
+
+    Whole blocks are resampled with replacement (one engagement of a labelled pair or one mesh cycle each; a
+    record with fewer than eight is cut into eight runs of samples), because neighbouring samples are not
+    independent.
+
+    Parameters
+    ----------
+    measurement, prediction, alignment : the record, its prediction, its phase
+
+    Returns
+    -------
+    Dataset over ``channel``: each metric of ``METRICS``, with ``<metric>_low`` and ``<metric>_high``; the
+    relative one is NaN where the prediction is constant
+
+    Raises
+    ------
+    NumericalError : no sample of a channel is in contact
+    """
+    rng = np.random.default_rng(0)
+    one_turn = np.linspace(0.0, prediction.geometry.pairs, 2048, endpoint=False)
+    columns: dict[str, list[float]] = {}
+    for channel in measurement.spec.channel:
+        _, y, p, block = _samples(measurement, prediction, alignment, channel)
+        if np.unique(block).size < 8:
+            block = np.arange(y.size) * 8 // y.size
+        number = np.unique(block, return_inverse=True)[1]
+        blocks = int(number.max()) + 1
+        e = y - p
+        terms = (np.ones(y.size), e, e**2, y, p, y * p, y**2, p**2)
+        sums = np.stack([np.bincount(number, weights=term, minlength=blocks) for term in terms])
+        span = float(np.ptp(prediction.value(channel.quantity, one_turn, channel.pair)))
+        draws = rng.integers(0, blocks, (_RESAMPLES, blocks))
+        whole = _metrics(sums.sum(axis=1), span)
+        spread = _metrics(sums[:, draws].sum(axis=2), span)
+        for name, value in whole.items():
+            low, high = np.percentile(spread[name], [2.5, 97.5])
+            for key, end in ((name, value), (f"{name}_low", low), (f"{name}_high", high)):
+                columns.setdefault(key, []).append(float(end))
+    return xr.Dataset(
+        {name: ("channel", values) for name, values in columns.items()},
+        coords={"channel": [c.name for c in measurement.spec.channel]},
+        attrs={"level": 0.95, "resamples": _RESAMPLES, "definitions": str(METRICS)},
+    )
+
+
+def _metrics(sums: FloatArray, span: float) -> dict[str, FloatArray]:
+    n, e, e2, y, p, yp, y2, p2 = sums
+    whole = span or np.nan  # a constant prediction, such as no friction, has no scale
+    rms = np.sqrt(e2 / n)
+    spread = np.sqrt(np.maximum(n * y2 - y**2, 0.0) * np.maximum(n * p2 - p**2, 0.0))
+    correlation = np.where(spread > 0.0, (n * yp - y * p) / np.where(spread > 0.0, spread, 1.0), 0.0)
+    return {"bias": e / n, "rms": rms, "relative_rms": rms / whole, "correlation": correlation}
+
+
+def _samples(
+    measurement: Measurement, prediction: Prediction, alignment: Alignment, channel: Channel
+) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.int64]]:
+    """Phase since A, measured, predicted and block number of a channel's samples (pairs: in contact only)."""
+    u, y = alignment.cycles, measurement.channels[channel.name]
+    if channel.pair is None:
+        age, inside = np.mod(u, 1.0), np.ones(u.shape, dtype=bool)
+        block = np.floor(u)
+    else:
+        age, inside = prediction.age(u, channel.pair), prediction.contact(u, channel.pair)
+        block = np.floor((u - PAIR_LABELS.index(channel.pair)) / prediction.recurrence)
+    if not inside.any():
+        raise NumericalError(
+            f"No sample of {channel.name} is in contact; check the abscissae, the shift and the pair labels."
+        )
+    p = prediction.value(channel.quantity, u, channel.pair)
+    return age[inside], y[inside], p[inside], block[inside].astype(np.int64)
