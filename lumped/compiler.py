@@ -2,20 +2,19 @@
 
 numba's own cache looks only at the file a function is in and writes its index before the code: after an edit,
 a second process or a kill at that moment can leave old code under the new index for good. Here each kernel is
-one file, named after everything its code depends on and written whole, so no file can stand for another one.
+one file, named after everything its code depends on, see ``lumped.cache``.
 """
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import os
 import pickle
 import shutil
 import sys
-import tempfile
 import warnings
 from collections.abc import Callable, Iterable
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -24,6 +23,8 @@ from numba.core.caching import FunctionCache
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 from platformdirs import user_cache_path
+
+from lumped.cache import read_whole, write_whole
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -80,43 +81,25 @@ class _KernelFiles(FunctionCache):  # type: ignore[misc]  # numba ships no types
         return Path(self.cache_path, f"{function.__name__}-{digest[:32]}.kernel")
 
     def _load_overload(self, sig: Any, target_context: Any) -> Any:
-        try:
-            content = self._path(sig, target_context.codegen()).read_bytes()
-        except OSError:
-            return None
-        digest, data = content[:32], content[32:]
-        if hashlib.sha256(data).digest() != digest:  # cut short by a crash of the machine
-            return None
-        return CompileResult._rebuild(target_context, *pickle.loads(data))
+        content = read_whole(self._path(sig, target_context.codegen()))
+        return None if content is None else CompileResult._rebuild(target_context, *pickle.loads(content))
 
     def _save_overload(self, sig: Any, data: Any) -> None:
         if not self._enabled or data.library.has_dynamic_globals:  # addresses of this process
             return
-        path, content = self._path(sig, data.codegen), dumps(data._reduce())
+        path = self._path(sig, data.codegen)
         try:
             if not path.parent.exists():
                 path.parent.mkdir(parents=True, exist_ok=True)
                 _remove_old(path.parent.parent)
-            _write_whole(path, hashlib.sha256(content).digest() + content)
+            write_whole(path, dumps(data._reduce()))
         except OSError as error:
-            _warn_once(f"{path.parent}: {error.strerror}")
+            _warn_once(f"{kernel_folder()}: {error.strerror}")
 
     def flush(self) -> None:
         """Remove the files of this function."""
         for path in Path(self.cache_path).glob(f"{self._py_func.__name__}-*.kernel"):
             path.unlink(missing_ok=True)
-
-
-def _write_whole(path: Path, content: bytes) -> None:
-    handle, name = tempfile.mkstemp(dir=path.parent, suffix=".part")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        os.replace(name, path)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            os.unlink(name)
-        raise
 
 
 def _remove_old(folder: Path) -> None:
@@ -128,14 +111,10 @@ def _remove_old(folder: Path) -> None:
         shutil.rmtree(old, ignore_errors=True)
 
 
-_warned: set[str] = set()
-
-
+@cache
 def _warn_once(reason: str) -> None:
-    if not _warned:
-        _warned.add(reason)
-        warnings.warn(
-            f"Compiled code cannot be stored ({reason}), so every run compiles for about a minute. "
-            "Set NUMBA_CACHE_DIR to a folder that you can write.",
-            stacklevel=2,
-        )
+    warnings.warn(
+        f"Compiled code cannot be stored ({reason}), so every run compiles for about a minute. "
+        "Set NUMBA_CACHE_DIR to a folder that you can write.",
+        stacklevel=2,
+    )

@@ -12,9 +12,9 @@ from lumped import load_gear_pair, preset_names
 from validation.verification.published_stiffness import framed, framed_pairs, published_stiffness
 
 
-def stressed_teeth() -> str:
+def thin_rims() -> str:
     """The example of the gallery."""
-    example = runpy.run_path(str(DOCS.parent / "examples" / "18_stressed_teeth.py"))
+    example = runpy.run_path(str(DOCS.parent / "examples" / "18_thin_rims.py"))
     return svg(example["draw"](example["compute"]()))
 
 
@@ -47,7 +47,7 @@ def frames() -> str:
 
 
 FILES: dict[str, Callable[[], str]] = {
-    "stressed_teeth.svg": stressed_teeth,
+    "thin_rims.svg": thin_rims,
     "published_stiffness.md": published,
     "stiffness_frames.md": frames,
 }

@@ -31,13 +31,7 @@ def square_shapes(points: int) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def gradients(corners: FloatArray, slopes: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Gradients of the shape functions (e, 2, p, 9) and the Jacobian's determinant (e, p).
-
-    Parameters
-    ----------
-    corners : nodes of the elements, (e, 9, 2)
-    slopes : (2, p, 9), see ``square_shapes``
-    """
+    """Gradients (e, 2, p, 9) of shape functions and Jacobian (e, p), by nodes (e, 9, 2), slopes (2, p, 9)."""
     j = np.einsum("dpk,ekc->epdc", slopes, corners)
     determinant = j[..., 0, 0] * j[..., 1, 1] - j[..., 0, 1] * j[..., 1, 0]
     inverse = np.stack(
@@ -54,13 +48,7 @@ def plane_law(poisson: float) -> FloatArray:
 
 
 def assembled(nodes: FloatArray, elements: IntArray, poisson: float) -> tuple[sparse.csc_array, FloatArray]:
-    """Stiffness matrix (2 n, 2 n) and the loads (2 n, 3) of a unit acceleration along x, along y and about 0.
-
-    Parameters
-    ----------
-    nodes, elements : (n, 2) coordinates, (e, 9) node numbers
-    poisson : nu of plane stress
-    """
+    """Stiffness matrix (2 n, 2 n); loads (2 n, 3) of unit accelerations along x, along y and about 0."""
     shapes, slopes, weights = square_shapes(3)
     corners = nodes[elements]
     gradient, determinant = gradients(corners, slopes)

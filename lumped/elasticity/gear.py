@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
-from lumped.elasticity.cache import kept
+from lumped.cache import cached
 from lumped.elasticity.ring import Support, compliances
 from lumped.elasticity.sector import Sector, sector, stations
 from lumped.errors import NumericalError
@@ -31,18 +32,11 @@ _SOLID = 10.0
 
 @dataclass(frozen=True)
 class PlaneGear:
-    """What the deflection of a gear depends on; lengths in modules.
+    """What the deflection of a gear depends on; lengths in modules, ``profile`` of module 1.
 
-    Attributes
-    ----------
-    profile : the tooth, of module 1
-    tip : radius [modules]
-    bore : radius [modules], 0 for a solid gear
-    poisson : nu of plane stress, nu/(1 - nu) for plane strain
-    support : "free": the load is balanced by the gear's own inertia, and motions are counted from its mean
-    one;
-        "clamped": the bore is held
-    reach : number of teeth ahead whose motion is wanted
+    ``bore`` is a radius, 0 for a solid gear; ``poisson`` that of plane stress, nu/(1 - nu) for plane strain;
+    ``reach`` the number of teeth ahead whose motion is wanted. A "free" gear balances the load by its own
+    inertia and moves against its mean motion; of a "clamped" one the bore is held.
     """
 
     profile: ToothProfile
@@ -55,8 +49,7 @@ class PlaneGear:
 
 @dataclass(frozen=True, eq=False)
 class FlankCompliance:
-    """Compliances of a gear along the line of action, times E (plane strain: E/(1 - nu^2)) and face width
-    [-].
+    """Compliances of a gear along the line of action, times E (plane strain: E/(1 - nu^2)) and width.
 
     Attributes
     ----------
@@ -65,7 +58,7 @@ class FlankCompliance:
         Hertzian pressure of half width a [modules] in its place the point moves by
         u_c + (2 ln(2/a) - nu)/pi, nu of plane stress
     cross : (reach, k, k) coefficients of the motion of the tooth m + 1 ahead, over the lengths of load and
-    point
+        point
     rough : (n,) the same as ``own`` from a coarser mesh
     """
 
@@ -96,10 +89,6 @@ class FlankCompliance:
 def flank_compliance(gear: PlaneGear) -> FlankCompliance:
     """Compliances of a gear over the usable length of its flanks, from two meshes.
 
-    Parameters
-    ----------
-    gear : what they depend on
-
     Raises
     ------
     NumericalError : the teeth cannot be meshed
@@ -125,8 +114,9 @@ def flank_compliance(gear: PlaneGear) -> FlankCompliance:
         cross = np.einsum("li,mji,kj->mlk", basis, first[1:], basis)
         return {"own": own, "cross": cross, "rough": rough}
 
-    found = kept(fine.nodes.tobytes() + gear.support.encode() + numbers.tobytes(), compute)
-    return FlankCompliance((low, high), found["own"], found["cross"], found["rough"])
+    inputs = fine.nodes.tobytes() + gear.support.encode() + numbers.tobytes()
+    result = cached("elasticity", sorted(Path(__file__).parent.glob("*.py")), inputs, compute)
+    return FlankCompliance((low, high), result["own"], result["cross"], result["rough"])
 
 
 def bore_radius(gear: PlaneGear) -> float:

@@ -29,14 +29,9 @@ _POINTS = 4
 def flank_load(
     mesh: Sector, poisson: float, length: float, radii: tuple[float, float] = (NEAR, FAR)
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Right-hand side of u_c for a unit load into the tooth, and what belongs to it.
+    """Right-hand side of u_c for a unit load into the tooth at a length along the base tangent [modules].
 
-    Parameters
-    ----------
-    mesh : one pitch
-    poisson : nu of plane stress
-    length : of the load along the base tangent [modules]
-    radii : between which chi falls; the outer one ends at the cut to the next pitch at the latest [modules]
+    chi falls between ``radii`` [modules]; the outer one ends at the cut to the next pitch at the latest.
 
     Returns
     -------

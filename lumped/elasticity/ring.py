@@ -52,15 +52,8 @@ def compliances(
 ) -> FloatArray:
     """Motion of points on the flanks by unit loads on tooth 0, both along the line of action.
 
-    Young's modulus and thickness are 1, lengths in modules.
-
-    Parameters
-    ----------
-    mesh, poisson, teeth : one pitch, nu of plane stress, number of teeth
-    lengths : (n,) of loads and points along the base tangent [modules]
-    reach : number of teeth ahead whose motion is wanted
-    support : "free" or "clamped", see ``Support``
-    radii : of the cut-off, see ``flank_load``
+    Young's modulus and thickness are 1, lengths in modules. Loads and points are at ``lengths`` (n,) along
+    the base tangent; ``reach`` teeth ahead are wanted. ``radii`` as in ``flank_load``.
 
     Returns
     -------

@@ -25,17 +25,16 @@ _NO_LAND = 1e-3
 
 @dataclass(frozen=True)
 class Sector:
-    """One pitch of a gear as a mesh.
+    """One pitch of a gear as a mesh; coordinates in modules.
 
     Attributes
     ----------
-    profile : the tooth, of module 1
-    nodes, elements : (n, 2) coordinates [modules], (e, 9) node numbers
+    nodes, elements : (n, 2) coordinates, (e, 9) node numbers
     behind, ahead : (r,) nodes of the radial cuts at half a pitch, from bore to root circle
     bore : nodes of the bore
     flank : (k, 3) edges of the loaded flank, from the fillet to the tip
-    lengths : (2 k + 1,) of its nodes along the base tangent [modules]
     surface : (s, 3) edges of the surface, the body to the left of their direction
+    lengths : (2 k + 1,) of the flank's nodes along the base tangent
     """
 
     profile: ToothProfile
@@ -51,9 +50,7 @@ class Sector:
     def edge_at(self, length: float) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
         """Where a load at a length along the base tangent meets the flank.
 
-        Returns
-        -------
-        nodes of the edge (3,), their shape functions (3,), the point (2,), the normal into the tooth (2,)
+        Nodes of the edge (3,), their shape functions (3,), the point (2,), the normal into the tooth (2,).
         """
         k = int(np.clip(np.searchsorted(self.lengths[::2], length) - 1, 0, len(self.flank) - 1))
         start, middle, end = self.lengths[2 * k : 2 * k + 3]
@@ -86,14 +83,7 @@ class Stations:
 
 
 def stations(profile: ToothProfile, tip: float, bore: float, size: float) -> Stations:
-    """Stations for elements of about one size.
-
-    Parameters
-    ----------
-    profile : the tooth, of module 1
-    tip, bore : radii [modules]
-    size : length of the elements at the surface [modules]
-    """
+    """Stations for elements of about one size at the surface; radii and size in modules."""
     foot = _foot(profile)
     bottom, joint = profile.fillet_range
     start, root = profile.form_length, profile.root_radius
@@ -114,14 +104,7 @@ def stations(profile: ToothProfile, tip: float, bore: float, size: float) -> Sta
 
 
 def sector(profile: ToothProfile, tip: float, bore: float, at: Stations) -> Sector:
-    """Mesh one pitch.
-
-    Parameters
-    ----------
-    profile : the tooth, of module 1
-    tip, bore : radii [modules]
-    at : stations of the nodes
-    """
+    """Mesh one pitch of a tooth of module 1 between two radii [modules], nodes at the stations."""
     # The tooth: rows of nodes from the foot to the tip, columns across.
     u_1, h_1, _ = profile.fillet_points(at.above)
     u_2, h_2, *_ = profile.involute_points(at.lengths)

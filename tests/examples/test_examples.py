@@ -228,13 +228,6 @@ def test_18_neighbours_and_a_thin_rim_soften(example):
     (solid, alone), (bored, _), (thin, _) = result["mean_over_iso"].values
     assert 0.5 * solid < thin < 0.75 * solid
     assert 0.95 * solid < bored < solid < alone
-    # The higher loaded tooth's fillet under tension carries more than the middle of the tooth at its foot.
-    field = result.attrs["fields"]["solid"]
-    x, y = 1e3 * field.nodes.T
-    fillet = (np.hypot(x + 4.5, y - 40.5) < 1.0) | (np.hypot(x + 12.0, y - 39.0) < 1.0)
-    middle = np.hypot(x + 8.9, y - 40.5) < 1.0
-    stress = field.von_mises
-    assert stress[fillet].max() > 2.0 * stress[middle].max()
 
 
 def test_19_only_torques_far_from_that_of_the_relief_jump(example):

@@ -45,7 +45,7 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Two files of which one calls the other's kernel, and a cache folder of their own."""
     monkeypatch.setattr(sys, "dont_write_bytecode", True)  # it knows an edit by the second and the size
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
-    monkeypatch.setattr(lumped.compiler, "_warned", set())
+    lumped.compiler._warn_once.cache_clear()
     monkeypatch.syspath_prepend(tmp_path)
     folder = tmp_path / "pkg"
     folder.mkdir()
@@ -106,9 +106,9 @@ def test_a_damaged_file_is_compiled_again(run: Run, tmp_path: Path) -> None:
 
 def test_without_a_place_to_write_it_says_so_once_and_goes_on(run: Run, tmp_path: Path) -> None:
     (tmp_path / "cache").write_text("a file where the folder should be", encoding="utf-8")
-    with pytest.warns(UserWarning, match="Set NUMBA_CACHE_DIR") as told:
+    with pytest.warns(UserWarning, match="Set NUMBA_CACHE_DIR") as warned:
         assert run() == (2.0, 0)
-    assert len(told) == 1
+    assert len(warned) == 1
 
 
 def test_old_folders_are_removed(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,6 +11,7 @@ PACKAGES = ("lumped", "multibody", "floquet", "validation")
 LOOSE = {
     "lumped": {
         "arguments",
+        "cache",
         "compiler",
         "errors",
         "gauss_legendre",

@@ -23,7 +23,7 @@ from typing import Any, NamedTuple, Protocol, Self
 import numpy as np
 
 import lumped
-from lumped.elasticity.processor import processor
+from lumped.cache import processor
 from lumped.errors import StorageError, refuse
 from lumped.typing import FloatArray
 

@@ -23,7 +23,7 @@ from typing import Any
 import numba
 from numba.core.dispatcher import Dispatcher
 
-from lumped.elasticity import cache as elasticity_cache
+from lumped import cache
 from tests.evidence.faults.fault import Fault
 
 _PACKAGES = ("lumped", "multibody", "floquet", "validation")
@@ -49,10 +49,8 @@ def applied(fault: Fault) -> Iterator[None]:
     if isinstance(original, Dispatcher):
         _with_callers(replaced)
     forget()
-    if fault.target.startswith(
-        "lumped.elasticity"
-    ):  # nothing of a wrong program is kept on the disk, or read
-        replaced[id(elasticity_cache.kept)] = (elasticity_cache.kept, _not_kept)
+    if fault.target.startswith("lumped.elasticity"):  # nothing of a wrong program is stored, or read
+        replaced[id(cache.cached)] = (cache.cached, _not_cached)
     undo = []
     for one in replaced.values():
         undo += _exchange(*one, owner)
@@ -76,7 +74,9 @@ def fitted(fault: Fault) -> tuple[Any, Any, Any]:
     return owner, original, _rewritten(fault, owner, name, original)
 
 
-def _not_kept(inputs: bytes, compute: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+def _not_cached(
+    folder: str, sources: object, inputs: bytes, compute: Callable[[], dict[str, Any]]
+) -> dict[str, Any]:
     return compute()
 
 

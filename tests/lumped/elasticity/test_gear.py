@@ -1,4 +1,4 @@
-"""Is a gear's compliance accurate to what its second mesh says, and is it kept safely?"""
+"""Is a gear's compliance accurate to what its second mesh says, and is it cached safely?"""
 
 import math
 from concurrent.futures import ThreadPoolExecutor
@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from lumped import NumericalError
+from lumped.cache import cached
 from lumped.elasticity import gear as module
-from lumped.elasticity.cache import kept
 from lumped.elasticity.gear import PlaneGear, flank_compliance
 from lumped.elasticity.ring import compliances
 from lumped.gear_geometry.tooth_profile import ToothProfile
@@ -44,11 +44,11 @@ def test_teeth_that_cannot_be_meshed_are_refused():
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    monkeypatch.setattr("lumped.elasticity.cache.user_cache_path", lambda *_, **__: tmp_path)
+    monkeypatch.setattr("lumped.cache.user_cache_path", lambda *_, **__: tmp_path)
     return tmp_path / "elasticity"
 
 
-def test_results_are_kept_whole_or_not_at_all(folder):
+def test_results_are_cached_whole_or_not_at_all(folder):
     calls = []
 
     def compute():
@@ -56,7 +56,7 @@ def test_results_are_kept_whole_or_not_at_all(folder):
         return {"a": np.arange(3.0), "b": np.array(2.0)}
 
     def asked(inputs=b"gear"):
-        found = kept(inputs, compute)
+        found = cached("elasticity", [], inputs, compute)
         assert found["a"].tolist() == [0.0, 1.0, 2.0]
         assert found["b"] == 2.0
         return len(calls)
@@ -90,10 +90,10 @@ def test_a_changed_tooth_is_another_result(folder, monkeypatch):
     assert len(count) == 3 * 2
 
 
-def test_what_is_kept_has_the_digits_that_this_process_would_compute(folder, monkeypatch):
+def test_what_is_cached_has_the_digits_that_this_process_would_compute(folder, monkeypatch):
     # Two threads of BLAS cut the sums of a product in another place than one; so does another processor.
-    def kept_by(threads):
+    def cached_by(threads):
         monkeypatch.setenv("OPENBLAS_NUM_THREADS", threads)
-        return float(kept(b"gear", lambda: {"a": np.array(float(threads))})["a"])
+        return float(cached("elasticity", [], b"gear", lambda: {"a": np.array(float(threads))})["a"])
 
-    assert [kept_by("1"), kept_by("2"), kept_by("1")] == [1.0, 2.0, 1.0]
+    assert [cached_by("1"), cached_by("2"), cached_by("1")] == [1.0, 2.0, 1.0]
