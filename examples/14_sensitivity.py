@@ -3,23 +3,34 @@ Which parameter moves the stability margin
 ==========================================
 
 What brings a pair beside a tongue closer to it? Speed, then bearing stiffness: they move the tongue.
-Damping matters less by far. Derivatives of the largest multiplier, from left and right eigenvectors.
+Damping matters less by far. Central differences of the largest multiplier, whose error is 1e-12.
 """
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+import floquet
 import lumped
-from floquet import gear_sensitivities
+from floquet.gear.axes import vary
+
+STEP = 1e-4  # over the value: the error of a difference is its square, times the curvature
 
 
 def compute() -> xr.Dataset:
-    """Sensitivities of the 28/28 pair at the edge of its widest tongue."""
+    """Change of the spectral radius of the 28/28 pair beside its widest tongue by each parameter."""
     pair = lumped.load_gear_pair("nasa_28_28").with_(
         operating__pinion_speed=16000.0, friction__law="coulomb", friction__coefficient=0.05
     )
-    return gear_sensitivities(pair)
+    slopes = {name: _slope(pair, name, axis.own(pair)) for name, axis in floquet.GEAR_AXES.items()}
+    return xr.Dataset({"relative": ("parameter", list(slopes.values()))}, {"parameter": list(slopes)})
+
+
+def _slope(pair: lumped.GearPair, name: str, value: float) -> float:
+    """The parameter times the derivative of the spectral radius with respect to it."""
+    low, high = (vary(pair, {name: value * factor}) for factor in (1.0 - STEP, 1.0 + STEP))
+    radius = [floquet.gear_pair_multipliers(one, 1e-12).spectral_radius for one in (low, high)]
+    return (radius[1] - radius[0]) / (2.0 * STEP)
 
 
 def draw(result: xr.Dataset) -> Figure:

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from scipy.linalg import block_diag, eigh
 
 import floquet
 import lumped
@@ -18,27 +19,36 @@ import lumped
 PAIR = lumped.load_gear_pair("nasa_28_28").with_(mesh__relief="ignored", mesh__damping_ratio=0.002)
 
 
-def ross_shaft():
-    """Shaft 30 mm thick, 240 mm between bearings of 2e8 N/m, the gear in its middle, node 2."""
-    import ross  # pip install spurcheck[ross]
+def over_time(cycle, law: str) -> floquet.PiecewisePolynomial:
+    """Sum of a law over all tooth pairs as polynomials of degree 8 between its breaks, by values there."""
+    u, width = 0.5 - 0.5 * np.cos(np.pi * (np.arange(9) + 0.5) / 9), np.diff(cycle.breaks)[:, None]
+    values = getattr(cycle.sample((cycle.breaks[:-1, None] + width * u).ravel()), law).sum(axis=0)
+    rows = np.linalg.solve(np.vander(u, increasing=True), values.reshape(-1, 9).T).T
+    return floquet.PiecewisePolynomial(cycle.breaks, rows / width ** np.arange(9))
 
-    body, g = lumped.bodies(PAIR), PAIR.geometry
-    sizes = {"m": body.mass_pinion, "Id": body.inertia_pinion / 2, "Ip": body.inertia_pinion}
-    teeth = {"n_teeth": 28, "base_diameter": 2 * g.base_radius_pinion, "pr_angle": g.operating_pressure_angle}
-    steel = ross.Material(name="steel", rho=7810, E=211e9, G_s=81.2e9)
-    shaft = [ross.ShaftElement(L=0.06, idl=0, odl=0.03, material=steel) for _ in range(4)]
-    bearings = [ross.BearingElement(n=n, kxx=2e8, kyy=2e8, cxx=120.0, cyy=120.0) for n in (0, 4)]
-    return ross.Rotor(shaft, [ross.GearElement(n=2, **sizes, **teeth)], bearings)
+
+def joined(pair, M, C, K, stations, modes: int = 9, angle: float = 0.0) -> floquet.SecondOrderSystem:
+    """Rotors and mesh; stations: x, y and rotation of the pinion and of the gear, which is at this angle."""
+    cycle, g = lumped.mesh_cycle(pair), pair.geometry
+    push, v = 0.5 * np.pi - g.operating_pressure_angle + angle, np.zeros(len(M))
+    v[stations[0]] = np.cos(push), np.sin(push), g.base_radius_pinion
+    v[stations[1]] = -np.cos(push), -np.sin(push), g.base_radius_gear
+    squares, shapes = eigh(K + cycle.mean_stiffness * np.outer(v, v), M)
+    T = shapes[:, squares > 1e-9 * squares[-1]][:, :modes]  # free motions meet no spring
+    M, C, K, mesh = T.T @ M @ T, T.T @ C @ T, T.T @ K @ T, np.outer(v @ T, v @ T)
+    C = floquet.PeriodicMatrix(C, (over_time(cycle, "damping"), mesh))
+    K = floquet.PeriodicMatrix(K, (over_time(cycle, "stiffness"), mesh))
+    return floquet.from_second_order(M, C, K, cycle.period)
 
 
 def on_shafts(rpm: float) -> floquet.SecondOrderSystem:
-    """Both rotors with the mesh between them; the gear's turns the other way."""
-    # What ROSS 2.3.0 makes of it; or validation.exchange.ross_rotor(ross_shaft(), 2, rpm) and (..., -rpm).
+    """Shafts of 30 mm, 240 mm between bearings of 2e8 N/m, gears at node 2, turning opposite ways."""
+    # M(), C(0), K(0) and G() of ross.Rotor (2.3.0).
     with np.load(Path(on_shafts.__code__.co_filename).with_name("25_rotor.npz")) as file:
         M, C, K, G = (file[name] for name in "MCKG")
-    speed, station = np.pi / 30.0 * rpm, (12, 13, 17)
-    rotors = [floquet.GearRotor(M, C + sign * speed * G, K, station) for sign in (1, -1)]
-    return floquet.gears_on_rotors(PAIR.with_(operating__pinion_speed=f"{rpm} rpm"), *rotors, modes=9)
+    stations, G = np.add.outer([0, len(M)], [12, 13, 17]), np.pi / 30.0 * rpm * G
+    rotors = block_diag(M, M), block_diag(C + G, C - G), block_diag(K, K)
+    return joined(PAIR.with_(operating__pinion_speed=f"{rpm} rpm"), *rotors, stations)
 
 
 def compute() -> xr.Dataset:

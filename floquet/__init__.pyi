@@ -22,7 +22,6 @@ from .gear.campbell import campbell as campbell
 from .gear.chart import stability_chart as stability_chart
 from .gear.coulomb_zones import CoulombGearPair as CoulombGearPair
 from .gear.coulomb_zones import stability_zones as stability_zones
-from .gear.friction_effect import friction_effect as friction_effect
 from .gear.jump_map import JUMP_AXES as JUMP_AXES
 from .gear.jump_map import jump_map as jump_map
 from .gear.jump_removal import JumpRemoval as JumpRemoval
@@ -34,14 +33,10 @@ from .gear.multipliers import gear_pair_system as gear_pair_system
 from .gear.orbit import GearOrbit as GearOrbit
 from .gear.orbit import long_run as long_run
 from .gear.orbit import periodic_orbit as periodic_orbit
-from .gear.paths import multiplier_paths as multiplier_paths
 from .gear.reference import extended_monodromy as extended_monodromy
 from .gear.reference import stress_test as stress_test
 from .gear.response import ResponseBranches as ResponseBranches
 from .gear.response import response_branches as response_branches
-from .gear.rotors import GearRotor as GearRotor
-from .gear.rotors import gears_on_rotors as gears_on_rotors
-from .gear.sensitivity import gear_sensitivities as gear_sensitivities
 from .gear.tongues import label_regions as label_regions
 from .rank_one.batch import FastMonodromy as FastMonodromy
 from .rank_one.batch import FastMultipliers as FastMultipliers

@@ -12,15 +12,13 @@ import lumped
 from computed import GENERATED
 from computed.agreement import torque_series
 from computed.diagrams import svg
-from floquet import stability_chart
+from floquet import gear_pair_multipliers, stability_chart
 from floquet.gear.margins import stability_margins
-from floquet.gear.paths import multiplier_paths
 from lumped import GearPair
 from lumped.path_of_contact import friction_profile
 from validation.files.output import write_dataset
 from validation.interactive.page import render
 from validation.interactive.results import compute
-from validation.plots.multipliers import multiplier_paths_figure
 from validation.plots.path_of_contact import friction_laws_figure, path_figure
 from validation.plots.style import BLUE, DASHES, GREY, LINES, RED, legend, new_figure
 from validation.plots.tongues import tongue_chart_figure
@@ -47,9 +45,20 @@ def film() -> str:
 
 
 def multipliers() -> str:
-    """Paths of the multipliers through the main tongue of a lightly damped pair."""
+    """Multipliers through the main tongue of a lightly damped pair, in the complex plane and over speed."""
     pair, speeds = _pair().with_(mesh__damping_ratio=0.01), np.linspace(16000.0, 20000.0, 161)
-    return svg(multiplier_paths_figure(multiplier_paths(pair, "speed_rpm", speeds)))
+    found = [gear_pair_multipliers(pair.with_(operating__pinion_speed=rpm)).feedback for rpm in speeds]
+    values, turn = np.concatenate(found), np.linspace(0.0, 2.0 * np.pi, 361)
+    rpm, outside = np.repeat(speeds, len(found[0])), np.abs(values) > 1.0
+    figure, ((left, right),) = new_figure(1, 2, height=3.4)
+    left.plot(np.cos(turn), np.sin(turn), color=GREY, lw=0.9)
+    for part, colour in ((~outside, BLUE), (outside, RED)):
+        left.plot(values[part].real, values[part].imag, ".", color=colour, markersize=3)
+        right.plot(rpm[part], np.abs(values[part]), ".", color=colour, markersize=3)
+    right.axhline(1.0, color=GREY, lw=0.9)
+    left.set(xlabel="real part [-]", ylabel="imaginary part [-]", aspect="equal")
+    right.set(xlabel="pinion speed [rpm]", ylabel="modulus [-], red: unstable")
+    return svg(figure)
 
 
 def tongues() -> str:

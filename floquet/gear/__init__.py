@@ -1,1 +1,1 @@
-"""Stability of the gear pair: charts, tongues, margins, sensitivities."""
+"""Stability of the gear pair: multipliers, charts, tongues, motions with contact loss."""

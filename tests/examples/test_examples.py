@@ -191,13 +191,12 @@ def test_14_sensitivities_are_the_slopes_of_a_chart(example):
     )
     order = result["parameter"].to_numpy()[np.argsort(-np.abs(result["relative"].to_numpy()))]
     assert list(order[:2]) == ["speed_rpm", "bearing_stiffness"]
-    steps = {"speed_rpm": 1.0, "damping_ratio": 1e-5}
-    for name, step in steps.items():
-        row = result.sel(parameter=name)
-        near = [float(row["value"]) - step, float(row["value"]) + step]
+    for name, value, step in (("speed_rpm", 16000.0, 1.0), ("damping_ratio", pair.mesh.damping_ratio, 1e-5)):
+        near = [value - step, value + step]
         radius = floquet.stability_chart(pair, {name: near}, rtol=1e-12)["spectral_radius"].to_numpy()
         # Central differences over 6e-5 and 2e-4 of the value: errors of the order of their squares.
-        assert float(row["derivative"]) == pytest.approx(np.diff(radius)[0] / (2.0 * step), rel=1e-5)
+        slope = value * np.diff(radius)[0] / (2.0 * step)
+        assert float(result["relative"].sel(parameter=name)) == pytest.approx(slope, rel=1e-5)
 
 
 def test_15_the_true_coefficient_lies_in_its_interval(example):
@@ -328,9 +327,36 @@ def test_25_the_mesh_drives_the_bending_shafts_at_twice_their_frequency(example)
     labelled(module.draw(result))
     assert result.attrs["certificate"] == "proven"
     unstable = result["speed_rpm"].where(result["verdict"] == -1, drop=True)
-    # The mode of 4544 Hz, see tests/validation/exchange/test_ross.py; 28 teeth; the step is 375 rpm.
-    assert float(unstable.mean()) == pytest.approx(2.0 * 4544.1 * 60.0 / 28.0, abs=190.0)
+    # Ninth mode of ross.MultiRotor (2.3.0) of both shafts without damping, with the mean mesh stiffness.
+    system, mode = module.on_shafts(19000.0), 4544.12869547
+    x, weights = np.polynomial.legendre.leggauss(8)
+    start, width = system.edges[:-1, None], np.diff(system.edges)[:, None]
+    A = system.evaluate((start + 0.5 * width * (x + 1.0)).ravel())
+    mean = np.tensordot((0.5 * width * weights).ravel() / system.period, A, axes=1)
+    frequencies = np.sqrt(np.sort(np.linalg.eigvals(-mean[9:, :9]).real)) / (2.0 * np.pi)
+    assert frequencies[8] == pytest.approx(mode, rel=1e-7)
+    # 28 teeth; the step is 375 rpm.
+    assert float(unstable.mean()) == pytest.approx(2.0 * mode * 60.0 / 28.0, abs=190.0)
     assert unstable.size == 3
+
+
+def test_25_rigid_shafts_are_the_lumped_pair(example):
+    module = example(25)
+    pair = lumped.load_gear_pair("nasa_28_28").with_(
+        friction__law="none",
+        mesh__relief="ignored",
+        mesh__damping_ratio=0.01,
+        operating__pinion_speed="16500 rpm",
+    )
+    body, structure = lumped.bodies(pair), lumped.periodic_system(pair, "full").structure
+    M = np.diag([*[body.mass_pinion] * 2, body.inertia_pinion, *[body.mass_gear] * 2, body.inertia_gear])
+    c_p, c_g, k_p, k_g = (*structure.damping[2:4], *structure.stiffness[2:4])
+    C, K = np.diag([c_p, c_p, 0.0, c_g, c_g, 0.0]), np.diag([k_p, k_p, 0.0, k_g, k_g, 0.0])
+    joined = module.joined(pair, M, C, K, np.arange(6).reshape(2, 3), angle=2.0)
+    found, expected = floquet.monodromy(joined), floquet.gear_pair_multipliers(pair)
+    assert found.multipliers.size == 10  # the free turn is gone
+    moduli = np.sort(np.abs(found.multipliers)), np.sort(np.abs(expected.multipliers))
+    np.testing.assert_allclose(*moduli, rtol=1e-8)
 
 
 def test_26_springs_miss_what_the_modes_of_the_shafts_do(example):

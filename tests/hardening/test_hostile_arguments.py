@@ -12,7 +12,6 @@ import floquet
 import lumped
 import multibody
 import spurcheck
-from floquet.engine.sensitivity import multiplier_derivatives
 from lumped import friction, losses, quasi_static
 from lumped.errors import ParameterError, SpurcheckError
 from lumped.lubrication import film
@@ -79,16 +78,6 @@ CALLS = {
     floquet.predicted_lines: ({"pair": PAIR}, "orders"),
     floquet.stability_margins: ({"pair": PAIR}, "speed_rpm"),
     floquet.campbell: ({"pair": PAIR, "speeds_rpm": [4000.0]}, "speeds_rpm mesh_orders orders rtol"),
-    floquet.multiplier_paths: (
-        {"pair": PAIR, "name": "speed_rpm", "values": [4000.0]},
-        "name values rtol",
-    ),
-    floquet.friction_effect: ({"pair": PAIR, "axes": {"speed_rpm": [4e3]}}, "axes laws reference rtol"),
-    floquet.gear_sensitivities: ({"pair": PAIR}, "parameters rtol"),
-    multiplier_derivatives: (
-        {"system": SYSTEM, "derivative": lambda t: np.zeros((t.size, 2, 2))},
-        "rtol magnitude",
-    ),
     floquet.CoulombGearPair: ({}, "contact_ratio damping_ratio friction pressure_angle sign"),
     floquet.gear_block: ({"source": PAIR}, "rtol friction_level"),
     floquet.stress_test: ({"count": 1, "seed": 1}, "count seed"),

@@ -10,7 +10,6 @@ from .rexs.exporting import write_rexs as write_rexs
 from .rexs.importing import gear_pair_from_rexs as gear_pair_from_rexs
 from .rexs.stages import Stage as Stage
 from .rexs.stages import rexs_stages as rexs_stages
-from .ross import ross_rotor as ross_rotor
 
 __all__ = [
     "FILE_AXES",
@@ -21,7 +20,6 @@ __all__ = [
     "read_netcdf",
     "read_second_order",
     "rexs_stages",
-    "ross_rotor",
     "scipy_state_space",
     "write_results",
     "write_rexs",

@@ -16,9 +16,8 @@ from lumped.schema.pair import GearPair
 from validation.plots.campbell import campbell_figure
 from validation.plots.jumps import jump_map_figure
 from validation.plots.motion import history_figure
-from validation.plots.multipliers import multiplier_paths_figure
 from validation.plots.response import response_figure
-from validation.plots.stability import friction_effect_figure, stability_figure, stability_line_figure
+from validation.plots.stability import stability_figure, stability_line_figure
 from validation.plots.sweep import sweep_figure
 from validation.plots.tongues import boundaries_figure
 
@@ -49,23 +48,14 @@ def _chart(result: xr.Dataset) -> Figure:
     return stability_figure(result, axes[0], axes[1], None)
 
 
-def _effect(result: xr.Dataset) -> Figure:
-    axes = _axes(result, "law")
-    if len(axes) != 2 or result.sizes["law"] != 1:
-        raise refuse("result", "this effect", "one law over two axes", "Select with result.sel(law=[...]).")
-    return friction_effect_figure(result, str(result["law"][0].item()), axes[0], axes[1])
-
-
 #: Variable that only one kind of result has -> its figure.
 _FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
     "contact_kept": jump_map_figure,
     "branch": lambda result: response_figure(result),
     "dte": lambda result: history_figure(_pair(result).geometry, result),
     "dte_peak_to_peak": _sweep,
-    "growth_change": _effect,
     "mesh_frequency": campbell_figure,
     "interval_lower": lambda result: boundaries_figure(result, _axes(result, "tongue", "interval")[-1]),
-    "certain": multiplier_paths_figure,
     "verdict": _chart,
 }
 
@@ -76,8 +66,7 @@ def plot(result: xr.Dataset) -> Figure:
     Parameters
     ----------
     result : dataset of ``simulate`` or ``steady_state`` of either model, ``speed_sweep``, ``stability_chart``
-        (one or two axes), ``stability_boundaries``, ``campbell``, ``multiplier_paths`` or ``friction_effect``
-        (one law, two axes)
+        (one or two axes), ``stability_boundaries`` or ``campbell``
 
     Returns
     -------

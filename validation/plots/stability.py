@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from typing import Any, Literal
+from typing import Literal
 
 import matplotlib as mpl
 import numpy as np
@@ -13,7 +13,6 @@ from matplotlib.collections import QuadMesh
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
-from matplotlib.lines import Line2D
 from scipy.ndimage import maximum_filter
 
 from lumped.typing import BoolArray, FloatArray
@@ -77,40 +76,6 @@ def field_figure(
     ax.set(xlabel=axis_label(chart, x), ylabel=axis_label(chart, y))
     ax.grid(False)
     return figure, ax
-
-
-def friction_effect_figure(
-    effect: xr.Dataset, law: str, x: str, y: str, point: tuple[float, float] | None = None
-) -> Figure:
-    """Change of growth per mesh cycle by a friction law over two axes, with the boundaries under both laws.
-
-    Parameters
-    ----------
-    effect : dataset of ``floquet.gear.friction_effect.friction_effect`` over exactly the axes ``x``, ``y``
-    law : which of its laws
-    x, y : names of the axes
-    point : operating point (x, y); None: not marked
-    """
-    one = effect.sel(law=law).transpose(y, x).sortby([x, y])
-    # Changes peak sharply at the edges of tongues; the scale serves the rest.
-    reach = float(np.nanpercentile(np.abs(one["growth_change"]), 98.0)) or 1e-12
-    words = "change of growth per mesh cycle [-]\n(purple: damps, orange: drives)"
-    norm = Normalize(-reach, reach)
-    figure, ax = field_figure(one["growth_change"], effect, norm, "PuOr_r", words, "both")
-    shown = []
-    growths: dict[str, tuple[xr.DataArray, Any]] = {
-        law: (one["growth"], "-"),
-        str(effect.attrs["reference"]): (one["reference_growth"], "--"),
-    }
-    for name, (growth, dash) in growths.items():
-        style: dict[str, Any] = {"linewidths": 1.1, "linestyles": [dash], "colors": [BLACK]}
-        if min(growth.shape) > 1 and float(growth.min()) < 0.0 < float(growth.max()):
-            ax.contour(one[x], one[y], growth, levels=[0.0], **style)
-        label = f"boundary, {name.replace('_', ' ')}"
-        shown.append(Line2D([], [], color=BLACK, linewidth=1.1, linestyle=dash, label=label))
-    legend(ax, handles=shown, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2)
-    mark_operating_point(ax, point)
-    return figure
 
 
 def stability_line_figure(chart: xr.Dataset, x: str, value: float | None) -> Figure:

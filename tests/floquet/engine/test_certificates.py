@@ -10,7 +10,6 @@ from floquet import (
     KnownMatrix,
     PeriodicSystem,
     PiecewisePolynomial,
-    friction_effect,
     monodromy,
     periodic_motion,
     stability_chart,
@@ -112,8 +111,6 @@ def test_charts_and_motions_say_what_their_errors_are() -> None:
     together, alone = stability_chart(pair, speeds), stability_chart(pair, {"speed_rpm": [3000.0]})
     assert (together.attrs["certificate"], alone.attrs["certificate"]) == ("estimate", "proven")
     assert together["proven"].values.tolist() == [False, False]
-    effect = friction_effect(pair, speeds, ["coulomb", "xu_kahraman"])
-    assert effect.attrs["certificate"] == "mixed"
     forced = PeriodicSystem(lambda t: np.array([[-1.0]]), 1.0, b=lambda t: np.array([1.0]))
     assert periodic_motion(forced).certificate == "estimate"
 

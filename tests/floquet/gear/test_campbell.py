@@ -1,4 +1,4 @@
-"""Do Campbell diagram, multiplier paths and difference charts say what the multipliers say?"""
+"""Does the Campbell diagram say what the multipliers say?"""
 
 from __future__ import annotations
 
@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 
 from floquet import gear_pair_multipliers, predicted_lines
-from floquet.gear.axes import GearVariation
 from floquet.gear.campbell import campbell
-from floquet.gear.friction_effect import friction_effect
 from lumped import load_gear_pair
 from lumped.errors import NumericalError, ParameterError
 from lumped.model.averaged import modes
@@ -56,33 +54,6 @@ def test_lines_and_orders(pair) -> None:
         assert 4000.0 <= speed <= 18000.0
     with pytest.raises(ParameterError, match="speeds_rpm"):
         campbell(pair, [2000.0, 1000.0])
-
-
-def test_difference_chart_is_the_difference(pair) -> None:
-    axes = {"speed_rpm": [6700.0, 12000.0], "damping_ratio": [0.005, 0.05]}
-    laws = ["coulomb", "xu_kahraman"]
-    result = friction_effect(pair, axes, laws)
-    for law in laws:
-        for speed in axes["speed_rpm"]:
-            changes = {"operating__pinion_speed": speed, "mesh__damping_ratio": 0.05}
-            radius = [
-                gear_pair_multipliers(
-                    GearVariation(pair.with_(friction__law=name, **changes))
-                ).spectral_radius
-                for name in (law, "none")
-            ]
-            at = result.sel(law=law, speed_rpm=speed, damping_ratio=0.05)
-            # 1e-9 relative error of either radius.
-            assert float(at.growth_change) == pytest.approx(np.log(radius[0] / radius[1]), abs=1e-8)
-            assert float(at.growth_error) < 1e-6
-    # Nothing changes its verdict at 5 % damping, where the pair is stable with every law.
-    assert not result.verdict_change.sel(damping_ratio=0.05).any()
-    none = friction_effect(pair, axes, ["none"])
-    assert not none.growth_change.any()
-    with pytest.raises(ParameterError, match="laws"):
-        friction_effect(pair, axes, ["sticky"])
-    with pytest.raises(ParameterError, match="axes"):
-        friction_effect(pair, {"friction_coefficient": [0.1, 0.2]})
 
 
 def test_a_speed_at_which_a_mode_dies_out_in_one_cycle_is_no_row_of_nan() -> None:

@@ -29,6 +29,5 @@ def test_any_other_name_is_refused_with_the_list(nasa, text):
 
 def test_charts_take_every_name_too(nasa):
     axes = {"speed_rpm": [4000.0, 5000.0]}
-    effect = floquet.friction_effect(nasa, axes, ["II", "Coulomb"], reference="No friction")
-    assert list(effect["law"].values) == ["benedict_kelley", "coulomb"]
-    assert effect.attrs["reference"] == "none"
+    chart = floquet.stability_chart(nasa, axes, friction_law="II")
+    assert chart.attrs["friction_law"] == "benedict_kelley"

@@ -20,8 +20,6 @@ RESULTS = {
     "boundaries": lambda: spurcheck.stability_boundaries(
         PAIR, (3000.0, 9000.0), {"friction_coefficient": [0.0, 0.1]}
     ),
-    "paths": lambda: spurcheck.floquet.multiplier_paths(PAIR, "speed_rpm", CHART["speed_rpm"]),
-    "effect": lambda: spurcheck.floquet.friction_effect(PAIR, CHART, ["coulomb"]),
 }
 
 

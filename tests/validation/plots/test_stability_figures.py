@@ -17,13 +17,11 @@ from floquet import predicted_lines, stability_chart
 from floquet.engine.multipliers import verdicts
 from floquet.gear.campbell import campbell
 from floquet.gear.margins import StabilityMargins, TongueMargin
-from floquet.gear.paths import multiplier_paths
 from floquet.gear.tongues import label_regions
 from lumped import load_gear_pair
 from validation.cli import app
 from validation.plots.campbell import campbell_figure
 from validation.plots.labels import pretty, spread
-from validation.plots.multipliers import multiplier_paths_figure
 from validation.plots.stability import stability_figure, stability_line_figure
 from validation.plots.tongues import tongue_chart_figure, tongues_figure
 
@@ -182,15 +180,6 @@ def test_campbell_diagram_marks_lines_and_range(pair) -> None:
     )
     assert {"2ω₃/2", "operating point", "operating range", "1×"} <= texts(figure)
     assert "[rpm]" in figure.axes[1].get_xlabel()
-
-
-def test_paths_leave_the_unit_circle_in_the_tongue(pair) -> None:
-    figure = multiplier_paths_figure(
-        multiplier_paths(pair, "speed_rpm", np.linspace(15000, 18000, 61)), 16000.0
-    )
-    left, right = figure.axes[:2]
-    assert left.get_xlim()[1] > 1.1
-    assert "pinion speed [rpm]" in right.get_xlabel()
 
 
 def test_command_names_the_tongues(tmp_path) -> None:
