@@ -9,7 +9,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-import lumped
 import multibody
 from floquet import gear_pair_system, monodromy
 from lumped import GearPair
@@ -38,7 +37,7 @@ def refinements(pair: AnyPair, samples: int) -> tuple[Refinement, ...]:
     """
     pair = load_gear_pair(pair)
     samples = whole_number("samples", samples, 8, 8192)
-    others = (study(pair) for study in (_transient, _closure, _multibody, _monodromy))
+    others = (study(pair) for study in (_multibody, _monodromy))
     return (_stages(pair), _sampling(pair, samples), *others)
 
 
@@ -85,26 +84,6 @@ def _against(dte: Callable[[float], FloatArray], finest: float) -> Callable[[flo
     """Largest difference of the transmission error to the finest run, over the peak to peak."""
     reference = dte(finest)
     return lambda rtol: float(np.abs(dte(rtol) - reference).max() / np.ptp(reference))
-
-
-def _transient(pair: GearPair) -> Refinement:
-    def dte(rtol: float) -> FloatArray:
-        run = lumped.simulate(pair, 1, samples_per_cycle=_SAMPLES, rtol=rtol)
-        return np.asarray(run["dte"].to_numpy(), dtype=np.float64)
-
-    levels = _over_tolerance(_against(dte, 1e-12), 1e-6, 1e-8, 1e-10)
-    return refinement("transient", levels)
-
-
-def _closure(pair: GearPair) -> Refinement:
-    """The transient integrator, started in the periodic motion, must stay in it."""
-
-    def error(rtol: float) -> float:
-        run = lumped.simulate(pair, 2, samples_per_cycle=_SAMPLES, rtol=rtol, initial="periodic")
-        first, second = run["dte"].to_numpy()[: 2 * _SAMPLES].reshape(2, _SAMPLES)
-        return float(np.abs(second - first).max() / np.ptp(first))
-
-    return refinement("closure", _over_tolerance(error, 1e-6, 1e-8, 1e-10))
 
 
 def _multibody(pair: GearPair) -> Refinement:

@@ -61,8 +61,8 @@ class TestEquation2:
         assert t_g / t_p == pytest.approx(-1.0, rel=1e-14)
 
     def test_the_gear_runs_away(self, coulomb_pair):
-        repaired = simulate(coulomb_pair, 10, rtol=1e-8)
-        printed = simulate(coulomb_pair, 10, rtol=1e-8, as_printed=(2,))
+        repaired = simulate(coulomb_pair, 10)
+        printed = simulate(coulomb_pair, 10, as_printed=(2,))
         assert abs(printed["theta_g_dot"][-1]) > 20 * abs(repaired["theta_g_dot"]).max()
         assert abs(printed["dte"]).max() > 20 * abs(repaired["dte"]).max()
 

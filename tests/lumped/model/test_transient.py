@@ -5,11 +5,20 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
-from lumped import ParameterError, geometry, mesh_cycle, periodic_system, simulate, steady_state
+from lumped import (
+    NumericalError,
+    ParameterError,
+    geometry,
+    mesh_cycle,
+    periodic_system,
+    simulate,
+    steady_state,
+)
 from lumped.model.equations import COORDINATES
 from lumped.model.solution import static_deflection
-from lumped.model.steady import sample_times
+from lumped.model.steady import periodic_cycle, sample_times
 
 STATES = (*COORDINATES, *(f"{n}_dot" for n in COORDINATES))
 
@@ -19,10 +28,10 @@ def states(run):
 
 
 def test_grid(coulomb_pair):
-    run = simulate(coulomb_pair, 3, samples_per_cycle=16, rtol=1e-6)
+    run = simulate(coulomb_pair, 3, samples_per_cycle=16)
     period = geometry(coulomb_pair).mesh_period
     expected = np.arange(3 * 16 + 1) * period / 16
-    np.testing.assert_allclose(run["time"], expected, rtol=1e-14)
+    np.testing.assert_allclose(run["time"], expected)
     assert run["time"].attrs["units"] == "s"
 
 
@@ -76,18 +85,26 @@ def test_samples_at_the_very_bits_of_the_switches(coulomb_pair, monkeypatch):
     assert np.all(np.abs(between - before)[:, :6] <= 3 * fastest * steps[:, None] + 1e-12)
 
 
-def test_error_follows_the_tolerance(coulomb_pair):
-    """Steps that straddled a switch would leave an error of order one in the step, whatever the tolerance."""
-    exact = states(simulate(coulomb_pair, 4, samples_per_cycle=32, rtol=1e-13))
-    scale = np.abs(exact).max(axis=0)
-    errors = []
-    for rtol in (1e-5, 1e-7, 1e-9, 1e-11):
-        run = states(simulate(coulomb_pair, 4, samples_per_cycle=32, rtol=rtol))
-        errors.append(float((np.abs(run - exact) / scale).max()))
-    assert errors[0] < 1e-2
-    for coarse, fine in itertools.pairwise(errors):
-        assert fine < 0.1 * coarse  # 100 times tighter: nominally 100, with DOP853's dense output at least 10
-    assert errors[-1] < 1e-8
+@pytest.mark.parametrize("name", ["coulomb_pair", "unequal"])
+def test_an_adaptive_method_between_the_switches_finds_the_same(name, request):
+    """scipy's DOP853 on x' = A(t) x + b(t), started anew at every switch, is of another family."""
+    pair = request.getfixturevalue(name)
+    run = simulate(pair, 2, samples_per_cycle=16)
+    system = periodic_system(pair, "full")
+    state, scale = states(run)[0], np.abs(states(run)).max(axis=0)
+    brake = periodic_cycle(pair, 8).brake_torque  # by moments, as the equations have it
+    for _ in range(2):
+        for low, high in itertools.pairwise(system.cycle.edges):
+            inside = 1e-11 * system.period  # values at a switch are those behind it
+
+            def rate(t, x, ends=(low + inside, high - inside)):
+                t = np.clip(t, *ends)
+                return system.A(t) @ x + system.b(t, brake)
+
+            state = solve_ivp(rate, (low, high), state, method="DOP853", rtol=1e-10, atol=1e-12 * scale).y[
+                :, -1
+            ]
+    assert (np.abs(states(run)[-1] - state) / scale).max() < 1e-7
 
 
 def test_static_start(unequal):
@@ -150,7 +167,7 @@ def test_mean_speed_does_not_drift(coulomb_pair):
 
 def test_progress_is_reported(coulomb_pair):
     seen = []
-    simulate(coulomb_pair, 4, samples_per_cycle=8, rtol=1e-4, progress=seen.append)
+    simulate(coulomb_pair, 4, samples_per_cycle=8, progress=seen.append)
     assert seen == [0.25, 0.5, 0.75, 1.0]
 
 
@@ -167,11 +184,6 @@ class TestArguments:
         with pytest.raises(ParameterError, match=r"samples_per_cycle.*8 to 65536"):
             steady_state(nasa, samples_per_cycle=samples)
 
-    @pytest.mark.parametrize("rtol", [0.0, -1e-8, 1e-14, 0.1, math.nan, "tight", None])
-    def test_rtol(self, nasa, rtol):
-        with pytest.raises(ParameterError, match=r"rtol.*1e-13 to 0\.01"):
-            simulate(nasa, 1, rtol=rtol)
-
     @pytest.mark.parametrize(
         "initial", ["rest", "", None, 3.0, [0.0] * 11, [[0.0] * 12], [math.nan] * 12, ["a"] * 12, [None] * 12]
     )
@@ -180,9 +192,9 @@ class TestArguments:
             simulate(nasa, 1, initial=initial)
 
     def test_numpy_numbers_are_numbers(self, nasa):
-        run = simulate(nasa, np.int64(1), samples_per_cycle=np.int32(8), rtol=np.float64(1e-4))
+        run = simulate(nasa, np.int64(1), samples_per_cycle=np.int32(8))
         assert run.sizes["time"] == 9
 
-    def test_a_speed_at_which_a_cycle_would_take_minutes_is_refused_before_work(self, nasa):
-        with pytest.raises(ParameterError, match=r"pinion_speed = 0\.5 rpm: allowed at least .* swings"):
-            simulate(nasa.with_(operating__pinion_speed=0.5))
+    def test_a_speed_at_which_a_cycle_would_take_minutes(self, nasa):
+        with pytest.raises(NumericalError, match=r"mesh cycle of .* steps .* raise the speed"):
+            simulate(nasa.with_(operating__pinion_speed=1e-3))
