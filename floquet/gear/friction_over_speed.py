@@ -9,8 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from floquet.gear.axes import GearVariation, operating_rpm
-from lumped.friction.base import PITCH_RESOLUTION, ContactPath
-from lumped.friction.fitted import mean_coefficient
+from lumped.friction.base import PITCH_RESOLUTION, ContactPath, mean_coefficient
 from lumped.friction.registry import law_named
 from lumped.path_of_contact.friction import contact_path, fit_law
 from lumped.schema.pair import GearPair

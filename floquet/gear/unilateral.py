@@ -16,7 +16,7 @@ from floquet.gear.axes import GearVariation, operating_rpm
 from floquet.gear.friction_over_speed import FrictionFamily, depends_on_speed, friction_families
 from floquet.orbits.branch import Family
 from floquet.orbits.system import Contact, ContactSystem
-from lumped.gear_geometry.involute import tooth_half_angle
+from lumped.gear_geometry.tooth_profile import tooth_half_angle
 from lumped.model.bodies import bodies
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.model.mesh_elements import mesh_elements

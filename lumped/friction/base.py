@@ -1,6 +1,7 @@
-"""What every friction law shares: the contact along the path, the settings, the record of a law.
+"""What every friction law shares: the contact along the path, the settings, the record of a law, its fit.
 
-Sources: kinematics of the contact, Abbas Al-Zubaidi 2008, eqs. 5 and 11 to 15 with the repairs of the errata.
+Sources: kinematics of the contact, Abbas Al-Zubaidi 2008, eqs. 5 and 11 to 15 with the repairs of the errata;
+piecewise Chebyshev fits, Trefethen, Approximation Theory and Approximation Practice, 2013.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from lumped.lubrication import film
+from lumped.path_function import PathFunction
 from lumped.ranges import ValidityRange
 from lumped.typing import BoolArray, FloatArray
 
@@ -196,3 +198,54 @@ class FrictionLaw:
     def is_constant(self, settings: FrictionSettings) -> bool:
         """Whether mu(xi) is the same at every speed and load."""
         return not self.varies or (self.coefficient and settings.coefficient is not None)
+
+
+#: Absolute error of mu in the piecewise polynomials.
+FIT_TOLERANCE = 1e-10
+_FIRST_CUT = 64.0  # a piece that ends at P is cut at this fraction of its length
+_GEOMETRIC_ABOVE = 2.0  # pieces whose ends are further apart than this ratio are cut at the geometric mean
+
+
+def fit_signed(law: FrictionLaw, path: ContactPath, settings: FrictionSettings) -> PathFunction:
+    """Signed mu(xi) of a law on [L_XA, L_XD], within ``FIT_TOLERANCE`` wherever it is smooth.
+
+    Around the pitch point law II has a logarithm, law III the power 1.036 and law IV a width of its own, so
+    pieces are cut in proportion to their distance from it.
+    """
+    switches = sorted({xi for xi in law.switches(path, settings) if path.L_XA < xi < path.L_XD})
+    # The pitch point is a break of every law: also where mu is smooth there, it varies fastest around it.
+    breaks = sorted({path.L_XA, path.L_XP, path.L_XD, *switches})
+    return PathFunction.fit(
+        lambda xi: law.signed(xi, path, settings),
+        breaks,
+        switches,
+        tolerance=FIT_TOLERANCE,
+        cut=graded_breaks(path.L_XP),
+    )
+
+
+def graded_breaks(pitch: float) -> Callable[[FloatArray, FloatArray], FloatArray]:
+    """How to cut pieces: nearer to a point [m] the longer a piece is against its distance from it."""
+
+    def cut(low: FloatArray, high: FloatArray) -> FloatArray:
+        side = np.where(0.5 * (low + high) >= pitch, 1.0, -1.0)
+        near = np.where(side > 0, low - pitch, pitch - high)
+        far = np.where(side > 0, high - pitch, pitch - low)
+        geometric = np.where(near > 0.0, np.sqrt(near * far), far / _FIRST_CUT)
+        distance = np.where(far > _GEOMETRIC_ABOVE * near, geometric, 0.5 * (near + far))
+        return np.asarray(pitch + side * distance, dtype=np.float64)
+
+    return cut
+
+
+def mean_coefficient(function: PathFunction) -> float:
+    """Mean of |mu| over the path of contact [-].
+
+    Parameters
+    ----------
+    function : signed mu(xi), changing sign at its breaks only
+    """
+    breaks = function.breaks
+    middles = 0.5 * (breaks[:-1] + breaks[1:])
+    signs = np.where(function(middles) < 0.0, -1.0, 1.0)
+    return PathFunction(breaks, function.coefficients * signs, function.switches).mean()

@@ -9,7 +9,14 @@ from numpy.typing import ArrayLike
 
 from lumped.arguments import real_array
 from lumped.errors import refuse, shown
-from lumped.friction.base import PITCH_RESOLUTION, ContactPath, FrictionLaw, FrictionSettings
+from lumped.friction.base import (
+    PITCH_RESOLUTION,
+    ContactPath,
+    FrictionLaw,
+    FrictionSettings,
+    fit_signed,
+    mean_coefficient,
+)
 from lumped.ranges import NOT_STATED, ValidityRange, checked
 from lumped.typing import FloatArray
 
@@ -150,3 +157,11 @@ LAW = FrictionLaw(
     ranges=RANGES,
     fluid_film=True,
 )
+
+
+@lru_cache(maxsize=256)
+def average_coefficient(path: ContactPath, settings: FrictionSettings) -> float:
+    """mu_avg of laws I and IV: as given, or as in the paper the mean of |mu| of law II over A..D."""
+    if settings.coefficient is not None:
+        return settings.coefficient
+    return mean_coefficient(fit_signed(LAW, path, settings))

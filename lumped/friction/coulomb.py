@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from lumped.arguments import real_array
 from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
-from lumped.friction.fitted import average_coefficient
+from lumped.friction.benedict_kelley import average_coefficient
 from lumped.ranges import checked
 from lumped.typing import FloatArray
 

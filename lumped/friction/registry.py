@@ -47,25 +47,13 @@ _SPELLINGS = {
 
 
 def file_name(spelling: object) -> object:
-    """Return the name in parameter files of a law that is named otherwise: "II", "Coulomb", "law III".
+    """Return the name in parameter files of a law by number, label or authors: "II", "Coulomb", "law III".
 
-    Parameters
-    ----------
-    spelling : number, label or authors in any case; anything else is returned unchanged
+    Anything else is returned unchanged.
     """
     return _SPELLINGS.get(_plain(spelling), spelling) if isinstance(spelling, str) else spelling
 
 
 def law_named(name: str, field: str = "friction.law") -> FrictionLaw:
-    """Return a law by name.
-
-    Parameters
-    ----------
-    name : as in parameter files, or as tables and reports call it
-    field : argument that holds it
-
-    Raises
-    ------
-    ParameterError : no law has this name
-    """
+    """Return a law by its name in parameter files, or as tables and reports call it, or refuse it."""
     return LAWS[one_of(field, file_name(name), LAWS)]

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 from lumped.errors import FieldProblem
 from lumped.gear_geometry.geometry import Geometry, Wheel, theoretical_backlash
-from lumped.gear_geometry.involute import tooth_half_angle
+from lumped.gear_geometry.tooth_profile import tooth_half_angle
 
 #: Teeth of rounded published data may overlap by this much of a module before the pair is refused.
 _WEDGE_TOLERANCE = 1e-4
@@ -30,11 +30,7 @@ _WEDGE = "The teeth would wedge: raise the centre distance or mesh.backlash, or 
 def existence_problems(pinion: Wheel, gear: Wheel, g: Geometry, backlash: float) -> list[FieldProblem]:
     """Return the reasons why a pair cannot exist, each with the field of the schema to change.
 
-    Parameters
-    ----------
-    pinion, gear : as cut
-    g : their geometry
-    backlash : by which the teeth are thinner than the rack leaves them [m]
+    ``backlash`` is how much the teeth are thinner than the rack leaves them [m].
     """
     problems = list(_of_the_pair(g))
     # Distance from the tangent point on the own base circle to the last and to the first contact.

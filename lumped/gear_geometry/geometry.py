@@ -10,8 +10,7 @@ import math
 from dataclasses import dataclass
 
 from lumped.errors import refuse
-from lumped.gear_geometry.involute import inverse_involute, involute, tooth_half_angle
-from lumped.gear_geometry.tooth_profile import ToothProfile
+from lumped.gear_geometry.tooth_profile import ToothProfile, inverse_involute, involute, tooth_half_angle
 
 
 @dataclass(frozen=True)
@@ -106,21 +105,16 @@ class Geometry:
 def build_geometry(
     pinion: Wheel, gear: Wheel, centre_distance: float | None, backlash: float, pinion_speed: float
 ) -> Geometry:
-    """Return the geometry of two gears cut by one rack.
+    """Return the geometry of two gears cut by racks of the same module and pressure angle.
 
     Whether they can mesh is for ``lumped.gear_geometry.existence``; only what has no geometry is refused
-    here.
+    here, under the names of the schema.
 
     Parameters
     ----------
-    pinion, gear : as cut, by racks of the same module and pressure angle
     centre_distance : [m]; None: that of no backlash for these profile shifts
     backlash : by which the teeth are thinner than the rack leaves them, along the line of action [m]
     pinion_speed : [rad/s]
-
-    Raises
-    ------
-    ParameterError : lengths that no pair of gears has; the field is named as in the schema
     """
     try:
         return _build(pinion, gear, centre_distance, backlash, pinion_speed)
@@ -132,10 +126,7 @@ def build_geometry(
 def theoretical_backlash(pinion: Wheel, gear: Wheel, pressure_angle: float) -> float:
     """Backlash along the line of action that the rack leaves [m]; negative where the teeth would wedge.
 
-    Parameters
-    ----------
-    pinion, gear : as cut
-    pressure_angle : operating pressure angle [rad]
+    ``pressure_angle`` is the operating one [rad].
     """
     radii = [wheel.tooth.base_radius / math.cos(pressure_angle) for wheel in (pinion, gear)]
     halves = [

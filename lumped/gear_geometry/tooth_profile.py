@@ -14,8 +14,35 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import brentq
 
-from lumped.gear_geometry.involute import tooth_half_angle
 from lumped.typing import FloatArray
+
+
+def involute(angle: float) -> float:
+    """Return inv(angle) = tan(angle) - angle [rad].
+
+    >>> round(involute(math.radians(20.0)), 6)
+    0.014904
+    """
+    return math.tan(angle) - angle
+
+
+def inverse_involute(value: float) -> float:
+    """Return the angle [rad] in [0, 1.5] whose involute is ``value`` >= 0.
+
+    >>> round(math.degrees(inverse_involute(0.014904)), 3)
+    20.0
+    """
+    return float(brentq(lambda angle: involute(angle) - value, 0.0, 1.5, xtol=1e-15, rtol=1e-15))
+
+
+def tooth_half_angle(teeth: int, profile_shift: float, pressure_angle: float, radius_angle: float) -> float:
+    """Half the tooth's thickness as an angle at the gear centre, where the profile angle is ``radius_angle``.
+
+    That is arccos(r_b / r) at the radius in question; ``pressure_angle`` is that of the basic rack [rad].
+    """
+    reference = (0.5 * math.pi + 2.0 * profile_shift * math.tan(pressure_angle)) / teeth
+    return reference + involute(pressure_angle) - involute(radius_angle)
+
 
 #: The centre of the rack's tip circle is at least so far from the pitch line [modules].
 _OFF = 1e-6
@@ -25,13 +52,8 @@ _OFF = 1e-6
 class ToothProfile:
     """A tooth as its basic rack cuts it: flank and fillet as functions of one parameter each.
 
-    Attributes
-    ----------
-    teeth : number of teeth
-    module : [m]
-    pressure_angle : of the basic rack [rad]
-    profile_shift : x [-]
-    dedendum, fillet : dedendum and tip radius of the rack over module [-]
+    Lengths in m, angles in rad; ``dedendum`` and ``fillet`` are dedendum and tip radius of the rack over
+    module.
     """
 
     teeth: int
@@ -75,11 +97,7 @@ class ToothProfile:
         The rack's pitch line rolls on the reference circle. The envelope of the tip circle has its normal
         through the pitch point, so the cut point lies on the line from the pitch point through the tip
         circle's centre: beyond the centre, or before it where a large profile shift lifts it over the pitch
-        line.
-
-        Parameters
-        ----------
-        roll : generating roll angles, 0 where the rack tooth is centred in the space [rad]
+        line. ``roll`` is 0 where the rack tooth is centred in the space.
 
         Returns
         -------
@@ -162,11 +180,7 @@ class ToothProfile:
         return bottom, float(brentq(excess, bottom, joint, xtol=1e-14))
 
     def involute_points(self, length: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Points of the involute at lengths L along the base tangent.
-
-        Parameters
-        ----------
-        length : L [m], any shape
+        """Points of the involute at lengths L along the base tangent [m], any shape.
 
         Returns
         -------
@@ -181,16 +195,9 @@ class ToothProfile:
         return u, h, length / self.base_radius * np.cos(load_angle), load_angle
 
     def fillet_points(self, roll: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Points of the fillet at generating roll angles.
+        """Points u, h [m] of the fillet and slope du/dphi [m/rad] at generating roll angles phi, any shape.
 
-        Parameters
-        ----------
-        roll : angles phi [rad], any shape; 0 where the rack's tooth is centred in the space
-
-        Returns
-        -------
-        u, h : coordinates [m]
-        slope : du/dphi [m/rad]
+        ``roll`` is 0 where the rack's tooth is centred in the space.
         """
         x, y = self.trochoid(roll)
         radius, half_width, down = self.rack_tip

@@ -1,7 +1,9 @@
-"""Line contact of two teeth: Hertz pressure, elastohydrodynamic film and film parameter.
+"""Line contact of two teeth: Hertz pressure, roughness, elastohydrodynamic film and film parameter.
 
 The functions keep the units in which the film equations are published: N, mm, N/mm^2, mPa s, m/s and um.
-Equations (15), (16) and (21) of the model, with the powers of ten that its dimensions require.
+Equations (15), (16) and (21) of the model, with the powers of ten that its dimensions require. Roughness is
+Ra; data sheets may give Rq: Rq/Ra is sqrt(pi/2) = 1.253 for Gaussian heights, pi/(2 sqrt(2)) = 1.111 for a
+sine.
 """
 
 from __future__ import annotations
@@ -44,21 +46,8 @@ def effective_modulus(
 ) -> FloatArray:
     """Effective modulus of two bodies in contact, E' = 2 / ((1 - nu_p^2)/E_p + (1 - nu_g^2)/E_g).
 
-    Parameters
-    ----------
-    youngs_modulus_pinion, youngs_modulus_gear : in one common unit
-    poisson_ratio_pinion, poisson_ratio_gear : [-]
+    In the unit of the moduli; for equal bodies E/(1 - nu^2).
 
-    Returns
-    -------
-    E' in the unit of the moduli. For equal bodies E' = E/(1 - nu^2).
-
-    Raises
-    ------
-    ParameterError : a modulus not finite and positive, a Poisson's ratio outside -1 to 0.5 or at -1
-
-    Examples
-    --------
     >>> round(float(effective_modulus(206e3, 0.3, 206e3, 0.3)), 1)
     226373.6
     """
@@ -90,20 +79,10 @@ def _line_contact(
 
 
 def hertz_half_width(unit_load: ArrayLike, radius: ArrayLike, effective_modulus: ArrayLike) -> FloatArray:
-    """Half width b_H of the Hertzian contact band, b_H = sqrt(8 w rho / (pi E')).
+    """Half width b_H of the Hertzian contact band [mm], b_H = sqrt(8 w rho / (pi E')).
 
-    Parameters
-    ----------
-    unit_load : w, load per face width [N/mm]
-    radius : rho, reduced radius of curvature [mm]
-    effective_modulus : E' [N/mm^2]
+    w is the load per face width [N/mm], rho the reduced radius of curvature [mm], E' in N/mm^2.
 
-    Returns
-    -------
-    b_H [mm]
-
-    Examples
-    --------
     >>> round(float(hertz_half_width(100, 8, 226373.6)), 7)
     0.0948642
     """
@@ -112,18 +91,10 @@ def hertz_half_width(unit_load: ArrayLike, radius: ArrayLike, effective_modulus:
 
 
 def hertz_pressure(unit_load: ArrayLike, radius: ArrayLike, effective_modulus: ArrayLike) -> FloatArray:
-    """Largest Hertzian pressure of a line contact, p_h = sqrt(w E' / (2 pi rho)), equation (16).
+    """Largest Hertzian pressure of a line contact [GPa], p_h = sqrt(w E' / (2 pi rho)), equation (16).
 
-    Parameters
-    ----------
-    unit_load, radius, effective_modulus : as in ``hertz_half_width``
+    Arguments as in ``hertz_half_width``.
 
-    Returns
-    -------
-    p_h [GPa]
-
-    Examples
-    --------
     >>> round(float(hertz_pressure(100, 8, 226373.6)), 6)
     0.671086
     """
@@ -134,19 +105,8 @@ def hertz_pressure(unit_load: ArrayLike, radius: ArrayLike, effective_modulus: A
 def pressure_viscosity(
     viscosity: ArrayLike, k: ArrayLike = MINERAL_OIL_K, s: ArrayLike = MINERAL_OIL_S
 ) -> FloatArray:
-    """Pressure-viscosity coefficient alpha = k eta^s.
+    """Pressure-viscosity coefficient alpha = k eta^s [mm^2/N] at a dynamic viscosity [mPa s].
 
-    Parameters
-    ----------
-    viscosity : eta, dynamic viscosity [mPa s]
-    k, s : constants of the oil type, alpha in mm^2/N for eta in mPa s
-
-    Returns
-    -------
-    alpha [mm^2/N]
-
-    Examples
-    --------
     >>> round(float(pressure_viscosity(10)), 6)
     0.014282
     """
@@ -165,35 +125,15 @@ def film_thickness(
     pressure_viscosity_k: ArrayLike = MINERAL_OIL_K,
     pressure_viscosity_s: ArrayLike = MINERAL_OIL_S,
 ) -> FloatArray:
-    """Central film thickness of a line contact, H_c = 3.06 G^0.56 U^0.69 W^-0.10, equation (21).
+    """Central film thickness of a line contact [um], H_c = 3.06 G^0.56 U^0.69 W^-0.10, equation (21).
 
-    G = alpha E', U = 1e-6 eta v_e / (2 E' rho), W = w / (E' rho), h_c = H_c rho.
-
-    Parameters
-    ----------
-    unit_load : w, load per face width [N/mm]
-    radius : rho, reduced radius of curvature [mm]
-    viscosity : eta at the inlet, dynamic [mPa s]
-    entraining_velocity : v_e, the *sum* of both rolling velocities [m/s]
-    effective_modulus : E' [N/mm^2]
-    pressure_viscosity_k, pressure_viscosity_s : alpha = k eta^s, see ``pressure_viscosity``
-
-    Returns
-    -------
-    h_c [um]
-
-    Notes
-    -----
-    Smooth surfaces, steady, isothermal. The formula gives an unbounded film for a vanishing load: w = 0 is
+    G = alpha E', U = 1e-6 eta v_e / (2 E' rho), W = w / (E' rho), h_c = H_c rho, with the load per face width
+    w [N/mm], the reduced radius rho [mm], the viscosity eta at the inlet [mPa s], the *sum* v_e of both
+    rolling velocities [m/s] and E' [N/mm^2]. Smooth surfaces, steady, isothermal. D. Dowson and S. Toyoda, "A
+    central film thickness formula for elastohydrodynamic line contacts", Proc. 5th Leeds-Lyon Symposium on
+    Tribology, 1978; used in AGMA 925-A03. The film grows beyond bounds as the load vanishes: w = 0 is
     refused.
 
-    References
-    ----------
-    D. Dowson and S. Toyoda, "A central film thickness formula for elastohydrodynamic line contacts",
-    Proc. 5th Leeds-Lyon Symposium on Tribology, 1978; used in AGMA 925-A03.
-
-    Examples
-    --------
     >>> modulus = effective_modulus(206e3, 0.3, 206e3, 0.3)
     >>> round(float(film_thickness(100, 8, 10, 10, modulus)), 6)
     0.312115
@@ -215,23 +155,11 @@ def film_parameter(
     composite_roughness: ArrayLike,
     film_length: ArrayLike = DEFAULT_FILM_LENGTH,
 ) -> FloatArray:
-    """Film parameter Lambda = (h_c / R_comp) sqrt(L_x / (2 b_H)), equation (21).
+    """Film parameter Lambda = (h_c / R_comp) sqrt(L_x / (2 b_H)) [-], equation (21).
 
-    The root rescales a roughness measured over the cut-off L_x to the width 2 b_H of the contact band.
+    The root rescales a roughness R_comp [um] measured over the cut-off L_x [mm] to the width 2 b_H [mm] of
+    the contact band; h_c [um].
 
-    Parameters
-    ----------
-    film_thickness : h_c [um]
-    half_width : b_H [mm]
-    composite_roughness : R_comp, root sum of squares of both surfaces' average roughness [um]
-    film_length : L_x, cut-off wavelength of the roughness measurement [mm]
-
-    Returns
-    -------
-    Lambda [-]
-
-    Examples
-    --------
     >>> round(float(film_parameter(0.312115, 0.0948642, 0.5, 0.8)), 5)
     1.28181
     """
@@ -245,17 +173,8 @@ def film_parameter(
 def regime(film_parameter: ArrayLike, thresholds: Sequence[float] = DEFAULT_THRESHOLDS) -> NDArray[np.int64]:
     """Lubrication regime by film parameter: 0 boundary, 1 mixed, 2 elastohydrodynamic, 3 full film.
 
-    Parameters
-    ----------
-    film_parameter : Lambda [-]
-    thresholds : three increasing values; a film parameter equal to one belongs to the regime above it
+    A film parameter equal to a threshold belongs to the regime above it.
 
-    Raises
-    ------
-    ParameterError : the thresholds are not three increasing positive numbers
-
-    Examples
-    --------
     >>> int(regime(2.0))
     1
     """
@@ -270,3 +189,26 @@ def regime(film_parameter: ArrayLike, thresholds: Sequence[float] = DEFAULT_THRE
     return np.asarray(
         np.digitize(checked("film_parameter", film_parameter, "", allow_zero=True), limits), dtype=np.int64
     )
+
+
+def composite_roughness(pinion: ArrayLike, gear: ArrayLike) -> FloatArray:
+    """R_comp = sqrt(R_p^2 + R_g^2), the roughness of the gap, in the convention and unit of its arguments.
+
+    The surfaces are independent: variances add. Lambda on Ra is 1.25 times Lambda on Rq for Gaussian heights.
+
+    >>> float(composite_roughness(0.3, 0.4))
+    0.5
+    """
+    a = checked("pinion.roughness", pinion, "", allow_zero=True)
+    b = checked("gear.roughness", gear, "", allow_zero=True)
+    return np.asarray(np.hypot(a, b), dtype=np.float64)
+
+
+def mean_roughness(pinion: ArrayLike, gear: ArrayLike) -> FloatArray:
+    """S = (R_p + R_g)/2, the average roughness that laws II and III take, in the unit of its arguments.
+
+    >>> float(mean_roughness(0.3, 0.4))
+    0.35
+    """
+    a = checked("pinion.roughness", pinion, "", allow_zero=True)
+    return np.asarray(0.5 * (a + checked("gear.roughness", gear, "", allow_zero=True)), dtype=np.float64)

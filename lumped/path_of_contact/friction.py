@@ -12,12 +12,11 @@ from functools import lru_cache
 import numpy as np
 
 from lumped.errors import refuse
-from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings
-from lumped.friction.benedict_kelley import friction_number
-from lumped.friction.fitted import average_coefficient, fit_signed
+from lumped.friction.base import ContactPath, FrictionLaw, FrictionSettings, fit_signed
+from lumped.friction.benedict_kelley import average_coefficient, friction_number
 from lumped.friction.registry import LAWS, law_named
 from lumped.lubrication import film
-from lumped.lubrication.roughness import composite_roughness, mean_roughness
+from lumped.lubrication.film import composite_roughness, mean_roughness
 from lumped.path_function import PathFunction
 from lumped.ranges import RangeViolation, range_violations, warn_violations
 from lumped.schema.files import AnyPair, load_gear_pair

@@ -11,7 +11,7 @@ import numpy as np
 
 from lumped.arguments import whole_number
 from lumped.errors import ParameterError
-from lumped.friction.fitted import mean_coefficient
+from lumped.friction.base import mean_coefficient
 from lumped.friction.registry import FRICTIONAL, LAWS
 from lumped.labelling import labelled_dataset
 from lumped.lubrication import film

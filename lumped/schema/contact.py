@@ -12,8 +12,14 @@ from lumped.errors import refuse, shown
 from lumped.fields.section import OneOf, Section
 from lumped.fields.units import Quantity
 from lumped.friction.registry import LAWS, file_name
-from lumped.lubrication.viscosity import ZERO_CELSIUS, kinematic_viscosity, oil_density, walther_constants
-from lumped.lubrication.viscosity_grade import grade_viscosity, midpoint
+from lumped.lubrication.viscosity import (
+    ZERO_CELSIUS,
+    grade_viscosity,
+    kinematic_viscosity,
+    midpoint,
+    oil_density,
+    walther_constants,
+)
 
 
 class ViscosityLaw(Section):

@@ -18,7 +18,7 @@ from typing import Literal
 
 import numpy as np
 
-from lumped.lubrication.viscosity_grade import ISO_VG_MIDPOINT, viscosity_at_100
+from lumped.lubrication.viscosity import ISO_VG_MIDPOINT, viscosity_at_100
 from lumped.model.mesh_cycle import mesh_cycle
 from lumped.model.mesh_elements import mesh_elements
 from lumped.path_function import PathFunction

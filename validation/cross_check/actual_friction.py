@@ -21,7 +21,7 @@ from lumped.friction import (
     benedict_kelley,
 )
 from lumped.friction.base import PITCH_RESOLUTION
-from lumped.friction.fitted import average_coefficient
+from lumped.friction.benedict_kelley import average_coefficient
 from lumped.lubrication.film import regime
 from lumped.path_of_contact.friction import contact_path
 from lumped.typing import FloatArray

@@ -35,15 +35,14 @@ FORMULAS: Mapping[str, frozenset[str]] = {
         "friction.coulomb": "coulomb",
         "friction.smoothed_coulomb": "smoothed_coulomb",
         "friction.xu_kahraman": "xu_kahraman",
-        "gear_geometry.involute": "involute inverse_involute",
+        "gear_geometry.tooth_profile": "involute inverse_involute",
         "losses.anderson_loewenthal": "anderson_loewenthal_coefficient",
         "losses.loss_factor": "ohlendorf",
         "losses.mean_friction": "iso_14179_mean_coefficient",
         "lubrication.film": "film_thickness effective_modulus hertz_half_width hertz_pressure "
-        "pressure_viscosity film_parameter regime",
-        "lubrication.roughness": "composite_roughness mean_roughness",
-        "lubrication.viscosity": "walther_constants kinematic_viscosity oil_density",
-        "lubrication.viscosity_grade": "viscosity_index viscosity_at_100 grade_viscosity",
+        "pressure_viscosity film_parameter regime composite_roughness mean_roughness",
+        "lubrication.viscosity": "walther_constants kinematic_viscosity oil_density "
+        "viscosity_index viscosity_at_100 grade_viscosity",
         "stiffness.energy": "linear_hertz_compliance contact_half_width local_compliance",
         "stiffness.foundation": "coefficients torsional_stiffness",
         "stiffness.iso6336": "theoretical_single_stiffness basic_rack_factor material_factor "

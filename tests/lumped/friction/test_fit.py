@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from lumped.friction.fitted import towards
+from lumped.friction.base import graded_breaks
 from lumped.path_function import PathFunction
 
 PITCH, LOW, HIGH = 0.0152, 0.0075, 0.0229
 
 
 def graded(law, breaks, tolerance):
-    return PathFunction.fit(law, breaks, tolerance=tolerance, cut=towards(PITCH))
+    return PathFunction.fit(law, breaks, tolerance=tolerance, cut=graded_breaks(PITCH))
 
 
 def logarithm(xi):

@@ -8,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from lumped.gear_geometry.involute import inverse_involute, involute, tooth_half_angle
-from lumped.gear_geometry.tooth_profile import ToothProfile
+from lumped.gear_geometry.tooth_profile import ToothProfile, inverse_involute, involute, tooth_half_angle
 
 
 @given(angle=st.floats(1e-3, 1.4))

@@ -3,7 +3,7 @@
 import pytest
 
 from lumped import load_gear_pair
-from lumped.lubrication.roughness import composite_roughness, mean_roughness
+from lumped.lubrication.film import composite_roughness, mean_roughness
 from lumped.path_of_contact import contact_path
 
 

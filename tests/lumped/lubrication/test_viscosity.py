@@ -5,8 +5,7 @@ import pytest
 
 from lumped import load_gear_pair
 from lumped.errors import ParameterError
-from lumped.lubrication.viscosity import kinematic_viscosity, oil_density, walther_constants
-from lumped.lubrication.viscosity_grade import viscosity_at_100
+from lumped.lubrication.viscosity import kinematic_viscosity, oil_density, viscosity_at_100, walther_constants
 from lumped.path_of_contact import contact_path
 
 

@@ -5,7 +5,7 @@ import itertools
 import pytest
 
 from lumped.errors import ParameterError
-from lumped.lubrication.viscosity_grade import (
+from lumped.lubrication.viscosity import (
     ISO_VG_MIDPOINT,
     grade_viscosity,
     reference_oils,

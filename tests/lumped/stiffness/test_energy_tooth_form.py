@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from lumped.gear_geometry.involute import tooth_half_angle
-from lumped.gear_geometry.tooth_profile import ToothProfile
+from lumped.gear_geometry.tooth_profile import ToothProfile, tooth_half_angle
 
 MODULE = 3e-3
 GEARS = [(28, 0.0, 20.0, 0.38), (12, 0.0, 20.0, 0.38), (16, 0.18, 20.0, 0.2), (60, -0.2, 25.0, 0.3)]

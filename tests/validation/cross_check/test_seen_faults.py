@@ -110,7 +110,7 @@ FAULTS = {
     "law III: unit load over both widths": (LAWS["xu_kahraman"], contact(unit_load=lambda x: 0.5 * x)),
     "law IV: mean by other bounds": (
         LAWS["smoothed_coulomb"],
-        ("lumped.friction.fitted", "mean_coefficient", lambda *a: 0.07),
+        ("lumped.friction.base", "mean_coefficient", lambda *a: 0.07),
     ),
     "law V: film velocity halved": (THRESHOLD, kinematics("film_thickness", 0.5**0.69)),
     "masses 1 % high": (LAWS["coulomb"], disc(1.01)),

@@ -8,7 +8,7 @@ import xml.etree.ElementTree as ET
 import pytest
 
 import lumped
-from lumped.lubrication.viscosity_grade import ISO_VG_MIDPOINT
+from lumped.lubrication.viscosity import ISO_VG_MIDPOINT
 from validation.exchange import gear_pair_from_rexs, write_rexs
 from validation.exchange.rexs.exporting import rexs_model
 from validation.exchange.rexs.vocabulary import ATTRIBUTES, WRITTEN

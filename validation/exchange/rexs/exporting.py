@@ -10,7 +10,7 @@ from pathlib import Path
 from lumped.arguments import file_path
 from lumped.errors import refuse, shown
 from lumped.gear_geometry.geometry import Geometry
-from lumped.lubrication.viscosity_grade import grade_viscosity
+from lumped.lubrication.viscosity import grade_viscosity
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.gear import Gear
 from lumped.schema.pair import GearPair

@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 from lumped.fields.units import to_si
-from lumped.gear_geometry.involute import involute
+from lumped.gear_geometry.tooth_profile import involute
 from validation.exchange.rexs.gears import flanks_of, gear_data_of
 from validation.exchange.rexs.model import Component
 from validation.exchange.rexs.said import Reading, Said
