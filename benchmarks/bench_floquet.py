@@ -1,12 +1,12 @@
 """The Floquet engine beside general solvers of the same run: rates, accuracy, memory, compile time.
 
-    python benchmarks/bench_floquet.py [--size 400] [--pairs 200]    prints the table
+    python -m benchmarks.bench_floquet [--size 400] [--pairs 200]    prints the table
     pytest benchmarks/bench_floquet.py --benchmark-only              the rates alone, by pytest-benchmark
 
 Rates are per second of processor time, times the cores of the machine, so that other work on the machine does
 not enter. The solvers get every help they can use on the same points: polynomials ready to evaluate, and
 restarts at the switches (without that they would lose their order). Accuracy is measured in extended
-precision (`floquet.gear.reference`).
+precision (`tests.evidence.floquet.extended`).
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ from scipy.integrate import solve_ivp
 
 import lumped
 from floquet import fast_multipliers, gear_block, stability_chart
-from floquet.gear.reference import extended_monodromy, stress_test
 from lumped.errors import LawRangeWarning
 from lumped.model.periodic_system import Supports
 from lumped.schema.pair import GearPair
+from tests.evidence.floquet.extended import extended_monodromy, stress_test
 
 CORES = os.cpu_count() or 1
 SPEEDS = (500.0, 20000.0)
@@ -255,16 +255,13 @@ def processes() -> None:
 
 
 def accuracy(pairs: int, seed: int) -> None:
-    found, seconds = cpu(lambda: stress_test(pairs, seed))
-    for route in found.route.values:
-        here = found.sel(route=route)
-        row(
-            f"{pairs} random gear pairs (seed {seed}), pieces {route}",
-            f"worst error {float(here.error.max()):.1e}",
-            f"median {float(here.error.median()):.0e}; bound: median {float(here.bound.median()):.0e}, "
-            f"largest {float(here.bound.max()):.0e}, exceeded by {int((here.excess > 1.0).sum())} pairs; "
-            f"{seconds:.0f} s with the reference",
-        )
+    (error, bound, excess), seconds = cpu(lambda: stress_test(pairs, seed))
+    row(
+        f"{pairs} random gear pairs (seed {seed})",
+        f"worst error {error.max():.1e}",
+        f"median {np.median(error):.0e}; bound: median {np.median(bound):.0e}, largest {bound.max():.0e}, "
+        f"exceeded by {(excess > 1.0).sum()} pairs; {seconds:.0f} s with the reference",
+    )
 
 
 @pytest.mark.parametrize("method", ["taylor", "chebyshev"])

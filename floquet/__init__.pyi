@@ -20,8 +20,6 @@ from .gear.boundaries import predicted_lines as predicted_lines
 from .gear.boundaries import stability_boundaries as stability_boundaries
 from .gear.campbell import campbell as campbell
 from .gear.chart import stability_chart as stability_chart
-from .gear.coulomb_zones import CoulombGearPair as CoulombGearPair
-from .gear.coulomb_zones import stability_zones as stability_zones
 from .gear.jump_map import JUMP_AXES as JUMP_AXES
 from .gear.jump_map import jump_map as jump_map
 from .gear.jump_removal import JumpRemoval as JumpRemoval
@@ -33,8 +31,6 @@ from .gear.multipliers import gear_pair_system as gear_pair_system
 from .gear.orbit import GearOrbit as GearOrbit
 from .gear.orbit import long_run as long_run
 from .gear.orbit import periodic_orbit as periodic_orbit
-from .gear.reference import extended_monodromy as extended_monodromy
-from .gear.reference import stress_test as stress_test
 from .gear.response import ResponseBranches as ResponseBranches
 from .gear.response import response_branches as response_branches
 from .gear.tongues import label_regions as label_regions

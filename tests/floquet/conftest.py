@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from floquet import PeriodicSystem
-from floquet.engine import reference_systems
+from tests.evidence.floquet import reference_systems
 
 
 def accurate_expm(A: np.ndarray) -> np.ndarray:

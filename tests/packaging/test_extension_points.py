@@ -190,11 +190,11 @@ def three_eighths():
 }
 USE_PROPAGATOR = """
 import math, floquet
-from validation.verification import order_checks
+from tests.evidence.floquet.closed_forms import check_orders
 
 found = floquet.monodromy(floquet.PeriodicSystem(lambda t: [[-1.0]], 1.0), 1e-6, method="three_eighths")
 assert abs(found.spectral_radius - math.exp(-1.0)) < 1e-6
-assert {"three_eighths", "gauss"} <= {check.method for check in order_checks() if check.passes}
+assert {"three_eighths", "gauss"} <= {check.subject.split()[-1] for check in check_orders() if check.passes}
 """
 
 

@@ -77,42 +77,6 @@ def rows_check(key: str, rows: ArrayLike) -> Check:
     return check(key, np.max(np.abs(found - wanted) / np.maximum(np.abs(wanted), 1e-300)))
 
 
-def error_check(subject: str, exact: str, value: float, limit: float) -> Check:
-    """Check of an error, its subject being the key too."""
-    return Check(subject, subject, exact, float(value), limit)
-
-
-def order_check(subject: str, value: float, theory: float, limit: float) -> Check:
-    """Check of an observed order against theory."""
-    return Check(subject, subject, f"observed order, theory {theory:g}", float(value), limit, theory=theory)
-
-
-@dataclass(frozen=True)
-class OrderCheck:
-    """Order of convergence of a method, observed and from theory.
-
-    Attributes
-    ----------
-    method : name
-    theory, observed : order
-    steps : coarse number of steps; the fine one is twice as large
-    error : relative, with the fine steps
-    tolerance : largest difference of the orders that passes
-    """
-
-    method: str
-    theory: int
-    observed: float
-    steps: int
-    error: float
-    tolerance: float = 0.3  # the next term of the error series at coarse steps
-
-    @property
-    def passes(self) -> bool:
-        """Whether the orders agree."""
-        return math.isfinite(self.observed) and abs(self.observed - self.theory) <= self.tolerance
-
-
 @dataclass(frozen=True)
 class Level:
     """One resolution of a refinement.

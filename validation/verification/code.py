@@ -23,7 +23,6 @@ from validation.cross_check.agreement import FIDELITIES, Fidelity
 from validation.cross_check.ledger import losses, quadrature
 from validation.verification.arithmetic import arithmetic
 from validation.verification.checks import Check, check
-from validation.verification.closed_forms import closed_forms
 from validation.verification.elastic_load import elastic_load
 from validation.verification.published import published_checks
 from validation.verification.stability_routes import fit_bound
@@ -42,7 +41,6 @@ def code_checks(pair: AnyPair) -> tuple[Check, ...]:
     pair = load_gear_pair(pair)
     return (
         *published_checks(pair),
-        *closed_forms(),
         elastic_load(),
         *written_twice(pair),
         *arithmetic(pair),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from floquet import monodromy
-from floquet.engine.reference_systems import GearChain, HsuSystem
+from tests.evidence.floquet.reference_systems import GearChain, HsuSystem
 
 OMEGA = np.array([1.0, 2.3])
 D = np.array([[0.3, 0.8], [0.5, 0.4]])  # d_12 d_21 > 0: like a symmetric coupling

@@ -16,9 +16,9 @@ from floquet import (
     monodromy,
     scan,
 )
-from floquet.engine.reference_systems import meissner_trace
 from floquet.engine.second_order import _Solution
 from lumped.errors import ParameterError
+from tests.evidence.floquet.reference_systems import meissner_trace
 
 PERIOD = 3.0
 UNITS = np.diag(10.0 ** np.arange(4))  # coordinates in other units: micrometres beside metres

@@ -7,11 +7,11 @@ import pytest
 
 from floquet import PeriodicSystem, gear_block, gear_pair_system, monodromy, stability_chart
 from floquet.gear.multipliers import OffLineOfAction
-from floquet.gear.reference import extended_monodromy
 from lumped import GearPair, load_gear_pair, steady_state
 from lumped.model.averaged import averaged_matrix
 from lumped.model.mesh_cycle import mesh_cycle
 from lumped.model.periodic_system import periodic_system
+from tests.evidence.floquet.extended import extended_monodromy
 
 
 def with_table(points: int, factor: float) -> GearPair:

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar
 
-from floquet.gear.coulomb_zones import CoulombGearPair
 from floquet.gear.margins import margins_dataset, stability_margins
 from floquet.gear.multipliers import gear_pair_multipliers
 from lumped import geometry, load_gear_pair, periodic_system
 from lumped.model.bodies import bodies
+from tests.evidence.floquet.coulomb_zones import CoulombGearPair
 from validation.plots.tongues import tongues_figure
 
 MU = 0.2

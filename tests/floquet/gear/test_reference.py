@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from floquet import gear_pair_system, monodromy
-from floquet.gear.reference import RATE, extended_monodromy
 from lumped import load_gear_pair
+from tests.evidence.floquet.extended import RATE, extended_monodromy
 
 
 @pytest.mark.parametrize("law", ["coulomb", "xu_kahraman"])

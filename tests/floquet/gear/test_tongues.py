@@ -7,10 +7,10 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from floquet import PeriodicSystem, label_regions, monodromy, stability_chart, stability_margins
-from floquet.engine.reference_systems import meissner_trace
 from floquet.engine.tongues import Tongue, label_tongue, mode_shares, tongue_tip
 from lumped import load_gear_pair
 from lumped.errors import NumericalError
+from tests.evidence.floquet.reference_systems import meissner_trace
 
 
 def coupled(omega: np.ndarray, coupling: np.ndarray, excitation: float, damping: float = 0.0):

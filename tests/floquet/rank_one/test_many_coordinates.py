@@ -9,9 +9,9 @@ import pytest
 
 from floquet import RankOneSystem, coarsened, fast_monodromies, fast_multipliers, monodromy
 from floquet.engine.multipliers import radii_with_bounds
-from floquet.rank_one.extended import extended_matrix
 from floquet.rank_one.system import Gains
 from lumped.errors import NumericalError, ParameterError
+from tests.evidence.floquet.extended import extended_matrix
 
 
 def shafts(m: int, seed: int = 1) -> RankOneSystem:

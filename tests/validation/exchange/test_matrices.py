@@ -12,8 +12,8 @@ import xarray as xr
 from typer.testing import CliRunner
 
 from floquet import monodromy
-from floquet.engine.reference_systems import meissner_trace
 from lumped.errors import ParameterError
+from tests.evidence.floquet.reference_systems import meissner_trace
 from validation.cli import app
 from validation.exchange import read_second_order
 

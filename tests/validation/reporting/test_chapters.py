@@ -28,7 +28,7 @@ from validation.reporting.cross_check_words import finite_motions
 from validation.reporting.page import layers, numbered
 from validation.reporting.results import FULL, QUICK
 from validation.reporting.words import sentence
-from validation.verification import code_checks, order_checks, refinements
+from validation.verification import code_checks, refinements
 
 ASKED = [
     "steady_state",
@@ -49,8 +49,6 @@ ASKED = [
     "code_verification",
     "solution_verification",
     "reference_model",
-    "prescribed",
-    "errata",
     "provenance",
     "glossary",
 ]
@@ -131,15 +129,13 @@ def failing(check):
 
 
 def test_one_failing_check_turns_the_chapter(pair):
-    checks, orders, studies = code_checks(pair)[:3], order_checks()[:2], refinements(pair, 64)
-    wrong_order = dataclasses.replace(orders[0], observed=orders[0].theory - 1.0)
+    checks, studies = code_checks(pair)[:3], refinements(pair, 64)
     wrong_check = failing(checks[0])
     levels = tuple(dataclasses.replace(level, error=2 * studies[0].limit) for level in studies[0].levels)
     wrong_study = dataclasses.replace(studies[0], levels=levels)
-    assert code_verification.content(checks, orders).badge.state == "confirmed"
+    assert code_verification.content(checks).badge.state == "confirmed"
     for made in (
-        code_verification.content((wrong_check, *checks[1:]), orders),
-        code_verification.content(checks, (wrong_order, *orders[1:])),
+        code_verification.content((wrong_check, *checks[1:])),
         solution_verification.content((wrong_study, *studies[1:])),
     ):
         assert made.badge.state == "not confirmed"

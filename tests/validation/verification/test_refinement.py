@@ -6,10 +6,8 @@ import math
 import lumped
 from validation.verification import (
     Check,
-    OrderCheck,
     Refinement,
     code_checks,
-    order_checks,
     refinements,
 )
 from validation.verification.checks import Level
@@ -23,12 +21,6 @@ def test_all_checks_pass_and_say_why_their_limit_is_what_it_is(pair):
         assert check.passes, check
         assert check.exact
         assert check.reason
-
-
-def test_methods_show_their_orders():
-    rows = order_checks()
-    assert {row.method: row.theory for row in rows}["gauss6"] == 6
-    assert all(row.passes for row in rows), rows
 
 
 def test_refining_brings_every_solution_down_to_its_limit(pair):
@@ -48,5 +40,4 @@ def test_the_peak_is_read_to_three_digits_whatever_the_sampling():
 
 def test_numbers_that_are_not_finite_never_pass():
     assert not Check("k", "s", "e", math.nan, 1.0, "r").passes
-    assert not OrderCheck("m", 4, math.nan, 8, 1e-3).passes
     assert not Refinement("k", "s", "m", (Level("a", math.nan, True),), 1.0, "r").passes

@@ -1,8 +1,5 @@
 """Closed forms, invariants and orders of convergence that the Floquet engine must show.
 
-Each is stated once, as a function that returns the error; the report, the verification page and the tests
-use it.
-
 Sources: docs/verification/floquet.md; Oberkampf and Roy, Verification and Validation in Scientific Computing,
 2010, for the method.
 """
@@ -24,10 +21,10 @@ from floquet import (
 )
 from floquet.engine.propagation import propagate_fixed
 from floquet.engine.propagators.registry import propagator
-from floquet.engine.reference_systems import mathieu, meissner, meissner_trace
-from floquet.gear.reference import stress_test
 from lumped.typing import FloatArray
-from validation.verification.checks import Check, OrderCheck, check, error_check
+from tests.evidence.check import Check, order
+from tests.evidence.floquet.extended import stress_test
+from tests.evidence.floquet.reference_systems import mathieu, meissner, meissner_trace
 
 
 def meissner_error(delta: float, epsilon: float, rtol: float = 1e-11, method: str = "gauss") -> float:
@@ -60,22 +57,19 @@ def constant_error(n: int, rtol: float = 1e-11, method: str = "gauss") -> float:
     return float(np.linalg.norm(found - exact) / np.linalg.norm(exact))
 
 
-def closed_forms() -> tuple[Check, ...]:
-    """Errors against the closed forms of Meissner, of Mathieu, and of constant coefficients."""
-    return (
-        check("meissner", max(meissner_error(*case) for case in ((1.3, 0.4), (4.0, 3.0), (2.2, 0.05)))),
-        check("mathieu", max(mathieu_error(m, 1.0) for m in (1, 2, 3))),
-        check("constant", constant_error(5)),
-    )
-
-
 def check_closed_forms() -> Iterator[Check]:
-    """The closed forms of the report, and damping."""
-    yield from closed_forms()
+    """Meissner, Mathieu, constant coefficients, damping. Asked for to 1e-11 of matrices smaller than 10."""
+    worst = max(meissner_error(*case) for case in ((1.3, 0.4), (4.0, 3.0), (2.2, 0.05)))
+    yield Check("Meissner's equation", "trace in closed form (1918); absolute", worst, 1e-9)
+    # Characteristic values are good to 1e-13, times the slope of the trace.
+    worst = max(mathieu_error(m, 1.0) for m in (1, 2, 3))
+    exact = "trace ±2 on the characteristic curves a_m, b_m, q = 1 (DLMF 28.2); absolute"
+    yield Check("Mathieu's equation", exact, worst, 1e-9)
+    yield Check("constant coefficients", "the matrix exponential", constant_error(5), 1e-10)
     cases = ((1.0, 0.3, 0.05), (2.5, 1.7, 0.3), (0.2, 0.9, 0.02))
     worst = max(damped_mathieu_error(*case) for case in cases)
     exact = "tr M is exp(-cπ) times that of a - c² without damping; absolute"
-    yield error_check("Mathieu's equation with damping", exact, worst, 1e-9)
+    yield Check("Mathieu's equation with damping", exact, worst, 1e-9)
 
 
 def harmonic_motion_error(rtol: float = 1e-11, unit: float = 1.0) -> float:
@@ -93,7 +87,7 @@ def harmonic_motion_error(rtol: float = 1e-11, unit: float = 1.0) -> float:
 
 def check_forced_motion() -> Iterator[Check]:
     """Periodic motion of the general engine."""
-    yield error_check("forced motion of constant coefficients", "closed form", harmonic_motion_error(), 1e-9)
+    yield Check("forced motion of constant coefficients", "closed form", harmonic_motion_error(), 1e-9)
 
 
 def _smooth(coefficients: FloatArray, jump: float = 0.0) -> PeriodicSystem:
@@ -134,36 +128,33 @@ def check_invariants() -> Iterator[Check]:
         similar = max(similar, change(lambda t, P=P, s=system, i=inverse: P @ s.evaluate(t) @ i))  # type: ignore[misc]
         shifted = max(shifted, change(lambda t, s=system: s.evaluate(np.mod(t + 0.37, 1.0))))  # type: ignore[misc]
     symplectic = max(symplectic_defect("gauss", seed) for seed in range(5))
-    yield error_check("symplecticity, 3 coarse steps", "MᵀJM = J, over |M|²", symplectic, 1e-12)
-    yield error_check("badly scaled coordinates, PAP⁻¹", "the same multipliers", similar, 1e-8)
-    yield error_check("another start of the period", "the same multipliers", shifted, 1e-9)
-    yield error_check("Liouville's formula", "sum of log det = integral of tr A", liouville, 1e-10)
+    yield Check("symplecticity, 3 coarse steps", "MᵀJM = J, over |M|²", symplectic, 1e-12)
+    yield Check("badly scaled coordinates, PAP⁻¹", "the same multipliers", similar, 1e-8)
+    yield Check("another start of the period", "the same multipliers", shifted, 1e-9)
+    yield Check("Liouville's formula", "sum of log det = integral of tr A", liouville, 1e-10)
 
 
-def order_checks() -> tuple[OrderCheck, ...]:
+def check_orders() -> Iterator[Check]:
     """Observed orders of all propagators on Mathieu's equation, a = 3, q = 2: equal steps, halved once."""
     system = mathieu(3.0, 2.0)
     exact = propagate_fixed(system, propagator("gauss"), 64)
+    for name, known in PROPAGATORS.items():
+        steps = (known.coarse_steps, 2 * known.coarse_steps)
+        coarse, fine = (
+            float(np.linalg.norm(propagate_fixed(system, propagator(name), n) - exact)) for n in steps
+        )
+        # 0.3: the next term of the error series at coarse steps.
+        yield order(f"propagator {name}", np.log2(coarse / fine), known.order, 0.3)
 
-    def row(name: str, order: int, steps: int) -> OrderCheck:
-        found = [propagate_fixed(system, propagator(name), count) for count in (steps, 2 * steps)]
-        coarse, fine = (float(np.linalg.norm(M - exact) / np.linalg.norm(exact)) for M in found)
-        return OrderCheck(name, order, float(np.log2(coarse / fine)), steps, fine)
 
-    return tuple(row(name, known.order, known.coarse_steps) for name, known in PROPAGATORS.items())
-
-
-#: Gear pairs of the stress test and its seed; more of them by ``python benchmarks/bench_floquet.py``.
+#: Gear pairs of the stress test and its seed.
 COUNT, SEED = 100, 1
 
 
 def check_random_gears() -> Iterator[Check]:
     """Compiled route on random gear pairs: worst error, its ratio to its bound, and the median bound."""
-    found = stress_test(COUNT, SEED)
-    routes = {"fine": ("single points", 1e-11, 1e-9), "joined": ("dense charts", 1e-9, 1e-8)}
-    for route, (use, limit, tight) in routes.items():
-        one, name = found.sel(route=route), f"{COUNT} random gear pairs, {use}"
-        error, excess, bound = (float(x) for x in (one.error.max(), one.excess.max(), one.bound.median()))
-        yield error_check(f"{name}: error", "multipliers of the reference", error, limit)
-        yield error_check(f"{name}: error over bound", "within the reported bound", excess, 1.0)
-        yield error_check(f"{name}: median bound", "small, so that the bound says something", bound, tight)
+    error, bound, excess = stress_test(COUNT, SEED)
+    name = f"{COUNT} random gear pairs"
+    yield Check(f"{name}: error", "multipliers in extended precision", float(error.max()), 1e-11)
+    yield Check(f"{name}: error over bound", "within the reported bound", float(excess.max()), 1.0)
+    yield Check(f"{name}: median bound", "small, so that it says something", float(np.median(bound)), 1e-9)

@@ -15,26 +15,25 @@ two cancel. Lengths of time are in parts of the mesh cycle, frequencies in units
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal, get_args
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from floquet.engine.system import PeriodicSystem, second_order
-from lumped.arguments import one_of, real_number, real_numbers
-from lumped.errors import refuse
-from lumped.labelling import labelled_dataset
+from floquet import PeriodicSystem, gear_pair_multipliers, monodromy
+from floquet.engine.system import second_order
+from lumped import GearPair, load_gear_pair
+from lumped.model.bodies import bodies
+from lumped.model.periodic_system import periodic_system
 from lumped.typing import ComplexArray, FloatArray
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from lumped.schema.pair import GearPair
+from tests.evidence.check import Check, order
 
 FrictionSign = Literal["reversing", "constant"]
-SPEED_RATIOS = np.linspace(0.3, 2.6, 921)
-DAMPING_RATIOS = np.linspace(0.0, 0.1, 201)
+MU = 0.2
+_RATIOS = np.linspace(0.2, 3.0, 57)
 
 
 @dataclass(frozen=True)
@@ -56,13 +55,6 @@ class CoulombGearPair:
     friction: float = 0.0
     pressure_angle: float = np.deg2rad(20.0)
     sign: FrictionSign = "reversing"
-
-    def __post_init__(self) -> None:
-        real_number("contact_ratio", self.contact_ratio, 1.0, 2.0)
-        real_number("damping_ratio", self.damping_ratio, 0.0)
-        real_number("friction", self.friction, 0.0, 1.0 - 1e-15)
-        real_number("pressure_angle", self.pressure_angle, 0.0, 0.25 * np.pi, above=True, unit="rad")
-        one_of("sign", self.sign, get_args(FrictionSign))
 
     @property
     def phases(self) -> FloatArray:
@@ -90,8 +82,7 @@ class CoulombGearPair:
         ----------
         speed_ratio : mesh frequency over the natural frequency omega of the mean mesh
         """
-        advice = "Give mesh frequency over natural frequency."
-        period = 2.0 * np.pi / real_number("speed_ratio", speed_ratio, 0.0, above=True, action=advice)
+        period = 2.0 * np.pi / speed_ratio
         phases, gains, zeta = self.phases, self.gains, self.damping_ratio
 
         def A(t: FloatArray) -> FloatArray:
@@ -135,72 +126,82 @@ class CoulombGearPair:
         return np.stack([large, determinant / large], axis=-1)
 
 
-def stability_zones(
-    pair: CoulombGearPair,
-    speed_ratios: npt.ArrayLike = SPEED_RATIOS,
-    damping_ratios: npt.ArrayLike = DAMPING_RATIOS,
-) -> xr.Dataset:
-    """Spectral radius without friction, with friction that reverses, and with friction of one sign.
+def check_coulomb_gear_pair() -> Iterator[Check]:
+    """Closed form against engine and gear; what friction of either kind can and cannot change."""
+    yield Check("gear pair with Coulomb friction", "M in closed form", _transition(), 1e-10)
+    exact = "a pair's gain over the cycle, 28/28 with J_p = J_g"
+    yield Check("1 ± μ tan α in the equations of motion", exact, _factor(), 1e-12)
+    soft, stiff = (_on_bearings(factor) for factor in (1e4, 4e4))
+    yield Check("rigid bearings", "multipliers in closed form, bearings 40000 times k", stiff, 2e-3)
+    observed = np.log2(soft / stiff) / 2.0
+    yield order("rigid bearings: in the mesh stiffness over that of the bearings", observed, 1.0, 0.1)
+    exact = "|multiplier| of the frictionless pair at speed/√f, damping ζ√f, f = 1 + μ tan α"
+    yield Check("friction of one sign", exact, _rescaled(), 1e-9)
+    wet, dry = CoulombGearPair(friction=MU), CoulombGearPair()
+    decay = np.linalg.det(wet.monodromy_matrix(_RATIOS)) / np.linalg.det(dry.monodromy_matrix(_RATIOS))
+    worst = np.abs(decay - 1.0).max()
+    yield Check("friction that reverses: decay", "det M without friction", worst, 1e-12)
+    full, half = (np.abs(_trace(mu) - _trace(0.0)).max() for mu in (MU, MU / 2))
+    yield order("friction that reverses: growth in μ", np.log2(full / half), 2.0, 0.05)
 
-    Parameters
-    ----------
-    pair : its contact ratio, pressure angle and coefficient are used
-    speed_ratios : (k,) mesh frequency over the natural frequency of the mean mesh
-    damping_ratios : (n,) zeta of the mean mesh
 
-    Returns
-    -------
-    Dataset over ``friction`` ("none", "reversing", "constant"), ``damping_ratio`` and ``speed_ratio``:
-    ``spectral_radius``
-    """
-    cases = {
-        "none": replace(pair, friction=0.0),
-        "reversing": replace(pair, sign="reversing"),
-        "constant": replace(pair, sign="constant"),
-    }
-    speeds = real_numbers("speed_ratios", speed_ratios, 0.0, above=True)
-    dampings = real_numbers("damping_ratios", damping_ratios, 0.0)
-    radius = [
-        [np.abs(replace(case, damping_ratio=float(zeta)).multipliers(speeds)[:, 0]) for zeta in dampings]
-        for case in cases.values()
-    ]
-    dims = ("friction", "damping_ratio", "speed_ratio")
-    return labelled_dataset(
-        {"spectral_radius": (dims, np.array(radius), "1", "spectral radius, closed form")},
+def _transition() -> float:
+    worst = 0.0
+    for sign in ("reversing", "constant"):
+        for damping in (0.0, 0.05, 0.9, 1.6):  # overdamped in some or all pieces
+            pair = CoulombGearPair(damping_ratio=damping, friction=MU, sign=sign)
+            for ratio in (0.13, 0.7, 1.9):
+                M = monodromy(pair.system(ratio), 1e-11).matrix
+                worst = max(worst, float(np.abs(M - pair.monodromy_matrix(ratio)).max()))
+    return worst
+
+
+def _gear() -> GearPair:
+    return load_gear_pair("nasa_28_28").with_(
         {
-            "friction": (np.array(list(cases), dtype=object), "1", "friction"),
-            "damping_ratio": (dampings, "1", "mesh damping ratio"),
-            "speed_ratio": (speeds, "1", "mesh frequency over natural frequency of the mean mesh"),
-        },
-        {
-            "title": "stability zones of a pair with one degree of freedom and Coulomb friction",
-            "friction_coefficient": pair.friction,
-            "contact_ratio": pair.contact_ratio,
-            "pressure_angle": float(np.rad2deg(pair.pressure_angle)),
-        },
+            "friction.law": "coulomb",
+            "friction.coefficient": MU,
+            "mesh.damping_ratio": 0.0,
+            "mesh.relief": "ignored",
+        }
     )
 
 
-def coulomb_gear_pair(pair: GearPair, friction: float) -> CoulombGearPair:
-    """One-degree-of-freedom pair with the contact ratio and pressure angle of a gear pair.
+def _factor() -> float:
+    """Deviation of the q row of the gear's equations from sum k_i (1 + s_i mu tan alpha)/m_e."""
+    gear = _gear()
+    system, g = periodic_system(gear, "mesh"), gear.geometry
+    times = np.concatenate([np.linspace(a, b, 9)[1:-1] for a, b in pairwise(system.cycle.edges)])
+    pairs = system.cycle.sample(times)
+    sign = np.where(pairs.position < g.L_XP, -1.0, 1.0)
+    factor = 1.0 + sign * MU * np.tan(g.operating_pressure_angle)
+    expected = (factor * pairs.stiffness).sum(axis=0) / bodies(gear).effective_mass
+    return float(np.abs(-system.gain(times).stiffness[:, 0] / expected - 1.0).max())
 
-    Parameters
-    ----------
-    pair : the gear pair, of unity ratio and contact ratio up to 2
-    friction : coefficient
 
-    Raises
-    ------
-    ParameterError : another ratio, for which friction does not only scale the stiffness
-    """
-    if pair.gear.teeth != pair.pinion.teeth:
-        raise refuse(
-            "gear.teeth",
-            pair.gear.teeth,
-            f"{pair.pinion.teeth}, as the pinion",
-            "The closed form holds for unity ratio, for example --set gear.teeth=... or preset nasa_28_28.",
-        )
-    g = pair.geometry
-    return CoulombGearPair(
-        contact_ratio=g.contact_ratio, friction=friction, pressure_angle=g.operating_pressure_angle
-    )
+def _on_bearings(factor: float) -> float:
+    """Distance of the closed form from the multipliers of the gear on bearings this much stiffer than k."""
+    gear = _gear()
+    system, g = periodic_system(gear, "mesh"), gear.geometry
+    k = float(system.cycle.sample(np.array([0.9 * system.period])).stiffness.max())
+    omega = np.sqrt(k * g.contact_ratio / bodies(gear).effective_mass)
+    exact = CoulombGearPair(g.contact_ratio, 0.0, MU, g.operating_pressure_angle)
+    expected = exact.multipliers(2.0 * np.pi / system.period / omega)
+    changes = {f"bearings.{w}.loa_stiffness": factor * k for w in ("pinion", "gear")}
+    # Damped, so that the motions of the bearings are not mistaken for those of the mesh.
+    changes |= {f"bearings.{w}.loa_damping_ratio": 0.02 for w in ("pinion", "gear")}
+    values = gear_pair_multipliers(gear.with_(changes), 1e-9).feedback
+    return float(max(np.abs(values - e).min() for e in expected))
+
+
+def _rescaled() -> float:
+    f = 1.0 + MU * np.tan(np.deg2rad(20.0))
+    constant = CoulombGearPair(damping_ratio=0.02, friction=MU, sign="constant")
+    scaled = CoulombGearPair(damping_ratio=0.02 * np.sqrt(f))
+    difference = np.abs(constant.multipliers(_RATIOS)) - np.abs(scaled.multipliers(_RATIOS / np.sqrt(f)))
+    return float(np.abs(difference).max())
+
+
+def _trace(mu: float) -> FloatArray:
+    pair = CoulombGearPair(damping_ratio=0.0, friction=mu)
+    return np.asarray(np.trace(pair.monodromy_matrix(_RATIOS), axis1=1, axis2=2))

@@ -1,6 +1,8 @@
-"""Monodromy matrix of a gear pair in extended precision, to measure the errors of the other routes by.
+"""Monodromy matrices of rank-one feedback systems in extended precision, to measure the kernel's errors by.
 
-It integrates the piecewise polynomials k(xi), c(xi) and mu(xi) themselves, not what has been fitted to them.
+In plain coordinates and by a Taylor series of its own from the start of each step, the results share nothing
+with the compiled kernel but the polynomials. Where long double is no more than a double (it has 64 bits of
+mantissa on x86) they are only as good as any other route.
 
 Sources: docs/theory/floquet.md, "Computing M".
 """
@@ -11,33 +13,102 @@ import warnings
 from itertools import pairwise
 
 import numpy as np
-import xarray as xr
+import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
 from floquet.gear.block import gear_block
 from floquet.rank_one.batch import fast_multipliers
-from floquet.rank_one.coarsening import coarsened
-from floquet.rank_one.extended import LongArray, extended_transitions
-from lumped import preset_names
-from lumped.arguments import whole_number
+from floquet.rank_one.system import RankOneSystem
+from lumped import GearPair, load_gear_pair, preset_names
 from lumped.errors import LawRangeWarning
 from lumped.friction import LAWS
-from lumped.labelling import labelled_dataset
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.path_function import PathFunction, shifted
-from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
 RATE = 1e4
 """Rates are in units of this [1/s], so that positions and rates are of like size."""
-_LD = np.longdouble
 _LAPACK = 1e-13
+LongArray = npt.NDArray[np.longdouble]
+
+_TERMS = 30  # of steps that turn by 1 rad at most: 1/30! is far below the precision
+_LD = np.longdouble
 
 
-def extended_monodromy(pair: AnyPair) -> FloatArray:
+def extended_transitions(
+    h: LongArray, w: LongArray, wd: LongArray, L: LongArray, D: LongArray, v: LongArray, rate: float
+) -> LongArray:
+    """Transition matrices (S, 2m, 2m) of z'' + D z' + L z + w (v . z) + wd (v . z') = 0 over steps h (S,).
+
+    Parameters
+    ----------
+    h : (S,) [s], each turning by 1 rad at most
+    w, wd : (S, d+1, m) in powers of the time since the start of each step
+    L, D, v : (m, m), (m, m), (m,)
+    rate : unit of the rates among the states [1/s]
+    """
+    m = v.size
+    z = np.zeros((h.size, _TERMS + 2, m, 2 * m), dtype=_LD)
+    z[:, 0, :, :m], z[:, 1, :, m:] = np.eye(m), rate * np.eye(m)
+    s, sd = np.zeros((2, h.size, _TERMS + 1, 2 * m), dtype=_LD)
+    for k in range(_TERMS):
+        speed = (k + 1) * z[:, k + 1]
+        s[:, k], sd[:, k] = v @ z[:, k], v @ speed
+        n = min(k + 1, w.shape[1])
+        total = L @ z[:, k] + D @ speed
+        for gain, signal in ((w, s), (wd, sd)):
+            total += np.einsum("tir,tic->trc", gain[:, :n], signal[:, k::-1][:, :n])
+        z[:, k + 2] = -total / _LD((k + 1) * (k + 2))
+    power = h[:, None] ** np.arange(_TERMS + 2)
+    position = np.einsum("tk,tkrc->trc", power, z)
+    speed = np.einsum("tk,tkrc->trc", power[:, :-1] * np.arange(1, _TERMS + 2), z[:, 1:]) / rate
+    return np.concatenate([position, speed], axis=1)
+
+
+def extended_matrix(system: RankOneSystem) -> LongArray:
+    """Monodromy matrix (2m, 2m) in the energy coordinates of ``system.modal()``."""
+    form, total, T, m = system.modal(), system.total, _LD(system.period), system.v.size
+    rate = float(form.omega.max())
+    count = max(total.w.shape[2], total.wd.shape[2])
+    lengths, starts, gains = [], [], []
+    for i, (low, high) in enumerate(zip(system.phases[:-1], system.phases[1:], strict=True)):
+        parts = int(np.ceil(1.5 * rate * system.period * (high - low))) + 1
+        both = np.zeros((2, count, m), dtype=_LD)
+        for poly, given in zip(both, (total.w, total.wd), strict=True):
+            poly[: given.shape[2]] = given[i].T
+        for part in range(parts):
+            lengths.append((_LD(high) - _LD(low)) * T / parts)
+            starts.append(_LD(2 * part) / parts - _LD(1))
+            # u = start + 2 t/((high - low) T)
+            gains.append(_moved(both, starts[-1], _LD(2) / ((_LD(high) - _LD(low)) * T)))
+    w, wd = np.stack(gains, axis=1)
+    G = np.zeros((m, m)) if system.gyroscopic is None else system.gyroscopic
+    D = system.damping.astype(_LD) + G.astype(_LD) / T
+    M = np.eye(2 * m, dtype=_LD)
+    L, v = system.stiffness.astype(_LD), system.v.astype(_LD)
+    for flow in extended_transitions(np.array(lengths), w, wd, L, D, v, rate):
+        M = flow @ M
+    S = form.state_matrix().astype(_LD)
+    S[m:] /= rate
+    inverse = np.linalg.inv(S.astype(float)).astype(_LD)
+    for _ in range(2):  # Newton
+        inverse = inverse + inverse @ (np.eye(2 * m) - S @ inverse)
+    return np.asarray(inverse @ M @ S)
+
+
+def _moved(poly: LongArray, start: np.longdouble, slope: np.longdouble) -> LongArray:
+    """Coefficients (..., d+1, m) in powers of u -> in powers of t, u = start + slope t."""
+    out = np.zeros_like(poly)
+    for j in range(poly.shape[-2] - 1, -1, -1):
+        moved = start * out
+        moved[..., 1:, :] += slope * out[..., :-1, :]
+        out = moved
+        out[..., 0, :] += poly[..., j, :]
+    return out
+
+
+def extended_monodromy(pair: GearPair) -> FloatArray:
     """Monodromy matrix (6, 6) of (q, x_p, x_g) and their rates over ``RATE``, all in units of m."""
-    pair = load_gear_pair(pair)
     system = periodic_system(pair, "mesh")
     lengths, w, wd = _steps(system)
     L, D = (-system.constant[3:, part].astype(_LD) for part in (slice(3), slice(3, 6)))
@@ -120,47 +191,22 @@ def _about(function: PathFunction, start: float, middle: float) -> LongArray:
     return shifted(function.coefficients[:, j].astype(_LD), _LD(start) - _LD(function.breaks[j]))[::-1]
 
 
-def stress_test(count: int, seed: int) -> xr.Dataset:
-    """Errors of the compiled route on random gear pairs, measured by `extended_monodromy`.
+def stress_test(count: int, seed: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Largest error, bound and ratio of error to bound of the multipliers of random gear pairs.
 
     Each computed multiplier is matched with one of the reference so that the sum of the distances is least.
-
-    Parameters
-    ----------
-    count : number of pairs
-    seed : of the random numbers
-
-    Returns
-    -------
-    Dataset over ``route`` and ``pair``: ``error``, the largest distance; ``bound``, the largest bound that
-    was reported; ``excess``, the largest ratio of a distance to its bound. Routes: "fine", one fit as single
-    points use it; "joined", with pieces joined as in dense charts.
     """
-    count = whole_number("count", count, 1, 1_000_000)
-    rng = np.random.default_rng(whole_number("seed", seed, 0, 2**63 - 1))
-    result = np.empty((3, 2, count))
+    rng, found = np.random.default_rng(seed), []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)  # random pairs leave the ranges of the laws
-        for index in range(count):
+        for _ in range(count):
             pair = random_pair(rng)
             exact = np.linalg.eigvals(extended_monodromy(pair))
-            fine = gear_block(pair, rtol=1e-11, friction_apart=True)
-            joined = coarsened(fine, fine.period, 1.0, [1.0], 5e-10)
-            for route, block in enumerate((fine, joined)):
-                found = fast_multipliers(block)
-                distance = np.abs(found.multipliers[0][:, None] - exact)
-                rows, columns = linear_sum_assignment(distance)
-                error = distance[rows, columns]
-                # LAPACK's own error in the eigenvalues of the reference is no error of ours.
-                ratio = np.maximum(error - _LAPACK, 0.0) / found.errors[0]
-                result[:, route, index] = error.max(), found.errors[0].max(), ratio.max()
-    dims = ("route", "pair")
-    return labelled_dataset(
-        {
-            "error": (dims, result[0], "1", "largest error of a multiplier"),
-            "bound": (dims, result[1], "1", "largest bound reported"),
-            "excess": (dims, result[2], "1", "largest error over its bound"),
-        },
-        {"route": (["fine", "joined"], "1", "pieces of the compiled route")},
-        {"seed": seed, "mantissa_bits": np.finfo(np.longdouble).nmant + 1},
-    )
+            ours = fast_multipliers(gear_block(pair, rtol=1e-11, friction_apart=True))
+            distance = np.abs(ours.multipliers[0][:, None] - exact)
+            error = distance[linear_sum_assignment(distance)]
+            # LAPACK's own error in the eigenvalues of the reference is no error of ours.
+            ratio = np.maximum(error - _LAPACK, 0.0) / ours.errors[0]
+            found.append((error.max(), ours.errors[0].max(), ratio.max()))
+    error, bound, excess = np.array(found).T
+    return error, bound, excess

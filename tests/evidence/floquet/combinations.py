@@ -10,8 +10,8 @@ from scipy.optimize import minimize_scalar
 from floquet import monodromy
 from floquet.engine.propagation import propagate_fixed
 from floquet.engine.propagators.registry import propagator
-from floquet.engine.reference_systems import GearChain, HsuSystem, tongue_ends
-from validation.verification.checks import Check, error_check, order_check
+from tests.evidence.check import Check, order
+from tests.evidence.floquet.reference_systems import GearChain, HsuSystem, tongue_ends
 
 _OMEGA = np.array([1.0, 2.3])
 _SYMMETRIC = np.array([[0.3, 0.8], [0.5, 0.4]])
@@ -43,15 +43,15 @@ def check_hsu() -> Iterator[Check]:
     )
     for name, coupling, damping, i, j, sign in cases:
         centre, width = _hsu_orders(HsuSystem(_OMEGA, coupling, damping), i, j, sign)
-        yield order_check(f"Hsu, {name}: centre", centre, 2.0, 0.1)
-        yield order_check(f"Hsu, {name}: width", width, 3.0, 0.3)
+        yield order(f"Hsu, {name}: centre", centre, 2.0, 0.1)
+        yield order(f"Hsu, {name}: width", width, 3.0, 0.3)
     worst = 0.0
     for coupling, sign in ((_SYMMETRIC, -1), (_SKEW, 1)):
         system = HsuSystem(_OMEGA, coupling - np.diag(np.diag(coupling)), still)
         centre = _OMEGA[1] + sign * _OMEGA[0]
         for excitation in centre + np.linspace(-0.06, 0.06, 25):
             worst = max(worst, monodromy(system.at(excitation, 0.1), 1e-11).spectral_radius - 1.0)
-    yield error_check("Hsu, the other combination", "no growth: theory has no tongue there", worst, 1e-5)
+    yield Check("Hsu, the other combination", "no growth: theory has no tongue there", worst, 1e-5)
 
 
 def _chain(contact_ratio: float) -> GearChain:
@@ -76,7 +76,7 @@ def check_gear_chain() -> Iterator[Check]:
             computed = tongue_ends(system, predicted, epsilon)
             errors.append(np.abs(np.subtract(computed, predicted)).max())
         name = f"gear chain, (w{i + 1}+w{j + 1})/{harmonic}: ends"
-        yield order_check(name, np.log2(errors[0] / errors[1]), 2.0, 0.25)
+        yield order(name, np.log2(errors[0] / errors[1]), 2.0, 0.25)
     omega, _ = system.modes()
     for sigma, expected in ((1.4, 1.0), (1.5, 2.0)):
         growth = []
@@ -95,4 +95,4 @@ def check_gear_chain() -> Iterator[Check]:
             ends = near - 1.25e-4 * middle, near + 1.25e-4 * middle
             growth.append(-minimize_scalar(fall, bounds=ends, options={"xatol": 1e-6}).fun - 1.0)
         name = f"gear chain, growth in (w2+w3)/2, contact ratio {sigma}"
-        yield order_check(name, np.log2(growth[0] / growth[1]), expected, 0.2)
+        yield order(name, np.log2(growth[0] / growth[1]), expected, 0.2)

@@ -1,0 +1,42 @@
+"""A number of the evidence, and what it must be."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Check:
+    """A computed number: ``value`` is an error, or, where ``theory`` is given, an observed order.
+
+    Attributes
+    ----------
+    subject : what is checked
+    exact : what it must equal, and where that comes from
+    value : error, relative where not said otherwise; or an observed order
+    limit : largest error that passes; or largest distance of the order from theory
+    theory : the order that theory gives
+    """
+
+    subject: str
+    exact: str
+    value: float
+    limit: float
+    theory: float | None = None
+
+    @property
+    def passes(self) -> bool:
+        """Whether the number is one and within its limit."""
+        return math.isfinite(self.value) and abs(self.value - (self.theory or 0.0)) <= self.limit
+
+
+def order(subject: str, value: float, theory: float, limit: float) -> Check:
+    """An observed order against theory."""
+    return Check(subject, f"observed order, theory {theory:g}", float(value), limit, theory)
+
+
+def failing(checks: Iterable[Check]) -> list[Check]:
+    """Those that do not pass."""
+    return [check for check in checks if not check.passes]
