@@ -143,7 +143,7 @@ def _text_of_own(
 ) -> tuple[str, str]:
     """Parameter file of a pair that the options describe, and a name for it."""
     from lumped.errors import ParameterError, refuse
-    from validation.exchange.own_pair import fields_of, own_pair_text
+    from validation.exchange.new_pair_file import fields_of, new_pair_text
 
     if teeth is None:
         first = next(option for option, (_, value) in own.items() if value is not None)
@@ -158,7 +158,7 @@ def _text_of_own(
     options = {field: option for option, (path, _) in own.items() for field in fields_of(path)}
     options |= dict.fromkeys(("pinion.teeth", "gear.teeth"), "--teeth")
     try:
-        return own_pair_text(name, {"teeth": teeth} | given), name
+        return new_pair_text(name, {"teeth": teeth} | given), name
     except ParameterError as error:
         raise opt.by_option(error, options, "") from None
 
@@ -244,7 +244,7 @@ def _export_pair(
     from lumped.errors import refuse
     from validation.exchange import write_rexs, write_state_space
     from validation.exchange.linear_model import STATE_SPACE_SUFFIXES
-    from validation.exchange.rexs.container import FORMS
+    from validation.exchange.rexs.encodings import FORMS
     from validation.exchange.rexs.vocabulary import WRITTEN
     from validation.files.output import check_file
 

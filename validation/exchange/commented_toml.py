@@ -12,7 +12,7 @@ import tomli_w
 
 from lumped.errors import ParameterError
 from lumped.schema.pair import stated_unit
-from validation.exchange.rexs.said import DOUBTFUL
+from validation.exchange.rexs.draft import DOUBTFUL
 
 _SECTION = re.compile(r"(\[\[?)([\w.]+)\]\]?$")
 _ENTRY = re.compile(r"(\w+) = ")

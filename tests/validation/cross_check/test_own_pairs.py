@@ -16,7 +16,7 @@ from validation.cross_check.finite_motion import finite_motion
 from validation.cross_check.first_order import first_order
 from validation.cross_check.parted_motion import parted_orbit, why_teeth_pull
 from validation.cross_check.twin import unlike_twin
-from validation.exchange.own_pair import own_pair_text
+from validation.exchange.new_pair_file import new_pair_text
 
 
 def own(teeth, module, width, speed, torque, **more):
@@ -27,7 +27,7 @@ def own(teeth, module, width, speed, torque, **more):
         "operating.pinion_speed": speed,
         "operating.pinion_torque": torque,
     }
-    pair = lumped.load_gear_pair(tomllib.loads(own_pair_text("own", given)))
+    pair = lumped.load_gear_pair(tomllib.loads(new_pair_text("own", given)))
     return pair.with_({name.replace("__", "."): value for name, value in more.items()})
 
 

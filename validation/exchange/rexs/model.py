@@ -1,26 +1,32 @@
-"""A REXS model as plain records: components with attributes, relations between them, load cases."""
+"""A REXS model: components with attributes, and relations between them.
+
+One tree serves both encodings: the JSON document of the specification, as nested mappings and lists.
+`model_of` checks such a tree and gives the records that the import asks.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 from lumped.errors import ParameterError, refuse, shown
 
 Scalar = str | int | float | bool
+#: The JSON document of REXS: a mapping with the one key "model".
+Document = dict[str, Any]
+
+#: Keys of an attribute whose value is one number, text or flag.
+_SCALARS = (
+    "floating_point", "integer", "boolean", "enum", "string", "reference_component", "file_reference",
+    "date_time",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Attribute:
-    """One attribute: its value as the file has it, and its unit.
+    """One attribute: its value as the file has it, None for a table; its unit, "" where it is left out."""
 
-    Attributes
-    ----------
-    value : text (XML) or number, text, flag (JSON); a tuple of numbers when written; None for a table or for
-        an attribute without a value
-    unit : REXS unit, "" where the file leaves it out
-    """
-
-    value: Scalar | tuple[float, ...] | None
+    value: Scalar | None
     unit: str = ""
 
 
@@ -40,27 +46,6 @@ class Component:
 
 
 @dataclass(frozen=True)
-class Relation:
-    """One relation: which components play which roles."""
-
-    type: str
-    refs: tuple[tuple[str, int], ...]
-    order: int | None = None
-
-    def all(self, role: str) -> tuple[int, ...]:
-        """Component ids in a role."""
-        return tuple(component for name, component in self.refs if name == role)
-
-
-@dataclass(frozen=True)
-class LoadCase:
-    """One load case: attributes of components that hold in it."""
-
-    id: int
-    components: tuple[Component, ...]
-
-
-@dataclass(frozen=True)
 class RexsModel:
     """A REXS model.
 
@@ -69,16 +54,16 @@ class RexsModel:
     file : name of the file, for sources
     version, application : as the file says
     components : by id, in the order of the file
-    relations : in the order of the file
-    load_cases : of the load spectrum
+    relations : (type, ((role, id of a component), ...)), in the order of the file
+    load_cases : (id, components with the attributes that hold in it), of the load spectrum
     """
 
     file: str
     version: str
     application: str
     components: dict[int, Component]
-    relations: tuple[Relation, ...]
-    load_cases: tuple[LoadCase, ...] = ()
+    relations: tuple[tuple[str, tuple[tuple[str, int], ...]], ...]
+    load_cases: tuple[tuple[int, tuple[Component, ...]], ...] = ()
 
     def of_type(self, *types: str) -> list[Component]:
         """Components of some types, in the order of the file."""
@@ -88,51 +73,94 @@ class RexsModel:
         self, component: Component, kind: str, own_role: str, role: str, *types: str
     ) -> list[Component]:
         """Components that a relation of some kind puts into ``role`` where this one is in ``own_role``."""
-        found = []
-        for relation in self.relations:
-            if relation.type == kind and component.id in relation.all(own_role):
-                partners = [self.components[i] for i in relation.all(role)]
-                found += [c for c in partners if not types or c.type in types]
-        return found
+        partners = [
+            self.components[number]
+            for relation, refs in self.relations
+            if relation == kind and (own_role, component.id) in refs
+            for name, number in refs
+            if name == role
+        ]
+        return [c for c in partners if not types or c.type in types]
 
-    def together(self, component: Component, *types: str) -> list[Component]:
+    def referenced(self, component: Component, *types: str) -> list[Component]:
+        """Components of some types that this one refers to."""
+        return self.related(component, "reference", "origin", "referenced", *types)
+
+    def neighbours(self, component: Component, *types: str) -> list[Component]:
         """Components of some types that share any relation with this one, each once."""
-        found: dict[int, Component] = {}
-        for relation in self.relations:
-            ids = [i for _, i in relation.refs]
-            if component.id in ids:
-                found |= {i: self.components[i] for i in ids if self.components[i].type in types}
-        return list(found.values())
+        numbers = {
+            number: None
+            for _, refs in self.relations
+            if any(own == component.id for _, own in refs)
+            for _, number in refs
+        }
+        return [self.components[i] for i in numbers if self.components[i].type in types]
 
 
-def assembled(
-    file: str,
-    head: dict[str, str],
-    components: list[Component],
-    relations: list[Relation],
-    load_cases: list[LoadCase],
-) -> RexsModel:
-    """Put a model together after checking what the schema demands: unique ids, and references that exist.
+def model_of(document: Document, file: str) -> RexsModel:
+    """Build the model of a tree, after checking its form, its ids and its references.
 
     Raises
     ------
-    ParameterError : it does not
+    ParameterError : not of the form of REXS
     """
-    table: dict[int, Component] = {}
+    try:
+        model = document["model"]
+        components = [_component(c) for c in model["components"]]
+        relations = [
+            (_text(r.get("type")), tuple((_text(ref.get("role")), _id(ref["id"])) for ref in r["refs"]))
+            for r in model["relations"]
+        ]
+        spectra = model.get("load_spectrum") or []
+        spectra = spectra if isinstance(spectra, list) else [spectra]
+        cases = [case for spectrum in spectra for case in spectrum.get("load_cases") or ()]
+        load_cases = [(_id(c["id"]), tuple(map(_component, c["components"]))) for c in cases]
+        head = {key: value for key, value in model.items() if isinstance(value, str)}
+    except KeyError as error:
+        raise broken(file, f"it has no {error} where REXS has one") from None
+    except (ValueError, TypeError, AttributeError) as error:
+        raise broken(file, f"it is not of the form of REXS: {str(error)[:120]}") from None
+    table = {c.id: c for c in reversed(components)}
     for component in components:
-        if component.id in table:
+        if table[component.id] is not component:
             raise broken(file, f"two components have the id {component.id}")
-        table[component.id] = component
-    of_relations = [number for relation in relations for _, number in relation.refs]
-    for number in [*of_relations, *(component.id for case in load_cases for component in case.components)]:
+    of_relations = [number for _, refs in relations for _, number in refs]
+    for number in [*of_relations, *(c.id for _, case in load_cases for c in case)]:
         if number not in table:
             raise broken(file, f"component {number} is referred to but does not exist")
-    version = head.get("version", "")
     application = f"{head.get('applicationId', '')} {head.get('applicationVersion', '')}".strip()
-    return RexsModel(file, version, application, table, tuple(relations), tuple(load_cases))
+    by_id = {c.id: c for c in components}
+    return RexsModel(file, head.get("version", ""), application, by_id, tuple(relations), tuple(load_cases))
+
+
+def _component(node: dict[str, Any]) -> Component:
+    attributes = {_text(a["id"]): _attribute(a) for a in node.get("attributes") or ()}
+    return Component(_id(node["id"]), _text(node.get("type")), _text(node.get("name")), attributes)
+
+
+def _attribute(node: dict[str, Any]) -> Attribute:
+    value = next((node[key] for key in _SCALARS if key in node), None)
+    if value is not None and not isinstance(value, (str, int, float, bool)):
+        raise ValueError(f"attribute {node['id']!r} has a value that is no scalar")
+    return Attribute(value, _text(node.get("unit")))
+
+
+def _id(value: object) -> int:
+    """Whole number; XML has it as text."""
+    try:
+        if isinstance(value, str) or (isinstance(value, int) and not isinstance(value, bool)):
+            return int(value)
+    except ValueError:
+        pass
+    raise ValueError(f"an id is {str(value)[:40]!r} instead of a whole number")
+
+
+def _text(value: object) -> str:
+    if value is not None and not isinstance(value, str):
+        raise ValueError(f"{str(value)[:40]!r} stands where text belongs")
+    return value or ""
 
 
 def broken(file: str, reason: str) -> ParameterError:
     """Build the refusal of a file that is no REXS model."""
-    action = f"The file is refused: {reason}."
-    return refuse("REXS file", shown(file), "a REXS model", action)
+    return refuse("REXS file", shown(file), "a REXS model", f"The file is refused: {reason}.")

@@ -8,9 +8,9 @@ from pathlib import Path
 from lumped.arguments import whole_number
 from lumped.errors import FieldProblem, ParameterError, refuse, shown
 from lumped.fields.units import to_stated
-from validation.exchange.rexs.container import read_rexs
+from validation.exchange.rexs.draft import Draft
+from validation.exchange.rexs.encodings import read_rexs
 from validation.exchange.rexs.model import Component, RexsModel, broken
-from validation.exchange.rexs.said import Said
 
 _GEARS = ("cylindrical_gear", "ring_gear", "bevel_gear", "worm_gear", "worm_wheel")
 #: Helix angles below this are what a program leaves of a zero [deg].
@@ -58,36 +58,36 @@ def rexs_stages(path: str | Path) -> list[Stage]:
 
     Raises
     ------
-    ParameterError : the file cannot be read, see ``read_rexs``
+    ParameterError : the file cannot be read
     """
-    return stages_of(read_rexs(path))
+    return _stages_of(read_rexs(path))
 
 
-def stages_of(model: RexsModel) -> list[Stage]:
-    """List the gear stages of a model."""
-    said = Said(model)
-    found = []
-    for number, component in enumerate(_stage_components(model), 1):
-        gears = gears_of(model, component)
-        reason = _reason(said, component, gears)
-        known = tuple(z for gear in gears if (z := _teeth(gear)) is not None)
-        found.append(Stage(number, component.id, component.name, component.type, known, reason))
-    return found
-
-
-def _stage_components(model: RexsModel) -> list[Component]:
-    """Gear stages of any kind; a planetary stage only where its parts are not in the file."""
-    stages = [c for c in model.components.values() if c.type.endswith("_stage")]
-    return [s for s in stages if not model.related(s, "assembly", "assembly", "part", "cylindrical_stage")]
+def _stages_of(model: RexsModel) -> list[Stage]:
+    # A planetary stage counts only where its parts are not in the file.
+    stages = [
+        c
+        for c in model.components.values()
+        if c.type.endswith("_stage")
+        and not model.related(c, "assembly", "assembly", "part", "cylindrical_stage")
+    ]
+    return [
+        Stage(
+            number,
+            c.id,
+            c.name,
+            c.type,
+            tuple(z for gear in gears_of(model, c) if (z := _teeth(gear)) is not None),
+            _reason(model, c, gears_of(model, c)),
+        )
+        for number, c in enumerate(stages, 1)
+    ]
 
 
 def gears_of(model: RexsModel, stage: Component) -> list[Component]:
     """Return gear_1 and gear_2 of a stage, in this order."""
-    return [
-        gear
-        for role in ("gear_1", "gear_2")
-        for gear in model.related(stage, "stage", "stage", role, *_GEARS)
-    ]
+    roles = ("gear_1", "gear_2")
+    return [gear for role in roles for gear in model.related(stage, "stage", "stage", role, *_GEARS)]
 
 
 def chosen(model: RexsModel, number: int | None) -> tuple[Stage, list[str]]:
@@ -97,47 +97,40 @@ def chosen(model: RexsModel, number: int | None) -> tuple[Stage, list[str]]:
     ------
     ParameterError : there is none, it cannot be modelled, or several can and no number was given
     """
-    stages = stages_of(model)
+    stages = _stages_of(model)
     if not stages:
         raise broken(model.file, "it has no gear stage")
-    listed = "; ".join(map(str, stages))
     if number is not None:
-        picked = stages[whole_number("stage", number, 1, len(stages)) - 1]
-        if not picked.usable:
-            raise _unusable(model, [picked])
-        return picked, []
+        stages = [stages[whole_number("stage", number, 1, len(stages)) - 1]]
+    listed = "; ".join(map(str, stages))
     usable = [stage for stage in stages if stage.usable]
     if len(usable) > 1:
         raise refuse("stage", "not given", f"one of {listed}", "Choose a stage by its number.")
     if not usable:
-        raise _unusable(model, stages)
+        wanted = "a cylindrical stage of two external spur gears"
+        problems = []
+        for stage in stages:
+            kind, _, why = stage.reason.partition("; ")
+            action = f"{why[:1].upper()}{why[1:]}."
+            problems.append(FieldProblem(f"stage {stage.number}", kind, wanted, action))
+        raise ParameterError(problems, model.file)
     notes = [] if len(stages) == 1 else [f"stage {usable[0].number} is the only spur stage of: {listed}"]
     return usable[0], notes
 
 
-def _unusable(model: RexsModel, stages: list[Stage]) -> ParameterError:
-    """Build the refusal; what the stage is stands in its first words."""
-    problems = []
-    for stage in stages:
-        kind, _, why = stage.reason.partition("; ")
-        wanted = "a cylindrical stage of two external spur gears"
-        problems.append(FieldProblem(f"stage {stage.number}", kind, wanted, f"{why[:1].upper()}{why[1:]}."))
-    return ParameterError(problems, model.file)
-
-
 def _teeth(gear: Component) -> int | None:
-    text = gear.attributes.get("number_of_teeth")
+    found = gear.attributes.get("number_of_teeth")
     try:
-        return None if text is None or text.value is None else int(str(text.value))
+        return None if found is None or found.value is None else int(str(found.value))
     except ValueError:
         return None
 
 
-def _reason(said: Said, stage: Component, gears: list[Component]) -> str:
+def _reason(model: RexsModel, stage: Component, gears: list[Component]) -> str:
     """Why a stage cannot be modelled."""
     if stage.type != "cylindrical_stage":
         return f"a {shown(stage.type.replace('_', ' '))}; only cylindrical spur stages can be modelled"
-    if said.model.related(stage, "assembly", "part", "assembly", "planetary_stage"):
+    if model.related(stage, "assembly", "part", "assembly", "planetary_stage"):
         return "a mesh of a planetary stage; the planets share the load, one pair alone cannot stand for it"
     if any(gear.type == "ring_gear" or (_teeth(gear) or 0) < 0 for gear in gears):
         return "a stage with an internal gear; the model is of two external gears"
@@ -145,7 +138,7 @@ def _reason(said: Said, stage: Component, gears: list[Component]) -> str:
         kinds = " and ".join(shown(gear.type.replace("_", " ")) for gear in gears) or "no gear"
         return f"a stage of {kinds}; its 'stage' relation has to name two cylindrical gears"
     for gear in gears:
-        helix = said.number(gear, "helix_angle_reference_diameter")
+        helix = Draft(model).number(gear, "helix_angle_reference_diameter")
         angle = 0.0 if helix is None else to_stated(helix.si, "deg")
         if abs(angle) > _NO_HELIX:
             return (

@@ -1,200 +1,150 @@
 """The part of the REXS vocabulary that spurcheck uses: component types, attributes, units, by version.
 
-Each line was checked against the published REXS database of the versions it names. Nothing outside this table
-is read or written, apart from attributes named ``custom_...``, which REXS leaves to each program.
+Each name was checked against the published REXS database of the versions that have it. Nothing outside this
+table is read or written.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from decimal import Decimal
-from typing import Literal
 
 from lumped.errors import refuse, shown
 from lumped.fields.units import to_si, to_stated
 
-Kind = Literal[
-    "floating_point", "integer", "boolean", "enum", "string", "reference_component", "floating_point_array"
-]
-
 #: Versions whose published database was checked, oldest first.
 VERSIONS = ("1.4", "1.5", "1.6", "1.7", "2.0.0")
 #: Versions that can be written. The XML form of 2.0.0 (with or without a namespace) could not be settled.
-WRITTEN = ("1.4", "1.5", "1.6", "1.7")
+WRITTEN = VERSIONS[:-1]
 
-#: REXS unit -> (unit of ``lumped.fields.units``, the same as text for it, how many of it make one stated
-#: unit).
-UNITS: dict[str, tuple[str, str, Decimal]] = {
-    "none": ("1", "", Decimal(1)),
-    "": ("1", "", Decimal(1)),
-    "mm": ("mm", "mm", Decimal(1)),
-    "mum": ("um", "um", Decimal(1)),
-    "deg": ("deg", "deg", Decimal(1)),
-    "°": ("deg", "deg", Decimal(1)),
-    "rad": ("deg", "rad", Decimal("0.0174532925199432957692")),
-    "1 / min": ("rpm", "rpm", Decimal(1)),
-    "N m": ("N*m", "N*m", Decimal(1)),
-    "N / m": ("N/m", "N/m", Decimal(1)),
-    "N mm / rad": ("N*m/rad", "N*mm/rad", Decimal("1e3")),
-    "kg": ("kg", "kg", Decimal(1)),
-    "kg / dm^3": ("kg/m**3", "kg/dm**3", Decimal("1e-3")),
-    "N / mm^2": ("GPa", "N/mm**2", Decimal("1e3")),
-    "MPa": ("GPa", "MPa", Decimal("1e3")),
-    "mm^2 / s": ("mm**2/s", "mm**2/s", Decimal(1)),
-    "C": ("degC", "degC", Decimal(1)),
+BEARINGS = (
+    "concept_bearing",
+    "rolling_bearing_with_catalog_geometry",
+    "rolling_bearing_with_detailed_geometry",
+)
+#: REXS unit -> (unit of ``lumped.fields.units``, the REXS unit as text for it).
+UNITS = {
+    "none": ("1", ""),
+    "": ("1", ""),
+    "mm": ("mm", "mm"),
+    "mum": ("um", "um"),
+    "deg": ("deg", "deg"),
+    "°": ("deg", "deg"),
+    "rad": ("deg", "rad"),
+    "1 / min": ("rpm", "rpm"),
+    "N m": ("N*m", "N*m"),
+    "N / m": ("N/m", "N/m"),
+    "N mm / rad": ("N*m/rad", "N*mm/rad"),
+    "kg": ("kg", "kg"),
+    "kg / dm^3": ("kg/m**3", "kg/dm**3"),
+    "N / mm^2": ("GPa", "N/mm**2"),
+    "MPa": ("GPa", "MPa"),
+    "mm^2 / s": ("mm**2/s", "mm**2/s"),
+    "C": ("degC", "degC"),
 }
+
+#: Value type -> names of attributes; all others are "floating_point".
+_KINDS = {
+    "integer": "number_of_gears gear_shift_index number_of_teeth",
+    "reference_component": "reference_component_for_position",
+    "floating_point_array": "support_vector u_axis_vector w_axis_vector",
+    "boolean": "is_driving_gear defines_speed defines_torque transmits_torque",
+    "enum": "loaded_tooth_flank shape_of_relief",
+}
+#: Names that ended with 1.7, and those that replaced them in 2.0.0.
+_UNTIL_1_7 = (
+    "reference_circle_diameter base_circle_diameter arithmetic_average_roughness_flank tip_radius_factor "
+    "averaged_peak_to_valley_height_flank"
+)
+_SINCE_2 = (
+    "reference_diameter_cylindrical_gear base_diameter arithmetic_mean_roughness_flank_iso_4287_1997 "
+    "mean_peak_to_valley_roughness_flank_iso_4287_1997 tip_corner_radius_factor_reference_profile"
+)
+_PLACE = "support_vector u_axis_vector w_axis_vector"
+#: Component types, with a comma between those that have the same; REXS unit; attributes.
+_TABLE = (
+    ("gear_unit", "none", "number_of_gears gear_shift_index reference_component_for_position"),
+    ("gear_unit, cylindrical_gear, shaft", "mm", _PLACE),
+    ("cylindrical_gear, shaft", "none", "reference_component_for_position"),
+    ("cylindrical_gear, shaft", "1 / min", "rotational_speed"),
+    ("gear_casing, cylindrical_stage", "C", "temperature_lubricant"),
+    ("gear_casing, cylindrical_stage", "mm^2 / s", "operating_viscosity"),
+    ("cylindrical_stage", "mm", "center_distance minimum_normal_backlash maximum_normal_backlash"),
+    ("cylindrical_stage", "mm", "normal_base_pitch"),
+    ("cylindrical_stage", "none", "radial_contact_ratio overlap_contact_ratio gear_ratio"),
+    ("cylindrical_stage", "none", "sum_of_addendum_modification_coefficients"),
+    ("cylindrical_gear", "none", "number_of_teeth"),
+    ("cylindrical_gear", "deg", "helix_angle_reference_diameter"),
+    ("cylindrical_gear", "mm", "normal_module face_width tip_diameter root_diameter inner_diameter"),
+    ("cylindrical_gear", "mm", "reference_circle_diameter base_circle_diameter base_diameter"),
+    ("cylindrical_gear", "mm", "reference_diameter_cylindrical_gear"),
+    ("cylindrical_gear", "kg", "mass_of_component"),
+    ("cylindrical_gear", "mum", "arithmetic_average_roughness_flank averaged_peak_to_valley_height_flank"),
+    ("cylindrical_gear", "mum", "arithmetic_mean_roughness_flank_iso_4287_1997"),
+    ("cylindrical_gear", "mum", "mean_peak_to_valley_roughness_flank_iso_4287_1997"),
+    ("cylindrical_gear, shaft_section", "mm", "u_coordinate_on_shaft"),
+    ("cylindrical_gear_flank", "deg", "normal_pressure_angle"),
+    (
+        "cylindrical_gear_flank",
+        "none",
+        "addendum_modification_coefficient addendum_coefficient_basic_profile",
+    ),
+    ("cylindrical_gear_flank", "mm", "addendum_modification"),
+    ("cylindrical_stage_gear_data", "none", "is_driving_gear loaded_tooth_flank"),
+    ("cylindrical_stage_gear_data", "N m", "torque"),
+    ("cylindrical_stage_gear_data", "mm", "pitch_diameter"),
+    ("cylindrical_stage_gear_data", "deg", "operating_pressure_angle_in_the_transverse_section"),
+    ("shaft", "none", "defines_speed"),
+    ("shaft_section", "mm", "length outer_diameter_begin outer_diameter_end"),
+    ("shaft_section", "mm", "inner_diameter_begin inner_diameter_end"),
+    (", ".join(BEARINGS), "mm", "u_coordinate_on_shaft_inner_side u_coordinate_on_shaft_outer_side"),
+    (", ".join(BEARINGS), "N / m", "radial_stiffness"),
+    (", ".join(BEARINGS), "N mm / rad", "bending_stiffness"),
+    ("external_load", "N m", "torque_around_u_axis"),
+    ("external_load", "kW", "power"),
+    ("external_load", "none", "transmits_torque defines_torque"),
+    ("lubricant", "mm^2 / s", "viscosity_at_40_degree_celsius viscosity_at_100_degree_celsius"),
+    ("lubricant", "kg / dm^3", "density_at_15_degree_celsius"),
+    ("material", "N / mm^2", "elastic_modulus"),  # the database of 2.0.0 calls the same unit MPa
+    ("material", "none", "poisson_ratio"),
+    ("material", "kg / dm^3", "density"),
+    ("tip_relief, root_relief", "none", "shape_of_relief"),
+    ("tip_relief", "mm", "tip_relief_depth tip_relief_datum_diameter tip_relief_evaluation_reference"),
+    ("root_relief", "mm", "root_relief_depth root_relief_datum_diameter root_relief_evaluation_reference"),
+    ("rack_shaped_tool", "mm", "normal_module"),
+    ("rack_shaped_tool", "deg", "normal_pressure_angle"),
+    ("rack_shaped_tool", "none", "addendum_coefficient_reference_profile tip_radius_factor"),
+    ("rack_shaped_tool", "none", "tip_corner_radius_factor_reference_profile"),
+    ("cylindrical_gear_manufacturing_settings", "none", ""),
+)
 
 
 @dataclass(frozen=True)
 class Known:
-    """One attribute of one component type.
+    """One attribute of one component type: REXS unit, REXS value type, versions that have it."""
 
-    Attributes
-    ----------
-    unit : REXS unit
-    kind : REXS value type
-    since, until : first and last version that has it
-    """
-
-    unit: str = "none"
-    kind: Kind = "floating_point"
-    since: str = "1.4"
-    until: str = "2.0.0"
-
-    def of(self, version: str) -> bool:
-        """Whether a version has the attribute."""
-        return VERSIONS.index(self.since) <= VERSIONS.index(version) <= VERSIONS.index(self.until)
+    unit: str
+    kind: str
+    versions: tuple[str, ...]
 
 
-_MM, _DEG, _SPEED, _TORQUE = Known("mm"), Known("deg"), Known("1 / min"), Known("N m")
-_FLAG, _COUNT = Known(kind="boolean"), Known(kind="integer")
-_PLACE = {
-    "reference_component_for_position": Known(kind="reference_component"),
-    "support_vector": Known("mm", "floating_point_array"),
-    "u_axis_vector": Known("mm", "floating_point_array"),
-    "w_axis_vector": Known("mm", "floating_point_array"),
-}
-_BEARING = {
-    "u_coordinate_on_shaft_inner_side": _MM,
-    "u_coordinate_on_shaft_outer_side": _MM,
-    "radial_stiffness": Known("N / m"),
-    "bending_stiffness": Known("N mm / rad"),
-}
+def _known(name: str, unit: str) -> Known:
+    kind = next((kind for kind, names in _KINDS.items() if name in names.split()), "floating_point")
+    old, new = name in _UNTIL_1_7.split(), name in _SINCE_2.split()
+    return Known(unit, kind, WRITTEN if old else VERSIONS[-1:] if new else VERSIONS)
+
+
 #: Component type -> attribute id -> what the database says about it.
-ATTRIBUTES: dict[str, dict[str, Known]] = {
-    "gear_unit": {"number_of_gears": _COUNT, "gear_shift_index": _COUNT, **_PLACE},
-    "gear_casing": {"temperature_lubricant": Known("C"), "operating_viscosity": Known("mm^2 / s")},
-    "cylindrical_stage": {
-        "center_distance": _MM,
-        "minimum_normal_backlash": _MM,
-        "maximum_normal_backlash": _MM,
-        "normal_base_pitch": _MM,
-        "radial_contact_ratio": Known(),
-        "overlap_contact_ratio": Known(),
-        "gear_ratio": Known(),
-        "sum_of_addendum_modification_coefficients": Known(),
-        "temperature_lubricant": Known("C"),
-        "operating_viscosity": Known("mm^2 / s"),
-    },
-    "cylindrical_gear": {
-        "number_of_teeth": _COUNT,
-        "normal_module": _MM,
-        "helix_angle_reference_diameter": _DEG,
-        "face_width": _MM,
-        "u_coordinate_on_shaft": _MM,
-        "tip_diameter": _MM,
-        "root_diameter": _MM,
-        "inner_diameter": _MM,
-        "reference_circle_diameter": Known("mm", until="1.7"),
-        "base_circle_diameter": Known("mm", until="1.7"),
-        "reference_diameter_cylindrical_gear": Known("mm", since="2.0.0"),
-        "base_diameter": Known("mm", since="2.0.0"),
-        "mass_of_component": Known("kg"),
-        "arithmetic_average_roughness_flank": Known("mum", until="1.7"),
-        "averaged_peak_to_valley_height_flank": Known("mum", until="1.7"),
-        "arithmetic_mean_roughness_flank_iso_4287_1997": Known("mum", since="2.0.0"),
-        "mean_peak_to_valley_roughness_flank_iso_4287_1997": Known("mum", since="2.0.0"),
-        "rotational_speed": _SPEED,
-        **_PLACE,
-    },
-    "cylindrical_gear_flank": {
-        "normal_pressure_angle": _DEG,
-        "addendum_modification_coefficient": Known(),
-        "addendum_modification": _MM,
-        "addendum_coefficient_basic_profile": Known(),
-    },
-    "cylindrical_stage_gear_data": {
-        "is_driving_gear": _FLAG,
-        "loaded_tooth_flank": Known(kind="enum"),
-        "torque": _TORQUE,
-        "pitch_diameter": _MM,
-        "operating_pressure_angle_in_the_transverse_section": _DEG,
-    },
-    "shaft": {"rotational_speed": _SPEED, "defines_speed": _FLAG, **_PLACE},
-    "shaft_section": {
-        "u_coordinate_on_shaft": _MM,
-        "length": _MM,
-        "outer_diameter_begin": _MM,
-        "outer_diameter_end": _MM,
-        "inner_diameter_begin": _MM,
-        "inner_diameter_end": _MM,
-    },
-    "concept_bearing": _BEARING,
-    "rolling_bearing_with_catalog_geometry": _BEARING,
-    "rolling_bearing_with_detailed_geometry": _BEARING,
-    "external_load": {
-        "torque_around_u_axis": _TORQUE,
-        "power": Known("kW"),
-        "transmits_torque": _FLAG,
-        "defines_torque": _FLAG,
-    },
-    "lubricant": {
-        "viscosity_at_40_degree_celsius": Known("mm^2 / s"),
-        "viscosity_at_100_degree_celsius": Known("mm^2 / s"),
-        "density_at_15_degree_celsius": Known("kg / dm^3"),
-    },
-    "material": {
-        "elastic_modulus": Known("N / mm^2"),  # the database of 2.0.0 calls the same unit MPa
-        "poisson_ratio": Known(),
-        "density": Known("kg / dm^3"),
-    },
-    "tip_relief": {
-        "shape_of_relief": Known(kind="enum"),
-        "tip_relief_depth": _MM,
-        "tip_relief_datum_diameter": _MM,
-        "tip_relief_evaluation_reference": _MM,
-    },
-    "root_relief": {
-        "shape_of_relief": Known(kind="enum"),
-        "root_relief_depth": _MM,
-        "root_relief_datum_diameter": _MM,
-        "root_relief_evaluation_reference": _MM,
-    },
-    "rack_shaped_tool": {
-        "normal_module": _MM,
-        "normal_pressure_angle": _DEG,
-        "addendum_coefficient_reference_profile": Known(),
-        "tip_radius_factor": Known(until="1.7"),
-        "tip_corner_radius_factor_reference_profile": Known(since="2.0.0"),
-    },
-    "cylindrical_gear_manufacturing_settings": {},
-}
+ATTRIBUTES: dict[str, dict[str, Known]] = {}
+for _types, _unit, _names in _TABLE:
+    for _type in _types.split(", "):
+        ATTRIBUTES.setdefault(_type, {}).update({name: _known(name, _unit) for name in _names.split()})
 
 #: Flank modifications that spurcheck has no place for.
 NOT_TAKEN = (
-    "end_relief_datum_face",
-    "end_relief_non_datum_face",
-    "helix_crowning",
-    "helix_deviation",
-    "helix_slope",
-    "profile_crowning",
-    "profile_deviation",
-    "profile_slope",
-    "profile_twist",
-    "topographical_modification",
-    "triangular_root_relief",
-    "triangular_tip_relief",
-)
+    "end_relief_datum_face", "end_relief_non_datum_face", "helix_crowning", "helix_deviation", "helix_slope",
+    "profile_crowning", "profile_deviation", "profile_slope", "profile_twist", "topographical_modification",
+    "triangular_root_relief", "triangular_tip_relief",
+)  # fmt: skip
 
 
 def si_from_rexs(value: float, unit: str, expected: str, where: str) -> float:
@@ -202,8 +152,7 @@ def si_from_rexs(value: float, unit: str, expected: str, where: str) -> float:
 
     Parameters
     ----------
-    value : number in the file
-    unit : unit in the file; where it is left out, the unit that the database fixes
+    value, unit : as the file has them; without a unit that of the database holds
     expected : unit of the database
     where : component and attribute, for the message
 
@@ -211,14 +160,23 @@ def si_from_rexs(value: float, unit: str, expected: str, where: str) -> float:
     ------
     ParameterError : a unit that is unknown or of another dimension
     """
-    stated, _, _ = UNITS[expected]
-    _, text, _ = UNITS.get(unit or expected, ("", None, Decimal(1)))
-    if text is not None:
-        try:
+    if expected == "kW":  # power has no unit among the parameters
+        return 1e3 * value
+    stated, _ = UNITS[expected]
+    _, text = UNITS.get(unit or expected, ("", None))
+    try:
+        if text is not None:
             return to_si(f"{value!r} {text}" if text else value, stated)
-        except ValueError:
-            pass
+    except ValueError:
+        pass
     raise refuse(where, f"{value!r} {shown(unit)}", f"a number in {expected}", "Export the file again.")
+
+
+def rexs_from_si(si: float, unit: str) -> float:
+    """Convert an SI number to a REXS unit, with the fifteen digits that REXS allows."""
+    stated, text = UNITS[unit]
+    one = to_stated(to_si(f"1 {text}" if text else 1.0, stated), stated)
+    return float(f"{to_stated(si, stated) / one:.15g}")
 
 
 def derived_number(si: float, stated: str) -> float:
@@ -227,9 +185,3 @@ def derived_number(si: float, stated: str) -> float:
     The inputs have fifteen digits at most; more than twelve of the result would show rounding.
     """
     return float(f"{to_stated(si, stated):.12g}")
-
-
-def rexs_from_si(si: float, unit: str) -> float:
-    """Convert an SI number to a REXS unit."""
-    stated, _, factor = UNITS[unit]
-    return float(Decimal(repr(to_stated(si, stated))) * factor)

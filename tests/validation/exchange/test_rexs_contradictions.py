@@ -24,8 +24,7 @@ def doubtful(path):
 
 def test_files_without_a_contradiction_have_no_doubtful_line(xml, save, preset, tmp_path):
     assert doubtful(save(xml())) == set()
-    for record in (True, False):
-        assert doubtful(write_rexs(preset, tmp_path / "pair.rexs", record=record)) == set()
+    assert doubtful(write_rexs(preset, tmp_path / "pair.rexs")) == set()
 
 
 # By hand for z = 20/30, m = 2 mm, alpha = 20 deg, x = 0.1/0, a = 50.2 mm, h_aP* = 1:

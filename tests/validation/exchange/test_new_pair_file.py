@@ -9,7 +9,7 @@ from lumped import ParameterError, load_gear_pair, preset_names
 from lumped.schema.pair import leaf_paths
 from validation.cli import app
 from validation.exchange import parameter_text
-from validation.exchange.own_pair import GIVEN, own_pair_text
+from validation.exchange.new_pair_file import GIVEN, new_pair_text
 
 OWN = {"--teeth": "19/41", "--module": "2.5", "--face-width": "20", "--speed": "1450", "--torque": "80"}
 
@@ -96,7 +96,7 @@ def test_an_option_of_the_pair_needs_teeth():
 def test_teeth_are_two_numbers():
     for text in ("19", "19-41", "a/b", ""):
         with pytest.raises(ParameterError, match="--teeth 19/41"):
-            own_pair_text("x", {"teeth": text})
+            new_pair_text("x", {"teeth": text})
 
 
 @pytest.mark.parametrize(
@@ -140,7 +140,7 @@ def test_entries_of_lists_have_their_units_and_remarks():
 def test_few_teeth_get_the_profile_shift_that_they_need(teeth, shift):
     given = {"teeth": teeth, "basic_rack.module": 3.0, "gears.face_width": 30.0}
     given |= {"operating.pinion_speed": 1500.0, "operating.pinion_torque": 100.0}
-    pair = load_gear_pair(tomllib.loads(own_pair_text("x", given)))
+    pair = load_gear_pair(tomllib.loads(new_pair_text("x", given)))
     assert (pair.pinion.profile_shift, pair.gear.profile_shift) == (shift, 0.0)
     assert dict(pair.sources)["pinion.profile_shift"].startswith("assumed: ")
 
@@ -153,5 +153,5 @@ def test_few_teeth_get_the_profile_shift_that_they_need(teeth, shift):
 def test_an_own_pair_has_the_backlash_of_industrial_gears(module, backlash):
     given = {"teeth": "19/41", "basic_rack.module": module, "gears.face_width": 8.0 * module}
     given |= {"operating.pinion_speed": 1450.0, "operating.pinion_torque": 0.1}
-    pair = load_gear_pair(tomllib.loads(own_pair_text("x", given)))
+    pair = load_gear_pair(tomllib.loads(new_pair_text("x", given)))
     assert pair.geometry.normal_backlash == pytest.approx(1e-3 * backlash)

@@ -12,7 +12,7 @@ from lumped.friction.registry import LAWS
 from lumped.schema.files import load_gear_pair
 from lumped.schema.pair import GearPair, leaf_paths
 from validation.exchange.commented_toml import parameter_text
-from validation.exchange.rexs.assumptions import completed
+from validation.exchange.rexs.draft import completed
 
 GIVEN = "given by the user"
 #: End of a field's path -> why its assumed value was chosen; the first that fits.
@@ -51,7 +51,7 @@ _TEETH = re.compile(r"\s*(\d{1,4})\s*[/:x]\s*(\d{1,4})\s*")
 _OIL = re.compile(r"\s*(?:iso)?[\s_-]*(?:vg)?[\s_-]*(\d{1,4})\s*", re.IGNORECASE)
 
 
-def own_pair_text(name: str, given: Mapping[str, Any]) -> str:
+def new_pair_text(name: str, given: Mapping[str, Any]) -> str:
     """Return a complete parameter file; every value says whether it was given or why it is assumed.
 
     Parameters
@@ -140,7 +140,7 @@ def _is_given(path: str, values: Mapping[str, Any]) -> bool:
 
 
 def fields_of(path: str) -> list[str]:
-    """Fields that one entry of ``own_pair_text`` sets."""
+    """Fields that one entry of ``new_pair_text`` sets."""
     section, _, key = path.partition(".")
     if path == "oil":
         return ["lubricant.viscosity_law.iso_vg"]

@@ -1,0 +1,173 @@
+"""The draft of a pair while a REXS file is read: values, the places they come from, and what is assumed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from lumped.errors import FieldProblem, shown
+from lumped.fields.units import to_file, to_si
+from lumped.schema.pair import stated_unit
+from validation.exchange.rexs.model import Component, RexsModel
+from validation.exchange.rexs.vocabulary import ATTRIBUTES, si_from_rexs
+
+ASSUMED = "assumed"
+#: Joins the source of a value and why it is doubtful.
+DOUBTFUL = "; doubtful: "
+#: Numbers beyond these are no measure of a gear in any unit, and products of them would overflow.
+_SMALLEST, _LARGEST = 1e-30, 1e30
+#: Tangential load over face width and module where a file has no torque [N/m^2]: a moderate load of hardened
+#: steel gears of any size.
+_LOAD_INTENSITY = 20e6
+_BEARING = {"stiffness": 1e8, "damping_ratio": 0.05}
+#: Field -> value in file units that stands in where a file has none.
+_STAND_INS: dict[str, Any] = {
+    "pinion.roughness": 0.4,
+    "gear.roughness": 0.4,
+    **{
+        f"bearings.{gear}.{line}_{key}": value
+        for gear in ("pinion", "gear")
+        for line in ("loa", "oloa")
+        for key, value in _BEARING.items()
+    },
+    "mesh.damping_ratio": 0.05,
+    "mesh.stiffness.model": "rectangular",
+    "friction.law": "xu_kahraman",
+    "operating.pinion_speed": 1000.0,
+}
+#: Oil temperature where a file has viscosities but no temperature [degC], and dynamic viscosity where it has
+#: none [mPa s].
+_TEMPERATURE, _VISCOSITY = 70.0, 10.0
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One number of the file in SI, and where it stands."""
+
+    si: float
+    where: str
+
+
+@dataclass
+class Draft:
+    """Collector of one import.
+
+    Attributes
+    ----------
+    model : the file
+    values : field path -> value in file units
+    sources : field path -> component and attribute
+    notes : what a user should know about the import
+    problems : what makes it impossible
+    """
+
+    model: RexsModel
+    values: dict[str, Any] = field(default_factory=dict)
+    sources: dict[str, str] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+    problems: list[FieldProblem] = field(default_factory=list)
+
+    def where(self, component: Component, attribute: str) -> str:
+        """Name a place in the file as a source: "REXS gearbox.rexs cylindrical_gear 5/face_width"."""
+        return f"REXS {self.model.file} {component.label}/{attribute}"
+
+    def number(self, component: Component, attribute: str) -> Reading | None:
+        """Read a number; what is no finite number becomes a problem."""
+        known, where = ATTRIBUTES[component.type][attribute], self.where(component, attribute)
+        found = component.attributes.get(attribute)
+        if found is None or found.value is None:
+            return None
+        try:
+            value = math.nan if isinstance(found.value, bool) else float(found.value)
+            if not (value == 0.0 or _SMALLEST < abs(value) < _LARGEST) or "_" in str(found.value):
+                raise ValueError
+        except (ValueError, OverflowError):
+            text = shown(str(found.value))
+            self.problems.append(FieldProblem(where, text, "a finite number of a gear", "Correct the file."))
+            return None
+        return Reading(si_from_rexs(value, found.unit, known.unit, where), where)
+
+    def first(self, places: Iterable[Component], attribute: str) -> Reading | None:
+        """Read the first number that some components have, or else have in the first load case."""
+        places = list(places)
+        for component in places:
+            if (found := self.number(component, attribute)) is not None:
+                return found
+        for number, parts in self.model.load_cases[:1]:
+            of_case = {c.id: c.attributes for c in parts}
+            for c in places:  # the JSON form leaves types out of load cases
+                own = Component(c.id, c.type, c.name, of_case.get(c.id, {}))
+                if (found := self.number(own, attribute)) is not None:
+                    return Reading(found.si, f"{found.where} (load case {number})")
+        return None
+
+    def text(self, component: Component, attribute: str) -> str | None:
+        """Read a text, an enumerated value or a flag."""
+        found = component.attributes.get(attribute)
+        return None if found is None or found.value is None else str(found.value)
+
+    def take(self, path: str, reading: Reading | None, remark: str = "") -> None:
+        """Make a number the value of a field."""
+        if reading is not None:
+            self.put(path, to_file(reading.si, stated_unit(path) or "1"), reading.where + remark)
+
+    def take_all(self, section: str, component: Component, attributes: Mapping[str, str]) -> None:
+        """Make attributes of a component the values of fields of a section: field -> attribute."""
+        for key, attribute in attributes.items():
+            self.take(f"{section}.{key}", self.number(component, attribute))
+
+    def put(self, path: str, value: Any, where: str) -> None:
+        """Make anything the value of a field."""
+        self.values[path] = value
+        self.sources[path] = where
+
+    def note(self, text: str) -> None:
+        """Add a note, once."""
+        if text not in self.notes:
+            self.notes.append(text)
+
+    def warn(self, paths: Sequence[str], text: str) -> None:
+        """Mark the lines of some fields as doubtful, and note why."""
+        for path in paths:
+            self.sources[path] = f"{self.sources.get(path, ASSUMED)}{DOUBTFUL}{text}"
+        self.note(f"doubtful: {', '.join(paths)}: {text}")
+
+    def agreed(self, readings: Iterable[Reading | None], why: str) -> Reading | None:
+        """Return the one value of all places that have one; a disagreement is a problem."""
+        present = [r for r in readings if r is not None]
+        for other in present[1:]:
+            first = present[0]
+            # Programs print twelve digits or more; a difference beyond 1e-9 is meant.
+            if not math.isclose(other.si, first.si, rel_tol=1e-9, abs_tol=1e-12):
+                allowed = f"{first.si:.9g} as in {first.where}"
+                self.problems.append(FieldProblem(other.where, f"{other.si:.9g} (SI)", allowed, why))
+                return None
+        return present[0] if present else None
+
+    def missing(self, component: Component, attribute: str) -> None:
+        """Add the problem that a value which cannot be assumed is not in the file."""
+        action = "Nothing can stand in for it: complete the model in the program that exported it."
+        self.problems.append(FieldProblem(self.where(component, attribute), "not given", "a value", action))
+
+
+def completed(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a full parameter mapping, name and description apart, from known values: path -> file units."""
+    full = _STAND_INS | dict(values)
+    if any(path.startswith("lubricant.viscosity_law") for path in full):
+        full.setdefault("lubricant.viscosity_law.temperature", _TEMPERATURE)
+    else:
+        full.setdefault("lubricant.viscosity", _VISCOSITY)
+    if "operating.pinion_torque" not in full:
+        module, width = (to_si(full[path], "mm") for path in ("basic_rack.module", "pinion.face_width"))
+        radius = 0.5 * module * full["pinion.teeth"]  # of the reference circle
+        full["operating.pinion_torque"] = float(f"{_LOAD_INTENSITY * width * module * radius:.3g}")
+    root: dict[str, Any] = {}
+    for path, value in full.items():
+        *parents, leaf = path.split(".")
+        node = root
+        for parent in parents:
+            node = node.setdefault(parent, {})
+        node[leaf] = value
+    return root

@@ -1,0 +1,254 @@
+"""The encodings of REXS, read into one tree and written from it: XML, JSON, or one in a ZIP archive."""
+
+from __future__ import annotations
+
+import io
+import json
+import struct
+import xml.etree.ElementTree as ET
+import zipfile
+import zlib
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from lumped.arguments import file_path
+from lumped.errors import ParameterError, refuse, shown
+from lumped.fields.text_file import read_bytes
+from validation.exchange.rexs.model import Document, RexsModel, broken, model_of
+
+#: Largest file, and largest model in an archive [bytes]: models of whole gear units with tables of results
+#: have a few megabytes.
+MAX_BYTES = 32_000_000
+#: The schema of XML nests ten elements; more is no REXS.
+_MAX_DEPTH = 32
+_MAX_ELEMENTS = 1_000_000
+_MAX_MEMBERS = 10_000
+_BLOCK = 65536
+_MARK = b"\xef\xbb\xbf"
+_DAMAGED = (zipfile.BadZipFile, zlib.error, struct.error, OSError, EOFError, ValueError, RuntimeError)
+#: Suffix of a file to write -> its form; ".rexsz" and ".rexs.zip" hold the XML form.
+FORMS = {
+    ".rexs": "xml",
+    ".rexs.xml": "xml",
+    ".rexsj": "json",
+    ".rexs.json": "json",
+    ".rexsz": "zip",
+    ".rexs.zip": "zip",
+}
+
+
+def read_rexs(path: str | Path) -> RexsModel:
+    """Read a REXS file; its content, not its name, decides which form it has.
+
+    Raises
+    ------
+    ParameterError : no such file, too large, an archive that is hostile or has not exactly one model, or not
+        a REXS model
+    """
+    path = file_path("path", path)
+    data = read_bytes(path, MAX_BYTES, field="REXS file")
+    if data[:2] == b"PK":
+        data = _unzipped(data, path.name)
+    start = data.removeprefix(_MARK).lstrip()[:1]
+    if start == b"{":
+        document = from_json(data, path.name)
+    elif start == b"<" or data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        document = from_xml(data, path.name)
+    else:
+        raise broken(path.name, "it is neither XML nor JSON nor a ZIP archive")
+    return model_of(document, path.name)
+
+
+def _unzipped(data: bytes, file: str) -> bytes:
+    """Return the one model of an archive; nothing is ever written to disk."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            members = archive.infolist()
+            if len(members) > _MAX_MEMBERS:
+                raise broken(file, f"the archive has more than {_MAX_MEMBERS} members")
+            member = _model_in(members, file)
+            if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+                raise broken(file, f"the member {shown(member.filename)!r} is not compressed by 'deflate'")
+            with archive.open(member) as stream:
+                content = stream.read(MAX_BYTES + 1)  # the size that the archive states may be a lie
+    except ParameterError:
+        raise
+    except _DAMAGED as error:
+        # zipfile trusts the offsets of a damaged directory, so a bad seek is among what it raises.
+        raise broken(file, f"the archive cannot be read: {error}") from None
+    if len(content) > MAX_BYTES:
+        raise broken(file, f"the model in the archive has more than {MAX_BYTES} bytes")
+    return content
+
+
+def _model_in(members: list[zipfile.ZipInfo], file: str) -> zipfile.ZipInfo:
+    files = [
+        m
+        for m in members
+        if not m.is_dir()
+        and not m.filename.startswith("__MACOSX/")
+        and not PurePosixPath(m.filename).name.startswith("._")
+    ]
+    for suffixes in ((".rexs", ".rexsj", ".rexs.xml", ".rexs.json"), (".xml", ".json")):
+        found = [m for m in files if m.filename.lower().endswith(suffixes)]
+        if found:
+            break
+    if len(found) != 1:
+        raise broken(file, f"the archive has {len(found)} models instead of one")
+    return found[0]
+
+
+def from_json(data: bytes, file: str) -> Document:
+    def no_number(text: str) -> float:
+        raise ValueError(f"{text} is no number of JSON")
+
+    try:
+        document: Document = json.loads(data.decode("utf-8-sig"), parse_constant=no_number)
+    except RecursionError:
+        raise broken(file, "the JSON is nested too deeply") from None
+    except ValueError as error:
+        raise broken(file, f"the JSON is not of the form of REXS: {str(error)[:120]}") from None
+    return document
+
+
+def from_xml(data: bytes, file: str) -> Document:
+    """Read XML in one bounded pass that knows no entities.
+
+    A document type declaration, which every entity needs, is refused before anything in it is read, so
+    nothing is fetched and nothing expands; arrays and matrices are skipped, so memory is bounded by the
+    scalar attributes.
+    """
+    parser = ET.XMLParser(target=_Elements(file))
+    try:
+        for start in range(0, len(data), _BLOCK):  # in one piece expat would keep a copy of it
+            parser.feed(data[start : start + _BLOCK])
+        root: ET.Element = parser.close()
+    except ParameterError:
+        raise
+    except ET.ParseError as error:
+        raise broken(file, f"the XML is malformed: {error}") from None
+    except (ValueError, LookupError) as error:  # an encoding that expat or Python does not know
+        raise broken(file, str(error)) from None
+    if root.tag != "model":
+        raise broken(file, f"its root element is {root.tag[:40]!r} instead of 'model'")
+
+    def components(parent: ET.Element, path: str) -> list[dict[str, Any]]:
+        return [
+            {
+                **part.attrib,
+                "id": part.get("id", ""),
+                "attributes": [
+                    {"id": a.get("id", ""), "unit": a.get("unit"), "string": (a.text or "").strip() or None}
+                    for a in part.iter("attribute")
+                ],
+            }
+            for part in parent.iterfind(path)
+        ]
+
+    relations = [
+        {**r.attrib, "refs": [{"id": "", **ref.attrib} for ref in r.iter("ref")]}
+        for r in root.iterfind("relations/relation")
+    ]
+    cases = [
+        {"id": case.get("id", ""), "components": components(case, ".//component")}
+        for case in root.iter("load_case")
+    ]
+    parts = {"components": components(root, "components/component"), "relations": relations}
+    return {"model": {**root.attrib, **parts, "load_spectrum": {"load_cases": cases}}}
+
+
+class _Elements:
+    """Target of the parser: a tree without namespaces and without what stands inside attributes."""
+
+    def __init__(self, file: str) -> None:
+        self.file = file
+        self.builder = ET.TreeBuilder()
+        self.path: list[str] = []
+        self.count = 0
+
+    def doctype(self, *_: object) -> None:
+        raise broken(self.file, "it has a document type declaration, which REXS does not use")
+
+    def start(self, tag: str, attributes: dict[str, str]) -> None:
+        inside = "attribute" in self.path
+        self.path.append(tag.rpartition("}")[2])
+        if len(self.path) > _MAX_DEPTH:
+            raise broken(self.file, f"elements are nested deeper than {_MAX_DEPTH}")
+        if not inside:
+            self.count += 1
+            if self.count > _MAX_ELEMENTS:
+                raise broken(self.file, f"it has more than {_MAX_ELEMENTS} elements")
+            self.builder.start(self.path[-1], attributes)
+
+    def end(self, _: str) -> None:
+        name = self.path.pop()
+        if "attribute" not in self.path:
+            self.builder.end(name)
+
+    def data(self, text: str) -> None:
+        if self.path[-1] == "attribute":
+            self.builder.data(text)
+
+    def close(self) -> ET.Element:
+        return self.builder.close()
+
+
+def form_of(path: Path) -> str:
+    """Form of a file to write, from its suffix.
+
+    Raises
+    ------
+    ParameterError : a suffix that the specification does not have
+    """
+    for suffix, form in FORMS.items():
+        if path.name.lower().endswith(suffix):
+            return form
+    raise refuse("output", path, "a name ending in " + ", ".join(FORMS), "The suffix chooses the form.")
+
+
+def encoded(document: Document, form: str, name: str) -> bytes:
+    """Bytes of a tree: UTF-8 with a byte-order mark, as the specification asks, or an archive of that."""
+    if form == "json":
+        text = json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False)
+        return _MARK + text.encode() + b"\n"
+    data = _MARK + b'<?xml version="1.0" encoding="UTF-8"?>\n' + _xml(document["model"]).encode() + b"\n"
+    if form == "xml":
+        return data
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
+        # A fixed date, so that equal models give equal bytes.
+        member = zipfile.ZipInfo(f"{name}.rexs", (1980, 1, 1, 0, 0, 0))
+        member.compress_type = zipfile.ZIP_DEFLATED
+        archive.writestr(member, data)
+    return stream.getvalue()
+
+
+def _xml(model: dict[str, Any]) -> str:
+    def add(parent: ET.Element, tag: str, node: dict[str, Any]) -> ET.Element:
+        return ET.SubElement(parent, tag, {k: _text(v) for k, v in node.items() if not isinstance(v, list)})
+
+    root = ET.Element("model", {key: value for key, value in model.items() if isinstance(value, str)})
+    relations, parts = ET.SubElement(root, "relations"), ET.SubElement(root, "components")
+    for relation in model["relations"]:
+        element = add(relations, "relation", relation)
+        for ref in relation["refs"]:
+            add(element, "ref", ref)
+    for component in model["components"]:
+        element = add(parts, "component", component)
+        for attribute in component["attributes"]:
+            *named, (_, value) = attribute.items()
+            entry = add(element, "attribute", dict(named))
+            if isinstance(value, list):
+                array = ET.SubElement(entry, "array")
+                for cell in value:
+                    ET.SubElement(array, "c").text = _text(cell)
+            else:
+                entry.text = _text(value)
+    ET.indent(root)
+    return ET.tostring(root, encoding="unicode")
+
+
+def _text(value: object) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return f"{value:.15g}" if isinstance(value, float) else str(value)
