@@ -50,11 +50,11 @@ start = time.perf_counter()
 from floquet import stability_chart
 from lumped import load_gear_pair
 imported = time.perf_counter() - start
-size, method, store = int(sys.argv[1]), sys.argv[2], sys.argv[3]
+size, store = int(sys.argv[1]), sys.argv[2]
 pair = load_gear_pair("nasa_28_28").with_({"friction.law": "coulomb", "friction.coefficient": 0.05})
 axes = {"speed_rpm": np.linspace(500, 20000, size), "damping_ratio": np.linspace(0, 0.1, size)}
 start = time.perf_counter()
-stability_chart(pair, axes, rtol=1e-8, method=method, store=store)
+stability_chart(pair, axes, rtol=1e-8, store=store)
 took = time.perf_counter() - start
 print(imported, took, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3)
 """
@@ -71,29 +71,28 @@ def row(what: str, value: str, remark: str = "") -> None:
     print(f"| {what:58s} | {value:>22s} | {remark} |", flush=True)
 
 
-def dense(law: str, method: str, size: int) -> Callable[[], Any]:
+def dense(law: str, size: int) -> Callable[[], Any]:
     """A chart over speed and damping, warm."""
     pair = PAIR if law == "coulomb" else PAIR.with_({"friction.law": law, "friction.coefficient": None})
     small = {"speed_rpm": np.linspace(900, 1800, 70), "damping_ratio": np.linspace(0.01, 0.02, 5)}
-    stability_chart(pair, small, rtol=1e-8, method=method)
+    stability_chart(pair, small, rtol=1e-8)
     axes = {"speed_rpm": np.linspace(*SPEEDS, size), "damping_ratio": np.linspace(0.0, 0.1, size)}
-    return lambda: stability_chart(pair, axes, rtol=1e-8, method=method, store="radius")
+    return lambda: stability_chart(pair, axes, rtol=1e-8, store="radius")
 
 
 def charts(size: int) -> float:
     """Return processor seconds per point of the direct chart with constant mu."""
     first = math.nan
-    for method, laws in (("taylor", LAWS), ("chebyshev", LAWS[:4])):
-        for law in laws:
-            chart, seconds = cpu(dense(law, method, size))
-            first = seconds / size**2 if math.isnan(first) else first
-            error = chart.error.values
-            row(
-                f"chart {size} x {size}, {law}, {method}",
-                f"{CORES * size**2 / seconds:.0f} points/s",
-                f"{seconds / size**2 * 1e6:.1f} us/point; bound: median {np.median(error):.0e}, above "
-                f"1e-8 at {np.mean(error > 1e-8):.2%}",
-            )
+    for law in LAWS:
+        chart, seconds = cpu(dense(law, size))
+        first = seconds / size**2 if math.isnan(first) else first
+        error = chart.error.values
+        row(
+            f"chart {size} x {size}, {law}",
+            f"{CORES * size**2 / seconds:.0f} points/s",
+            f"{seconds / size**2 * 1e6:.1f} us/point; bound: median {np.median(error):.0e}, above "
+            f"1e-8 at {np.mean(error > 1e-8):.2%}",
+        )
     return first
 
 
@@ -115,7 +114,7 @@ def forms(size: int) -> None:
 def energy_chart(pair: GearPair, size: int) -> Callable[[], Any]:
     """A chart over speed and damping by the direct route."""
     axes = {"speed_rpm": np.linspace(*SPEEDS, size), "damping_ratio": np.linspace(0.0, 0.1, size)}
-    return lambda: stability_chart(pair, axes, rtol=1e-8, method="taylor", store="radius")
+    return lambda: stability_chart(pair, axes, rtol=1e-8, store="radius")
 
 
 def by_turning(points: int) -> None:
@@ -226,10 +225,10 @@ def on_shafts(size: int, points: int) -> None:
     )
 
 
-def child(size: int, method: str, store: str, **environment: str) -> list[float]:
+def child(size: int, store: str, **environment: str) -> list[float]:
     """Import time, wall time and peak memory of a chart in a fresh process."""
     run = subprocess.run(
-        [sys.executable, "-c", CHILD, str(size), method, store],
+        [sys.executable, "-c", CHILD, str(size), store],
         env={**os.environ, **environment}, check=True, capture_output=True, text=True,
     )  # fmt: skip
     return [float(word) for word in run.stdout.split()]
@@ -238,17 +237,17 @@ def child(size: int, method: str, store: str, **environment: str) -> list[float]
 def processes() -> None:
     with tempfile.TemporaryDirectory() as folder:
         for name in ("compiled now", "compiled code from the cache"):
-            imported, took, _ = child(2, "taylor", "all", NUMBA_CACHE_DIR=folder)
+            imported, took, _ = child(2, "all", NUMBA_CACHE_DIR=folder)
             row(
                 f"first chart of a process, {name}",
                 f"{took:.2f} s",
                 f"import of floquet {imported:.2f} s, wall",
             )
-    base = child(2, "taylor", "all")[2]
-    for method, store in (("chebyshev", "radius"), ("chebyshev", "all"), ("taylor", "radius")):
-        _, took, memory = child(1000, method, store)
+    base = child(2, "all")[2]
+    for store in ("radius", "all"):
+        _, took, memory = child(1000, store)
         row(
-            f"chart 1000 x 1000, {method}, store {store}, in a fresh process",
+            f"chart 1000 x 1000, store {store}, in a fresh process",
             f"{memory:.0f} MB at most",
             f"{base:.0f} MB of it without a chart; {took:.1f} s wall",
         )
@@ -264,12 +263,11 @@ def accuracy(pairs: int, seed: int) -> None:
     )
 
 
-@pytest.mark.parametrize("method", ["taylor", "chebyshev"])
 @pytest.mark.parametrize("law", ["coulomb", "xu_kahraman", "benedict_kelley"])
-def test_chart(benchmark: Any, law: str, method: str) -> None:
+def test_chart(benchmark: Any, law: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LawRangeWarning)
-        benchmark.pedantic(dense(law, method, 200), rounds=3)
+        benchmark.pedantic(dense(law, 200), rounds=3)
     benchmark.extra_info["points"] = 200**2
 
 

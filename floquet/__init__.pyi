@@ -38,7 +38,6 @@ from .rank_one.batch import FastMonodromy as FastMonodromy
 from .rank_one.batch import FastMultipliers as FastMultipliers
 from .rank_one.batch import fast_monodromies as fast_monodromies
 from .rank_one.batch import fast_multipliers as fast_multipliers
-from .rank_one.coarsening import coarsened as coarsened
 from .rank_one.system import Gains as Gains
 from .rank_one.system import ModalForm as ModalForm
 from .rank_one.system import RankOneSystem as RankOneSystem

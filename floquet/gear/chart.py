@@ -1,4 +1,4 @@
-"""Stability charts of gear pairs: the compiled route for dense charts, the general engine as its check.
+"""Stability charts of gear pairs.
 
 Sources: docs/theory/floquet.md, "Computing M".
 """
@@ -12,13 +12,9 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from floquet.engine.chart import Axes, chart_dataset, scan
-from floquet.engine.propagators.base import Propagator
-from floquet.engine.propagators.registry import PROPAGATORS
-from floquet.engine.spectrum import Spectrum
+from floquet.engine.chart import Axes, chart_dataset
 from floquet.gear.axes import GearVariation, gear_axis, gear_grid, vary
 from floquet.gear.feedback import feedback_system, separate_modes
-from floquet.gear.multipliers import gear_pair_multipliers
 from floquet.gear.plane import Plane, Store, plane_multipliers
 from lumped.arguments import one_of, real_number
 from lumped.errors import refuse
@@ -30,13 +26,9 @@ from lumped.typing import FloatArray, Progress
 if TYPE_CHECKING:
     import xarray as xr
 
-METHODS = ("auto", "taylor", "chebyshev", *PROPAGATORS)
-#: From here on interpolation costs less processor time than every point by itself (28/28, laws I to III).
-INTERPOLATE_FROM = 100_000
 _INNER = ("speed_rpm", "damping_ratio", "friction_coefficient")
-# The compiled chart is cut along speed, which bounds its memory and lets it tell its progress: points of a
-# slice, and speeds of one at least, since interpolation over few speeds saves nothing.
-_SLICE, _SPEEDS = 1 << 18, 128
+# The chart is cut along speed, which bounds its memory and lets it tell its progress: points of a slice.
+_SLICE = 1 << 18
 _LARGEST = 25_000_000
 
 
@@ -46,7 +38,6 @@ def stability_chart(
     *,
     friction_law: str | None = None,
     rtol: float = 1e-10,
-    method: str | Propagator = "taylor",
     store: Literal["all", "radius"] = "all",
     supports: Supports = "springs",
     progress: Progress | None = None,
@@ -62,10 +53,6 @@ def stability_chart(
         pitch point, the others for mu that varies along the path. With an axis friction_coefficient the law
         is scaled to that mean of |mu|.
     rtol : wanted accuracy of the monodromy matrices, relative to their scale; 1e-13 to 1e-3
-    method : "taylor", the compiled kernel; "chebyshev", the same at some thousand nodes with a checked
-        interpolation in speed and in damping or friction between them, for charts of many more points than
-        that (speeds at which a friction law changes its regimes are computed directly); "auto", whichever of
-        the two costs less; or a method of `monodromy` for an independent check
     store : "all"; or "radius" for the spectral radius, its error and the verdict without the multipliers: 18
         bytes a point instead of 258
     supports : "springs", the pair's ``bearings``, or its "shafts" with the modes that count most
@@ -76,13 +63,12 @@ def stability_chart(
     xarray.Dataset over the axes: spectral_radius, error, verdict, proven and, with store "all", multipliers
     and multiplier_errors (10 each: the feedback block and the off-line-of-action block, on shafts two for
     each mode; the rigid rotation is no part of them). Its attribute ``certificate`` is "proven", "estimate"
-    or "mixed", which the variable ``proven`` tells for every point: estimates are what "chebyshev"
-    interpolates, what "taylor" gives over speeds that share a friction law to a tolerance, and all of the
-    other methods.
+    or "mixed", which the variable ``proven`` tells for every point: estimates are the errors over speeds that
+    share a friction law to a tolerance.
 
     Raises
     ------
-    ParameterError : unknown axis or method, values outside the range of an axis, or too many points
+    ParameterError : unknown axis, values outside the range of an axis, or too many points
     NumericalError
         A point fails; the message names it.
     """
@@ -94,25 +80,8 @@ def stability_chart(
     one_of("store", store, ("all", "radius"))
     if friction_law is not None:
         pair = pair.with_({"friction.law": friction_law})
-    if isinstance(method, str):
-        method = one_of("method", method, METHODS)
-        method = chart_method(grid) if method == "auto" else method
-    if isinstance(method, str) and method in ("taylor", "chebyshev"):
-        rtol = real_number("rtol", rtol, 1e-13, 1e-3, action="Use 1e-8 for charts, 1e-10 for verdicts.")
-        if method == "chebyshev" and "speed_rpm" not in grid:
-            raise refuse(
-                "method", method, '"taylor" for axes without speed_rpm', "Interpolation is over speed."
-            )
-        interpolate, everything = method == "chebyshev", store == "all"
-        dataset = _compiled_chart(pair, supports, grid, rtol, progress, interpolate, everything)
-    else:
-
-        def evaluate(point: dict[str, float]) -> Spectrum:
-            return gear_pair_multipliers(vary(pair, point, supports), rtol, method=method)
-
-        dataset = scan(evaluate, grid, progress=progress)
-        if store == "radius":
-            dataset = dataset.drop_vars(["multipliers", "multiplier_errors"])
+    rtol = real_number("rtol", rtol, 1e-13, 1e-3, action="Use 1e-8 for charts, 1e-10 for verdicts.")
+    dataset = _compiled_chart(pair, supports, grid, rtol, progress, store == "all")
     for name in grid:
         axis = gear_axis(name)
         dataset[name].attrs.update(units=axis.units, long_name=axis.long_name)
@@ -120,21 +89,9 @@ def stability_chart(
         title=f"stability chart of {pair.name}",
         friction_law=pair.friction.law,
         supports=supports,
-        method=method if isinstance(method, str) else method.name,
         rtol=rtol,
     )
     return dataset
-
-
-def chart_method(axes: Mapping[str, FloatArray]) -> str:
-    """Method that costs least: "chebyshev" for many points over speed, damping and friction, else "taylor".
-
-    Parameters
-    ----------
-    axes : of the chart
-    """
-    many = math.prod(np.size(values) for name, values in axes.items() if name in _INNER) >= INTERPOLATE_FROM
-    return "chebyshev" if many and "speed_rpm" in axes else "taylor"
 
 
 def _compiled_chart(
@@ -143,7 +100,6 @@ def _compiled_chart(
     grid: Mapping[str, FloatArray],
     rtol: float,
     progress: Progress | None,
-    interpolate: bool,
     multipliers: bool,
 ) -> xr.Dataset:
     """Fit the block once per point of the slow axes, then run the kernel over the fast ones.
@@ -153,13 +109,11 @@ def _compiled_chart(
     """
     # A friction axis that is zero throughout has no reference to scale.
     inner = [n for n in grid if n in _INNER and (n != "friction_coefficient" or grid[n].max() > 0.0)]
-    if interpolate and len(inner) == 3:
-        inner.remove("friction_coefficient")
     index = np.arange(math.prod(values.size for values in grid.values()))
     index = index.reshape([values.size for values in grid.values()])
     steps = {name: grid[name].size if name in inner else 1 for name in grid}
     if "speed_rpm" in inner:
-        steps["speed_rpm"] = max(_SPEEDS, _SLICE * steps["speed_rpm"] // math.prod(steps.values()))
+        steps["speed_rpm"] = max(1, _SLICE * steps["speed_rpm"] // math.prod(steps.values()))
     everywhere = vary(pair, {}, supports)
     size = 2 * (feedback_system(everywhere).squares.size + separate_modes(everywhere)[0].size)
     store, done = Store(index.size, size, multipliers), 0
@@ -171,7 +125,7 @@ def _compiled_chart(
         flat = {name: values.ravel() for name, values in zip(inner, mesh, strict=True)}
         point = {name: float(values[0]) for name, values in here.items() if name not in inner}
         plane = Plane(pair, supports, point, flat, index[block].ravel())
-        plane_multipliers(plane, store, rtol, interpolate)
+        plane_multipliers(plane, store, rtol)
         done += plane.index.size
         if progress is not None:
             progress(done / index.size)

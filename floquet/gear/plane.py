@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,26 +11,15 @@ import numpy.typing as npt
 from floquet.engine.multipliers import radii_with_bounds
 from floquet.gear.axes import GearVariation, operating_rpm, vary
 from floquet.gear.block import gear_block
-from floquet.gear.friction_over_speed import FrictionFamily, friction_families
+from floquet.gear.friction_over_speed import friction_families
 from floquet.gear.multipliers import OffLineOfAction
-from floquet.rank_one.batch import FastMonodromy, FastMultipliers, fast_monodromies, fast_multipliers
-from floquet.rank_one.coarsening import coarsened
-from floquet.rank_one.interpolation import interpolated_multipliers
-from floquet.rank_one.system import RankOneSystem
+from floquet.rank_one.batch import FastMultipliers, fast_multipliers
 from lumped.model.periodic_system import Supports
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
-Put = Callable[[npt.NDArray[np.intp], FastMultipliers], None]
-"""(indices (k,) of points, their multipliers)."""
-
 _REFERENCE_DAMPING = 1.0
-# Periods that share one coarsened block differ by at most this factor: short ones need fewer pieces still.
-_BAND = 1.5
 _CHUNK = 32_768  # points in memory with their matrices
-_FEW_PIECES = 6  # not worth joining
-_FEW_POINTS = 300  # for which joining costs more than it saves
-_FEW_SPEEDS = 64  # for which interpolation would cost more
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,20 +107,10 @@ class Store:
             self.errors[points] = np.take_along_axis(errors, ranking, 1)
 
 
-def plane_multipliers(
-    plane: Plane,
-    store: Store,
-    rtol: float,
-    interpolate: bool,
-) -> None:
-    """Multipliers of all points: the feedback block and the bearings off the line of action.
+def plane_multipliers(plane: Plane, store: Store, rtol: float) -> None:
+    """Put the multipliers of all points into the store, those of the bearings off the line of action too.
 
-    Parameters
-    ----------
-    plane : the points
-    store : takes the multipliers
-    rtol : wanted error relative to the scale of the monodromy matrices
-    interpolate : over speed and over damping or friction, where speeds are many and share one friction law
+    ``rtol``: wanted error relative to the scale of the monodromy matrices.
     """
     first = plane.variation()
     speeds = plane.flat.get("speed_rpm", np.full(plane.index.size, operating_rpm(first.pair)))
@@ -142,109 +121,19 @@ def plane_multipliers(
         row[family.members] = np.arange(family.members.size)
         part = np.flatnonzero(row[which] >= 0)
         variation = plane.variation(family.speed_rpm)
-        several = interpolate and family.members.size > _FEW_SPEEDS
-        # Interpolation multiplies the bounds at its nodes, most of which is the fit of the law, by 9 to 13.
         block = gear_block(
             variation,
-            rtol=max((0.002 if several else 0.01) * rtol, 1e-12),
+            rtol=max(0.01 * rtol, 1e-12),
             friction_apart=variation.pair.friction.law != "none",
             friction_level=family.level,
         )
-        periods = block.period * variation.pair.operating.pinion_speed * 30.0 / np.pi / speeds[part]
+        periods = block.period * variation.pair.operating.pinion_speed * 30.0 / np.pi / speeds
         # At the other speeds of a family the law is that of one speed times factors found by sampling.
         exact = family.members.size == 1 or family.law is None
         bearings = OffLineOfAction.of(variation)
-
-        def put(
-            index: npt.NDArray[np.intp],
-            found: FastMultipliers,
-            owner: npt.NDArray[np.intp] = plane.index[part],
-            periods: FloatArray = periods,
-            bearings: OffLineOfAction = bearings,
-            exact: bool = exact,
-        ) -> None:
-            store.put(owner[index], found, bearings, periods[index], exact)
-
-        done = False
-        if several:
-            done = _interpolated(block, family, periods, damping[part], friction[part], rtol, put)
-        if not done:
-            factors = friction[part, None] * family.factors[row[which[part]]]
-            _direct(block, periods, damping[part], factors, rtol, put)
-
-
-def _direct(
-    block: RankOneSystem,
-    periods: FloatArray,
-    damping: FloatArray,
-    factors: FloatArray,
-    rtol: float,
-    put: Put,
-) -> None:
-    """The kernel at every point, in bands of periods with a coarser block for each."""
-    if not block.parts[1:]:
-        factors = np.ones((periods.size, 0))
-    worth = periods.size >= _FEW_POINTS and block.phases.size - 1 > _FEW_PIECES
-    rest = np.arange(periods.size)
-    while rest.size:
-        longest = float(periods[rest].max())
-        inside = periods[rest] > (longest / _BAND if worth else 0.0)
-        band, rest = rest[inside], rest[~inside]
-        system = block
-        if worth and band.size >= _FEW_POINTS:
-            most = np.abs(factors[band]).max(axis=0)
-            system = coarsened(block, longest, float(damping[band].max()), most, 0.05 * rtol)
-        for first in range(0, band.size, _CHUNK):
-            part = band[first : first + _CHUNK]
-            found = fast_multipliers(
-                system, periods[part], damping[part], factors[part], tolerance=2e-4 * rtol
-            )
-            put(part, found)
-
-
-class _AnotherFamily(Exception):
-    """A node of the interpolation has another friction law than the speeds around it."""
-
-
-def _interpolated(
-    block: RankOneSystem,
-    family: FrictionFamily,
-    periods: FloatArray,
-    damping: FloatArray,
-    friction: FloatArray,
-    rtol: float,
-    put: Put,
-) -> bool:
-    """`_direct` by interpolation over periods and over damping or friction, whichever varies.
-
-    Returns False where friction between the given speeds is not of the family; what was put then is void.
-    """
-    by_friction = bool(np.ptp(friction) > 0.0)
-    unique, row = np.unique(periods, return_inverse=True)
-    other, column = np.unique(friction if by_friction else damping, return_inverse=True)
-    fixed = float(damping[0] if by_friction else friction[0])
-    scale = block.period * family.speed_rpm
-
-    def flow(T: FloatArray, parameters: FloatArray) -> FastMonodromy:
-        nodes, index = np.unique(T, return_inverse=True)
-        factors = family.factors_at(scale / nodes)
-        if factors is None:
-            raise _AnotherFamily
-        strength = parameters if by_friction else np.full(T.size, fixed)
-        zeta = np.full(T.size, fixed) if by_friction else parameters
-        gains = strength[:, None] * factors[index] if block.parts[1:] else np.ones((T.size, 0))
-        tolerance = max(1e-5 * rtol, 1e-14)
-        return fast_monodromies(block, T, zeta, gains, tolerance=tolerance)
-
-    # The points are all combinations of both.
-    points = np.empty((unique.size, other.size), dtype=np.intp)
-    points[row, column] = np.arange(periods.size)
-
-    def receive(rows: npt.NDArray[np.intp], found: FastMultipliers) -> None:
-        put(points[rows].ravel(), found)
-
-    try:
-        interpolated_multipliers(flow, unique, other, float(block.modal().omega.max()), 1e-3 * rtol, receive)
-    except _AnotherFamily:
-        return False
-    return True
+        for chunk in np.split(part, range(_CHUNK, part.size, _CHUNK)):
+            T = periods[chunk]
+            factors = friction[chunk, None] * family.factors[row[which[chunk]]]
+            factors = factors if block.parts[1:] else np.ones((chunk.size, 0))
+            found = fast_multipliers(block, T, damping[chunk], factors, tolerance=2e-4 * rtol)
+            store.put(plane.index[chunk], found, bearings, T, exact)

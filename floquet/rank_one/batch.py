@@ -21,7 +21,7 @@ from floquet.rank_one.kernels.disks import spectra, spectra_by
 from floquet.rank_one.kernels.gains import Limits, most_steps
 from floquet.rank_one.kernels.taylor import propagate_points
 from floquet.rank_one.packing import own, packed
-from floquet.rank_one.system import Coarsening, RankOneSystem
+from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_array, real_number, real_numbers
 from lumped.errors import NumericalError, refuse, shown
 from lumped.typing import BoolArray, ComplexArray, FloatArray
@@ -82,7 +82,6 @@ def fast_monodromies(
     gains = _factors("gain_factors", gain_factors, T.shape, factors[:, 1:].shape)
     factors[:, 1:] = gains if gains.ndim == 2 else gains[:, None]
     zeta = own(_factors("damping_factors", damping_factors, T.shape))
-    _within(system.coarsening, T, zeta, factors)
     # Longer steps have fewer terms per unit of time, but amplify rounding, 30 eps = exp(-32.6), by
     # exp(angle): to an eighth of the tolerance.
     limits = Limits(tolerance, min(max(math.log(tolerance) + 30.5, 3.0), 9.0))
@@ -221,19 +220,6 @@ def _factors(
         if array.shape in ((), (1,), each):
             return np.broadcast_to(array, each)
     raise refuse(name, shown(given), f"finite, one or {each[0]}", "Give one factor per period.")
-
-
-def _within(coarsening: Coarsening | None, T: FloatArray, zeta: FloatArray, factors: FloatArray) -> None:
-    """Refuse variants for which the bounds of a coarsened system do not hold."""
-    if coarsening is None:
-        return
-    given = [T.max(), np.abs(zeta).max(), *np.abs(factors[:, 1:]).max(axis=0)]
-    most = [coarsening.period, coarsening.damping, *coarsening.factors]
-    for name, value, limit in zip(
-        ("periods", "damping_factors", *["gain_factors"] * len(given)), given, most, strict=False
-    ):
-        if value > limit * (1.0 + 1e-12):
-            raise refuse(name, f"{value:g}", f"at most {limit:g}", "Coarsen the system for a wider range.")
 
 
 def in_threads(run: Callable[[slice], _T], size: int) -> list[_T]:

@@ -26,7 +26,6 @@ def packed(system: RankOneSystem) -> Problem:
     fit_error += relative * np.stack([_norms(form.w), wd_size], axis=2)
     edges = [np.zeros((pieces + 1, 2)) if p.edge_errors is None else p.edge_errors for p in system.parts]
     degrees = np.stack([_degrees(form.w), _degrees(form.wd)], axis=1)
-    flow_error = np.zeros(pieces) if system.coarsening is None else system.coarsening.errors
     return Problem(
         phases=own(system.phases),
         w=_lanes(form.w),
@@ -37,7 +36,6 @@ def packed(system: RankOneSystem) -> Problem:
         unequal=unequal,
         fit_error=own(fit_error),
         edge_error=own(np.stack(edges) * (1.0 + 1e-9)),
-        flow_error=own(flow_error),
         C=own([form.C, form.gyroscopic]),
         drive=form.drive,
         noise=noise,

@@ -36,23 +36,6 @@ class Gains:
 
 
 @dataclass(frozen=True, eq=False)
-class Coarsening:
-    """What joining pieces (`floquet.rank_one.coarsening`) did to the flow, and for which variants that holds.
-
-    Attributes
-    ----------
-    errors : (P,) bound on the error of the transition matrix over each piece, energy norm
-    period, damping : largest period [s] and largest factor on wd
-    factors : (Q-1,) largest |factor| on each varied part
-    """
-
-    errors: FloatArray
-    period: float
-    damping: float
-    factors: FloatArray
-
-
-@dataclass(frozen=True, eq=False)
 class RankOneSystem:
     """z'' + (D + G/T) z' + L z + w(t) (v . z) + wd(t) (v . z') = 0, periodic w and wd, m coordinates.
 
@@ -68,7 +51,6 @@ class RankOneSystem:
     varied : one or more further sets of gains that a chart adds, each times a factor of its own for every
         point, as where the friction coefficient goes up and down with speed; the system by itself has them
         with factor 1
-    coarsening : where pieces have been joined, what that costs
     gyroscopic : (m, m) G, dimensionless, of parts that turn by fixed angles within a period; None: nothing
     """
 
@@ -80,7 +62,6 @@ class RankOneSystem:
     period: float
     metric: FloatArray
     varied: tuple[Gains, ...] = ()
-    coarsening: Coarsening | None = None
     gyroscopic: FloatArray | None = None
 
     @property

@@ -222,7 +222,7 @@ def _chart(
         + f"\n{int(stable.sum())} of {stable.size} points are stable; "
         + f"largest multiplier {float(worst):.6f} at "
         + ", ".join(f"{name} {float(worst[name]):.5g}" for name in grid)
-        + f"\nlargest bound on an error {float(chart['error'].max()):.1e}, method {chart.attrs['method']}"
+        + f"\nlargest bound on an error {float(chart['error'].max()):.1e}"
     )  # fmt: skip
     data = chart
     regions: Sequence[TongueMargin | LabelledRegion] | None = None

@@ -32,7 +32,6 @@ class Problem(NamedTuple):
     unequal : (Q, P) bound on the norm of wd - rho w there
     fit_error : (Q, P, 2) largest |error| of w and wd by their polynomials on each piece
     edge_error : (Q, P+1, 2) integral over the phase of a further |error| of w, wd at either side of each end
-    flow_error : (P,) bound on what the error of the transition matrix over each piece has besides
     C, omega, v : (2, m, m), what does not depend on speed [1/s] and what is to be divided by the period; (m,)
         [rad/s]; (m,)
     drive : bound on the rate [1/s] at which C lets the state grow; 0 where all supports are damped
@@ -50,7 +49,6 @@ class Problem(NamedTuple):
     unequal: FloatArray
     fit_error: FloatArray
     edge_error: FloatArray
-    flow_error: FloatArray
     C: FloatArray
     drive: float
     noise: float

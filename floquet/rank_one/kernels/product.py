@@ -144,7 +144,7 @@ def spectral(A: FloatArray, square: FloatArray) -> float:
 def carry(
     steps: FloatArray,
     local: FloatArray,
-    layout: FloatArray,
+    sizes: FloatArray,
     count: int,
     flow: FloatArray,
     before: FloatArray,
@@ -157,13 +157,13 @@ def carry(
     multiplication, and S_j the *exact* flow from the end of step j to that of the period, the error of the
     product is sum S_j E_j Q_j, no term left out. S_j is known as a product of at most log2 of as many blocks,
     each the computed product of 2^k steps (a binary counter, from the last step backwards), so that its own
-    error stays small. The error of a piece that is no step's is one of its block.
+    error stays small.
 
     Parameters
     ----------
     steps : (count, n, lanes)
     local : (count,) bound on |E_j|, 2-norm
-    layout : (count, 5) as from ``steps_of_period``
+    sizes : (count,) bounds on the Frobenius norms of the steps
     flow : (n, lanes), out: the product
     before : (count,) scratch: bounds on |Q_j|
     work : (2 BLOCKS + 1, n, lanes) scratch
@@ -181,37 +181,14 @@ def carry(
         before[k] = frobenius(flow)
         multiply(steps[k], flow, product)
         copy(product, flow)
-    top, bound, inner, wrong, norm = 0, 0.0, 1.0, 0.0, 0.0
+    top, bound = 0, 0.0
     for k in range(count - 1, -1, -1):
-        # n eps |P| is the rounding of multiplying by this step.
-        own, size = local[k], layout[k, 4]
-        error = own + n * _EPS * size
-        part, parts, extra = int(layout[k, 1]), int(layout[k, 2]), layout[k, 3]
         after = table[3, top - 1] + table[4, top - 1] if top > 0 else 1.0
-        if extra > 0.0 and parts > 1:
-            # The steps of such a piece make one block, whose norm while it grows is the product of theirs.
-            if part == parts - 1:
-                inner = 1.0
-                copy(steps[k], work[1 + top])
-                wrong, norm = own, size
-            else:
-                multiply(work[1 + top], steps[k], product)
-                copy(product, work[1 + top])
-                wrong = wrong * (size + own) + norm * own + n * _EPS * norm * size
-                norm *= size
-            bound += after * inner * error * before[k]
-            inner *= size + own
-            if part > 0:
-                continue
-            bound += after * extra * before[k]
-            wrong += extra
-        else:
-            bound += after * (error + extra * (1.0 if part == parts - 1 else 0.0)) * before[k]
-            copy(steps[k], work[1 + top])
-            wrong = own + extra
-            norm = size
+        # n eps |P| is the rounding of multiplying by this step.
+        bound += after * (local[k] + n * _EPS * sizes[k]) * before[k]
+        copy(steps[k], work[1 + top])
         rank = 0
-        table[0, top], table[1, top], table[2, top] = norm, wrong, 0.0
+        table[0, top], table[1, top], table[2, top] = sizes[k], local[k], 0.0
         top += 1
         while top > 1 and table[2, top - 2] == rank:
             one, two = top - 2, top - 1

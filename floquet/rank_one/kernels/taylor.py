@@ -179,7 +179,7 @@ def steps_of_period(
     piece: Piece,
     steps: FloatArray,
     local: FloatArray,
-    layout: FloatArray,
+    sizes: FloatArray,
 ) -> int:
     """All steps of one period at one point.
 
@@ -188,8 +188,7 @@ def steps_of_period(
     gains, zeta, T : weights (Q,) of the parts, damping factor, period [s]
     steps : (most, 2m, lanes), out: transition matrices
     local : (most,), out: bounds on their errors
-    layout : (most, 5), out: piece, number of the step in it, number of steps in it, the bound on what the
-        error of the piece has besides those of its steps, and a bound on the Frobenius norm of the step
+    sizes : (most,), out: bounds on their Frobenius norms
 
     Returns
     -------
@@ -247,8 +246,7 @@ def steps_of_period(
             # 1 + 1e-6: rounding of the bound itself, of the number of terms above all.
             error = (residual + (1.0 + size_step) * (limits.tolerance + rounding)) * back * (1.0 + 1e-6)
             local[count] = error + off * spread
-            layout[count, 0], layout[count, 1], layout[count, 2] = i, part, parts
-            layout[count, 3], layout[count, 4] = problem.flow_error[i], size_step
+            sizes[count] = size_step
             count += 1
     return count
 
@@ -279,16 +277,15 @@ def propagate_points(
     n, lanes = 2 * problem.v.size, piece.unit.shape[0]
     most = most_steps(n)
     steps = np.empty((most, n, lanes))
-    local, layout = np.empty(most), np.empty((most, 5))
-    before, table = np.empty(most), np.zeros((5, BLOCKS))
+    local, sizes, before, table = np.empty(most), np.empty(most), np.empty(most), np.zeros((5, BLOCKS))
     work, flow = np.zeros((2 * BLOCKS + 1, n, lanes)), np.zeros((n, lanes))
     for point in range(periods.size):
         count = steps_of_period(
-            problem, gains[point], damping_factor[point], periods[point], limits, piece, steps, local, layout
+            problem, gains[point], damping_factor[point], periods[point], limits, piece, steps, local, sizes
         )
         if count < 0:
             return point
-        bound[point] = carry(steps, local, layout, count, flow, before, work, table)
+        bound[point] = carry(steps, local, sizes, count, flow, before, work, table)
         for i in range(n):
             for j in range(n):
                 M[point, i, j] = flow[i, j]

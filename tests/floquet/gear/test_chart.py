@@ -7,7 +7,6 @@ import pytest
 
 from floquet import stability_chart
 from floquet.gear import chart as engine
-from floquet.gear.chart import INTERPOLATE_FROM, METHODS, chart_method
 from lumped import load_gear_pair
 from lumped.errors import ParameterError
 
@@ -23,14 +22,13 @@ def test_slices_make_the_same_chart_and_tell_how_far_it_is(pair, monkeypatch) ->
     whole = stability_chart(pair, SMALL, rtol=1e-8, store="radius")
     monkeypatch.setattr(engine, "_SLICE", 450)
     told: list[float] = []
-    sliced = stability_chart(pair, SMALL, rtol=1e-8, method="auto", store="radius", progress=told.append)
+    sliced = stability_chart(pair, SMALL, rtol=1e-8, store="radius", progress=told.append)
     assert sliced["spectral_radius"].dims == ("damping_ratio", "speed_rpm")
     assert set(sliced.data_vars) == {"spectral_radius", "error", "verdict", "proven"}
     for name in ("speed_rpm", "damping_ratio"):
         assert np.array_equal(sliced[name], whole[name])
         assert sliced[name].attrs["units"] == whole[name].attrs["units"]
-    gap = np.abs(sliced["spectral_radius"] - whole["spectral_radius"])
-    assert bool((gap <= sliced["error"] + whole["error"]).all())
+    assert np.array_equal(sliced["spectral_radius"], whole["spectral_radius"])
     assert len(told) == 3  # 150 speeds at a time
     assert told == sorted(told)
     assert told[-1] == 1.0
@@ -44,24 +42,6 @@ def test_slow_axes_tell_their_progress_value_by_value(pair) -> None:
     assert found["spectral_radius"].dims == ("speed_rpm", "torque")
 
 
-def test_interpolation_keeps_its_bounds_against_every_point(pair) -> None:
-    direct, interpolated = (stability_chart(pair, SMALL, method=m) for m in ("taylor", "chebyshev"))
-    gap = np.abs(direct["spectral_radius"] - interpolated["spectral_radius"])
-    assert bool((gap <= direct["error"] + interpolated["error"]).all())
-
-
-def test_the_method_follows_the_number_of_points_over_fast_axes() -> None:
-    side = int(np.sqrt(INTERPOLATE_FROM))
-    few, many = np.arange(side - 1.0), np.arange(side + 1.0)
-    assert chart_method({"speed_rpm": few, "damping_ratio": few}) == "taylor"
-    assert chart_method({"speed_rpm": many, "damping_ratio": many}) == "chebyshev"
-    assert chart_method({"torque": many, "bearing_stiffness": many}) == "taylor"
-    assert chart_method({"friction_coefficient": many, "damping_ratio": many}) == "taylor"  # one speed
-
-
 def test_what_cannot_be_computed_is_refused_before_any_work(pair) -> None:
     with pytest.raises(ParameterError, match="at most 25000000"):
         stability_chart(pair, {"speed_rpm": np.arange(1.0, 6000.0), "damping_ratio": np.linspace(0, 1, 6000)})
-    with pytest.raises(ParameterError, match="method = euler"):
-        stability_chart(pair, SMALL, method="euler")
-    assert {"auto", "taylor", "chebyshev", "gauss"} <= set(METHODS)

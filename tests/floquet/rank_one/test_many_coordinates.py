@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from floquet import RankOneSystem, coarsened, fast_monodromies, fast_multipliers, monodromy
+from floquet import RankOneSystem, fast_monodromies, fast_multipliers, monodromy
 from floquet.engine.multipliers import radii_with_bounds
 from floquet.rank_one.system import Gains
 from lumped.errors import NumericalError, ParameterError
@@ -74,21 +74,6 @@ def test_a_matrix_that_is_not_skew_drives_and_enters_the_bound() -> None:
     )  # fmt: skip
     damped = replace(system, damping=np.array([[-4.0]]), gyroscopic=None)
     assert fast_monodromies(system).errors == pytest.approx(fast_monodromies(damped).errors, rel=1e-6)
-    joined = [coarsened(s, 1.0, 1.0, [], 1e-3) for s in (system, damped)]
-    assert joined[0].coarsening.errors == pytest.approx(joined[1].coarsening.errors)
-
-
-def test_joined_pieces_of_many_modes_are_within_their_bound() -> None:
-    system = replace(shafts(6), period=2e-5)
-    joined = coarsened(system, system.period, 1.0, [], 0.03)
-    assert joined.phases.size < system.phases.size
-    one, other = fast_monodromies(system), fast_monodromies(joined)
-    S, R = system.modal().state_matrix(), joined.modal().state_matrix()
-    P = np.linalg.solve(S, R)
-    moved = P @ other.matrices[0] @ np.linalg.inv(P)
-    distance = np.linalg.norm(moved - one.matrices[0])
-    assert distance <= other.errors[0] + one.errors[0]
-    assert distance > one.errors[0]
 
 
 def test_equal_shafts_have_double_multipliers_within_small_bounds() -> None:

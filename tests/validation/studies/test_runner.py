@@ -290,7 +290,8 @@ def test_the_multibody_analysis_is_the_end_of_the_transient(make_study, tmp_path
 
 
 def test_the_floquet_analysis_is_the_stability_chart(make_study, tmp_path):
-    from floquet import stability_chart
+    from floquet import gear_pair_multipliers, scan
+    from floquet.gear.axes import vary
 
     grid = {"speed_rpm": [4000.0, 6000.0], "stiffness_variation": [0.5, 1.0]}
     axes = [{"field": name, "values": values} for name, values in grid.items()]
@@ -299,7 +300,8 @@ def test_the_floquet_analysis_is_the_stability_chart(make_study, tmp_path):
     )
     assert run_sweep(study, tmp_path / "out").failed == 0
     result = read_results(tmp_path / "out")
-    chart = stability_chart(load_gear_pair("nasa_28_28"), grid, method="gauss")
+    pair = load_gear_pair("nasa_28_28")
+    chart = scan(lambda point: gear_pair_multipliers(vary(pair, point), method="gauss"), grid)
     # The analysis takes the compiled route, this chart the general engine: equal to their bounds.
     np.testing.assert_allclose(result.spectral_radius, chart.spectral_radius, rtol=1e-11)
     assert float(result.spectral_radius_error.max()) < 1e-8

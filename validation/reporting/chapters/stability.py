@@ -35,7 +35,6 @@ def write(results: Results) -> Content:
         pair,
         chart_axes(pair, effort.chart_speeds, effort.chart_dampings),
         rtol=effort.chart_rtol,
-        method="auto",
         store="radius",
         progress=results.stage("stability chart"),
     )

@@ -22,7 +22,6 @@ import numpy as np
 from flint import acb, ctx
 
 from floquet import (
-    coarsened,
     fast_multipliers,
     gear_block,
     gear_pair_multipliers,
@@ -43,7 +42,7 @@ from gears import MODELS, ball, pieces, random_pair
 
 SPECIAL = ("tongue edge", "collision", "low speed")
 KINDS = (
-    *MODELS, *SPECIAL, "stiffness variation", "law over speed", "chebyshev", "bearings",
+    *MODELS, *SPECIAL, "stiffness variation", "law over speed", "speeds", "bearings",
     "formula", "black box", "matrices",
 )  # fmt: skip
 
@@ -118,16 +117,11 @@ def _special(rng: np.random.Generator, kind: str, pair: GearPair) -> GearPair:
 
 
 def _routes(kind: str, pair: GearPair, truth: Disks) -> list[Finding]:
-    findings = []
-    fine = gear_block(pair)
-    joined = coarsened(gear_block(pair, rtol=1e-9), fine.period, 1.0, [], 1e-7)
-    for route, block in (("kernel", fine), ("joined pieces", joined)):
-        found = fast_multipliers(block)
-        findings.append(finding(kind, route, found.multipliers[0], found.errors[0], truth, found.certificate))
+    found = fast_multipliers(gear_block(pair))
     chart = stability_chart(pair, {"speed_rpm": [operating_rpm(pair)]}, rtol=1e-8)
     own = gear_pair_multipliers(pair, 1e-9)
     return [
-        *findings,
+        finding(kind, "kernel", found.multipliers[0], found.errors[0], truth, found.certificate),
         *_of_ten(kind, "chart", chart.isel(speed_rpm=0), own.oloa, truth),
         *_of_ten(kind, "pair", own, own.oloa, truth),
     ]
@@ -163,24 +157,15 @@ def _stiffness_variation(rng: np.random.Generator) -> list[Finding]:
         ]
 
 
-def _law_over_speed(rng: np.random.Generator) -> list[Finding]:
-    """A chart whose speeds share one friction law to a tolerance."""
-    return _over_speeds(rng, "law over speed", "taylor", 12)
-
-
-def _chebyshev(rng: np.random.Generator) -> list[Finding]:
-    """A chart that is interpolated over speed and damping."""
-    return _over_speeds(rng, "chebyshev", "chebyshev", 130)
-
-
-def _over_speeds(rng: np.random.Generator, kind: str, method: str, count: int) -> list[Finding]:
+def _over_speeds(kind: str, count: int, rng: np.random.Generator) -> list[Finding]:
+    """A chart whose speeds share one friction law: exactly, or for "law over speed" to a tolerance."""
     while True:
         pair = _pair(rng, str(rng.choice(MODELS)))
-        if kind != "law over speed" or pair.friction.law not in ("none", "coulomb"):
+        if (pair.friction.law in ("none", "coulomb")) == (kind == "speeds"):
             break
     rpm = operating_rpm(pair)
     axes = {"speed_rpm": rpm * np.linspace(0.8, 1.6, count), "damping_ratio": np.linspace(0.0, 0.1, 9)}
-    chart = stability_chart(pair, axes, rtol=1e-8, method=method)
+    chart = stability_chart(pair, axes, rtol=1e-8)
     findings = []
     for i, j in zip(rng.integers(0, count, 3), rng.integers(0, 9, 3), strict=True):
         there = pair.with_(
@@ -191,7 +176,7 @@ def _over_speeds(rng: np.random.Generator, kind: str, method: str, count: int) -
         )
         truth = exact_multipliers(partial(pieces, there), 6)
         found = chart.isel(speed_rpm=i, damping_ratio=j)
-        findings += _of_ten(kind, f"chart, {method}", found, gear_pair_multipliers(there, 1e-6).oloa, truth)
+        findings += _of_ten(kind, "chart", found, gear_pair_multipliers(there, 1e-6).oloa, truth)
     return findings
 
 
@@ -217,8 +202,8 @@ def _bearings(rng: np.random.Generator) -> list[Finding]:
 
 _OF_PAIRS = {
     "stiffness variation": _stiffness_variation,
-    "law over speed": _law_over_speed,
-    "chebyshev": _chebyshev,
+    "law over speed": partial(_over_speeds, "law over speed", 12),
+    "speeds": partial(_over_speeds, "speeds", 130),
     "bearings": _bearings,
 }
 
