@@ -22,12 +22,7 @@ T = TypeVar("T")
 def whole_number(
     field: str, value: object, low: int, high: int, action: str = "Choose a number in that range."
 ) -> int:
-    """Return a count given as any integer type, or refuse it.
-
-    Raises
-    ------
-    ParameterError : not an integer from ``low`` to ``high``
-    """
+    """Return a count from ``low`` to ``high`` given as any integer type, or refuse it."""
     try:
         if isinstance(value, bool) or not isinstance(value, SupportsIndex):
             raise TypeError
@@ -49,19 +44,9 @@ def real_number(
     unit: str = "",
     action: str = "Choose a number in that range.",
 ) -> float:
-    """Return a finite number given as any real type, or refuse it; text is no number.
+    """Return a finite number from ``low`` to ``high`` given as any real type, or refuse it; text is none.
 
-    Parameters
-    ----------
-    field : name of the argument
-    value : what was given
-    low, high : allowed range
-    above : whether ``low`` itself is refused
-    unit : of the number
-
-    Raises
-    ------
-    ParameterError : no number, not finite, or outside the range
+    With ``above`` the lower end itself is refused; ``unit`` is for the message.
     """
     array = _real(value)
     if array is None or array.ndim or not _inside(array, low, high, above):
@@ -82,14 +67,7 @@ def real_numbers(
 ) -> FloatArray:
     """Return one or more finite numbers as a list (n,), or refuse them; one number is a list of one.
 
-    Parameters
-    ----------
-    field, value, low, high, above, unit : as in ``real_number``
-    increasing : whether each must be larger than the one before
-
-    Raises
-    ------
-    ParameterError : no list of numbers, an empty one, or a number not finite or outside the range
+    Arguments as in ``real_number``; with ``increasing`` each must be larger than the one before.
     """
     array = _real(value)
     if array is not None and array.ndim <= 1 and array.size:
@@ -103,12 +81,7 @@ def real_numbers(
 
 
 def real_array(field: str, value: object, *, finite: bool = True) -> FloatArray:
-    """Return an array of real numbers of any shape, or refuse it.
-
-    Raises
-    ------
-    ParameterError : anything but real numbers, such as text, or where ``finite``, one that is not finite
-    """
+    """Return an array of (finite) real numbers of any shape, or refuse it."""
     array = _real(value)
     if array is None or (finite and not np.isfinite(array).all()):
         raise refuse(
@@ -118,12 +91,7 @@ def real_array(field: str, value: object, *, finite: bool = True) -> FloatArray:
 
 
 def one_of(field: str, value: object, names: Iterable[str], action: str = "Choose one of them.") -> str:
-    """Return a name, or refuse it.
-
-    Raises
-    ------
-    ParameterError : not one of ``names``
-    """
+    """Return a name out of ``names``, or refuse it."""
     known = tuple(names)
     if not isinstance(value, str) or value not in known:
         raise refuse(field, shown(value), "one of " + ", ".join(known), action)
@@ -135,18 +103,11 @@ def some_of(
     values: Collection[Name],
     names: Iterable[Name],
     action: str = "Correct the name.",
-    kept: Callable[[object], object] = lambda value: value,
+    spelling: Callable[[object], object] = lambda value: value,
 ) -> tuple[Name, ...]:
     """Return a selection of names or numbers, or refuse it; a single text is none.
 
-    Parameters
-    ----------
-    field, values, names, action : as in ``one_of``
-    kept : other spelling of a name -> the name
-
-    Raises
-    ------
-    ParameterError : no list, or a member that is not one of ``names``
+    ``spelling`` turns another spelling of a name into the name.
     """
     known = tuple(names)
     single = (
@@ -155,7 +116,7 @@ def some_of(
         or getattr(values, "ndim", 1) == 0
     )
     chosen: list[Any] = []
-    for value in [values] if single else map(kept, values):
+    for value in [values] if single else map(spelling, values):
         if single or not isinstance(value, Hashable) or value not in known:
             raise refuse(field, shown(value), "a list out of " + ", ".join(map(str, known)), action)
         chosen.append(value)
@@ -163,28 +124,14 @@ def some_of(
 
 
 def of_type(field: str, value: object, kind: type[T], what: str) -> T:
-    """Return an object of one type, or refuse it.
-
-    Parameters
-    ----------
-    what : the type in words, and what makes one
-
-    Raises
-    ------
-    ParameterError : of another type
-    """
+    """Return an object of one type, or refuse it; ``what`` is the type in words, and what makes one."""
     if not isinstance(value, kind):
         raise refuse(field, shown(value), what, "Give one of these.")
     return value
 
 
 def file_path(field: str, value: object) -> Path:
-    """Return a path given as text or as a path, or refuse it.
-
-    Raises
-    ------
-    ParameterError : neither of them
-    """
+    """Return a path given as text or as a path, or refuse it."""
     if not isinstance(value, (str, os.PathLike)):
         raise refuse(field, shown(value), "a path", "Give the name of a file or folder.")
     return Path(value)

@@ -1,6 +1,5 @@
-"""Gauss-Legendre collocation: s stages, order 2 s, symplectic, A-stable.
-
-Sources: Hairer, Lubich and Wanner, Geometric Numerical Integration, 2006, section II.1.3.
+"""Gauss-Legendre collocation, symplectic, A-stable: Hairer, Lubich, Wanner, Geometric Numerical Integration,
+2006.
 """
 
 from __future__ import annotations

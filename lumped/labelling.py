@@ -19,14 +19,7 @@ def labelled_dataset(
     coordinates: Mapping[str, Coordinate],
     attributes: Mapping[str, Any] | None = None,
 ) -> xr.Dataset:
-    """Put arrays under their names, units and dimensions.
-
-    Parameters
-    ----------
-    variables : name -> dimensions, values, unit, plain name
-    coordinates : name, which is the dimension too -> values, unit, plain name
-    attributes : of the dataset
-    """
+    """Put arrays under their names, units and dimensions, see ``Variable`` and ``Coordinate``."""
     import xarray as xr  # takes a third of a second, which an import of the package should not
 
     return xr.Dataset(

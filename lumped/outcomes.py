@@ -25,13 +25,7 @@ class Outcome(Enum):
 
 @dataclass(frozen=True)
 class Absent:
-    """A result that is not there.
-
-    Attributes
-    ----------
-    outcome : the code
-    detail : what else is known, e.g. the message of the error; may be empty
-    """
+    """A result that is not there: the code, and what else is known, e.g. the message of the error."""
 
     outcome: Outcome
     detail: str = ""

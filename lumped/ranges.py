@@ -19,14 +19,9 @@ NOT_STATED = "not stated"
 
 @dataclass(frozen=True)
 class ValidityRange:
-    """Range of one argument of an empirical law, in the law's own unit.
+    """Range of one argument of an empirical law, in the law's own unit ("1" for a ratio).
 
-    Attributes
-    ----------
-    quantity : name of the argument
-    unit : its unit in the law ("1" for a ratio)
-    low, high : limits; None where there is none or where it is not stated
-    source : where the limits come from, or ``NOT_STATED``
+    A limit is None where there is none or where ``source`` is ``NOT_STATED``.
     """
 
     quantity: str
@@ -55,12 +50,8 @@ class ValidityRange:
 class RangeViolation:
     """One argument that left its range.
 
-    Attributes
-    ----------
-    law : name of the law
-    range : the range that was left
-    minimum, maximum : extreme values met, in the range's unit
-    share : fraction of the positions that lie outside, 0 to 1
+    ``minimum`` and ``maximum`` are the extreme values met, in the range's unit; ``share`` is the fraction of
+    the positions that lie outside.
     """
 
     law: str
@@ -80,14 +71,7 @@ class RangeViolation:
 def range_violations(
     law: str, ranges: Iterable[ValidityRange], values: Mapping[str, ArrayLike]
 ) -> tuple[RangeViolation, ...]:
-    """Compare arguments of a law with its validity ranges.
-
-    Parameters
-    ----------
-    law : name for the report
-    ranges : the law's ranges
-    values : arguments by name, any shape, in the units of the ranges; a missing name is not checked
-    """
+    """Compare a law's arguments by name, any shape, in the units of the ranges, with its validity ranges."""
     found = []
     for limits in ranges:
         if not limits.stated or limits.quantity not in values:
@@ -112,11 +96,9 @@ def warn_violations(violations: Iterable[RangeViolation]) -> None:
 
 
 def checked(field: str, value: ArrayLike, unit: str, *, allow_zero: bool = False) -> FloatArray:
-    """Return a law's argument as a float array after refusing what no law can take.
+    """Return a law's argument as a float array, or refuse what no law can take.
 
-    Raises
-    ------
-    ParameterError : a value is not finite, negative, or zero where ``allow_zero`` is false
+    That is a value not finite, negative, or zero where ``allow_zero`` is false.
     """
     array = real_array(field, value, finite=False)
     # Two reductions settle the usual case; laws are evaluated thousands of times in a chart.

@@ -18,8 +18,7 @@ from lumped.labelling import Coordinate
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.model.periodic_system import Supports
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.schema.operating import LARGEST_SPEED
-from lumped.schema.pair import GearPair
+from lumped.schema.pair import LARGEST_SPEED, GearPair
 from lumped.typing import FloatArray
 
 

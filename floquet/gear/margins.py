@@ -28,7 +28,7 @@ from lumped.friction import mean_coefficient
 from lumped.labelling import labelled_dataset
 from lumped.path_of_contact import friction_path_function
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.schema.operating import LARGEST_SPEED
+from lumped.schema.pair import LARGEST_SPEED
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import re
 from collections.abc import Iterable
+from dataclasses import replace
 from types import UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
@@ -12,23 +13,16 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from lumped.errors import MOST_PROBLEMS, FieldProblem, ParameterError, quoted, shown
-from lumped.fields.quantity_range import QuantityRange
 from lumped.fields.section import OneOf
-from lumped.fields.units import Quantity
+from lumped.fields.units import Read
 
 #: What pydantic puts into a place for the parts of a union of plain types.
 _UNION_PARTS = {"int", "float", "str"}
-_RENAMED = {"model_type": "a table", "model_attributes_type": "a table", "dict_type": "a table"}
+_NO_TABLE = {"model_type", "model_attributes_type", "dict_type"}
 
 
 def translated(error: ValidationError, root: type[BaseModel]) -> list[FieldProblem]:
-    """Return one problem per field that pydantic refused.
-
-    Parameters
-    ----------
-    error : what pydantic raised
-    root : the model that was to be made
-    """
+    """Return one problem per field that pydantic refused while it made the model ``root``."""
     items = error.errors(include_url=False)[:MOST_PROBLEMS]
     found = [problem for item in items for problem in _problems(item, root)]
     first: dict[str, FieldProblem] = {}
@@ -39,12 +33,7 @@ def translated(error: ValidationError, root: type[BaseModel]) -> list[FieldProbl
 
 
 def field_of(root: type[BaseModel], path: str) -> FieldInfo:
-    """Return pydantic's description of a field by dotted path (through every member of a union).
-
-    Raises
-    ------
-    ParameterError : no such field; the nearest is suggested
-    """
+    """Return pydantic's description of a field by dotted path (through every member of a union)."""
     models = [root]
     info: FieldInfo | None = None
     for part in path.split("."):
@@ -100,16 +89,11 @@ def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
     path, kind, context = ".".join(parts), item["type"], item.get("ctx", {})
     cause = context.get("error")
     if isinstance(cause, ParameterError):
-        prefix = f"{path}." if parts else ""
         return [
-            FieldProblem(
-                p.field if p.field.startswith(prefix) else prefix + p.field, p.value, p.allowed, p.action
-            )
+            p if p.field.startswith(f"{path}.") else replace(p, field=".".join(filter(None, (path, p.field))))
             for p in cause.problems
         ]
     value = shown(quoted(item.get("input")))
-    if kind == "quantity":
-        return [FieldProblem(path, context["value"], context["allowed"], context["action"])]
     if kind == "extra_forbidden":
         known = [name for model in models for name in model.model_fields]
         return [unknown_key(path, known, parts[-1])]
@@ -124,10 +108,10 @@ def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
         marker = next((m for m in info.metadata if isinstance(m, OneOf)), None)
         names = list(marker.names) if marker else [str(name) for name in get_args(info.annotation)]
         return [_choice(path, item.get("input"), names)]
-    if kind in _RENAMED:
+    if kind in _NO_TABLE:
         keys = [name for model in models for name in model.model_fields]
         action = f"Set one of its keys: {path}.{keys[0]}." if parts and keys else "Write a section."
-        return [FieldProblem(path or "file", value, f"{_RENAMED[kind]} of keys and values", action)]
+        return [FieldProblem(path or "file", value, "a table of keys and values", action)]
     if kind == "string_too_short":
         return [FieldProblem(path, value, "text that is not empty", "Write it.")]
     if parts and not models and field_of(root, path).annotation is int:
@@ -186,6 +170,6 @@ def _whole_number(info: FieldInfo) -> str:
 
 
 def _description(info: FieldInfo) -> str:
-    quantity = next((m for m in info.metadata if isinstance(m, (Quantity, QuantityRange))), None)
+    quantity = next((m for m in info.metadata if isinstance(m, Read)), None)
     text = info.description or "a section of the parameter file"
     return f"{quantity.allowed} ({text})" if quantity else text

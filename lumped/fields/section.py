@@ -1,4 +1,4 @@
-"""The base of every part of the schema."""
+"""The base of every part of the schema, and its fields of text."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, GetCoreSchemaHandler
-from pydantic_core import PydanticCustomError, core_schema
+from pydantic_core import core_schema
 
-from lumped.fields.quantity_range import QuantityRange
-from lumped.fields.units import Quantity, to_file
+from lumped.errors import refuse
+from lumped.fields.units import Read, to_file
 
 
 class Section(BaseModel):
@@ -24,50 +24,43 @@ class Section(BaseModel):
         result: dict[str, Any] = {}
         for name, info in type(self).model_fields.items():
             value = getattr(self, name)
-            quantity = next((m for m in info.metadata if isinstance(m, (Quantity, QuantityRange))), None)
-            if isinstance(value, Section):
-                result[name] = value.to_mapping()
-            elif isinstance(value, tuple):
-                result[name] = [
-                    v.to_mapping()
-                    if isinstance(v, Section)
-                    else v
-                    if quantity is None
-                    else to_file(v, quantity.unit)
-                    for v in value
-                ]
+            unit = next((m.unit for m in info.metadata if isinstance(m, Read)), None)
+            if isinstance(value, tuple):
+                result[name] = [_plain(one, unit) for one in value]
             elif value is not None:
-                result[name] = value if quantity is None else to_file(value, quantity.unit)
+                result[name] = _plain(value, unit)
         return result
+
+
+def _plain(value: Any, unit: str | None) -> Any:
+    if isinstance(value, Section):
+        return value.to_mapping()
+    return value if unit is None else to_file(value, unit)
 
 
 @dataclass(frozen=True)
 class OneOf:
-    """Annotation of a text field: one of these names. The names may come from a registry.
+    """Annotation of a text field: one of these names, which may come from a registry.
 
-    Attributes
-    ----------
-    names : as they are kept
-    kept : other spelling -> name, where there are others
+    ``spelling`` turns another spelling into the name, where there are others.
     """
 
     names: tuple[str, ...]
-    kept: Callable[[object], object] | None = None
+    spelling: Callable[[object], object] | None = None
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
         """Validate and describe it as pydantic does a ``Literal``."""
         names = core_schema.literal_schema(list(self.names))
-        return names if self.kept is None else core_schema.no_info_before_validator_function(self.kept, names)
+        if self.spelling is None:
+            return names
+        return core_schema.no_info_before_validator_function(self.spelling, names)
 
 
 def _readable(text: str) -> str:
     if any(unicodedata.category(c) == "Cc" and c not in "\t\n\r" for c in text):
-        context = {"value": ascii(text)[:60], "allowed": "text without control characters"}
-        raise PydanticCustomError(
-            "quantity", "{value}: allowed {allowed}. {action}", {**context, "action": "Remove them."}
-        )
+        raise refuse("", ascii(text)[:60], "text without control characters", "Remove them.")
     return text
 
 

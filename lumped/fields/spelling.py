@@ -51,25 +51,14 @@ _COMMA = re.compile(r"\s*([+-]?[\d.]*\d),(\d+)(?=$|[^\d,])")
 
 
 def as_pint_reads(text: str, unit: str) -> str:
-    """Return a quantity in pint's grammar.
-
-    Parameters
-    ----------
-    text : what was written
-    unit : stated unit of the field: "lb" is a force in a torque and a mass elsewhere
-    """
+    """Return a quantity in pint's grammar; "lb" is a force where the stated unit is a torque, else a mass."""
     for pattern, instead in (*_EVERYWHERE, *_WHERE.get(unit, ())):
         text = pattern.sub(instead, text)
     return text
 
 
 def about_digits(text: str) -> str:
-    """Return what to write instead of a number with a comma or with gaps, or nothing where it has neither.
-
-    Parameters
-    ----------
-    text : a quantity
-    """
+    """Return what to write instead of a number with a comma or with gaps; nothing where it has neither."""
     if _GAP.search(text):  # pint would multiply the parts
         return f"leave the gap between the digits out: write '{_GAP.sub('', text)}'"
     found = _COMMA.match(text)

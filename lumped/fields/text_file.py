@@ -16,16 +16,9 @@ _MAX_PARTS = 50
 
 
 def parse_toml(text: str, source: str) -> dict[str, Any]:
-    """Return the content of TOML text, in a time that grows no faster than the text.
+    """Return the content of TOML text, in a time that grows no faster than the text; ``source`` names it.
 
-    Parameters
-    ----------
-    text : the TOML
-    source : where it came from, for the message
-
-    Raises
-    ------
-    ParameterError : malformed, nested too deeply, or a dotted key of more than 50 parts
+    Refused: malformed, nested too deeply, or a dotted key of more than 50 parts.
     """
     try:
         parts = 0
@@ -50,16 +43,7 @@ def parse_toml(text: str, source: str) -> dict[str, Any]:
 def read_text(
     path: str | Path, limit: int, *, field: str = "file", kind: str = "text file", **words: str
 ) -> str:
-    """Return the text of an ordinary file in UTF-8, with or without the mark that Windows puts in front.
-
-    Parameters
-    ----------
-    path, limit, field, kind, **words : as ``read_bytes``
-
-    Raises
-    ------
-    ParameterError : as ``read_bytes``, or not UTF-8
-    """
+    """Return the text of an ordinary file in UTF-8, with or without Windows' mark; as ``read_bytes``."""
     data = read_bytes(path, limit, field=field, kind=kind, **words)
     try:
         return data.decode("utf-8-sig")
@@ -77,22 +61,16 @@ def read_bytes(
     instead: str = "",
     action: str = "Check the path.",
 ) -> bytes:
-    """Return the bytes of an ordinary file (or of one that a link leads to).
+    """Return the bytes of an ordinary file (or of one that a link leads to), or refuse it.
 
     A pipe would block for ever and a device never ends, so both are refused before anything is read.
 
     Parameters
     ----------
-    path : file
-    limit : largest size [bytes]
-    field : the argument that named it
-    kind : of file that is wanted
+    path, limit : file, and its largest size [bytes]
+    field, kind : the argument that named it, and the kind of file that is wanted
     instead : what else could have been named, ", or ..."
     action : what to do where it does not exist
-
-    Raises
-    ------
-    ParameterError : no such file, not an ordinary one, not readable, or larger than the limit
     """
     try:
         flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)

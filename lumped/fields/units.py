@@ -5,17 +5,17 @@ from __future__ import annotations
 import math
 import operator
 import re
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from decimal import Decimal, DivisionByZero, InvalidOperation, Overflow
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from pydantic_core import PydanticCustomError, core_schema
+from pydantic_core import core_schema
 
-from lumped.errors import refuse, shown
+from lumped.errors import ParameterError, refuse, shown
 from lumped.fields.spelling import DEFINITIONS, about_digits, as_pint_reads
 
 if TYPE_CHECKING:
@@ -53,6 +53,7 @@ UNITS: dict[str, tuple[str, Decimal, str, str]] = {
     "Hz": ("Hz", Decimal(1), "a frequency", "50 kHz"),
 }
 _ZERO_CELSIUS = Decimal("273.15")
+_NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*")
 _NOT_IN_QUANTITY = re.compile(r"[^\w\s.+\-*/^()°º%²³⁻¹·⋅×]")
 
 
@@ -60,10 +61,6 @@ class SIValue(float):
     """A number in SI with its unit, which a field reads as and takes back unchanged.
 
     It is a float in every formula, and what comes out of a formula is a bare number.
-
-    Attributes
-    ----------
-    unit : SI unit, as text
     """
 
     __slots__ = ("unit",)
@@ -76,12 +73,7 @@ class SIValue(float):
         return made
 
     def to(self, unit: str) -> float:
-        """Return the bare number in another unit of the same kind: ``pair.operating.pinion_speed.to("rpm")``.
-
-        Raises
-        ------
-        ParameterError : no unit, or one of another kind
-        """
+        """Return the bare number in another unit of its kind: ``pair.operating.pinion_speed.to("rpm")``."""
         stated = next(key for key, one in UNITS.items() if one[0] == self.unit)
         try:
             zero, one = (to_si(f"{number} {unit}", stated) for number in (0, 1))
@@ -116,12 +108,7 @@ def _registry() -> pint.UnitRegistry[Decimal]:
 
 
 def to_si(value: float | str, unit: str) -> float:
-    """Convert a number in the stated unit, a string with any unit of that dimension, or an `SIValue`, to SI.
-
-    Parameters
-    ----------
-    value : number in ``unit``, text such as ``"200 lbf*in"``, or what a field reads as
-    unit : the field's stated unit, a key of ``UNITS``
+    """Convert to SI: a number in the stated unit, text with a unit such as ``"200 lbf*in"``, or an `SIValue`.
 
     Raises
     ------
@@ -175,13 +162,7 @@ def to_si(value: float | str, unit: str) -> float:
 
 
 def to_file(value: float, unit: str) -> float | str:
-    """Write an SI number so that reading it back gives the same bits: in the stated unit where that is exact.
-
-    Parameters
-    ----------
-    value : SI number
-    unit : the field's stated unit
-    """
+    """Write an SI number so that reading gives the same bits: in the stated unit where that is exact."""
     stated = to_stated(value, unit)
     return stated if to_si(stated, unit) == value else f"{float(value)!r} {UNITS[unit][0]}"
 
@@ -194,8 +175,14 @@ def to_stated(value: float, unit: str) -> float:
     return short if to_si(short, unit) == value else float(stated)
 
 
-class Read(ABC):
-    """Annotation of a field whose value is read by ``parse``."""
+class Read:
+    """Annotation of a field whose value is read by ``parse``: what a user writes -> SI, or a refusal.
+
+    The refusal has no field; pydantic knows the place.
+    """
+
+    #: Stated unit of a bare number.
+    unit: str
 
     @property
     @abstractmethod
@@ -204,29 +191,23 @@ class Read(ABC):
 
     @abstractmethod
     def parse(self, value: object) -> Any:
-        """Read what a user writes into SI, or raise pydantic's error."""
+        """Read what a user writes into SI, or refuse it."""
 
     @abstractmethod
     def json_schema(self) -> JsonSchemaValue:
         """JSON Schema of what a user writes."""
 
-    def _refusal(self, value: str, action: str) -> PydanticCustomError:
-        return PydanticCustomError(
-            "quantity",
-            "{value}: allowed {allowed}. {action}",
-            {"value": value, "allowed": self.allowed, "action": action},
-        )
+    def _refusal(self, value: str, action: str) -> ParameterError:
+        return refuse("", value, self.allowed, action)
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
-        """Validate by ``parse`` alone."""
         return core_schema.no_info_plain_validator_function(self.parse)
 
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
-        """What ``json_schema`` says."""
         return self.json_schema()
 
 
@@ -275,7 +256,7 @@ class Quantity(Read):
         return [(holds, to_si(bound, self.unit)) for _, _, bound, holds in self._bounds]
 
     def parse(self, value: object) -> float | None:
-        """Read a number, text with a unit or an `SIValue` into SI, or raise pydantic's error."""
+        """Read a number, text with a unit or an `SIValue` into SI, or refuse it."""
         if value is None and self.optional:
             return None
         if isinstance(value, np.generic):
@@ -299,3 +280,57 @@ class Quantity(Read):
         number = {"type": "number"} | {key: bound for _, key, bound, _ in self._bounds}
         text = {"type": "string", "examples": [UNITS[self.unit][3]]}
         return {"anyOf": [number, text], "unit": self.unit, "si_unit": UNITS[self.unit][0]}
+
+
+@dataclass(frozen=True)
+class QuantityRange(Read):
+    """Annotation of a field that holds the lower and the upper end of a range, or None.
+
+    Attributes
+    ----------
+    end : what each end may be
+    action : what to do when the range is refused
+    """
+
+    end: Quantity
+    action: str
+    unit: str = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "unit", self.end.unit)
+
+    @property
+    def allowed(self) -> str:
+        """The allowed ranges as text."""
+        return f"two increasing values FROM..TO, each {self.end.allowed}"
+
+    def parse(self, value: object) -> tuple[float, float] | None:
+        """Read two ends, or text FROM..TO, into SI, or refuse it."""
+        if value is None:
+            return None
+        ends = _ends(value) if isinstance(value, str) else value
+        if not isinstance(ends, (list, tuple)) or len(ends) != 2:
+            raise self._refusal(shown(value), self.action)
+        low, high = (self.end.parse(end) for end in ends)
+        if low is None or high is None or low >= high:
+            raise self._refusal(shown(value), self.action)
+        return low, high
+
+    def json_schema(self) -> JsonSchemaValue:
+        """Two ends, or text."""
+        ends = {"type": "array", "items": self.end.json_schema(), "minItems": 2, "maxItems": 2}
+        text = {"type": "string", "examples": ["200..3000"]}
+        si = UNITS[self.unit][0]
+        return {"anyOf": [ends, text], "unit": self.unit, "si_unit": si}
+
+
+def _ends(text: str) -> list[float | str]:
+    """Ends of "FROM..TO": bare numbers as numbers; a first end without a unit has that of the second."""
+    if text.count("..") != 1:
+        return []
+    low, high = text.split("..")
+    number = _NUMBER.match(high)
+    unit = high[number.end() :] if number else ""
+    if _NUMBER.fullmatch(low):
+        low = f"{low.strip()} {unit}"
+    return [float(end) if _NUMBER.fullmatch(end) else end.strip() for end in (low, high)]

@@ -1,14 +1,13 @@
-"""Schema of the contact between the teeth: lubricant and friction."""
+"""Schema of the contact between the teeth: stiffness, damping and backlash, lubricant, friction."""
 
 from __future__ import annotations
 
 import math
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
-from pydantic_core import PydanticCustomError
 
-from lumped.errors import refuse, shown
+from lumped.errors import refuse
 from lumped.fields.section import OneOf, Section
 from lumped.fields.units import Quantity
 from lumped.friction.registry import LAWS, file_name
@@ -20,6 +19,31 @@ from lumped.lubrication.viscosity import (
     oil_density,
     walther_constants,
 )
+from lumped.stiffness.registry import AnyStiffness
+
+
+class Mesh(Section):
+    """The elastic mesh of the tooth pairs."""
+
+    stiffness: AnyStiffness = Field(
+        discriminator="model", description="stiffness of a tooth pair over the path of contact"
+    )
+    damping_ratio: Annotated[float, Quantity("1", at_least=0, at_most=1)] = Field(
+        description="zeta in c_i = 2 zeta sqrt(k_i m_e)"
+    )
+    relief: Literal["ignored", "static"] = Field(
+        "static",
+        description="'static': tip and root relief, where given, enter as unloaded error, and a pair touches "
+        "where it carries load at the mean torque; 'ignored': perfect involutes from A to D",
+    )
+    contact: Literal["prescribed", "loaded"] = Field(
+        "loaded",
+        description="'loaded': a pair touches where its gap closes under the mean load, with its tangent "
+        "stiffness there, and the brake balances every loss; 'prescribed': it touches from A to D ",
+    )
+    backlash: Annotated[float, Quantity("mm", at_least=0)] = Field(
+        0.0, description="normal backlash by tooth thinning, beyond that of the centre distance"
+    )
 
 
 class ViscosityLaw(Section):
@@ -107,12 +131,7 @@ def _increasing(value: object) -> object:
     real = all(isinstance(n, (int, float)) and not isinstance(n, bool) for n in numbers)
     if len(numbers) == 3 and real and 0 < numbers[0] < numbers[1] < numbers[2] < math.inf:
         return tuple(float(n) for n in numbers)
-    context = {
-        "value": shown(value),
-        "allowed": "three increasing positive numbers",
-        "action": "Correct the list.",
-    }
-    raise PydanticCustomError("quantity", "{value}: allowed {allowed}. {action}", context)
+    raise refuse("", value, "three increasing positive numbers", "Correct the list.")
 
 
 class Friction(Section):

@@ -35,12 +35,7 @@ def preset_names() -> tuple[str, ...]:
 
 
 def preset_text(name: str) -> str:
-    """Return the TOML text of a built-in gear pair.
-
-    Raises
-    ------
-    ParameterError : unknown name; the nearest one is suggested
-    """
+    """Return the TOML text of a built-in gear pair; of an unknown name the nearest is suggested."""
     if name not in preset_names():
         allowed = "a file that exists or one of " + ", ".join(preset_names())
         action = nearest(name, preset_names()) or "Check the path, or see 'spurcheck presets'."

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
-from pydantic_core import PydanticCustomError
 
-from lumped.errors import refuse
+from lumped.errors import ParameterError, refuse
 from lumped.fields.section import Section
 from lumped.fields.units import Quantity, to_stated
 
@@ -72,9 +72,9 @@ class BasicRack(Section):
             raise refuse("basic_rack.diametral_pitch", given, allowed, "Remove one of the two.")
         try:
             pitch = _PITCH.parse(given)
-        except PydanticCustomError as error:
-            reason = error.context or {}
-            raise refuse("diametral_pitch", reason["value"], reason["allowed"], reason["action"]) from None
+        except ParameterError as error:
+            (problem,) = error.problems
+            raise ParameterError([replace(problem, field="diametral_pitch")]) from None
         assert pitch is not None  # only optional quantities are None
         return {**rest, "module": 25.4 / to_stated(pitch, "1/inch")}
 

@@ -20,19 +20,59 @@ from pydantic import BeforeValidator, Field, PlainSerializer, ValidationError, m
 from pydantic.fields import FieldInfo
 
 from lumped.errors import FieldProblem, ParameterError, refuse
-from lumped.fields.quantity_range import QuantityRange
 from lumped.fields.refusals import field_of, translated, unknown_key
 from lumped.fields.section import Section, Text
-from lumped.fields.units import Quantity, to_stated
+from lumped.fields.units import Quantity, QuantityRange, Read, to_stated
 from lumped.gear_geometry.existence import existence_problems
 from lumped.gear_geometry.geometry import Geometry, Wheel, build_geometry
 from lumped.gear_geometry.tooth_profile import ToothProfile
-from lumped.schema.bearings import Bearings
-from lumped.schema.contact import Friction, Lubricant
+from lumped.schema.contact import Friction, Lubricant, Mesh
 from lumped.schema.gear import BasicRack, Gear
-from lumped.schema.mesh import Mesh
-from lumped.schema.operating import OperatingPoint
-from lumped.schema.shafts import Shafts
+from lumped.schema.shafts import Bearings, Shafts
+
+#: Largest speed of a pinion [rpm].
+LARGEST_SPEED = 200000.0
+_SPEED = Quantity(
+    "rpm",
+    above=0,
+    at_most=LARGEST_SPEED,
+    action="Give the running speed; the pinion drives in its positive sense.",
+)
+_BRAKE = Quantity("N*m", above=0, at_most=1e9, action="Correct the value, or write 'balanced'.")
+
+
+def _brake(value: object) -> object:
+    if value == "balanced":
+        return value
+    try:
+        return _BRAKE.parse(value)
+    except ParameterError as error:
+        (problem,) = error.problems
+        raise ParameterError([replace(problem, allowed=f"{problem.allowed} or 'balanced'")]) from None
+
+
+class OperatingPoint(Section):
+    """Where the pair runs. The pinion drives, in its positive sense."""
+
+    pinion_speed: Annotated[float, _SPEED] = Field(description="nominal speed of the pinion")
+    pinion_torque: Annotated[float, Quantity("N*m", at_least=1e-9, at_most=1e9)] = Field(
+        description="torque driving the pinion"
+    )
+    brake_torque: Annotated[
+        Literal["balanced"] | float, BeforeValidator(_brake, json_schema_input_type=float | str)
+    ] = Field(
+        "balanced",
+        description="torque braking the gear [N*m], or 'balanced': no drift of the mean speed",
+        json_schema_extra={"unit": "N*m", "si_unit": "N*m"},
+    )
+    speed_range: Annotated[
+        tuple[float, float] | None, QuantityRange(_SPEED, "Give two pinion speeds: 200..3000.")
+    ] = Field(
+        None,
+        description="lowest and highest pinion speed of charts, sweeps and margins; default: from a tenth of "
+        "pinion_speed to twice it",
+    )
+
 
 #: Least mass and inertia of a gear as a share of the solid disc's.
 _LIGHTEST = 1e-4
@@ -233,22 +273,12 @@ def leaf_paths(pair: GearPair) -> dict[str, Any]:
 
 
 def validated(data: Mapping[str, Any], source: str, folder: Path = Path()) -> GearPair:
-    """Return the gear pair of plain data, or refuse it in the user's words.
+    """Return the gear pair of plain data in file units, or refuse it in the user's words.
 
-    Parameters
-    ----------
-    data : nested mapping in file units
-    source : where it comes from, for the refusal
-    folder : data files that the parameters name are read relative to it
-
-    Raises
-    ------
-    ParameterError : everything that is refused, with field, value, allowed range and next action
+    ``source`` says where it comes from; data files that it names are read relative to ``folder``.
     """
     try:
         return GearPair.model_validate(data, context={"folder": folder})
-    except ParameterError as error:
-        raise ParameterError(list(error.problems), error.source or source) from None
     except ValidationError as error:
         raise ParameterError(translated(error, GearPair), source) from None
 
@@ -329,12 +359,7 @@ def _plain(value: Any) -> Any:
 
 
 def field_at(path: str) -> FieldInfo:
-    """Return pydantic's description of a field of a gear pair by dotted path.
-
-    Raises
-    ------
-    ParameterError : no such field; the nearest is suggested
-    """
+    """Return pydantic's description of a field of a gear pair by dotted path; the nearest is suggested."""
     return field_of(GearPair, path)
 
 
@@ -352,7 +377,7 @@ def stated_unit(path: str) -> str | None:
     """Return the stated unit of a field by dotted path, or None where the field has none."""
     info = field_at(path)
     for marker in info.metadata:
-        if isinstance(marker, (Quantity, QuantityRange)):
+        if isinstance(marker, Read):
             return marker.unit
     # A quantity that may also be a word has its unit in the JSON Schema alone.
     extra = info.json_schema_extra

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from lumped.schema.bearings import Bearing
 from lumped.schema.gear import Gear, ProfileRelief
 from lumped.schema.pair import GearPair
+from lumped.schema.shafts import Bearing
 from lumped.typing import FloatArray
 
 #: Largest operating pressure angle that is looked for [rad].

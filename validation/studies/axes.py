@@ -10,7 +10,6 @@ from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import BeforeValidator, Field, StrictFloat, StrictInt, model_validator
-from pydantic_core import PydanticCustomError
 
 from floquet.gear.axes import GEAR_AXES
 from lumped.errors import ParameterError, refuse, shown
@@ -70,9 +69,7 @@ def _plain_values(values: object) -> object:
     for value in values if isinstance(values, (list, tuple)) else ():
         number = isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < 2.0**63
         if not number and not isinstance(value, str):
-            problem = {"value": shown(value), "allowed": "finite numbers or text with a unit"}
-            problem["action"] = "Correct the value."
-            raise PydanticCustomError("quantity", "{value}: allowed {allowed}. {action}", problem)
+            raise refuse("", value, "finite numbers or text with a unit", "Correct the value.")
     return values
 
 
