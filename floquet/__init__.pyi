@@ -16,15 +16,12 @@ from .engine.system import PeriodicSystem as PeriodicSystem
 from .engine.tongues import Tongue as Tongue
 from .gear.axes import GEAR_AXES as GEAR_AXES
 from .gear.block import gear_block as gear_block
-from .gear.boundaries import predicted_lines as predicted_lines
-from .gear.boundaries import stability_boundaries as stability_boundaries
 from .gear.campbell import campbell as campbell
 from .gear.chart import stability_chart as stability_chart
 from .gear.jump_map import JUMP_AXES as JUMP_AXES
 from .gear.jump_map import jump_map as jump_map
 from .gear.jump_removal import JumpRemoval as JumpRemoval
 from .gear.jump_removal import jumps_removed_by as jumps_removed_by
-from .gear.margins import stability_margins as stability_margins
 from .gear.multipliers import GearPairMultipliers as GearPairMultipliers
 from .gear.multipliers import gear_pair_multipliers as gear_pair_multipliers
 from .gear.multipliers import gear_pair_system as gear_pair_system
@@ -34,6 +31,9 @@ from .gear.orbit import periodic_orbit as periodic_orbit
 from .gear.response import ResponseBranches as ResponseBranches
 from .gear.response import response_branches as response_branches
 from .gear.tongues import label_regions as label_regions
+from .gear.tongues import predicted_lines as predicted_lines
+from .gear.tongues import stability_boundaries as stability_boundaries
+from .gear.tongues import stability_margins as stability_margins
 from .rank_one.batch import FastMonodromy as FastMonodromy
 from .rank_one.batch import FastMultipliers as FastMultipliers
 from .rank_one.batch import fast_monodromies as fast_monodromies

@@ -10,8 +10,8 @@ from typing import get_args
 import numpy as np
 
 from floquet.engine.chart import Axes, ChartAxis, checked_axes
-from lumped.arguments import one_of
-from lumped.errors import refuse
+from lumped.arguments import one_of, real_array
+from lumped.errors import refuse, shown
 from lumped.fields.units import SIValue, to_stated
 from lumped.friction import LAWS, mean_coefficient
 from lumped.labelling import Coordinate
@@ -204,16 +204,6 @@ def vary(pair: GearPair, point: Mapping[str, float], supports: Supports = "sprin
     return variation
 
 
-def operating_value(pair: GearPair, name: str) -> float:
-    """Value that the pair itself has on an axis, in the units of the axis.
-
-    Raises
-    ------
-    ParameterError : unknown name
-    """
-    return gear_axis(name).own(pair)
-
-
 def speed_range(pair: GearPair) -> tuple[float, float]:
     """Pinion speeds [rpm] that charts, sweeps and margins cover: ``operating.speed_range``, or its default.
 
@@ -226,6 +216,20 @@ def speed_range(pair: GearPair) -> tuple[float, float]:
     digit = 10.0 ** (np.floor(np.log10(top)) - 1)
     top = min(float(np.ceil(top / digit * (1.0 - 1e-9)) * digit), LARGEST_SPEED)
     return 0.05 * top, top
+
+
+def checked_range(field: str, speeds: tuple[float, float]) -> tuple[float, float]:
+    """Slowest and fastest speed [rpm] that an argument gives.
+
+    Raises
+    ------
+    ParameterError : no range of speeds
+    """
+    given = np.atleast_1d(real_array(field, speeds))
+    if given.shape != (2,) or not 0.0 < given[0] < given[1] <= LARGEST_SPEED:
+        allowed = f"slowest and fastest speed, 0 < low < high <= {LARGEST_SPEED:g} rpm"
+        raise refuse(field, shown(speeds), allowed, "Give (low, high) in rpm.")
+    return float(given[0]), float(given[1])
 
 
 def chart_axes(pair: GearPair, speeds: int, dampings: int) -> dict[str, FloatArray]:

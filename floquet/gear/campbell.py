@@ -14,7 +14,7 @@ from scipy.optimize import linear_sum_assignment
 from floquet.engine.tongues import mode_shares, tongue_coordinates
 from floquet.gear.axes import axis_coordinates, vary
 from floquet.gear.block import gear_block
-from floquet.gear.boundaries import predicted_lines
+from floquet.gear.tongues import predicted_lines
 from floquet.rank_one.batch import fast_monodromies
 from lumped.arguments import real_number, real_numbers, whole_number
 from lumped.errors import NumericalError

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from floquet.gear.axes import operating_rpm, speed_range
+from floquet.gear.axes import checked_range, operating_rpm, speed_range
 from floquet.gear.friction_over_speed import depends_on_speed
 from floquet.gear.orbit import (
     MOST_CYCLES,
@@ -29,8 +29,7 @@ from floquet.orbits.bifurcations import Bifurcation, Kind
 from floquet.orbits.branch import Limits
 from floquet.orbits.long_run import Settled, long_run
 from floquet.orbits.response import Branch, Member, Response, find_response
-from lumped.arguments import real_array, whole_number
-from lumped.errors import refuse
+from lumped.arguments import whole_number
 from lumped.labelling import Variable, labelled_dataset
 from lumped.model.mesh_elements import mesh_elements
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -314,7 +313,7 @@ def response_branches(
     ParameterError : speeds that are no range
     """
     pair = load_gear_pair(pair)
-    low, high = checked_speeds(pair, speeds)
+    low, high = speed_range(pair) if speeds is None else checked_range("speeds", speeds)
     wanted = sorted({whole_number("periods", n, 1, MOST_CYCLES) for n in periods})
     seeds = whole_number("seeds", seeds, 0, 10_000)
     found = member(pair, low, high, form_with(back_side=back_side))
@@ -366,20 +365,3 @@ def member(pair: GearPair, low: float, high: float, form: ContactForm = "mesh") 
         limits,
         lambda period: start_of(pair.with_({"operating.pinion_speed": cycle / period}), None, form, elements),
     )
-
-
-def checked_speeds(pair: GearPair, speeds: tuple[float, float] | None) -> tuple[float, float]:
-    """Slowest and fastest speed [rpm]; None: those of the pair.
-
-    Raises
-    ------
-    ParameterError : speeds that are no range
-    """
-    given = np.atleast_1d(real_array("speeds", speed_range(pair) if speeds is None else speeds))
-    if given.size != 2 or not 0.0 < given[0] < given[1]:
-        raise refuse(
-            "speeds", speeds, "slowest and fastest speed in rpm", "Give (low, high), 0 < low < high."
-        )
-    for rpm in given:
-        pair.with_({"operating.pinion_speed": float(rpm)})
-    return float(given[0]), float(given[1])

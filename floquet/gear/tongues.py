@@ -1,23 +1,91 @@
-"""Names for the unstable regions of a chart of a gear pair.
+"""Tongues of instability of a gear pair: boundaries over speed, labels, and the damping that closes each.
+
+Every number is a root: edges over speed and over damping by bisection, tips by `tongue_tip`.
 
 Sources: docs/theory/floquet.md, "Where instability is, and what it is called".
 """
 
 from __future__ import annotations
 
+import itertools
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 from scipy import ndimage
 
-from floquet.engine.tongues import Tongue
-from floquet.gear.axes import vary
-from floquet.gear.boundaries import label_variation
+from floquet.engine.intervals import UnstableInterval, seeded_nodes, unstable_intervals
+from floquet.engine.tongues import (
+    Tongue,
+    TongueTip,
+    combinations,
+    label_tongue,
+    tongue_coordinates,
+    tongue_tip,
+)
+from floquet.gear.axes import GearVariation, axis_coordinates, checked_range, gear_grid, operating_rpm, vary
+from floquet.gear.block import gear_block
+from floquet.gear.chart import stability_chart
+from floquet.rank_one.batch import fast_monodromies, spectral_radii
+from floquet.rank_one.system import RankOneSystem
+from lumped.arguments import real_number, whole_number
+from lumped.errors import refuse
+from lumped.friction import mean_coefficient
+from lumped.labelling import labelled_dataset
+from lumped.model.periodic_system import Supports
+from lumped.path_of_contact import friction_path_function
 from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.operating import LARGEST_SPEED
+from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray, Progress
 
 if TYPE_CHECKING:
     import xarray as xr
+
+Radius = Callable[[npt.ArrayLike, npt.ArrayLike], FloatArray]
+"""(pinion speeds [rpm], mesh damping ratios), broadcast -> spectral radii of the feedback block."""
+
+#: Largest order k of the predicted lines (omega_i +- omega_j)/k that seed the search.
+ORDERS = 12
+_MOST = 20_000  # speeds of the grid of a search
+_RTOL = 1e-8
+# As in floquet.engine.intervals: undamped bearings sit at 1 within rounding.
+_THRESHOLD = 1e-9
+_LARGEST_DAMPING = 1.0  # what the schema allows for a mesh
+_SPEED_NODES = 400
+_PAST = 0.1  # how far past the highest line its tongue may reach
+_EDGE_ROWS, _EDGE_SPEEDS, _EDGE_ROUNDS = 25, 49, 14
+
+
+def predicted_lines(pair: AnyPair | GearVariation, orders: int = 12) -> dict[Tongue, float]:
+    """Pinion speeds [rpm] at which the mesh frequency is (omega_i +- omega_j)/k.
+
+    omega are the natural frequencies of the time-averaged undamped feedback block, k = 1..orders.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    orders : largest k
+    """
+    variation = GearVariation.of(pair)
+    orders = whole_number("orders", orders, 1, 1000)
+    omega = gear_block(variation).modal().omega
+    per_rpm = variation.pair.pinion.teeth * 2.0 * np.pi / 60.0  # mesh frequency [rad/s] per rpm
+    return {
+        Tongue(i + 1, j + 1, sign, k): float(total / k / per_rpm)
+        for i, j, sign, total in combinations(omega)
+        for k in range(1, orders + 1)
+    }
+
+
+def label_variation(variation: GearVariation) -> Tongue:
+    """Label the fastest growing motion of a pair by its mode shape, see `label_tongue`."""
+    block = gear_block(variation)
+    matrix = fast_monodromies(block).matrices[0]
+    return label_tongue(matrix, block.modal().omega, 2.0 * np.pi / block.period)
 
 
 @dataclass(frozen=True)
@@ -52,14 +120,407 @@ def label_regions(pair: AnyPair, chart: xr.Dataset) -> list[LabelledRegion]:
     """
     pair = load_gear_pair(pair)
     radius = chart["spectral_radius"]
-    names = [str(n) for n in radius.dims]
     values = radius.to_numpy()
     numbered, count = ndimage.label(chart["verdict"].to_numpy() == -1, structure=np.ones((3,) * values.ndim))
     regions = []
     for index in range(1, count + 1):
         inside = numbered == index
         node = np.unravel_index(int(np.argmax(np.where(inside, values, -np.inf))), values.shape)
-        point = {n: float(chart[n].values[i]) for n, i in zip(names, node, strict=True)}
+        point = {str(n): float(chart[n].values[i]) for n, i in zip(radius.dims, node, strict=True)}
         label = label_variation(vary(pair, point))
         regions.append(LabelledRegion(label, point, float(values[node]), int(inside.sum())))
     return sorted(regions, key=lambda region: -region.nodes)
+
+
+def stability_boundaries(
+    pair: AnyPair,
+    speed_rpm: tuple[float, float] = (500.0, 20000.0),
+    axes: dict[str, npt.ArrayLike] | None = None,
+    *,
+    nodes: int = 400,
+    orders: int = 12,
+    xtol: float = 1e-8,
+    rtol: float = 1e-9,
+    supports: Supports = "springs",
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Boundaries, spectral radius = 1, of the tongues of instability over speed.
+
+    Along speed the search starts from a grid that no tongue of a damped pair slips through, whatever its
+    order (`search_grid`), and from a graded cluster at every predicted line (omega_i +- omega_j)/k, for pairs
+    with hardly any damping; ends are found by bisection.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    speed_rpm : range searched [rpm]
+    axes : one more axis {name: values} out of `GEAR_AXES` other than speed, with the meaning that it has in
+        `stability_chart`; default the pair as it is
+    nodes : evenly spaced speeds of the search besides
+    orders : largest k of the clusters
+    xtol : relative accuracy of the boundaries
+    rtol : of the monodromy matrices
+    supports : "springs", the pair's ``bearings``, or its "shafts"; labels then number the modes that count
+    progress : told the finished fraction
+
+    Returns
+    -------
+    Dataset over ``tongue`` (coordinates label, mode_i, mode_j, sign, order) and the axis: ``present``;
+    ``lower`` and ``upper`` [rpm], the boundaries; ``peak`` [rpm] and ``peak_radius``; ``open_end``, whether
+    the tongue runs out of the range. Where ``present`` is False the numbers are NaN. Where one label has
+    several intervals at one value, lower and upper enclose them all, ``intervals`` counts them, and
+    ``interval_lower`` and ``interval_upper`` over ``interval`` have them one by one. ``complete`` over the
+    axis: whether the grid is as fine as the damping asks for; where it is not, thin tongues of orders above
+    ``orders`` may be missing.
+
+    Raises
+    ------
+    ParameterError : unusable range or axis
+    """
+    pair = GearVariation.of(load_gear_pair(pair), supports).pair
+    low, high = checked_range("speed_rpm", speed_rpm)
+    nodes = whole_number("nodes", nodes, 0, 1_000_000)
+    xtol = real_number("xtol", xtol, 1e-15, 0.1)
+    checked = gear_grid(axes, supports) if axes is not None else {}
+    if axes is not None and (len(checked) != 1 or "speed_rpm" in checked):
+        raise refuse("axes", ", ".join(checked), "one other than speed_rpm", "Scan other axes one at a time.")
+    name, values = next(iter(checked.items())) if axes else ("value", np.array([np.nan]))
+    found: dict[Tongue, dict[int, list[UnstableInterval]]] = {}
+    complete = np.ones(values.size, dtype=bool)
+    for index, value in enumerate(values):
+        point = {name: float(value)} if axes else {}
+        here = vary(pair, point, supports)
+        lines = np.array(list(predicted_lines(here, orders).values()))
+        dense, complete[index] = search_grid(gear_block(here), low, high)
+
+        def radius(speeds: FloatArray, point: dict[str, float] = point) -> FloatArray:
+            grid = {"speed_rpm": speeds} | {key: np.array([at]) for key, at in point.items()}
+            chart = stability_chart(pair, grid, rtol=rtol, store="radius", supports=supports)
+            return np.ravel(chart.spectral_radius.values)
+
+        start = np.union1d(dense, seeded_nodes(lines, low, high, nodes))
+        for interval in unstable_intervals(radius, start, xtol=xtol):
+            label = label_variation(vary(pair, {**point, "speed_rpm": interval.peak}, supports))
+            found.setdefault(label, {}).setdefault(index, []).append(interval)
+        if progress is not None:
+            progress((index + 1) / values.size)
+    result = _boundaries_dataset(pair, found, name, values, complete).assign_attrs(supports=supports)
+    return result if axes else result.isel({name: 0}, drop=True)
+
+
+def search_grid(block: RankOneSystem, low: float, high: float) -> tuple[FloatArray, bool]:
+    """Speeds so dense that every tongue of instability of any order raises the radius at one of them.
+
+    Near k Omega = omega_i + omega_j two modes that decay with a and are coupled with strength g have, at the
+    detuning d = (k Omega - omega_i - omega_j)/2, the exponents -a +- sqrt(g^2 - d^2) (Hsu 1963; differences
+    likewise). They are unstable somewhere only if g > a. Then the larger one is above -b for all |d| < sqrt(2
+    a b - b^2), b <= a being the least decay of all modes: it stands out of whatever else there is over |d| <
+    b at least. From one speed to the next d changes by less than omega_max times the relative step, so that
+    steps of b/omega_max put two speeds into this window. The search climbs from there
+    (`unstable_intervals`).
+
+    Returns the speeds, and whether the steps are that small, which would at times take more than 20000.
+    """
+    needed = -float(block.mean_exponents().real.max()) / float(block.modal().omega.max())
+    span = math.log(high / low)
+    complete = needed * _MOST > span
+    return np.geomspace(low, high, math.ceil(span / needed) + 1 if complete else _MOST), complete
+
+
+def _boundaries_dataset(
+    pair: GearPair,
+    found: dict[Tongue, dict[int, list[UnstableInterval]]],
+    name: str,
+    values: FloatArray,
+    complete: npt.NDArray[np.bool_],
+) -> xr.Dataset:
+    tongues = sorted(found)
+    shape = (len(tongues), values.size)
+    most = max((len(parts) for columns in found.values() for parts in columns.values()), default=0)
+    ends, numbers = np.full((2, *shape, most), np.nan), np.full((4, *shape), np.nan)
+    open_end, count = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=np.int64)
+    for row, tongue in enumerate(tongues):
+        for column, parts in found[tongue].items():
+            lower, upper = np.array([(part.lower, part.upper) for part in parts]).T
+            top = max(parts, key=lambda part: part.peak_radius)
+            ends[:, row, column, : len(parts)] = lower, upper
+            numbers[:, row, column] = lower.min(), upper.max(), top.peak, top.peak_radius
+            open_end[row, column] = any(part.open_below or part.open_above for part in parts)
+            count[row, column] = len(parts)
+    dims, each = ("tongue", name), ("tongue", name, "interval")
+    return labelled_dataset(
+        {
+            "lower": (dims, numbers[0], "rpm", "lower boundary of the tongue"),
+            "upper": (dims, numbers[1], "rpm", "upper boundary of the tongue"),
+            "peak": (dims, numbers[2], "rpm", "speed of the largest spectral radius in the tongue"),
+            "peak_radius": (dims, numbers[3], "1", "largest spectral radius in the tongue"),
+            "present": (dims, count > 0, "1", "tongue exists at this value"),
+            "open_end": (dims, open_end, "1", "tongue runs out of the range searched"),
+            "intervals": (dims, count, "1", "number of intervals of this label"),
+            "interval_lower": (each, ends[0], "rpm", "lower ends of the intervals"),
+            "interval_upper": (each, ends[1], "rpm", "upper ends of the intervals"),
+            "complete": (name, complete, "1", "grid as fine as the damping asks for"),
+        },
+        axis_coordinates({name: values}),
+        {"title": f"stability boundaries of {pair.name}", "friction_law": pair.friction.law},
+    ).assign_coords(tongue_coordinates("tongue", tongues))
+
+
+@dataclass(frozen=True, eq=False)
+class TongueMargin:
+    """One tongue of instability at zero mesh damping, bearings damped as given, and what closes it.
+
+    Attributes
+    ----------
+    label : modes and order, e.g. "2w3/2": mesh frequency 2 omega_3/2
+    lower, upper : boundaries at zero mesh damping [rpm]
+    radius : largest multiplier at zero mesh damping
+    critical_damping : mesh damping ratio from which on no speed of the tongue is unstable; 1, the largest
+        ratio allowed, where the tongue is still open there
+    tip_speed : speed at which it closes [rpm]
+    damping, left, right : edges of the tongue, left and right [rpm] over the mesh damping ratio, (k,)
+    """
+
+    label: str
+    lower: float
+    upper: float
+    radius: float
+    critical_damping: float
+    tip_speed: float
+    damping: FloatArray
+    left: FloatArray
+    right: FloatArray
+
+    def distance(self, rpm: float) -> float:
+        """Distance of a speed to the tongue at zero mesh damping; 0 inside [rpm]."""
+        return max(self.lower - rpm, rpm - self.upper, 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class StabilityMargins:
+    """Distances of the operating point to instability.
+
+    Attributes
+    ----------
+    rpm, damping : operating point, pinion speed [rpm] and mesh damping ratio
+    speed_range : range searched [rpm]
+    friction_coefficient : constant coefficient that stands for the friction law here
+    tongues : at zero mesh damping, by speed
+    above : the next tongue above the range, at zero mesh damping; None: there is none up to the highest line
+    unstable_here : intervals (k, 2) [rpm] that are unstable at the given damping
+    damping_at_speed : mesh damping ratio above which the operating speed is stable; None: it is at any
+    law_difference : largest difference of the spectral radius between the friction law and the constant
+        coefficient, at the middle of every tongue without mesh damping; None without tongues
+    """
+
+    rpm: float
+    damping: float
+    speed_range: tuple[float, float]
+    friction_coefficient: float
+    tongues: tuple[TongueMargin, ...]
+    above: TongueMargin | None
+    unstable_here: FloatArray
+    damping_at_speed: float | None
+    law_difference: float | None
+
+    @property
+    def speed_margin(self) -> float | None:
+        """Distance to the nearest unstable speed at the given damping [rpm]; None: the range has none."""
+        nearest = self.nearest_unstable
+        return None if nearest is None else abs(nearest - self.rpm)
+
+    @property
+    def nearest_unstable(self) -> float | None:
+        """Nearest unstable speed at the given damping [rpm], the operating speed itself if it is one."""
+        if not self.unstable_here.size:
+            return None
+        inside = np.clip(self.rpm, *self.unstable_here.T)
+        return float(inside[np.argmin(np.abs(inside - self.rpm))])
+
+    @property
+    def unstable_above(self) -> float | None:
+        """Where the next tongue above the range begins at the given damping [rpm]; None: it is closed."""
+        if self.above is None or self.above.critical_damping <= self.damping:
+            return None
+        return float(np.interp(self.damping, self.above.damping, self.above.left))
+
+    @property
+    def nearest(self) -> TongueMargin | None:
+        """Tongue nearest in speed at zero mesh damping."""
+        return min(self.tongues, key=lambda t: t.distance(self.rpm), default=None)
+
+    @property
+    def critical_damping(self) -> float:
+        """Mesh damping ratio above which the whole range is stable; 0 where it always is."""
+        return max((t.critical_damping for t in self.tongues), default=0.0)
+
+    @property
+    def dataset(self) -> xr.Dataset:
+        """Tongues for a file, over ``tongue`` (coordinate label) and ``row``, from zero damping to the tip.
+
+        ``damping_ratio``, ``lower`` and ``upper`` [rpm], NaN beyond the tip; ``critical_damping``,
+        ``tip_speed`` [rpm] and ``peak_radius`` of each tongue.
+        """
+        tongues = self.tongues
+        edges = np.full((3, len(tongues), max((t.damping.size for t in tongues), default=0)), np.nan)
+        for index, t in enumerate(tongues):
+            edges[:, index, : t.damping.size] = t.damping, t.left, t.right
+        tips = np.array([(t.critical_damping, t.tip_speed, t.radius) for t in tongues]).reshape(-1, 3).T
+        edge = ("tongue", "row")
+        return labelled_dataset(
+            {
+                "damping_ratio": (edge, edges[0], "1", "mesh damping ratio of a point of the edges"),
+                "lower": (edge, edges[1], "rpm", "lower edge of the tongue"),
+                "upper": (edge, edges[2], "rpm", "upper edge of the tongue"),
+                "critical_damping": ("tongue", tips[0], "1", "mesh damping that closes the tongue"),
+                "tip_speed": ("tongue", tips[1], "rpm", "pinion speed where the tongue closes"),
+                "peak_radius": ("tongue", tips[2], "1", "largest multiplier without mesh damping"),
+            },
+            {},
+            {
+                "title": "tongues of instability over speed and mesh damping",
+                "friction_coefficient_held": self.friction_coefficient,
+            },
+        ).assign_coords(label=("tongue", np.array([t.label for t in tongues], dtype=object)))
+
+
+def stability_margins(pair: AnyPair, speed_rpm: tuple[float, float]) -> StabilityMargins:
+    """Find every tongue over speed and its distance to the operating point, in speed and in damping.
+
+    Friction is held at its mean over the path of contact: it moves tongues by far less than their width
+    (``law_difference`` says how much), and a law that depends on speed would have to be fitted at every
+    speed.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    speed_rpm : pinion speeds searched [rpm]
+
+    Raises
+    ------
+    ParameterError : not two increasing positive speeds
+    NumericalError : a monodromy matrix cannot be computed; the text says what to try
+    """
+    pair = load_gear_pair(pair)
+    low, high = checked_range("speed_rpm", speed_rpm)
+    rpm, here = operating_rpm(pair), pair.mesh.damping_ratio
+    coefficient = mean_coefficient(friction_path_function(pair))
+    held = pair.with_({"friction.law": "coulomb", "friction.coefficient": coefficient})
+    radius = _radius(held)
+    lines = np.array(list(predicted_lines(held, ORDERS).values()))
+
+    def unstable(damping: float, low: float = low, high: float = high) -> list[UnstableInterval]:
+        nodes = seeded_nodes(lines, low, high, _SPEED_NODES)
+        return unstable_intervals(lambda speeds: radius(speeds, damping), nodes, xtol=1e-8)
+
+    def tongue(interval: UnstableInterval, window: tuple[float, float]) -> TongueMargin:
+        return _tongue(radius, held, interval, window)
+
+    undamped = unstable(0.0)
+    tongues = tuple(map(tongue, undamped, _windows(undamped, low, high)))
+    top = min((1.0 + _PAST) * float(lines.max()), LARGEST_SPEED)
+    beyond = unstable(0.0, high, top) if top > high else []
+    # What is open below began within the range.
+    above = (pair for pair in zip(beyond, _windows(beyond, high, top), strict=True) if not pair[0].open_below)
+    dampings = np.concatenate([[0.0], np.geomspace(1e-7, _LARGEST_DAMPING, 150)])
+    at_speed = unstable_intervals(lambda z: radius(rpm, z), dampings, xtol=1e-8)
+    return StabilityMargins(
+        rpm=rpm,
+        damping=here,
+        speed_range=(low, high),
+        friction_coefficient=coefficient,
+        tongues=tongues,
+        above=next(itertools.starmap(tongue, above), None),
+        unstable_here=np.array([(i.lower, i.upper) for i in unstable(here)]),
+        damping_at_speed=max((i.upper for i in at_speed), default=None),
+        law_difference=_law_difference(pair, held, tongues),
+    )
+
+
+def _radius(pair: GearPair) -> Radius:
+    """Spectral radius over speed and mesh damping ratio, from one fit; friction must not depend on speed."""
+    block = gear_block(vary(pair, {"damping_ratio": _LARGEST_DAMPING}), rtol=0.1 * _RTOL)
+
+    def radius(speeds: npt.ArrayLike, dampings: npt.ArrayLike) -> FloatArray:
+        rpm, zeta = np.broadcast_arrays(np.asarray(speeds, dtype=float), np.asarray(dampings, dtype=float))
+        periods = block.period * operating_rpm(pair) / rpm.ravel()
+        found = spectral_radii(block, periods, zeta.ravel() / _LARGEST_DAMPING, tolerance=1e-3 * _RTOL)
+        return found.reshape(rpm.shape)
+
+    return radius
+
+
+def _windows(intervals: list[UnstableInterval], low: float, high: float) -> list[tuple[float, float]]:
+    """Speeds around each interval: a quarter of its width aside, since damping shifts a tongue a little
+    while it closes it, but not beyond half the way to a neighbour.
+    """
+    ends = [low, *(0.5 * (a.upper + b.lower) for a, b in itertools.pairwise(intervals)), high]
+    windows = []
+    for interval, least, most in zip(intervals, ends, ends[1:], strict=False):  # without a tongue, none
+        aside = 0.25 * (interval.upper - interval.lower)
+        windows.append((max(interval.lower - aside, least), min(interval.upper + aside, most)))
+    return windows
+
+
+def _tongue(
+    radius: Radius, pair: GearPair, interval: UnstableInterval, window: tuple[float, float]
+) -> TongueMargin:
+    """Follow one tongue up to the damping that closes it."""
+
+    def excess(speeds: FloatArray, damping: float) -> FloatArray:
+        return radius(speeds, damping) - _THRESHOLD
+
+    if (excess(np.linspace(*window, 33), _LARGEST_DAMPING) > 1.0).any():
+        tip = TongueTip(_LARGEST_DAMPING, interval.peak)
+    else:
+        tip = tongue_tip(excess, window, (0.0, _LARGEST_DAMPING))
+    damping, left, right = _edges(radius, interval, window, tip)
+    return TongueMargin(
+        label=str(label_variation(vary(pair, {"damping_ratio": 0.0, "speed_rpm": interval.peak}))),
+        lower=interval.lower,
+        upper=interval.upper,
+        radius=interval.peak_radius,
+        critical_damping=tip.damping,
+        tip_speed=tip.place,
+        damping=damping,
+        left=left,
+        right=right,
+    )
+
+
+def _edges(
+    radius: Radius, interval: UnstableInterval, window: tuple[float, float], tip: TongueTip
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Damping ratios from zero to the tip, and the edges of the tongue there [rpm].
+
+    The width of a tongue goes with the root of the distance to its tip, so ratios are spaced by squares.
+    """
+    u = np.linspace(1.0, 0.0, _EDGE_ROWS)[1:-1]
+    dampings = tip.damping * (1.0 - u**2)
+    # Between these samples lies the place that stays unstable longest, or nearly.
+    middle = tip.place + (interval.peak - tip.place) * u**2
+    speeds = np.broadcast_to(np.linspace(*window, _EDGE_SPEEDS), (u.size, _EDGE_SPEEDS))
+    speeds = np.sort(np.concatenate([speeds, middle[:, None]], axis=1), axis=1)
+    unstable = radius(speeds, dampings[:, None]) > 1.0 + _THRESHOLD
+    rows = np.flatnonzero(unstable.any(axis=1))
+    first, end = unstable[rows].argmax(axis=1), speeds.shape[1] - 1
+    last = end - unstable[rows, ::-1].argmax(axis=1)
+    inside = np.stack([speeds[rows, first], speeds[rows, last]])
+    outside = np.stack([speeds[rows, np.maximum(first - 1, 0)], speeds[rows, np.minimum(last + 1, end)]])
+    for _ in range(_EDGE_ROUNDS):
+        half = 0.5 * (inside + outside)
+        still = radius(half, dampings[rows]) > 1.0 + _THRESHOLD
+        inside, outside = np.where(still, half, inside), np.where(still, outside, half)
+    return (
+        np.concatenate([[0.0], dampings[rows], [tip.damping]]),
+        np.concatenate([[interval.lower], inside[0], [tip.place]]),
+        np.concatenate([[interval.upper], inside[1], [tip.place]]),
+    )
+
+
+def _law_difference(pair: GearPair, held: GearPair, tongues: tuple[TongueMargin, ...]) -> float | None:
+    if not tongues:
+        return None
+    axes = {"speed_rpm": [0.5 * (t.lower + t.upper) for t in tongues], "damping_ratio": [0.0]}
+    radii = [stability_chart(p, axes, rtol=_RTOL)["spectral_radius"].to_numpy() for p in (pair, held)]
+    return float(np.abs(radii[0] - radii[1]).max())

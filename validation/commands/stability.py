@@ -16,9 +16,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from floquet.gear.margins import StabilityMargins, TongueMargin
     from floquet.gear.multipliers import GearPairMultipliers
-    from floquet.gear.tongues import LabelledRegion
+    from floquet.gear.tongues import LabelledRegion, StabilityMargins, TongueMargin
     from lumped import GearPair
     from lumped.typing import FloatArray
 
@@ -205,9 +204,8 @@ def _chart(
     supports: Literal["springs", "shafts"],
 ) -> View:
     from floquet import predicted_lines
-    from floquet.gear.axes import chart_axes, operating_value
+    from floquet.gear.axes import GEAR_AXES, chart_axes
     from floquet.gear.chart import stability_chart
-    from floquet.gear.margins import margins_dataset
     from validation.plots.stability import mark_operating_range, stability_figure, stability_line_figure
     from validation.plots.tongues import tongue_chart_figure
 
@@ -228,7 +226,7 @@ def _chart(
     regions: Sequence[TongueMargin | LabelledRegion] | None = None
     if tongues and set(grid) == {"speed_rpm", "damping_ratio"}:
         traced = _traced(pair, grid["speed_rpm"])
-        edges = margins_dataset(traced).rename(
+        edges = traced.dataset.rename(
             damping_ratio="tongue_damping", lower="tongue_lower", upper="tongue_upper"
         )
         data, regions = chart.merge(edges, combine_attrs="override"), traced.tongues
@@ -236,7 +234,7 @@ def _chart(
         regions = _labelled(pair, chart)
 
     def draw() -> Figure:
-        at = {name: operating_value(pair, name) for name in grid}
+        at = {name: GEAR_AXES[name].own(pair) for name in grid}
         x, *others = sorted(grid, key=lambda name: name != "speed_rpm")  # speed runs to the right
         if not others:
             figure = stability_line_figure(chart, x, at[x])
@@ -256,7 +254,7 @@ def _chart(
 
 def _traced(pair: GearPair, speeds: FloatArray) -> StabilityMargins:
     """Trace the tongues over a range of speeds, and print them by falling critical damping."""
-    from floquet.gear.margins import stability_margins
+    from floquet.gear.tongues import stability_margins
 
     with progress_bar("tongues"):
         found = stability_margins(pair, (float(speeds.min()), float(speeds.max())))
@@ -308,7 +306,6 @@ def _boundaries(
 ) -> View:
     from floquet import stability_boundaries
     from floquet.gear.axes import GEAR_AXES, chart_axes
-    from floquet.gear.margins import margins_dataset
     from validation.plots.tongues import boundaries_figure, tongues_figure
 
     grid = dict(axes)
@@ -316,7 +313,7 @@ def _boundaries(
     name, values = next(iter(grid.items()), ("damping_ratio", speeds))
     if name == "damping_ratio" and supports == "springs":
         traced = _traced(pair, speeds)
-        return margins_dataset(traced), lambda: tongues_figure(traced, marked)
+        return traced.dataset, lambda: tongues_figure(traced, marked)
     ends = float(speeds.min()), float(speeds.max())
     with progress_bar("boundaries") as tell:
         found = stability_boundaries(pair, ends, {name: values}, supports=supports, progress=tell)

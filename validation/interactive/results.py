@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 import lumped
-from floquet.gear.axes import chart_axes, gear_axis, operating_value, speed_range, with_point
+from floquet.gear.axes import chart_axes, gear_axis, speed_range, with_point
 from floquet.gear.chart import stability_chart
 from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
 from floquet.gear.response import ResponseBranches
@@ -280,7 +280,7 @@ def _friction_slices(pair: GearPair, grid: Grid, count: int) -> Slices:
     count : values of the coefficient, from 0
     """
     name = "friction_coefficient"
-    own = operating_value(pair, name)
+    own = gear_axis(name).own(pair)
     values = with_point(np.linspace(0.0, min(max(_LEAST_FRICTION_RANGE, 2.0 * own), 1.0), count), own)
     chart = stability_chart(pair, {**grid, name: values}, rtol=_RTOL)
     tongues = [tuple(label_regions(pair, chart.isel({name: [i]}))) for i in range(count)]

@@ -8,8 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from floquet.gear.margins import StabilityMargins, TongueMargin
-from floquet.gear.tongues import LabelledRegion
+from floquet.gear.tongues import LabelledRegion, StabilityMargins, TongueMargin
 from validation.plots.labels import label_above
 from validation.plots.stability import (
     UNSTABLE,
@@ -37,7 +36,7 @@ def tongue_chart_figure(
     chart : dataset of ``floquet.stability_chart`` over speed_rpm and ``y``
     y : the other axis
     regions : unstable regions of the chart (``floquet.gear.tongues.label_regions``); or, with mesh damping as
-        the other axis, the traced tongues (``floquet.gear.margins``), whose edges are then drawn
+        the other axis, the traced tongues (``floquet.gear.tongues``), whose edges are then drawn
     lines : label -> predicted speed [rpm] (omega_i +- omega_j)/k, dotted where the tongue is named
     point : operating point (speed, y)
     operating_range : speeds of operation [rpm]
@@ -73,7 +72,7 @@ def tongues_figure(margins: StabilityMargins, operating_range: tuple[float, floa
 
     Parameters
     ----------
-    margins : of ``floquet.gear.margins.stability_margins``
+    margins : of ``floquet.gear.tongues.stability_margins``
     operating_range : speeds of operation [rpm]
     """
     figure, ax = one_panel(3.2)

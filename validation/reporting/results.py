@@ -12,10 +12,10 @@ import xarray as xr
 
 import lumped
 from floquet.gear.axes import operating_rpm, speed_range
-from floquet.gear.margins import StabilityMargins, stability_margins
 from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
 from floquet.gear.orbit import GearOrbit, periodic_orbit
 from floquet.gear.response import ResponseBranches
+from floquet.gear.tongues import StabilityMargins, stability_margins
 from lumped import GearPair, Geometry, NumericalError, ParameterError
 from lumped.model.averaged import Mode, modes
 from lumped.model.extremes import cycle_peak_to_peak

@@ -11,7 +11,7 @@ from floquet import gear_block, monodromy, predicted_lines, stability_boundaries
 from floquet.engine.intervals import seeded_nodes, unstable_intervals
 from floquet.engine.tongues import Tongue
 from floquet.gear.axes import vary
-from floquet.gear.boundaries import label_variation, search_grid
+from floquet.gear.tongues import label_variation, search_grid
 from lumped import load_gear_pair
 from lumped.errors import ParameterError
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar
 
-from floquet.gear.margins import margins_dataset, stability_margins
 from floquet.gear.multipliers import gear_pair_multipliers
+from floquet.gear.tongues import stability_margins
 from lumped import geometry, load_gear_pair, periodic_system
 from lumped.model.bodies import bodies
 from tests.evidence.floquet.coulomb_zones import CoulombGearPair
@@ -138,7 +138,7 @@ def test_a_range_without_a_tongue_has_no_margins_but_an_answer(pair) -> None:
     assert found.tongues == ()
     assert found.critical_damping == 0.0
     assert (found.nearest, found.nearest_unstable, found.law_difference) == (None, None, None)
-    assert margins_dataset(found).sizes["tongue"] == 0
+    assert found.dataset.sizes["tongue"] == 0
 
 
 def test_the_next_tongue_above_the_range_is_the_one_that_a_wider_search_finds() -> None:

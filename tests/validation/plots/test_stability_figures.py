@@ -16,8 +16,7 @@ from typer.testing import CliRunner
 from floquet import predicted_lines, stability_chart
 from floquet.engine.multipliers import verdicts
 from floquet.gear.campbell import campbell
-from floquet.gear.margins import StabilityMargins, TongueMargin
-from floquet.gear.tongues import label_regions
+from floquet.gear.tongues import StabilityMargins, TongueMargin, label_regions
 from lumped import load_gear_pair
 from validation.cli import app
 from validation.plots.campbell import campbell_figure
