@@ -38,8 +38,7 @@ from lumped.labelling import labelled_dataset
 from lumped.model.periodic_system import Supports
 from lumped.path_of_contact import friction_path_function
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.schema.operating import LARGEST_SPEED
-from lumped.schema.pair import GearPair
+from lumped.schema.pair import LARGEST_SPEED, GearPair
 from lumped.typing import FloatArray, Progress
 
 if TYPE_CHECKING:
