@@ -243,7 +243,7 @@ def _export_pair(
 ) -> None:
     from lumped.errors import refuse
     from validation.exchange import write_rexs, write_state_space
-    from validation.exchange.linear_model import STATE_SPACE_SUFFIXES
+    from validation.exchange.results import STATE_SPACE_SUFFIXES
     from validation.exchange.rexs.encodings import FORMS
     from validation.exchange.rexs.vocabulary import WRITTEN
     from validation.files.output import check_file

@@ -1,18 +1,21 @@
-"""The parameter file of somebody's own gear pair, from what is on the drawing."""
+"""Parameter files as text to edit: of any parameters, and of a new pair from what is on its drawing."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+import textwrap
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from typing import Any
+
+import tomli_w
 
 from lumped.errors import ParameterError, refuse
 from lumped.friction.registry import LAWS
 from lumped.schema.files import load_gear_pair
-from lumped.schema.pair import GearPair, leaf_paths
-from validation.exchange.commented_toml import parameter_text
-from validation.exchange.rexs.draft import completed
+from lumped.schema.pair import GearPair, leaf_paths, stated_unit
+from validation.exchange.rexs.draft import DOUBTFUL, completed
 
 GIVEN = "given by the user"
 #: End of a field's path -> why its assumed value was chosen; the first that fits.
@@ -21,23 +24,19 @@ _WHY = {
     "mesh.damping_ratio": "usual for steel gears, 0.03 to 0.17",
     "damping_ratio": "shaft on rolling bearings; see the guide on bearings",
     "roughness": "ground flanks, Ra 0.4 um",
-    "pressure_angle": "standard basic rack, ISO 53",
-    "addendum_coefficient": "standard basic rack, ISO 53",
-    "dedendum_coefficient": "standard basic rack, ISO 53",
-    "fillet_radius_coefficient": "standard basic rack, ISO 53",
+    **dict.fromkeys(
+        ("pressure_angle", "addendum_coefficient", "dedendum_coefficient", "fillet_radius_coefficient"),
+        "standard basic rack, ISO 53",
+    ),
     "profile_shift": "no shift; for few teeth the least that keeps the involute whole",
     "bore": "solid disc",
     "viscosity_law.density": "mineral oil",
-    "density": "steel",
-    "youngs_modulus": "steel",
-    "poisson_ratio": "steel",
+    **dict.fromkeys(("density", "youngs_modulus", "poisson_ratio"), "steel"),
     "stiffness.model": "constant stiffness by ISO 6336-1; 'energy' computes it from the tooth form",
     "backlash": "least by ISO/TR 10064-2 for module and centre distance, up to a tenth of the module",
     "viscosity": "oil warm from running",
     "temperature": "sump of an enclosed gear",
-    "viscosity_index": "mineral oil",
-    "pressure_viscosity_k": "mineral oil",
-    "pressure_viscosity_s": "mineral oil",
+    **dict.fromkeys(("viscosity_index", "pressure_viscosity_k", "pressure_viscosity_s"), "mineral oil"),
     "law": f"law {LAWS['xu_kahraman'].title}, which knows load, speed, oil and roughness",
     "relief": "tip and root relief act where they are given",
     "contact": "a tooth pair touches where the mean load closes its gap",
@@ -47,36 +46,41 @@ _WHY = {
     "film_length": "usual cut-off",
     "brake_torque": "steady mean speed",
 }
+_SECTION = re.compile(r"(\[\[?)([\w.]+)\]\]?$")
+_ENTRY = re.compile(r"(\w+) = ")
+_COLUMN = 40
 _TEETH = re.compile(r"\s*(\d{1,4})\s*[/:x]\s*(\d{1,4})\s*")
 _OIL = re.compile(r"\s*(?:iso)?[\s_-]*(?:vg)?[\s_-]*(\d{1,4})\s*", re.IGNORECASE)
 
 
-def new_pair_text(name: str, given: Mapping[str, Any]) -> str:
-    """Return a complete parameter file; every value says whether it was given or why it is assumed.
+def new_pair_text(name: str, request: Mapping[str, Any]) -> str:
+    """Return a complete parameter file; every value says whether the user gave it or why it is assumed.
 
     Parameters
     ----------
     name : of the pair
-    given : ``teeth`` ("19/41"), ``oil`` ("vg220") and field paths -> values; ``gears.`` in front of a field
+    request : ``teeth`` ("19/41"), ``oil`` ("vg220") and field paths -> values; ``gears.`` in front of a field
         means both gears, ``bearings.stiffness`` and ``bearings.damping_ratio`` all four bearing directions
 
     Raises
     ------
     ParameterError : what is malformed, or a pair that cannot exist
     """
-    values = _values(given)
+    values = _values(request)
     pair = _whole({"name": name}, values)
     if "mesh.backlash" not in values:
         pair = pair.with_(mesh__backlash=_backlash(pair))
-    sources = {
-        path: GIVEN if _is_given(path, values) else f"assumed: {_why(path)}"
-        for path in leaf_paths(pair)
-        if path not in ("name", "description")
-    }
-    told = sum(source == GIVEN for source in sources.values())
+    sources = {}
+    for path in leaf_paths(pair):
+        if path not in ("name", "description"):
+            # The user gave the field, or the list that it is in.
+            by_user = any(path == one or path.startswith(f"{one}.") for one in values)
+            why = next((why for end, why in _WHY.items() if path.endswith(end)), "the schema's default")
+            sources[path] = GIVEN if by_user else f"assumed: {why}"
+    count = list(sources.values()).count(GIVEN)
     notes = [
         "A bare number means the unit in the comment; text may carry any unit of that kind: '700 in-lb'.",
-        f"{told} values are given, {len(sources) - told} assumed: replace what you know, first the bearings.",
+        f"{count} values are given, {len(sources) - count} assumed: replace what you know, first bearings.",
     ]
     return parameter_text(load_gear_pair(pair.to_mapping() | {"sources": sources}).to_mapping(), notes)
 
@@ -114,19 +118,18 @@ def _backlash(pair: GearPair) -> float:
     return round(min((0.06 + 0.0005 * centre + 0.03 * module) / 1.5, 0.1 * module), 4)
 
 
-def _values(given: Mapping[str, Any]) -> dict[str, Any]:
+def _values(request: Mapping[str, Any]) -> dict[str, Any]:
+    """Field path -> value, of what the user asks for."""
     values: dict[str, Any] = {}
-    for path, value in given.items():
+    for path, value in request.items():
         if path == "teeth":
-            found = _TEETH.fullmatch(str(value))
-            if found is None:
+            if (teeth := _TEETH.fullmatch(str(value))) is None:
                 raise refuse("--teeth", value, "PINION/GEAR", "For example --teeth 19/41.")
-            values |= {"pinion.teeth": int(found[1]), "gear.teeth": int(found[2])}
+            values |= {"pinion.teeth": int(teeth[1]), "gear.teeth": int(teeth[2])}
         elif path == "oil":
-            found = _OIL.fullmatch(str(value))
-            if found is None:
+            if (grade := _OIL.fullmatch(str(value))) is None:
                 raise refuse("--oil", value, "an ISO viscosity grade", "For example --oil vg220.")
-            values |= dict.fromkeys(fields_of(path), int(found[1]))
+            values |= dict.fromkeys(fields_of(path), int(grade[1]))
         elif isinstance(value, dict):  # a section: mesh.stiffness = {model = "energy"}
             values |= _values({f"{path}.{key}": part for key, part in value.items()})
         else:
@@ -134,13 +137,8 @@ def _values(given: Mapping[str, Any]) -> dict[str, Any]:
     return values
 
 
-def _is_given(path: str, values: Mapping[str, Any]) -> bool:
-    """Whether the user gave a field, or the list that it is in."""
-    return any(path == one or path.startswith(f"{one}.") for one in values)
-
-
 def fields_of(path: str) -> list[str]:
-    """Fields that one entry of ``new_pair_text`` sets."""
+    """Fields that one entry of the request sets."""
     section, _, key = path.partition(".")
     if path == "oil":
         return ["lubricant.viscosity_law.iso_vg"]
@@ -149,5 +147,56 @@ def fields_of(path: str) -> list[str]:
     return [f"{gear}.{key}" for gear in ("pinion", "gear")] if section == "gears" else [path]
 
 
-def _why(path: str) -> str:
-    return next((why for end, why in _WHY.items() if path.endswith(end)), "the schema's default")
+def parameter_text(mapping: Mapping[str, Any], notes: Sequence[str] = ()) -> str:
+    """Write parameters as commented TOML.
+
+    Parameters
+    ----------
+    mapping : nested parameters in file units, with ``sources``
+    notes : put above as comments
+
+    Returns
+    -------
+    TOML text; reading it gives ``mapping`` back
+    """
+    sources = mapping.get("sources", {})
+    section = ""
+    entries: Counter[str] = Counter()  # of a list of tables, those above
+    lines = []
+    for line in tomli_w.dumps(dict(mapping)).splitlines():
+        if found := _SECTION.match(line):
+            section = f"{found[2]}."
+            if found[1] == "[[":
+                section += f"{entries[section]}."
+                entries[f"{found[2]}."] += 1
+        elif section != "sources." and (entry := _ENTRY.match(line)):
+            line = _commented(line, f"{section}{entry[1]}", sources)
+        lines.append(line)
+    head = [
+        wrapped
+        for note in notes
+        for wrapped in textwrap.wrap(
+            # A note may quote what a file from elsewhere says, control characters included.
+            "".join(c if c.isprintable() else " " for c in note),
+            100,
+            initial_indent="# - ",
+            subsequent_indent="#   ",
+            break_long_words=False,
+        )
+    ]
+    return "\n".join([*head, *([""] if head else []), *lines]) + "\n"
+
+
+def _commented(line: str, path: str, sources: Mapping[str, str]) -> str:
+    try:
+        unit = stated_unit(path)
+    except ParameterError:  # a member of a choice of sections
+        unit = None
+    remarks = (
+        [] if unit in (None, "1") or line.endswith('"') else [str(unit).replace("**", "^").replace("*", " ")]
+    )
+    if sources.get(path, "").startswith("assumed"):
+        remarks.append("assumed")
+    if DOUBTFUL in sources.get(path, ""):
+        remarks.append("doubtful")
+    return f"{line:<{_COLUMN}} # {', '.join(remarks)}" if remarks else line

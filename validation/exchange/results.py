@@ -1,15 +1,28 @@
-"""Results for other programs: CSV, NetCDF and MATLAB files of a labelled dataset, and back from NetCDF."""
+"""Results and linear models for other programs: files of a labelled dataset, of a state space, and back."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from lumped.arguments import file_path, of_type
 from lumped.errors import ParameterError, refuse, shown
-from validation.files.output import COLUMN_DIMENSIONS, DATA_SUFFIXES, check_file, write_dataset
+from lumped.model.averaged import averaged_state_space
+from lumped.model.periodic_system import Form
+from lumped.schema.files import AnyPair, load_gear_pair
+from validation.files.output import (
+    COLUMN_DIMENSIONS,
+    DATA_SUFFIXES,
+    check_file,
+    save_mat,
+    whole_file,
+    write_dataset,
+)
 
+STATE_SPACE_SUFFIXES = (".mat", ".npz")
 _OURS = "a NetCDF file that spurcheck wrote"
 #: Most numbers in a result file, 4 GB in memory.
 _MOST_NUMBERS = 500_000_000
@@ -103,3 +116,54 @@ def _check_content(result: xr.Dataset, path: Path) -> None:
         texts = variable.dtype.kind == "O" and all(isinstance(v, str) for v in variable.to_numpy().ravel())
         if not texts and variable.dtype.kind not in "biufSU":
             raise refuse("result", path, _OURS, f"{shown(str(name))} holds no numbers and no text.")
+
+
+def write_state_space(
+    pair: AnyPair, path: str | Path, form: Form = "elastic", *, force: bool = False
+) -> Path:
+    """Write the time-averaged pair as a file of its matrices.
+
+    ``sys = ss(A, B, C, D)`` in MATLAB; ``control.ss(f["A"], f["B"], f["C"], f["D"])`` or
+    ``scipy.signal.StateSpace(...)`` of the same four in Python, with ``f = numpy.load(path)``.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    path : .mat (MATLAB 5) or .npz (NumPy, without pickled objects)
+    form : "elastic" (10 states) or "mesh" (6 states)
+    force : overwrite an existing file
+
+    Returns
+    -------
+    Path that was written; besides A, B, C, D it holds the names ``inputs`` [N m], ``outputs`` [m], ``states``
+    (cell arrays in MATLAB), ``gear_pair`` and ``parameters`` (TOML)
+
+    Raises
+    ------
+    ParameterError : form "full", an unknown suffix, or an existing file without ``force``
+    """
+    pair = load_gear_pair(pair)
+    path = check_file(file_path("path", path), STATE_SPACE_SUFFIXES, force=force)
+    plant = averaged_state_space(pair, form)
+    matlab = path.suffix.lower() == ".mat"
+
+    def names(labels: list[str]) -> np.ndarray[tuple[int], np.dtype[Any]]:
+        return np.array(labels, dtype=object if matlab else np.str_)
+
+    contents = {
+        "A": plant.A,
+        "B": plant.B,
+        "C": plant.C,
+        "D": plant.D,
+        "inputs": names(plant.input_labels),
+        "outputs": names(plant.output_labels),
+        "states": names(plant.state_labels),
+        "gear_pair": pair.name,
+        "parameters": pair.to_toml(),
+    }
+    with whole_file(path) as temporary:
+        if matlab:
+            save_mat(contents, temporary)
+        else:
+            np.savez(temporary, **contents)
+    return path

@@ -2,7 +2,6 @@
 
 import csv
 
-import control
 import numpy as np
 import pytest
 import scipy.io
@@ -10,8 +9,8 @@ import xarray as xr
 
 import lumped
 from lumped import ParameterError
-from lumped.model.averaged import averaged_state_space, modes
-from validation.exchange import scipy_state_space, write_results, write_state_space
+from lumped.model.averaged import modes
+from validation.exchange import write_results, write_state_space
 
 
 @pytest.fixture(scope="module")
@@ -62,19 +61,6 @@ def test_files_are_not_overwritten_and_names_not_mangled(result, tmp_path):
     assert not (tmp_path / "bad.mat").exists()
 
 
-@pytest.mark.parametrize(("form", "size"), [("elastic", 10), ("mesh", 6)])
-def test_scipy_and_python_control_have_the_same_response(pair, form, size):
-    model = scipy_state_space(pair, form)
-    plant = averaged_state_space(pair, form)
-    assert model.A.shape == (size, size)
-    omega = 2 * np.pi * np.array([50.0, 1000.0, 3000.0])
-    expected = control.frequency_response(plant, omega, squeeze=False).complex
-    for k, w in enumerate(omega):
-        response = model.C @ np.linalg.solve(1j * w * np.eye(size) - model.A, model.B) + model.D
-        # entries differ by 12 orders of magnitude between outputs: compare at the accuracy of one solve
-        np.testing.assert_allclose(response, expected[:, :, k], rtol=1e-8, atol=1e-8 * abs(response).max())
-
-
 def test_the_state_space_file_has_the_modes_of_the_pair_and_names(pair, tmp_path):
     read = scipy.io.loadmat(write_state_space(pair, tmp_path / "pair.mat"), simplify_cells=True)
     values = np.linalg.eigvals(read["A"])
@@ -91,5 +77,3 @@ def test_the_state_space_file_has_the_modes_of_the_pair_and_names(pair, tmp_path
 def test_the_rigid_rotation_is_refused(pair, tmp_path):
     with pytest.raises(ParameterError, match="rigid rotation"):
         write_state_space(pair, tmp_path / "pair.mat", "full")
-    with pytest.raises(ParameterError, match="rigid rotation"):
-        scipy_state_space(pair, "full")

@@ -7,7 +7,7 @@ import pytest
 
 import lumped
 from lumped import ParameterError
-from validation.exchange import gear_pair_from_rexs, rexs_stages
+from validation.exchange import gear_pair_from_rexs
 
 
 def _relief(kind, depth, start, at, shape="linear"):
@@ -264,12 +264,6 @@ def test_asymmetric_teeth_are_refused(xml, save):
 def test_a_unit_that_is_left_out_is_that_of_the_database(xml, save, leaves):
     bare = xml().replace(' unit="mm"', "").replace(' unit="none"', ' unit=""')
     assert leaves(gear_pair_from_rexs(save(bare))[0]) == leaves(gear_pair_from_rexs(save(xml()))[0])
-
-
-def test_stages_are_listed_with_what_can_be_done_with_them(xml, save):
-    (stage,) = rexs_stages(save(xml()))
-    assert (stage.number, stage.component_id, stage.name, stage.teeth) == (1, 10, "first stage", (20, 30))
-    assert stage.usable
 
 
 def test_relief_of_the_driven_gear_reaches_its_own_tip(xml, save):

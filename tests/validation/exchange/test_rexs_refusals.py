@@ -10,7 +10,7 @@ import pytest
 
 import lumped
 from lumped import ParameterError
-from validation.exchange import gear_pair_from_rexs, rexs_stages, write_rexs
+from validation.exchange import gear_pair_from_rexs, write_rexs
 from validation.exchange.rexs import encodings
 
 
@@ -99,7 +99,6 @@ def test_the_only_spur_stage_is_taken_with_a_note(xml, save):
     assert mapping["gear"]["teeth"] == 30
     assert any("only spur stage" in note for note in notes)
     assert "helix angle 15 deg" in refused(path, 2)
-    assert [stage.usable for stage in rexs_stages(path)] == [True, False]
 
 
 def test_entities_are_refused_before_anything_is_expanded_or_fetched(xml, save, tmp_path):

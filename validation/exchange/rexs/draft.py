@@ -75,7 +75,7 @@ class Draft:
 
     def number(self, component: Component, attribute: str) -> Reading | None:
         """Read a number; what is no finite number becomes a problem."""
-        known, where = ATTRIBUTES[component.type][attribute], self.where(component, attribute)
+        expected, where = ATTRIBUTES[attribute], self.where(component, attribute)
         found = component.attributes.get(attribute)
         if found is None or found.value is None:
             return None
@@ -87,7 +87,7 @@ class Draft:
             text = shown(str(found.value))
             self.problems.append(FieldProblem(where, text, "a finite number of a gear", "Correct the file."))
             return None
-        return Reading(si_from_rexs(value, found.unit, known.unit, where), where)
+        return Reading(si_from_rexs(value, found.unit, expected, where), where)
 
     def first(self, places: Iterable[Component], attribute: str) -> Reading | None:
         """Read the first number that some components have, or else have in the first load case."""

@@ -15,7 +15,7 @@ from lumped.schema.pair import GearPair
 from validation.exchange.rexs.encodings import encoded, form_of
 from validation.exchange.rexs.gears import RELIEFS, diameter_at, end_of_flank
 from validation.exchange.rexs.model import Document
-from validation.exchange.rexs.vocabulary import ATTRIBUTES, WRITTEN, rexs_from_si
+from validation.exchange.rexs.vocabulary import ATTRIBUTES, KINDS, WRITTEN, rexs_from_si
 from validation.files.output import whole_file
 
 
@@ -58,10 +58,10 @@ class _Builder:
         """Add a component; numbers are SI, None is left out."""
         attributes = []
         for key, value in values.items():
-            known = ATTRIBUTES[kind][key]
             if value is not None:
-                number = rexs_from_si(value, known.unit) if isinstance(value, float) else value
-                attributes.append({"id": key, "unit": known.unit, known.kind: number})
+                unit, kind_of_value = ATTRIBUTES[key], KINDS.get(key, "floating_point")
+                number = rexs_from_si(value, unit) if isinstance(value, float) else value
+                attributes.append({"id": key, "unit": unit, kind_of_value: number})
         number = len(self.components) + 1
         self.components.append({"id": number, "type": kind, "name": name, "attributes": attributes})
         return number
