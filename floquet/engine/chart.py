@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import multiprocessing
-from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from floquet.engine.monodromy import checked_effort, monodromy
-from floquet.engine.multipliers import verdicts
-from floquet.engine.spectrum import Spectrum
+from floquet.engine.multipliers import Spectrum, verdicts
 from floquet.engine.system import PeriodicSystem
-from lumped.arguments import of_type, real_numbers, some_of, whole_number
+from lumped.arguments import of_type, real_numbers, some_of
 from lumped.errors import NumericalError, refuse, shown
 from lumped.labelling import Variable, labelled_dataset
 from lumped.typing import BoolArray, FloatArray, Progress
@@ -86,7 +82,6 @@ def scan(
     *,
     labels: Mapping[str, tuple[str, str]] | None = None,
     rtol: float = 1e-8,
-    n_jobs: int = 1,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Evaluate the multipliers of a family of periodic systems on the product grid of the axes.
@@ -98,8 +93,6 @@ def scan(
     axes : name -> values
     labels : name -> unit, "1" for none, and plain name of an axis
     rtol : of the monodromy matrix of a `PeriodicSystem`
-    n_jobs : processes; -1 for all cores. With more than one, ``evaluate`` must be picklable, and a script
-        must start its work under ``if __name__ == "__main__":``.
     progress : told the finished fraction
 
     Returns
@@ -120,15 +113,11 @@ def scan(
     mesh = np.stack(np.meshgrid(*grid.values(), indexing="ij"), axis=-1).reshape(-1, len(names))
     points = [dict(zip(names, map(float, row), strict=True)) for row in mesh]
     results: list[Spectrum] = []
-    n_jobs = whole_number("n_jobs", n_jobs, -1, 1024, "Use -1 for all cores.") or 1
-    if n_jobs == 1:
-        stream: Iterator[Spectrum] = (_at_point(evaluate, rtol, point) for point in points)
-    else:
-        stream = _in_processes(partial(_at_point, evaluate, rtol), points, n_jobs)
-    for spectrum in stream:
+    for point in points:
+        spectrum = _at_point(evaluate, rtol, point)
         results.append(spectrum)
         if spectrum.multipliers.size != results[0].multipliers.size:
-            counts = f"{spectrum.multipliers.size} multipliers at {_place(points[len(results) - 1])}"
+            counts = f"{spectrum.multipliers.size} multipliers at {_place(point)}"
             advice = "Keep the number of coordinates over the axes."
             raise refuse("evaluate", counts, f"{results[0].multipliers.size} as at the first point", advice)
         if progress is not None:
@@ -142,19 +131,6 @@ def scan(
     for name, (unit, text) in labels.items():
         chart[name].attrs.update(units=unit, long_name=text)
     return chart
-
-
-def _in_processes(
-    evaluate: Callable[[dict[str, float]], Spectrum], points: list[dict[str, float]], n_jobs: int
-) -> Iterator[Spectrum]:
-    """Spectra in order, by processes that start clean: a fork could copy a lock that a thread holds."""
-    methods = multiprocessing.get_all_start_methods()
-    context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
-    with ProcessPoolExecutor(n_jobs if n_jobs > 0 else None, mp_context=context) as pool:
-        try:
-            yield from pool.map(evaluate, points)
-        finally:
-            pool.shutdown(cancel_futures=True)
 
 
 def _at_point(evaluate: Family, rtol: float, point: dict[str, float]) -> Spectrum:

@@ -12,11 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from floquet.engine.monodromy import checked_effort
-from floquet.engine.multipliers import multipliers_with_bounds
+from floquet.engine.multipliers import Certificate, Spectrum, multipliers_with_bounds
 from floquet.engine.propagation import Propagation, error_of_product, propagate
-from floquet.engine.propagators.base import Propagator
+from floquet.engine.propagators.one_step import Propagator
 from floquet.engine.propagators.registry import propagator
-from floquet.engine.spectrum import Certificate, Spectrum
 from floquet.engine.system import PeriodicSystem
 from lumped.arguments import real_numbers
 from lumped.errors import NumericalError

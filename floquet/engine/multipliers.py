@@ -1,8 +1,14 @@
-"""Eigenvalues of a monodromy matrix that is known only to within an error, with a bound on each."""
+"""Eigenvalues of a monodromy matrix that is known only to within an error, with a bound on each.
+
+Sources: docs/theory/floquet.md, "From the equations to a matrix"; proven_bounds.md, "Multipliers".
+"""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -10,6 +16,9 @@ from scipy.linalg import schur
 from scipy.linalg.lapack import ztrsen
 
 from lumped.typing import ComplexArray, FloatArray
+
+Certificate = Literal["proven", "estimate"]
+"""What an error is: a bound by a theorem, rounding included, or an estimate from samples."""
 
 _EPS = float(np.finfo(np.float64).eps)
 _U = 0.5 * _EPS
@@ -169,3 +178,49 @@ def radii_with_bounds(multipliers: ComplexArray, errors: FloatArray) -> tuple[Fl
 def verdicts(radius: FloatArray, error: FloatArray) -> npt.NDArray[np.int8]:
     """1 stable, 0 undecided where radius +- error contains 1, -1 unstable; any shape."""
     return np.asarray(radius + error < 1.0, dtype=np.int8) - np.asarray(radius - error > 1.0, dtype=np.int8)
+
+
+@dataclass(frozen=True, eq=False)
+class Spectrum:
+    """Floquet multipliers of one periodic system.
+
+    Attributes
+    ----------
+    multipliers : (n,) complex, largest modulus first
+    multiplier_errors : (n,) bound on the error of each, see ``certificate``
+    period : T [s]
+    certificate : "proven" where the errors are bounds by a theorem, rounding included; "estimate" where they
+        rest on samples
+    """
+
+    multipliers: ComplexArray
+    multiplier_errors: FloatArray
+    period: float
+    certificate: Certificate = field(default="estimate", kw_only=True)
+
+    @cached_property
+    def _radius(self) -> tuple[float, float]:
+        radius, error = radii_with_bounds(self.multipliers, self.multiplier_errors)
+        return float(radius), float(error)
+
+    @property
+    def spectral_radius(self) -> float:
+        """Largest |multiplier|."""
+        return self._radius[0]
+
+    @property
+    def error(self) -> float:
+        """Bound on the error of ``spectral_radius``, see ``certificate``."""
+        return self._radius[1]
+
+    @property
+    def verdict(self) -> str:
+        """One of "stable", "unstable", and "undecided" when ``spectral_radius`` +- ``error`` contains 1."""
+        radius, error = (np.array(value) for value in self._radius)
+        return ("undecided", "stable", "unstable")[int(verdicts(radius, error))]
+
+    @property
+    def exponents(self) -> ComplexArray:
+        """log(multiplier)/T [1/s], (n,), principal branch; -inf for a multiplier that is zero."""
+        with np.errstate(divide="ignore"):
+            return np.asarray(np.log(self.multipliers.astype(complex)) / self.period)

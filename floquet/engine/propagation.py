@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
-from floquet.engine.propagators.base import Propagator
+from floquet.engine.propagators.one_step import Propagator
 from floquet.engine.system import PeriodicSystem
 from lumped.errors import NumericalError, ResolutionWarning
 from lumped.typing import BoolArray, FloatArray

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import LinAlgError, cholesky, eigh
 
-from floquet.engine.periodic_matrix import PeriodicMatrix, square
+from floquet.engine.coefficients import PeriodicMatrix, square
 from floquet.engine.system import PeriodicSystem, second_order
 from lumped.arguments import real_number
 from lumped.errors import NumericalError, refuse
@@ -104,9 +104,10 @@ def _checked(
     if found.dimension != n:
         shape = f"({found.dimension}, {found.dimension})"
         raise refuse(name, f"shape {shape}", f"that of M, ({n}, {n})", "Check the coordinates of both.")
-    for k in found.faulty_terms(period):
-        allowed = f"a function that repeats after the period, {period:g} s"
-        raise refuse(f"{name}, term {k}", "another period", allowed, "Correct one of the two periods.")
+    for k, function in enumerate(found.functions, 1):
+        if not function.repeats(period):
+            allowed = f"a function that repeats after the period, {period:g} s"
+            raise refuse(f"{name}, term {k}", "another period", allowed, "Correct one of the two periods.")
     return found
 
 

@@ -12,8 +12,8 @@ from typing import get_args
 import numpy as np
 
 from floquet.engine.monodromy import integral_of_trace, monodromy
-from floquet.engine.propagators.base import Propagator
-from floquet.engine.spectrum import Spectrum
+from floquet.engine.multipliers import Spectrum
+from floquet.engine.propagators.one_step import Propagator
 from floquet.engine.system import PeriodicSystem
 from floquet.gear.axes import GearVariation
 from floquet.gear.block import gear_block

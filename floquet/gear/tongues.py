@@ -17,14 +17,16 @@ import numpy as np
 import numpy.typing as npt
 from scipy import ndimage
 
-from floquet.engine.intervals import UnstableInterval, seeded_nodes, unstable_intervals
 from floquet.engine.tongues import (
     Tongue,
     TongueTip,
+    UnstableInterval,
     combinations,
     label_tongue,
+    seeded_nodes,
     tongue_coordinates,
     tongue_tip,
+    unstable_intervals,
 )
 from floquet.gear.axes import GearVariation, axis_coordinates, checked_range, gear_grid, operating_rpm, vary
 from floquet.gear.block import gear_block
@@ -51,7 +53,7 @@ Radius = Callable[[npt.ArrayLike, npt.ArrayLike], FloatArray]
 ORDERS = 12
 _MOST = 20_000  # speeds of the grid of a search
 _RTOL = 1e-8
-# As in floquet.engine.intervals: undamped bearings sit at 1 within rounding.
+# As in floquet.engine.tongues: undamped bearings sit at 1 within rounding.
 _THRESHOLD = 1e-9
 _LARGEST_DAMPING = 1.0  # what the schema allows for a mesh
 _SPEED_NODES = 400

@@ -15,8 +15,7 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from floquet.engine.multipliers import multipliers_with_bounds
-from floquet.engine.spectrum import Certificate
+from floquet.engine.multipliers import Certificate, multipliers_with_bounds
 from floquet.rank_one.kernels.disks import spectra, spectra_by
 from floquet.rank_one.kernels.gains import Limits, most_steps
 from floquet.rank_one.kernels.taylor import propagate_points

@@ -175,17 +175,15 @@ assert CliRunner().invoke(app, ["count", "nasa_28_28"]).stdout.strip() == "56"
 
 PROPAGATOR = {
     "floquet/engine/propagators/three_eighths.py": """
-from floquet.engine.propagators.runge_kutta import ExplicitRungeKutta
+from floquet.engine.propagators.one_step import ExplicitRungeKutta
 
-def three_eighths():
-    a = [[0, 0, 0, 0], [1 / 3, 0, 0, 0], [-1 / 3, 1, 0, 0], [1, -1, 1, 0]]
-    return ExplicitRungeKutta("three_eighths", 4, a, [1 / 8, 3 / 8, 3 / 8, 1 / 8], [0, 1 / 3, 2 / 3, 1])
+A = [[0, 0, 0, 0], [1 / 3, 0, 0, 0], [-1 / 3, 1, 0, 0], [1, -1, 1, 0]]
+PROPAGATOR = ExplicitRungeKutta("three_eighths", 4, A, [1 / 8, 3 / 8, 3 / 8, 1 / 8], [0, 1 / 3, 2 / 3, 1])
 """,
     "floquet/engine/propagators/registry.py": (
-        "",
+        "from floquet.engine.propagators.three_eighths import PROPAGATOR as THREE_EIGHTHS",
         "PROPAGATORS",
-        '"three_eighths": Registered("rule of 3/8", 4, "4 products", ("three_eighths", "three_eighths"), '
-        "coarse_steps=64)",
+        '"three_eighths": THREE_EIGHTHS',
     ),
 }
 USE_PROPAGATOR = """

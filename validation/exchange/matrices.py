@@ -18,8 +18,7 @@ from scipy.io.matlab import MatReadError
 
 from floquet import FourierSeries, PeriodicMatrix, PiecewisePolynomial, SecondOrderSystem, from_second_order
 from floquet.engine.chart import ChartAxis
-from floquet.engine.coefficients import Coefficient
-from floquet.engine.periodic_matrix import square
+from floquet.engine.coefficients import Coefficient, square
 from lumped.arguments import file_path, real_array, real_number, real_numbers
 from lumped.errors import ParameterError, refuse, shown
 from lumped.fields.refusals import nearest

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from floquet import PROPAGATORS, monodromy
-from floquet.engine.propagators.gauss import GaussLegendre
+from floquet.engine.propagators.one_step import GaussLegendre
 from tests.evidence.floquet import closed_forms, combinations, coulomb_zones
 from tests.evidence.floquet.closed_forms import (
     constant_error,
@@ -71,17 +71,9 @@ def test_mathieu(q: float) -> None:
 
 @pytest.mark.parametrize("method", PROPAGATORS)
 def test_methods_are_symplectic_as_registered(method: str) -> None:
-    # Gauss methods conserve quadratic invariants; the exponential of a Hamiltonian matrix is symplectic.
+    # Gauss methods conserve quadratic invariants.
     defect = symplectic_defect(method)
     assert defect < 1e-12 if PROPAGATORS[method].symplectic else defect > 1e-9
-
-
-@pytest.mark.parametrize("method", PROPAGATORS)
-def test_the_registry_tells_what_the_propagator_is(method: str) -> None:
-    known = PROPAGATORS[method]
-    assert known.make().order == known.order
-    assert known.title
-    assert known.needs
 
 
 def test_units_of_the_forcing_do_not_matter() -> None:

@@ -8,8 +8,7 @@ import xarray as xr
 from scipy.special import mathieu_a, mathieu_b
 
 from floquet import gear_block, monodromy, predicted_lines, stability_boundaries, stability_chart
-from floquet.engine.intervals import seeded_nodes, unstable_intervals
-from floquet.engine.tongues import Tongue
+from floquet.engine.tongues import Tongue, seeded_nodes, unstable_intervals
 from floquet.gear.axes import vary
 from floquet.gear.tongues import label_variation, search_grid
 from lumped import load_gear_pair

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
-
 import numpy as np
 import pytest
-import xarray as xr
 from scipy.special import mathieu_a, mathieu_b
 
 from floquet import PeriodicSystem, Spectrum, monodromy, scan
-from floquet.engine import chart
 from lumped.errors import NumericalError, ParameterError
 
 
@@ -39,13 +35,9 @@ def test_ince_strutt_chart() -> None:
         assert (verdict[~inside] == -1).all()
 
 
-def test_chart_equals_single_points_in_parallel(monkeypatch) -> None:
+def test_chart_equals_single_points() -> None:
     axes = {"a": [1.1, 3.0], "q": [0.2, 0.7, 1.5]}
     serial = scan(at_point, axes)
-    # Processes could not import this test file.
-    monkeypatch.setattr(chart, "ProcessPoolExecutor", lambda count, mp_context: ThreadPoolExecutor(count))
-    parallel = scan(at_point, axes, n_jobs=2)
-    xr.testing.assert_identical(serial, parallel)
     single = at_point({"a": 3.0, "q": 0.7})
     assert serial.spectral_radius.sel(a=3.0, q=0.7).item() == single.spectral_radius
     assert serial.error.sel(a=3.0, q=0.7).item() == single.error
