@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from typing import Annotated, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -22,6 +23,15 @@ from lumped.lubrication.viscosity import (
 from lumped.stiffness.registry import AnyStiffness
 
 
+def _contact(value: object) -> object:
+    if value != "paper":
+        return value
+    warnings.warn(
+        "mesh.contact = 'paper' is read as 'prescribed', its name now.", FutureWarning, stacklevel=2
+    )
+    return "prescribed"
+
+
 class Mesh(Section):
     """The elastic mesh of the tooth pairs."""
 
@@ -36,10 +46,10 @@ class Mesh(Section):
         description="'static': tip and root relief, where given, enter as unloaded error, and a pair touches "
         "where it carries load at the mean torque; 'ignored': perfect involutes from A to D",
     )
-    contact: Literal["prescribed", "loaded"] = Field(
+    contact: Annotated[Literal["prescribed", "loaded"], BeforeValidator(_contact)] = Field(
         "loaded",
         description="'loaded': a pair touches where its gap closes under the mean load, with its tangent "
-        "stiffness there, and the brake balances every loss; 'prescribed': it touches from A to D ",
+        "stiffness there, and the brake balances every loss; 'prescribed': it touches from A to D",
     )
     backlash: Annotated[float, Quantity("mm", at_least=0)] = Field(
         0.0, description="normal backlash by tooth thinning, beyond that of the centre distance"

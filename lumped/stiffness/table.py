@@ -5,7 +5,7 @@ Sources: monotone piecewise cubics, Fritsch and Carlson, SIAM Journal on Numeric
 
 from __future__ import annotations
 
-import csv
+import itertools
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -25,9 +25,9 @@ from lumped.stiffness.base import MeshingPair, RampLength, StiffnessModel, check
 from lumped.stiffness.energy import energy_curve
 from lumped.typing import FloatArray
 
-#: Column name -> (axis of the table, unit that its points get, unit of lumped.fields.units for the
-#: conversion).
-_AXES = {
+#: Column -> (axis of the table, unit of its numbers).
+_COLUMNS = {
+    "stiffness": ("stiffness", "N/m"),
     "position": ("position_mm", "mm"),
     "roll_angle": ("roll_angle_deg", "deg"),
     "phase": ("phase", "1"),
@@ -50,66 +50,45 @@ def read_stiffness_table(file: object, folder: str | Path = ".") -> dict[str, ob
     path = Path(folder) / file
     text = read_text(path, _MAX_BYTES, kind="CSV file")
     lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
-    if not lines:
-        raise refuse("file", path, _FORMAT, "The file is empty.")
+    if len(lines) < 2:
+        raise refuse("file", path, _FORMAT, "Give two columns and at least four rows.")
+    names, units = _header(lines[0], path)
     try:
-        rows = list(csv.reader(lines))
-    except csv.Error as error:
-        raise refuse("file", path, _FORMAT, f"It cannot be read: {error}.") from None
-    names, units = _header(rows[0], path)
-    try:
-        columns = list(
-            zip(*((float(row[0]), float(row[1])) for row in rows[1:] if len(row) == 2), strict=True)
-        )
+        columns = np.loadtxt(lines[1:], delimiter=",", quotechar='"', comments=None, ndmin=2).T
+        first, second = columns.tolist()
     except ValueError as error:
         raise refuse("file", path, _FORMAT, f"A row is no pair of numbers: {shown(str(error))}.") from None
-    if len(columns) != 2 or any(len(row) != 2 for row in rows[1:]):
-        raise refuse("file", path, _FORMAT, "Give two columns and at least four rows.")
-    values = dict(zip(names, columns, strict=True))
-    unit = dict(zip(names, units, strict=True))
-    column = next(name for name in names if name != "stiffness")
-    axis, stated = _AXES[column]
-    return {
-        "axis": axis,
-        "points": tuple(v * _factor(unit[column], stated, column, path) for v in values[column]),
-        "stiffness": tuple(
-            v * _factor(unit["stiffness"], "N/m", "stiffness", path) for v in values["stiffness"]
-        ),
-    }
+    table: dict[str, object] = {}
+    for name, unit, values in zip(names, units, (first, second), strict=True):
+        axis, stated = _COLUMNS[name]
+        factor = _factor(unit, stated, name, path)
+        scaled = tuple(value * factor for value in values)
+        table |= {"stiffness": scaled} if name == "stiffness" else {"axis": axis, "points": scaled}
+    return table
 
 
 def check_stiffness_table(points: Sequence[float], stiffness: Sequence[float]) -> None:
     """Refuse unequal lengths, points that do not increase, stiffness not finite and positive."""
     if len(points) != len(stiffness):
-        raise refuse(
-            "stiffness", f"{len(stiffness)} values", f"one per point, {len(points)}", "Complete the table."
-        )
-    for i in range(1, len(points)):
-        if not points[i] > points[i - 1]:
-            raise refuse(
-                "points",
-                f"{points[i]:g} after {points[i - 1]:g}",
-                "increasing",
-                "Sort the rows and remove repeated points.",
-            )
+        allowed = f"one per point, {len(points)}"
+        raise refuse("stiffness", f"{len(stiffness)} values", allowed, "Complete the table.")
+    for before, point in itertools.pairwise(points):
+        if not point > before:
+            action = "Sort the rows and remove repeated points."
+            raise refuse("points", f"{point:g} after {before:g}", "increasing", action)
     for value in stiffness:
         if not 0.0 < value <= _LARGEST:
-            raise refuse(
-                "stiffness",
-                f"{value:g} N/m",
-                f"> 0 and <= {_LARGEST:g} N/m",
-                "Check the unit and the sign; leave out points without contact.",
-            )
+            action = "Check the unit and the sign; leave out points without contact."
+            raise refuse("stiffness", f"{value:g} N/m", f"> 0 and <= {_LARGEST:g} N/m", action)
 
 
-def _header(row: list[str], path: Path) -> tuple[list[str], list[str]]:
-    matches = [_HEADER.fullmatch(cell.strip()) for cell in row]
-    found = [(m.group(1).lower(), m.group(2) or "") for m in matches if m is not None]
-    names = [name for name, _ in found]
-    known = len(row) == 2 and len(found) == 2 and "stiffness" in names and any(n in _AXES for n in names)
-    if not known:
-        raise refuse("file", path, _FORMAT, f"The header is '{shown(', '.join(row))}'.")
-    return names, [unit for _, unit in found]
+def _header(line: str, path: Path) -> tuple[list[str], list[str]]:
+    """Names and units of the two columns."""
+    matches = [_HEADER.fullmatch(cell.strip(' 	"')) for cell in line.split(",")]
+    names = [match[1].lower() for match in matches if match]
+    if not len(matches) == len(set(names)) == 2 or "stiffness" not in names or not {*names} <= {*_COLUMNS}:
+        raise refuse("file", path, _FORMAT, f"The header is '{shown(line)}'.")
+    return names, [match[2] or "" for match in matches if match]
 
 
 def _factor(unit: str, stated: str, column: str, path: Path) -> float:

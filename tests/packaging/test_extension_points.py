@@ -13,14 +13,10 @@ from importlib import metadata
 from pathlib import Path
 
 import pytest
-from numba.core.caching import _CacheLocator
 
 from lumped.schema.files import load_gear_pair, preset_names
 
 ROOT = Path(__file__).parents[2]
-#: Folder of a file's kernels within NUMBA_CACHE_DIR.
-kernel_folder = _CacheLocator.get_suitable_cache_subpath
-
 #: A new law and a new model: new file -> its text, or registry -> (import, its name, the item added to it).
 LAW = {
     "lumped/friction/rising.py": """
@@ -256,17 +252,6 @@ def ends(tmp_path_factory):
     tmp_path = tmp_path_factory.mktemp("copy")
     for package in ("lumped", "floquet", "validation"):
         shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
-    for path in list(tmp_path.rglob("*.py")):
-        # Compiled kernels of unchanged files are those of the tree: copies keep their times.
-        cache, name = path.parent / "__pycache__", path.relative_to(tmp_path)
-        if not cache.exists():
-            own = ROOT / cache.relative_to(tmp_path)
-            own.mkdir(exist_ok=True)
-            cache.symlink_to(own)
-            if elsewhere := os.environ.get("NUMBA_CACHE_DIR"):
-                of_tree, of_copy = (Path(elsewhere, kernel_folder(str(p))) for p in (ROOT / name, path))
-                of_tree.mkdir(parents=True, exist_ok=True)
-                of_copy.symlink_to(of_tree)
     for changes, _, _ in PARTS.values():
         for name, change in changes.items():
             path = tmp_path / name

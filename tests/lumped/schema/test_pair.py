@@ -342,3 +342,9 @@ def _violations(value, node, root, path):
                 yield from _violations(item, known[key], root, f"{path}.{key}")
             elif node.get("additionalProperties") is False:
                 yield f"{path}.{key}: unknown"
+
+
+def test_the_old_name_of_prescribed_contact_is_read_with_a_note(nasa):
+    with pytest.warns(FutureWarning, match="'prescribed'"):
+        pair = nasa.with_(mesh__contact="paper")
+    assert pair.mesh.contact == "prescribed"

@@ -122,13 +122,14 @@ def test_csv_beside_the_parameter_file(tmp_path):
 @pytest.mark.parametrize(
     ("text", "match"),
     [
-        ("", "empty"),
+        ("", "two columns"),
         ("a,b\n1,2\n", "header"),
         ("position [mm], stiffness [kg]\n1,2\n3,4\n", "stiffness with its unit"),
         ("position [N], stiffness [N/m]\n1,2\n3,4\n", "position with its unit"),
         ("phase [mm], stiffness [N/m]\n1,2\n3,4\n", "phase without a unit"),
         ("position [mm], stiffness [N/m]\n1,two\n", "pair of numbers"),
-        ("position [mm], stiffness [N/m]\n1,2,3\n1,2\n", "two columns"),
+        ("position [mm], stiffness [N/m]\n1,2,3\n1,2\n", "pair of numbers"),
+        ("position [mm], stiffness [N/m]\n1,2,3\n1,2,3\n", "pair of numbers"),
         ("position [mm], stiffness [N/m]\n", "two columns"),
     ],
 )
