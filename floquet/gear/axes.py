@@ -196,7 +196,9 @@ def axis_coordinates(grid: Mapping[str, FloatArray]) -> dict[str, Coordinate]:
     return {name: (values, *known.get(name, unnamed)) for name, values in grid.items()}
 
 
-def vary(pair: GearPair, point: Mapping[str, float], supports: Supports = "springs") -> GearVariation:
+def vary(
+    pair: GearPair | GearVariation, point: Mapping[str, float], supports: Supports = "springs"
+) -> GearVariation:
     """Return the pair at one point of a chart."""
     variation = GearVariation.of(pair, supports)
     for name, value in point.items():

@@ -1,20 +1,149 @@
-"""The feedback block of a gear pair as a rank-one system for the compiled kernel.
+"""The feedback block of a gear pair: the coordinates that the mesh couples, as a rank-one system.
 
-Sources: docs/theory/floquet.md, "Structure".
+The laws k, c and mu of a tooth pair are piecewise polynomials, so between two breaks of any law of any
+pair the gains are polynomials of known degree: k (normal + mu (arm_0 + arm_1 xi)) and the like.
+
+Sources: docs/theory/floquet.md, "Structure"; docs/theory/proven_bounds.md, "The gains".
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
 import numpy as np
+import numpy.typing as npt
+from scipy.linalg import block_diag, eigh
 
 from floquet.gear.axes import GearVariation
-from floquet.gear.feedback import feedback_system
-from floquet.gear.mesh_gains import MeshGains
-from floquet.rank_one.piecewise import fit_pieces
+from floquet.rank_one.piecewise import fit_pieces, series_rounding, to_series
 from floquet.rank_one.system import Gains, RankOneSystem
 from lumped.arguments import real_number
-from lumped.model.periodic_system import Supports
+from lumped.errors import NumericalError
+from lumped.model.periodic_system import LTVSystem, Supports, periodic_system
+from lumped.path_function import PathFunction
 from lumped.schema.files import AnyPair
+from lumped.typing import FloatArray
+
+MODES = 12
+"""Modes of a pair on shafts that are coupled at most; the others move each by itself."""
+_EQUAL = 1e-6  # natural frequencies that differ by no more than this part are one
+_U = 0.5 * float(np.finfo(np.float64).eps)
+#: Roundings on the way to one value: Horner's rule of degree 8 twice, products and sums over pairs.
+_ROUNDINGS = 80.0 * _U
+#: The same of a position, relative to the largest one: offset, phase, product, sum, difference.
+_PLACE = 16.0 * _U
+#: Breaks closer than this part of a base pitch may be one segment's end.
+_MERGED = 1e-12
+#: Degree of the polynomials in place of the factor on stiffness and of its root.
+_FACTOR_DEGREE = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Feedback:
+    """The coordinates that the mesh couples: three on springs, on shafts at most `MODES` modes.
+
+    Attributes
+    ----------
+    system : x' = A(t) x in these coordinates; modes of a pair on shafts have unit modal mass
+    gyroscopic : (m, m) part of the constant damping that is proportional to speed, over that of the pinion
+    metric : (m,) weights of the norm of errors; they make the frictionless mesh symmetric
+    separate : decay rates [1/s] and squares of the natural frequencies (k,) of what moves by itself: on
+        springs off the line of action, on shafts the modes that count least
+    """
+
+    system: LTVSystem
+    gyroscopic: FloatArray
+    metric: FloatArray
+    separate: tuple[FloatArray, FloatArray]
+
+    @property
+    def size(self) -> int:
+        """Number of multipliers, those of the separate motions included."""
+        return self.system.size + 2 * self.separate[0].size
+
+
+def feedback_system(variation: GearVariation) -> Feedback:
+    """Return what the mesh couples of a gear pair."""
+    system = periodic_system(variation.pair, "mesh", cycle=variation.cycle(), supports=variation.supports)
+    if system.shafts is not None:
+        # The first coordinate of the shafts is the common rotation, which no tooth feels.
+        return _leading_modes(system, system.shafts.gyroscopic[1:, 1:])
+    m, s = system.deflection.size, system.structure
+    separate = s.damping[4:] / (2.0 * s.mass[4:]), s.stiffness[4:] / s.mass[4:]
+    return Feedback(system, np.zeros((m, m)), 1.0 / np.abs(system.per_load[0]), separate)
+
+
+def _leading_modes(system: LTVSystem, gyroscopic: FloatArray) -> Feedback:
+    """The modes that count most of a pair on shafts, the others apart."""
+    m = system.deflection.size
+    mesh = system.cycle.mean_stiffness * np.outer(system.deflection, system.deflection)
+    modes = eigh(mesh - system.constant[m:, :m])[1]
+    modes = modes @ _turn(_in_modes(system, modes), modes.T @ gyroscopic @ modes)
+    whole, turning = _in_modes(system, modes), modes.T @ gyroscopic @ modes
+    order = np.argsort(-importance(whole, turning), kind="stable")
+    kept, left = (np.sort(part) for part in (order[:MODES], order[MODES:]))
+    separate = -0.5 * np.diag(whole.constant[m:, m:])[left], _squares(whole)[left]
+    system = _in_modes(whole, np.eye(m)[:, kept])
+    return Feedback(system, turning[np.ix_(kept, kept)], np.ones(kept.size), separate)
+
+
+def _in_modes(system: LTVSystem, modes: FloatArray) -> LTVSystem:
+    """The same in the coordinates whose unit vectors are the columns of ``modes`` (m, k), orthonormal."""
+    both = block_diag(modes, modes)
+    return replace(
+        system,
+        coordinates=tuple(f"mode_{j + 1}" for j in range(modes.shape[1])),
+        constant=both.T @ system.constant @ both,
+        torque_pinion=system.torque_pinion @ both,
+        torque_gear=system.torque_gear @ both,
+        deflection=system.deflection @ modes,
+        reduction=modes.T @ system.reduction,
+        gears=system.gears @ modes,
+        shafts=None,
+    )
+
+
+def _squares(system: LTVSystem) -> FloatArray:
+    """Squares of the natural frequencies (m,) with the mean stiffness of the mesh, without friction."""
+    v, m = system.deflection, system.deflection.size
+    return np.asarray(system.cycle.mean_stiffness * v**2 - np.diag(system.constant[m:, :m]))
+
+
+def _turn(system: LTVSystem, gyroscopic: FloatArray) -> FloatArray:
+    """Combinations (m, m) of modes of equal frequency of which few count.
+
+    The first of each group has all of its deflection, the second all of the gyroscopic moments of the first.
+    """
+    squares = _squares(system)
+    turn = np.eye(squares.size)
+    for group in np.split(
+        np.arange(squares.size), 1 + np.flatnonzero(np.diff(squares) > _EQUAL * squares[1:])
+    ):
+        own = np.ix_(group, group)
+        first = system.deflection[group]
+        leading = np.column_stack([first, gyroscopic[own] @ first, np.eye(group.size)])
+        leading /= np.maximum(np.linalg.norm(leading, axis=0), np.finfo(float).tiny)
+        turn[own] = np.linalg.qr(leading)[0]
+    return turn
+
+
+def importance(system: LTVSystem, gyroscopic: FloatArray) -> FloatArray:
+    """How much each mode (m,) of a pair on shafts counts in the motion of the mesh, whatever the speed.
+
+    That is the share that the mode has of the static deflection under a mesh force, and what damping and
+    gyroscopic moments give it of the others, each at the speed where the mesh frequency is that mode's.
+    """
+    v, squares, g = system.deflection, _squares(system), system.pair.geometry
+    share = v**2 / squares / (v**2 / squares).sum()
+    omega, m = np.sqrt(squares), squares.size
+    damping = system.constant[m:, m:] + g.omega_pinion * gyroscopic
+    coupling = omega * (np.abs(damping) + omega / system.pair.pinion.teeth * np.abs(gyroscopic))
+    apart = np.maximum(np.abs(squares[:, None] - squares), coupling + np.finfo(float).tiny)
+    ratio = coupling / apart
+    np.fill_diagonal(ratio, 0.0)
+    return np.asarray(share + np.square(ratio) @ share)
 
 
 def gear_block(
@@ -46,13 +175,15 @@ def gear_block(
     if friction_level is not None:
         friction_level = real_number("friction_level", friction_level, 0.0, 10.0)
     variation = GearVariation.of(source, supports)
-    feedback = feedback_system(variation)
-    system, m = feedback.system, feedback.system.deflection.size
-    per_load = system.reduction @ (system.structure.normal / system.structure.mass)
-    metric = 1.0 / np.abs(per_load) if variation.supports == "springs" else np.ones(m)
-    turning = system.pair.geometry.omega_pinion * feedback.gyroscopic
     levels = ([0.0] if friction_level is None else [0.0, friction_level]) if friction_apart else []
-    mesh = MeshGains(system, variation.stiffness_variation, levels, metric)
+    return fitted_block(feedback_system(variation), variation.stiffness_variation, rtol, levels)
+
+
+def fitted_block(feedback: Feedback, factor: float, rtol: float, levels: Sequence[float]) -> RankOneSystem:
+    """Feedback with its gains as polynomials; ``factor`` and ``levels`` as in `MeshGains`."""
+    system, metric, m = feedback.system, feedback.metric, feedback.metric.size
+    turning = system.pair.geometry.omega_pinion * feedback.gyroscopic
+    mesh = MeshGains(system, factor, levels, metric)
     phases, fitted, errors, at = fit_pieces(mesh, mesh.edges, metric, rtol=rtol)
     jumps = np.zeros((phases.size, mesh.jumps.shape[0]))
     jumps[at] = mesh.jumps.T
@@ -71,3 +202,268 @@ def gear_block(
         varied=tuple(parts[1:]),
         gyroscopic=system.period * turning if turning.any() else None,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Law:
+    """A law of one tooth pair on the segments of the cycle, for every pair that may touch.
+
+    Attributes
+    ----------
+    coefficients : (d+1, pairs, S) highest power first, of the position since ``start``; zero out of contact
+    start : (pairs, S) positions [m]
+    size, slope : (pairs, S) bounds on |law| and on its derivative there
+    near : (pairs, S+1) bound on |law| on both sides of each edge of the segments
+    """
+
+    coefficients: FloatArray
+    start: FloatArray
+    size: FloatArray
+    slope: FloatArray
+    near: FloatArray
+
+    @classmethod
+    def of(cls, law: PathFunction, middle: FloatArray, touch: npt.NDArray[np.bool_], pitch: float) -> _Law:
+        used = np.flatnonzero(np.abs(law.coefficients).max(axis=1))
+        rows = law.coefficients[used[0] if used.size else -1 :]
+        width = np.diff(law.breaks)
+        powers = np.arange(rows.shape[0])[::-1]
+        # A little beyond both ends, where rounding of the position may lead.
+        reach = width * (1.0 + 1e-9) + _PLACE * law.breaks[-1]
+        terms = np.abs(rows) * reach ** powers[:, None]
+        whole = terms.sum(axis=0)
+        slope = (terms * powers[:, None]).sum(axis=0) / reach
+        piece = np.clip(np.searchsorted(law.breaks, middle, side="right") - 1, 0, width.size - 1)
+        inside = touch & (middle >= law.breaks[0]) & (middle <= law.breaks[-1])
+        size = np.where(inside, whole[piece], 0.0)
+        near = np.maximum(np.pad(size, ((0, 0), (1, 0))), np.pad(size, ((0, 0), (0, 1))))
+        near[:, [0, -1]] = near[:, [0, -1]].max()
+        # Where rounding has made one of several breaks, the pieces between them have no segment of their own.
+        near = np.maximum(near, whole[width < _MERGED * pitch].max(initial=0.0))
+        return cls(
+            np.where(inside, rows[:, piece], 0.0),
+            law.breaks[piece],
+            size,
+            np.where(inside, slope[piece], 0.0),
+            near,
+        )
+
+    @property
+    def degree(self) -> int:
+        return int(self.coefficients.shape[0]) - 1
+
+    def __call__(self, xi: FloatArray, pair: int, segment: npt.NDArray[np.intp]) -> FloatArray:
+        """Values at positions xi (k, s) that lie in these segments (k,)."""
+        x = xi - self.start[pair, segment][:, None]
+        rows = self.coefficients[:, pair, segment]
+        value = np.broadcast_to(rows[0][:, None], x.shape)
+        for row in rows[1:]:
+            value = value * x + row[:, None]
+        return np.asarray(value)
+
+
+class MeshGains:
+    """Gains on the coordinates of a "mesh" form as `fit_pieces` asks for them.
+
+    In this order: feedback of deflection and of its rate by normal loads (with their friction, unless it is
+    apart), the same by each part of friction. The parts of friction are mu less the sum of the ``levels``,
+    and each level but the first, which is zero.
+
+    Parameters
+    ----------
+    system : the feedback form of the gear pair
+    factor : on the variation of the total stiffness about its mean
+    levels : of friction apart; empty where friction goes with the normal loads
+    metric : (m,) of the norm of errors
+
+    Attributes
+    ----------
+    edges : (S+1,) ends of the segments as parts of the period
+    parts : 1 + number of levels
+    count : see `PolynomialGains`
+    """
+
+    def __init__(self, system: LTVSystem, factor: float, levels: Sequence[float], metric: FloatArray) -> None:
+        cycle, g = system.cycle, system.cycle.geometry
+        self.normal, self.arm = system.per_load[0], system.per_load[1:]
+        self.metric = metric
+        self.levels, self.parts = levels, 1 + len(levels)
+        self.factor, self.mean = factor, cycle.mean_stiffness
+        self.pitch, self.offsets = g.base_pitch, cycle.offsets
+        self.edges = cycle.breaks / cycle.period
+        middle = cycle.offsets[:, None] + g.base_pitch * 0.5 * (self.edges[:-1] + self.edges[1:])
+        self.touch = (middle >= cycle.start) & (middle <= cycle.end)
+        self.side = np.sign(middle - g.L_XP)
+        e = cycle.elements
+        self.k, self.c, self.mu = (
+            _Law.of(law, middle, self.touch, g.base_pitch) for law in (e.stiffness, e.damping, e.friction)
+        )
+        self.place = _PLACE * (cycle.end + g.base_pitch)
+        self.varied = factor != 1.0
+        degree = max(self.k.degree, self.c.degree) + self.mu.degree + 1
+        self.count = 1 + degree + (_FACTOR_DEGREE if self.varied else 0)
+        # The mean is a sum over the pieces of the law, each to the moduli of its terms.
+        rows, width = np.abs(e.stiffness.coefficients), np.diff(e.stiffness.breaks)
+        moduli = (rows * width ** np.arange(rows.shape[0], 0, -1)[:, None]).sum() / g.base_pitch
+        self.mean_error = (width.size + 60.0) * _U * float(moduli)
+        self.slips = _slips(cycle.break_phases, self.edges, 8.0 * _U * (1.0 + g.contact_ratio))
+
+    def __call__(
+        self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """See `PolynomialGains`."""
+        phases = centre[:, None] + half[:, None] * nodes
+        groups = np.zeros((2 * self.parts, *phases.shape, self.normal.size))
+        errors = np.zeros((groups.shape[0], centre.size))
+        factors, fixed = [np.ones_like(phases)] * 2, self._fixed[0][:, segment]
+        if self.varied:
+            factors, off, most = self._factors(centre, half, segment, nodes)
+            fixed = fixed * most
+            for j, law in enumerate((self.k, self.c)):
+                for p in range(self.parts):
+                    reach = self._reach(law.size, self.mu.size, p)[:, segment].sum(axis=0)
+                    errors[2 * p + j] = off[j] * reach
+        for i in range(self.offsets.size):
+            if not self.touch[i, segment].any():
+                continue
+            xi = self.offsets[i] + self.pitch * phases
+            mu, arm = self.mu(xi, i, segment)[..., None], self.arm[0] + xi[..., None] * self.arm[1]
+            sign = self.side[i, segment][:, None, None]
+            rows = [np.broadcast_to(self.normal, (*xi.shape, self.normal.size))]
+            if self.levels:
+                rows += [(mu - sum(self.levels) * sign) * arm, *(s * sign * arm for s in self.levels[1:])]
+            else:
+                rows[0] = rows[0] + mu * arm
+            for j, law in enumerate((self.k, self.c)):
+                load = law(xi, i, segment) * factors[j]
+                for p, row in enumerate(rows):
+                    groups[2 * p + j] -= load[..., None] * row
+        return groups, errors, fixed
+
+    def _row(self, part: int) -> tuple[float, float, float, float]:
+        """Bounds on a row: constant, per unit of |mu|, of levels, and per unit of position and |mu|."""
+        root = np.sqrt(self.metric)
+        normal = float(np.linalg.norm(self.normal * root))
+        arms = [float(np.linalg.norm(a * root)) for a in self.arm]
+        arm = arms[0] + arms[1] * float(self.offsets[0] + self.pitch)
+        if not self.levels:
+            return normal, arm, 0.0, arms[1]
+        if part == 0:
+            return normal, 0.0, 0.0, 0.0
+        return (
+            (0.0, arm, sum(self.levels), arms[1]) if part == 1 else (0.0, 0.0, self.levels[part - 1], arms[1])
+        )
+
+    def _reach(self, size: FloatArray, mu: FloatArray, part: int) -> FloatArray:
+        """Bound on the norm of what one pair adds to a gain, from bounds on its load and on |mu|."""
+        normal, arm, level, _ = self._row(part)
+        full = self._row(1)[1] if self.levels and part else arm
+        return np.asarray(size * (normal + arm * mu + full * level), dtype=float)
+
+    @property
+    def jumps(self) -> FloatArray:
+        """Bounds (G, S+1) on the integral over the phase of the errors next to each edge, on either side.
+
+        Where the edge is off by rounding, the gain is for so long that of the other side.
+        """
+        return self._fixed[1]
+
+    @cached_property
+    def _fixed(self) -> tuple[FloatArray, FloatArray]:
+        """Bounds (G, S) by rounding of values and of positions, and ``jumps``."""
+        errors = np.zeros((2 * self.parts, self.edges.size - 1))
+        jumps = np.zeros((2 * self.parts, self.edges.size))
+        for j, law in enumerate((self.k, self.c)):
+            for p in range(self.parts):
+                _, arm, _, tilt = self._row(p)
+                reach = self._reach(law.size, self.mu.size, p)
+                moved = self._reach(law.slope, self.mu.size, p) + law.size * (
+                    arm * self.mu.slope + tilt * (self.mu.size + sum(self.levels))
+                )
+                errors[2 * p + j] = (_ROUNDINGS * reach + self.place * moved).sum(axis=0)
+                near = self._reach(law.near, self.mu.near, p).sum(axis=0)
+                jumps[2 * p + j] = 2.0 * self.slips * self._largest_factor * near
+        return errors, jumps
+
+    @cached_property
+    def _largest_factor(self) -> FloatArray:
+        """Bound (S+1,) on 1, f and sqrt f of ``_factors`` on both sides of each edge."""
+        if not self.varied:
+            return np.ones(self.edges.size)
+        low, high = self.edges[:-1], self.edges[1:]
+        total, target = self._total(
+            0.5 * (low + high), 0.5 * (high - low), np.arange(low.size), np.array([-1.0, 1.0])
+        )
+        with np.errstate(divide="ignore"):
+            f = np.maximum(1.01 * np.abs(target) / total, 1.0)
+        f[~(total > 0.0)] = np.inf
+        both = np.maximum(np.append(f[:, 0], f[-1, 1]), np.insert(f[:, 1], 0, f[0, 0]))
+        both[[0, -1]] = both[[0, -1]].max()
+        return np.asarray(both)
+
+    def _factors(
+        self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
+    ) -> tuple[list[FloatArray], list[FloatArray], FloatArray]:
+        """The factor f = (mean + factor (k - mean))/k on all stiffnesses and its root, by polynomials.
+
+        f ~ q and sqrt f ~ s of degree 8 at the nodes, and bounds (k,) on the errors everywhere in the piece,
+        which follow from polynomials: |q - f| = |q k - mean - factor (k - mean)|/k and |s - sqrt f| =
+        |s^2 - f|/(s + sqrt f), each residual bounded by the sum of its Chebyshev coefficients. The third
+        result (k,) bounds 1, q and s.
+        """
+        low, into = to_series(_FACTOR_DEGREE + 1)
+        high, onto = to_series(2 * _FACTOR_DEGREE + 1 + self.k.degree)
+        total, target = self._total(centre, half, segment, low)
+        f = target / total
+        if not (np.isfinite(f).all() and (f > 0.0).all()):
+            bad = centre[~(np.isfinite(f) & (f > 0.0)).all(axis=1)][0]
+            raise NumericalError(f"the varied stiffness is not positive near {bad:g} of the period.")
+        q, s = f @ into.T, np.sqrt(f) @ into.T
+        vander = np.polynomial.chebyshev.chebvander
+        total, target = self._total(centre, half, segment, high)
+        q_high, s_high = q @ vander(high, _FACTOR_DEGREE).T, s @ vander(high, _FACTOR_DEGREE).T
+        slack = series_rounding(high.size) + 4.0 * _FACTOR_DEGREE**2 * _ROUNDINGS
+
+        def sup(values: FloatArray, scale: FloatArray) -> FloatArray:
+            return np.asarray(np.abs(values @ onto.T).sum(axis=1) + slack * scale)
+
+        def least(values: FloatArray) -> FloatArray:
+            series = values @ onto.T
+            return np.asarray(
+                series[:, 0] - np.abs(series[:, 1:]).sum(axis=1) - slack * np.abs(values).max(axis=1)
+            )
+
+        most = np.abs(q).sum(axis=1)
+        size = most * total.max(axis=1) + np.abs(target).max(axis=1)
+        # By how much the total is wrong, rounding of its positions included, and what that does.
+        wrong = (_ROUNDINGS * self.k.size + self.place * self.k.slope).sum(axis=0)[segment]
+        made = (most + abs(self.factor)) * wrong + abs(1.0 - self.factor) * self.mean_error
+        with np.errstate(divide="ignore", invalid="ignore"):
+            floor = least(total) - wrong
+            off = np.where(floor > 0.0, (sup(q_high * total - target, size) + made) / floor, np.inf)
+            floor = least(s_high)
+            gap = sup(s_high**2 - q_high, np.abs(s).sum(axis=1) ** 2 + most) + off
+            off_root = np.where(floor > 0.0, gap / floor, np.inf)
+        off_root[~np.isfinite(off)] = np.inf
+        at = vander(nodes, _FACTOR_DEGREE)
+        return [q @ at.T, s @ at.T], [off, off_root], np.maximum(most, np.abs(s).sum(axis=1)) + 1.0
+
+    def _total(
+        self, centre: FloatArray, half: FloatArray, segment: npt.NDArray[np.intp], nodes: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Total stiffness k at the nodes of each piece, and mean + factor (k - mean)."""
+        phases = centre[:, None] + half[:, None] * nodes
+        total = np.zeros_like(phases)
+        for i, offset in enumerate(self.offsets):
+            total += self.k(offset + self.pitch * phases, i, segment)
+        return total, self.mean + self.factor * (total - self.mean)
+
+
+def _slips(raw: FloatArray, edges: FloatArray, rounding: float) -> FloatArray:
+    """How far (S+1,) each edge may be from the breaks that it stands for, in parts of the period."""
+    raw = np.concatenate([raw, raw[raw < 1e-6] + 1.0, raw[raw > 1.0 - 1e-6] - 1.0])
+    after = np.clip(np.searchsorted(edges, raw), 1, edges.size - 1)
+    nearest = np.where(raw - edges[after - 1] < edges[after] - raw, after - 1, after)
+    slips = np.zeros(edges.size)
+    np.maximum.at(slips, nearest, np.abs(raw - edges[nearest]))
+    return slips + rounding

@@ -1,4 +1,4 @@
-"""Multipliers of a gear pair: the 6 states that feed back, the off-line-of-action block in closed form.
+"""Multipliers of a gear pair: the states that feed back, and what moves by itself in closed form.
 
 Sources: docs/theory/floquet.md, "Structure".
 """
@@ -16,8 +16,7 @@ from floquet.engine.multipliers import Spectrum
 from floquet.engine.propagators.one_step import Propagator
 from floquet.engine.system import PeriodicSystem
 from floquet.gear.axes import GearVariation
-from floquet.gear.block import gear_block
-from floquet.gear.feedback import feedback_system, separate_modes
+from floquet.gear.block import Feedback, feedback_system, fitted_block
 from floquet.rank_one.batch import fast_multipliers
 from lumped.arguments import one_of, real_number
 from lumped.model.periodic_system import Form, LTVSystem, Supports, periodic_system
@@ -77,8 +76,7 @@ def gear_pair_system(
     if form == "mesh":
         system = feedback_system(variation).system
     else:
-        pair, supports = variation.pair, variation.supports
-        system = periodic_system(pair, form, cycle=variation.cycle(), supports=supports)
+        system = periodic_system(variation.pair, form, cycle=variation.cycle(), supports=variation.supports)
     coefficients = _Coefficients(system, variation.stiffness_variation)
     return PeriodicSystem(coefficients, system.period, tuple(system.breakpoints), vectorized=True)
 
@@ -101,8 +99,7 @@ class _Coefficients:
         gain = system.gain(times, segment)
         stiffness, damping = gain.stiffness, gain.damping
         if self.factor != 1.0:
-            total = system.cycle.sample(times, segment).stiffness.sum(axis=0)
-            mean = system.cycle.mean_stiffness
+            total, mean = gain.pairs.stiffness.sum(axis=0), system.cycle.mean_stiffness
             f = ((mean + self.factor * (total - mean)) / total)[:, None]
             stiffness, damping = f * stiffness, np.sqrt(f) * damping
         m = len(system.coordinates)
@@ -129,9 +126,9 @@ class OffLineOfAction:
     errors: FloatArray
 
     @classmethod
-    def of(cls, variation: GearVariation) -> OffLineOfAction:
-        """Of a gear pair."""
-        decay, square = separate_modes(variation)
+    def of(cls, feedback: Feedback) -> OffLineOfAction:
+        """Of what the mesh does not couple."""
+        decay, square = feedback.separate
         r = decay**2 - square
         root = np.sqrt(r.astype(complex))
         # Twelve units of rounding: those of m, c and K, of d^2, of K/m and of the difference.
@@ -183,12 +180,13 @@ def gear_pair_multipliers(
     """
     variation = GearVariation.of(source, supports)
     rtol = real_number("rtol", rtol, 1e-13, 0.1)
+    feedback = feedback_system(variation)
     own: Spectrum
     if isinstance(method, str) and method == "taylor":
-        own = _proven(variation, rtol)
+        own = _proven(feedback, variation.stiffness_variation, rtol)
     else:
         own = monodromy(gear_pair_system(variation, "mesh"), rtol, method=method)
-    (oloa,), (oloa_errors,) = OffLineOfAction.of(variation).multipliers(np.array([own.period]))
+    (oloa,), (oloa_errors,) = OffLineOfAction.of(feedback).multipliers(np.array([own.period]))
     values = np.concatenate([own.multipliers, oloa])
     errors = np.concatenate([own.multiplier_errors, oloa_errors])
     order = np.argsort(-np.abs(values), kind="stable")
@@ -204,9 +202,9 @@ def gear_pair_multipliers(
     )
 
 
-def _proven(variation: GearVariation, rtol: float) -> Spectrum:
+def _proven(feedback: Feedback, factor: float, rtol: float) -> Spectrum:
     """Multipliers of the feedback block by the compiled kernel."""
-    block = gear_block(variation, rtol=max(0.01 * rtol, 1e-13))
+    block = fitted_block(feedback, factor, max(0.01 * rtol, 1e-13), [])
     found = fast_multipliers(block, tolerance=max(1e-4 * rtol, 1e-14))
     order = np.argsort(-np.abs(found.multipliers[0]), kind="stable")
     return Spectrum(

@@ -8,7 +8,7 @@ import pytest
 import lumped
 from floquet import gear_block, gear_pair_multipliers, scan, stability_boundaries, stability_chart
 from floquet.gear.axes import GearVariation, vary
-from floquet.gear.feedback import MODES, separate_modes
+from floquet.gear.block import MODES, feedback_system
 from lumped.errors import ParameterError
 from lumped.schema.pair import GearPair
 
@@ -63,7 +63,7 @@ def test_modes_left_out_hardly_count(slender: GearPair) -> None:
     assert found.certificate == "proven"
     assert found.feedback.size == 2 * MODES
     assert abs(found.spectral_radius - everything.spectral_radius) < 1e-4
-    decay, squares = separate_modes(GearVariation.of(slender, "shafts"))
+    decay, squares = feedback_system(GearVariation.of(slender, "shafts")).separate
     assert decay.size > MODES
     # What the shafts' damping ratio says, apart from what the mesh does to a mode.
     assert decay / np.sqrt(squares) == pytest.approx(np.full(decay.size, 0.01), rel=2e-2)

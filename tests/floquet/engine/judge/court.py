@@ -27,7 +27,8 @@ from floquet import (
     gear_pair_multipliers,
     stability_chart,
 )
-from floquet.gear.axes import operating_rpm, vary
+from floquet.gear.axes import GearVariation, operating_rpm, vary
+from floquet.gear.block import feedback_system
 from floquet.gear.multipliers import OffLineOfAction
 from lumped import GearPair
 from lumped.errors import LawRangeWarning, NumericalError, ParameterError
@@ -196,7 +197,9 @@ def _bearings(rng: np.random.Generator) -> list[Finding]:
         root = acb(decay * decay - ball(stiffness) / ball(mass)).sqrt()
         truth += [((sign * root - decay) * ball(pair.geometry.mesh_period)).exp() for sign in (1, -1)]
     disks = [(complex(x.mid()), float((x - acb(complex(x.mid()))).abs_upper())) for x in truth]
-    values, errors = OffLineOfAction.of(system).multipliers(np.array([system.period]))
+    values, errors = OffLineOfAction.of(feedback_system(GearVariation(pair))).multipliers(
+        np.array([system.period])
+    )
     return [finding("bearings", "closed form", values[0], errors[0], disks, "proven")]
 
 
