@@ -2,20 +2,20 @@
 
 from lumped.errors import FieldProblem, LawRangeWarning, NumericalError, ParameterError, SpurcheckError
 from lumped.gear_geometry.geometry import Geometry
-from lumped.model.bodies import Bodies, bodies
-from lumped.model.condensation import condensed_bearings
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
-from lumped.model.mesh_elements import MeshElements, mesh_elements
 from lumped.model.periodic_system import LTVSystem, periodic_system
-from lumped.model.shaft_modes import shaft_modes
 from lumped.model.solution import simulate, steady_state
 from lumped.model.sweep import speed_sweep
 from lumped.path_function import PathFunction
 from lumped.path_of_contact.plane_compliance import plane_compliance
 from lumped.path_of_contact.stiffness import mesh_stiffness, stiffness_components
 from lumped.quasi_static import optimal_relief, static_transmission_error
+from lumped.quasi_static.contacts import mesh_elements
+from lumped.quasi_static.elements import MeshElements
+from lumped.schema.bodies import Bodies, bodies
 from lumped.schema.files import geometry, json_schema, load_gear_pair, preset_names
 from lumped.schema.pair import GearPair
+from lumped.shafts.equivalents import condensed_bearings, shaft_modes
 
 __all__ = [
     "Bodies",

@@ -1,9 +1,13 @@
-"""Datasets whose variables all carry a unit and a plain name."""
+"""Datasets whose variables all carry a unit and a plain name, and attributes that say what made them."""
 
 from __future__ import annotations
 
+import hashlib
+import platform
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from functools import cache
+from importlib import metadata
+from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -12,6 +16,17 @@ if TYPE_CHECKING:
 Variable = tuple[str | tuple[str, ...], Any, str, str]
 #: Values along the dimension of the coordinate's own name, unit, plain name.
 Coordinate = tuple[Any, str, str]
+
+
+class Described(Protocol):
+    """A gear pair, as far as provenance reads it."""
+
+    @property
+    def name(self) -> str:
+        """Short name."""
+
+    def to_toml(self) -> str:
+        """All parameters."""
 
 
 def labelled_dataset(
@@ -33,3 +48,31 @@ def labelled_dataset(
         },
         attrs=dict(attributes or {}),
     )
+
+
+def provenance(pair: Described, **settings: Any) -> dict[str, Any]:
+    """Attributes that say what a result was made from: parameters, hash, versions, settings."""
+    text = pair.to_toml()
+    return {
+        "gear_pair": pair.name,
+        "parameters": text,
+        "parameters_sha256": _sha256(text),
+        "versions": _versions(),
+        "settings": ", ".join(f"{key}={value}" for key, value in sorted(settings.items())),
+    }
+
+
+@cache
+def _versions() -> str:
+    names = ("spurcheck", "numpy", "scipy", "exudyn")
+    versions = [f"{name} {metadata.version(name)}" for name in names]
+    return ", ".join([f"python {platform.python_version()}", *versions])
+
+
+def parameters_hash(pair: Described) -> str:
+    """SHA-256 of the pair's TOML text: the same parameters give the same hash everywhere."""
+    return _sha256(pair.to_toml())
+
+
+def _sha256(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()

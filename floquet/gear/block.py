@@ -67,12 +67,11 @@ class Feedback:
 def feedback_system(variation: GearVariation) -> Feedback:
     """Return what the mesh couples of a gear pair."""
     system = periodic_system(variation.pair, "mesh", cycle=variation.cycle(), supports=variation.supports)
-    if system.shafts is not None:
-        # The first coordinate of the shafts is the common rotation, which no tooth feels.
-        return _leading_modes(system, system.shafts.gyroscopic[1:, 1:])
-    m, s = system.deflection.size, system.structure
+    if variation.supports == "shafts":
+        return _leading_modes(system, system.gyroscopic)
+    s = system.structure
     separate = s.damping[4:] / (2.0 * s.mass[4:]), s.stiffness[4:] / s.mass[4:]
-    return Feedback(system, np.zeros((m, m)), 1.0 / np.abs(system.per_load[0]), separate)
+    return Feedback(system, system.gyroscopic, 1.0 / np.abs(system.per_load[0]), separate)
 
 
 def _leading_modes(system: LTVSystem, gyroscopic: FloatArray) -> Feedback:
@@ -101,7 +100,7 @@ def _in_modes(system: LTVSystem, modes: FloatArray) -> LTVSystem:
         deflection=system.deflection @ modes,
         reduction=modes.T @ system.reduction,
         gears=system.gears @ modes,
-        shafts=None,
+        gyroscopic=modes.T @ system.gyroscopic @ modes,
     )
 
 

@@ -19,7 +19,8 @@ from floquet.gear.axes import GearVariation
 from floquet.gear.block import Feedback, feedback_system, fitted_block
 from floquet.rank_one.batch import fast_multipliers
 from lumped.arguments import one_of, real_number
-from lumped.model.periodic_system import Form, LTVSystem, Supports, periodic_system
+from lumped.model.periodic_system import LTVSystem, Supports, periodic_system
+from lumped.model.supports import Form
 from lumped.schema.files import AnyPair
 from lumped.typing import ComplexArray, FloatArray
 

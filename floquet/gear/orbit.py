@@ -20,13 +20,14 @@ from floquet.orbits.system import Run
 from lumped.arguments import real_array, whole_number
 from lumped.errors import NumericalError, refuse
 from lumped.labelling import Variable
-from lumped.model.bodies import bodies
 from lumped.model.equations import COORDINATES
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
-from lumped.model.mesh_elements import MeshElements, mesh_elements
 from lumped.model.periodic_system import periodic_system
 from lumped.model.results import labelled, response
 from lumped.model.steady import periodic_solution
+from lumped.quasi_static.contacts import mesh_elements
+from lumped.quasi_static.elements import MeshElements
+from lumped.schema.bodies import bodies
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import ComplexArray, FloatArray

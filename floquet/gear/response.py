@@ -31,7 +31,7 @@ from floquet.orbits.long_run import Settled, long_run
 from floquet.orbits.response import Branch, Member, Response, find_response
 from lumped.arguments import whole_number
 from lumped.labelling import Variable, labelled_dataset
-from lumped.model.mesh_elements import mesh_elements
+from lumped.quasi_static.contacts import mesh_elements
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import Progress

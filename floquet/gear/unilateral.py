@@ -17,13 +17,13 @@ from floquet.gear.friction_over_speed import FrictionFamily, depends_on_speed, f
 from floquet.orbits.branch import Family
 from floquet.orbits.system import Contact, ContactSystem
 from lumped.gear_geometry.tooth_profile import tooth_half_angle
-from lumped.model.bodies import bodies
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
-from lumped.model.mesh_elements import mesh_elements
 from lumped.model.periodic_system import periodic_system
 from lumped.path_function import PathFunction, shifted
 from lumped.path_of_contact import friction_path_function
+from lumped.quasi_static.contacts import mesh_elements
 from lumped.quasi_static.tooth_error import error_function
+from lumped.schema.bodies import bodies
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray

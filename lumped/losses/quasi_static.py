@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lumped.gear_geometry.geometry import Geometry
+from lumped.labelling import provenance
 from lumped.losses.cycle import CyclePositions, quadrature, samples
 from lumped.losses.loss_factor import mean_loss_factor, sliding_velocity
 from lumped.losses.sharing import Sharing, Springs, springs
-from lumped.model.results import labelled, provenance
+from lumped.model.results import labelled
 from lumped.model.steady import sample_times
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function

@@ -12,10 +12,10 @@ import numpy as np
 
 from lumped.arguments import one_of
 from lumped.losses.cycle import CyclePositions
-from lumped.model.mesh_elements import mesh_elements
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import pair_stiffness
-from lumped.quasi_static.loaded_mesh import loaded_mesh
+from lumped.quasi_static.contacts import mesh_elements
+from lumped.quasi_static.prescribed import loaded_mesh
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:

@@ -10,7 +10,8 @@ import numpy as np
 
 from lumped.arguments import one_of
 from lumped.errors import NumericalError
-from lumped.model.periodic_system import Form, LTVSystem, periodic_system
+from lumped.model.periodic_system import LTVSystem, periodic_system
+from lumped.model.supports import Form
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 

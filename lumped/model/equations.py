@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumped.arguments import some_of
-from lumped.model.bodies import bodies
+from lumped.schema.bodies import bodies
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 

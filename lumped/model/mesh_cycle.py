@@ -14,7 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.gear_geometry.geometry import Geometry
 from lumped.model.kernels import laws_at
-from lumped.model.mesh_elements import MeshElements, mesh_elements
+from lumped.quasi_static.contacts import mesh_elements
+from lumped.quasi_static.elements import MeshElements, mean_of_pairs
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import BoolArray, FloatArray
 
@@ -67,7 +68,7 @@ class MeshCycle:
     @property
     def mean_stiffness(self) -> float:
         """Mean over the mesh cycle of the stiffness of all pairs [N/m]."""
-        return self.elements.stiffness.mean() * (self.end - self.start) / self.geometry.base_pitch
+        return mean_of_pairs(self.elements.stiffness, self.geometry.base_pitch)
 
     @property
     def start(self) -> float:

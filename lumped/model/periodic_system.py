@@ -14,14 +14,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import one_of
-from lumped.model.equations import COORDINATES, Structure, structure
+from lumped.model.equations import Structure, structure
 from lumped.model.mesh_cycle import MeshCycle, PairState, mesh_cycle
-from lumped.model.shafted import ShaftedPair, shafted_pair
+from lumped.model.supports import SUPPORTS, Form
+from lumped.model.supports import Supports as _Supports
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
-Form = Literal["full", "elastic", "mesh"]
 #: What holds the gears: springs of their own, or the elastic shafts of the parameter file in their bearings.
 Supports = Literal["springs", "shafts"]
 
@@ -66,7 +66,8 @@ class LTVSystem:
         shafts it also makes z of the six coordinates
     structure : constant data of the equations of motion without shafts
     gears : (6, m) rows that make the six coordinates of z, up to the common rotation
-    shafts : the modal data, where the supports are shafts
+    gyroscopic : (m, m) gyroscopic moments over the speed of the pinion, part of ``constant``
+    held : what holds the gears, in the coordinates of "full"
     """
 
     pair: GearPair
@@ -80,18 +81,12 @@ class LTVSystem:
     reduction: FloatArray
     structure: Structure
     gears: FloatArray
-    shafts: ShaftedPair | None = None
-
-    @property
-    def supports(self) -> Supports:
-        """What holds the gears."""
-        return "springs" if self.shafts is None else "shafts"
+    gyroscopic: FloatArray
+    held: _Supports
 
     def gear_motion(self, states: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The six coordinates and their rates, (k, 6) each, of states (k, 2m); see ``gears``."""
         m = len(self.coordinates)
-        if self.form == "full" and self.shafts is None:
-            return states[:, :m], states[:, m:]
         return states[:, :m] @ self.gears.T, states[:, m:] @ self.gears.T
 
     @property
@@ -191,70 +186,24 @@ def periodic_system(
     one_of("form", form, get_args(Form))
     one_of("supports", supports, get_args(Supports))
     s = structure(pair, as_printed)
-    if supports == "shafts":
-        return _on_shafts(pair, form, s, cycle or mesh_cycle(pair))
-    g = pair.geometry
-    if form == "full":
-        names: tuple[str, ...] = COORDINATES
-        reduction = np.eye(6)
-    else:
-        size = 5 if form == "elastic" else 3
-        names = ("q", "x_p", "x_g", "y_p", "y_g")[:size]
-        reduction = np.zeros((size, 6))
-        reduction[0, :2] = g.base_radius_pinion, -g.base_radius_gear
-        reduction[1:, 2 : size + 1] = np.eye(size - 1)
-    m = len(names)
-    constant = np.zeros((2 * m, 2 * m))
+    held = SUPPORTS[supports](pair, s)
+    z = held.coordinates(form)
+    m = len(z.names)
+    constant, torques = np.zeros((2 * m, 2 * m)), np.zeros((2, 2 * m))
     constant[:m, m:] = np.eye(m)
-    # Bearings act on translations, which every form keeps as coordinates of their own.
-    lift = np.asarray(np.linalg.pinv(reduction), dtype=np.float64)
-    constant[m:, :m] = -reduction @ np.diag(s.stiffness / s.mass) @ lift
-    constant[m:, m:] = -reduction @ np.diag(s.damping / s.mass) @ lift
-    torque = np.zeros((2, 2 * m))
-    torque[0, m:] = reduction[:, 0] / s.mass[0]
-    torque[1, m:] = -reduction[:, 1] / s.mass[1]
-    deflection = np.array([1.0, 1.0, -1.0, 0.0, 0.0])[:m] if form != "full" else s.deflection
+    constant[m:, :m], constant[m:, m:], torques[:, m:] = -z.stiffness, -z.damping, z.torques
     return LTVSystem(
         pair=pair,
         form=form,
-        coordinates=names,
+        coordinates=z.names,
         cycle=cycle or mesh_cycle(pair),
         constant=constant,
-        torque_pinion=torque[0],
-        torque_gear=torque[1],
-        deflection=deflection,
-        reduction=reduction,
+        torque_pinion=torques[0],
+        torque_gear=torques[1],
+        deflection=z.deflection,
+        reduction=z.reduction,
         structure=s,
-        gears=lift,
-    )
-
-
-def _on_shafts(pair: GearPair, form: Form, s: Structure, cycle: MeshCycle) -> LTVSystem:
-    shafted = shafted_pair(pair)
-    kept = slice(0 if form == "full" else 1, None)
-    names, gears = shafted.names[kept], shafted.gears[:, kept]
-    m = len(names)
-    constant = np.zeros((2 * m, 2 * m))
-    constant[:m, m:] = np.eye(m)
-    constant[m:, :m] = -np.diag(shafted.frequencies[kept] ** 2)
-    damping = shafted.damping + pair.geometry.omega_pinion * shafted.gyroscopic
-    constant[m:, m:] = -damping[kept, kept]
-    deflection = s.deflection @ gears
-    if form == "full":
-        deflection[0] = 0.0  # but for rounding
-    torque = np.zeros((2, 2 * m))
-    torque[:, m:] = shafted.torque_pinion[kept], shafted.torque_gear[kept]
-    return LTVSystem(
-        pair=pair,
-        form=form,
-        coordinates=names,
-        cycle=cycle,
-        constant=constant,
-        torque_pinion=torque[0],
-        torque_gear=torque[1],
-        deflection=deflection,
-        reduction=gears.T * s.mass,  # modal masses are 1
-        structure=s,
-        gears=gears,
-        shafts=shafted,
+        gears=z.gears,
+        gyroscopic=z.gyroscopic,
+        held=held,
     )

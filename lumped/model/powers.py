@@ -18,6 +18,7 @@ from numpy.polynomial.legendre import leggauss
 from numpy.polynomial.polynomial import polyder, polyval
 
 from lumped.model.steady import PeriodicSolution
+from lumped.quasi_static.contacts import contact_of
 from lumped.typing import FloatArray, IntArray
 
 #: Gauss nodes and weights in an interval from 0 to 1.
@@ -93,19 +94,15 @@ def balance(solution: PeriodicSolution, *, paid: bool | None = None) -> dict[str
 
 def pays(solution: PeriodicSolution) -> bool:
     """Whether the contact has an energy, so that the brake pays for every loss."""
-    return solution.system.pair.mesh.contact == "loaded"
+    return contact_of(solution.system.pair).conservative
 
 
 def power_attributes(solution: PeriodicSolution) -> dict[str, float]:
     """Mean losses by place, and what of them nobody pays [W], as attributes of a result."""
     powers = mean_powers(solution)
-    found = {
-        "power_sliding": powers.sliding,
-        "power_tooth_dampers": powers.tooth_dampers,
-        "power_bearings": powers.bearings,
-        "power_unpaid": 0.0 if pays(solution) else powers.unpaid,
-    }
-    return found if solution.system.shafts is None else found | {"power_shafts": powers.shafts}
+    places = ("sliding", "tooth_dampers", *solution.system.held.places)
+    found: dict[str, float] = {f"power_{place}": getattr(powers, place) for place in places}
+    return found | {"power_unpaid": 0.0 if pays(solution) else powers.unpaid}
 
 
 @lru_cache(maxsize=4)
@@ -171,16 +168,12 @@ def _powers(solution: PeriodicSolution, times: FloatArray, states: FloatArray) -
     values = response(system, times, states)
     pairs, rates = system.cycle.sample(times), states[:, len(system.coordinates) :]
     closing = values["dte_dot"] - pairs.error_rate
-    shafts = system.shafts
-    if shafts is None:
-        supports = rates**2 @ system.structure.damping, np.zeros(times.size)
-    else:
-        inside = shafts.modal_damping + shafts.coupling_damping
-        supports = tuple(np.sum((rates @ c) * rates, axis=1) for c in (shafts.bearing_damping, inside))
+    supports = system.held.powers(rates)
     return np.stack(
         [
             -values["friction_power"].sum(axis=0),
             (pairs.damping * closing**2).sum(axis=0),
-            *supports,
+            supports["bearings"],
+            supports.get("shafts", np.zeros(times.size)),
         ]
     )

@@ -10,9 +10,9 @@ import numpy as np
 
 from lumped.errors import NumericalError
 from lumped.gauss_legendre import gauss_tableau
+from lumped.model.kernels import chained, free_steps, gauss_steps, states_along
 from lumped.model.mesh_cycle import among
 from lumped.model.periodic_system import LTVSystem
-from lumped.model.step_kernels import chained, free_steps, gauss_steps, states_along
 from lumped.typing import FloatArray, IntArray
 
 #: Largest angle per step of the fastest frequency [rad]. With 4 stages (order 8) the local error constant is

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import hashlib
-import platform
 from collections.abc import Mapping
-from functools import cache
-from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,8 +10,7 @@ import numpy as np
 from lumped.labelling import Variable, labelled_dataset
 from lumped.model.equations import COORDINATES
 from lumped.model.periodic_system import LTVSystem
-from lumped.model.shafted import ShaftedPair
-from lumped.schema.pair import GearPair
+from lumped.quasi_static.contacts import CONTACTS
 from lumped.typing import BoolArray, FloatArray
 
 if TYPE_CHECKING:
@@ -51,34 +46,6 @@ VARIABLES: dict[str, tuple[tuple[str, ...], str, str]] = {
     "bearing_force_y_p": (("time",), "N", "pinion bearing force on the pinion, off the line of action"),
     "bearing_force_y_g": (("time",), "N", "gear bearing force on the gear, off the line of action"),
 }
-
-
-def provenance(pair: GearPair, **settings: Any) -> dict[str, Any]:
-    """Attributes that say what a result was made from: parameters, hash, versions, settings."""
-    text = pair.to_toml()
-    return {
-        "gear_pair": pair.name,
-        "parameters": text,
-        "parameters_sha256": _sha256(text),
-        "versions": _versions(),
-        "settings": ", ".join(f"{key}={value}" for key, value in sorted(settings.items())),
-    }
-
-
-@cache
-def _versions() -> str:
-    names = ("spurcheck", "numpy", "scipy", "exudyn")
-    versions = [f"{name} {metadata.version(name)}" for name in names]
-    return ", ".join([f"python {platform.python_version()}", *versions])
-
-
-def parameters_hash(pair: GearPair) -> str:
-    """SHA-256 of the pair's TOML text: the same parameters give the same hash everywhere."""
-    return _sha256(pair.to_toml())
-
-
-def _sha256(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def labelled(
@@ -118,40 +85,7 @@ def dataset(
     states : (k, n)
     attributes : of the dataset
     """
-    found = labelled(time, response(system, time, states), dict(attributes) | {"supports": system.supports})
-    if system.shafts is None:
-        return found
-    return with_bearings(found, bearing_forces(system.shafts, states), system.shafts.bearing_names)
-
-
-def with_bearings(run: xr.Dataset, forces: FloatArray, names: tuple[str, ...]) -> xr.Dataset:
-    """The result of a pair on shafts with the force of every bearing on its shaft.
-
-    Parameters
-    ----------
-    run : over ``time``
-    forces : (bearings, 2, k) along x and y [N]
-    names : of the bearings
-    """
-    variable = ("bearing", "direction", "time"), forces, {"units": "N", "long_name": "force on the shaft"}
-    return run.assign(bearing_force=variable).assign_coords(bearing=list(names), direction=["loa", "oloa"])
-
-
-def bearing_forces(shafts: ShaftedPair, states: FloatArray) -> FloatArray:
-    """Forces of the bearings on their shafts, (bearings, 2, k) [N], of states (k, 2m)."""
-    m = len(shafts.names)
-    spring = np.einsum("bd,bdm,km->bdk", shafts.bearing_stiffness, shafts.bearings, states[:, :m])
-    dashpot = np.einsum("bd,bdm,km->bdk", shafts.bearing_dampers, shafts.bearings, states[:, m:])
-    return np.asarray(-(spring + dashpot), dtype=np.float64)
-
-
-def _sums_of_bearings(shafts: ShaftedPair, forces: FloatArray) -> FloatArray:
-    """Sum over the bearings of each shaft, (k, 6) in the order of the coordinates."""
-    found = np.zeros((forces.shape[2], len(COORDINATES)))
-    for which, name in enumerate(("pinion", "gear")):
-        own = [bearing.startswith(name) for bearing in shafts.bearing_names]
-        found[:, [2 + which, 4 + which]] = forces[own].sum(axis=0).T
-    return found
+    return system.held.labelled(labelled(time, response(system, time, states), attributes), states)
 
 
 def load_range(contact_form: str, load: FloatArray, contact: FloatArray) -> tuple[float, float]:
@@ -165,9 +99,8 @@ def load_range(contact_form: str, load: FloatArray, contact: FloatArray) -> tupl
     contact_form : ``mesh.contact`` of the pair
     load, contact : (pairs, k) normal load [N], and whether the pair can touch
     """
-    touching = load[contact > 0]
-    least = load.sum(axis=0) if contact_form == "loaded" else touching
-    return float(touching.max()), float(least.min())
+    touching = contact > 0
+    return float(load[touching].max()), CONTACTS[contact_form].least_load(load, touching)
 
 
 def farthest_reversal(distance: FloatArray, sliding: FloatArray, loaded: BoolArray) -> float:
@@ -212,13 +145,9 @@ def response(
         - (g.omega_gear + rates[:, 1]) * arm_g
         - (rates[:, 4] - rates[:, 5])
     )
-    if system.shafts is None:
-        bearing = -(s.stiffness * z + s.damping * rates)
-    else:
-        bearing = _sums_of_bearings(system.shafts, bearing_forces(system.shafts, states))
     values: dict[str, FloatArray] = {name: z[:, j] for j, name in enumerate(COORDINATES)}
     values |= {f"{name}_dot": rates[:, j] for j, name in enumerate(COORDINATES)}
-    values |= {f"bearing_force_{name}": bearing[:, j] for j, name in enumerate(COORDINATES) if j > 1}
+    values |= {f"bearing_force_{name}": force for name, force in system.held.forces_by_gear(states).items()}
     values |= {
         "dte": dte,
         "dte_dot": dte_dot,
@@ -233,3 +162,46 @@ def response(
         "friction_power_nominal": -friction * (g.omega_pinion * pairs.position - g.omega_gear * arm_g),
     }
     return values
+
+
+def peak_to_peak(time: FloatArray, values: FloatArray, rates: FloatArray) -> float:
+    """Largest minus smallest value, extremes between two samples included.
+
+    Between samples the motion is the cubic with their values and rates. Its error falls with the fourth power
+    of the interval; where a force jumps inside an interval, with the square.
+
+    Parameters
+    ----------
+    time : (k,) increasing [s]
+    values, rates : (k,) motion and its derivative
+    """
+    step = np.diff(time)
+    rise, start, end = np.diff(values), rates[:-1] * step, rates[1:] * step
+    # values[j] + start s + square s^2 + cube s^3 for s from 0 to 1
+    square, cube = 3.0 * rise - 2.0 * start - end, start + end - 2.0 * rise
+    root = np.sqrt(np.maximum(square**2 - 3.0 * cube * start, 0.0))
+    sum_of = -(square + np.copysign(root, square))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        places = np.stack([sum_of / (3.0 * cube), start / sum_of])
+    places = np.clip(np.nan_to_num(places, nan=0.0, posinf=0.0, neginf=0.0), 0.0, 1.0)
+    between = values[:-1] + places * (start + places * (square + places * cube))
+    return float(max(values.max(), between.max()) - min(values.min(), between.min()))
+
+
+def cycle_peak_to_peak(run: xr.Dataset, name: str, period: float | None = None) -> float:
+    """Peak to peak of a displacement of a result.
+
+    Parameters
+    ----------
+    run : result with ``name`` and ``name_dot`` over ``time``
+    name : a displacement of ``lumped.model.results.VARIABLES``
+    period : of a motion that closes and whose last sample is left out [s]
+    """
+    time, values, rates = (run[key].to_numpy() for key in ("time", name, f"{name}_dot"))
+    if period is not None:
+        time, values, rates = (
+            np.append(time, time[0] + period),
+            np.append(values, values[0]),
+            np.append(rates, rates[0]),
+        )
+    return peak_to_peak(time, values, rates)

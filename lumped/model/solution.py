@@ -13,10 +13,11 @@ from numpy.typing import ArrayLike
 
 from lumped.arguments import real_array, whole_number
 from lumped.errors import NumericalError, refuse
+from lumped.labelling import provenance
 from lumped.model import powers
 from lumped.model.periodic_system import LTVSystem, Supports, periodic_system
 from lumped.model.propagation import step_maps
-from lumped.model.results import dataset, provenance
+from lumped.model.results import dataset
 from lumped.model.steady import PeriodicSolution, periodic_solution, sample_times
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray, Progress
@@ -130,28 +131,15 @@ def static_deflection(system: LTVSystem, pinion_torque: float | None = None) -> 
     system : the "full" system of a gear pair
     pinion_torque : T_p [N m]; default the operating point's
     """
-    g, s = system.pair.geometry, system.structure
-    r_bp, r_bg = g.base_radius_pinion, g.base_radius_gear
-    load = (system.pinion_torque if pinion_torque is None else pinion_torque) / r_bp
-    if system.shafts is not None:
-        return _static_on_shafts(system, load)
-    x_p, x_g = -load / s.stiffness[2], load / s.stiffness[3]
-    wind_up = load / system.cycle.mean_stiffness - x_p + x_g
-    by_pinion, by_gear = r_bp**2 / s.mass[0], r_bg**2 / s.mass[1]
-    share_p = by_pinion / (by_pinion + by_gear)
-    state = np.zeros(12)
-    state[:4] = share_p * wind_up / r_bp, -(1.0 - share_p) * wind_up / r_bg, x_p, x_g
-    return state
-
-
-def _static_on_shafts(system: LTVSystem, load: float) -> FloatArray:
-    m, g = len(system.coordinates), system.pair.geometry
-    u = system.deflection[1:]
-    stiffness = -system.constant[m + 1 :, 1:m] + system.cycle.mean_stiffness * np.multiply.outer(u, u)
+    g, held, m = system.pair.geometry, system.held, len(system.coordinates)
+    load = (system.pinion_torque if pinion_torque is None else pinion_torque) / g.base_radius_pinion
+    mesh = system.reduction @ (system.structure.deflection / system.structure.mass)
+    stiffness = -system.constant[m:, :m] + system.cycle.mean_stiffness * np.outer(mesh, system.deflection)
     torques = g.base_radius_pinion * system.torque_pinion + g.base_radius_gear * system.torque_gear
-    state = np.zeros(2 * m)
-    state[1:m] = np.linalg.solve(stiffness, load * torques[m + 1 :])
-    return state
+    z = held.back @ np.linalg.solve(held.relative @ stiffness @ held.back, held.relative @ torques[m:] * load)
+    # Whatever the common rotation is: as two free rotors would, so that its weighted sum is zero.
+    z -= held.common * ((held.common_weights @ z) / (held.common_weights @ held.common))
+    return np.concatenate([z, np.zeros(m)])
 
 
 def steady_state(

@@ -10,10 +10,9 @@ import numpy as np
 from lumped.arguments import whole_number
 from lumped.errors import NumericalError
 from lumped.model.equations import COORDINATES
-from lumped.model.extremes import peak_to_peak
 from lumped.model.periodic_system import LTVSystem, Supports, periodic_system
 from lumped.model.propagation import STAGES, StepMaps, step_maps
-from lumped.model.results import response
+from lumped.model.results import peak_to_peak, response
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -184,18 +183,8 @@ def relative_spectral_radius(system: LTVSystem, phi: FloatArray) -> float:
     system : the "full" system
     phi : (n, n) map of the states over one mesh cycle
     """
-    m = len(system.coordinates)
-    if system.supports == "shafts":  # the first coordinate is the common rotation
-        to_relative, back = np.eye(m)[1:], np.eye(m)[:, 1:]
-    else:
-        to_relative = np.zeros((5, 6))
-        to_relative[0, :2] = system.structure.deflection[:2]
-        to_relative[1:, 2:] = np.eye(4)
-        back = np.zeros((6, 5))
-        back[0, 0] = 1.0 / system.structure.deflection[0]
-        back[2:, 1:] = np.eye(4)
     twice = np.eye(2)
-    relative = np.kron(twice, to_relative) @ phi @ np.kron(twice, back)
+    relative = np.kron(twice, system.held.relative) @ phi @ np.kron(twice, system.held.back)
     return float(np.abs(np.linalg.eigvals(relative)).max())
 
 
@@ -208,14 +197,14 @@ def balanced_start(system: LTVSystem, phi: FloatArray, forced: FloatArray) -> tu
     matrix = np.zeros((n + 1, n + 1))
     matrix[:n, :n] = np.eye(n) - phi
     matrix[:n, n] = -forced[:, unknown]
-    unit, inertia = _units(system)
-    matrix[n, : inertia.size] = inertia
+    unit, common = system.held.units, system.held.common_weights
+    matrix[n, : common.size] = common
     right = np.append(forced @ known, 0.0)
     # Angles, lengths and their rates differ by many decades; equilibrate before judging the rank.
     rate = 1.0 / system.period
     columns = np.concatenate([unit, unit * rate, [0.0]])
     columns[n] = system.pinion_torque / _static(system)
-    rows = np.append(columns[:n], inertia[0] * unit[0])
+    rows = np.append(columns[:n], common[0] * unit[0])
     scaled = matrix * columns / rows[:, None]
     condition = float(np.linalg.cond(scaled))
     if not condition < 1e13:
@@ -227,15 +216,6 @@ def balanced_start(system: LTVSystem, phi: FloatArray, forced: FloatArray) -> tu
     weights = known.copy()
     weights[unknown] = solution[n]
     return solution[:n], weights
-
-
-def _units(system: LTVSystem) -> tuple[FloatArray, FloatArray]:
-    """Size (m,) of each coordinate where lengths are of order 1, and weights that make the rigid rotation."""
-    if system.supports == "shafts":
-        return np.full(len(system.coordinates), np.sqrt(system.structure.mass[2])), np.ones(1)
-    g, s = system.pair.geometry, system.structure
-    unit = np.array([1 / g.base_radius_pinion, 1 / g.base_radius_gear, 1.0, 1.0, 1.0, 1.0])
-    return unit, s.mass[:2] / np.abs(s.deflection[:2])
 
 
 def _static(system: LTVSystem) -> float:

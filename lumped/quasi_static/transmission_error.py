@@ -17,6 +17,7 @@ from lumped.arguments import real_numbers, whole_number
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset
 from lumped.path_of_contact import pair_stiffness
+from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.load_sharing import coupled, share_load
 from lumped.quasi_static.tooth_error import corner_gap, relief_error
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -82,15 +83,13 @@ def mesh_positions(pair: AnyPair, *, phases: int = 256, extended: bool = True) -
     e = corner_gap(g, xi) + relief_error(pair, np.clip(xi, g.L_XA, g.L_XD))
     margin = reach * g.base_pitch + inside
     apart = (xi < g.L_XA - margin) | (xi > g.L_XD + margin)
-    # As in the dynamics: with prescribed contact pairs stand alone.
-    neighbours = pair.mesh.stiffness.neighbours(pair) if pair.mesh.contact == "loaded" else ()
     return MeshPositions(
         phase,
         ahead,
         xi,
         np.where(apart, 0.0, k),
         np.where(apart, np.inf, e),
-        coupled(neighbours, xi, ~apart),
+        coupled(contact_of(pair).neighbours(pair), xi, ~apart),
     )
 
 

@@ -1,4 +1,7 @@
-"""One shaft with its gear, bearings and coupled inertia: modes in both planes and in twist, teeth apart."""
+"""One shaft with its gear, bearings and coupled inertia: modes in both planes and in twist, teeth apart.
+
+Sources: R. R. Craig and M. C. C. Bampton, AIAA J. 6 (1968) 1313 (reduction); docs/theory/shafts.md.
+"""
 
 from __future__ import annotations
 
@@ -7,20 +10,71 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from scipy.linalg import eigh
 
 from lumped.errors import NumericalError
 from lumped.schema.shafts import CoupledInertia, Shaft
 from lumped.shafts.beam import Beam, Piece, beam
-from lumped.shafts.reduction import Modes, reduced_modes
 from lumped.typing import FloatArray
 
 #: Most that a wave of the highest frequency turns in an element of the first mesh [rad], and in how many
 #: halvings the frequencies must have settled to this relative error.
 _ANGLE = 0.75
 _HALVINGS = 4
-MESH_ERROR = 1e-5
+_MESH_ERROR = 1e-5
 #: Most nodes of a shaft: a second of work.
 _MOST_NODES = 200
+
+
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """Modes of the reduced structure.
+
+    Attributes
+    ----------
+    frequencies : (k,) natural, increasing [rad/s]
+    shapes : (n, k) over the coordinates of the whole structure, of unit modal mass
+    held : (k - 1,) natural frequencies with the boundary held [rad/s]
+    """
+
+    frequencies: FloatArray
+    shapes: FloatArray
+    held: FloatArray
+
+
+def reduced_modes(
+    mass: FloatArray, stiffness: FloatArray, boundary: int, highest: float, *, floating: bool = False
+) -> Modes:
+    """Modes of what remains of a structure: the static shape of a boundary coordinate and modes with it held.
+
+    Statics by forces on the boundary is kept exactly.
+
+    Parameters
+    ----------
+    mass, stiffness : (n, n) symmetric
+    boundary : the coordinate that forces act on
+    highest : modes with the boundary held are kept up to this [rad/s]
+    floating : whether nothing holds the structure but its boundary, so that its first mode is rigid
+    """
+    n = mass.shape[0]
+    inner = np.delete(np.arange(n), boundary)
+    k = stiffness[np.ix_(inner, inner)]
+    squares, vectors = eigh(k, mass[np.ix_(inner, inner)], subset_by_value=(0.0, highest**2))
+    basis = np.zeros((n, 1 + squares.size))
+    basis[boundary, 0] = 1.0
+    basis[inner, 0] = -np.linalg.solve(k, stiffness[inner, boundary])
+    basis[inner, 1:] = vectors
+    reduced = basis.T @ mass @ basis, basis.T @ stiffness @ basis
+    # The boundary and the modes with it held do not work on each other.
+    reduced[1][0, 1:] = reduced[1][1:, 0] = 0.0
+    if floating:
+        reduced[1][0, 0] = 0.0
+    found, shapes = eigh(reduced[1], reduced[0])
+    whole = basis @ shapes
+    if floating:
+        found[0] = 0.0
+    signs = np.where(whole[boundary] < 0.0, -1.0, 1.0)
+    return Modes(np.sqrt(np.maximum(found, 0.0)), whole * signs, np.sqrt(squares))
 
 
 @dataclass(frozen=True)
@@ -52,7 +106,6 @@ class SupportedShaft:
     bearings : rows of the bearings in the shapes of a plane
     driven : the row of the twist that takes the torque: the coupled inertia, or the gear
     coupling : damping of the coupling [N m s/rad] and (k,) its turn by each mode of twist
-    mesh_error : relative change of a natural frequency by the last halving of the elements
     """
 
     planes: tuple[Modes, Modes, Modes]
@@ -61,7 +114,6 @@ class SupportedShaft:
     bearings: tuple[int, ...]
     driven: int
     coupling: tuple[float, FloatArray]
-    mesh_error: float
 
 
 @lru_cache(maxsize=64)
@@ -96,11 +148,11 @@ def supported_shaft(
     change = math.inf
     for halving in range(_HALVINGS + 1):
         mesh = beam(pieces, places, highest, _ANGLE / 2**halving)
-        found = _on_mesh(mesh, shaft, disc, coupled, highest, change)
+        found = _on_mesh(mesh, shaft, disc, coupled, highest)
         if before is not None:
             change = _change(before, found)
-            if change < MESH_ERROR:
-                return _on_mesh(mesh, shaft, disc, coupled, highest, change)
+            if change < _MESH_ERROR:
+                return found
         before = found
     raise NumericalError(
         f"Frequencies of a shaft change by {change:.1e} when its elements are halved: check its segments."
@@ -118,7 +170,7 @@ def _change(coarse: SupportedShaft, fine: SupportedShaft) -> float:
 
 
 def _on_mesh(
-    mesh: Beam, shaft: Shaft, disc: Disc, coupled: CoupledInertia | None, highest: float, change: float
+    mesh: Beam, shaft: Shaft, disc: Disc, coupled: CoupledInertia | None, highest: float
 ) -> SupportedShaft:
     gear = mesh.node(shaft.gear_position)
     bearings = tuple(2 * mesh.node(b.position) for b in shaft.bearings)
@@ -142,7 +194,6 @@ def _on_mesh(
         bearings=bearings,
         driven=driven,
         coupling=(0.0 if coupled is None else coupled.coupling_damping, coupling @ twist.shapes),
-        mesh_error=change,
     )
 
 

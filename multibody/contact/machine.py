@@ -20,9 +20,9 @@ import numpy as np
 
 from lumped.lubrication.viscosity import ISO_VG_MIDPOINT, viscosity_at_100
 from lumped.model.mesh_cycle import mesh_cycle
-from lumped.model.mesh_elements import mesh_elements
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
+from lumped.quasi_static.contacts import mesh_elements
 from lumped.schema.contact import Lubricant
 from lumped.schema.gear import Gear
 from lumped.schema.pair import GearPair

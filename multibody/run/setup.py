@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike
 
 from lumped.arguments import one_of, real_number
 from lumped.errors import refuse, shown
+from lumped.labelling import provenance
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.powers import balance as balance_of
-from lumped.model.results import provenance
 from lumped.model.solution import Initial, initial_state
 from lumped.model.steady import periodic_solution
 from lumped.schema.pair import GearPair

@@ -12,9 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.arguments import whole_number
-from lumped.labelling import labelled_dataset
-from lumped.model.extremes import cycle_peak_to_peak
-from lumped.model.results import labelled, provenance
+from lumped.labelling import labelled_dataset, provenance
+from lumped.model.results import cycle_peak_to_peak, labelled
 from lumped.model.solution import Initial
 from lumped.model.steady import sample_times
 from lumped.model.sweep import running_speeds

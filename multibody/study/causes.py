@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lumped.labelling import labelled_dataset
-from lumped.model.results import provenance
+from lumped.labelling import labelled_dataset, provenance
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import Progress
 from multibody.contact.effects import CAUSES, EFFECTS, default_effects

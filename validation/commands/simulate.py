@@ -86,8 +86,7 @@ def simulate(
                 supports=supports,
                 progress=tell,
             )
-    from lumped.model.extremes import cycle_peak_to_peak
-    from lumped.model.results import load_range
+    from lumped.model.results import cycle_peak_to_peak, load_range
     from validation.reporting.formatting import number, quantity
     from validation.validity.flags import contact_loss
 

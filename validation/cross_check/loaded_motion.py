@@ -17,13 +17,13 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.model.bodies import bodies
-from lumped.model.mesh_elements import MeshElements
 from lumped.model.periodic_system import LTVSystem, MeshGain
 from lumped.path_function import PathFunction
+from lumped.quasi_static.elements import MeshElements
 from lumped.quasi_static.kernels import corner_gaps
-from lumped.quasi_static.loaded_contact import FULL_DAMPING, StaticMesh
+from lumped.quasi_static.loaded import FULL_DAMPING, StaticMesh
 from lumped.quasi_static.tooth_error import relief_starts
+from lumped.schema.bodies import bodies
 from lumped.typing import BoolArray, FloatArray
 from validation.cross_check.effective_elements import Lines
 from validation.cross_check.shifted_motion import Motion, ShiftedModel, Shifts

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 from lumped import GearPair
 from lumped.errors import NumericalError
 from lumped.model.mesh_cycle import MeshCycle
-from lumped.model.mesh_elements import MeshElements
 from lumped.model.periodic_system import LTVSystem, periodic_system
 from lumped.model.results import response
 from lumped.model.steady import periodic_solution
 from lumped.path_function import PathFunction
+from lumped.quasi_static.elements import MeshElements
 from lumped.typing import FloatArray
 from validation.cross_check.actual_friction import law_ratio
 from validation.cross_check.effective_elements import at_sliding, moved, shortened

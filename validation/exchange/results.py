@@ -11,7 +11,7 @@ import xarray as xr
 from lumped.arguments import file_path, of_type
 from lumped.errors import ParameterError, refuse, shown
 from lumped.model.averaged import averaged_state_space
-from lumped.model.periodic_system import Form
+from lumped.model.supports import Form
 from lumped.schema.files import AnyPair, load_gear_pair
 from validation.files.output import (
     COLUMN_DIMENSIONS,

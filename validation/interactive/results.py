@@ -17,10 +17,9 @@ from floquet.gear.response import ResponseBranches
 from floquet.gear.tongues import LabelledRegion, label_regions
 from lumped import GearPair, LawRangeWarning, NumericalError, ParameterError
 from lumped.friction import LAWS
-from lumped.labelling import labelled_dataset
+from lumped.labelling import labelled_dataset, provenance
 from lumped.model.averaged import modes
-from lumped.model.resolved_sweep import resolved_sweep
-from lumped.model.results import provenance
+from lumped.model.sweep import resolved_sweep
 from lumped.path_of_contact import law_range_violations
 from lumped.typing import FloatArray, Progress
 from validation.validity.beyond_contact_loss import (

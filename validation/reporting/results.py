@@ -18,8 +18,8 @@ from floquet.gear.response import ResponseBranches
 from floquet.gear.tongues import StabilityMargins, stability_margins
 from lumped import GearPair, Geometry, NumericalError, ParameterError
 from lumped.model.averaged import Mode, modes
-from lumped.model.extremes import cycle_peak_to_peak
-from lumped.model.resolved_sweep import resolved_sweep
+from lumped.model.results import cycle_peak_to_peak
+from lumped.model.sweep import resolved_sweep
 from lumped.path_of_contact import friction_profile
 from lumped.typing import BoolArray, Progress
 from validation.cross_check.comparison import CrossCheck, crosscheck

@@ -15,8 +15,7 @@ from lumped import GearPair
 from lumped.errors import FieldProblem, ParameterError
 from lumped.fields.section import Section
 from lumped.fields.units import Quantity
-from lumped.model.extremes import cycle_peak_to_peak
-from lumped.model.results import load_range
+from lumped.model.results import cycle_peak_to_peak, load_range
 from lumped.model.solution import steady_state
 
 AnalysisName = Literal["geometry", "lumped", "multibody", "floquet"]

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from lumped.arguments import file_path
-from lumped.model.results import parameters_hash
+from lumped.labelling import parameters_hash
 from lumped.typing import FloatArray
 from validation.studies.analyses import ANALYSES
 from validation.studies.axes import target_of

@@ -19,8 +19,8 @@ from lumped import GearPair
 from lumped.arguments import real_numbers
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset
-from lumped.model.extremes import cycle_peak_to_peak
 from lumped.model.powers import MeanPowers, mean_powers
+from lumped.model.results import cycle_peak_to_peak
 from lumped.model.steady import periodic_cycle, periodic_solution
 from lumped.model.sweep import systems_over_speed
 from lumped.typing import FloatArray, Progress

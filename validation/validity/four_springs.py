@@ -24,10 +24,10 @@ from floquet.gear.axes import operating_rpm
 from lumped import GearPair
 from lumped.errors import NumericalError, ParameterError
 from lumped.labelling import labelled_dataset
-from lumped.model.extremes import cycle_peak_to_peak
 from lumped.model.periodic_system import Supports
-from lumped.model.shafted import highest_frequency
+from lumped.model.results import cycle_peak_to_peak
 from lumped.model.steady import UNSTABLE, PeriodicSolution, periodic_cycle
+from lumped.shafts.pair import highest_frequency
 from lumped.typing import BoolArray, ComplexArray, FloatArray, Progress
 
 #: Model -> what it is in words.

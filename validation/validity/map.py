@@ -11,9 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 import lumped
 from lumped import GearPair, LawRangeWarning
 from lumped.arguments import real_numbers
-from lumped.labelling import labelled_dataset
+from lumped.labelling import labelled_dataset, provenance
 from lumped.lubrication.film import REGIMES, regime
-from lumped.model.results import provenance
 from lumped.model.steady import UNSTABLE
 from lumped.path_of_contact import contact_path
 from lumped.typing import BoolArray, FloatArray, Progress

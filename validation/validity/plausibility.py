@@ -9,12 +9,12 @@ import math
 from collections.abc import Iterator
 
 from lumped.errors import ParameterError
-from lumped.model.bodies import bodies
-from lumped.model.condensation import condensed_bearings
 from lumped.path_of_contact.friction import contact_path
 from lumped.path_of_contact.stiffness import mesh_stiffness
+from lumped.schema.bodies import bodies
 from lumped.schema.files import AnyPair, load_gear_pair, preset_names
 from lumped.schema.pair import GearPair, leaf_paths
+from lumped.shafts.equivalents import condensed_bearings
 
 #: Hertzian pressure that no steel bears [Pa].
 _PRESSURE = 4.2e9

@@ -12,8 +12,8 @@ from lumped.errors import NumericalError
 from lumped.gear_geometry.geometry import Geometry
 from lumped.losses import dynamic_losses, loss_factor, ohlendorf_of, quasi_static_losses
 from lumped.model.averaged import averaged_matrix, modes
-from lumped.model.mesh_elements import mesh_elements
 from lumped.model.periodic_system import periodic_system
+from lumped.quasi_static.contacts import mesh_elements
 from lumped.quasi_static.load_sharing import share_load
 from validation.cross_check.metrics import mesh_orders
 from validation.verification.checks import Check, check, rows_check

@@ -18,9 +18,9 @@ from scipy.optimize import brentq
 
 from lumped import GearPair
 from lumped.gear_geometry.geometry import Wheel
-from lumped.model.mesh_elements import mesh_elements
 from lumped.path_of_contact import pair_stiffness
-from lumped.quasi_static.loaded_contact import FULL_DAMPING
+from lumped.quasi_static.contacts import mesh_elements
+from lumped.quasi_static.loaded import FULL_DAMPING
 from lumped.stiffness.foundation import LOCAL_RATIO
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn

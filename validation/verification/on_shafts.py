@@ -14,7 +14,7 @@ import lumped
 import multibody
 from lumped import GearPair
 from lumped.errors import ParameterError
-from lumped.model.shafted import highest_frequency
+from lumped.shafts.pair import highest_frequency
 from validation.verification.checks import Check, check
 
 _SAMPLES, _SHARE = 64, 0.01

@@ -14,8 +14,8 @@ import numpy as np
 from lumped import GearPair, bodies
 from lumped.errors import ParameterError
 from lumped.friction.registry import FRICTIONAL
-from lumped.model.mesh_elements import mesh_elements
 from lumped.path_of_contact import friction_path_function
+from lumped.quasi_static.contacts import mesh_elements
 from lumped.quasi_static.tooth_error import relief_error
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from floquet import PeriodicSystem, monodromy
 from lumped import GearPair, MeshCycle, PathFunction, mesh_cycle, periodic_system, simulate
-from lumped.model.mesh_elements import MeshElements
 from lumped.model.results import dataset
 from lumped.model.steady import periodic_solution, sample_times
+from lumped.quasi_static.elements import MeshElements
 from lumped.typing import FloatArray
 
 _MICRO = 1e6

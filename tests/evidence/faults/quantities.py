@@ -17,8 +17,8 @@ from lumped import GearPair
 from lumped.errors import NumericalError, ParameterError
 from lumped.losses import dynamic_losses, ohlendorf_of, quasi_static_losses
 from lumped.model.averaged import modes
-from lumped.model.mesh_elements import mesh_elements
 from lumped.path_of_contact import friction_profile, iso_comparison
+from lumped.quasi_static.contacts import mesh_elements
 from lumped.typing import FloatArray
 from validation.cross_check.metrics import mesh_orders
 from validation.reporting.results import QUICK, Results

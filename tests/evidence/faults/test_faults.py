@@ -84,7 +84,7 @@ def test_a_fault_acts_wherever_its_function_is_held(sound):
 def test_a_fault_whose_line_is_gone_is_told():
     with (
         pytest.raises(FaultError, match="0 times 'no such text'"),
-        applied(Fault("gone", "", "lumped.model.bodies:solid_disc", "no such text", "")),
+        applied(Fault("gone", "", "lumped.schema.bodies:solid_disc", "no such text", "")),
     ):
         pass
 

@@ -26,8 +26,8 @@ import numpy.typing as npt
 from floquet import PeriodicSystem, gear_pair_multipliers, monodromy
 from floquet.engine.system import second_order
 from lumped import GearPair, load_gear_pair
-from lumped.model.bodies import bodies
 from lumped.model.periodic_system import periodic_system
+from lumped.schema.bodies import bodies
 from lumped.typing import ComplexArray, FloatArray
 from tests.evidence.check import Check, order
 

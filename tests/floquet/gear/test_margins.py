@@ -11,7 +11,7 @@ from scipy.optimize import brentq, minimize_scalar
 from floquet.gear.multipliers import gear_pair_multipliers
 from floquet.gear.tongues import stability_margins
 from lumped import geometry, load_gear_pair, periodic_system
-from lumped.model.bodies import bodies
+from lumped.schema.bodies import bodies
 from tests.evidence.floquet.coulomb_zones import CoulombGearPair
 from validation.plots.tongues import tongues_figure
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lumped import simulate, steady_state
-from lumped.model.extremes import cycle_peak_to_peak, peak_to_peak
+from lumped.model.results import cycle_peak_to_peak, peak_to_peak
 
 
 def test_extremes_between_samples_are_found():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lumped import load_gear_pair, speed_sweep
-from lumped.model.resolved_sweep import resolved_sweep
+from lumped.model.sweep import resolved_sweep
 
 #: A small gear on slightly damped bearings: narrow resonances, many in the range.
 PAIR = load_gear_pair("fzg_c").with_(

@@ -7,7 +7,8 @@ import pytest
 import xarray as xr
 
 from lumped import geometry, load_gear_pair, simulate, steady_state
-from lumped.model.results import VARIABLES, parameters_hash
+from lumped.labelling import parameters_hash
+from lumped.model.results import VARIABLES
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import pytest
 
 from lumped import ParameterError, load_gear_pair, plane_compliance
 from lumped.quasi_static import static_transmission_error
-from lumped.quasi_static.loaded_contact import StaticMesh
+from lumped.quasi_static.loaded import StaticMesh
 from lumped.stiffness.finite_elements import elastic_teeth, hertz_half_width, self_compliance
 from lumped.stiffness.neighbours import neighbour_compliances
 

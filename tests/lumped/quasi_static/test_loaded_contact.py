@@ -7,11 +7,11 @@ import pytest
 
 import lumped
 from lumped.model.mesh_cycle import mesh_cycle
-from lumped.model.mesh_elements import mesh_elements
 from lumped.model.periodic_system import periodic_system
 from lumped.model.powers import mean_powers
 from lumped.model.steady import periodic_solution
-from lumped.quasi_static.loaded_contact import StaticMesh, loaded_contact
+from lumped.quasi_static.contacts import mesh_elements
+from lumped.quasi_static.loaded import StaticMesh, loaded_contact
 
 PAIR = lumped.load_gear_pair("nasa_28_28").with_(
     mesh__relief="ignored", mesh__stiffness={"model": "energy"}, mesh__contact="loaded"

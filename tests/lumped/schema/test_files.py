@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from lumped import load_gear_pair, preset_names
-from lumped.model.results import parameters_hash
+from lumped.labelling import parameters_hash
 from lumped.schema.pair import leaf_paths
 
 positive = st.floats(min_value=1e-12, max_value=1e12, allow_subnormal=False)

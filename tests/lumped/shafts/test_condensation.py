@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from lumped import ParameterError, bodies, condensed_bearings, mesh_cycle, shaft_modes
-from lumped.model.shafted import discs
 from lumped.shafts.beam import Piece, beam
+from lumped.shafts.pair import discs
 
 
 def test_shafts_under_springs_are_the_springs(unequal, on_short_shafts):

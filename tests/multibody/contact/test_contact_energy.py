@@ -14,7 +14,7 @@ import multibody
 from lumped.quasi_static import corner_gap as lumped_corner_gap
 from lumped.quasi_static.kernels import load_of
 from lumped.quasi_static.kernels import shared_loads as lumped_shared_loads
-from lumped.quasi_static.loaded_contact import StaticMesh
+from lumped.quasi_static.loaded import StaticMesh
 from multibody.contact import kernels as kn
 from multibody.contact import kinematics as kin
 from multibody.contact.effects import effect_flags

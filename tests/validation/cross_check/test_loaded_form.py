@@ -10,7 +10,7 @@ import pytest
 import lumped
 import multibody
 from lumped.quasi_static import loaded_contact
-from lumped.quasi_static.loaded_contact import StaticMesh
+from lumped.quasi_static.loaded import StaticMesh
 from validation.cross_check import loaded_motion
 from validation.cross_check.comparison import crosscheck
 from validation.cross_check.effective_elements import Lines

@@ -16,11 +16,11 @@ import pytest
 import lumped
 from lumped import PathFunction
 from lumped.friction.base import ContactPath
-from lumped.model.bodies import solid_disc
 from lumped.model.equations import structure
-from lumped.model.mesh_elements import mesh_elements
 from lumped.path_of_contact.friction import contact_path
+from lumped.quasi_static.contacts import mesh_elements
 from lumped.quasi_static.tooth_error import error_function
+from lumped.schema.bodies import solid_disc
 from lumped.schema.pair import GearPair
 from validation.cross_check.comparison import crosscheck
 
@@ -86,11 +86,11 @@ def relief(shift):
         breaks[1:-1] += shift
         return PathFunction(breaks, found.coefficients, breaks[1:-1])
 
-    return "lumped.quasi_static.loaded_mesh", "error_function", wrong
+    return "lumped.quasi_static.prescribed", "error_function", wrong
 
 
 def disc(factor):
-    return "lumped.model.bodies", "solid_disc", lambda *a: tuple(factor * value for value in solid_disc(*a))
+    return "lumped.schema.bodies", "solid_disc", lambda *a: tuple(factor * value for value in solid_disc(*a))
 
 
 def tips(more):

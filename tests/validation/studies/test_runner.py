@@ -13,7 +13,7 @@ import xarray as xr
 
 from lumped import LawRangeWarning, NumericalError, geometry, load_gear_pair, speed_sweep
 from lumped.errors import ParameterError, StorageError
-from lumped.model.extremes import cycle_peak_to_peak
+from lumped.model.results import cycle_peak_to_peak
 from lumped.schema.pair import field_at
 from validation.studies import Status, StoreError, read_results, run_sweep, workers
 from validation.studies import store as stores

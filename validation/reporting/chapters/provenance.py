@@ -8,7 +8,7 @@ from functools import cache
 from importlib import metadata, resources
 from pathlib import Path
 
-from lumped.model.results import parameters_hash
+from lumped.labelling import parameters_hash
 from validation.reporting.blocks import Content, Table, Text, facts
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results

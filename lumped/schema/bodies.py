@@ -50,7 +50,4 @@ def bodies(pair: AnyPair) -> Bodies:
 
 def _resolved(gear: Gear, radius: float) -> tuple[float, float]:
     mass, inertia = solid_disc(radius, gear.face_width, gear.density, gear.bore)
-    return (
-        mass if gear.mass is None else gear.mass,
-        inertia if gear.inertia is None else gear.inertia,
-    )
+    return mass if gear.mass is None else gear.mass, inertia if gear.inertia is None else gear.inertia

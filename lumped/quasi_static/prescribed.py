@@ -1,9 +1,8 @@
-"""What a statically loaded mesh hands to the linear dynamic model: k_i(xi; T) and e_i(xi).
+"""Prescribed contact: every tooth pair touches from A to D, where the static load leaves it touching.
 
 The linear model keeps every pair in contact over a fixed interval. With relief that interval depends on the
 load: a pair takes part where delta(T) - e_i > 0. There its stiffness is k_i and its unloaded error e_i;
-elsewhere it carries nothing. Contact before A and behind D is left out: the linear model's path of contact is
-A to D.
+elsewhere it carries nothing. Contact before A and behind D is left out.
 
 Sources: docs/theory/mesh_physics.md, "Load sharing and static transmission error".
 """
@@ -17,12 +16,49 @@ import numpy as np
 from lumped.errors import NumericalError
 from lumped.gear_geometry.geometry import Geometry
 from lumped.path_function import PathFunction
-from lumped.path_of_contact import pair_stiffness
-from lumped.quasi_static.intervals import positive_intervals, restricted
+from lumped.path_of_contact import friction_path_function, pair_stiffness
+from lumped.quasi_static.elements import Contact, MeshElements, positive_intervals, restricted
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.tooth_error import error_function
+from lumped.schema.bodies import bodies
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.typing import FloatArray
+from lumped.schema.pair import GearPair
+from lumped.typing import BoolArray, FloatArray
+
+#: Fit error of c over its largest value.
+_DAMPING_TOLERANCE = 1e-11
+#: The same where k starts from zero: rounding of k by 1e-16 of its peak is 1e-8 in its root.
+_DAMPING_TOLERANCE_FROM_ZERO = 1e-7
+
+
+class Prescribed(Contact):
+    """Pairs stand alone; k has no potential over the path, so the brake balances sliding alone."""
+
+    name = "prescribed"
+    conservative = False
+
+    def elements(self, pair: GearPair) -> MeshElements:
+        """Stiffness of the model, and the error of the reliefs, from A to D."""
+        if pair.mesh.relief == "static":
+            loaded = loaded_mesh(pair)
+            stiffness, error = loaded.stiffness, loaded.error
+        else:
+            stiffness = pair_stiffness(pair)
+            error = PathFunction.constant(0.0, *stiffness.interval)
+        return MeshElements(
+            stiffness=stiffness,
+            damping=_damping(stiffness, pair.mesh.damping_ratio, bodies(pair).effective_mass),
+            friction=friction_path_function(pair),
+            error=error,
+        )
+
+    def neighbours(self, pair: GearPair) -> tuple[()]:
+        """None: pairs stand alone."""
+        return ()
+
+    def least_load(self, load: FloatArray, contact: BoolArray) -> float:
+        """Every pair in contact must press."""
+        return float(load[contact].min())
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,3 +113,21 @@ def _clearance(xi: FloatArray, k: PathFunction, error: PathFunction, force: floa
     e = np.where(outside, np.inf, error(place))
     delta = share_load(np.where(outside, 0.0, k(place)), e, force).transmission_error
     return np.asarray(delta - e[:, g.pairs - 1], dtype=np.float64)
+
+
+def _damping(stiffness: PathFunction, ratio: float, mass: float) -> PathFunction:
+    """c_i proportional to sqrt(k_i m_e) (He, Cho and Singh 2008)."""
+    low, high = stiffness.interval
+    if ratio == 0.0:
+        return PathFunction.constant(0.0, low, high)
+    scale = 2.0 * ratio * np.sqrt(mass)
+
+    def damping(xi: FloatArray) -> FloatArray:
+        return np.asarray(scale * np.sqrt(np.maximum(stiffness(xi), 0.0)), dtype=np.float64)
+
+    values = damping(np.linspace(low, high, 401))
+    from_zero = min(values[0], values[-1]) < 1e-3 * values.max()
+    relative = _DAMPING_TOLERANCE_FROM_ZERO if from_zero else _DAMPING_TOLERANCE
+    return PathFunction.fit(
+        damping, stiffness.breaks, stiffness.switches, tolerance=relative * float(values.max())
+    )

@@ -11,7 +11,7 @@ Sources: docs/theory/contact_energy.md, "Loaded contact of the linear model".
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import NamedTuple
@@ -21,11 +21,12 @@ from scipy.optimize import brentq
 
 from lumped.errors import NumericalError
 from lumped.path_function import PathFunction
-from lumped.path_of_contact import pair_stiffness
-from lumped.quasi_static.intervals import positive_intervals, restricted
+from lumped.path_of_contact import friction_path_function, pair_stiffness
+from lumped.quasi_static.elements import Contact, MeshElements, positive_intervals, restricted
 from lumped.quasi_static.kernels import approaches, gaps_at, middle_loads
 from lumped.quasi_static.load_sharing import coupled
 from lumped.quasi_static.tooth_error import relief_error, relief_starts
+from lumped.schema.bodies import bodies
 from lumped.schema.contact import Friction
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
@@ -42,8 +43,50 @@ _SPEED, _FRICTION = 100.0, Friction.model_construct(law="none")
 LEAST_LOAD = 1e-3
 #: A ramp ends without stiffness; so much of the largest one is left, below the fit error of every law.
 _LEAST_STIFFNESS = 1e-11
+#: Fit error of c over its largest value.
+_DAMPING_TOLERANCE = 1e-11
 #: The damper is whole where a pair carries this share of the mean load.
 FULL_DAMPING = 1.0 / 15.0
+
+
+class Loaded(Contact):
+    """A pair touches where its gap closes under the mean load; every loss is balanced by the brake."""
+
+    name = "loaded"
+    conservative = True
+
+    def elements(self, pair: GearPair) -> MeshElements:
+        """The laws about the static loaded motion; the damper takes hold as the load does."""
+        contact = loaded_contact(pair)
+        low, high = contact.stiffness.interval
+        scale = 2.0 * pair.mesh.damping_ratio * np.sqrt(bodies(pair).effective_mass)
+
+        def damping(xi: FloatArray) -> FloatArray:
+            root = np.sqrt(np.maximum(contact.secant(xi), 0.0))
+            return np.asarray(scale * root * contact.engagement(xi), dtype=np.float64)
+
+        engaged = contact.engagement
+        breaks = np.union1d(engaged.breaks, contact.secant.breaks)
+        largest = float(np.abs(damping(np.linspace(low, high, 401))).max())
+        return MeshElements(
+            stiffness=contact.stiffness,
+            damping=PathFunction.constant(0.0, low, high)
+            if largest == 0.0
+            else PathFunction.fit(
+                damping, breaks, engaged.switches, tolerance=_DAMPING_TOLERANCE * largest, by_length=True
+            ),
+            friction=friction_path_function(pair, interval=(low, high)),
+            error=contact.error,
+            gap=contact.gap,
+        )
+
+    def neighbours(self, pair: GearPair) -> Sequence[PathFunction]:
+        """Those of the stiffness model."""
+        return pair.mesh.stiffness.neighbours(pair)
+
+    def least_load(self, load: FloatArray, contact: BoolArray) -> float:
+        """All pairs together must press: each begins and ends its contact gradually."""
+        return float(load.sum(axis=0).min())
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumped.errors import refuse
-from lumped.model.bodies import bodies
+from lumped.schema.bodies import bodies
 from lumped.schema.pair import GearPair
 from lumped.shafts.supported import Disc, SupportedShaft, supported_shaft
 from lumped.stiffness.foundation import body_twist
@@ -49,8 +49,7 @@ class ShaftedPair:
     bearing_names : (b,) "pinion 1", ...
     bearings : (b, 2, m) rows that make the displacement of the shaft in each bearing along x and y
     bearing_stiffness, bearing_dampers : (b, 2) [N/m], [N s/m]
-    mesh_error : relative error of the frequencies by the elements
-    highest : up to which modes with the gears held are kept [rad/s]
+    deflection : (m,) makes the dynamic transmission error; zero for the common rotation
     """
 
     names: tuple[str, ...]
@@ -68,8 +67,7 @@ class ShaftedPair:
     bearings: FloatArray
     bearing_stiffness: FloatArray
     bearing_dampers: FloatArray
-    mesh_error: float
-    highest: float
+    deflection: FloatArray
 
     @property
     def damping(self) -> FloatArray:
@@ -88,18 +86,13 @@ def highest_frequency(pair: GearPair) -> float:
 
 def discs(pair: GearPair) -> tuple[Disc, Disc]:
     """Both gears as rigid discs: mass and polar inertia as without shafts, J/2 + m b^2/12 against tilting."""
-    b = bodies(pair)
-    pinion, gear = (
-        Disc(float(mass), float(inertia), float(0.5 * inertia + mass * width**2 / 12.0), float(twist))
-        for mass, inertia, width, twist in zip(
-            (b.mass_pinion, b.mass_gear),
-            (b.inertia_pinion, b.inertia_gear),
-            (pair.pinion.face_width, pair.gear.face_width),
-            body_twist(pair),
-            strict=True,
-        )
-    )
-    return pinion, gear
+    b, twist = bodies(pair), body_twist(pair)
+
+    def disc(mass: float, inertia: float, width: float, stiffness: float) -> Disc:
+        return Disc(mass, inertia, 0.5 * inertia + mass * width**2 / 12.0, float(stiffness))
+
+    pinion = disc(b.mass_pinion, b.inertia_pinion, pair.pinion.face_width, twist[0])
+    return pinion, disc(b.mass_gear, b.inertia_gear, pair.gear.face_width, twist[1])
 
 
 def supported_shafts(pair: GearPair) -> tuple[SupportedShaft, SupportedShaft]:
@@ -138,30 +131,28 @@ def shafted_pair(pair: GearPair) -> ShaftedPair:
         given = f"{highest_frequency(pair) / (2.0 * math.pi):.4g} Hz"
         raise refuse("shafts.max_frequency", given, f"at most {_MOST} modes, not {m}", action)
     names, owner, kind, frequencies = [], [], [], []
+    bearing_names: list[str] = []
     gears = np.zeros((6, m))
     bearings = np.zeros((sum(len(shaft.bearings) for shaft in both), 2, m))
     coupling, gyroscopic = np.zeros((2, m, m))
     torques = np.zeros((2, m))
-    first, row = 0, 0
+    first = 0
     # The pinion turns clockwise in (x, y), the gear counter-clockwise, z_p/z_g as fast.
     for which, (shaft, turn) in enumerate(zip(both, (-1.0, g.omega_gear / g.omega_pinion), strict=True)):
-        at = []
+        at, row = [], len(bearing_names)
+        bearing_names += [f"{_GEARS[which]} {j + 1}" for j in range(len(shaft.bearings))]
         for number, (modes, label) in enumerate(zip(shaft.planes, ("x", "y", "twist"), strict=True)):
-            columns = slice(first, first + modes.frequencies.size)
+            count = modes.frequencies.size
+            columns = slice(first, first + count)
             at.append(columns)
             first = columns.stop
-            gear_row = (2 + which, 4 + which, which)[number]
-            gears[gear_row, columns] = modes.shapes[shaft.gear[number]]
-            start = 1 if number < 2 else 0
-            names += [f"{_GEARS[which]} {label} {j + start}" for j in range(modes.frequencies.size)]
-            owner += [which] * modes.frequencies.size
-            kind += [number] * modes.frequencies.size
+            gears[(2 + which, 4 + which, which)[number], columns] = modes.shapes[shaft.gear[number]]
+            names += [f"{_GEARS[which]} {label} {j + (number < 2)}" for j in range(count)]
+            owner += [which] * count
+            kind += [number] * count
             frequencies += modes.frequencies.tolist()
             if number < 2:
-                bearings[row : row + len(shaft.bearings), number, columns] = modes.shapes[
-                    list(shaft.bearings)
-                ]
-        row += len(shaft.bearings)
+                bearings[row : len(bearing_names), number, columns] = modes.shapes[list(shaft.bearings)]
         gyroscopic[at[0], at[1]] = turn * shaft.spin
         gyroscopic[at[1], at[0]] = -turn * shaft.spin.T
         damper, turned = shaft.coupling
@@ -171,62 +162,33 @@ def shafted_pair(pair: GearPair) -> ShaftedPair:
     springs = [*shafts.pinion.bearings, *shafts.gear.bearings]
     dampers = np.array([[b.loa_damping, b.oloa_damping] for b in springs])
     dashpots = np.einsum("bdi,bd,bdj->ij", bearings, dampers, bearings)
-    found = ShaftedPair(
-        names=tuple(names),
-        shaft=np.array(owner),
-        kind=np.array(kind),
-        frequencies=omega,
-        gears=gears,
-        modal_damping=np.diag(2.0 * shafts.damping_ratio * omega),
-        bearing_damping=dashpots,
-        coupling_damping=coupling,
-        gyroscopic=gyroscopic,
-        torque_pinion=torques[0],
-        torque_gear=torques[1],
-        bearing_names=tuple(
-            f"{name} {j + 1}"
-            for name, shaft in zip(_GEARS, both, strict=True)
-            for j in range(len(shaft.bearings))
-        ),
-        bearings=bearings,
-        bearing_stiffness=np.array([[b.loa_stiffness, b.oloa_stiffness] for b in springs]),
-        bearing_dampers=dampers,
-        mesh_error=max(shaft.mesh_error for shaft in both),
-        highest=highest_frequency(pair),
-    )
-    return _rotations_first(found, (counts[0][0] + counts[0][1], m - counts[1][2]), pair)
-
-
-def _rotations_first(found: ShaftedPair, rigid: tuple[int, int], pair: GearPair) -> ShaftedPair:
-    """The same with the common and the relative rotation, in this order, instead of the rigid ones."""
-    g, m = pair.geometry, found.frequencies.size
-    felt = np.array(
-        [g.base_radius_pinion * found.gears[0, rigid[0]], -g.base_radius_gear * found.gears[1, rigid[1]]]
-    )
+    # The common and the relative rotation, in this order, instead of the rigid ones of both shafts.
+    rigid = [counts[0][0] + counts[0][1], m - counts[1][2]]
+    felt = np.array([g.base_radius_pinion, -g.base_radius_gear]) * gears[[0, 1], rigid]
     felt /= np.linalg.norm(felt)
     to = np.zeros((m, m))  # new coordinates as columns over the old ones
-    to[list(rigid), 0] = felt[1], -felt[0]
-    to[list(rigid), 1] = felt
+    to[rigid, 0] = felt[1], -felt[0]
+    to[rigid, 1] = felt
     rest = np.delete(np.arange(m), rigid)
     to[rest, np.arange(2, m)] = 1.0
-    names = ("common rotation", "relative rotation", *(found.names[j] for j in rest))
-    two = np.array([-1, -1])
+    gears = gears @ to
+    deflection = np.array([g.base_radius_pinion, -g.base_radius_gear, 1.0, -1.0, 0.0, 0.0]) @ gears
+    deflection[0] = 0.0  # but for rounding
     return ShaftedPair(
-        names=names,
-        shaft=np.concatenate([two, found.shaft[rest]]),
-        kind=np.concatenate([[2, 2], found.kind[rest]]),
-        frequencies=np.concatenate([[0.0, 0.0], found.frequencies[rest]]),
-        gears=found.gears @ to,
-        modal_damping=to.T @ found.modal_damping @ to,
-        bearing_damping=to.T @ found.bearing_damping @ to,
-        coupling_damping=to.T @ found.coupling_damping @ to,
-        gyroscopic=to.T @ found.gyroscopic @ to,
-        torque_pinion=found.torque_pinion @ to,
-        torque_gear=found.torque_gear @ to,
-        bearing_names=found.bearing_names,
-        bearings=found.bearings @ to,
-        bearing_stiffness=found.bearing_stiffness,
-        bearing_dampers=found.bearing_dampers,
-        mesh_error=found.mesh_error,
-        highest=found.highest,
+        names=("common rotation", "relative rotation", *(names[j] for j in rest)),
+        shaft=np.array([-1, -1, *np.array(owner)[rest]]),
+        kind=np.array([2, 2, *np.array(kind)[rest]]),
+        frequencies=np.array([0.0, 0.0, *omega[rest]]),
+        gears=gears,
+        modal_damping=to.T @ np.diag(2.0 * shafts.damping_ratio * omega) @ to,
+        bearing_damping=to.T @ dashpots @ to,
+        coupling_damping=to.T @ coupling @ to,
+        gyroscopic=to.T @ gyroscopic @ to,
+        torque_pinion=torques[0] @ to,
+        torque_gear=torques[1] @ to,
+        bearing_names=tuple(bearing_names),
+        bearings=bearings @ to,
+        bearing_stiffness=np.array([[b.loa_stiffness, b.oloa_stiffness] for b in springs]),
+        bearing_dampers=dampers,
+        deflection=deflection,
     )

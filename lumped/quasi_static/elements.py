@@ -1,0 +1,119 @@
+"""The element laws of one tooth pair that every model of the pair shares, and what a form of contact is.
+
+Sources: Abbas Al-Zubaidi 2008, eqs. 3 and 4; damping c_i = 2 zeta sqrt(k_i m_e), as He, Cho and Singh 2008.
+"""
+
+from __future__ import annotations
+
+import itertools
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from scipy.optimize import brentq
+
+from lumped.path_function import PathFunction
+from lumped.schema.pair import GearPair
+from lumped.typing import BoolArray, FloatArray
+
+#: Samples over the searched range between which contact begins or ends at most once.
+_SAMPLES = 2000
+
+
+@dataclass(frozen=True, eq=False)
+class MeshElements:
+    """Element laws of one tooth pair over the interval of xi in which it can touch; zero outside.
+
+    That is [L_XA, L_XD] with prescribed contact, and reaches beyond with loaded contact.
+
+    N = k (delta - e) + c (delta' - e'), F = mu N (docs/theory/equations.md, eqs. 3 and 4).
+
+    Attributes
+    ----------
+    stiffness : k [N/m]
+    damping : c = 2 zeta sqrt(k m_e) [N s/m]
+    friction : mu at nominal speed [-], signed by s = sgn(xi - L_XP)
+    error : e, unloaded tooth error, positive where the teeth come too late to touch [m]
+    gap : the gap that closes at the first touch, where e is not that gap (loaded, Hertz) [m]
+    """
+
+    stiffness: PathFunction
+    damping: PathFunction
+    friction: PathFunction
+    error: PathFunction
+    gap: PathFunction | None = None
+
+    @property
+    def error_slope(self) -> PathFunction:
+        """E' over xi, that the damper sees: of the gap itself where e is the tangent's [-]."""
+        return (self.error if self.gap is None else self.gap).slope
+
+
+class Contact(ABC):
+    """A form of contact of the linear model: where a tooth pair touches, and with which laws."""
+
+    name: ClassVar[str]
+    #: Whether the elastic energy of the teeth is conserved, so that the brake balances every loss.
+    conservative: ClassVar[bool]
+
+    @abstractmethod
+    def elements(self, pair: GearPair) -> MeshElements:
+        """Laws of one tooth pair."""
+
+    @abstractmethod
+    def neighbours(self, pair: GearPair) -> Sequence[PathFunction]:
+        """How far the load of a pair moves the one m pitches ahead, w_m(xi), m = 1, 2, ... [m/N]."""
+
+    @abstractmethod
+    def least_load(self, load: FloatArray, contact: BoolArray) -> float:
+        """The smallest of the loads (pairs, k) that must not pull: below zero contact is lost [N]."""
+
+
+def mean_of_pairs(law: PathFunction, pitch: float) -> float:
+    """Mean over the mesh cycle of the sum of a law over all pairs."""
+    low, high = law.interval
+    return law.mean() * (high - low) / pitch
+
+
+def positive_intervals(
+    function: Callable[[FloatArray], FloatArray], low: float, high: float, kinks: FloatArray, pitch: float
+) -> FloatArray:
+    """Intervals of [low, high] in which a piecewise smooth function is positive; (n, 2) [m].
+
+    Parameters
+    ----------
+    function : (n,) -> (n,) over positions [m]
+    low, high : range that is searched [m]
+    kinks : positions where the function jumps or has a kink, any shape [m]
+    pitch : base pitch [m], the scale of what is close
+    """
+    inside = 1e-12 * pitch
+    marks = np.unique(kinks[(kinks > low + inside) & (kinks < high - inside)])
+    ends: list[float] = []
+    for left, right in itertools.pairwise([low, *marks, high]):
+        if right - left <= 4 * inside:
+            continue
+        count = max(3, int(_SAMPLES * (right - left) / (high - low)))
+        xi = np.linspace(left + inside, right - inside, count)
+        positive = function(xi) > 0.0
+        roots = [
+            float(brentq(lambda x: float(function(np.array([x]))[0]), xi[j], xi[j + 1], xtol=1e-16))
+            for j in np.flatnonzero(np.diff(positive))
+        ]
+        ends += [*([left] if positive[0] else []), *roots, *([right] if positive[-1] else [])]
+    meet = 2 * np.flatnonzero(np.diff(ends)[1::2] <= 4 * inside)  # intervals that meet at a mark are one
+    return np.delete(ends, [*(meet + 1), *(meet + 2)]).reshape(-1, 2)
+
+
+def restricted(function: PathFunction, intervals: FloatArray) -> PathFunction:
+    """The function on the intervals (n, 2), zero between them; jumps are switches."""
+    low, high = function.interval
+    function, ends = function.split(intervals), intervals.ravel()
+    middle = 0.5 * (function.breaks[:-1] + function.breaks[1:])
+    kept = ((middle[:, None] > intervals[:, 0]) & (middle[:, None] < intervals[:, 1])).any(axis=1)
+    jumps = ends[(ends > low) & (ends < high)]
+    return PathFunction(
+        function.breaks, np.where(kept, function.coefficients, 0.0), np.union1d(function.switches, jumps)
+    )

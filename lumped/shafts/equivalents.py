@@ -1,0 +1,199 @@
+"""What is read of a pair on its shafts: natural frequencies, and the springs that move like the shafts.
+
+``condensed_bearings``: seen from its gear, a shaft with all that is on it has one dynamic stiffness D in each
+direction. At the chosen frequency a spring and a mass have the same D and the same slope over the square of
+the frequency: mass m = -dD/d(omega^2), stiffness k = D + omega^2 m. At zero this is static condensation.
+
+Sources: R. J. Guyan, AIAA J. 3 (1965) 380 (static condensation); docs/theory/shafts.md.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lumped.arguments import real_number
+from lumped.errors import refuse
+from lumped.labelling import labelled_dataset, provenance
+from lumped.quasi_static.contacts import mesh_elements
+from lumped.quasi_static.elements import mean_of_pairs
+from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.pair import GearPair
+from lumped.shafts.pair import ShaftedPair, shafted_pair
+from lumped.typing import FloatArray
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: Frequencies are from zero to this [Hz].
+_HIGHEST = 1e7
+#: Parts of the machine that hold energy; the last two have no mass.
+PARTS = (
+    "pinion shaft bending x",
+    "pinion shaft bending y",
+    "gear shaft bending x",
+    "gear shaft bending y",
+    "torsion",
+    "mesh",
+    "bearings",
+)
+_MESH, _BEARINGS = 5, 6
+#: From which share of the elastic energy a mode is the mesh's, and of the moving mass, of one shaft or plane.
+_MUCH, _MOST = 0.3, 0.75
+
+
+def condensed_bearings(pair: AnyPair, frequency: float = 0.0) -> GearPair:
+    """Return the pair with bearings, masses and inertias that stand for its shafts at one frequency.
+
+    Parameters
+    ----------
+    pair : a gear pair with shafts
+    frequency : at which the gears' centres and rims feel the same resistance as on their shafts [Hz]. At 0
+        all inertia that turns with a gear is its own; at a mesh frequency far above the couplings, that of
+        motor and load is not
+
+    Returns
+    -------
+    GearPair without ``shafts``; a gear has one mass, that along the line of action, and off it a stiffness
+    that gives the dynamic stiffness there. Dampers are those that take the same power at the frequency.
+
+    Raises
+    ------
+    ParameterError : no shafts, a frequency out of range, or one between a natural frequency of a shaft and
+        the node above it, where no positive spring and inertia resist as the shaft does
+    """
+    pair = load_gear_pair(pair)
+    frequency = real_number("frequency", frequency, 0.0, _HIGHEST)
+    shafted = shafted_pair(pair)
+    omega = 2.0 * math.pi * frequency
+    changes: dict[str, float | None] = {"shafts": None}
+    for which, name in enumerate(("pinion", "gear")):
+        inertia = _seen_inertia(shafted, which, omega)
+        along, mass, damping = _seen(shafted, 2 + which, omega)
+        off, own_mass, off_damping = _seen(shafted, 4 + which, omega)
+        off += omega**2 * (mass - own_mass)
+        values = {"along": along, "off": off, "inertia": inertia}
+        wrong = [f"{key} {value:.3g}" for key, value in values.items() if not value > 0.0]
+        if wrong:
+            allowed = f"a frequency at which the {name}'s shaft resists like a spring and an inertia"
+            action = f"There, {', '.join(wrong)}: choose another one, or take supports='shafts'."
+            raise refuse("frequency", f"{frequency:g} Hz", allowed, action)
+        changes |= {
+            f"{name}.mass": mass,
+            f"{name}.inertia": inertia,
+            f"bearings.{name}.loa_stiffness": along,
+            f"bearings.{name}.oloa_stiffness": off,
+            f"bearings.{name}.loa_damping_ratio": min(damping / (2.0 * math.sqrt(along * mass)), 2.0),
+            f"bearings.{name}.oloa_damping_ratio": min(off_damping / (2.0 * math.sqrt(off * mass)), 2.0),
+        }
+    return pair.with_(changes)
+
+
+def _seen(shafted: ShaftedPair, row: int, omega: float) -> tuple[float, float, float]:
+    """Stiffness [N/m], mass [kg] and damping [N s/m] that a gear's centre feels, teeth apart."""
+    shape = shafted.gears[row]
+    own = np.flatnonzero(shape)
+    shape, squares = shape[own], shafted.frequencies[own] ** 2
+    receptance = float(np.sum(shape**2 / (squares - omega**2)))
+    stiffness = 1.0 / receptance
+    mass = stiffness**2 * float(np.sum((shape / (squares - omega**2)) ** 2))
+    moved = stiffness * shape / (squares - omega**2)
+    damping = float(moved @ shafted.damping[np.ix_(own, own)] @ moved)
+    return stiffness + omega**2 * mass, mass, damping
+
+
+def _seen_inertia(shafted: ShaftedPair, which: int, omega: float) -> float:
+    """Inertia that the rim of a gear feels [kg m^2], from all modes of its shaft's twist and its turn."""
+    shape, squares = shafted.gears[which], shafted.frequencies**2
+    elastic = squares > 0.0
+    rigid = float(np.sum(shape[~elastic] ** 2))
+    if omega == 0.0:
+        return 1.0 / rigid
+    return 1.0 / (rigid - omega**2 * float(np.sum(shape[elastic] ** 2 / (squares[elastic] - omega**2))))
+
+
+def shaft_modes(pair: AnyPair) -> xr.Dataset:
+    """Natural frequencies of a pair on its shafts, by increasing frequency.
+
+    The mesh has its mean stiffness and damping over the cycle and no friction; gyroscopic moments are those
+    of the operating speed.
+
+    Parameters
+    ----------
+    pair : a gear pair with shafts
+
+    Returns
+    -------
+    xarray.Dataset over ``mode`` and ``part``: ``natural_frequency`` [Hz], ``damping_ratio``,
+    ``elastic_share`` and ``kinetic_share`` of the mode's mean energies, and the coordinate ``name``, such as
+    "pinion shaft bending along x". Overdamped motions are left out.
+
+    Raises
+    ------
+    ParameterError : the pair has no shafts
+    """
+    pair = load_gear_pair(pair)
+    shafts, elements, g = shafted_pair(pair), mesh_elements(pair), pair.geometry
+    k, c = (mean_of_pairs(law, g.base_pitch) for law in (elements.stiffness, elements.damping))
+    m, squares = shafts.frequencies.size - 1, shafts.frequencies[1:] ** 2  # without the common rotation
+    damping = (shafts.damping + g.omega_pinion * shafts.gyroscopic)[1:, 1:]
+    u = shafts.deflection[1:]
+    a = np.zeros((2 * m, 2 * m))
+    a[:m, m:] = np.eye(m)
+    a[m:, :m] = -np.diag(squares) - k * np.multiply.outer(u, u)
+    a[m:, m:] = -damping - c * np.multiply.outer(u, u)
+    values, vectors = np.linalg.eig(a)
+    kept = np.flatnonzero(values.imag > 0.0)
+    kept = kept[np.argsort(np.abs(values[kept]), kind="stable")]
+    elastic, kinetic = _shares(shafts, k * np.abs(u @ vectors[:m, kept]) ** 2, vectors[:m, kept])
+    names = [_name(*parts) for parts in zip(elastic, kinetic, strict=True)]
+    order = ("mode", "part")
+    return labelled_dataset(
+        {
+            "natural_frequency": ("mode", np.abs(values[kept]) / (2.0 * math.pi), "Hz", "natural frequency"),
+            "damping_ratio": ("mode", -values[kept].real / np.abs(values[kept]), "1", "damping ratio"),
+            "elastic_share": (order, elastic, "1", "share of the elastic energy"),
+            "kinetic_share": (order, kinetic, "1", "share of the kinetic energy"),
+        },
+        {"mode": (np.arange(1, kept.size + 1), "1", "mode")},
+        provenance(pair) | {"model": "lumped", "supports": "shafts"},
+    ).assign_coords(part=list(PARTS), name=("mode", names))
+
+
+def _name(elastic: FloatArray, kinetic: FloatArray) -> str:
+    """Plain name of a mode from its shares of energy."""
+    if elastic[_MESH] >= _MUCH:
+        return "tooth mesh"
+    if kinetic[4] > 0.5:
+        return "torsion"
+    bending = kinetic[:4].reshape(2, 2) / kinetic[:4].sum()
+    shafts, planes = bending.sum(axis=1), bending.sum(axis=0)
+    owner = ("pinion shaft", "gear shaft")[int(shafts.argmax())] if shafts.max() > _MOST else "both shafts"
+    if planes.max() <= _MOST:
+        return f"{owner} whirling"
+    motion = "in bearings" if elastic[_BEARINGS] > 0.5 else "bending"
+    return f"{owner} {motion} along {'xy'[int(planes.argmax())]}"
+
+
+def _shares(shafted: ShaftedPair, in_mesh: FloatArray, shapes: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Shares of elastic and of kinetic energy, (modes, parts), of shapes (m, modes)."""
+    size = np.abs(shapes) ** 2
+    bearings = np.einsum("bdm,mj->bdj", shafted.bearings[:, :, 1:], shapes)
+    springs = shafted.bearing_stiffness[:, :, None] * np.abs(bearings) ** 2
+    of_gear = np.array([name.startswith("gear") for name in shafted.bearing_names])
+    elastic, kinetic = np.zeros((2, len(PARTS), shapes.shape[1]))
+    owner, kind = shafted.shaft[1:], shafted.kind[1:]
+    squares = shafted.frequencies[1:, None] ** 2
+    for shaft in (0, 1):
+        for plane in (0, 1):
+            own, part = (owner == shaft) & (kind == plane), 2 * shaft + plane
+            kinetic[part] = size[own].sum(axis=0)
+            in_bearings = springs[of_gear == bool(shaft), plane].sum(axis=0)
+            elastic[part] = np.maximum((squares[own] * size[own]).sum(axis=0) - in_bearings, 0.0)
+    twist = kind == 2
+    kinetic[4], elastic[4] = size[twist].sum(axis=0), (squares[twist] * size[twist]).sum(axis=0)
+    elastic[_MESH] = in_mesh
+    elastic[_BEARINGS] = springs.sum(axis=(0, 1))
+    return (elastic / elastic.sum(axis=0)).T, (kinetic / kinetic.sum(axis=0)).T
