@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 import floquet
 import lumped
-from validation.plots.jumps import jump_map_figure
+from validation.plots.contact_loss import jump_map_figure
 
 #: Closer where the folds move fast [N m].
 TORQUES = (25.0, 33.0, 41.0, 70.0, 100.0, 116.0, 120.0, 126.0, 136.0, 150.0)

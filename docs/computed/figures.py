@@ -19,9 +19,9 @@ from lumped.path_of_contact import friction_profile
 from validation.files.output import write_dataset
 from validation.interactive.page import render
 from validation.interactive.results import compute
-from validation.plots.path_of_contact import friction_laws_figure, path_figure
+from validation.plots.mesh import friction_laws_figure, path_figure
+from validation.plots.stability import stability_figure
 from validation.plots.style import BLUE, DASHES, GREY, LINES, RED, legend, new_figure
-from validation.plots.tongues import tongue_chart_figure
 
 
 def _pair() -> GearPair:
@@ -65,10 +65,10 @@ def tongues() -> str:
     """Stability chart over speed and mesh damping."""
     pair = _pair().with_(friction__law="coulomb", friction__coefficient=0.05)
     axes = {"speed_rpm": np.linspace(2000.0, 20000.0, 361), "damping_ratio": np.linspace(0.002, 0.06, 59)}
-    point = (4875.0, pair.mesh.damping_ratio)
+    at = {"speed_rpm": 4875.0, "damping_ratio": pair.mesh.damping_ratio}
     traced = stability_margins(pair, (2000.0, 20000.0)).tongues
     chart = stability_chart(pair, axes, rtol=1e-8, store="radius")
-    return svg(tongue_chart_figure(chart, "damping_ratio", traced, point=point))
+    return svg(stability_figure(chart, at, traced))
 
 
 def torque_law() -> str:

@@ -128,7 +128,7 @@ from validation.reporting import build, report
 from validation.reporting.blocks import Picture
 
 build.QUICK = dataclasses.replace(build.QUICK, samples=64, cycles=6, sweep_speeds=4)
-build.CHAPTERS = build.CHAPTERS[-3:]  # the others are computed by other tests
+build.CHAPTERS = build.CHAPTERS[-2:]  # the others are computed by other tests
 build.sentence = build.headline = lambda _: "Loud."
 build.answer_figure = lambda _: Picture("answer", "Loud.", lambda: new_figure()[0])
 made = report("nasa_28_28", "out", quick=True)
@@ -137,7 +137,6 @@ assert made.verdicts == {"loudness": "ok"}
 assert data["chapters"]["loudness"]["level"]["samples"]["value"] == 64
 assert [answer["chapter"] for answer in data["answers"]] == ["loudness"]
 assert "Loudness" in Path("out/index.html").read_text()
-assert "Loudness" in Path("out/report.junit.xml").read_text()
 assert Path("out/figures/loudness.svg").is_file() and xr.open_dataset("out/data/loudness.nc").dte.size == 64
 """
 COMMAND = {

@@ -100,14 +100,14 @@ def floquet(
 
 def _print(source: Path, found: Monodromy) -> None:
     from cmath import phase
+    from math import degrees
 
     from validation.reporting.formatting import number
 
-    shown = table(f"{source.name}: multipliers", ">modulus", ">phase [deg]", ">bound on the error")
-    rows = zip(found.multipliers.tolist(), found.multiplier_errors.tolist(), strict=True)
-    for z, error in list(rows)[:_SHOWN]:
-        shown.add_row(f"{abs(z):.12g}", f"{57.29577951308232 * phase(z):.4f}", number(error, 2))
-    stdout().print(shown)
+    found_all = zip(found.multipliers.tolist(), found.multiplier_errors.tolist(), strict=True)
+    rows = [(f"{abs(z):.12g}", f"{degrees(phase(z)):.4f}", number(error, 2)) for z, error in found_all]
+    headings = (">modulus", ">phase [deg]", ">bound on the error")
+    stdout().print(table(f"{source.name}: multipliers", *headings, rows=rows[:_SHOWN]))
     if found.multipliers.size > _SHOWN:
         stdout().print(f"and {found.multipliers.size - _SHOWN} smaller ones")
     stdout().print(

@@ -106,29 +106,17 @@ def _show(found: Evaluation) -> None:
         f"± {found.alignment.standard_error:.1g} mesh cycles, "
         f"{100 * found.alignment.share_explained:.1f} % of the variation explained"
     )
-    shown = table(
-        f"measured against {found.prediction.pair.name}, {found.prediction.pair.friction.law} friction",
-        "channel",
-        ">bias",
-        ">rms",
-        ">rms/span [%]",
-        ">95 % interval",
-        ">correlation",
-    )
-    shown.columns[0].no_wrap = True
+    rows = []
     for name in found.metrics["channel"].to_numpy():
         row = {str(key): float(value) for key, value in found.metrics.sel(channel=name).data_vars.items()}
         unit = str(found.points["units"].sel(channel=name).item())
         low, high = 100 * row["relative_rms_low"], 100 * row["relative_rms_high"]
-        shown.add_row(
-            str(name),
-            quantity(row["bias"], unit, 3),
-            quantity(row["rms"], unit, 3),
-            number(100 * row["relative_rms"], 3),
-            f"{number(low, 3)} to {number(high, 3)}",
-            number(row["correlation"], 4),
-        )
-    console.print(shown)
+        sizes = (quantity(row[key], unit, 3) for key in ("bias", "rms"))
+        share, between = number(100 * row["relative_rms"], 3), f"{number(low, 3)} to {number(high, 3)}"
+        rows.append((str(name), *sizes, share, between, number(row["correlation"], 4)))
+    title = f"measured against {found.prediction.pair.name}, {found.prediction.pair.friction.law} friction"
+    headings = (">bias", ">rms", ">rms/span [%]", ">95 % interval", ">correlation")
+    console.print(table(title, "channel", *headings, rows=rows))
     for one in found.found:
         console.print(f"identified: {one.text}")
         console.print(
@@ -144,7 +132,7 @@ def _write(found: Evaluation, folder: Path) -> None:
 
     from validation.files.folder import MEASUREMENT
     from validation.files.output import write_dataset
-    from validation.plots.overlay import overlay_figure
+    from validation.plots.motion import overlay_figure
     from validation.plots.style import save
 
     write_dataset(found.points, folder / "overlay.nc")

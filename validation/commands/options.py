@@ -26,49 +26,29 @@ DEFAULT_PAIR = "nasa_28_28"
 _LARGEST_COUNT = 5000
 
 PairArgument = Annotated[
-    str,
-    typer.Argument(
-        metavar="PAIR",
-        help="Gear pair: the name of a preset (see 'spurcheck presets') or a parameter file (TOML).",
-    ),
+    str, typer.Argument(metavar="PAIR", help="Preset (see 'spurcheck presets') or parameter file (TOML).")
 ]
-Speed = Annotated[
-    str | None,
-    typer.Option("--speed", help="Pinion speed; a bare number is rpm, or write the unit: '200 rad/s'."),
-]
-Torque = Annotated[
-    str | None,
-    typer.Option("--torque", help="Pinion torque; a bare number is N m, or write the unit: '200 lbf*in'."),
-]
+Speed = Annotated[str | None, typer.Option("--speed", help="Pinion speed [rpm], or '200 rad/s'.")]
+Torque = Annotated[str | None, typer.Option("--torque", help="Pinion torque [N m], or '200 lbf*in'.")]
 Range = Annotated[
     str | None,
     typer.Option(
         "--range",
         metavar="FROM..TO",
-        help="Pinion speeds to cover: 200..3000 (rpm) or '10..50 Hz'; default: from near zero to about twice "
-        "the operating speed.",
+        help="Pinion speeds: 200..3000 (rpm) or '10..50 Hz'; default: to about twice the operating speed.",
     ),
 ]
-Law = Annotated[
-    str | None,
-    typer.Option(
-        "--law",
-        help="Friction law: I to V, none, or a name such as coulomb; an unknown name lists them all.",
-    ),
-]
+Law = Annotated[str | None, typer.Option("--law", help="Friction law: I to V, none, or a name: coulomb.")]
+SupportsName = Literal["springs", "shafts"]
 Supports = Annotated[
-    Literal["springs", "shafts"],
-    typer.Option(
-        help="What holds the gears: the springs of 'bearings', or the elastic shafts of the section 'shafts'."
-    ),
+    SupportsName, typer.Option(help="The springs of 'bearings', or the elastic shafts of 'shafts'.")
 ]
 Settings = Annotated[
     list[str] | None,
     typer.Option(
         "--set",
         metavar="FIELD=VALUE",
-        help="Change any parameter, as often as needed: --set mesh.damping_ratio=0.03 "
-        "--set 'lubricant.viscosity=8 mPa*s'.",
+        help="Change any parameter, as often as needed: --set 'lubricant.viscosity=8 mPa*s'.",
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print the numbers as JSON (SI units) and nothing else.")]
@@ -91,34 +71,25 @@ def gear_pair(
     settings: list[str] | None,
     speed_range: str | None = None,
 ) -> GearPair:
-    """Load a gear pair and apply the overrides of the command line.
-
-    Raises
-    ------
-    ParameterError : everything that a parameter file could be refused for, and a --set without '='
-    """
+    """Load a gear pair and apply the options of the command line."""
     from lumped import load_gear_pair
     from lumped.errors import ParameterError
     from validation.commands.terminal import note
     from validation.validity.plausibility import doubts
 
-    changes: dict[str, Any] = {}
-    options: dict[str, str] = {}
-    for path, text in set_fields(settings).items():
-        changes[path] = value_of(text)
-        options[path] = f"--set {path}"
-    for option, path, text_or_none in (
+    asked = [(f"--set {path}", path, text) for path, text in set_fields(settings).items()]
+    for option, path, text in (
         ("--speed", "operating.pinion_speed", speed),
         ("--torque", "operating.pinion_torque", torque),
         ("--law", "friction.law", law),
         ("--range", "operating.speed_range", speed_range),
     ):
-        if text_or_none is not None:
-            changes[path] = value_of(text_or_none)
-            options[path] = option
+        if text is not None:
+            asked.append((option, path, text))
+    options = {path: option for option, path, _ in asked}
     pair = load_gear_pair(source)
     try:
-        pair = pair.with_(changes)
+        pair = pair.with_({path: value_of(text) for _, path, text in asked})
     except ParameterError as error:
         raise by_option(error, options, error.source.removesuffix(" varied")) from None
     for doubt in doubts(pair):
@@ -127,12 +98,7 @@ def gear_pair(
 
 
 def set_fields(settings: list[str] | None) -> dict[str, str]:
-    """Return field path -> text of its value of every --set.
-
-    Raises
-    ------
-    ParameterError : a --set without '='
-    """
+    """Return field path -> text of its value of every --set."""
     from lumped.errors import refuse
 
     found: dict[str, str] = {}
@@ -144,13 +110,8 @@ def set_fields(settings: list[str] | None) -> dict[str, str]:
     return found
 
 
-def check_supports(pair: GearPair, supports: Literal["springs", "shafts"]) -> None:
-    """Refuse shafts that the pair does not have, before any work.
-
-    Raises
-    ------
-    ParameterError : "shafts" of a pair without them
-    """
+def check_supports(pair: GearPair, supports: SupportsName) -> None:
+    """Refuse shafts that the pair does not have, before any work."""
     from lumped.errors import refuse
 
     if supports == "shafts" and pair.shafts is None:
@@ -198,18 +159,7 @@ def write_result(target: Path, data: xr.Dataset, draw: Callable[[], Figure], *, 
 def axis_values(
     text: str, known: Mapping[str, ChartAxis], option: str = "--axis"
 ) -> tuple[str, NDArray[np.float64]]:
-    """Name and values of an axis written NAME=FROM:TO:COUNT.
-
-    Parameters
-    ----------
-    text : what was written
-    known : axes to choose from, name -> axis
-    option : name of the option, for the refusal
-
-    Raises
-    ------
-    ParameterError : an unknown name, or values that are no axis
-    """
+    """Name and values of an axis written NAME=FROM:TO:COUNT; ``option`` is named in a refusal."""
     import numpy as np
 
     from lumped.errors import ParameterError, refuse
@@ -250,18 +200,7 @@ def axes_values(texts: list[str], known: Mapping[str, ChartAxis]) -> dict[str, N
 
 
 def number_in(option: str, text: str, unit: str) -> float:
-    """Number in a unit, of text that may carry another one of its kind.
-
-    Parameters
-    ----------
-    option : name of the option, for the refusal
-    text : what was written
-    unit : in which the number is wanted
-
-    Raises
-    ------
-    ParameterError : no finite number of that kind
-    """
+    """Number in a unit, of text that may carry another one of its kind; ``option`` is named in a refusal."""
     from lumped.errors import refuse
     from lumped.fields.units import to_si, to_stated
 

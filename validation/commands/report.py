@@ -11,12 +11,10 @@ from validation.commands import options as opt
 from validation.commands.terminal import FAILED, guarded, progress_bar, stdout
 
 if TYPE_CHECKING:
-    from validation.reporting.compare import Comparison
+    from validation.reporting.gate import Comparison
 
 #: Changes listed in the terminal.
 _MOST = 30
-#: Changed parameters listed there.
-_INPUTS = 5
 
 
 @guarded
@@ -46,11 +44,10 @@ def report(
 ) -> None:
     """Write the verification report of a gear pair.
 
-    One folder: index.html (opens in any browser, without network), report.json (every number),
-    report.junit.xml (every verdict as a test case), summary.md, figures (SVG) and data (NetCDF). It
-    says what the lumped model predicts, whether the multibody model agrees,
-    whether the motion is stable over speed, and where the model stops being valid. The exit code is 1 when
-    any verdict fails.
+    One folder: index.html (opens in any browser, without network), report.json (every number), figures (SVG)
+    and data (NetCDF). It says what the lumped model predicts, whether the multibody model agrees, whether the
+    motion is stable over speed, and where the model stops being valid. The exit code is 1 when any verdict
+    fails.
 
     [bold]Examples[/bold]
 
@@ -89,18 +86,12 @@ def report(
 
 def _show_changes(comparison: Comparison) -> None:
     console = stdout()
-    failed, changed = len(comparison.regressions), len(comparison.changes)
     console.print(
         f"\n{comparison.compared} values compared with the earlier report of {comparison.old_name}: "
-        f"{changed} changed, {failed} past tolerance"
+        f"{len(comparison.changes)} changed, {len(comparison.regressions)} past tolerance"
     )
-    inputs = [change for change in comparison.changes if change.path.startswith("input/")]
-    if inputs:
-        more = f" and {len(inputs) - _INPUTS} more" if len(inputs) > _INPUTS else ""
-        listed = "; ".join(map(str, inputs[:_INPUTS]))
-        console.print(f"  the parameters differ: {listed}{more}")
     for change in comparison.changes[:_MOST]:
         mark = "past tolerance" if change.fails else "within"
         console.print(f"  {mark}  {change}", style="red" if change.fails else None)
     if len(comparison.changes) > _MOST:
-        console.print(f"  and {len(comparison.changes) - _MOST} more: see summary.md and report.json")
+        console.print(f"  and {len(comparison.changes) - _MOST} more: see report.json")

@@ -35,18 +35,15 @@ def response(
     periods: Annotated[int, typer.Option(help="Look for motions that repeat after 1 to so many cycles.")] = 3,
     seeds: Annotated[
         int | None,
-        typer.Option(
-            help="Speeds at which runs settle, to find motions apart from the others; default 40, with --map "
-            "none, else so many for each value."
-        ),
+        typer.Option(help="Runs that settle, to find motions apart from the others; default 40, of a map 0."),
     ] = None,
     over: Annotated[
         str | None,
         typer.Option(
             "--map",
             metavar="NAME[=FROM:TO:COUNT]",
-            help="Map the jumps over speed and torque [N m], damping_ratio (mesh) or tip_relief, the amount "
-            f"[um], and find what removes them; default {_VALUES} values around the pair's own.",
+            help="Map the jumps over speed and torque [N m], damping_ratio (mesh) or tip_relief [um], and "
+            f"find what removes them; default {_VALUES} values around the pair's own.",
         ),
     ] = None,
     speeds: Annotated[int, typer.Option(help="With --map: number of speeds.")] = 800,
@@ -54,7 +51,7 @@ def response(
         int, typer.Option(help="Speeds of multibody sweeps up and down, drawn as points; some seconds each.")
     ] = 0,
     back_side: Annotated[
-        bool, typer.Option("--back-side", help="Also let the back sides of the teeth touch; takes longer.")
+        bool, typer.Option("--back-side", help="Also let the back sides of the teeth touch.")
     ] = False,
     torque: opt.Torque = None,
     speed_range: opt.Range = None,
@@ -115,7 +112,7 @@ def response(
     if not back_side and any(o.reaches_back_side for o in found.at(operating_rpm(gear_pair))):
         note("a motion at the operating speed is larger than the backlash: try --back-side.")
     if target is not None:
-        from validation.plots.response import response_figure
+        from validation.plots.contact_loss import response_figure
 
         linear, runs = _others(gear_pair, found.speeds_rpm, multibody)
         draw = partial(response_figure, found.dataset, linear, runs)
@@ -153,28 +150,30 @@ def _print(pair: GearPair, found: ResponseBranches) -> None:
         words = {1: "", 0: f", {kind}"}.get(n, f", repeats after {n} cycles")
         return f"{quantity(rms, 'm', 3)} rms{words}; load {quantity(load, 'N', 3)}"
 
-    shown = table(f"{pair.name}: jumps", "pinion speed", "running", "from", "to")
-    for jump in found.jumps:
-        shown.add_row(
+    rows = [
+        (
             f"{number(jump.speed_rpm, 5)} rpm",
             "up" if jump.rising else "down",
             motion(jump.dte_rms, jump.largest_load, "periodic", jump.n),
             motion(jump.dte_rms_after, jump.largest_load_after, jump.after, jump.n_after),
         )
-    stdout().print(shown if found.jumps else "no jumps: one stable motion leads to the next")
+        for jump in found.jumps
+    ]
+    shown = table(f"{pair.name}: jumps", "pinion speed", "running", "from", "to", rows=rows)
+    stdout().print(shown if rows else "no jumps: one stable motion leads to the next")
     if found.contact_kept:
         runs = len(found.response.settled)
-        stdout().print(
-            f"contact is never lost: {runs} runs, from starts far from these motions, came to no other one"
-            if runs
-            else "contact is never lost in these motions; others were not looked for (--seeds)"
+        looked = (
+            f"{runs} runs from far starts found no other" if runs else "no others were looked for (--seeds)"
         )
+        stdout().print(f"contact is never lost in these motions; {looked}")
     for one in found.restless:
-        words = f"repeats after {one.n} cycles" if one.n else one.kind
+        words = (
+            "is chaotic" if one.kind == "chaos" else f"repeats after {one.n} cycles" if one.n else one.kind
+        )
         stdout().print(
             f"{number(one.low_rpm, 5)} to {number(one.high_rpm, 5)} rpm: no stable motion of few cycles was "
-            f"found; in the middle the run {'is chaotic' if one.kind == 'chaos' else words}"
-            f", {quantity(one.dte_rms, 'm', 3)} rms"
+            f"found; in the middle the run {words}, {quantity(one.dte_rms, 'm', 3)} rms"
         )
 
 
@@ -207,7 +206,7 @@ def _map(
     else:
         _print_map(pair, found, name, removed)
     if target is not None:
-        from validation.plots.jumps import jump_map_figure
+        from validation.plots.contact_loss import jump_map_figure
 
         opt.write_result(target, found, lambda: jump_map_figure(found), force=force)
 
@@ -246,20 +245,16 @@ def _print_map(pair: GearPair, found: xr.Dataset, name: str, removed: tuple[Jump
 
     unit = found[name].attrs["units"]
     unit = "" if unit == "1" else f" {unit}"
-    title = f"{pair.name}: jumps over {found[name].attrs['long_name']}"
-    shown = table(title, f">{name}{unit and f' [{unit.strip()}]'}", "up at [rpm]", "down at [rpm]", ">share")
+    ways, speeds = found["jump_rising"].to_numpy().astype(bool), found["jump_speed_rpm"].to_numpy()
+    rows = []
     for value in found[name].to_numpy():
         here = found["jump_" + name].to_numpy() == value
-        ways = found["jump_rising"].to_numpy().astype(bool)
-        speeds = found["jump_speed_rpm"].to_numpy()
+        up, down = (", ".join(number(float(s), 5) for s in speeds[here & (ways == w)]) for w in (True, False))
         several = float((found["motions"].sel({name: value}) > 1).mean())
-        shown.add_row(
-            number(float(value), 3),
-            *(", ".join(number(float(s), 5) for s in speeds[here & (ways == up)]) for up in (True, False)),
-            f"{100.0 * several:.0f} %",
-        )
-    stdout().print(shown)
-    stdout().print("share: of the speeds, where several motions exist side by side")
+        rows.append((number(float(value), 3), up, down, f"{100.0 * several:.0f} %"))
+    title = f"{pair.name}: jumps over {found[name].attrs['long_name']}; share of speeds with several motions"
+    heading = f">{name}{unit and f' [{unit.strip()}]'}"
+    stdout().print(table(title, heading, "up at [rpm]", "down at [rpm]", ">share", rows=rows))
     if not removed:
         stdout().print("the pair itself has no folds: nothing is to be removed")
     for one in removed:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -63,29 +63,16 @@ def simulate(
     if steady and model == "multibody":
         raise refuse("--steady", "with --model multibody", "the lumped model", "Leave one of the two out.")
     with progress_bar(f"{model} model") as tell:
+        common: dict[str, Any] = {"samples_per_cycle": samples, "supports": supports}
         if steady:
-            result = lumped.steady_state(gear_pair, samples_per_cycle=samples, supports=supports)
+            result = lumped.steady_state(gear_pair, **common)
         elif model == "lumped":
-            result = lumped.simulate(
-                gear_pair,
-                cycles,
-                samples_per_cycle=samples,
-                initial=initial,
-                supports=supports,
-                progress=tell,
-            )
+            result = lumped.simulate(gear_pair, cycles, initial=initial, progress=tell, **common)
         else:
             import multibody
 
-            result = multibody.simulate(
-                gear_pair,
-                cycles,
-                fidelity=fidelity,
-                samples_per_cycle=samples,
-                initial=initial,
-                supports=supports,
-                progress=tell,
-            )
+            common |= {"fidelity": fidelity, "initial": initial}
+            result = multibody.simulate(gear_pair, cycles, progress=tell, **common)
     from lumped.model.results import cycle_peak_to_peak, load_range
     from validation.reporting.formatting import number, quantity
     from validation.validity.flags import contact_loss
@@ -105,15 +92,14 @@ def simulate(
         "mesh_efficiency": float(result.attrs["mesh_efficiency"]),
         "brake_torque": float(result.attrs["brake_torque"]),
     }
-    # The paper's brake pays for sliding alone; what else is lost nobody pays.
-    paper = form == "prescribed"
-    if paper and "power_unpaid" in result.attrs:
+    # With prescribed contact the brake torque balances sliding alone.
+    prescribed = form == "prescribed"
+    if prescribed and "power_unpaid" in result.attrs:
         numbers["power_unpaid"] = float(result.attrs["power_unpaid"])
     if as_json:
         print_json({"gear_pair": gear_pair.name, "model": model, "supports": supports} | numbers)
     else:
-        shown = table(f"{gear_pair.name} on {supports}, last mesh cycle", "quantity", ">value")
-        for name, value in {
+        rows = {
             "transmission error, peak to peak": quantity(numbers["dte_peak_to_peak"], "m", 3, measured=True),
             "transmission error, mean": quantity(numbers["dte_mean"], "m"),
             "largest load of a tooth pair": quantity(largest, "N", 3, measured=True),
@@ -121,25 +107,24 @@ def simulate(
                 smallest, "N", 3, measured=True
             ),
             "largest load over static load": number(numbers["load_factor"], 3, measured=True),
-            f"mesh efficiency{', sliding alone' * paper}": f"{100.0 * numbers['mesh_efficiency']:.2f} %",
+            f"mesh efficiency{', sliding alone' * prescribed}": f"{100.0 * numbers['mesh_efficiency']:.2f} %",
             "brake torque that holds the speed": quantity(numbers["brake_torque"], "N m", 6),
-        }.items():
-            shown.add_row(name, value)
+        }
         if "power_unpaid" in numbers:
-            shown.add_row("losses that no torque pays", quantity(numbers["power_unpaid"], "W"))
-        stdout().print(shown)
+            rows["losses that the torques do not balance"] = quantity(numbers["power_unpaid"], "W")
+        title = f"{gear_pair.name} on {supports}, last mesh cycle"
+        stdout().print(table(title, "quantity", ">value", rows=rows.items()))
     separation = contact_loss(gear_pair, g, last)
     if separation.state != "ok" and (model == "lumped" or fidelity == "linear"):
         note(
-            f"teeth would separate: {separation.detail}. This model lets them pull instead, so the motion is "
-            "not to be relied on. The exact multibody model lets them separate (--model multibody); more "
-            "torque or damping keeps them in contact."
+            f"contact loss: {separation.detail}. Here the teeth pull instead, so the motion is not to be "
+            "relied on. Use --model multibody, or more torque or damping."
         )
     radius = float(result.attrs.get("spectral_radius", 0.0))
     if radius > 1.0:
         note(
-            f"this periodic motion is unstable: a disturbance grows {number(radius)} times in a mesh cycle, "
-            "so a pair does not stay in it. See 'spurcheck stability', or raise the damping."
+            f"this periodic motion is unstable: a disturbance grows {number(radius)} times in a mesh cycle. "
+            "See 'spurcheck stability', or raise the damping."
         )
     if target is not None:
         from validation.plots.motion import history_figure

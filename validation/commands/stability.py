@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from floquet.gear.multipliers import GearPairMultipliers
     from floquet.gear.tongues import LabelledRegion, StabilityMargins, TongueMargin
     from lumped import GearPair
     from lumped.typing import FloatArray
@@ -58,16 +57,15 @@ def stability(
             metavar="NAME=FROM:TO:COUNT",
             help="Axis: speed_rpm, damping_ratio (mesh), friction_coefficient, torque [N m], "
             "stiffness_variation, contact_ratio, bearing_stiffness [N/m]; ends may carry a unit: "
-            "speed_rpm=10Hz:50Hz:9. Give it twice for a chart. "
-            "Default of a chart: speed and damping ratio.",
+            "speed_rpm=10Hz:50Hz:9. Twice for a chart; default speed and damping ratio.",
         ),
     ] = None,
     tongues: Annotated[
         bool,
         typer.Option(
             "--tongues",
-            help="Name the unstable regions of the chart by mode pair and order; over speed and damping also "
-            "trace them and find the damping that closes each.",
+            help="Name the unstable regions by mode pair and order; over speed and damping also find the "
+            "damping that closes each.",
         ),
     ] = False,
     operating_range: Annotated[
@@ -114,13 +112,22 @@ def stability(
     opt.check_supports(gear_pair, supports)
     _check(view, grid, targets, tongues, supports)
     found = gear_pair_multipliers(gear_pair, supports=supports)
+    margin = 1.0 - found.spectral_radius
     if as_json:
-        radius = found.spectral_radius
-        point = {"verdict": found.verdict, "spectral_radius": radius, "error": found.error}
-        point |= {"certificate": found.certificate, "margin": 1.0 - radius}
+        point = {"verdict": found.verdict, "spectral_radius": found.spectral_radius, "error": found.error}
+        point |= {"certificate": found.certificate, "margin": margin}
         print_json({"gear_pair": gear_pair.name, "supports": supports} | point)
     else:
-        _print_point(f"{gear_pair.name} on {supports}", found)
+        from validation.reporting.formatting import number
+
+        rows = {
+            "verdict": found.verdict,
+            "largest multiplier": f"{found.spectral_radius:.8f}",
+            "bound on its error": f"{number(found.error, 2)} ({found.certificate})",
+            "margin, 1 - largest multiplier": number(margin),
+        }
+        title = f"{gear_pair.name} on {supports}: operating point"
+        stdout().print(table(title, "quantity", ">value", rows=rows.items()))
     if targets or axes or tongues or view != "chart":
         if view == "chart":
             data, draw = _chart(gear_pair, grid, marked, tongues, supports)
@@ -136,11 +143,7 @@ def stability(
 
 
 def _check(
-    view: str,
-    axes: Mapping[str, FloatArray],
-    targets: list[Path],
-    tongues: bool,
-    supports: Literal["springs", "shafts"],
+    view: str, axes: Mapping[str, FloatArray], targets: list[Path], tongues: bool, supports: opt.SupportsName
 ) -> None:
     """Refuse what cannot be shown, before any work."""
     from lumped.errors import refuse
@@ -171,18 +174,6 @@ def _check(
         raise refuse("--axis", "none", "an axis other than speed_rpm with --supports shafts", action)
 
 
-def _print_point(pair: str, found: GearPairMultipliers) -> None:
-    from validation.reporting.formatting import number
-
-    shown = table(f"{pair}: operating point", "quantity", ">value")
-    shown.add_row("verdict", found.verdict)
-    shown.add_row("largest multiplier", f"{found.spectral_radius:.8f}")
-    shown.add_row("bound on its error", number(found.error, 2))
-    shown.add_row("which is", found.certificate)
-    shown.add_row("margin, 1 - largest multiplier", number(1.0 - found.spectral_radius))
-    stdout().print(shown)
-
-
 def _range(text: str) -> Speeds:
     """Range of speeds [rpm] written FROM:TO."""
     from lumped.errors import refuse
@@ -201,13 +192,12 @@ def _chart(
     axes: Mapping[str, FloatArray],
     marked: Speeds | None,
     tongues: bool,
-    supports: Literal["springs", "shafts"],
+    supports: opt.SupportsName,
 ) -> View:
     from floquet import predicted_lines
     from floquet.gear.axes import GEAR_AXES, chart_axes
     from floquet.gear.chart import stability_chart
-    from validation.plots.stability import mark_operating_range, stability_figure, stability_line_figure
-    from validation.plots.tongues import tongue_chart_figure
+    from validation.plots.stability import stability_figure
 
     grid = dict(axes) or chart_axes(pair, *_CHART)
     with progress_bar("stability chart") as tell:
@@ -223,7 +213,7 @@ def _chart(
         + f"\nlargest bound on an error {float(chart['error'].max()):.1e}"
     )  # fmt: skip
     data = chart
-    regions: Sequence[TongueMargin | LabelledRegion] | None = None
+    regions: Sequence[TongueMargin | LabelledRegion] = ()
     if tongues and set(grid) == {"speed_rpm", "damping_ratio"}:
         traced = _traced(pair, grid["speed_rpm"])
         edges = traced.dataset.rename(
@@ -235,25 +225,14 @@ def _chart(
 
     def draw() -> Figure:
         at = {name: GEAR_AXES[name].own(pair) for name in grid}
-        x, *others = sorted(grid, key=lambda name: name != "speed_rpm")  # speed runs to the right
-        if not others:
-            figure = stability_line_figure(chart, x, at[x])
-        elif regions is not None and x == "speed_rpm":
-            lines = {str(tongue): rpm for tongue, rpm in predicted_lines(pair).items()}
-            return tongue_chart_figure(
-                chart, others[0], regions, lines, point=(at[x], at[others[0]]), operating_range=marked
-            )
-        else:
-            figure = stability_figure(chart, x, others[0], (at[x], at[others[0]]))
-        if x == "speed_rpm":
-            mark_operating_range(figure.axes[0], marked)
-        return figure
+        lines = {str(tongue): rpm for tongue, rpm in predicted_lines(pair).items()} if regions else {}
+        return stability_figure(chart, at, regions, lines, marked)
 
     return data, draw
 
 
 def _traced(pair: GearPair, speeds: FloatArray) -> StabilityMargins:
-    """Trace the tongues over a range of speeds, and print them by falling critical damping."""
+    """Trace the tongues over a range of speeds, and print them."""
     from floquet.gear.tongues import stability_margins
 
     with progress_bar("tongues"):
@@ -267,16 +246,14 @@ def _traced(pair: GearPair, speeds: FloatArray) -> StabilityMargins:
     if not found.tongues:
         stdout().print(f"no tongue from {low:g} to {high:g} rpm, even without mesh damping")
         return found
-    shown = table(
-        "tongues without mesh damping, and what closes them (rpm; w: natural frequencies)",
-        "tongue", ">from", ">to", ">multiplier", ">critical damping", ">closes at",
-    )  # fmt: skip
-    for tongue in sorted(found.tongues, key=lambda t: -t.critical_damping):
-        shown.add_row(
-            tongue.label, f"{tongue.lower:.1f}", f"{tongue.upper:.1f}", f"{tongue.radius:.6f}",
-            f"{tongue.critical_damping:.6f}", f"{tongue.tip_speed:.1f}",
-        )  # fmt: skip
-    stdout().print(shown)
+    rows = [
+        (t.label, f"{t.lower:.1f}", f"{t.upper:.1f}", f"{t.radius:.6f}", f"{t.critical_damping:.6f}",
+         f"{t.tip_speed:.1f}")
+        for t in sorted(found.tongues, key=lambda t: -t.critical_damping)
+    ]  # fmt: skip
+    title = "tongues without mesh damping, and what closes them (rpm; w: natural frequencies)"
+    headings = ("tongue", ">from", ">to", ">multiplier", ">critical damping", ">closes at")
+    stdout().print(table(title, *headings, rows=rows))
     stdout().print(
         f"Friction is constant at its mean, {found.friction_coefficient:.4f}. Above a mesh damping ratio of "
         f"{found.critical_damping:.6f} every speed is stable; this pair has {found.damping:g}."
@@ -302,11 +279,11 @@ def _boundaries(
     pair: GearPair,
     axes: Mapping[str, FloatArray],
     marked: Speeds | None,
-    supports: Literal["springs", "shafts"],
+    supports: opt.SupportsName,
 ) -> View:
     from floquet import stability_boundaries
     from floquet.gear.axes import GEAR_AXES, chart_axes
-    from validation.plots.tongues import boundaries_figure, tongues_figure
+    from validation.plots.stability import boundaries_figure, tongues_figure
 
     grid = dict(axes)
     speeds = grid.pop("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"][[0, -1]])
@@ -317,25 +294,27 @@ def _boundaries(
     ends = float(speeds.min()), float(speeds.max())
     with progress_bar("boundaries") as tell:
         found = stability_boundaries(pair, ends, {name: values}, supports=supports, progress=tell)
+    rows = [
+        (
+            str(part["label"].item()),
+            str(int(part["present"].sum())),
+            f"{float(part['lower'].min()):.1f}",
+            f"{float(part['upper'].max()):.1f}",
+            f"{float(part['peak_radius'].max()):.6f}",
+        )
+        for part in (found.isel(tongue=row) for row in range(found.sizes["tongue"]))
+    ]
     headings = ("tongue", ">values", ">from, rpm", ">to, rpm", ">largest multiplier")
-    shown = table(f"tongues over {GEAR_AXES[name].long_name}", *headings)
-    for row in range(found.sizes["tongue"]):
-        part = found.isel(tongue=row)
-        edges = (f"{float(part['lower'].min()):.1f}", f"{float(part['upper'].max()):.1f}")
-        radius = f"{float(part['peak_radius'].max()):.6f}"
-        shown.add_row(str(part["label"].item()), str(int(part["present"].sum())), *edges, radius)
     none = f"no unstable speed from {ends[0]:g} to {ends[1]:g} rpm at any value"
-    stdout().print(shown if found.sizes["tongue"] else none)
-    return found, lambda: boundaries_figure(found, name, marked)
+    stdout().print(table(f"tongues over {GEAR_AXES[name].long_name}", *headings, rows=rows) if rows else none)
+    return found, lambda: boundaries_figure(found, marked)
 
 
 def _campbell(pair: GearPair, axes: Mapping[str, FloatArray], marked: Speeds | None) -> View:
     from floquet.gear.axes import chart_axes, operating_rpm
     from floquet.gear.campbell import campbell
-    from validation.plots.campbell import campbell_figure
+    from validation.plots.stability import campbell_figure
 
     speeds = axes.get("speed_rpm", chart_axes(pair, *_CHART)["speed_rpm"])
     diagram = campbell(pair, speeds)
-    return diagram, lambda: campbell_figure(
-        diagram, operating_rpm=operating_rpm(pair), operating_range=marked
-    )
+    return diagram, lambda: campbell_figure(diagram, operating_rpm(pair), marked)

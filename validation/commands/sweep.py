@@ -32,8 +32,7 @@ def sweep(
         int | None,
         typer.Option(
             "--workers",
-            help="Worker processes of this machine; default: one per core. 0: this process itself, which "
-            "starts faster, but a case that crashes ends the sweep.",
+            help="Worker processes; default: one per core. 0: this process, where a crash ends the sweep.",
         ),
     ] = None,
     scheduler: Annotated[
@@ -42,9 +41,6 @@ def sweep(
             "--scheduler", metavar="tcp://HOST:PORT", help="Run on the Dask cluster of this scheduler."
         ),
     ] = None,
-    other_code: Annotated[
-        bool, typer.Option("--other-code", help="With --resume: also when spurcheck was changed since.")
-    ] = False,
     case_seconds: Annotated[
         float | None,
         typer.Option(
@@ -96,7 +92,6 @@ def sweep(
                 scheduler=scheduler,
                 resume=resume,
                 retry_failed=retry_failed,
-                other_code=other_code,
                 case_seconds=case_seconds,
                 progress=progress,
             )
@@ -109,10 +104,8 @@ def sweep(
 
 def _print(summary: Summary) -> None:
     console = stdout()
-    counts = table("", "status", ">cases")
-    for status, number in summary.statuses:
-        counts.add_row(status.name.lower().replace("_", " "), str(number))
-    console.print(counts)
+    rows = [(status.name.lower().replace("_", " "), str(number)) for status, number in summary.statuses]
+    console.print(table("", "status", ">cases", rows=rows))
     for case, text in summary.failures:
         console.print(f"case {case}: {text.partition(chr(10))[0]}", style="red")
     if summary.failed > len(summary.failures):

@@ -10,7 +10,7 @@ import sys
 import traceback
 import unicodedata
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import replace
@@ -175,18 +175,10 @@ def note(text: str) -> None:
 
 @contextmanager
 def progress_bar(text: str) -> Iterator[Progress]:
-    """Progress bar on stderr while the block runs.
-
-    Without a terminal nothing is drawn.
-    """
+    """Progress bar on stderr while the block runs; without a terminal nothing is drawn."""
     from rich import progress as rich
 
-    columns = (
-        rich.TextColumn("{task.description}"),
-        rich.BarColumn(),
-        rich.TaskProgressColumn(),
-        rich.TimeElapsedColumn(),
-    )
+    columns = (rich.TextColumn("{task.description}"), rich.BarColumn(), rich.TimeElapsedColumn())
     console = stderr()
     with rich.Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task(text, total=1.0)
@@ -197,10 +189,12 @@ def progress_bar(text: str) -> Iterator[Progress]:
         yield tell
 
 
-def table(title: str, *columns: str) -> Table:
+def table(title: str, *columns: str, rows: Iterable[Sequence[str]] = ()) -> Table:
     """Table for the terminal; columns whose heading starts with '>' are right-aligned."""
     made = Table(title=title or None, title_justify="left", title_style="bold")
     for column in columns:
         right = column.startswith(">")
         made.add_column(column.removeprefix(">"), justify="right" if right else "left", no_wrap=right)
+    for row in rows:
+        made.add_row(*row)
     return made

@@ -14,7 +14,7 @@ from floquet.gear.axes import operating_rpm
 from lumped import GearPair
 from lumped.friction import LAWS
 from validation.interactive.results import SAMPLES, PageResults, Slices
-from validation.plots.labels import pretty
+from validation.plots.stability import pretty
 from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
 from validation.validity.map import STATES
 

@@ -13,13 +13,9 @@ from lumped.fields.text_file import parse_toml
 from lumped.fields.units import to_stated
 from lumped.schema.files import load_gear_pair
 from lumped.schema.pair import GearPair
-from validation.plots.campbell import campbell_figure
-from validation.plots.jumps import jump_map_figure
-from validation.plots.motion import history_figure
-from validation.plots.response import response_figure
-from validation.plots.stability import stability_figure, stability_line_figure
-from validation.plots.sweep import sweep_figure
-from validation.plots.tongues import boundaries_figure
+from validation.plots.contact_loss import jump_map_figure, response_figure
+from validation.plots.motion import history_figure, sweep_figure
+from validation.plots.stability import boundaries_figure, campbell_figure, stability_figure
 
 
 def _pair(result: xr.Dataset) -> GearPair:
@@ -33,29 +29,21 @@ def _sweep(result: xr.Dataset) -> Figure:
     return sweep_figure(result, to_stated(pair.operating.pinion_speed, "rpm"), load)
 
 
-def _axes(result: xr.Dataset, *others: str) -> list[str]:
-    """Axes of a chart, the speed first."""
-    names = [str(name) for name in result.dims if name not in others]
-    return sorted(names, key=lambda name: name != "speed_rpm")
-
-
 def _chart(result: xr.Dataset) -> Figure:
-    axes = _axes(result, "multiplier")
+    axes = list(map(str, result["spectral_radius"].dims))
     if len(axes) > 2:
         raise refuse("result", f"axes {', '.join(axes)}", "one or two axes", "Select with result.sel(...).")
-    if len(axes) == 1:
-        return stability_line_figure(result, axes[0], None)
-    return stability_figure(result, axes[0], axes[1], None)
+    return stability_figure(result)
 
 
 #: Variable that only one kind of result has -> its figure.
 _FIGURES: dict[str, Callable[[xr.Dataset], Figure]] = {
     "contact_kept": jump_map_figure,
-    "branch": lambda result: response_figure(result),
+    "branch": response_figure,
     "dte": lambda result: history_figure(_pair(result).geometry, result),
     "dte_peak_to_peak": _sweep,
     "mesh_frequency": campbell_figure,
-    "interval_lower": lambda result: boundaries_figure(result, _axes(result, "tongue", "interval")[-1]),
+    "interval_lower": boundaries_figure,
     "verdict": _chart,
 }
 
@@ -66,7 +54,7 @@ def plot(result: xr.Dataset) -> Figure:
     Parameters
     ----------
     result : dataset of ``simulate`` or ``steady_state`` of either model, ``speed_sweep``, ``stability_chart``
-        (one or two axes), ``stability_boundaries`` or ``campbell``
+        (one or two axes), ``stability_boundaries``, ``campbell``, ``jump_map`` or ``response_branches``
 
     Returns
     -------

@@ -1,9 +1,11 @@
-"""Stability charts: spectral radius, or what a friction law changes in growth, over two parameters."""
+"""Stability: charts with their tongues, traced tongues, Campbell diagram, multipliers."""
 
 from __future__ import annotations
 
+import re
 import textwrap
-from typing import Literal
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -14,79 +16,100 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from scipy.ndimage import maximum_filter
+from scipy.optimize import isotonic_regression
 
-from lumped.typing import BoolArray, FloatArray
-from validation.plots.labels import WHITE_BOX
-from validation.plots.style import BLACK, GREY, IN_X, RED, legend, one_panel, write_beside
+from floquet.gear.tongues import LabelledRegion, StabilityMargins, TongueMargin
+from floquet.gear.multipliers import GearPairMultipliers
+from lumped.typing import FloatArray
+from validation.plots.style import (
+    BLACK,
+    BLUE,
+    GREY,
+    IN_X,
+    RED,
+    WIDTH,
+    legend,
+    legend_above,
+    look,
+    new_figure,
+    one_panel,
+    write_beside,
+)
+
+Speeds = tuple[float, float] | None
 
 #: Blue for fast decay to white at the boundary.
 _STABLE = LinearSegmentedColormap.from_list("decay", ["#08519c", "#6baed6", "#f7fbff"])
 UNSTABLE = "#f2a26b"
 """Fill of what is unstable: orange, of a grey between the blues of what is stable."""
+#: Behind text that lies on a picture.
+WHITE_BOX: dict[str, Any] = {
+    "boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "none", "alpha": 0.85,
+}  # fmt: skip
+#: Predicted lines up to this order are named in a Campbell diagram.
+_NAMED_ORDERS = 2
+_FONT = 7.5
+# Upright labels need their line height; the axes take about five sixths of the figure's width.
+_GAP = 1.25 * _FONT / (72.0 * WIDTH * 5.0 / 6.0)
 
 
-def stability_figure(chart: xr.Dataset, x: str, y: str, point: tuple[float, float] | None) -> Figure:
-    """Spectral radius over two axes of a chart; unstable regions hatched, undecided ones dotted.
-
-    Parameters
-    ----------
-    chart : dataset of ``floquet.stability_chart`` over exactly the axes ``x`` and ``y``
-    x, y : names of its axes
-    point : operating point (x, y); None: not marked
-    """
-    radius = chart["spectral_radius"].transpose(y, x).sortby([x, y])
-    undecided = (chart["verdict"] == 0).transpose(y, x).sortby([x, y])
-    norm = Normalize(min(float(radius.min()), 0.999), 1.0)
-    words = "spectral radius [-]; unstable above 1 (hatched)" + undecided.any().item() * "\nundecided: dotted"
-    figure, ax = field_figure(radius.clip(max=1.0), chart, norm, _STABLE, words)
-    xs, ys = radius[x].to_numpy(), radius[y].to_numpy()
-    mark_unstable(ax, xs, ys, _decided(radius.to_numpy(), undecided.to_numpy()))
-    _mark_undecided(ax, xs, ys, undecided.to_numpy())
-    mark_operating_point(ax, point)
-    return figure
-
-
-def field_figure(
-    values: xr.DataArray,
+def stability_figure(
     chart: xr.Dataset,
-    norm: Normalize,
-    colours: mpl.colors.Colormap | str,
-    words: str,
-    extend: Literal["neither", "both"] = "neither",
-) -> tuple[Figure, Axes]:
-    """Return a figure of values over two axes of a chart, with its colour bar, and its axes.
+    at: Mapping[str, float] | None = None,
+    regions: Sequence[LabelledRegion | TongueMargin] = (),
+    lines: Mapping[str, float] | None = None,
+    operating_range: Speeds = None,
+) -> Figure:
+    """Spectral radius over the one or two axes of a chart; unstable regions hatched, undecided ones dotted.
 
     Parameters
     ----------
-    values : over the vertical and the horizontal axis, rising
-    chart : has the names of the axes
-    norm, colours : of the values
-    words : beside the colour bar, before what the errors behind the chart are
-    extend : ends of the colour bar beyond which there are values
+    chart : dataset of ``floquet.stability_chart``
+    at : name of an axis -> value at the operating point, which is marked
+    regions : over the speed and a second axis, unstable regions to name, of
+        ``floquet.gear.tongues.label_regions``; over mesh damping also traced tongues, of
+        ``stability_margins``, whose edges are then drawn
+    lines : label -> predicted speed [rpm] (omega_i +- omega_j)/k, dotted where the tongue is named
+    operating_range : speeds of operation [rpm]
     """
+    dims = map(str, chart["spectral_radius"].dims)
+    x, *rest = sorted(dims, key=lambda name: name != "speed_rpm")  # speed runs to the right
+    if not rest:
+        return _line_figure(chart, x, (at or {}).get(x), operating_range)
+    y = rest[0]
     figure, ax = one_panel(3.4)
-    y, x = map(str, values.dims)
-    xs, ys = values[x].to_numpy(), values[y].to_numpy()
-    drawn = field(ax, xs, ys, values.to_numpy(), norm, colours)
-    ax.set(xlim=(xs[0], xs[-1]), ylim=(ys[0], ys[-1]))
-    bar = figure.colorbar(drawn, ax=ax, pad=0.01, extend=extend)
+    radius = chart["spectral_radius"].transpose(y, x).sortby([x, y])
+    undecided = (chart["verdict"] == 0).transpose(y, x).sortby([x, y]).to_numpy()
+    xs, ys, values = radius[x].to_numpy(), radius[y].to_numpy(), radius.to_numpy()
+    norm = Normalize(min(float(values.min()), 0.999), 1.0)
+    bar = figure.colorbar(_field(ax, xs, ys, values.clip(max=1.0), norm), ax=ax, pad=0.01)
+    words = "spectral radius [-]; unstable above 1 (hatched)" + undecided.any().item() * "\nundecided: dotted"
     # Not above the axes: the names of tongues stand there.
     bar.set_label(f"{words}\n{_certificate(chart)}", fontsize=8.5)
     bar.outline.set_linewidth(0.5)
-    ax.set(xlabel=axis_label(chart, x), ylabel=axis_label(chart, y))
+    ax.set(
+        xlim=(xs[0], xs[-1]), ylim=(ys[0], ys[-1]), xlabel=axis_label(chart, x), ylabel=axis_label(chart, y)
+    )
     ax.grid(False)
-    return figure, ax
+    if xs.size > 1 and ys.size > 1:
+        # What is undecided counts as far below 1 as its neighbours are above: the edge lies between.
+        excess = np.where(undecided, 0.0, np.maximum(values - 1.0, 0.0))
+        decided = np.where(undecided, 1.0 - 1e-9 - maximum_filter(excess, size=3), values)
+        if (decided > 1.0).any():
+            _hatch(ax, xs, ys, decided, [1.0, np.inf], UNSTABLE, "////", RED)
+            ax.contour(xs, ys, decided, levels=[1.0], colors=[BLACK], linewidths=1.0)
+        if undecided.any():
+            _hatch(ax, xs, ys, undecided.astype(float), [0.5, 1.5], "none", "...", GREY)
+    if at is not None:
+        mark_operating_point(ax, (at[x], at[y]))
+    if x == "speed_rpm":
+        _name_regions(ax, regions, lines or {})
+        mark_operating_range(ax, operating_range)
+    return figure
 
 
-def stability_line_figure(chart: xr.Dataset, x: str, value: float | None) -> Figure:
-    """Spectral radius along one axis of a chart.
-
-    Parameters
-    ----------
-    chart : dataset of ``floquet.stability_chart`` over exactly the axis ``x``
-    x : its name
-    value : of the operating point; None: not marked
-    """
+def _line_figure(chart: xr.Dataset, x: str, value: float | None, operating_range: Speeds) -> Figure:
+    """Spectral radius along the one axis of a chart."""
     figure, ax = one_panel(2.9)
     radius = chart["spectral_radius"].sortby(x)
     xs, values = radius[x].to_numpy(), radius.to_numpy()
@@ -101,6 +124,8 @@ def stability_line_figure(chart: xr.Dataset, x: str, value: float | None) -> Fig
     mark_operating_value(ax, value)
     ax.set_title(_certificate(chart), loc="right", fontsize=7.5, color=GREY)
     ax.set(xlabel=axis_label(chart, x), ylabel="spectral radius [-], unstable above 1")
+    if x == "speed_rpm":
+        mark_operating_range(ax, operating_range)
     return figure
 
 
@@ -110,65 +135,199 @@ def _certificate(chart: xr.Dataset) -> str:
     return f"error bounds: {'partly proven' if kind == 'mixed' else kind}"
 
 
-def field(
+def _field(
+    ax: Axes, xs: FloatArray, ys: FloatArray, values: FloatArray, norm: Normalize
+) -> AxesImage | QuadMesh:
+    """Draw values (y, x) at their nodes: an image on an even grid, however large, or else a mesh of cells."""
+    style: dict[str, Any] = {"cmap": _STABLE, "norm": norm}
+    if not all(v.size > 1 and np.allclose(np.diff(v), (v[-1] - v[0]) / (v.size - 1)) for v in (xs, ys)):
+        return ax.pcolormesh(xs, ys, values, **style, shading="nearest", rasterized=True, zorder=0)
+    dx, dy = 0.5 * (xs[1] - xs[0]), 0.5 * (ys[1] - ys[0])
+    extent = (xs[0] - dx, xs[-1] + dx, ys[0] - dy, ys[-1] + dy)
+    return ax.imshow(values, **style, extent=extent, origin="lower", aspect="auto")
+
+
+def _hatch(
     ax: Axes,
     xs: FloatArray,
     ys: FloatArray,
     values: FloatArray,
-    norm: Normalize,
-    colours: mpl.colors.Colormap | str,
-) -> AxesImage | QuadMesh:
-    """Draw values (y, x) at their nodes: an image on an even grid, however large, or else a mesh of cells."""
-    even = all(v.size > 1 and np.allclose(np.diff(v), (v[-1] - v[0]) / (v.size - 1)) for v in (xs, ys))
-    if not even:
-        return ax.pcolormesh(
-            xs, ys, values, cmap=colours, norm=norm, shading="nearest", rasterized=True, zorder=0
+    levels: list[float],
+    fill: str,
+    hatch: str,
+    colour: str,
+) -> None:
+    with mpl.rc_context({"hatch.color": colour, "hatch.linewidth": 0.7}):
+        ax.contourf(xs, ys, values, levels=levels, colors=[fill], hatches=[hatch])
+
+
+def _name_regions(
+    ax: Axes, regions: Sequence[LabelledRegion | TongueMargin], lines: Mapping[str, float]
+) -> None:
+    """Name each tongue at its largest region; fill traced tongues, which may be thinner than the grid."""
+    (low, high), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+    largest: dict[str, tuple[float, float]] = {}
+    for region in regions:
+        if isinstance(region, TongueMargin):
+            if region.critical_damping <= bottom:
+                continue  # closed below the figure
+            name, place, weight = region.label, region.tip_speed, region.critical_damping
+            inside = region.damping <= top
+            edges = (region.damping[inside], region.left[inside], region.right[inside])
+            ax.fill_betweenx(*edges, facecolor=UNSTABLE, edgecolor=BLACK, linewidth=0.8, zorder=0.9)
+        else:
+            name, place, weight = str(region.label), region.point["speed_rpm"], float(region.nodes)
+        if low <= place <= high and weight > largest.get(name, (0.0, 0.0))[1]:
+            largest[name] = (place, weight)
+    places, weights = zip(*largest.values(), strict=True) if largest else ((), ())
+    label_above(ax, list(largest), places, weights)
+    for label, speed in lines.items():
+        if low <= speed <= high and label in largest:
+            ax.axvline(speed, color=GREY, linewidth=0.7, linestyle=(0, (1, 2)))
+
+
+def tongues_figure(margins: StabilityMargins, operating_range: Speeds = None) -> Figure:
+    """Edges of every tongue from zero mesh damping to the damping that closes it.
+
+    Parameters
+    ----------
+    margins : of ``floquet.gear.tongues.stability_margins``
+    operating_range : speeds of operation [rpm]
+    """
+    figure, ax = one_panel(3.2)
+    ax.set(xlim=margins.speed_range, ylim=(0.0, 1.25 * max(margins.critical_damping, margins.damping, 1e-3)))
+    for t in margins.tongues:
+        ax.fill_betweenx(t.damping, t.left, t.right, color=UNSTABLE, edgecolor=RED, linewidth=1.0)
+    rows = [(t.label, t.tip_speed, t.critical_damping) for t in margins.tongues]
+    label_above(ax, *zip(*rows, strict=True)) if rows else None
+    ax.axhline(margins.damping, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)))
+    mark_operating_point(ax, (margins.rpm, margins.damping))
+    mark_operating_range(ax, operating_range)
+    ax.set(xlabel="pinion speed [rpm]", ylabel="mesh damping ratio [-]")
+    return figure
+
+
+def boundaries_figure(found: xr.Dataset, operating_range: Speeds = None) -> Figure:
+    """Unstable speeds over another parameter, every tongue named.
+
+    Parameters
+    ----------
+    found : dataset of ``floquet.stability_boundaries`` with one more axis
+    operating_range : speeds of operation [rpm]
+    """
+    (name,) = (str(dim) for dim in found.dims if dim not in ("tongue", "interval", "speed_rpm"))
+    figure, ax = one_panel(3.4)
+    values = found[name].to_numpy()
+    rows: list[tuple[str, float, float]] = []
+    for row in range(found.sizes["tongue"]):
+        tongue = found.isel(tongue=row)
+        lower, upper = (
+            tongue[f"interval_{edge}"].transpose(name, ...).to_numpy() for edge in ("lower", "upper")
         )
-    dx, dy = 0.5 * (xs[1] - xs[0]), 0.5 * (ys[1] - ys[0])
-    return ax.imshow(
-        values,
-        cmap=colours,
-        norm=norm,
-        extent=(xs[0] - dx, xs[-1] + dx, ys[0] - dy, ys[-1] + dy),
-        origin="lower",
-        aspect="auto",
-    )
+        for edges in zip(lower.T, upper.T, strict=True):
+            ax.fill_betweenx(values, *edges, color=UNSTABLE, linewidth=0.0)
+            for edge in edges:  # marks show a tongue that is met at one value alone
+                ax.plot(edge, values, color=RED, linewidth=1.0, marker=".", markersize=3.0)
+        # Named where the tongue leaves the figure, or at its last value.
+        last = int(np.flatnonzero(tongue["present"].to_numpy())[-1])
+        rows.append((str(tongue["label"].item()), float(tongue["peak"][last]), np.nanmax(upper - lower)))
+    ax.set_ylim(values.min(), values.max())
+    if rows:
+        low, high = float(found["lower"].min()), float(found["upper"].max())
+        aside = 0.05 * (high - low)
+        ax.set_xlim(low - aside, high + aside)
+        label_above(ax, *zip(*rows, strict=True))
+    else:
+        ax.set_xticks([])
+        ax.annotate("no speed of the range is unstable", (0.5, 0.5), xycoords="axes fraction", ha="center")
+    mark_operating_range(ax, operating_range)
+    ax.set(xlabel="pinion speed [rpm]", ylabel=axis_label(found, name))
+    return figure
 
 
-def mark_unstable(ax: Axes, xs: FloatArray, ys: FloatArray, radius: FloatArray) -> None:
-    """Fill, hatch and edge the region of radius (y, x) above 1."""
-    if xs.size < 2 or ys.size < 2 or not (radius > 1.0).any():
-        return
-    with mpl.rc_context({"hatch.color": RED, "hatch.linewidth": 0.7}):
-        ax.contourf(xs, ys, radius, levels=[1.0, np.inf], colors=[UNSTABLE], hatches=["////"])
-    ax.contour(xs, ys, radius, levels=[1.0], colors=[BLACK], linewidths=1.0)
+def campbell_figure(
+    diagram: xr.Dataset, operating_rpm: float | None = None, operating_range: Speeds = None
+) -> Figure:
+    """Frequencies of the Floquet solutions and their growth over pinion speed.
+
+    Parameters
+    ----------
+    diagram : dataset of ``floquet.gear.campbell.campbell``
+    operating_rpm : operating speed, marked [rpm]
+    operating_range : speeds of operation [rpm]
+    """
+    figure, axes = new_figure(2, 1, height=5.2, sharex=True, height_ratios=(2.2, 1.0))
+    top, bottom = axes[:, 0]
+    speed, decay = diagram["speed_rpm"].to_numpy(), diagram["decay"].to_numpy()
+    frequency = diagram["frequency"].to_numpy() / 1e3
+    ceiling = 1.12 * float(frequency.max())
+    for index, mode in enumerate(diagram["mode"].to_numpy()):
+        top.plot(speed, frequency[:, index], label=f"mode {mode}", **look(index), linewidth=1.6)
+        bottom.plot(speed, decay[:, index] / 1e3, **look(index), linewidth=1.6)
+    for order, line in zip(
+        diagram["mesh_order"].to_numpy(), diagram["mesh_frequency"].to_numpy().T / 1e3, strict=True
+    ):
+        top.plot(speed, line, color=GREY, linewidth=0.8)
+        x = min(speed[-1], speed[-1] * ceiling / line[-1])
+        if x > speed[0]:
+            place = (x, min(line[-1], ceiling))
+            write_beside(top, f"{order}×", place, (-2, -8), ha="right", fontsize=7.5, color=GREY)
+    named = []
+    lines = (diagram[name].to_numpy() for name in ("line_speed", "order", "label"))
+    for x, order, label in zip(*lines, strict=True):
+        for ax in (top, bottom):
+            ax.axvline(x, color=RED, linewidth=0.8 if order <= _NAMED_ORDERS else 0.3, alpha=0.5, zorder=0.5)
+        if order <= _NAMED_ORDERS:
+            # Sums grow more easily than differences, which only friction makes unstable.
+            named.append((str(label), float(x), 1.0 / order - ("-" in label)))
+    upper = bottom.get_xaxis_transform()
+    red = {"color": RED, "alpha": 0.2, "linewidth": 0}
+    bottom.fill_between(speed, 0, 1, where=decay.min(axis=1) < 0.0, transform=upper, **red)
+    bottom.axhline(0.0, color=BLACK, linewidth=0.8)
+    top.set(ylim=(0.0, ceiling), xlim=(speed[0], speed[-1]), ylabel="frequency [kHz]")
+    label_above(bottom, *zip(*named, strict=True)) if named else None
+    bottom.set_ylabel("decay rate [1/ms]\n(< 0: unstable)")
+    bottom.set_xlabel("pinion speed [rpm]; red: predicted tongues (ω$_i$ ± ω$_j$)/k")
+    legend_above(top, 3)
+    for ax in (top, bottom):
+        mark_operating_value(ax, operating_rpm, "operating point" if ax is top else "")
+    mark_operating_range(top, operating_range, lower=True)
+    top.tick_params(labelbottom=False)
+    return figure
 
 
-def _decided(radius: FloatArray, undecided: BoolArray) -> FloatArray:
-    """Radius (y, x), what is undecided as far below 1 as its neighbours are above: the edge lies between."""
-    excess = np.where(undecided, 0.0, np.maximum(radius - 1.0, 0.0))
-    return np.where(undecided, 1.0 - 1e-9 - maximum_filter(excess, size=3), radius)
+def multipliers_figure(multipliers: GearPairMultipliers) -> Figure:
+    """Multipliers in the complex plane, with the rigid rotation apart.
+
+    Parameters
+    ----------
+    multipliers : of the gear pair
+    """
+    figure, ax = one_panel(3.4)
+    angle, reach = np.linspace(0.0, 2.0 * np.pi, 361), 1.1 * max(1.0, multipliers.spectral_radius)
+    ax.plot(np.cos(angle), np.sin(angle), color=BLACK, linewidth=1.0)
+    ax.axhline(0.0, color=GREY, linewidth=0.5)
+    ax.axvline(0.0, color=GREY, linewidth=0.5)
+    for values, marker, colour, label in (
+        (multipliers.feedback, "o", BLUE, "mesh: q, x of pinion and gear"),
+        (multipliers.oloa, "s", RED, "bearings: y of pinion and gear"),
+    ):
+        style: Any = {"markerfacecolor": "none", "markeredgecolor": colour, "markeredgewidth": 1.6}
+        ax.plot(values.real, values.imag, marker, markersize=7, label=label, **style)
+    ax.plot([1.0], [0.0], "x", color=BLACK, markersize=7, label="rigid rotation (taken out)")
+    ax.set(xlim=(-reach, reach), ylim=(-reach, reach), xlabel="real part [-]", ylabel="imaginary part [-]")
+    ax.set_aspect("equal")
+    legend(ax, loc="center left", bbox_to_anchor=(1.02, 0.5), handlelength=1.2)
+    return figure
 
 
-def _mark_undecided(ax: Axes, xs: FloatArray, ys: FloatArray, undecided: BoolArray) -> None:
-    """Dot the region (y, x) in which the bound on the error contains 1."""
-    if xs.size < 2 or ys.size < 2 or not undecided.any():
-        return
-    with mpl.rc_context({"hatch.color": GREY, "hatch.linewidth": 0.5}):
-        ax.contourf(xs, ys, undecided.astype(float), levels=[0.5, 1.5], colors=["none"], hatches=["..."])
-
-
-def mark_operating_point(ax: Axes, point: tuple[float, float] | None) -> None:
+def mark_operating_point(ax: Axes, point: tuple[float, float]) -> None:
     """Circle at the point and its name beside it, on the side where there is room; nothing when outside."""
-    if point is None:
-        return
     (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
     if not (left <= point[0] <= right and bottom <= point[1] <= top):
         return
-    ax.plot(
-        *point, marker="o", markersize=8, markerfacecolor="white", markeredgecolor=BLACK,
-        markeredgewidth=1.6, clip_on=False, zorder=5,
-    )  # fmt: skip
+    style: dict[str, Any] = {"markerfacecolor": "white", "markeredgecolor": BLACK, "markeredgewidth": 1.6}
+    ax.plot(*point, marker="o", markersize=8, **style, clip_on=False, zorder=5)
     east = point[0] < 0.5 * (left + right)
     height = (point[1] - bottom) / (top - bottom)
     north = height < 0.5
@@ -180,17 +339,16 @@ def mark_operating_point(ax: Axes, point: tuple[float, float] | None) -> None:
     )
 
 
-def mark_operating_value(ax: Axes, value: float | None) -> None:
+def mark_operating_value(ax: Axes, value: float | None, words: str = "operating point") -> None:
     """Dashed line at the operating point's value on the x axis, named beside it; nothing when outside."""
     low, high = sorted(ax.get_xlim())
     if value is None or not low <= value <= high:
         return
     ax.axvline(value, color=BLACK, linewidth=1.0, linestyle="--")
-    look = {"rotation": 90, "va": "bottom", "bbox": WHITE_BOX}
-    write_beside(ax, "operating point", (value, 0.03), (3, 0), IN_X, **look)
+    write_beside(ax, words, (value, 0.03), (3, 0), IN_X, rotation=90, va="bottom", bbox=WHITE_BOX)
 
 
-def mark_operating_range(ax: Axes, speeds: tuple[float, float] | None, *, lower: bool = False) -> None:
+def mark_operating_range(ax: Axes, speeds: Speeds, *, lower: bool = False) -> None:
     """Bar along the upper (or lower) edge over the speeds of operation [rpm], if any, as far as shown."""
     if speeds is None:
         return
@@ -209,3 +367,43 @@ def axis_label(chart: xr.Dataset, name: str) -> str:
     attrs = chart[name].attrs
     unit = attrs.get("units", "1")
     return textwrap.fill(f"{attrs.get('long_name', name)} [{'-' if unit == '1' else unit}]", 40)
+
+
+def spread(places: Sequence[float] | FloatArray, gap: float, low: float, high: float) -> FloatArray:
+    """Move increasing places apart to at least ``gap``, within [low, high], by the least sum of squares.
+
+    With p_i = place_i - i gap the wanted positions minimise sum (q_i - p_i)^2 for increasing q_i, which is
+    isotonic regression. The gap shrinks where they do not fit otherwise.
+    """
+    wanted = np.asarray(places, dtype=float)
+    if wanted.size == 0:
+        return wanted
+    step = min(gap, (high - low) / max(wanted.size - 1, 1))
+    offsets = step * np.arange(wanted.size)
+    moved = isotonic_regression(wanted - offsets).x
+    return np.asarray(np.clip(moved, low, high - offsets[-1]) + offsets)
+
+
+def label_above(ax: Axes, names: Sequence[str], places: Sequence[float], weights: Sequence[float]) -> None:
+    """Write names upright above the axes, joined to their places by thin lines.
+
+    The limits along x must be set. Where there are more names than fit, those of the largest weights are
+    written.
+    """
+    low, high = sorted(ax.get_xlim())
+    gap = _GAP * (high - low)
+    room = int((high - low) / gap)
+    shown = sorted(sorted(range(len(names)), key=lambda i: -weights[i])[:room], key=lambda i: places[i])
+    upper = ax.get_xaxis_transform()
+    thin: dict[str, Any] = {"color": GREY, "linewidth": 0.6, "transform": upper, "clip_on": False}
+    words: dict[str, Any] = {"ha": "center", "va": "bottom", "rotation": 90, "fontsize": _FONT}
+    for index, x in zip(shown, spread([places[i] for i in shown], gap, low, high), strict=True):
+        ax.plot([places[index], x], [1.0, 1.035], **thin, in_layout=False)
+        ax.annotate(pretty(names[index]), (x, 1.04), xycoords=upper, **words)
+
+
+def pretty(label: str) -> str:
+    """Label as written in text, with omega and indices: 2w3/5 -> 2ω₃/5."""
+    digits = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+    indexed = re.sub(r"w(\d*)", lambda found: "ω" + found[1].translate(digits), label)
+    return indexed.removesuffix("/1").replace("-", "−")

@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from lumped import Geometry, MeshCycle
 from lumped.typing import FloatArray
 from validation.files.output import whole_file
-from validation.plots.layout import MeasuredLayout
 
 #: Okabe and Ito's palette, distinguishable with every common colour vision deficiency.
 BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PURPLE = (
@@ -76,16 +75,13 @@ def new_figure(
     **options : of ``Figure.subplots``
     """
     with mpl.rc_context(_RC):
-        figure = Figure(figsize=(WIDTH, height), layout=MeasuredLayout())
+        figure = Figure(figsize=(WIDTH, height), layout="constrained")
         axes = figure.subplots(rows, columns, squeeze=False, **options)
     for ax in axes.flat:
-        # From the size at first, so that the layout, which changes it, has to measure the ticks only once.
         width, tall = WIDTH * ax.get_position().width, height * ax.get_position().height
         ax.locator_params(axis="x", nbins=max(3, min(round(2.6 * width), 9)), steps=(1, 2, 5, 10))
         ax.locator_params(axis="y", nbins=max(3, min(round(4.0 * tall), 6)), steps=(1, 2, 5, 10))
         ax.tick_params(width=0.6, length=3, grid_color="#d9d9d9", grid_linewidth=0.5)
-        for spine in ax.spines.values():
-            spine.set_in_layout(False)  # lies on the frame; to measure it makes all ticks anew
     return figure, axes
 
 
@@ -130,6 +126,13 @@ def scaled(*values: Any, unit: str) -> tuple[float, str]:
     largest = max((float(np.abs(v).max()) for v in finite if v.size), default=0.0)
     factor, name = prefix(largest)
     return factor, f"{name}{unit}"
+
+
+def scale_y(ax: Axes, words: str, unit: str, *values: Any) -> float:
+    """Label the y axis with words and the prefixed unit of what is drawn on it; return the divisor."""
+    factor, name = scaled(*values, unit=unit)
+    ax.set_ylabel(f"{words} [{name}]")
+    return factor
 
 
 def mesh_cycles(result: xr.Dataset, g: Geometry) -> FloatArray:
@@ -210,6 +213,7 @@ def save(figure: Figure, path: Path, *, new: bool = False) -> None:
     suffix = path.suffix.lower().removeprefix(".")
     dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None, "ModDate": None}}
     metadata: dict[str, Any] = dates.get(suffix, {"Software": None})
+    figure.align_ylabels()
     layout = figure.get_layout_engine()
     with whole_file(path, new=new) as temporary, mpl.rc_context(_RC):
         if layout is not None:  # laid out once: with any engine, even "none", savefig draws everything twice

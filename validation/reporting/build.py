@@ -18,20 +18,15 @@ from lumped.arguments import file_path
 from lumped.typing import Progress
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
-from validation.plots.answer import first_figure
+from validation.plots.motion import first_figure
 from validation.plots.style import save
-from validation.reporting.baseline import load_report
 from validation.reporting.blocks import Answer, Picture, chapter_data, plain
 from validation.reporting.chapter import Chapter, Written
 from validation.reporting.chapters import CHAPTERS
-from validation.reporting.chapters.changes import changes
-from validation.reporting.compare import TOLERANCE, Comparison
-from validation.reporting.compare import compare as compare_reports
-from validation.reporting.judged import failures
-from validation.reporting.junit import junit
+from validation.reporting.gate import TOLERANCE, Comparison, checked_tolerance, failures, load_report
+from validation.reporting.gate import compare as compare_reports
 from validation.reporting.page import render
 from validation.reporting.results import FULL, QUICK, Results
-from validation.reporting.summary import summary
 from validation.reporting.words import headline, sentence
 
 
@@ -70,9 +65,8 @@ def report(
     """Write the verification report of a gear pair into a folder.
 
     The folder gets ``index.html`` (self-contained: it needs no network and no other file),
-    ``report.json`` (every number shown), ``report.junit.xml``
-    (every verdict as a test case), ``summary.md``, ``figures/`` (SVG) and ``data/`` (NetCDF and the
-    parameter file). It is written whole or not at all.
+    ``report.json`` (every number shown), ``figures/`` (SVG) and ``data/`` (NetCDF and the parameter file). It
+    is written whole or not at all.
 
     Parameters
     ----------
@@ -80,7 +74,7 @@ def report(
     out : folder, new or empty
     force : replace an earlier report in that folder
     quick : coarser sampling and no verification, for a first look
-    compare : report.json of an earlier report, or its folder; the report then has a chapter of changes
+    compare : report.json of an earlier report, or its folder
     tolerance : relative change of a number that passes in this comparison
     progress : called with the finished fraction and what is being done
 
@@ -94,19 +88,12 @@ def report(
     gear_pair = load_gear_pair(pair)
     target = file_path("out", out)
     earlier = None if compare is None else load_report(compare, quick=quick)
-    if earlier is not None:
-        compare_reports(earlier, earlier, tolerance=tolerance)  # refuses a tolerance before any work
+    checked_tolerance(tolerance)
     with whole_folder(target, force=force) as folder:
         effort = QUICK if quick else FULL
         results = Results(gear_pair, effort)
         chapters = written(results, CHAPTERS, lambda f, stage="", /: tell(0.85 * f, stage))
         computed = time.perf_counter()
-        comparison = None
-        if earlier is not None:
-            comparison = compare_reports(
-                earlier, document(results, chapters, quick=quick), tolerance=tolerance
-            )
-            chapters += written(results, (changes(comparison),))
         first = answer_figure(results)
         pictures = (first, *_pictures(chapters))
         images = _draw(pictures, folder / "figures", lambda f, stage="", /: tell(0.85 + 0.12 * f, stage))
@@ -122,16 +109,15 @@ def report(
         for name, text in {
             "report.json": json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n",
             "index.html": render(gear_pair, first, answers(results, chapters), chapters, images, data),
-            "report.junit.xml": junit(data, comparison),
-            "summary.md": summary(data, comparison),
         }.items():
             (folder / name).write_text(text, encoding="utf-8")
     tell(1.0, "done")
     verdicts = {
         chapter.key: content.badge.state for chapter, content in chapters if content.badge is not None
     }
-    bad = tuple(f"{case.group}: {case.name}: {case.text}" for case in failures(data))
-    return Report(target, data["verdict"], verdicts, bad, time.perf_counter() - started, comparison)
+    comparison = None if earlier is None else compare_reports(earlier, data, tolerance=tolerance)
+    seconds_all = time.perf_counter() - started
+    return Report(target, data["verdict"], verdicts, failures(data), seconds_all, comparison)
 
 
 def written(

@@ -25,14 +25,8 @@ _FLOQUET_ONLY = ("friction_coefficient", "stiffness_variation")
 
 @dataclass(frozen=True)
 class Target:
-    """Where an axis acts.
-
-    Attributes
-    ----------
-    unit : stated unit, "" where the field is no quantity
-    long_name : description
-    kind : "float", "int" or "other" (a choice, such as a friction law)
-    floquet_only : whether only the stability analysis knows this axis
+    """Where an axis acts: stated unit ("" of a field that is no quantity), description, kind of its values
+    ("float", "int" or "other", a choice), and whether only the stability analysis knows it.
     """
 
     unit: str
@@ -42,12 +36,7 @@ class Target:
 
 
 def target_of(path: str) -> Target:
-    """Return what a dotted field path, or the name of a stability chart's axis, stands for.
-
-    Raises
-    ------
-    ParameterError : no such field; the nearest is suggested
-    """
+    """Return what a dotted field path, or the name of a stability chart's axis, stands for."""
     if path in GEAR_AXES:
         axis = GEAR_AXES[path]
         return Target(axis.units, axis.long_name, "float", path in _FLOQUET_ONLY)
@@ -124,12 +113,7 @@ class Axis(Section):
         return self.name or self.field[0].replace(".", "_")
 
     def listed(self) -> tuple[AxisValue, ...]:
-        """Values of a listed axis, or () for a range that is sampled; numbers are in the field's stated unit.
-
-        Raises
-        ------
-        ParameterError : text where a number belongs or the reverse, values of another unit or repeated
-        """
+        """Values of a listed axis, in the field's stated unit, or () for a range that is sampled."""
         target = target_of(self.field[0])
         units = {target_of(path).unit for path in self.field}
         if len(units) > 1:
@@ -153,10 +137,6 @@ class Axis(Section):
         """Values at the given shares, 0 to 1, of the way from low to high; integers for an integer field.
 
         Samples of an integer field give both ends the same chance as the values between.
-
-        Raises
-        ------
-        ParameterError : an integer field gets the same value twice in a list of given length
         """
         assert self.low is not None
         assert self.high is not None

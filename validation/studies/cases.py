@@ -25,10 +25,6 @@ class CaseList:
     A grid is numbered in C order (the last axis runs fastest). Samples are numbered as drawn; with
     sensitivity indices they are the blocks A, B, AB_1 ... AB_d of Saltelli et al., Comput. Phys. Commun. 181
     (2010) 259-270: AB_i is A with column i taken from B.
-
-    Attributes
-    ----------
-    study : the study
     """
 
     study: Study
@@ -117,14 +113,7 @@ class CaseList:
 
 @dataclass(frozen=True)
 class StudyEvaluator:
-    """What computes a case of a study; see ``validation.studies.evaluate.Evaluator``.
-
-    Attributes
-    ----------
-    pair : the pair that is varied
-    fields : paths of each axis
-    analysis, outputs, settings : as in the study
-    """
+    """What computes a case: the pair that is varied, the paths of each axis, and the rest of the study."""
 
     pair: GearPair
     fields: tuple[tuple[str, ...], ...]
@@ -140,13 +129,7 @@ class StudyEvaluator:
         return StudyEvaluator(study.gear_pair, fields, study.analysis, study.outputs, study.settings)
 
     def variation(self, values: tuple[AxisValue, ...]) -> GearVariation:
-        """Return the pair with the axes' values; the plain fields change at once, so they need only fit
-        together.
-
-        Raises
-        ------
-        ParameterError : a combination that cannot exist
-        """
+        """Return the pair with the axes' values; plain fields change at once, as they must fit together."""
         changes: dict[str, AxisValue] = {}
         charted: list[tuple[str, float]] = []
         for paths, value in zip(self.fields, values, strict=True):
@@ -161,12 +144,6 @@ class StudyEvaluator:
         return variation
 
     def __call__(self, values: tuple[AxisValue, ...]) -> tuple[float, ...]:
-        """Outputs of one case, in the study's order.
-
-        Raises
-        ------
-        ParameterError : a combination that cannot exist
-        NumericalError : the analysis fails
-        """
+        """Outputs of one case, in the study's order."""
         result = ANALYSES[self.analysis].compute(self.variation(values), self.settings)
         return tuple(float(result[name]) for name in self.outputs)

@@ -150,14 +150,9 @@ def _with_sensitivity(result: xr.Dataset, cases: CaseList, table: Table) -> xr.D
 def indices(values: FloatArray, axes: int, seed: int) -> dict[str, FloatArray]:
     """Sobol indices with percentile bootstrap intervals, each (outputs, axes); NaN for a constant output.
 
-    The estimators are those of Saltelli et al., Comput. Phys. Commun. 181 (2010) 259-270, Table 2 (b) and
-    (f), as in ``scipy.stats.sobol_indices``.
-
-    Parameters
-    ----------
-    values : (outputs, n (axes + 2)) in the blocks A, B, AB_1 ... AB_axes
-    axes : number of axes
-    seed : of the bootstrap
+    ``values`` is (outputs, n (axes + 2)) in the blocks A, B, AB_1 ... AB_axes. The estimators are those of
+    Saltelli et al., Comput. Phys. Commun. 181 (2010) 259-270, Table 2 (b) and (f), as in
+    ``scipy.stats.sobol_indices``.
     """
     from scipy import stats  # takes a third of a second, and most studies have no use for it
 

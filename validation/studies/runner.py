@@ -69,7 +69,6 @@ def run_sweep(
     scheduler: str | None = None,
     resume: bool = False,
     retry_failed: bool = False,
-    other_code: bool = False,
     case_seconds: float | None = None,
     progress: Progress | None = None,
 ) -> Summary:
@@ -85,7 +84,6 @@ def run_sweep(
     scheduler : address of a Dask scheduler that runs the cases instead
     resume : go on where an earlier run of the same study in that folder ended
     retry_failed : with ``resume``, also compute the failed cases again
-    other_code : with ``resume``, also when the source of spurcheck was changed since
     case_seconds : longest time of a case [s]; with it, cases run in worker processes of this machine (one
         with ``workers`` = 0), which are ended when a case is late
     progress : called with (computed, to compute, failed)
@@ -100,28 +98,19 @@ def run_sweep(
     """
     start = time.perf_counter()
     if case_seconds is not None:
-        real_number(
-            "case_seconds", case_seconds, 1e-3, 1e6, unit="s", action="Give the longest time of a case."
-        )
+        advice = "Give the longest time of a case."
+        real_number("case_seconds", case_seconds, 1e-3, 1e6, unit="s", action=advice)
     root = file_path("folder", folder)
     of_type("study", study, Study, "a Study, as load_study returns it")
     cases = CaseList(study)
     with (
         stopping_as_interrupt(),
         workers_of(workers, executor, scheduler, case_seconds) as (submit, slots),
-        _opened(root, cases, resume, other_code) as store,
+        _opened(root, cases, resume) as store,
     ):
         todo = wanted(store.table(), retry_failed)
-        compute(
-            cases,
-            StudyEvaluator.of(study),
-            store,
-            todo,
-            submit,
-            slots,
-            limit=case_seconds,
-            progress=progress,
-        )
+        evaluator = StudyEvaluator.of(study)
+        compute(cases, evaluator, store, todo, submit, slots, limit=case_seconds, progress=progress)
         table = store.table()
         write_dataset(results_dataset(cases, table), root / RESULTS)
     number = int(np.count_nonzero(todo))
@@ -167,13 +156,8 @@ def compute(
             progress(done, numbers.size, failed)
 
 
-def _opened(root: Path, cases: CaseList, resume: bool, other_code: bool) -> Store:
-    """Open the store of a new or empty folder, or with ``resume`` of one that holds this study.
-
-    Raises
-    ------
-    ParameterError : the folder holds something else
-    """
+def _opened(root: Path, cases: CaseList, resume: bool) -> Store:
+    """Open the store of a new or empty folder, or with ``resume`` of one that holds this study."""
     try:
         root.mkdir(parents=True, exist_ok=True)
         names = {entry.name for entry in root.iterdir() if not entry.name.startswith(".")}
@@ -188,7 +172,7 @@ def _opened(root: Path, cases: CaseList, resume: bool, other_code: bool) -> Stor
     if names and STORE not in names:  # the first file of a sweep, so all others are the user's
         action = f"It holds {min(names)}: choose another --output."
         raise refuse("output", root, "a new or empty folder", action)
-    store = Store(root, cases, other_code=other_code)
+    store = Store(root, cases)
     if store.new and RESULTS in names:
         store.__exit__()
         action = f"It holds {RESULTS} of something else: choose another --output."

@@ -64,14 +64,7 @@ class Status(IntEnum):
 
 
 class Provenance(NamedTuple):
-    """What the last digits of a result depend on.
-
-    Attributes
-    ----------
-    versions : of Python and the libraries, the machine type, and settings of the compiler where set
-    code : hash of the source files of the four packages, which are the compiled kernels' source too
-    processor : its name; processors of different types may differ in the last digits
-    """
+    """What the last digits of a result depend on: versions, hash of the source, name of the processor."""
 
     versions: str
     code: str
@@ -109,13 +102,9 @@ class Cases(Protocol):
 
 @dataclass(frozen=True)
 class Chunk:
-    """Outcomes of some cases.
+    """Outcomes of some cases, the time that they took [s], and the process that computed them.
 
-    Attributes
-    ----------
-    rows : (number of the case, status, outputs as bytes of doubles or None, error text or None)
-    seconds : time that they took
-    provenance : of the process that computed them
+    A row: number of the case, status, outputs as bytes of doubles or None, error text or None.
     """
 
     rows: list[tuple[int, int, bytes | None, str | None]]
@@ -125,14 +114,8 @@ class Chunk:
 
 @dataclass
 class Table:
-    """Outcomes of all cases.
-
-    Attributes
-    ----------
-    status : (cases,) ``Status`` codes
-    values : (cases, outputs), NaN where there is no result
-    messages : case -> error text of failed ones, at most ``MAX_FAILURES``
-    runs : what computed cases, in order, each once
+    """Outcomes of all cases: status (cases,), values (cases, outputs) with NaN where there is none,
+    error texts of at most ``MAX_FAILURES`` failed cases, and what computed them, in order, each once.
     """
 
     status: np.ndarray[Any, np.dtype[np.int8]]
@@ -147,13 +130,7 @@ class Table:
 
 
 class Store:
-    """The store of a list of cases, opened for adding; the lock of its file keeps a second process out.
-
-    Parameters
-    ----------
-    folder : where the file is or shall be; None: in memory
-    cases : what it belongs to
-    other_code : whether cases may be added that other code computes than those there are
+    """The store of cases in a folder (None: in memory), opened for adding; its lock keeps others out.
 
     Raises
     ------
@@ -161,7 +138,7 @@ class Store:
     StoreError : it cannot be used, is damaged, or another process writes to it
     """
 
-    def __init__(self, folder: Path | None, cases: Cases, *, other_code: bool = False) -> None:
+    def __init__(self, folder: Path | None, cases: Cases) -> None:
         self._cases = cases
         self.path = Path(":memory:") if folder is None else folder / STORE
         with _translated(self.path):
@@ -180,14 +157,9 @@ class Store:
                     self._db.executemany("INSERT INTO about VALUES (?, ?)", _about(cases).items())
                     self._commit()
                 self._runs = set(_runs(self._db))
-            if not other_code and {run.code for run in self._runs} - {provenance().code}:
-                raise refuse(
-                    "output",
-                    self.path,
-                    "a store that this very code began",
-                    "Spurcheck was changed since: use the code that began it, begin anew in another folder, "
-                    "or mix results of both with --other-code.",
-                )
+            if {run.code for run in self._runs} - {provenance().code}:
+                action = "Spurcheck was changed since: use the code that began it, or another folder."
+                raise refuse("output", self.path, "a store that this very code began", action)
         except BaseException:
             self._db.close()
             raise
@@ -197,12 +169,7 @@ class Store:
         self._db.execute("BEGIN IMMEDIATE")
 
     def add(self, chunk: Chunk) -> None:
-        """Write the outcomes of a chunk; a later outcome of a case replaces the earlier one.
-
-        Raises
-        ------
-        StoreError : they cannot be written; the store then is as before
-        """
+        """Write the outcomes of a chunk; a later outcome of a case replaces the earlier one."""
         with _translated(self.path):
             if chunk.provenance not in self._runs:
                 self._db.execute("INSERT INTO run VALUES (?, ?, ?)", chunk.provenance)
@@ -230,12 +197,7 @@ def read_definition(folder: Path) -> str:
 
 
 def read_table(folder: Path, cases: Cases) -> Table:
-    """Return the outcomes that a store holds, also while another process adds to it.
-
-    Raises
-    ------
-    StoreError, ParameterError : as for ``Store``
-    """
+    """Return the outcomes that a store holds, also while another process adds to it."""
     with _reader(folder) as db:
         _check_same(db, folder / STORE, cases)
         return _table(db, cases)

@@ -93,12 +93,7 @@ def _evaluate(evaluator: Evaluator, values: tuple[Any, ...]) -> tuple[Status, tu
 def workers_of(
     workers: int, executor: Executor | None, scheduler: str | None, limit: float | None
 ) -> Iterator[tuple[Submit, int]]:
-    """Give what starts a function call somewhere, and how many calls run there at the same time.
-
-    Raises
-    ------
-    ParameterError : workers out of range, no scheduler at the address, or a time limit elsewhere than here
-    """
+    """Give what starts a function call somewhere, and how many calls run there at the same time."""
     if not 0 <= workers <= 1024:
         raise refuse("workers", workers, "0 to 1024", "Use as many as there are cores.")
     if limit is not None and (executor is not None or scheduler is not None):
@@ -191,19 +186,8 @@ def chunks_of(
 ) -> Iterator[Chunk]:
     """Yield the outcomes of cases as they come, in any order, each case once.
 
-    A chunk that took longer than a case may, or on which a worker died, is divided into single cases.
-
-    Parameters
-    ----------
-    evaluator : what to do
-    values : parameters of the cases of given numbers
-    numbers, count : the cases, and how many they are
-    submit, slots : see ``workers_of``
-    limit : longest time of a case [s]
-
-    Raises
-    ------
-    SweepStopped : the workers cannot go on
+    A chunk that took longer than a case may (``limit`` [s]), or on which a worker died, is divided into
+    single cases. ``submit`` and ``slots`` are those of ``workers_of``.
     """
     left, seconds = count, 0.0  # seconds: mean time of a case, 0 where it is not known yet
     singles: deque[int] = deque()

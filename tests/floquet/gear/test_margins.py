@@ -13,7 +13,7 @@ from floquet.gear.tongues import stability_margins
 from lumped import geometry, load_gear_pair, periodic_system
 from lumped.schema.bodies import bodies
 from tests.evidence.floquet.coulomb_zones import CoulombGearPair
-from validation.plots.tongues import tongues_figure
+from validation.plots.stability import tongues_figure
 
 MU = 0.2
 

@@ -11,8 +11,8 @@ from typer.testing import CliRunner
 import floquet
 import lumped
 from validation.cli import app
+from validation.plots.contact_loss import response_figure
 from validation.plots.of_result import plot
-from validation.plots.response import response_figure
 
 PAIR = ["nasa_28_28", "--range", "12000..14000", "--law", "none", "--set", "mesh.relief=ignored"]
 SETTINGS = {

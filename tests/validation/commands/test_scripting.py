@@ -1,8 +1,6 @@
 """Can a script use the commands: JSON alone on stdout, silence, messages that name what was typed?"""
 
 import json
-import re
-from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
@@ -56,14 +54,3 @@ def test_quiet_is_silent(command):
     assert refused.exit_code == 2
     assert refused.stderr.startswith("error:")
     assert run(*command).stdout, "silence ends with the command"
-
-
-def test_the_study_of_the_readme_is_one(tmp_path, monkeypatch):
-    readme = Path(__file__).parents[3] / "README.md"
-    text = re.search(r"```toml\n(# study\.toml.*?)```", readme.read_text(encoding="utf-8"), re.DOTALL)[1]
-    (tmp_path / "study.toml").write_text(text)
-    (tmp_path / "mypair.toml").write_text(lumped.load_gear_pair("nasa_28_28").to_toml())
-    monkeypatch.chdir(tmp_path)
-    result = run("sweep", "study.toml", "--dry-run")
-    assert result.exit_code == 0, result.stderr
-    assert "15 cases" in result.stderr

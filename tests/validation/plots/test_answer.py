@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from validation.plots.answer import first_figure
+from validation.plots.motion import first_figure
 
 
 @pytest.mark.parametrize(("operating", "named"), [(1450.0, True), (5000.0, False)])

@@ -19,10 +19,7 @@ from floquet.gear.campbell import campbell
 from floquet.gear.tongues import StabilityMargins, TongueMargin, label_regions
 from lumped import load_gear_pair
 from validation.cli import app
-from validation.plots.campbell import campbell_figure
-from validation.plots.labels import pretty, spread
-from validation.plots.stability import stability_figure, stability_line_figure
-from validation.plots.tongues import tongue_chart_figure, tongues_figure
+from validation.plots.stability import campbell_figure, pretty, spread, stability_figure, tongues_figure
 
 
 @pytest.fixture(scope="module")
@@ -46,14 +43,8 @@ def test_tongues_are_named_in_the_chart(pair) -> None:
     axes = {"speed_rpm": np.linspace(6000.0, 18000.0, 121), "damping_ratio": np.linspace(0.0, 0.03, 7)}
     chart = stability_chart(pair, axes)
     lines = {str(t): s for t, s in predicted_lines(pair).items()}
-    figure = tongue_chart_figure(
-        chart,
-        "damping_ratio",
-        label_regions(pair, chart),
-        lines,
-        point=(7000.0, 0.01),
-        operating_range=(6e3, 8e3),
-    )
+    at = {"speed_rpm": 7000.0, "damping_ratio": 0.01}
+    figure = stability_figure(chart, at, label_regions(pair, chart), lines, (6e3, 8e3))
     assert {"2ω₃/2", "2ω₃/5", "operating point", "operating range"} <= texts(figure)
     assert figure.axes[0].get_xlabel() == "pinion speed [rpm]"
 
@@ -62,7 +53,7 @@ def test_names_of_tongues_touch_no_other_words(pair) -> None:
     """A tongue at the right end: what the error bounds are stood there too."""
     axes = {"speed_rpm": np.linspace(6000.0, 17000.0, 111), "damping_ratio": np.linspace(0.0, 0.03, 7)}
     chart = stability_chart(pair, axes)
-    figure = tongue_chart_figure(chart, "damping_ratio", label_regions(pair, chart))
+    figure = stability_figure(chart, None, label_regions(pair, chart))
     renderer = FigureCanvasAgg(figure).get_renderer()
     figure.draw_without_rendering()
     ax, bar = figure.axes
@@ -121,7 +112,7 @@ def test_a_large_chart_is_one_image_and_not_a_polygon_per_point() -> None:
     x, y = np.linspace(1000.0, 20000.0, 1000), np.linspace(0.0, 0.05, 500)
     radius = 0.9 + 0.15 * np.exp(-(((x[:, None] - 9000.0) / 500.0) ** 2) - (y / 0.01) ** 2)
     chart = over_speed_and_damping(x, y, radius)
-    ax = stability_figure(chart, "speed_rpm", "damping_ratio", (5000.0, 0.05)).axes[0]
+    ax = stability_figure(chart, {"speed_rpm": 5000.0, "damping_ratio": 0.05}).axes[0]
     (image,) = ax.images
     assert image.get_array().shape == (500, 1000)
     # Nodes lie in the middle of their pixels.
@@ -140,7 +131,7 @@ def test_a_large_chart_is_one_image_and_not_a_polygon_per_point() -> None:
 def test_what_is_undecided_is_dotted_and_not_hatched() -> None:
     radius = np.array([[0.9, 0.9, 0.9], [1.0 + 1e-10] * 3, [1.1, 1.1, 1.1]])
     chart = over_speed_and_damping(np.array([1e3, 2e3, 3e3]), np.array([0.0, 0.1, 0.2]), radius)
-    ax = stability_figure(chart, "speed_rpm", "damping_ratio", None).axes[0]
+    ax = stability_figure(chart).axes[0]
     spans = {
         c.hatches[0]: np.concatenate([p.vertices for p in c.get_paths()])[:, 0]
         for c in ax.collections
@@ -149,14 +140,14 @@ def test_what_is_undecided_is_dotted_and_not_hatched() -> None:
     assert (spans["..."].min(), spans["..."].max()) == (1500.0, 2500.0)
     assert spans["////"].min() == pytest.approx(2500.0, abs=1.0)
     assert "dotted" in ax.figure.axes[1].get_ylabel()
-    line = stability_line_figure(chart.isel(damping_ratio=0), "speed_rpm", None).axes[0]
+    line = stability_figure(chart.isel(damping_ratio=0)).axes[0]
     assert line.get_lines()[1].get_xdata().tolist() == [2e3]
 
 
 def test_uneven_axes_and_falling_ones_are_drawn_at_their_values() -> None:
     x, y = np.array([3000.0, 1000.0, 1100.0]), np.array([0.0, 0.01, 0.05])
     values = np.array([[0.3, 0.3, 0.3], [0.1, 0.1, 0.1], [0.2, 0.2, 0.2]])
-    ax = stability_figure(over_speed_and_damping(x, y, values), "speed_rpm", "damping_ratio", None).axes[0]
+    ax = stability_figure(over_speed_and_damping(x, y, values)).axes[0]
     assert ax.figure.axes[1].get_ylabel().endswith("\nerror bounds: partly proven")
     (mesh,) = [c for c in ax.collections if isinstance(c, QuadMesh)]
     assert np.allclose(mesh.get_array()[0], [0.1, 0.2, 0.3])
@@ -166,8 +157,8 @@ def test_uneven_axes_and_falling_ones_are_drawn_at_their_values() -> None:
 def test_an_operating_point_outside_the_chart_is_left_out(pair) -> None:
     chart = stability_chart(pair, {"speed_rpm": [6e3, 7e3, 8e3], "damping_ratio": [0.0, 0.01, 0.02]})
     inside, outside = (
-        texts(stability_figure(chart, "speed_rpm", "damping_ratio", point))
-        for point in ((7e3, 0.01), (7e3, 0.05))
+        texts(stability_figure(chart, {"speed_rpm": 7e3, "damping_ratio": damping}))
+        for damping in (0.01, 0.05)
     )
     assert "operating point" in inside
     assert "operating point" not in outside

@@ -12,7 +12,6 @@ from validation.reporting.chapters import (
     contact_loss,
     cross_check,
     four_springs,
-    glossary,
     limitations,
     losses,
     mesh_physics,
@@ -20,7 +19,6 @@ from validation.reporting.chapters import (
     path_of_contact,
     provenance,
     reference_model,
-    scope,
     solution_verification,
     stability,
     stability_margins,
@@ -45,7 +43,6 @@ CHAPTERS: tuple[Chapter, ...] = tuple(
         losses,
         parameters,
         limitations,
-        scope,
         path_of_contact,
         mesh_physics,
         tooth_stiffness,
@@ -53,6 +50,5 @@ CHAPTERS: tuple[Chapter, ...] = tuple(
         solution_verification,
         reference_model,
         provenance,
-        glossary,
     )
 )

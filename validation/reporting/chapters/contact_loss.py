@@ -9,8 +9,7 @@ import numpy as np
 from floquet.gear.jump_removal import jumps_removed_by
 from floquet.gear.response import ResponseBranches
 from lumped.model.results import load_range
-from validation.plots.jumps import jump_map_figure
-from validation.plots.response import response_figure
+from validation.plots.contact_loss import jump_map_figure, response_figure
 from validation.reporting.blocks import Block, Content, Picture, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.formatting import number, quantity

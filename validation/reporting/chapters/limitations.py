@@ -43,6 +43,8 @@ def write(results: Results) -> Content:
     stated = sources(results.pair).values()
     assumed = sum(map(is_assumed, stated))
     text = Text(
+        "Frame: x runs along the line of action, y off it; pair 0 is the tooth pair "
+        "ahead; at time zero the newest pair enters contact at A. "
         f"Verification asks whether the equations are solved right; validation, whether they are the right "
         f"equations, and only measurements decide that. {assumed} of {len(stated)} parameter values of this "
         "pair are assumed: no conclusion is firmer than these. This report "

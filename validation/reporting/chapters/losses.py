@@ -22,7 +22,7 @@ from lumped.losses import (
 )
 from lumped.lubrication.viscosity import ZERO_CELSIUS
 from lumped.path_of_contact import contact_path
-from validation.plots.efficiency import efficiency_figure, sliding_power_figure
+from validation.plots.mesh import efficiency_figure, sliding_power_figure
 from validation.reporting.blocks import (
     Badge,
     Block,

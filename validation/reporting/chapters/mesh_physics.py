@@ -9,8 +9,13 @@ import xarray as xr
 
 from lumped import GearPair, Geometry
 from lumped.quasi_static import OptimalRelief
-from validation.plots.loaded_mesh import harris_figure, load_sharing_figure, relief_figure
-from validation.plots.stiffness import energy_mesh_figure, stiffness_components_figure
+from validation.plots.mesh import (
+    energy_mesh_figure,
+    harris_figure,
+    load_sharing_figure,
+    relief_figure,
+    stiffness_components_figure,
+)
 from validation.reporting.blocks import Block, Content, Picture, Quantity, Table, Text, facts, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.mesh_physics import mesh_physics

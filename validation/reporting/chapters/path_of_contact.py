@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from lumped import mesh_cycle
 from lumped.friction import LAWS
-from validation.plots.path_of_contact import friction_laws_figure, path_figure
-from validation.plots.stiffness import stiffness_figure
+from validation.plots.mesh import friction_laws_figure, path_figure, stiffness_figure
 from validation.reporting.blocks import Block, Content, Picture, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results

@@ -7,8 +7,7 @@ from scipy.optimize import linear_sum_assignment
 
 from floquet.gear.axes import chart_axes
 from floquet.gear.chart import stability_chart
-from validation.plots.multipliers import multipliers_figure
-from validation.plots.tongues import tongue_chart_figure
+from validation.plots.stability import multipliers_figure, stability_figure
 from validation.reporting import words
 from validation.reporting.blocks import (
     Answer,
@@ -96,8 +95,8 @@ def write(results: Results) -> Content:
             "Spectral radius over pinion speed and mesh damping ratio, all else as given. Orange with a "
             "black edge: unstable, named by mode pair and order. Every node carries an error bound "
             f"({chart.attrs['certificate']}).",
-            lambda: tongue_chart_figure(
-                chart, "damping_ratio", m.tongues, point=(m.rpm, pair.mesh.damping_ratio)
+            lambda: stability_figure(
+                chart, {"speed_rpm": m.rpm, "damping_ratio": pair.mesh.damping_ratio}, m.tongues
             ),
         ),
         Text(

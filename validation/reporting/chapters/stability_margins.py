@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from floquet.gear.tongues import ORDERS
-from validation.plots.tongues import tongues_figure
+from validation.plots.stability import tongues_figure
 from validation.reporting.blocks import Block, Content, Picture, Quantity, Text, facts, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results

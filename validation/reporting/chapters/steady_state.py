@@ -13,10 +13,10 @@ from lumped.model.steady import UNSTABLE
 from validation.cross_check.metrics import mesh_orders
 from validation.plots.motion import (
     motions_figure,
+    sweep_figure,
     tooth_forces_figure,
     transmission_error_figure,
 )
-from validation.plots.sweep import sweep_figure
 from validation.reporting import words
 from validation.reporting.blocks import (
     Answer,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from validation.plots.stiffness import tooth_stiffness_figure
+from validation.plots.mesh import tooth_stiffness_figure
 from validation.reporting.blocks import Badge, Block, Content, Picture, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.checks import check_table
