@@ -18,8 +18,8 @@ from matplotlib.image import AxesImage
 from scipy.ndimage import maximum_filter
 from scipy.optimize import isotonic_regression
 
-from floquet.gear.tongues import LabelledRegion, StabilityMargins, TongueMargin
 from floquet.gear.multipliers import GearPairMultipliers
+from floquet.gear.tongues import LabelledRegion, StabilityMargins, TongueMargin
 from lumped.typing import FloatArray
 from validation.plots.style import (
     BLACK,
