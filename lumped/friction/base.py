@@ -111,9 +111,9 @@ class ContactPath:
     def crossings(self, function: Callable[[FloatArray], FloatArray]) -> list[float]:
         """Positions strictly inside A..D where a continuous function of xi changes sign [m].
 
-        The search runs over distances from the pitch point that grow geometrically from ``PITCH_RESOLUTION``,
-        because bounded laws may leave their bounds that close to P. Two roots within four per cent of the
-        same distance would be missed: the function then touches its level without consequence.
+        The search runs over distances from the pitch point that grow geometrically, because bounded laws may
+        leave their bounds close to P. Two roots within four per cent of the same distance would be missed:
+        the function then touches its level without consequence.
         """
         found = []
         for side, reach in ((-1.0, self.L_XP - self.L_XA), (1.0, self.L_XD - self.L_XP)):
@@ -209,8 +209,7 @@ _GEOMETRIC_ABOVE = 2.0  # pieces whose ends are further apart than this ratio ar
 def fit_signed(law: FrictionLaw, path: ContactPath, settings: FrictionSettings) -> PathFunction:
     """Signed mu(xi) of a law on [L_XA, L_XD], within ``FIT_TOLERANCE`` wherever it is smooth.
 
-    Around the pitch point law II has a logarithm, law III the power 1.036 and law IV a width of its own, so
-    pieces are cut in proportion to their distance from it.
+    Around the pitch point law II has a logarithm, law III the power 1.036 and law IV a width of its own.
     """
     switches = sorted({xi for xi in law.switches(path, settings) if path.L_XA < xi < path.L_XD})
     # The pitch point is a break of every law: also where mu is smooth there, it varies fastest around it.

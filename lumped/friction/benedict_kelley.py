@@ -43,10 +43,6 @@ def friction_number(
 ) -> FloatArray:
     """The argument 29700 w / (eta v_s v_e^2) of law II's logarithm; infinite where v_s = 0.
 
-    Units as in ``benedict_kelley``.
-
-    Examples
-    --------
     >>> float(friction_number(100, 10, 2, 10))
     1485.0
     """

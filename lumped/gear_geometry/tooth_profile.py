@@ -92,17 +92,13 @@ class ToothProfile:
         return bottom, bottom - down / (self.reference_radius * math.tan(self.pressure_angle))
 
     def trochoid(self, roll: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Fillet cut by the rack's rounded tip, in axes that have turned with the roll.
+        """Fillet cut by the rack's rounded tip at roll angles, in axes that have turned with the roll.
 
         The rack's pitch line rolls on the reference circle. The envelope of the tip circle has its normal
         through the pitch point, so the cut point lies on the line from the pitch point through the tip
         circle's centre: beyond the centre, or before it where a large profile shift lifts it over the pitch
-        line. ``roll`` is 0 where the rack tooth is centred in the space.
-
-        Returns
-        -------
-        x, y : across and along the line from the gear's centre to the pitch point [m]; the angle from the
-            centre line of the space is arctan2(x, y) + roll
+        line. Returned are x, y across and along the line from the gear's centre to the pitch point [m]; the
+        angle from the centre line of the space is arctan2(x, y) + roll.
         """
         radius, half_width, down = self.rack_tip
         along = half_width - self.reference_radius * roll
@@ -113,9 +109,8 @@ class ToothProfile:
     def form_length(self) -> float:
         """Length along the base tangent at which the involute begins [m].
 
-        The involute is usable for distances from the base circle's tangent point at or beyond this length;
-        the form radius is sqrt(r_b^2 + length^2). Where the rack undercuts the flank, it is the crossing of
-        the involute and the fillet's trochoid, found numerically.
+        Where the rack undercuts the flank, it is the crossing of the involute and the fillet's trochoid,
+        found numerically.
         """
         sine = math.sin(self.pressure_angle)
         flank_depth = self.dedendum - self.fillet * (1.0 - sine)
@@ -127,9 +122,9 @@ class ToothProfile:
     def _undercut_length(self) -> float:
         """Length at which the fillet's trochoid crosses the involute, where the rack undercuts.
 
-        The trochoid climbs from the root circle to its joint with the rack's straight flank, which lies
-        beyond the tangent point here. Where it passes the base circle it is inside the tooth, at the joint
-        outside: it crosses the involute once in between.
+        The trochoid climbs from the root circle to its joint with the rack's straight flank, beyond the
+        tangent point. At the base circle it is inside the tooth, at the joint outside: it crosses the
+        involute once.
         """
         r_base = self.base_radius
         bottom, joint = self.fillet_rolls
@@ -180,14 +175,10 @@ class ToothProfile:
         return bottom, float(brentq(excess, bottom, joint, xtol=1e-14))
 
     def involute_points(self, length: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Points of the involute at lengths L along the base tangent [m], any shape.
+        """Points u, h of the involute at lengths L along the base tangent [m], any shape.
 
-        Returns
-        -------
-        u, h : coordinates [m]
-        slope : du/dL = (L/r_b) cos(load_angle) [-]
-        load_angle : angle between the flank's normal and the normal to the centre line,
-            L/r_b - base_half_angle [rad]; positive when the load pushes towards the root
+        Also du/dL = (L/r_b) cos(a) [-] and the angle a between the flank's normal and the normal to the
+        centre line, L/r_b - base_half_angle; positive when the load pushes towards the root.
         """
         load_angle = length / self.base_radius - self.base_half_angle
         u = self.base_radius * np.cos(load_angle) + length * np.sin(load_angle)

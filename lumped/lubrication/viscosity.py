@@ -54,7 +54,7 @@ def kinematic_viscosity(temperature: ArrayLike, constants: tuple[float, float]) 
     return np.asarray(10.0**10.0 ** (a - b * np.log10(kelvin)) - 0.7, dtype=np.float64)
 
 
-def oil_density(density_15: ArrayLike, temperature: ArrayLike) -> FloatArray:
+def oil_density(density_15: float, temperature: ArrayLike) -> FloatArray:
     """Density of a lubricating oil [kg/m^3], rho_15 exp(-a dT (1 + 0.8 a dT)), a = 0.6278/rho_15 1/K.
 
     ASTM D1250 / API MPMS 11.1, thermal expansion of lubricating oils (commodity group D).
@@ -62,9 +62,8 @@ def oil_density(density_15: ArrayLike, temperature: ArrayLike) -> FloatArray:
     >>> round(float(oil_density(870, 60)), 1)
     841.5
     """
-    rho = checked("density", density_15, "kg/m^3")
-    expansion = 0.6278 / rho * (np.asarray(temperature, dtype=float) - 15.0)
-    return np.asarray(rho * np.exp(-expansion * (1.0 + 0.8 * expansion)), dtype=np.float64)
+    expansion = 0.6278 / density_15 * (np.asarray(temperature, dtype=float) - 15.0)
+    return np.asarray(density_15 * np.exp(-expansion * (1.0 + 0.8 * expansion)), dtype=np.float64)
 
 
 #: ISO 3448 grade -> mid-point kinematic viscosity at 40 degC [mm^2/s]; limits are 10 per cent either side.

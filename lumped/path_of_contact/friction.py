@@ -38,7 +38,7 @@ def contact_path(pair: AnyPair) -> ContactPath:
     pinion, gear = pair.pinion, pair.gear
     composite = friction.composite_roughness
     if composite is None:
-        composite = float(composite_roughness(pinion.roughness, gear.roughness))
+        composite = composite_roughness(pinion.roughness, gear.roughness)
     return ContactPath(
         L_XA=g.L_XA,
         L_XP=g.L_XP,
@@ -47,15 +47,13 @@ def contact_path(pair: AnyPair) -> ContactPath:
         omega_pinion=g.omega_pinion,
         omega_gear=g.omega_gear,
         unit_load=pair.operating.pinion_torque / (g.face_width * g.base_radius_pinion),
-        effective_modulus=float(
-            film.effective_modulus(
-                pinion.youngs_modulus, pinion.poisson_ratio, gear.youngs_modulus, gear.poisson_ratio
-            )
+        effective_modulus=film.effective_modulus(
+            pinion.youngs_modulus, pinion.poisson_ratio, gear.youngs_modulus, gear.poisson_ratio
         ),
         viscosity=lubricant.dynamic_viscosity,
         pressure_viscosity_k=lubricant.pressure_viscosity_k,
         pressure_viscosity_s=lubricant.pressure_viscosity_s,
-        roughness=float(mean_roughness(pinion.roughness, gear.roughness)),
+        roughness=mean_roughness(pinion.roughness, gear.roughness),
         composite_roughness=composite,
         film_length=friction.film_length,
     )

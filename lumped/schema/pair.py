@@ -243,10 +243,6 @@ class GearPair(Section):
         **fields : the same with ``__`` for the dot: ``operating__pinion_speed=2000``. A bare number means
             the field's stated unit, and what shows a unit has that one: text, or a value read from a field.
             A dict replaces a whole section; ``None`` restores the default.
-
-        Raises
-        ------
-        ParameterError : an unknown path or a value that a file could not have either
         """
         return _varied(self, {**(changes or {}), **{key.replace("__", "."): v for key, v in fields.items()}})
 

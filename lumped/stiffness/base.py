@@ -64,18 +64,13 @@ class StiffnessModel(Section):
 
     @abstractmethod
     def curve(self, pair: MeshingPair) -> PathFunction:
-        """Stiffness k_i(xi) of one tooth pair from A to D [N/m].
-
-        Raises
-        ------
-        ParameterError : the model's parameters do not fit this pair
-        """
+        """Stiffness k_i(xi) of one tooth pair from A to D [N/m]; parameters that do not fit are refused."""
 
     def violations(self, pair: MeshingPair) -> tuple[RangeViolation, ...]:
         """Validity ranges that a gear pair leaves under this model.
 
         They are returned, not warned about: ordinary gears leave the fit of the fillet foundation, and a
-        warning at every evaluation of a sweep would hide the others. The report lists them.
+        warning at every evaluation of a sweep would hide the others.
         """
         return ()
 
@@ -87,10 +82,7 @@ class StiffnessModel(Section):
         return ()
 
     def softening(self, pair: MeshingPair) -> float:
-        """How the compliance of a pair falls with load: D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N].
-
-        0 for stiffness that does not depend on the load.
-        """
+        """D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N]; 0 for stiffness that does not depend on the load."""
         return 0.0
 
 

@@ -87,12 +87,9 @@ def local_compliance(half_width: FloatArray, depth: FloatArray, modulus: float, 
 
 
 def softening(modulus: tuple[float, float], poisson: tuple[float, float]) -> float:
-    """Fall of ``local_compliance`` of both teeth with the logarithm of the load, times face width [m^2/N].
+    """Fall D of ``local_compliance`` of both teeth with the logarithm of the load, times width [m^2/N].
 
     The half width grows as the root of the load, so D = sum (1 - nu^2)/(pi E), at every position.
-
-    >>> f"{softening((206e9, 206e9), (0.3, 0.3)):.4e}"
-    '2.8123e-12'
     """
     return sum((1.0 - nu**2) / e for e, nu in zip(modulus, poisson, strict=True)) / math.pi
 
@@ -262,14 +259,8 @@ def _tooth(wheel: Wheel, material: Material, length: FloatArray, width: float) -
     profile, modulus, ratio = wheel.tooth, material.youngs_modulus, material.poisson_ratio
     beam = beam_compliance(profile, length, modulus, ratio)
     *_, angle = profile.involute_points(length)
-    foundation = foundation_compliance(
-        profile.base_radius,
-        profile.root_radius,
-        profile.root_half_angle,
-        angle,
-        modulus,
-        ratio,
-    )
+    radii = profile.base_radius, profile.root_radius
+    foundation = foundation_compliance(*radii, profile.root_half_angle, angle, modulus, ratio)
     return ToothCompliance(
         bending=beam.bending / width,
         shear=beam.shear / width,
@@ -308,7 +299,7 @@ class EnergyStiffness(StiffnessModel):
     ramp_length: RampLength = 0.0
 
     def curve(self, pair: MeshingPair) -> PathFunction:
-        """Stiffness of a tooth pair from A to D by the potential-energy method [N/m]."""
+        """By the potential-energy method [N/m]."""
         k = energy_curve(pair, self.hertz)
         if self.scale == "iso6336":
             k = k.scaled(iso6336.mean_of(pair) / (k.mean() * pair.geometry.contact_ratio))
@@ -323,11 +314,7 @@ class EnergyStiffness(StiffnessModel):
         return neighbour_compliances(pair) if self.scale == "none" else ()
 
     def softening(self, pair: MeshingPair) -> float:
-        """D in 1/k(T) = 1/k(T_0) - D ln(T/T_0), of Weber and Banaschek's contact [m/N].
-
-        The linearised contact does not depend on the load; curves that are scaled or ramped keep the
-        operating torque.
-        """
+        """Of Weber and Banaschek's contact; curves that are scaled or ramped keep the operating torque."""
         changed = self.scale != "none" or self.ramp_length > 0.0
         if self.hertz != "weber_banaschek" or changed:
             return 0.0

@@ -172,7 +172,7 @@ class FiniteElementStiffness(StiffnessModel):
     )
 
     def curve(self, pair: MeshingPair) -> PathFunction:
-        """Stiffness of a tooth pair from A to D by finite elements [N/m]."""
+        """By plane finite elements [N/m]."""
         teeth = elastic_teeth(pair, self.plane, self.support)
         ends = pair.geometry.L_XA, pair.geometry.L_XD
         return fitted_series(lambda xi: 1.0 / self_compliance(pair, teeth, xi), ends)
@@ -187,7 +187,7 @@ class FiniteElementStiffness(StiffnessModel):
         return coupled_pairs(pair, lambda apart, xi: cross_compliance(pair, teeth, apart, xi))
 
     def softening(self, pair: MeshingPair) -> float:
-        """D of the contact, see ``energy.softening`` [m/N]."""
+        """Of the contact [m/N]."""
         moduli = (pair.pinion.youngs_modulus, pair.gear.youngs_modulus)
         ratios = (pair.pinion.poisson_ratio, pair.gear.poisson_ratio)
         return softening(moduli, ratios) / pair.geometry.face_width

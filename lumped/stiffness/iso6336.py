@@ -106,8 +106,6 @@ def pair_single_stiffness(pair: MeshingPair) -> float:
     """Single stiffness c' of a gear pair of solid discs [N/(mm um)].
 
     Without the low-load reduction, as the linear model has one stiffness per position at every torque.
-    The standard's gear 1 is the one with fewer teeth, whichever drives; at equal tooth numbers the one with
-    the larger profile shift.
     """
     small, large = _ordered(pair)
     rack = pair.wheels[0].tooth
@@ -147,7 +145,7 @@ def fit_violations(pair: MeshingPair) -> tuple[RangeViolation, ...]:
 
 
 def _ordered(pair: MeshingPair) -> tuple[tuple[int, float], tuple[int, float]]:
-    """(teeth, profile shift) of the standard's gears 1 and 2."""
+    """(teeth, profile shift) of the standard's gears 1 and 2: fewer teeth first, then the larger shift."""
     gears = ((w.tooth.teeth, w.tooth.profile_shift) for w in pair.wheels)
     small, large = sorted(gears, key=lambda gear: (gear[0], -gear[1]))
     return small, large

@@ -152,7 +152,7 @@ class TableStiffness(StiffnessModel):
         return self
 
     def curve(self, pair: MeshingPair) -> PathFunction:
-        """Stiffness of a tooth pair from A to D by interpolation of the table [N/m].
+        """By interpolation of the table [N/m].
 
         A total curve is shared out so that the sum over the pairs in contact is the table: each pair gets the
         part that its potential-energy stiffness has in the sum of theirs.
@@ -243,7 +243,7 @@ def _neighbour_breaks(
     """Breaks and switches [m] of a function of a pair and its neighbours over the path of contact.
 
     ``switches`` are where one pair alone jumps or has a kink, A and D among them, ``knots`` where it passes
-    from one polynomial piece to the next. No break is within rounding of another.
+    to its next piece. No break is within rounding of another.
     """
     g, same = geometry, _SAME * geometry.base_pitch
     shifts = np.arange(1 - g.pairs, g.pairs) * g.base_pitch

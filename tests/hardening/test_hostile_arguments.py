@@ -140,8 +140,8 @@ def test_a_wrong_type_is_refused_by_every_main_function(function, argument, tmp_
 @pytest.mark.parametrize("value", [v for kind, v in NOTHING.items() if kind != "a solid"], ids=str)
 def test_what_is_no_number_is_no_argument_of_a_law(value):
     laws = (
-        film.hertz_pressure, film.effective_modulus, film.film_parameter, film.regime, friction.coulomb,
-        friction.smoothed_coulomb, friction.benedict_kelley, friction.xu_kahraman, friction.composite,
+        film.regime, friction.coulomb, friction.smoothed_coulomb, friction.benedict_kelley,
+        friction.xu_kahraman, friction.composite,
         losses.anderson_loewenthal_coefficient, losses.iso_14179_mean_coefficient,
     )  # fmt: skip
     for law in laws:

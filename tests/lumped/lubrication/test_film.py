@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from lumped import load_gear_pair
 from lumped.errors import ParameterError
 from lumped.lubrication.film import (
     effective_modulus,
@@ -15,18 +16,9 @@ from lumped.lubrication.film import (
     pressure_viscosity,
     regime,
 )
+from lumped.path_of_contact import contact_path
 
 STEEL = float(effective_modulus(206e3, 0.3, 206e3, 0.3))  # N/mm^2
-
-
-def test_check_values():
-    # computed twice, independently: w 100 N/mm, rho 8 mm, eta 10 mPa s, v_e 10 m/s, E 206 GPa, nu 0.3;
-    # half a unit of the last stated place
-    h_c = film_thickness(100, 8, 10, 10, STEEL)
-    b_h = hertz_half_width(100, 8, STEEL)
-    assert h_c == pytest.approx(0.312115, abs=5e-7)
-    assert b_h == pytest.approx(0.0948642, abs=5e-8)
-    assert film_parameter(h_c, b_h, 0.5, 0.8) == pytest.approx(1.281808, abs=5e-7)
 
 
 def test_film_does_not_depend_on_the_unit_system():
@@ -80,10 +72,14 @@ def test_regime_refuses_thresholds_out_of_order(thresholds):
         regime(2.0, thresholds)
 
 
-def test_bad_arguments_are_named():
-    with pytest.raises(ParameterError, match="entraining_velocity"):
-        film_thickness(100, 8, 10, 0.0, STEEL)
+def test_a_film_on_smooth_flanks_is_refused():
     with pytest.raises(ParameterError, match="composite_roughness"):
         film_parameter(0.3, 0.1, 0.0)
-    with pytest.raises(ParameterError, match="radius"):
-        hertz_pressure(100, -8, STEEL)
+
+
+def test_pair_takes_both_roughnesses_unless_one_is_given():
+    pair = load_gear_pair("fzg_c").with_(pinion__roughness=0.3, gear__roughness=0.4)
+    assert contact_path(pair).composite_roughness == pytest.approx(0.5e-6, rel=1e-14)
+    assert contact_path(pair).roughness == pytest.approx(0.35e-6, rel=1e-14)
+    given = pair.with_(friction__composite_roughness=0.2)
+    assert contact_path(given).composite_roughness == pytest.approx(0.2e-6, rel=1e-14)
