@@ -44,13 +44,14 @@ PAIRS = {
 def dop853(setup: Setup, cycles: int) -> tuple[int, np.ndarray]:
     """Integrate the lumped equations between switches; force evaluations, and q at the ends of the cycles."""
     m, p = setup.machine, setup.machine.parameters.copy()
-    wrench, contacts = np.empty(6), np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
+    gears, contacts = np.empty((3, 6)), np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
     inertia, stiffness, damping, load = m.bodies
 
     def rates(t: float, state: np.ndarray) -> np.ndarray:
         q, v = state[:6], state[6:]
-        linear_forces(t, q, v, p, setup.model.flags, m.table, wrench, contacts)
-        return np.concatenate([v, (wrench + load - stiffness * q - damping * v) / inertia])
+        gears[:2] = q, v
+        linear_forces(t, gears, p, setup.model.flags, m.table, contacts)
+        return np.concatenate([v, (gears[2] + load - stiffness * q - damping * v) / inertia])
 
     edges = (np.arange(cycles)[:, None] + m.switches).ravel()
     edges = np.append(edges, float(cycles)) * m.period

@@ -61,12 +61,10 @@ def compliances(
     """Compression of one tooth pair over its load, and how it grows with the load: slope, half of its bend.
 
     With Hertz's contact by Weber and Banaschek p = N (1/k - D/2 ln(S/N_0^2)) with S = N^2 + N_1^2: it grows
-    stiffer with the load, and is linear below N_1. Pulled, in a mesh that cannot part, it is linear.
+    stiffer with the load, and is linear below N_1. Pulled, in a mesh that cannot lose contact, it is linear.
 
-    load : N [N]
-    stiffness : k at the load ``nominal`` [N/m]
+    stiffness, nominal : k at the load N_0 [N/m], [N]
     softening : D [m/N]; 0 is a linear spring
-    nominal : N_0 [N]
     Returns p/N [m/N], dp/dN [m/N] and d^2p/dN^2/2 [m/N^2]
     """
     if softening == 0.0 or load <= 0.0:
@@ -102,11 +100,8 @@ def stored_energy(
 ) -> tuple[float, float]:
     """Energy that one tooth pair stores [J], and its slope along the path of contact [J/m].
 
-    U = N p - C with the integral C of p over N, of which k alone depends on the place
+    U = N p - C with the integral C of p over N, of which k alone depends on the place, as ``slope`` says
     (docs/theory/contact_energy.md, "Energy of one pair"). The slope is at constant compression.
-
-    load, stiffness, softening, nominal : as ``compliances``
-    slope : of k over xi [N/m^2]
     """
     if stiffness <= 0.0:
         return 0.0, 0.0
@@ -168,10 +163,7 @@ def _many_loads(
     nominal: float,
     loads: FloatArray,
 ) -> None:
-    """Loads of more than two pairs that touch, by Newton's steps from ``loads``.
-
-    ``touch`` are the bits of these pairs; the other arguments are as ``shared_loads``.
-    """
+    """Loads of more than two pairs that touch (bits ``touch``), by Newton's steps from ``loads``."""
     matrix, rest = np.empty((count, count)), np.empty(count)
     for _ in range(_MOST_STEPS):
         for i in range(count):
@@ -220,11 +212,9 @@ def shared_loads(
     Solved for the pairs that touch; then those that would pull are let go and those that would overlap are
     taken in, until none is left. The energy is convex, so there is one answer.
 
-    count : number of pairs, the first entries of the arrays
-    pressed, stiffness : approach less all gaps [m], and k [N/m]
-    pulls : bits of the pairs that cannot part
+    pressed, stiffness : of ``count`` pairs: approach less all gaps [m], and k [N/m]
+    pulls : bits of the pairs that cannot lose contact
     coupling : w_ij, zero on the diagonal [m/N]
-    softening, nominal : as ``compliances``
     loads : receives N_i [N]
     """
     touch = int(np.int64(0))

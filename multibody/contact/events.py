@@ -21,6 +21,7 @@ from multibody.contact.kernels import coupling_at, mesh_position, relief_at
 from multibody.contact.kinematics import (
     DRIVE,
     MAX_PAIRS,
+    Line,
     compiled,
     corner_gap,
     corner_reach,
@@ -57,10 +58,8 @@ def event_table(
 ) -> FloatArray:
     """Rows (kind, place) of what makes the force jump or bend once per mesh cycle, (n, 2).
 
-    stiffness : of a tooth pair over the path of contact
     bends : where a relief starts [m]
     friction : (kind, place) of the jumps and kinks of the friction law
-    pitch : base pitch [m]
     corners : whether tip corners touch beyond the path of contact
     """
     step = _STEP * pitch
@@ -102,37 +101,24 @@ def _change(law: PathFunction, j: int, step: float) -> float:
 
 
 @compiled
-def let_go(
-    gap: float,
-    stiffness: float,
-    ex: float,
-    ey: float,
-    length: float,
-    v: FloatArray,
-    p: FloatArray,
-    flags: int,
-) -> float:
+def let_go(gap: float, stiffness: float, line: Line, v: FloatArray, p: FloatArray, flags: int) -> float:
     """How far beyond D the pinion's tip corner lets go: its damper would pull as much as it presses [m].
 
     Where the compression falls at the rate u that is where the load is c u, or with the share x^2 (3 - 2 x)
-    of a damper that acts gradually, at the load x N_f, where c u x (3 - 2 x) = N_f.
-
-    gap : approach of the flanks [m]
-    stiffness : of the pair [N/m]
-    ex, ey, length : line of action
-    v, p, flags : as ``kernels.contact_forces``
+    of a damper that acts gradually, at the load x N_f, where c u x (3 - 2 x) = N_f. ``gap`` is the approach
+    of the flanks [m].
     """
-    rp, rg, tip = p[kn.RADIUS_P], p[kn.RADIUS_G], p[kn.TIP_P]
+    rp, rg, tip, length = line.radius_p, line.radius_g, p[kn.TIP_P], line.length
     vx, vy = v[0] - v[3], v[1] - v[4]
     omega_p, omega_g = v[2] - p[kn.OMEGA_P], v[5] + p[kn.OMEGA_G]
     turning = lengthening = 0.0
     if flags & kn.MOVING_LINE:
-        turning = (ey * vx - ex * vy) / length
-        lengthening = (rp + rg) * turning - (ex * vx + ey * vy)
+        turning = (line.ey * vx - line.ex * vy) / length
+        lengthening = (rp + rg) * turning - (line.ex * vx + line.ey * vy)
     full = kn.GRADUAL * p[kn.NOMINAL_FORCE]
     damping = p[kn.DAMPING] * math.sqrt(max(stiffness, 0.0))
     softening = p[kn.SOFTENING] if flags & kn.CONTACT_LAW else 0.0
-    closing = overlap_rate(ex, ey, vx, vy, omega_p, omega_g, rp, rg, DRIVE)
+    closing = overlap_rate(line, vx, vy, omega_p, omega_g)
     beyond = corner_reach(gap, tip, length, rp, rg)
     for _ in range(_MOST_ITERATIONS):
         _, by_p, by_length = corner_gap(beyond, tip, length, rp, rg)
@@ -151,8 +137,7 @@ def let_go(
 def moved_by_others(at: float, contacts: FloatArray, count: int, p: FloatArray) -> float:
     """How much of the approach of a pair at xi = ``at`` the loads of the others take [m].
 
-    at : where the pair will be at an event, the others being whole pitches off [m]
-    contacts, count : records of the present contacts, see ``kernels.contact_forces``
+    The others are whole pitches off; ``contacts`` are the ``count`` records of the present contacts.
     """
     moved = 0.0
     for i in range(count):
@@ -182,7 +167,8 @@ def distance(
     where it takes that value is exact. ``contacts`` are the ``count`` pairs whose loads move a tip corner,
     none where pairs stand alone.
     """
-    ex, ey, length, delta, rho, xi = mesh_position(t, q, p, flags, DRIVE)
+    line, delta, rho, xi = mesh_position(t, q, p, flags, DRIVE)
+    length = line.length
     shifted = flags & (kn.ENTRY_SHIFT | kn.TIP_CONTACT)
     first, last = kind == FIRST_TOUCH, kind in (LET_GO, LAST_TOUCH)
     beyond = 0.0
@@ -196,7 +182,7 @@ def distance(
             gap = delta - relief_at(p, p[kn.L_XD])[0]
             gap -= moved_by_others(p[kn.L_XD] + beyond, contacts, count, p)
             if kind == LET_GO:
-                beyond = let_go(gap, place, ex, ey, length, v, p, flags)
+                beyond = let_go(gap, place, line, v, p, flags)
             else:
                 beyond = corner_reach(gap, p[kn.TIP_P], length, p[kn.RADIUS_P], p[kn.RADIUS_G])
         if count == 0:
@@ -208,7 +194,7 @@ def distance(
     if kind == SLIDING and flags & kn.SLIDING:
         omega_p, omega_g = v[2] - p[kn.OMEGA_P], v[5] + p[kn.OMEGA_G]
         arm = xi + 0.5 * (length - p[kn.L_XY])
-        slide = sliding_velocity(ex, ey, v[0] - v[3], v[1] - v[4], omega_p, omega_g, arm, length - arm, DRIVE)
+        slide = sliding_velocity(line, v[0] - v[3], v[1] - v[4], omega_p, omega_g, arm, length - arm)
         wanted = (place - p[kn.L_XP]) * (p[kn.OMEGA_P] + p[kn.OMEGA_G])
         return float((wanted - slide) / (omega_g - omega_p))
     return place - xi
@@ -228,18 +214,19 @@ def time_to_event(
 ) -> tuple[float, float]:
     """Time to the next event [s] and its kind; infinite when there is none.
 
-    t : time [s]
     q, v, a : (6,) coordinates, velocities, accelerations
-    p, flags, table : as ``kernels.contact_forces``
     events : (n, 2) from ``event_table``
     near : time over which a Taylor polynomial foretells the vibration [s]; further ahead only the nominal
         speed is asked
     """
     pitch, speed = float(p[kn.PITCH]), float(p[kn.OMEGA_P] * p[kn.RADIUS_P])
     coupled = flags & kn.NEIGHBOURS and flags & kn.TIP_CONTACT and p[kn.COUPLED] > 0.0
-    wrench, contacts, count = np.empty(6), np.empty((2 * MAX_PAIRS, kn.N_RECORD)), 0
+    contacts, count, ahead = np.empty((2 * MAX_PAIRS, kn.N_RECORD)), 0, np.empty((3, 6))
+    later, moving = ahead[0], ahead[1]
     if coupled:
-        count = kn.contact_forces(t, q, v, p, flags, table, wrench, contacts)
+        for j in range(6):
+            later[j], moving[j] = q[j], v[j]
+        count = kn.contact_forces(t, ahead, p, flags, table, contacts)
     way, which = math.inf, 0
     for i in range(events.shape[0]):
         d = distance(events[i, 0], events[i, 1], t, q, v, p, flags, contacts, count) % pitch
@@ -249,13 +236,12 @@ def time_to_event(
     kind = float(events[which, 0]) if events.shape[0] else ENTRY
     if not wait < near:
         return wait, kind
-    later, moving = np.empty(6), np.empty(6)
     before = shift = 0.0
     for turn in range(_MOST_ITERATIONS):
         for j in range(6):
             later[j], moving[j] = q[j] + wait * (v[j] + 0.5 * wait * a[j]), v[j] + wait * a[j]
         if coupled and kind >= FIRST_TOUCH:
-            count = kn.contact_forces(t + wait, later, moving, p, flags, table, wrench, contacts)
+            count = kn.contact_forces(t + wait, ahead, p, flags, table, contacts)
         d = distance(kind, events[which, 1], t + wait, later, moving, p, flags, contacts, count)
         change = wrap(d, pitch) / speed
         share = 1.0  # of the way that the secant through the last two predictions goes

@@ -65,10 +65,7 @@ def hertz_pressure(f: FloatArray, radius: float, w: float) -> float:
 def film_parameter(f: FloatArray, rolling: float, radius: float, w: float) -> float:
     """Film parameter Lambda, equation (21): Dowson and Toyoda's central film over the filtered roughness.
 
-    f : friction parameters
-    rolling : v_e, sum of the rolling velocities [m/s]
-    radius : reduced radius of curvature [m]
-    w : load per face width [N/m]; without load the film is unbounded
+    Without load w [N/m] the film is unbounded; ``radius`` is the reduced radius of curvature [m].
     """
     if w <= 0.0:
         return math.inf
@@ -145,9 +142,7 @@ def magnitude(
 ) -> float:
     """Size of the friction coefficient at one contact.
 
-    f : (N_FRICTION,) parameters, in the order named above
-    sliding : v_s >= 0 [m/s]
-    rolling : v_e, sum of the rolling velocities [m/s]
+    sliding, rolling : v_s >= 0, and v_e, the sum of the rolling velocities [m/s]
     rho_p, rho_g : radii of curvature of the flanks at the contact [m]
     distance : law IV's argument: from the pitch point to where the nominal motion slides as fast [m]
     w : load per face width [N/m]

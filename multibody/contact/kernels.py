@@ -31,6 +31,7 @@ from multibody.contact.kinematics import (
     DRIVE,
     MAX_PAIRS,
     Corners,
+    Line,
     add_gradient,
     add_wrench,
     compiled,
@@ -166,11 +167,7 @@ def signed_friction(
     Without the effect of the actual sliding velocity the contact slides and rolls as in the nominal motion at
     xi, without that of the momentary load it carries w_n.
 
-    p, flags : as ``contact_forces``
-    flank : +1 drive, -1 coast
-    xi : position on the path of contact [m]
     slide, rolling : actual sliding velocity and sum of the rolling velocities [m/s]
-    rho_p, rho_g : radii of curvature at the contact [m]
     normal : load of the contact [N]
     """
     f = p[FRICTION:]
@@ -190,14 +187,12 @@ def signed_friction(
 @compiled
 def mesh_position(
     t: float, q: FloatArray, p: FloatArray, flags: int, flank: float
-) -> tuple[float, float, float, float, float, float]:
-    """Line of action of one side of the teeth, and where they stand on it.
+) -> tuple[Line, float, float, float]:
+    """Line of action of one side of the teeth, and where they stand on it; arguments as ``contact_forces``.
 
-    t, q, p, flags : as ``contact_forces``
-    flank : +1 drive, -1 coast
-    Returns (ex, ey, length, delta, rho, xi) : unit vector e from X to Y and length of the line of action;
-        overlap; flank distance rho_p of one tooth pair from X, with which ``engaged`` finds the pairs in
-        contact, and its position on the path of contact [m]. The other pairs follow at whole pitches
+    Returns (line, delta, rho, xi) : the line; overlap; flank distance rho_p of one tooth pair from X, with
+        which ``engaged`` finds the pairs in contact, and its position on the path of contact [m]. The other
+        pairs follow at whole pitches
     """
     rp, rg = p[RADIUS_P], p[RADIUS_G]
     tau = min(max(t, p[T_LOW]), p[T_HIGH])
@@ -214,15 +209,12 @@ def mesh_position(
         first, beyond = mesh_phase(psi, grown, 0.0, 0.0, rolled, rp, rg, p[PITCH], chi, apart, flank)
     xi = first - 0.5 * (grown + beyond)
     rho = xi + 0.5 * (grown + delta) if flags & (ENTRY_SHIFT | TIP_CONTACT) else xi
-    return ex, ey, p[L_XY] + grown, delta, rho, xi
+    return Line(ex, ey, p[L_XY] + grown, flank, rp, rg), delta, rho, xi
 
 
 @compiled
 def engaged(rho: float, delta: float, length: float, p: FloatArray, flags: int, arms: FloatArray) -> int:
-    """Find the tooth pairs in contact: on the actual flanks, or on the nominal path without entry shift.
-
-    ``rho`` is from ``mesh_position``; the rest as ``kinematics.pairs_in_contact``.
-    """
+    """Find the tooth pairs in contact: on the actual flanks, or on the nominal path without entry shift."""
     if flags & TIP_CONTACT:  # candidates; those beyond the tips touch where they press
         reach = _REACH * p[PITCH]
         return pairs_in_contact(rho, delta, length, p[PITCH], p[TIP_P] + reach, p[TIP_G] + reach, arms)
@@ -243,26 +235,21 @@ def coupling_at(p: FloatArray, apart: int, xi: float) -> tuple[float, float]:
 
 @compiled
 def contact_forces(
-    t: float,
-    q: FloatArray,
-    v: FloatArray,
-    p: FloatArray,
-    flags: int,
-    table: FloatArray,
-    wrench: FloatArray,
-    contacts: FloatArray,
+    t: float, state: FloatArray, p: FloatArray, flags: int, table: FloatArray, contacts: FloatArray
 ) -> int:
     """Wrench of all tooth contacts and one record per contact.
 
     t : time [s]
-    q, v : (6,) deviations from nominal position and rotation, and their rates [m, rad, s]
+    state : (3, 6) deviations from nominal position and rotation, and their rates [m, rad, s]; and the wrench,
+        which is written: (Fx, Fy, M) of pinion and gear [N, N m]. One array, for Python pays for every one
+        that it hands over
     p : (N_PARAMETERS,) parameters in the order named above
     flags : effect switches, a sum of bits
     table : the stiffness, see ``elements.stiffness_and_slope``
-    wrench : (6,) receives (Fx, Fy, M) of pinion and gear [N, N m]
     contacts : (2 MAX_PAIRS, N_RECORD) receives the records, drive flank first; back sides only when pressed
     Returns number of contacts, or -1 when a force is not finite
     """
+    q, v, wrench = state[0], state[1], state[2]
     wrench[:] = 0.0
     rp, rg = p[RADIUS_P], p[RADIUS_G]
     omega_p, omega_g = v[2] - p[OMEGA_P], v[5] + p[OMEGA_G]
@@ -271,17 +258,17 @@ def contact_forces(
     coupled = p[COUPLED] > 0.0 and (flags & NEIGHBOURS) != 0
     softening, nominal = p[SOFTENING] if flags & CONTACT_LAW else 0.0, p[NOMINAL_FORCE]
     # One array, for each costs as much as a contact's geometry.
-    state = np.empty((N_STATE, MAX_PAIRS))
-    arms, coupling = state[ARMS:COUPLINGS].reshape((MAX_PAIRS, 2)), state[COUPLINGS:SLOPES]
+    known = np.empty((N_STATE, MAX_PAIRS))
+    arms, coupling = known[ARMS:COUPLINGS].reshape((MAX_PAIRS, 2)), known[COUPLINGS:SLOPES]
     count = int(np.int64(0))
     for side in range(2 if flags & BACK_SIDE else 1):
         flank = DRIVE if side == 0 else COAST
-        ex, ey, length, delta, rho, _ = mesh_position(t, q, p, flags, flank)
+        line, delta, rho, _ = mesh_position(t, q, p, flags, flank)
+        ex, ey, length = line.ex, line.ey, line.length
         if not math.isfinite(delta):
             return -1
-        pairs = engaged(rho, delta, length, p, flags, arms)
         # The nominal speeds roll, and would only blur it.
-        rate = overlap_rate(ex, ey, vx, vy, v[2], v[5], rp, rg, flank)
+        rate = overlap_rate(line, vx, vy, v[2], v[5])
         # d(psi)/dt = s n . (v_g - v_p)/L, from differentiating e.
         psi_rate = length_rate = 0.0
         if flags & MOVING_LINE:
@@ -289,11 +276,8 @@ def contact_forces(
             length_rate = flank * (rp + rg) * psi_rate - (ex * vx + ey * vy)
         wp, wg = (omega_p, omega_g) if flags & ROTATION_PHASE else (-p[OMEGA_P], p[OMEGA_G])
         xi_rate = 0.5 * flank * (rp * (psi_rate - wp) - rg * (psi_rate - wg))
-        bound, candidates, pairs = (
-            int(np.int64(0)),
-            pairs,
-            int(np.int64(0)),
-        )  # bound: bits of pairs that cannot part
+        candidates = engaged(rho, delta, length, p, flags, arms)
+        bound = pairs = int(np.int64(0))  # bound: bits of pairs that cannot lose contact
         for candidate in range(candidates):
             rho_p, rho_g, i = arms[candidate, 0], arms[candidate, 1], pairs
             xi = 0.5 * (rho_p - rho_g + p[L_XY])
@@ -303,7 +287,7 @@ def contact_forces(
             if flags & TIP_CONTACT:
                 if xi < p[L_XA] or xi > p[L_XD]:
                     error, error_slope = relief_at(p, min(max(xi, p[L_XA]), p[L_XD]))[0], 0.0
-                corners = corners_at(rho_p, rho_g, length, p[TIP_P], p[TIP_G], rp, rg)
+                corners = corners_at(line, rho_p, rho_g, p[TIP_P], p[TIP_G])
                 beyond = rho_p > p[TIP_P] or rho_g > p[TIP_G]
                 pressed = delta - error - corners.gap
                 if beyond and pressed < -abs(delta):
@@ -319,32 +303,32 @@ def contact_forces(
             arms[i, 0], arms[i, 1] = rho_p, rho_g
             if not (unilateral or beyond):
                 bound |= 1 << i
-            state[POSITION, i], state[PRESSED, i], state[PRESSING, i] = xi, pressed, pressing
-            state[RELIEF_SLOPE, i] = error_slope
-            state[BY_P, i], state[BY_G, i], state[BY_L, i] = corners.by_p, corners.by_g, corners.by_length
-            state[STIFFNESS, i], state[SLOPE, i] = stiffness_and_slope(table, xi)
+            known[POSITION, i], known[PRESSED, i], known[PRESSING, i] = xi, pressed, pressing
+            known[RELIEF_SLOPE, i] = error_slope
+            known[BY_P, i], known[BY_G, i], known[BY_L, i] = corners.by_p, corners.by_g, corners.by_length
+            known[STIFFNESS, i], known[SLOPE, i] = stiffness_and_slope(table, xi)
             if not coupled:
-                load = elastic_load(pressed, state[STIFFNESS, i], softening, nominal)
-                state[NORMAL, i] = load if bound >> i & 1 else max(load, 0.0)
+                load = elastic_load(pressed, known[STIFFNESS, i], softening, nominal)
+                known[NORMAL, i] = load if bound >> i & 1 else max(load, 0.0)
         if coupled:
             for i in range(pairs):
                 coupling[i, i] = 0.0
                 for j in range(i):
                     # The newest pair, furthest behind, comes first.
-                    moved, moved_slope = coupling_at(p, i - j, state[POSITION, j])
+                    moved, moved_slope = coupling_at(p, i - j, known[POSITION, j])
                     coupling[i, j] = coupling[j, i] = moved
-                    state[SLOPES + i, j] = state[SLOPES + j, i] = moved_slope
-            pressed_by, stiff, loads = state[PRESSED], state[STIFFNESS], state[NORMAL]
+                    known[SLOPES + i, j] = known[SLOPES + j, i] = moved_slope
+            pressed_by, stiff, loads = known[PRESSED], known[STIFFNESS], known[NORMAL]
             shared_loads(pairs, pressed_by, stiff, bound, coupling, softening, nominal, loads)
         for i in range(pairs):
-            xi, pressed, pressing = state[POSITION, i], state[PRESSED, i], state[PRESSING, i]
-            elastic, stiffness, error_slope = state[NORMAL, i], state[STIFFNESS, i], state[RELIEF_SLOPE, i]
+            xi, pressed, pressing = known[POSITION, i], known[PRESSED, i], known[PRESSING, i]
+            elastic, stiffness, error_slope = known[NORMAL, i], known[STIFFNESS, i], known[RELIEF_SLOPE, i]
             own, moved, moved_slope = pressed, 0.0, 0.0
             if coupled:
                 for j in range(pairs):
                     if j != i:
-                        moved += coupling[i, j] * state[NORMAL, j]
-                        moved_slope += state[SLOPES + i, j] * state[NORMAL, j]
+                        moved += coupling[i, j] * known[NORMAL, j]
+                        moved_slope += known[SLOPES + i, j] * known[NORMAL, j]
                 own -= moved
             beyond = arms[i, 0] > p[TIP_P] or arms[i, 1] > p[TIP_G]
             if own <= 0.0 and (beyond or (side == 1 and unilateral)):
@@ -354,7 +338,7 @@ def contact_forces(
             damping = p[DAMPING] * math.sqrt(max(stiffness, 0.0))
             if flags & TIP_CONTACT:
                 damping *= gradual(elastic / (GRADUAL * nominal))
-            stored, stored_slope = stored_energy(elastic, stiffness, state[SLOPE, i], softening, nominal)
+            stored, stored_slope = stored_energy(elastic, stiffness, known[SLOPE, i], softening, nominal)
             # Half of w_ij N_i N_j is counted at either pair, and half of its slope at constant compression.
             stored += 0.5 * elastic * moved
             stored_slope -= 0.5 * elastic * moved_slope
@@ -364,15 +348,15 @@ def contact_forces(
             if unilateral and normal < 0.0:
                 normal = 0.0
             path = normal * error_slope - stored_slope
-            slide = sliding_velocity(ex, ey, vx, vy, omega_p, omega_g, arm_p, arm_g, flank)
+            slide = sliding_velocity(line, vx, vy, omega_p, omega_g, arm_p, arm_g)
             # Each surface against the contact point, which turns with the line of action.
             rolling = flank * (arm_p * (psi_rate - omega_p) + arm_g * (omega_g - psi_rate))
             mu = signed_friction(p, flags, flank, xi, slide, rolling, arm_p, arm_g, normal)
-            add_wrench(wrench, ex, ey, normal, mu * normal, arm_p, arm_g, rp, rg, flank)
+            add_wrench(wrench, line, normal, mu * normal, arm_p, arm_g)
             if flags & (PATH_WORK | TIP_CONTACT):
                 along = 0.5 * path if flags & PATH_WORK else 0.0
-                by_p, by_g = normal * state[BY_P, i] + along, normal * state[BY_G, i] - along
-                add_gradient(wrench, ex, ey, length, by_p, by_g, normal * state[BY_L, i], rp, rg, flank)
+                by_p, by_g = normal * known[BY_P, i] + along, normal * known[BY_G, i] - along
+                add_gradient(wrench, line, by_p, by_g, normal * known[BY_L, i])
             record = contacts[count]
             record[XI], record[LOAD], record[FRICTION_FORCE], record[MU] = xi, normal, mu * normal, mu
             record[K], record[C], record[SLIDE] = stiffness, damping, slide
@@ -388,21 +372,15 @@ def contact_forces(
 
 @compiled
 def linear_forces(
-    t: float,
-    q: FloatArray,
-    v: FloatArray,
-    p: FloatArray,
-    flags: int,
-    table: FloatArray,
-    wrench: FloatArray,
-    contacts: FloatArray,
+    t: float, state: FloatArray, p: FloatArray, flags: int, table: FloatArray, contacts: FloatArray
 ) -> int:
-    """Generalised forces on (x_p, y_p, phi_p, x_g, y_g, phi_g); arguments as ``kernels.contact_forces``.
+    """Generalised forces on (x_p, y_p, phi_p, x_g, y_g, phi_g); arguments as ``contact_forces``.
 
     The recorded sliding velocity does not act on the friction. With phi_p = -theta_p and phi_g = theta_g the
     overlap is the dynamic transmission error delta = r_bp theta_p - r_bg theta_g + x_p - x_g. Of the flags
     ``CONTACT_LOSS`` acts: a pair loads where its flanks overlap and that pushes. There are no back sides.
     """
+    q, v, wrench = state[0], state[1], state[2]
     wrench[:] = 0.0
     rp, rg, pitch = p[RADIUS_P], p[RADIUS_G], p[PITCH]
     tau = min(max(t, p[T_LOW]), p[T_HIGH])
@@ -464,16 +442,10 @@ def linear_forces(
 def tooth_forces(
     t: float, state: FloatArray, p: FloatArray, flags: int, table: FloatArray, contacts: FloatArray
 ) -> int:
-    """Wrench and contact records of one state.
-
-    state : (3, 6) coordinates, velocities, and the wrench, which is written; one array, for Python pays for
-        every one that it hands over
-    t, p, flags, table, contacts : and the result, as ``kernels.contact_forces``
-    """
-    q, v, wrench = state[0], state[1], state[2]
+    """Wrench and contact records of one state; arguments and result as ``contact_forces``."""
     if flags & LINEAR:
-        return linear_forces(t, q, v, p, flags, table, wrench, contacts)
-    return contact_forces(t, q, v, p, flags, table, wrench, contacts)
+        return linear_forces(t, state, p, flags, table, contacts)
+    return contact_forces(t, state, p, flags, table, contacts)
 
 
 @compiled
@@ -489,10 +461,7 @@ def tooth_forces_over(
 ) -> IntArray:
     """``tooth_forces`` at n states; returns the numbers of contacts (n,).
 
-    times : (n,) [s]
-    q, v, wrenches : (n, 6)
-    contacts : (n, 2 MAX_PAIRS, N_RECORD)
-    p, flags, table : as ``tooth_forces``
+    times (n,) [s]; q, v, wrenches (n, 6); contacts (n, 2 MAX_PAIRS, N_RECORD); the rest as ``tooth_forces``
     """
     counts, state = np.empty(times.size, np.int64), np.empty((3, 6))
     for i in range(times.size):

@@ -48,11 +48,27 @@ from lumped.typing import FloatArray
 _PACKAGE = Path(__file__).parents[1]
 compiled = Compiler(path for path in _PACKAGE.rglob("*.py") if b"@compiled" in path.read_bytes())
 
-
 #: Flanks: the one that drives in the pinion's running sense, and the back side.
 DRIVE, COAST = 1.0, -1.0
 #: Most tooth pairs in contact at once: contact ratio below 4.
 MAX_PAIRS = 4
+
+
+class Line(NamedTuple):
+    """Line of action of one side of the teeth.
+
+    ex, ey : unit vector e from X to Y
+    length : |XY| [m]
+    flank : +1 drive, -1 coast
+    radius_p, radius_g : base radii [m]
+    """
+
+    ex: float
+    ey: float
+    length: float
+    flank: float
+    radius_p: float
+    radius_g: float
 
 
 @compiled
@@ -68,7 +84,6 @@ def line_of_action(
     along, off : u_x, u_y [m]
     nominal : L_0 [m]
     base_sum : sum R of the base radii [m]; the centre distance must be larger
-    flank : +1 drive, -1 coast
     Returns (ex, ey, grown, psi), NaN when the base circles overlap
     """
     dx, dy = nominal + along, base_sum + off
@@ -116,11 +131,9 @@ def mesh_phase(
     psi, grown : angle [rad] and growth [m] of the line of action
     phi_p, phi_g : rotation angles beyond the rolling [rad]
     rolled : arc by which both base circles have turned in the drive sense, pinion clockwise [m]
-    radius_p, radius_g, pitch : base radii and base pitch [m]
     chi_p : angle of the pinion's flank [rad]
-    overlap : what the flanks would overlap by at psi = phi_p = phi_g = 0 and L = L_0 [m], which is
+    overlap : of the flanks at psi = phi_p = phi_g = 0 and L = L_0 [m], which is
         -s (r_bp chi_p + r_bg (chi_g - pi)) - L_0
-    flank : +1 drive, -1 coast
     Returns (rho, delta) : distance of the first pinion flank from X in [0, pitch), the others follow at whole
         pitches; overlap of the flanks, positive when pressed [m]
     """
@@ -131,95 +144,56 @@ def mesh_phase(
 
 
 @compiled
-def overlap_rate(
-    ex: float,
-    ey: float,
-    vx: float,
-    vy: float,
-    omega_p: float,
-    omega_g: float,
-    radius_p: float,
-    radius_g: float,
-    flank: float,
-) -> float:
+def overlap_rate(line: Line, vx: float, vy: float, omega_p: float, omega_g: float) -> float:
     """Rate of the overlap [m/s]; (vx, vy) is the velocity of the pinion's centre relative to the gear's."""
-    return ex * vx + ey * vy - flank * (radius_p * omega_p + radius_g * omega_g)
+    turning = line.radius_p * omega_p + line.radius_g * omega_g
+    return line.ex * vx + line.ey * vy - line.flank * turning
 
 
 @compiled
 def sliding_velocity(
-    ex: float,
-    ey: float,
-    vx: float,
-    vy: float,
-    omega_p: float,
-    omega_g: float,
-    arm_p: float,
-    arm_g: float,
-    flank: float,
+    line: Line, vx: float, vy: float, omega_p: float, omega_g: float, arm_p: float, arm_g: float
 ) -> float:
-    """Sliding velocity at the contact point from rigid-body motion [m/s].
+    """Velocity of the pinion's material relative to the gear's along -n at the contact point [m/s].
 
-    Velocity of the pinion's material relative to the gear's along -n: negative in approach, positive in
-    recess on the drive flank. ``arm_p`` and ``arm_g`` are the distances of the contact point from X and Y
-    [m].
+    It is negative in approach, positive in recess on the drive flank. ``arm_p`` and ``arm_g`` are the
+    distances of the contact point from X and Y [m].
     """
-    nx, ny = -flank * ey, flank * ex
-    return -(nx * vx + ny * vy) - flank * (omega_p * arm_p + omega_g * arm_g)
+    nx, ny = -line.flank * line.ey, line.flank * line.ex
+    return -(nx * vx + ny * vy) - line.flank * (omega_p * arm_p + omega_g * arm_g)
 
 
 @compiled
 def add_wrench(
-    wrench: FloatArray,
-    ex: float,
-    ey: float,
-    normal: float,
-    friction: float,
-    arm_p: float,
-    arm_g: float,
-    radius_p: float,
-    radius_g: float,
-    flank: float,
+    wrench: FloatArray, line: Line, normal: float, friction: float, arm_p: float, arm_g: float
 ) -> None:
     """Add one contact's forces to ``wrench`` = (Fx, Fy, M) of the pinion, (Fx, Fy, M) of the gear [N, N m].
 
     The pinion receives -N e + F n, the gear the opposite, both at the contact point; moments are about the
     centres, counter-clockwise. ``friction`` F has the sign of the sliding velocity.
     """
+    ex, ey, flank = line.ex, line.ey, line.flank
     nx, ny = -flank * ey, flank * ex
     fx, fy = -normal * ex + friction * nx, -normal * ey + friction * ny
     wrench[0] += fx
     wrench[1] += fy
-    wrench[2] += flank * (radius_p * normal + arm_p * friction)
+    wrench[2] += flank * (line.radius_p * normal + arm_p * friction)
     wrench[3] -= fx
     wrench[4] -= fy
-    wrench[5] += flank * (radius_g * normal + arm_g * friction)
+    wrench[5] += flank * (line.radius_g * normal + arm_g * friction)
 
 
 @compiled
-def add_gradient(
-    wrench: FloatArray,
-    ex: float,
-    ey: float,
-    length: float,
-    by_p: float,
-    by_g: float,
-    by_length: float,
-    radius_p: float,
-    radius_g: float,
-    flank: float,
-) -> None:
+def add_gradient(wrench: FloatArray, line: Line, by_p: float, by_g: float, by_length: float) -> None:
     """Add the generalised force by_p grad(rho_p) + by_g grad(rho_g) + by_length grad(L) to ``wrench``.
 
     The three lengths are all that two flanks know of each other, so every contact energy gives such a force.
     It obeys action and reaction in force and moment identically, because a rigid motion of both gears
     together changes none of the lengths (docs/theory/contact_energy.md, "Wrench").
 
-    wrench : (6,) as ``add_wrench``
-    ex, ey, length : line of action
     by_p, by_g, by_length : minus the derivatives of the energy by the flank distances and the length [N]
-    radius_p, radius_g, flank : as ``add_wrench``
     """
+    ex, ey, length, flank, radius_p, radius_g = line
     tilt = flank * (radius_p + radius_g) / length
     along_x, along_y = ex - tilt * ey, ey + tilt * ex  # centre to centre, over L
     turning = flank * (radius_p * by_p + radius_g * by_g) / length
@@ -244,8 +218,7 @@ def corner_gap(
 
     beyond : flank distance of the gear with the corner, less that of its tip circle [m]
     tip, radius : tangent length of the tip circle and base radius of the gear with the corner [m]
-    length : of the line of action [m]
-    mate : base radius of the other gear [m]
+    length, mate : of the line of action, and base radius of the other gear [m]
     Returns (gap, by_distance, by_length) : the gap [m], zero up to the tip, and its derivatives by the flank
         distance and by the length of the line of action
     """
@@ -288,15 +261,11 @@ def corner_reach(gap: float, tip: float, length: float, radius: float, mate: flo
 def pairs_in_contact(
     rho: float, delta: float, length: float, pitch: float, tip_p: float, tip_g: float, arms: FloatArray
 ) -> int:
-    """Find every pair of teeth whose flanks meet within both tip circles.
+    """Find every pair of teeth whose flanks meet within both tip circles; returns their number.
 
     A flank reaches from its base circle (rho = 0) to its tip circle (rho = tip_p, tip_g: the tangent length
-    sqrt(r_a^2 - r_b^2)).
-
-    rho, delta, length, pitch : from ``mesh_phase`` and ``line_of_action`` [m]
-    tip_p, tip_g : tangent lengths of the tip circles [m]
-    arms : (MAX_PAIRS, 2) array that receives the flank distances (rho_p, rho_g), newest pair first [m]
-    Returns number of pairs
+    sqrt(r_a^2 - r_b^2)). ``arms`` (MAX_PAIRS, 2) receives the flank distances (rho_p, rho_g), newest pair
+    first [m]; the other arguments are those of ``mesh_phase`` and ``Line``.
     """
     count = 0
     rho_p = rho
@@ -311,11 +280,10 @@ def pairs_in_contact(
 
 
 class Corners(NamedTuple):
-    """Gap that tip corners beyond the path of contact leave [m], and its derivatives.
+    """Gap that tip corners beyond the path of contact leave [m]; only one of them is ever beyond its tip.
 
-    gap : of both corners together [m]; only one is ever beyond its tip
-    by_p, by_g, by_length : derivatives by the flank distances of pinion and gear and by the length of the
-        line of action
+    by_p, by_g, by_length : its derivatives by the flank distances of pinion and gear, and by the length of
+        the line of action
     """
 
     gap: float
@@ -325,10 +293,9 @@ class Corners(NamedTuple):
 
 
 @compiled
-def corners_at(
-    rho_p: float, rho_g: float, length: float, tip_p: float, tip_g: float, radius_p: float, radius_g: float
-) -> Corners:
-    """Gap at the tip corners of the tooth pair with flank distances rho_p and rho_g, see ``Corners`` [m]."""
+def corners_at(line: Line, rho_p: float, rho_g: float, tip_p: float, tip_g: float) -> Corners:
+    """Gap at the tip corners of the tooth pair with flank distances rho_p and rho_g [m]."""
+    length, radius_p, radius_g = line.length, line.radius_p, line.radius_g
     gap_p, by_p, length_p = corner_gap(rho_p - tip_p, tip_p, length, radius_p, radius_g)
     gap_g, by_g, length_g = corner_gap(rho_g - tip_g, tip_g, length, radius_g, radius_p)
     return Corners(gap_p + gap_g, by_p, by_g, length_p + length_g)

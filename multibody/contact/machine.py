@@ -32,7 +32,7 @@ from multibody.contact import kernels as kn
 from multibody.contact.drawing import base_tooth_angle, bearing_constants, circles, masses, reliefs
 from multibody.contact.elements import stiffness_at
 from multibody.contact.events import SLIDING, SWITCH, event_table
-from multibody.contact.kinematics import DRIVE, MAX_PAIRS, add_wrench, line_of_action, mesh_phase, wrap
+from multibody.contact.kinematics import DRIVE, MAX_PAIRS, Line, add_wrench, line_of_action, mesh_phase, wrap
 from multibody.shafts.train import Train, train
 
 Supports = Literal["springs", "shafts"]
@@ -249,7 +249,8 @@ def mesh_mass(p: FloatArray, inertia: FloatArray) -> float:
     inertia : (2,) pinion, gear [kg m^2]
     """
     wrench = np.zeros(6)
-    add_wrench(wrench, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, p[kn.RADIUS_P], p[kn.RADIUS_G], DRIVE)
+    line = Line(1.0, 0.0, float(p[kn.L_XY]), DRIVE, float(p[kn.RADIUS_P]), float(p[kn.RADIUS_G]))
+    add_wrench(wrench, line, 1.0, 0.0, 0.0, 0.0)
     return float(1.0 / np.sum(wrench[[2, 5]] ** 2 / inertia))
 
 

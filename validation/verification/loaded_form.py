@@ -26,7 +26,7 @@ from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.effects import effect_flags
 from multibody.contact.elements import gradual, shared_loads, stiffness_at
-from multibody.contact.kinematics import corners_at
+from multibody.contact.kinematics import DRIVE, Line, corners_at
 from multibody.contact.machine import Machine, machine
 from validation.verification.checks import Check, rows_check
 
@@ -77,11 +77,12 @@ class _Mesh:
     def pressed(self, places: FloatArray, delta: float) -> FloatArray:
         """Approach less relief and corner gaps of pairs at places (pairs,) [m]."""
         p = self.machine.parameters
-        half, length = 0.5 * (delta + self.longer), p[kn.L_XY] + self.longer
+        half, length = 0.5 * (delta + self.longer), float(p[kn.L_XY] + self.longer)
+        line = Line(1.0, 0.0, length, DRIVE, float(p[kn.RADIUS_P]), float(p[kn.RADIUS_G]))
         found = np.empty(places.size)
         for i, xi in enumerate(places):
             arms = xi + half, p[kn.L_XY] - xi + half
-            corners = corners_at(*arms, length, p[kn.TIP_P], p[kn.TIP_G], p[kn.RADIUS_P], p[kn.RADIUS_G])
+            corners = corners_at(line, *arms, p[kn.TIP_P], p[kn.TIP_G])
             relief, _ = kn.relief_at(p, min(max(xi, p[kn.L_XA]), p[kn.L_XD]))
             found[i] = delta - relief - corners.gap
         return found

@@ -55,10 +55,10 @@ BACKLASH = PAIRS["Hertz"].mesh.backlash
 
 
 def contact(numbers, t, q, v=None, flags=ALL):
-    wrench, contacts = np.zeros(6), np.zeros((2 * kin.MAX_PAIRS, kn.N_RECORD))
-    v = np.zeros(6) if v is None else v
-    count = kn.contact_forces(t, q, v, numbers.parameters, flags, numbers.table, wrench, contacts)
-    return wrench, contacts[:count]
+    contacts = np.zeros((2 * kin.MAX_PAIRS, kn.N_RECORD))
+    state = np.array([q, np.zeros(6) if v is None else v, np.zeros(6)])
+    count = kn.contact_forces(t, state, numbers.parameters, flags, numbers.table, contacts)
+    return state[2], contacts[:count]
 
 
 def states(numbers, number, flank=kin.DRIVE):
@@ -157,9 +157,10 @@ def test_a_corner_pushes_with_its_load_along_a_tangent_of_the_mates_base_circle(
     own = 0 if which == "pinion" else 1
     rho = np.full(2, length - tips[own] - beyond)
     rho[own] = tips[own] + beyond
-    found, wrench = kin.corners_at(*rho, length, *tips, *radii), np.zeros(6)
-    kin.add_wrench(wrench, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, *radii, kin.DRIVE)
-    kin.add_gradient(wrench, 1.0, 0.0, length, found.by_p, found.by_g, found.by_length, *radii, kin.DRIVE)
+    line, wrench = kin.Line(1.0, 0.0, length, kin.DRIVE, *radii), np.zeros(6)
+    found = kin.corners_at(line, *rho, *tips)
+    kin.add_wrench(wrench, line, 1.0, 0.0, 0.0, 0.0)
+    kin.add_gradient(wrench, line, found.by_p, found.by_g, found.by_length)
     turn = beyond / radii[own]  # of the corner, from where it leaves the line of action
     along = radii[own] * np.sin(turn) + tips[own] * np.cos(turn)
     off = radii[own] * (1.0 - np.cos(turn)) + tips[own] * np.sin(turn)
@@ -176,7 +177,8 @@ def test_beyond_the_path_relief_stays_what_it_is_at_the_tip():
     numbers, seen = machine(pair, ALL), 0
     p = numbers.parameters
     for t, q in states(numbers, 200):
-        _, _, length, delta, _, _ = kn.mesh_position(t, q, p, ALL, kin.DRIVE)
+        line, delta, _, _ = kn.mesh_position(t, q, p, ALL, kin.DRIVE)
+        length = line.length
         for record in contact(numbers, t, q)[1]:
             beyond = 0.5 * (length + delta + p[kn.L_XY]) - record[kn.XI] - p[kn.TIP_G]  # of the gear's tip
             if record[kn.XI] < p[kn.L_XA] and beyond > 0.0:

@@ -25,10 +25,10 @@ def make(pair):
 
 
 def forces(numbers, t, q, v, flags=ALL):
-    wrench, contacts = np.zeros(6), np.zeros((2 * kin.MAX_PAIRS, kn.N_RECORD))
-    count = kn.contact_forces(t, q, v, numbers.parameters, flags, numbers.table, wrench, contacts)
+    state, contacts = np.array([q, v, np.zeros(6)]), np.zeros((2 * kin.MAX_PAIRS, kn.N_RECORD))
+    count = kn.contact_forces(t, state, numbers.parameters, flags, numbers.table, contacts)
     assert count >= 0
-    return wrench, contacts[:count]
+    return state[2], contacts[:count]
 
 
 def pressed_state(numbers, rng, flank=1.0):
@@ -149,7 +149,7 @@ def test_unequal_pair_has_lumped_geometry():
     p = numbers.parameters
     for place, value in ((kn.L_XA, g.L_XA), (kn.L_XP, g.L_XP), (kn.L_XD, g.L_XD), (kn.L_XY, g.L_XY)):
         assert p[place] == pytest.approx(value, rel=1e-13)
-    both = sum(kn.mesh_position(0.0, np.zeros(6), p, 0, flank)[3] for flank in (kin.DRIVE, kin.COAST))
+    both = sum(kn.mesh_position(0.0, np.zeros(6), p, 0, flank)[1] for flank in (kin.DRIVE, kin.COAST))
     assert -kin.wrap(both, p[kn.PITCH]) == pytest.approx(g.normal_backlash, abs=1e-16 * 50)
 
 
@@ -160,12 +160,13 @@ def test_the_flag_of_the_linear_mesh_chooses_its_own_core(rng):
     different = 0
     for t in np.linspace(0.1, 0.9, 9) * numbers.period:
         q, v = pressed_state(numbers, rng)
-        found, linear, state = np.zeros((2, 6)), np.zeros(6), np.array([q, v, np.zeros(6)])
+        found, state = np.zeros((2, 6)), np.array([q, v, np.zeros(6)])
         records = np.zeros((2 * kin.MAX_PAIRS, kn.N_RECORD))
         for wrench, flags in zip(found, (kn.LINEAR, 0), strict=True):
             tooth_forces(t, state, p, flags, table, records)
             wrench[:] = state[2]
-        linear_forces(t, q, v, p, kn.LINEAR, table, linear, records)
+        linear_forces(t, state, p, kn.LINEAR, table, records)
+        linear = state[2]
         np.testing.assert_array_equal(found[0], linear)
         np.testing.assert_allclose(found[1], linear, rtol=1e-9, atol=1e-9 * np.abs(linear).max())
         different += not np.array_equal(found[1], linear)

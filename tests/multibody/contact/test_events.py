@@ -34,9 +34,8 @@ UNEQUAL = JUMPS.with_(
 
 def contacts(numbers, flags, t, q, v):
     """What jumps with the force: the number of pairs and the sign of each friction coefficient."""
-    wrench, records = np.zeros(6), np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
-    p, table = numbers.parameters, numbers.table
-    count = kn.contact_forces(t, q, v, p, flags, table, wrench, records)
+    state, records = np.array([q, v, np.zeros(6)]), np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
+    count = kn.contact_forces(t, state, numbers.parameters, flags, numbers.table, records)
     return count, tuple(np.sign(records[:count, kn.MU]))
 
 
@@ -102,7 +101,8 @@ def test_corners_touch_and_let_go_where_it_was_foreseen(stiffness):
         wait, _ = time_to_event(0.0, q, v, np.zeros(6), p, flags, table, events, np.inf)
         for tau in (wait - 2e-6 * period, wait + 2e-6 * period):
             records = np.zeros((2 * MAX_PAIRS, kn.N_RECORD))
-            count = kn.contact_forces(tau, q + tau * v, v, p, flags, table, np.zeros(6), records)
+            state = np.array([q + tau * v, v, np.zeros(6)])
+            count = kn.contact_forces(tau, state, p, flags, table, records)
             yield count, records[:count, kn.LOAD].min(), records[:count, kn.ELASTIC].min()
 
     assert [count for count, *_ in around(FIRST_TOUCH)] == [1, 2]

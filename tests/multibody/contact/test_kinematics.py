@@ -30,6 +30,11 @@ def line_of_action(teeth, pose, flank):
     return kin.line_of_action(along, off - base_sum, 0.0, base_sum, flank)
 
 
+def line_of(teeth, pose, flank):
+    ex, ey, length, _ = line_of_action(teeth, pose, flank)
+    return kin.Line(ex, ey, length, flank, teeth.radius_p, teeth.radius_g)
+
+
 def phase(teeth, pose, flank):
     """Line of action, place of the first pinion flank on it, overlap."""
     line = line_of_action(teeth, pose, flank)
@@ -52,11 +57,8 @@ def contact(teeth, pose, flank):
 
 
 def wrench(teeth, pose, flank, normal, friction, pair=0):
-    line, arms, _ = contact(teeth, pose, flank)
-    result = np.zeros(6)
-    kin.add_wrench(
-        result, line[0], line[1], normal, friction, *arms[pair], teeth.radius_p, teeth.radius_g, flank
-    )
+    arms, result = contact(teeth, pose, flank)[1], np.zeros(6)
+    kin.add_wrench(result, line_of(teeth, pose, flank), normal, friction, *arms[pair])
     return result
 
 
@@ -92,16 +94,8 @@ def test_wrench_is_minus_gradient_of_overlap(teeth, rng, flank):
 def test_overlap_rate_is_time_derivative(teeth, rng, flank):
     for _ in range(20):
         pose, velocity = random_pose(teeth, rng, flank), rng.normal(size=6)
-        line = line_of_action(teeth, pose, flank)
-        rate = kin.overlap_rate(
-            *line[:2],
-            *(velocity[:2] - velocity[3:5]),
-            velocity[2],
-            velocity[5],
-            teeth.radius_p,
-            teeth.radius_g,
-            flank,
-        )
+        line = line_of(teeth, pose, flank)
+        rate = kin.overlap_rate(line, *(velocity[:2] - velocity[3:5]), velocity[2], velocity[5])
         assert rate == pytest.approx(-wrench(teeth, pose, flank, 1.0, 0.0) @ velocity, abs=1e-12)
 
 
@@ -122,10 +116,9 @@ def test_friction_power_is_force_times_sliding_velocity(teeth, rng, flank):
     for _ in range(20):
         pose, velocity = random_pose(teeth, rng, flank), rng.normal(size=6)
         point, _, n = contact_point(teeth, pose, flank)
-        line, arms, _ = contact(teeth, pose, flank)
-        slide = kin.sliding_velocity(
-            *line[:2], *(velocity[:2] - velocity[3:5]), velocity[2], velocity[5], *arms[0], flank
-        )
+        arms, centres = contact(teeth, pose, flank)[1], velocity[:2] - velocity[3:5]
+        line = line_of(teeth, pose, flank)
+        slide = kin.sliding_velocity(line, *centres, velocity[2], velocity[5], *arms[0])
         at_p, at_g = point - pose[:2], point - pose[3:5]
         v_p = velocity[:2] + velocity[2] * np.array([-at_p[1], at_p[0]])
         v_g = velocity[3:5] + velocity[5] * np.array([-at_g[1], at_g[0]])
