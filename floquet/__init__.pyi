@@ -19,9 +19,9 @@ from .gear.block import gear_block as gear_block
 from .gear.campbell import campbell as campbell
 from .gear.chart import stability_chart as stability_chart
 from .gear.jump_map import JUMP_AXES as JUMP_AXES
+from .gear.jump_map import JumpRemoval as JumpRemoval
 from .gear.jump_map import jump_map as jump_map
-from .gear.jump_removal import JumpRemoval as JumpRemoval
-from .gear.jump_removal import jumps_removed_by as jumps_removed_by
+from .gear.jump_map import jumps_removed_by as jumps_removed_by
 from .gear.multipliers import GearPairMultipliers as GearPairMultipliers
 from .gear.multipliers import gear_pair_multipliers as gear_pair_multipliers
 from .gear.multipliers import gear_pair_system as gear_pair_system

@@ -1,4 +1,4 @@
-"""Branches of periodic motions of a gear pair over speed, where teeth may part.
+"""Branches of periodic motions of a gear pair over speed, with unilateral contact.
 
 Sources: docs/theory/orbits.md, "Branches".
 """
@@ -6,7 +6,7 @@ Sources: docs/theory/orbits.md, "Branches".
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -39,9 +39,10 @@ from lumped.typing import Progress
 if TYPE_CHECKING:
     import xarray as xr
 
+    from floquet.orbits.orbit import Orbit
+
 #: Part of the speed behind a bifurcation where a run shows what happens there.
 _BEYOND = 1e-3
-_SETTLE = 400
 _CORNER = 1e-6
 #: Change of the root mean square that is a jump.
 JUMP = 0.1
@@ -49,17 +50,6 @@ JUMP = 0.1
 MARGINAL = 1.0 + 1e-6
 #: Part of the range that counts as a gap between stable motions.
 _GAP = 5e-4
-_JUMP_COLUMNS = (
-    ("speed_rpm", "rpm", "where a stable motion ends"),
-    ("rising", "1", "on running up"),
-    ("dte_rms", "m", "dynamic transmission error before, rms"),
-    ("dte_rms_after", "m", "dynamic transmission error after, rms"),
-    ("largest_load", "N", "largest normal load before"),
-    ("largest_load_after", "N", "largest normal load after"),
-    ("n", "1", "mesh cycles before"),
-    ("n_after", "1", "mesh cycles after, 0 where it does not repeat"),
-    ("after", "1", "motion after"),
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,30 +72,27 @@ class GearBifurcation:
     sharp: bool
 
 
+def _label(unit: str, text: str) -> dict[str, str]:
+    """Unit and name of a field in a dataset."""
+    return {"unit": unit, "text": text}
+
+
 @dataclass(frozen=True)
 class Jump:
     """A stable motion that ends as the speed rises or falls, and what the pair does right behind.
 
-    Attributes
-    ----------
-    speed_rpm : where the motion loses its stability [rpm]
-    rising : whether on running up
-    dte_rms, largest_load : before, of the motion that ends [m], [N]
-    n : its mesh cycles
-    dte_rms_after, largest_load_after : behind; NaN where the motion grows beyond what is followed
-    after : "periodic", "beats", "chaos" or "grows"
-    n_after : mesh cycles of the periodic motion behind, else 0
+    What it does is "periodic", "beats", "chaos" or "grows" beyond what is followed, where numbers are NaN.
     """
 
-    speed_rpm: float
-    rising: bool
-    dte_rms: float
-    largest_load: float
-    n: int
-    dte_rms_after: float
-    largest_load_after: float
-    after: Settled
-    n_after: int
+    speed_rpm: float = field(metadata=_label("rpm", "where a stable motion ends"))
+    rising: bool = field(metadata=_label("1", "on running up"))
+    dte_rms: float = field(metadata=_label("m", "dynamic transmission error before, rms"))
+    largest_load: float = field(metadata=_label("N", "largest normal load before"))
+    n: int = field(metadata=_label("1", "mesh cycles before"))
+    dte_rms_after: float = field(metadata=_label("m", "dynamic transmission error after, rms"))
+    largest_load_after: float = field(metadata=_label("N", "largest normal load after"))
+    after: Settled = field(metadata=_label("1", "motion after"))
+    n_after: int = field(metadata=_label("1", "mesh cycles after, 0 where it does not repeat"))
 
 
 @dataclass(frozen=True)
@@ -161,18 +148,16 @@ class ResponseBranches:
             o is not None and o.stable and o.run.least_load > 0.0 for o in orbits + ends
         )
 
-    @cached_property
-    def _cycle_at_1_rpm(self) -> float:
-        return self.pair.geometry.mesh_period * operating_rpm(self.pair)
+    def _rpm(self, orbit: Orbit) -> float:
+        return self.pair.geometry.mesh_period * operating_rpm(self.pair) / orbit.period
 
     @property
     def bifurcations(self) -> tuple[GearBifurcation, ...]:
         """Folds, period doublings, Neimark-Sacker points and grazing of all branches, in their order."""
-        return tuple(self._labelled(branch, b) for branch in self.branches for b in branch.bifurcations)
-
-    def _labelled(self, branch: Branch, b: Bifurcation) -> GearBifurcation:
-        return GearBifurcation(
-            b.kind, self._cycle_at_1_rpm / b.orbit.period, b.orbit.run.rms, branch.n, b.sharp
+        return tuple(
+            GearBifurcation(b.kind, self._rpm(b.orbit), b.orbit.run.rms, branch.n, b.sharp)
+            for branch in self.branches
+            for b in branch.bifurcations
         )
 
     def at(self, speed_rpm: float) -> list[GearOrbit]:
@@ -187,43 +172,36 @@ class ResponseBranches:
         At every place where a branch loses stability a run is started from the last motion, 0.1 % of the
         speed further on.
         """
-        places = (self._jump(branch, b) for branch in self.branches for b in branch.bifurcations)
-        return tuple(sorted((jump for jump in places if jump is not None), key=lambda jump: jump.speed_rpm))
-
-    def _jump(self, branch: Branch, b: Bifurcation) -> Jump | None:
-        behind = period_behind(branch, b)
-        if behind is None:
-            return None
-        rising, period = behind < b.orbit.period, behind
-        run = long_run(
-            branch.family.at(period), b.orbit.start, period, b.orbit.parameter,
-            settle=_SETTLE, amplitude=largest_motion(self.pair),
-        )  # fmt: skip
-        if abs(run.rms - b.orbit.run.rms) < JUMP * b.orbit.run.rms:
-            return None
-        return Jump(
-            speed_rpm=self._cycle_at_1_rpm / b.orbit.period,
-            rising=rising,
-            dte_rms=b.orbit.run.rms,
-            largest_load=b.orbit.run.largest_load,
-            n=branch.n,
-            dte_rms_after=run.rms,
-            largest_load_after=run.largest_load,
-            after=run.kind,
-            n_after=run.orbit.n if run.orbit else 0,
-        )
+        found = []
+        for branch in self.branches:
+            for b, behind in lost_stability(branch):
+                last, before = b.orbit, b.orbit.run
+                system, limit = branch.family.at(behind), largest_motion(self.pair)
+                run = long_run(system, last.start, behind, last.parameter, amplitude=limit)
+                if abs(run.rms - before.rms) < JUMP * before.rms:
+                    continue
+                after = (run.rms, run.largest_load, run.kind, run.orbit.n if run.orbit else 0)
+                rising = behind < last.period
+                found.append(Jump(self._rpm(last), rising, before.rms, before.largest_load, branch.n, *after))
+        return tuple(sorted(found, key=lambda jump: jump.speed_rpm))
 
     @cached_property
     def restless(self) -> tuple[Restless, ...]:
-        """What a run does in ``gaps``."""
-        return tuple(self._restless(*gap) for gap in self.gaps)
+        """What a run does in the middle of each of ``gaps``."""
+        found = []
+        for low, high in self.gaps:
+            there = self.pair.with_({"operating.pinion_speed": 0.5 * (low + high)})
+            run = settled_run(there, back_side=self.back_side)
+            n = run.orbit.n if run.orbit else 0
+            found.append(Restless(low, high, run.kind, n, run.rms, run.exponent, run.uncertainty))
+        return tuple(found)
 
     @property
     def gaps(self) -> tuple[tuple[float, float], ...]:
         """Speeds without a stable periodic motion among those that were found, (low, high) [rpm]."""
         low, high = self.speeds_rpm
         calm = sorted(
-            tuple(sorted(self._cycle_at_1_rpm / orbit.period for orbit in two))
+            tuple(sorted(map(self._rpm, two)))
             for branch in self.branches
             for two in pairwise(branch.orbits)
             if max(orbit.spectral_radius for orbit in two) < MARGINAL
@@ -235,45 +213,35 @@ class ResponseBranches:
             reached = max(reached, end)
         return tuple(found)
 
-    def _restless(self, low: float, high: float) -> Restless:
-        there = self.pair.with_({"operating.pinion_speed": 0.5 * (low + high)})
-        run = settled_run(there, back_side=self.back_side)
-        return Restless(
-            low, high, run.kind, run.orbit.n if run.orbit else 0, run.rms, run.exponent, run.uncertainty
-        )
-
     @cached_property
     def dataset(self) -> xr.Dataset:
         """All orbits in a row, ``branch`` saying which belong together, and all jumps."""
         rows = [(j, o) for j, branch in enumerate(self.branches) for o in branch.orbits]
         orbits = [o for _, o in rows]
-
-        def column(values: list[float] | list[int] | list[bool], unit: str, text: str) -> Variable:
-            return ("point", np.array(values), unit, text)
-
-        return labelled_dataset(
-            {
-                "branch": column([j for j, _ in rows], "1", "branch"),
-                "n": column([o.n for o in orbits], "1", "mesh cycles of the motion"),
-                "speed_rpm": column([self._cycle_at_1_rpm / o.period for o in orbits], "rpm", "pinion speed"),
-                "dte_rms": column([o.run.rms for o in orbits], "m", "dynamic transmission error, rms"),
-                "dte_mean": column([o.run.mean for o in orbits], "m", "dynamic transmission error, mean"),
-                "dte_peak_to_peak": column(
-                    [o.run.most - o.run.least for o in orbits],
-                    "m",
+        radius = np.array([o.spectral_radius for o in orbits])
+        table: dict[str, Variable] = {
+            name: ("point", np.asarray(values), unit, text)
+            for name, values, unit, text in (
+                ("branch", [j for j, _ in rows], "1", "branch"),
+                ("n", [o.n for o in orbits], "1", "mesh cycles of the motion"),
+                ("speed_rpm", [self._rpm(o) for o in orbits], "rpm", "pinion speed"),
+                ("dte_rms", [o.run.rms for o in orbits], "m", "dynamic transmission error, rms"),
+                ("dte_mean", [o.run.mean for o in orbits], "m", "dynamic transmission error, mean"),
+                (
+                    "dte_peak_to_peak", [o.run.most - o.run.least for o in orbits], "m",
                     "dynamic transmission error, peak to peak",
                 ),
-                "largest_load": column([o.run.largest_load for o in orbits], "N", "largest normal load"),
-                "spectral_radius": column(
-                    [o.spectral_radius for o in orbits], "1", "spectral radius over n cycles"
-                ),
-                "stable": column([o.spectral_radius < MARGINAL for o in orbits], "1", "stable"),
-                "parts": column([o.parts for o in orbits], "1", "teeth part"),
-            }
-            | {
-                f"jump_{name}": ("jump", [getattr(jump, name) for jump in self.jumps], unit, text)
-                for name, unit, text in _JUMP_COLUMNS
-            },
+                ("largest_load", [o.run.largest_load for o in orbits], "N", "largest normal load"),
+                ("spectral_radius", radius, "1", "spectral radius over n cycles"),
+                ("stable", radius < MARGINAL, "1", "stable"),
+                ("parts", [o.parts for o in orbits], "1", "contact loss"),
+            )
+        }  # fmt: skip
+        for f in fields(Jump):
+            values = [getattr(jump, f.name) for jump in self.jumps]
+            table[f"jump_{f.name}"] = "jump", values, f.metadata["unit"], f.metadata["text"]
+        return labelled_dataset(
+            table,
             {
                 "point": (np.arange(len(rows)), "1", "orbit"),
                 "jump": (np.arange(len(self.jumps)), "1", "jump"),
@@ -323,39 +291,32 @@ def response_branches(
     return ResponseBranches(pair, (low, high), back_side, response)
 
 
-def period_behind(branch: Branch, b: Bifurcation) -> float | None:
-    """T 0.1 % of the speed behind a place where a branch loses its stability; None where it does not."""
-    at = branch.orbits.index(b.orbit)
-    if b.kind == "grazing" or not 0 < at < len(branch.orbits) - 1:
-        return None
-    sides = (branch.orbits[at - 1], branch.orbits[at + 1])
-    stable = [orbit.stable for orbit in sides]
-    if stable[0] == stable[1]:
-        return None
-    way = 1 if stable[1] else -1
-    # A corner is not the extreme of the speed to the last digit.
-    calm = (o.period / b.orbit.period for o in branch.orbits[at + way :: way])
-    ratio = next((ratio for ratio in calm if abs(ratio - 1.0) > _CORNER), 1.0)
-    if ratio == 1.0:
-        return None
-    rising = ratio > 1.0
-    return b.orbit.period * (1.0 - _BEYOND if rising else 1.0 + _BEYOND)
+def lost_stability(branch: Branch) -> list[tuple[Bifurcation, float]]:
+    """Places where a branch loses its stability, and T 0.1 % of the speed behind each."""
+    found = []
+    for b in branch.bifurcations:
+        at = branch.orbits.index(b.orbit)
+        if b.kind == "grazing" or not 0 < at < len(branch.orbits) - 1:
+            continue
+        before, after = branch.orbits[at - 1].stable, branch.orbits[at + 1].stable
+        if before == after:
+            continue
+        way = 1 if after else -1
+        # A corner is not the extreme of the speed to the last digit.
+        calm = (o.period / b.orbit.period for o in branch.orbits[at + way :: way])
+        ratio = next((ratio for ratio in calm if abs(ratio - 1.0) > _CORNER), 1.0)
+        if ratio != 1.0:
+            found.append((b, b.orbit.period * (1.0 - _BEYOND if ratio > 1.0 else 1.0 + _BEYOND)))
+    return found
 
 
 def member(pair: GearPair, low: float, high: float, form: ContactForm = "mesh") -> Member:
-    """What the search for branches needs of a gear pair, for speeds of a range.
-
-    Parameters
-    ----------
-    pair : the gear pair
-    low, high : slowest and fastest speed [rpm]
-    form : as ``unilateral_system``
-    """
-    length, cycle = static_deflection(pair), pair.geometry.mesh_period * operating_rpm(pair)
+    """What the search for branches needs of a gear pair, for speeds from ``low`` to ``high`` [rpm]."""
+    cycle = pair.geometry.mesh_period * operating_rpm(pair)
     limits = Limits(
         slowest=low / cycle,
         fastest=high / cycle,
-        length=length,
+        length=static_deflection(pair),
         parameter=pair.operating.pinion_torque,
         amplitude=largest_motion(pair),
     )

@@ -11,7 +11,7 @@ import pytest
 import floquet
 import lumped
 import multibody
-from floquet.gear.jump_removal import JumpRemoval
+from floquet.gear.jump_map import JumpRemoval
 from validation.reporting import words
 from validation.reporting.blocks import Text
 from validation.reporting.chapters import contact_loss

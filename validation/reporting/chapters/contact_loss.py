@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from floquet.gear.jump_removal import jumps_removed_by
+from floquet.gear.jump_map import jumps_removed_by
 from floquet.gear.response import ResponseBranches
 from lumped.model.results import load_range
 from validation.plots.contact_loss import jump_map_figure, response_figure
