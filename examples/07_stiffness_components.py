@@ -11,7 +11,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 import lumped
-from lumped.path_of_contact.iso_comparison import iso_comparison
+from lumped.path_of_contact.stiffness import iso_comparison
 
 
 def compute() -> xr.Dataset:

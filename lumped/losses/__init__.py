@@ -1,14 +1,19 @@
 """Losses of the mesh: loss factor, mean friction, sliding loss and efficiency, quasi-static and dynamic."""
 
-from lumped.losses.anderson_loewenthal import (
+from lumped.losses.efficiency import (
+    dynamic_losses,
+    losses_of_laws,
+    quasi_static_losses,
+    sliding_power_along_path,
+)
+from lumped.losses.loss_factor import Sharing, addendum_contact_ratios, loss_factor, ohlendorf, ohlendorf_of
+from lumped.losses.published import (
     anderson_loewenthal_coefficient,
     anderson_loewenthal_sliding_loss,
+    iso_14179_mean_coefficient,
+    iso_14179_mesh_loss,
+    iso_14179_of,
 )
-from lumped.losses.dynamic import dynamic_losses, losses_of_laws, sliding_power_along_path
-from lumped.losses.loss_factor import addendum_contact_ratios, loss_factor, ohlendorf, ohlendorf_of
-from lumped.losses.mean_friction import iso_14179_mean_coefficient, iso_14179_mesh_loss, iso_14179_of
-from lumped.losses.quasi_static import quasi_static_losses
-from lumped.losses.sharing import Sharing
 
 __all__ = [
     "Sharing",

@@ -1,23 +1,119 @@
-"""Tooth loss factor H_v: the sliding loss over mu times the transmitted power.
+"""Tooth loss factor H_v: the sliding loss over mu times the transmitted power; how pairs share the load.
 
-Sources: Ohlendorf 1958; docs/theory/mesh_physics.md, "Losses".
+Sources: Ohlendorf 1958; docs/theory/mesh_physics.md, "Load sharing and static transmission error", "Losses".
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal, get_args
 
 import numpy as np
 
+from lumped.arguments import one_of
 from lumped.gear_geometry.geometry import Geometry
-from lumped.losses.cycle import CyclePositions, quadrature
-from lumped.losses.sharing import Sharing, springs
+from lumped.path_function import PathFunction
+from lumped.path_of_contact import pair_stiffness
+from lumped.quasi_static.contacts import CONTACTS
+from lumped.quasi_static.prescribed import loaded_mesh
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.typing import FloatArray
+from lumped.schema.pair import GearPair
+from lumped.typing import BoolArray, FloatArray
 
-if TYPE_CHECKING:
-    pass
+#: Exact to degree 15: a fitted mu of degree 8 times a sliding velocity of degree 1, and a load share.
+_NODES = 8
+_SAME = 1e-13  # of a base pitch: edges closer than this are one
+#: "elements": stiffness and tooth error as the dynamic model has them; "loaded": with the relief of the
+#: flanks under the operating torque; "stiffness": the stiffness model without tooth errors; "uniform": equal
+#: shares.
+Sharing = Literal["elements", "loaded", "stiffness", "uniform"]
+
+
+@dataclass(frozen=True, eq=False)
+class CyclePositions:
+    """Positions xi_i of all tooth pairs at instants of one mesh cycle, pair 0 ahead.
+
+    Attributes
+    ----------
+    weight : (k,) quadrature weights, sum 1
+    position : (pairs, k) [m]
+    contact : (pairs, k) whether L_XA <= xi_i < L_XD
+    """
+
+    weight: FloatArray
+    position: FloatArray
+    contact: BoolArray
+
+    def mean(self, values: FloatArray) -> float:
+        """Mean over the cycle of values (k,)."""
+        return float(self.weight @ values)
+
+
+def quadrature(g: Geometry, functions: Iterable[PathFunction]) -> CyclePositions:
+    """Gauss-Legendre nodes on every stretch of the cycle between two breaks of the functions, P, A and D."""
+    marks = np.concatenate([np.array([g.L_XA, g.L_XP, g.L_XD]), *(f.breaks for f in functions)])
+    folded = np.sort(np.mod(marks - g.L_XA, g.base_pitch))
+    edges = np.concatenate([[0.0], folded, [g.base_pitch]])
+    edges = edges[np.append(True, np.diff(edges) > _SAME * g.base_pitch)]
+    edges[-1] = g.base_pitch
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    half = 0.5 * np.diff(edges)
+    phase = (edges[:-1] + half)[:, None] + half[:, None] * nodes
+    weight = np.asarray(half[:, None] * weights / g.base_pitch, dtype=np.float64)
+    return _at(g, phase.ravel(), weight.ravel())
+
+
+def samples(g: Geometry, count: int) -> CyclePositions:
+    """Evenly spaced instants of the cycle, from the entry at A, the end left out."""
+    phase = np.asarray(np.arange(count) * (g.base_pitch / count), dtype=np.float64)
+    return _at(g, phase, np.full(count, 1.0 / count))
+
+
+def _at(g: Geometry, phase: FloatArray, weight: FloatArray) -> CyclePositions:
+    position = g.L_XA + np.arange(g.pairs - 1, -1, -1)[:, None] * g.base_pitch + phase
+    return CyclePositions(weight, position, position < g.L_XD)
+
+
+@dataclass(frozen=True, eq=False)
+class Springs:
+    """Tooth pairs as springs k(xi) with unloaded errors e(xi) [m], or none, under a mesh force [N]."""
+
+    stiffness: PathFunction
+    error: PathFunction | None
+    force: float
+
+    @property
+    def functions(self) -> list[PathFunction]:
+        """The path functions that the shares are made of."""
+        return [self.stiffness] if self.error is None else [self.stiffness, self.error]
+
+    def share(self, at: CyclePositions) -> FloatArray:
+        """Fraction of the mesh load on each pair; (pairs, k), sums to 1 over the pairs.
+
+        All pairs deflect by the same delta = (F + SUM k_i e_i)/SUM k_i and carry k_i (delta - e_i).
+        """
+        k = np.where(at.contact, self.stiffness(at.position), 0.0)
+        if self.error is None:
+            return np.asarray(k / k.sum(axis=0), dtype=np.float64)
+        e = np.where(at.contact, self.error(at.position), 0.0)
+        delta = (self.force + (k * e).sum(axis=0)) / k.sum(axis=0)
+        return np.asarray(k * (delta - e) / self.force, dtype=np.float64)
+
+
+def springs(pair: GearPair, sharing: Sharing) -> Springs:
+    """Return the springs that share the load of a gear pair, see ``Sharing``."""
+    g = pair.geometry
+    force = pair.operating.pinion_torque / g.base_radius_pinion
+    one_of("sharing", sharing, get_args(Sharing))
+    if sharing == "uniform":
+        return Springs(PathFunction.constant(1.0, g.L_XA, g.L_XD), None, force)
+    if sharing == "stiffness":
+        return Springs(pair_stiffness(pair), None, force)
+    # Positions are those from A to D, so contact is the prescribed one.
+    laws = loaded_mesh(pair) if sharing == "loaded" else CONTACTS["prescribed"].elements(pair)
+    return Springs(laws.stiffness, laws.error, force)
 
 
 def ohlendorf(
@@ -79,7 +175,7 @@ def loss_factor(pair: AnyPair, sharing: Sharing = "uniform") -> float:
     Parameters
     ----------
     pair : the gear pair
-    sharing : see ``lumped.losses.sharing``
+    sharing : how pairs share the load, see ``Sharing``
 
     Returns
     -------

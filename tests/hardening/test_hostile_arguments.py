@@ -16,7 +16,7 @@ from lumped import friction, losses, quasi_static
 from lumped.errors import ParameterError, SpurcheckError
 from lumped.lubrication import film
 from lumped.model.averaged import averaged_state_space
-from lumped.path_of_contact.friction_profile import friction_profile
+from lumped.path_of_contact.friction import friction_profile
 from validation import crosscheck
 from validation.measurements import predict
 from validation.verification import refinements

@@ -11,8 +11,7 @@ import xarray as xr
 
 from lumped import GearPair, NumericalError, ParameterError
 from lumped.labelling import labelled_dataset
-from lumped.path_of_contact.iso_comparison import iso_comparison
-from lumped.path_of_contact.stiffness import mesh_stiffness, stiffness_components
+from lumped.path_of_contact.stiffness import iso_comparison, mesh_stiffness, stiffness_components
 from lumped.quasi_static import (
     OptimalRelief,
     optimal_relief,

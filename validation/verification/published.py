@@ -36,9 +36,8 @@ FORMULAS: Mapping[str, frozenset[str]] = {
         "friction.smoothed_coulomb": "smoothed_coulomb",
         "friction.xu_kahraman": "xu_kahraman",
         "gear_geometry.tooth_profile": "involute inverse_involute",
-        "losses.anderson_loewenthal": "anderson_loewenthal_coefficient",
         "losses.loss_factor": "ohlendorf",
-        "losses.mean_friction": "iso_14179_mean_coefficient",
+        "losses.published": "anderson_loewenthal_coefficient iso_14179_mean_coefficient",
         "lubrication.film": "film_thickness effective_modulus hertz_half_width hertz_pressure "
         "pressure_viscosity film_parameter regime composite_roughness mean_roughness",
         "lubrication.viscosity": "walther_constants kinematic_viscosity oil_density "

@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from lumped import geometry, load_gear_pair, preset_names
 from lumped.errors import ParameterError
 from lumped.losses import addendum_contact_ratios, loss_factor, ohlendorf, ohlendorf_of
-from lumped.path_function import PathFunction
+from lumped.path_of_contact import pair_stiffness
 
 #: Pairs with contact ratios below 2, for which closed forms are known.
 UP_TO_TWO_PAIRS = [name for name in preset_names() if load_gear_pair(name).geometry.contact_ratio < 2.0]
@@ -87,14 +87,20 @@ def test_sharing_by_stiffness():
     pair = load_gear_pair("fzg_c")
     g = geometry(pair)
     # 1 + 2 t (1 - t) over the path, t = 0 at A and 1 at D: stiffest in the middle
-    length = g.L_XD - g.L_XA
-    middle = PathFunction(
-        np.array([g.L_XA, g.L_XD]), np.array([[-2 / length**2], [2 / length], [1.0]]), np.empty(0)
-    )
-    expected = brute_force(pair, lambda xi: float(middle(min(xi, math.nextafter(g.L_XD, 0.0)))))
+    points = list(np.linspace(0.0, g.contact_ratio, 201))
+    t = np.array(points) / g.contact_ratio
+    table = {
+        "model": "table",
+        "axis": "phase",
+        "points": points,
+        "stiffness": list(1e8 * (1 + 2 * t * (1 - t))),
+    }
+    pair = pair.with_(mesh__stiffness=table)
+    curve = pair_stiffness(pair)
+    expected = brute_force(pair, lambda xi: float(curve(min(xi, math.nextafter(g.L_XD, 0.0)))))
     # the load share is a ratio of polynomials: eight Gauss nodes a stretch leave about 1e-10
-    assert loss_factor(pair, middle) == pytest.approx(expected, rel=1e-8)
-    assert loss_factor(pair, middle) < loss_factor(pair)  # less load where sliding is fast
+    assert loss_factor(pair, "stiffness") == pytest.approx(expected, rel=1e-8)
+    assert loss_factor(pair, "stiffness") < loss_factor(pair)  # less load where sliding is fast
 
 
 def test_tip_relief_lowers_the_loss_factor_where_it_unloads_the_ends():

@@ -5,7 +5,7 @@ import pytest
 
 from lumped import geometry, load_gear_pair, mesh_stiffness, preset_names, stiffness_components
 from lumped.path_of_contact import pair_stiffness
-from lumped.path_of_contact.iso_comparison import iso_comparison
+from lumped.path_of_contact.stiffness import iso_comparison
 from lumped.stiffness.energy import EnergyStiffness
 
 
