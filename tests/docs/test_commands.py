@@ -118,8 +118,8 @@ def test_a_page_works_from_top_to_bottom(page, blocks, root, tmp_path, monkeypat
     monkeypatch.chdir(tmp_path)
     monkeypatch.setitem(write_interactive_page.__kwdefaults__, "sampling", COARSE)
     monkeypatch.setattr(response, "_LINEAR_SPEEDS", 9)
-    # The twin is judged in tests/validation/cross_check.
-    monkeypatch.setitem(comparison.crosscheck.__kwdefaults__, "twin", False)
+    # The variant is judged in tests/validation/cross_check.
+    monkeypatch.setitem(comparison.crosscheck.__kwdefaults__, "variant", False)
     session: dict[str, object] = {}
     for block in blocks(page):
         if block.language == "sh":
@@ -157,7 +157,6 @@ def run(line: str, root: Path, done: set[str]) -> None:
     if program == "spurcheck":
         parsed(line)
         same = line.replace("mypair.toml", "nasa_28_28 --set mesh.relief=ignored")
-        same = same.removesuffix(" --strict")
         if NOT_RUN.search(line) or same in done:
             return
         if arguments[0] == "crosscheck":

@@ -79,7 +79,7 @@ CALLS = {
     floquet.stability_margins: ({"pair": PAIR}, "speed_rpm"),
     floquet.campbell: ({"pair": PAIR, "speeds_rpm": [4000.0]}, "speeds_rpm mesh_orders orders rtol"),
     floquet.gear_block: ({"source": PAIR}, "rtol friction_level"),
-    crosscheck: ({"pair": PAIR}, "cycles samples_per_cycle fidelities quantities"),
+    crosscheck: ({"pair": PAIR}, "cycles samples_per_cycle fidelities limit"),
     predict: ({"pair": PAIR}, "speed torque recurrence"),
     refinements: ({"pair": PAIR}, "samples"),
 }

@@ -70,7 +70,7 @@ assert lumped.load_gear_pair(__import__("tomllib").loads(pair.to_toml())) == pai
 assert "rising" in json.dumps(lumped.json_schema())
 assert 0.98 < lumped.steady_state(pair, samples_per_cycle=64).attrs["mesh_efficiency"] < 1.0
 assert floquet.gear_pair_multipliers(pair).spectral_radius < 1.0
-check = crosscheck(pair, cycles=6, samples_per_cycle=32, twin=False)
+check = crosscheck(pair, cycles=6, samples_per_cycle=32, variant=False)
 assert not check.failures, check.failures
 wrong = CliRunner().invoke(app, ["simulate", "nasa_28_28", "--law", "risin"])
 assert wrong.exit_code == 2 and "Did you mean 'rising'?" in wrong.output, wrong.output

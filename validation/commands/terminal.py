@@ -150,16 +150,6 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
     return run
 
 
-def conclude(verdict: str, *, strict: bool, tell: bool = True) -> None:
-    """End a cross-check: its verdict in words and as exit code; ``strict``: "explained" fails too."""
-    from validation.cross_check.judgement import MEANINGS
-
-    if tell:
-        stdout().print(f"[bold]{verdict}[/bold]: {MEANINGS[verdict]}", markup=True, soft_wrap=True)
-    if verdict == "not confirmed" or (strict and verdict != "confirmed"):
-        raise typer.Exit(FAILED)
-
-
 def fail(text: str, code: int) -> NoReturn:
     """End the command with one message and an exit code."""
     PlainConsole(stderr=True).print(

@@ -50,46 +50,6 @@ class MeshOrders:
     phase: FloatArray
 
 
-def relative_l2(candidate: ArrayLike, reference: ArrayLike) -> float:
-    """L2 norm of the difference over the L2 norm of the reference.
-
-    Raises
-    ------
-    ParameterError : different shapes, or fewer than 2 samples
-    NumericalError : the reference is zero, or a value is not finite
-    """
-    a, b = _histories(candidate, reference)
-    return float(np.linalg.norm(a - b)) / _positive(float(np.linalg.norm(b)), "is zero everywhere")
-
-
-def maximum_over_span(candidate: ArrayLike, reference: ArrayLike) -> float:
-    """Largest difference at any time over the peak to peak of the reference; raises as ``relative_l2``."""
-    a, b = _histories(candidate, reference)
-    return float(np.abs(a - b).max()) / _positive(float(np.ptp(b)), "is constant")
-
-
-def rms_over_span(candidate: ArrayLike, reference: ArrayLike) -> float:
-    """Root mean square difference over the peak to peak of the reference; raises as ``relative_l2``.
-
-    Where a history jumps and the jump moves by a little, the largest difference is the jump itself, however
-    little it moves; the root mean square tends to zero with the shift.
-    """
-    a, b = _histories(candidate, reference)
-    return float(np.sqrt(np.mean((a - b) ** 2))) / _positive(float(np.ptp(b)), "is constant")
-
-
-def peak_to_peak_ratio(candidate: ArrayLike, reference: ArrayLike) -> float:
-    """Peak to peak of the candidate over that of the reference; raises as ``relative_l2``."""
-    a, b = _histories(candidate, reference)
-    return float(np.ptp(a)) / _positive(float(np.ptp(b)), "is constant")
-
-
-def mean_shift(candidate: ArrayLike, reference: ArrayLike) -> float:
-    """Difference of the means over the peak to peak of the reference; raises as ``relative_l2``."""
-    a, b = _histories(candidate, reference)
-    return float(a.mean() - b.mean()) / _positive(float(np.ptp(b)), "is constant")
-
-
 def sprague_geers(candidate: ArrayLike, reference: ArrayLike) -> SpragueGeers:
     """Sprague and Geers' magnitude and phase error of a history.
 

@@ -1,9 +1,14 @@
-"""What several chapters say about the cross-check of both models."""
+"""What several chapters and commands say about the cross-check of both models."""
 
 from __future__ import annotations
 
+import xarray as xr
+
+import multibody
+from lumped import NumericalError
+from multibody.contact.effects import CAUSES
 from validation.cross_check.comparison import CrossCheck
-from validation.cross_check.judgement import Judgement
+from validation.cross_check.verdict import Judgement
 from validation.reporting.formatting import number, quantity
 
 #: Short names of the quantities that the models are compared by.
@@ -18,14 +23,6 @@ NAMES = {
 }
 
 
-#: Kind of a check that compares motions -> what its value is.
-_DIFFERENCES = {
-    "linear": "off with the same equations",
-    "remainder": "off beyond what is understood",
-    "same motion": "off, which is another motion",
-}
-
-
 def failed_checks(check: CrossCheck, most: int = 3) -> str:
     """The first checks that fail, with value and limit."""
     failed = check.failures
@@ -36,13 +33,13 @@ def failed_checks(check: CrossCheck, most: int = 3) -> str:
 
 def _failed(judgement: Judgement) -> str:
     """One check that fails; a difference of the motions in words."""
-    value, limit = judgement.value, judgement.limit
-    check = judgement.check.removeprefix("twin: ")
-    kind, _, quantity_name = check.partition(": ")
-    if kind not in _DIFFERENCES or quantity_name not in NAMES:
-        return f"{judgement.check} {number(value, 2)}, limit {number(limit, 2)}"
-    of = " of its unlike twin" if check != judgement.check else ""
-    return f"{NAMES[quantity_name]}{of} {percent(value)} {_DIFFERENCES[kind]}, limit {percent(limit)}"
+    check = judgement.check.removeprefix("variant: ")
+    kind, _, name = check.partition(": ")
+    if kind != "same equations":
+        return f"{judgement.check} {number(judgement.value, 2)}, limit {number(judgement.limit, 2)}"
+    of = " of its asymmetric variant" if check != judgement.check else ""
+    value, limit = percent(judgement.value), percent(judgement.limit)
+    return f"{NAMES[name]}{of} {value} off with the same equations, limit {limit}"
 
 
 def same_equations(check: CrossCheck) -> str:
@@ -51,33 +48,45 @@ def same_equations(check: CrossCheck) -> str:
     verb = "agrees" if worst.within else "does not agree"
     return (
         f"With the same equations the multibody model {verb}: {NAMES[worst.quantity]} to "
-        f"{number(worst.judged, 2)} of its peak to peak, tolerance {number(worst.tolerance.limit, 2)}."
+        f"{number(worst.difference, 2)} of its peak to peak, limit {number(worst.limit, 2)}."
     )
 
 
-def finite_motions(check: CrossCheck) -> str:
-    """How much the exact model differs, in the transmission error and in whatever differs most.
-
-    The text also says how much of the difference follows from the lumped motion. A difference is stated
-    whatever the verdict is: also one that is understood, and so within its tolerance.
-    """
-    exact = check.of("exact")
-    # To the digits printed: the bodies of a 1:1 pair differ by rounding, and the first is named every time.
-    largest = max(exact, key=lambda a: float(f"{a.relative_l2:.2g}"))
-    dte = next((a for a in exact if a.quantity == "dte"), largest)
-    most = ""
-    if largest.quantity != dte.quantity:
-        most = f" and {NAMES[largest.quantity]}, most of all, by {percent(largest.relative_l2)}"
+def whole_difference(check: CrossCheck) -> str:
+    """How much the exact model differs: in the transmission error, and in what uses most of its limit."""
+    dte = next(a for a in check.of("exact") if a.quantity == "dte")
     worst = check.worst("exact")
-    left, limit = percent(worst.remainder_l2), percent(worst.tolerance.limit)
-    accounts = f"accounts for all but {left} (tolerance {limit})"
-    if worst.remainder_l2 > 0.5 * worst.relative_l2:
-        accounts = f"does not account for this ({left} left, tolerance {limit})"
-    return (
-        f"Its contact follows the actual motion, which changes the {NAMES[dte.quantity]} by "
-        f"{percent(dte.relative_l2)}{most} (rms of the change over rms of the motion); the lumped motion "
-        f"alone {accounts}."
+    own, other = (quantity(value, "m", 3) for value in (dte.peak_to_peak, dte.peak_to_peak_multibody))
+    told = (
+        f"The transmission error of the multibody model is {other} peak to peak beside {own}, and differs by "
+        f"at most {percent(dte.difference)} of that"
     )
+    if worst.quantity == "dte":
+        return f"{told}, limit {percent(dte.limit)}."
+    return f"{told}; {NAMES[worst.quantity]} by {percent(worst.difference)}, limit {percent(worst.limit)}."
+
+
+def attribution(check: CrossCheck) -> xr.Dataset | None:
+    """Effects of the exact model one by one; None where contact is lost or it has no periodic motion."""
+    if check.orbit is not None:
+        return None
+    try:
+        return multibody.attribution(check.pair)
+    except NumericalError:
+        return None
+
+
+def cause_of_difference(check: CrossCheck, found: xr.Dataset | None = None) -> str:
+    """The effect of the exact model that explains most of the difference; empty where that is not known.
+
+    ``found`` is the ``attribution``, where it is known already.
+    """
+    found = attribution(check) if found is None else found
+    if found is None:
+        return ""
+    name = str(found.attrs["largest"])
+    change = float(found["alone"].sel(cause=name, quantity="dte"))
+    return f"Most of it comes from one effect: {CAUSES[name]}, alone {percent(change)}."
 
 
 def percent(ratio: float) -> str:

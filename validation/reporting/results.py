@@ -23,6 +23,7 @@ from lumped.model.sweep import resolved_sweep
 from lumped.path_of_contact import friction_profile
 from lumped.typing import BoolArray, Progress
 from validation.cross_check.comparison import CrossCheck, crosscheck
+from validation.reporting.cross_check_words import attribution
 from validation.validity.beyond_contact_loss import branches_about_operation, jumps_about_operation
 from validation.validity.contact_forms import ContactForms, contact_forms
 from validation.validity.flags import LOAD_NOISE, Flag, speed_drift, supports, validity_flags
@@ -183,6 +184,12 @@ class Results:
         """Cross-check against the multibody model."""
         stage = self.stage("cross-check against the multibody model")
         return crosscheck(self.pair, cycles=self.effort.cycles, progress=stage)
+
+    @cached_property
+    def attribution(self) -> xr.Dataset | None:
+        """Effects of the exact model one by one; None where contact is lost or it has no periodic motion."""
+        self.stage("effects of the exact model")
+        return attribution(self.check)
 
     @cached_property
     def parting(self) -> Parting | str | None:

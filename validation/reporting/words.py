@@ -6,9 +6,10 @@ import numpy as np
 import xarray as xr
 
 from lumped import GearPair
+from validation.cross_check.verdict import Verdict
 from validation.reporting.blocks import Text
 from validation.reporting.contact_words import contact_form
-from validation.reporting.cross_check_words import failed_checks, percent
+from validation.reporting.cross_check_words import cause_of_difference, failed_checks, whole_difference
 from validation.reporting.formatting import digits, number, quantity
 from validation.reporting.results import Parting, Results
 from validation.validity.four_springs import LIMITS, FourSprings
@@ -39,7 +40,7 @@ def headline(results: Results) -> str:
 def confirmed_parting(results: Results) -> Parting | None:
     """The motion of teeth that part, where the cross-check compares and does not refute it."""
     found = results.parting
-    judged = isinstance(found, Parting) and found.judged and results.check.verdict != "not confirmed"
+    judged = isinstance(found, Parting) and found.judged and results.check.verdict is not Verdict.FAILS
     return found if judged and isinstance(found, Parting) else None
 
 
@@ -197,7 +198,7 @@ def span(results: Results) -> str:
 
 
 def efficiency(results: Results) -> str:
-    """Loss of the mesh in percent; none where a law of nature does not hold."""
+    """Loss of the mesh in percent; none where a conservation law does not hold."""
     if not lawful(results):
         return f"no mesh efficiency, because {unlawful(results)}"
     attrs = results.motion.attrs
@@ -208,23 +209,16 @@ def efficiency(results: Results) -> str:
 
 
 def agreement(results: Results) -> str:
-    """Whether the multibody model agrees, and by how much its transmission error differs."""
+    """Whether the multibody model agrees, by how much it differs, and the effect that explains most."""
     check = results.check
-    if check.verdict == "not confirmed":
-        return f"A second, independent model does not confirm it: {failed_checks(check)}."
-    exact = check.of("exact")
-    dte = next((a for a in exact if a.quantity == "dte"), exact[0])
+    if check.verdict is Verdict.FAILS:
+        return f"A check of the program fails: {failed_checks(check)}."
+    if check.verdict is Verdict.NOT_CHECKED:
+        return "A second, independent model has no periodic motion near this one that could be compared."
     same = "with the same contact " if check.pair.mesh.contact == "prescribed" else ""
-    left = percent(check.worst("exact").remainder_l2)
-    told = (
-        f"A second, independent model {same}agrees: its transmission error differs by "
-        f"{percent(dte.relative_l2)}, and at most {left} of any motion is unexplained."
-    )
-    if objections(results):
-        told = (
-            f"A second model {same}computes the same motion: the equations are solved right, "
-            "which does not mean that a gear pair moves so."
-        )
+    told = f"A second, independent model {same}{check.verdict}. {whole_difference(check)}"
+    if check.verdict is Verdict.DIFFERS:
+        told = f"{told} {cause_of_difference(check, results.attribution)}".rstrip()
     return f"{told} {contact_form(results)}".rstrip() if same else told
 
 
@@ -248,16 +242,16 @@ def stability(results: Results) -> str:
 
 
 def lawful(results: Results) -> bool:
-    """Whether the laws of nature hold in both models, and their powers agree."""
-    return all(j.within for j in results.check.nature)
+    """Whether the conservation laws hold in both models, and their powers agree."""
+    return all(j.within for j in results.check.conservation)
 
 
 def unlawful(results: Results) -> str:
     """What of ``lawful`` does not hold."""
-    broken = [j.check for j in results.check.nature if not j.within]
-    if all(check.startswith("nature: power ") for check in broken):
+    broken = [j.check for j in results.check.conservation if not j.within]
+    if all(check.startswith("conservation: power ") for check in broken):
         return "the powers of both models differ"
-    return "a law of nature does not hold"
+    return "a conservation law does not hold"
 
 
 def objections(results: Results) -> list[str]:
@@ -274,8 +268,8 @@ def objections(results: Results) -> list[str]:
     failed = [check.key for check in results.checks if not check.passes]
     if failed:
         found.insert(0, f"checks of the models fail ({', '.join(failed)})")
-    if results.check.verdict == "not confirmed":
-        found.insert(0, "the cross-check does not confirm it")
+    if results.check.verdict is Verdict.FAILS:
+        found.insert(0, "the cross-check of the program fails")
     return found
 
 
@@ -293,10 +287,10 @@ def cautions(results: Results) -> tuple[Text, ...]:
             f"{stability.spectral_radius:.4g}). What follows is a solution of the equations that a gear pair "
             "leaves at the smallest disturbance: not a prediction of what it does."
         )
-    if check.verdict == "not confirmed":
+    if check.verdict is Verdict.FAILS:
         found.append(
-            "Warning: do not rely on the numbers of this chapter. The cross-check does not confirm the "
-            f"model: {failed_checks(check)}."
+            "Warning: do not rely on the numbers of this chapter. The cross-check of the program fails: "
+            f"{failed_checks(check)}."
         )
     return tuple(map(Text, found))
 

@@ -20,7 +20,7 @@ from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
 from multibody.contact.machine import machine
 from validation.cross_check.agreement import FIDELITIES, Fidelity
-from validation.cross_check.ledger import losses, quadrature
+from validation.cross_check.power_balance import losses, quadrature
 from validation.verification.arithmetic import arithmetic
 from validation.verification.checks import Check, check
 from validation.verification.elastic_load import elastic_load

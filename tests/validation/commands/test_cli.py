@@ -3,7 +3,6 @@
 import json
 import math
 import re
-from dataclasses import replace
 
 import pytest
 import xarray as xr
@@ -13,6 +12,7 @@ import lumped
 from lumped import NumericalError
 from validation.cli import app
 from validation.commands import options
+from validation.cross_check.verdict import Verdict
 from validation.reporting import Report
 from validation.reporting.gate import Change, Comparison
 
@@ -123,31 +123,25 @@ def test_simulate_on_shafts(tmp_path, shafted_file):
 
 
 @pytest.mark.parametrize(
-    ("verdict", "strict", "code"),
-    [("confirmed", True, 0), ("explained", False, 0), ("explained", True, 1), ("not confirmed", False, 1)],
+    ("verdict", "code"),
+    [(Verdict.AGREES, 0), (Verdict.DIFFERS, 4), (Verdict.NOT_CHECKED, 0), (Verdict.FAILS, 1)],
 )
-def test_crosscheck_exits_by_its_verdict(check, monkeypatch, tmp_path, verdict, strict, code):
+def test_crosscheck_exits_by_its_verdict(check, monkeypatch, tmp_path, verdict, code):
     class Judged(type(check)):
         pass
 
     judged = Judged(**vars(check))
     Judged.verdict = property(lambda self: verdict)
-    monkeypatch.setattr("validation.cross_check.comparison.crosscheck", lambda *_, **__: judged)
+    given = {}
+    monkeypatch.setattr(
+        "validation.cross_check.comparison.crosscheck", lambda *_, **options: given.update(options) or judged
+    )
     path = tmp_path / "agreement.json"
-    result = run("crosscheck", "-o", path, *(["--strict"] if strict else []))
+    result = run("crosscheck", "-o", path, "--limit", "2%")
     assert result.exit_code == code
-    assert verdict in result.stdout
-    assert json.loads(path.read_text())["verdict"] == verdict
-
-
-def test_a_limit_without_end_is_null_in_json(check, monkeypatch):
-    # Where the prediction finds no motion nothing bounds what finite motions may change.
-    first, *others = check.agreements
-    endless = replace(first, tolerance=replace(first.tolerance, limit=math.inf))
-    found = replace(check, agreements=(endless, *others))
-    monkeypatch.setattr("validation.cross_check.comparison.crosscheck", lambda *_, **__: found)
-    data = json.loads(run("crosscheck", "--json").stdout)
-    assert data["agreements"][0]["tolerance"]["limit"] is None
+    assert given["limit"] == pytest.approx(0.02)
+    assert f"{verdict}: {verdict.text}" in result.stdout
+    assert json.loads(path.read_text())["verdict"] == verdict.word
 
 
 def test_stability_exits_by_the_operating_point(tmp_path):

@@ -47,26 +47,6 @@ def test_magnitude_and_phase_combine():
     assert result.comprehensive == pytest.approx(0.5)  # 3-4-5 triangle of 0.3 and 0.4
 
 
-def test_relative_measures_of_an_offset():
-    reference = 5.0 + np.sin(PHASE)
-    candidate = reference + 0.1
-    rms = np.sqrt(25.0 + 0.5)
-    assert metrics.relative_l2(candidate, reference) == pytest.approx(0.1 / rms)
-    assert metrics.maximum_over_span(candidate, reference) == pytest.approx(0.05)  # span of a sine is 2
-    assert metrics.rms_over_span(candidate, reference) == pytest.approx(0.05)
-    assert metrics.mean_shift(candidate, reference) == pytest.approx(0.05)
-    assert metrics.peak_to_peak_ratio(candidate, reference) == pytest.approx(1.0)
-
-
-def test_moved_jump_keeps_its_largest_difference_but_its_rms_shrinks_with_the_move():
-    position = np.arange(1000)
-    reference = np.where(position < 500, 0.0, 2.0)
-    for moved in (40, 10):
-        candidate = np.where(position < 500 + moved, 0.0, 2.0)
-        assert metrics.maximum_over_span(candidate, reference) == 1.0
-        assert metrics.rms_over_span(candidate, reference) == pytest.approx(np.sqrt(moved / 1000))
-
-
 @given(
     mean=st.floats(-10, 10),
     amplitude=st.floats(0.1, 10),
@@ -93,23 +73,13 @@ def test_phase_difference_wraps(first, second, expected):
     assert metrics.phase_difference(first, second) == pytest.approx(expected)
 
 
-@pytest.mark.parametrize(
-    "function",
-    [
-        metrics.relative_l2,
-        metrics.maximum_over_span,
-        metrics.rms_over_span,
-        metrics.peak_to_peak_ratio,
-        metrics.sprague_geers,
-    ],
-)
-def test_meaningless_comparisons_are_refused(function):
+def test_meaningless_comparisons_are_refused():
     with pytest.raises(ParameterError):
-        function(np.ones(5), np.ones(6))
+        metrics.sprague_geers(np.ones(5), np.ones(6))
     with pytest.raises(NumericalError):
-        function(np.ones(5), np.zeros(5))
+        metrics.sprague_geers(np.ones(5), np.zeros(5))
     with pytest.raises(NumericalError):
-        function(np.array([1.0, np.nan]), np.array([1.0, 2.0]))
+        metrics.sprague_geers(np.array([1.0, np.nan]), np.array([1.0, 2.0]))
 
 
 @pytest.mark.parametrize(

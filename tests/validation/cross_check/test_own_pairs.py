@@ -4,18 +4,11 @@ from __future__ import annotations
 
 import tomllib
 
-import numpy as np
-import pytest
-
 import lumped
 import multibody
-from lumped.errors import NumericalError
-from validation.cross_check.actual_friction import law_ratio
 from validation.cross_check.comparison import crosscheck
-from validation.cross_check.finite_motion import finite_motion
-from validation.cross_check.first_order import first_order
-from validation.cross_check.parted_motion import parted_orbit, why_teeth_pull
-from validation.cross_check.twin import unlike_twin
+from validation.cross_check.motions import unilateral_orbit
+from validation.cross_check.variant import asymmetric_variant
 from validation.exchange.new_pair_file import new_pair_text
 
 
@@ -50,10 +43,6 @@ SLOW = own(
     "48/84", 0.8, 11.9, 549.1, 29.4, friction__law="II", mesh__stiffness__model="energy",
     mesh__contact="prescribed", mesh__damping_ratio=0.06, **bearings(0.737, 16.6, 1.31, 8.0),
 )  # fmt: skip
-HELD = own(
-    "65/73", 0.6, 5.4, 2708.4, 17.3, friction__law="II", mesh__stiffness__model="parabolic",
-    mesh__contact="prescribed", **relief(12.91, 23.795, 23.514),
-)  # fmt: skip
 
 
 def test_a_motion_small_beside_its_deflection_is_integrated_more_tightly():
@@ -62,7 +51,7 @@ def test_a_motion_small_beside_its_deflection_is_integrated_more_tightly():
         "81/84", 2.0, 21.6, 11586.9, 1320.0, pinion__profile_shift=0.305, gear__profile_shift=-0.102,
         mesh__contact="prescribed", lubricant__viscosity=12.0,
     )  # fmt: skip
-    found = crosscheck(pair, cycles=6, samples_per_cycle=64, twin=False)
+    found = crosscheck(pair, cycles=6, samples_per_cycle=64, variant=False)
     assert found.failures == ()
     assert found.rtol["linear"] < 1e-10
 
@@ -72,7 +61,7 @@ def test_sixty_swings_in_a_cycle_are_seen_at_more_times_than_asked_for():
         "20/44", 1.0, 4.6, 1591.0, 2.03, pinion__profile_shift=0.225, gear__profile_shift=0.243,
         friction__law="none", mesh__stiffness__model="parabolic", **relief(4.43, 29.922, 26.027),
     )  # fmt: skip
-    found = crosscheck(unlike_twin(pair), cycles=6, samples_per_cycle=64, twin=False)
+    found = crosscheck(asymmetric_variant(pair), cycles=6, samples_per_cycle=64, variant=False)
     assert found.failures == ()
     assert found.lumped.sizes["time"] == found.multibody["exact"].sizes["time"] == 6 * 64 + 1
 
@@ -83,18 +72,8 @@ def test_the_error_of_the_momentum_is_not_told_by_four_samples_in_a_swing():
         "12/30", 8.0, 65.7, 3863.4, 251.0, pinion__profile_shift=0.318, gear__profile_shift=0.15,
         friction__law="none", mesh__stiffness__model="parabolic", mesh__damping_ratio=0.061,
     )  # fmt: skip
-    found = crosscheck(unlike_twin(pair), cycles=6, samples_per_cycle=64, twin=False)
+    found = crosscheck(asymmetric_variant(pair), cycles=6, samples_per_cycle=64, variant=False)
     assert found.failures == ()
-
-
-def test_friction_that_holds_the_teeth_is_bounded_where_others_part():
-    """The exact model differs by 119 % in y and 3 % in the transmission error; the shift is 1 %."""
-    orbit = parted_orbit(HELD)
-    predicted = finite_motion(HELD, orbit.sampled(64), orbit=orbit)
-    assert not predicted.settled
-    effects = first_order(predicted)
-    assert effects.unpredicted("y_p") > 1.19
-    assert 0.03 < effects.unpredicted("dte") < 0.5
 
 
 def test_no_tooth_enters_unseen_where_friction_holds_the_teeth():
@@ -106,20 +85,14 @@ def test_no_tooth_enters_unseen_where_friction_holds_the_teeth():
     assert abs(balance.residual) < 1e-7 * balance.driving
 
 
-def test_a_motion_in_which_flanks_roll_backwards_is_no_motion():
-    """The iteration for the shifts goes on without it, as without a periodic solution."""
-    one = np.ones(3)
-    with pytest.raises(NumericalError, match="roll backwards"):
-        law_ratio(SLOW, (0.0, 1.0), one, np.array([1.0, -0.1, 1.0]), one, one)
-
-
-def test_teeth_that_part_beyond_the_backlash_are_named_as_the_reason():
+def test_backs_that_strike_are_named_as_the_reason_why_a_pulling_motion_is_compared():
     wide = own(
         "52/90", 2.5, 27.3, 797.6, 69.2, pinion__profile_shift=0.391, gear__profile_shift=0.185,
         friction__law="V", mesh__contact="prescribed",
     )  # fmt: skip
-    assert parted_orbit(wide) is not None
-    assert why_teeth_pull(wide) == ""
-    tight = wide.with_({"mesh.backlash": 0.0})
-    assert parted_orbit(tight) is None
-    assert "their backs strike" in why_teeth_pull(tight)
+    orbit, pulling = unilateral_orbit(wide)
+    assert orbit is not None
+    assert pulling == ""
+    orbit, pulling = unilateral_orbit(wide.with_({"mesh.backlash": 0.0}))
+    assert orbit is None
+    assert "the backs of the teeth strike" in pulling

@@ -66,9 +66,9 @@ def sharing(computed):
 
 
 @pytest.fixture(scope="module")
-def no_twin():
-    """The cross-check of a report without its unlike twin."""
+def no_variant():
+    """The cross-check of a report without its asymmetric variant."""
     true = results.crosscheck
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(results, "crosscheck", lambda *a, **k: true(*a, **k, twin=False))
+        patch.setattr(results, "crosscheck", lambda *a, **k: true(*a, **k, variant=False))
         yield

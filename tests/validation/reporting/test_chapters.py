@@ -12,19 +12,19 @@ import xarray as xr
 import lumped
 from lumped import NumericalError
 from multibody.contact.effects import CAUSES
-from validation.reporting import causes
+from validation.reporting import cross_check_words
 from validation.reporting.blocks import Fact, Picture, Table, plain
 from validation.reporting.build import document as document_of
 from validation.reporting.build import written
 from validation.reporting.chapters import (
     CHAPTERS,
     code_verification,
+    cross_check,
     parameters,
     reference_model,
     solution_verification,
     stability,
 )
-from validation.reporting.cross_check_words import finite_motions
 from validation.reporting.page import layers, numbered
 from validation.reporting.results import FULL, QUICK
 from validation.reporting.words import sentence
@@ -171,34 +171,6 @@ def test_the_chapter_on_the_multibody_model_shows_both_values_of_every_law(chapt
     assert all(len({*map(float, values)}) == 1 for values in both.values())
 
 
-def test_the_headline_states_the_largest_difference_also_when_it_is_within_its_tolerance(check):
-    def widened(left, pinion=0.3):
-        apart = {"y_g": 0.4, "y_p": pinion}
-        return dataclasses.replace(
-            check,
-            agreements=tuple(
-                dataclasses.replace(
-                    a,
-                    relative_l2=apart.get(a.quantity, 0.3) if a.fidelity == "exact" else 0.3,
-                    remainder_l2=left if (a.quantity, a.fidelity) == ("x_p", "exact") else 0.05,
-                    tolerance=dataclasses.replace(a.tolerance, limit=1.0),
-                )
-                for a in check.agreements
-            ),
-        )
-
-    assert widened(0.07).verdict == "explained"
-    text = finite_motions(widened(0.07)).replace("\u00a0", " ")
-    assert "changes the transmission error by 30 % and gear y, most of all, by 40 %" in text
-    assert text.endswith("the lumped motion alone accounts for all but 7 % (tolerance 100 %).")
-    # Equal but for rounding, as the bodies of a 1:1 pair are: the first is named, whichever is larger.
-    for pinion in (0.4 - 1e-12, 0.4 + 1e-12):
-        assert "and pinion y, most of all" in finite_motions(widened(0.07, pinion)).replace("\u00a0", " ")
-    # More than half is left: that is no account.
-    text = finite_motions(widened(0.2)).replace("\u00a0", " ")
-    assert text.endswith("does not account for this (20 % left, tolerance 100 %).")
-
-
 @pytest.fixture
 def attributed():
     shape = (len(CAUSES) + 1, 4)
@@ -212,7 +184,7 @@ def attributed():
 
 
 def test_the_table_has_every_cause_and_its_numbers(attributed):
-    text, table = causes.causes(attributed)
+    text, table = cross_check.causes(attributed)
     assert isinstance(table, Table)
     assert len(table.rows) == len(CAUSES) + 1
     keys = list(table.columns)
@@ -227,12 +199,12 @@ def test_the_table_has_every_cause_and_its_numbers(attributed):
     assert [str(row[0]).endswith("(not part of all)") for row in table.rows[1:4]] == [False, False, True]
 
 
-def test_a_pair_without_multibody_motion_has_no_causes(pair, monkeypatch):
+def test_a_pair_without_multibody_motion_has_no_causes(check, monkeypatch):
     def fail(*_, **__):
         raise NumericalError("No periodic multibody motion.")
 
-    monkeypatch.setattr(causes.multibody, "attribution", fail)
-    assert causes.causes(causes.attribution(pair)) == []
+    monkeypatch.setattr(cross_check_words.multibody, "attribution", fail)
+    assert cross_check.causes(cross_check_words.attribution(check)) == []
 
 
 def test_a_bored_body_is_stated_as_a_spring_and_a_solid_one_is_not(sharing):

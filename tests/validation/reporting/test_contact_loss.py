@@ -21,7 +21,7 @@ from validation.validity.contact_forms import contact_forms
 
 
 @pytest.fixture(scope="module")
-def results(no_twin, tiny):
+def results(no_variant, tiny):
     return Results(lumped.load_gear_pair("nasa_28_28"), tiny)
 
 
@@ -60,7 +60,7 @@ def test_page_1_judges_the_papers_form_by_the_exact_contact_and_says_what_is_unp
 def test_a_motion_that_is_refuted_or_not_compared_is_no_prediction(results, monkeypatch):
     """Then the first words say why, and the violated assumption is among the reasons."""
     monkeypatch.setattr(
-        results, "check", dataclasses.replace(results.check, orbit=None, nature=()), raising=False
+        results, "check", dataclasses.replace(results.check, orbit=None, conservation=()), raising=False
     )
     monkeypatch.setattr(results, "parting", dataclasses.replace(results.parting, judged=False), raising=False)
     assert words.headline(results).startswith("Do not rely on this prediction")

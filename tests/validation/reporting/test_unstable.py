@@ -13,14 +13,14 @@ from validation.reporting.gate import failures
 
 
 @pytest.fixture(scope="module")
-def unstable(pair, no_twin, sharing):
+def unstable(pair, no_variant, sharing):
     """Results in the widest tongue of the default pair: largest multiplier 1.29 without mesh damping.
 
     As if teeth that push only had no stable motion there. Margins over all speeds and other forms of contact
     do not tell this motion.
     """
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr("validation.cross_check.comparison.parted_orbit", lambda pair: None)
+        patched.setattr("validation.cross_check.comparison.unilateral_orbit", lambda pair: (None, ""))
         there = pair.with_({"operating.pinion_speed": "17000 rpm", "mesh.damping_ratio": 0.0})
         results = sharing(there, ("margins",))
         results.forms = "Not asked."

@@ -70,14 +70,14 @@ def _rows(results: Results) -> Rows:
     of_flag("friction_law_range", "The friction law is used inside the range of its fit.")
     of_flag("stiffness_range", "The tooth stiffness is used inside the range of its fit.")
     exact = results.check.of("exact")
-    largest = max(exact, key=lambda a: a.relative_l2)
+    largest = max(exact, key=lambda a: a.difference)
     rows.append(
         (
             "Vibration does not move the contact: position, lever and line of action are nominal.",
             "Differences grow with torque; entry and exit of teeth shift with deflection.",
-            f"multibody model with finite motions differs by up to {number(100 * largest.relative_l2, 2)} % "
-            f"(relative L2), in {largest.quantity}",
-            Badge(results.check.verdict),
+            f"multibody model with finite motions differs by up to {number(100 * largest.difference, 2)} % "
+            f"of the peak to peak, in {largest.quantity}",
+            Badge(results.check.verdict.word),
         )
     )
     stiffness = results.pair.mesh.stiffness.model

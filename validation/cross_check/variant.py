@@ -1,7 +1,7 @@
-"""The unlike twin of a gear pair: a variation in which nothing is symmetric.
+"""The asymmetric variant of a gear pair: nothing of it is alike on both gears.
 
 A pair whose pinion, gear and bearings are alike cannot show swapped bearings, a lever of the wrong gear or a
-mirrored drawing. Its twin has other tooth numbers, profile shifts, densities and roughnesses on both gears
+mirrored drawing. Its variant has other tooth numbers, profile shifts, densities and roughnesses on both gears
 and four unlike bearings; law, stiffness model, lubricant and torque stay.
 """
 
@@ -25,14 +25,14 @@ _BEARINGS = {
 }
 #: Factors of the speed, in the order in which they are tried.
 _SPEEDS = (0.93, 0.77, 1.19, 0.61, 0.43)
-#: Mesh damping ratio of the twin, at least: a quick run must not ring for long.
+#: Mesh damping ratio of the variant, at least: a quick run must not ring for long.
 _DAMPING = 0.03
 #: Times per mesh cycle at which teeth must touch and press: between fewer, contact may be lost unseen.
 _SAMPLES = 4096
 
 
-def unlike_twin(pair: GearPair) -> GearPair | None:
-    """Return the twin, or None where every variation is refused, unstable or lets its teeth separate.
+def asymmetric_variant(pair: GearPair) -> GearPair | None:
+    """Return the variant, or None where every variation is refused, unstable or lets its teeth separate.
 
     Parameters
     ----------
@@ -42,9 +42,9 @@ def unlike_twin(pair: GearPair) -> GearPair | None:
         for changes in _variations(pair):
             speed = pair.operating.pinion_speed * factor * 30.0 / np.pi
             try:
-                twin = pair.with_(changes | {"operating.pinion_speed": speed})
-                if prediction_holds(twin):
-                    return twin
+                variant = pair.with_(changes | {"operating.pinion_speed": speed})
+                if prediction_holds(variant):
+                    return variant
             except SpurcheckError:
                 continue
     return None
@@ -73,7 +73,7 @@ def prediction_holds(pair: GearPair) -> bool:
 def _variations(pair: GearPair) -> Iterator[dict[str, Any]]:
     """Changes of fields, the boldest first."""
     own = pair.to_mapping()
-    plain: dict[str, Any] = {"name": f"{pair.name[:70]}, twin", "operating.brake_torque": "balanced"}
+    plain: dict[str, Any] = {"name": f"{pair.name[:70]}, variant", "operating.brake_torque": "balanced"}
     plain["mesh.damping_ratio"] = max(_DAMPING, pair.mesh.damping_ratio)
     for place, (stiffness, damping) in _BEARINGS.items():
         gear, axis = place.split(".")

@@ -3,7 +3,7 @@
 The lumped motion is read with the radii, bearings and bodies that the multibody model works out for itself,
 so a wrong lever or constant of the lumped model leaves a residual.
 
-Sources: the power balance of rigid bodies; docs/theory/multibody.md, "Laws of nature".
+Sources: the power balance of rigid bodies; docs/theory/multibody.md, "Conservation".
 """
 
 from __future__ import annotations
@@ -29,8 +29,6 @@ POWERS: Mapping[str, str] = {
     "mesh_damping": "damping of the teeth",
     "mesh_stiffness": "work of the change of stiffness and profile along the path",
 }
-#: What a motion loses.
-LOSSES = ("friction", "bearings", "mesh_damping", "mesh_stiffness")
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 #: Panels of the quadrature in a mesh cycle, at least, and largest angle of the fastest vibration in a panel
 #: [rad]: Gauss's rule with four nodes then leaves some 1e-12 of a power, which swings twice as fast.
@@ -50,13 +48,9 @@ def quadrature(system: LTVSystem) -> tuple[FloatArray, FloatArray]:
 
 
 def lumped_powers(motion: PeriodicSolution, machine: Machine, weights: FloatArray) -> dict[str, float]:
-    """Mean powers of the lumped periodic motion, "driving" and those of ``POWERS`` [W].
+    """Mean powers of the lumped periodic motion at the times of ``quadrature``: "driving" and ``POWERS`` [W].
 
-    Parameters
-    ----------
-    motion : at the times of ``quadrature``
-    machine : the pair's numbers as the multibody model has them
-    weights : of these times
+    ``machine`` has the pair's numbers as the multibody model derives them.
     """
     p = machine.parameters
     found = losses(motion.system, machine, motion.time, motion.states, weights)
@@ -69,14 +63,7 @@ def lumped_powers(motion: PeriodicSolution, machine: Machine, weights: FloatArra
 def losses(
     system: LTVSystem, machine: Machine, times: FloatArray, states: FloatArray, weights: FloatArray
 ) -> dict[str, float]:
-    """Mean powers of ``LOSSES`` of a lumped motion [W].
-
-    Parameters
-    ----------
-    system : equations of the motion
-    machine : the pair's numbers as the multibody model has them
-    times, states, weights : (k,) times in one cycle, (k, 12) states, (k,) weights that sum to one
-    """
+    """Mean powers of what a lumped motion loses [W], from (k,) times, (k, 12) states and (k,) weights."""
     p = machine.parameters
     values, pairs, rates = response(system, times, states), system.cycle.sample(times), states[:, 6:]
     place = values["position"]
@@ -91,11 +78,6 @@ def losses(
         "mesh_damping": float(weights @ damping),
         "mesh_stiffness": float(weights @ (values["normal_load"].sum(axis=0) * closing - damping)),
     }
-
-
-def paid_by_the_brake(powers: Mapping[str, float]) -> dict[str, float]:
-    """The same where a contact with an energy makes the brake pay for what its force would take or give."""
-    return dict(powers) | {"braking": powers["braking"] + powers["mesh_stiffness"], "mesh_stiffness": 0.0}
 
 
 def multibody_powers(balance: multibody.PowerBalance, period: float) -> dict[str, float]:

@@ -1,0 +1,273 @@
+"""Conservation laws that every motion of a gear pair obeys, as checks on both models.
+
+No check compares a variable with itself: levers, bodies and bearings are those that the multibody model works
+out from the parameter file, also where the lumped motion is checked. No limit depends on how far the models
+are apart, so each check can fail whatever the exact motion is.
+
+Sources: docs/theory/multibody.md, "Conservation".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import cast
+
+import numpy as np
+import xarray as xr
+
+import multibody
+from lumped import GearPair
+from lumped.model.periodic_system import periodic_system
+from lumped.model.steady import periodic_solution
+from lumped.typing import FloatArray
+from multibody.contact import kernels as kn
+from multibody.contact.machine import Machine, machine
+from multibody.run.setup import prepare
+from multibody.study.balance import balance_of
+from validation.cross_check.agreement import Fidelity
+from validation.cross_check.power_balance import (
+    POWERS,
+    lumped_powers,
+    multibody_powers,
+    quadrature,
+    residual,
+)
+from validation.cross_check.verdict import Judgement
+
+Powers = Mapping[str, Mapping[str, float]]
+
+#: Rounding of a product of a coefficient and a velocity over the largest one.
+_ROUNDING = 1e-9
+#: Laws that several checks of one model stand for.
+_FAMILIES = ("action and reaction", "mean bearing load", "power ")
+#: Share of the driving power that the integration may lose at each fidelity: ten times its relative tolerance
+#: for every one of the ten steps or so of the fastest vibration.
+_INTEGRATION: Mapping[str, float] = {"lumped": 1e-8, "linear": 1e-8, "exact": 1e-6}
+
+
+def conservation(
+    pair: GearPair,
+    reference: xr.Dataset,
+    runs: Mapping[Fidelity, xr.Dataset],
+    *,
+    periodic: bool,
+    contact_loss: bool,
+) -> tuple[tuple[Judgement, ...], Powers]:
+    """Check both models.
+
+    Parameters
+    ----------
+    pair : a validated gear pair
+    reference : lumped periodic motion, one mesh cycle without its end
+    runs : fidelity -> motion of the multibody model over whole cycles, the last end included
+    periodic : whether "exact" is a periodic motion
+    contact_loss : whether the motions lose contact; then the powers of the lumped model are not computed
+
+    Returns
+    -------
+    the checks, and model -> power -> mean over the mesh cycle [W]
+    """
+    m, samples = machine(pair), reference.sizes["time"]
+    motions = {"lumped": reference} | {
+        name: run.isel(time=slice(-samples - 1, -1)) for name, run in runs.items()
+    }
+    powers: dict[str, Mapping[str, float]] = {}
+    histories = _friction_histories(reference)
+    if not contact_loss:
+        system = periodic_system(pair, "full")
+        times, weights = quadrature(system)
+        own = periodic_solution(system, times, estimate_error=False)
+        powers["lumped"] = lumped_powers(own, m, weights)
+        histories = _friction_histories(own.values)  # on both sides of every jump
+        linear = multibody.power_balance(pair, 1, fidelity="linear", initial="periodic", rtol=1e-10)
+        powers["linear"] = multibody_powers(linear, m.period)
+    if "exact" in runs and periodic:
+        powers["exact"] = _exact_powers(pair, motions["exact"], m.period)
+    variation = tuple(float(np.abs(np.diff(h, append=h[:1])).sum()) for h in histories)
+    found = []
+    for name, motion in motions.items():
+        found.append(_friction_takes_power(m, name, runs.get(cast(Fidelity, name), motion)))
+        if name != "exact" or periodic:
+            found += _action_and_reaction(m, name, motion)
+        if name != "exact":
+            found += _mean_bearing_loads(m, name, motion, pair.operating.pinion_torque, variation)
+    for name, one in powers.items():
+        found += _first_law(name, one)
+    if "linear" in powers:
+        found += _same_powers(powers["lumped"], powers["linear"])
+    if "exact" in powers and pair.mesh.contact == "loaded":
+        exact = powers["exact"]
+        found.append(
+            Judgement(
+                "conservation: energy of the contact, exact",
+                abs(exact["mesh_stiffness"]) / exact["driving"],
+                _INTEGRATION["exact"],
+                "what a contact with an energy stores it returns; over the driving power; limit: the error "
+                "of the integration",
+            )
+        )
+    return tuple(found), powers
+
+
+def worst_of_each(checks: Sequence[Judgement]) -> tuple[Judgement, ...]:
+    """Of each law and model the check that uses most of its limit, for a short table."""
+    groups: dict[tuple[str, str], Judgement] = {}
+    for check in checks:
+        law, model = check.check.removeprefix("conservation: ").rsplit(", ", 1)
+        law = next((name for name in _FAMILIES if law.startswith(name)), law)
+        best = groups.get((law, model))
+        if best is None or check.value / check.limit > best.value / best.limit:
+            groups[law, model] = check
+    return tuple(groups.values())
+
+
+def fed_back(reference: xr.Dataset) -> float:
+    """Share of the friction power that vibration feeds back, because it reverses the sliding.
+
+    The lumped model keeps the sign of friction that belongs to the nominal sliding. Where vibration reverses
+    the sliding it feeds power in: a limit of the model's validity, not a wrong sign.
+    """
+    power = reference["friction_power"].to_numpy()
+    size = float(np.abs(power).sum())
+    return float(power[power > 0.0].sum()) / size if size > 0.0 else 0.0
+
+
+def _friction_histories(motion: Mapping[str, FloatArray] | xr.Dataset) -> tuple[FloatArray, FloatArray]:
+    """Moment of friction about the pinion, and its sum over the pairs."""
+    force, place = (np.asarray(motion[name]) for name in ("friction_force", "position"))
+    return (force * place).sum(axis=0), force.sum(axis=0)
+
+
+def _exact_powers(pair: GearPair, exact: xr.Dataset, period: float) -> dict[str, float]:
+    names = periodic_system(pair, "full").state_names
+    state = np.array([float(exact[name][0]) for name in names])
+    effects = str(exact.attrs["effects"]).split(", ")
+    velocity = float(exact.attrs["friction_velocity"])
+    setup = prepare(pair, "exact", state, effects, friction_velocity=velocity)
+    setup = setup.with_torques(setup.machine.torque_pinion, float(exact.attrs["brake_torque"]))
+    return multibody_powers(balance_of(setup, 1), period)
+
+
+def _friction_takes_power(m: Machine, name: str, motion: xr.Dataset) -> Judgement:
+    """Sliding friction takes power at every instant and every contact."""
+    p = m.parameters
+    if name == "exact":
+        taken = (motion["friction_force"] * motion["sliding_velocity"]).to_numpy()
+        text = "friction force times sliding velocity of every contact at every time, over the largest"
+    else:
+        place = motion["position"].to_numpy()
+        nominal = p[kn.OMEGA_P] * place - p[kn.OMEGA_G] * (p[kn.L_XY] - place)
+        taken = motion["mu"].to_numpy() * nominal
+        text = "coefficient times nominal sliding velocity of every contact at every time, over the largest"
+    largest = max(float(np.abs(taken).max()), np.finfo(float).tiny)
+    fed_in = max(0.0, -float(taken.min())) / largest
+    return Judgement(f"conservation: friction takes power, {name}", fed_in, _ROUNDING, f"{text}; rounding")
+
+
+def _action_and_reaction(m: Machine, name: str, motion: xr.Dataset) -> list[Judgement]:
+    """The teeth push both gears alike: the momentum of both changes by their bearing forces alone."""
+    time = motion["time"].to_numpy()
+    found = []
+    for j, axis in enumerate("xy"):
+        momentum, work, coarse = (np.zeros(time.size) for _ in range(3))
+        scale = 0.0
+        for i, gear in enumerate("pg"):
+            x, v = (motion[f"{axis}_{gear}{suffix}"].to_numpy() for suffix in ("", "_dot"))
+            k, c = m.bearing_stiffness[i, j], m.bearing_damping[i, j]
+            momentum += m.mass[i] * (v - v[0]) + c * (x - x[0])
+            work += k * _integral(time, x, v)
+            coarse += k * _integral(time, x, v, 2)
+            scale = max(scale, k * float(np.abs(x).max()) * m.period)
+        # Without friction nothing moves off the line of action: then the load is the scale.
+        scale = max(scale, 1e-6 * m.torque_pinion / m.parameters[kn.RADIUS_P] * m.period)
+        off = float(np.abs(momentum + work).max()) / scale
+        error = float(np.abs(coarse - work)[::2].max()) / scale
+        found.append(
+            Judgement(
+                f"conservation: action and reaction {axis}, {name}",
+                off,
+                error + 1e-6,
+                "momentum of both gears against the impulse of their bearings, over the largest bearing "
+                "force times the mesh cycle; limit: what twice the step changes in the quadrature",
+            )
+        )
+    return found
+
+
+def _integral(time: FloatArray, x: FloatArray, v: FloatArray, every: int = 1) -> FloatArray:
+    """Integral of x from the first time on, by Hermite's cubic, (k,); a coarser one is held between."""
+    t, y, rate = time[::every], x[::every], v[::every]
+    h = np.diff(t)
+    parts = 0.5 * h * (y[1:] + y[:-1]) + h**2 / 12.0 * (rate[:-1] - rate[1:])
+    sums = np.concatenate([[0.0], np.cumsum(parts)])
+    return np.repeat(sums, every)[: time.size]
+
+
+def _mean_bearing_loads(
+    m: Machine, name: str, motion: xr.Dataset, torque: float, variation: Sequence[float]
+) -> list[Judgement]:
+    """Mean moments of the pinion, and mean forces of each gear off the line of action.
+
+    The mean of N even samples of a periodic history is off by no more than its variation over N.
+    ``variation`` is that of the moment of friction and of its sum.
+    """
+    p, (k_p, k_g) = m.parameters, m.bearing_stiffness
+    moment, total = _friction_histories(motion)
+    load = torque / p[kn.RADIUS_P]
+    along, across = load - moment.mean() / p[kn.RADIUS_P], total.mean()
+    stiffness = {"x_p": -k_p[0], "x_g": k_g[0], "y_p": k_p[1], "y_g": -k_g[1]}
+    sampled = {
+        "x": variation[0] / moment.size / p[kn.RADIUS_P] / load,
+        "y": variation[1] / moment.size / load,
+    }
+    return [
+        Judgement(
+            f"conservation: mean bearing load {axis}, {name}",
+            abs(float(k * motion[axis].to_numpy().mean() - (along if axis[0] == "x" else across))) / load,
+            sampled[axis[0]] + _missed(motion, axis) * abs(k) / load + 1e-6,
+            "T_p/r_bp less the mean moment of friction, or the mean friction; limit: what even times can "
+            "miss of a history that jumps, its variation in the lumped model over their number, and of the "
+            "displacement",
+        )
+        for axis, k in stiffness.items()
+    ]
+
+
+def _missed(motion: xr.Dataset, name: str) -> float:
+    """What even times can miss of the mean of a displacement: step^2/8 times the variation of its rate."""
+    rate, time = motion[f"{name}_dot"].to_numpy(), motion["time"].to_numpy()
+    step = float(time[1] - time[0])
+    return step * float(np.abs(np.diff(rate, append=rate[:1])).sum()) / (8.0 * rate.size)
+
+
+def _first_law(name: str, powers: Mapping[str, float]) -> list[Judgement]:
+    efficiency = powers["braking"] / powers["driving"]
+    outside = max(efficiency - 1.0, 0.0 if efficiency > 0.0 else 1.0 - efficiency, 0.0)
+    return [
+        Judgement(
+            f"conservation: first law, {name}",
+            residual(powers),
+            _INTEGRATION[name],
+            "driving power less brake, friction, bearings, damping of the teeth and the work of the change "
+            "of stiffness and profile, over the driving power; limit: the error of the integration",
+        ),
+        Judgement(
+            f"conservation: efficiency, {name}",
+            outside,
+            _INTEGRATION[name],
+            f"how far the efficiency, {efficiency:.6f}, lies outside (0, 1]; the error of the integration",
+        ),
+    ]
+
+
+def _same_powers(own: Mapping[str, float], linear: Mapping[str, float]) -> list[Judgement]:
+    return [
+        Judgement(
+            f"conservation: power {power}, linear",
+            abs(linear[power] - own[power]) / own["driving"],
+            _INTEGRATION["linear"],
+            f"power {text} of both models, difference over the driving power; the same equations: only "
+            "integration error may remain",
+        )
+        for power, text in POWERS.items()
+    ]

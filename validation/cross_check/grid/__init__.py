@@ -1,1 +1,0 @@
-"""The cross-check over many presets, laws, speeds and torques."""

@@ -1,0 +1,122 @@
+"""The motions that a cross-check compares, over whole mesh cycles.
+
+Sources: docs/theory/validity.md, "Beyond contact loss".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+import lumped
+import multibody
+from floquet.gear.orbit import GearOrbit, long_run, periodic_orbit
+from lumped import GearPair
+from lumped.errors import NumericalError
+from lumped.model.results import load_range
+from lumped.typing import FloatArray
+from validation.cross_check import metrics
+from validation.cross_check.agreement import Fidelity
+from validation.cross_check.verdict import SAME_EQUATIONS
+from validation.validity.flags import LOAD_NOISE
+
+#: Tolerances of the integrations: far below the limits they are used to check, where a motion has an ordinary
+#: size: the smallest limit over the deflection, as a share of that of the transmission error.
+_RTOL: Mapping[str, float] = {"linear": 1e-9, "exact": 1e-8}
+_ORDINARY = 0.2
+#: Most by which the first is tightened for a smaller motion.
+_TIGHTER = 0.001
+#: Velocity over which friction changes its sign where the integrator cannot follow the model's own one [m/s].
+_BLUNT = 0.01
+#: Effects of the multibody model where contact is lost.
+CONTACT_LOSS: Mapping[Fidelity, Mapping[str, bool] | Sequence[str]] = {
+    "linear": ["contact_loss"],
+    "exact": {"clearance": True},
+}
+_PULL = "The lumped motion that was compared needs teeth that pull, which real teeth cannot:"
+_ADVICE = "More torque or damping, or another speed, keeps the teeth in contact."
+
+
+def unilateral_orbit(pair: GearPair) -> tuple[GearOrbit | None, str]:
+    """The stable motion of one mesh cycle with loss of contact that the multibody model is compared with.
+
+    None where the teeth of the linear motion push all the time, or where no such motion is found: neither
+    near the linear motion, nor where a run settles that starts there. Then the second value says why a motion
+    is compared in which teeth pull; else it is empty.
+    """
+    motion = lumped.steady_state(pair, samples_per_cycle=512)
+    loads = motion["normal_load"].to_numpy(), motion["contact"].to_numpy()
+    least = -LOAD_NOISE * pair.operating.pinion_torque / pair.geometry.base_radius_pinion
+    if load_range(pair.mesh.contact, *loads)[1] >= least:
+        return None, ""
+    try:
+        orbit = periodic_orbit(pair)
+        if not orbit.stable:
+            settled = long_run(pair).orbit
+            orbit = orbit if settled is None else GearOrbit(pair, settled)
+    except NumericalError:
+        return None, f"{_PULL} no periodic motion with contact loss was found. {_ADVICE}"
+    if not orbit.stable or orbit.n > 1:
+        return None, f"{_PULL} with contact loss no motion of one mesh cycle is stable. {_ADVICE}"
+    if orbit.reaches_back_side:
+        backlash = f"{pair.geometry.normal_backlash * 1e6:.3g} um"
+        return None, (
+            f"{_PULL} with contact loss the backs of the teeth strike, beyond the normal backlash of "
+            f"{backlash}. State the real mesh.backlash if that is too little. {_ADVICE}"
+        )
+    return orbit, ""
+
+
+def integration_tolerances(values: Mapping[str, FloatArray]) -> dict[str, float]:
+    """Relative tolerances of "linear" and "exact" for histories (quantity -> one mesh cycle).
+
+    An integrator errs in proportion to the deflection. The limits at fidelity "linear" are shares of the peak
+    to peak, which above the resonances is a thousandth of the deflection and less, and smallest off the line
+    of action. So the tolerance follows the smallest limit.
+    """
+    deflection = abs(float(np.mean(values["dte"])))
+    limits = [
+        SAME_EQUATIONS[name] * float(np.ptp(values[name]))
+        for name in ("dte", "x_p", "x_g", "y_p", "y_g")
+        if not metrics.is_constant(values[name])
+    ]
+    share = min(limits, default=np.inf) / (SAME_EQUATIONS["dte"] * max(deflection, np.finfo(float).tiny))
+    tighter = float(np.clip(share / _ORDINARY, _TIGHTER, 1.0))
+    return {name: value if name == "exact" else value * tighter for name, value in _RTOL.items()}
+
+
+def periodic_motion(
+    pair: GearPair, fidelity: Fidelity, samples: int, rtol: float, orbit: GearOrbit | None
+) -> xr.Dataset | None:
+    """Motion of the multibody model over one mesh cycle; None where there is none near the lumped one.
+
+    ``orbit`` is the lumped motion with contact loss, if there is one; then flanks touch where they meet, also
+    with relief. Where the model cannot go on with its own change of the sign of friction a blunter one is
+    tried.
+    """
+    for velocity in (None, _BLUNT):
+        try:
+            return multibody.steady_state(
+                pair,
+                fidelity=fidelity,
+                samples_per_cycle=samples,
+                initial=None if orbit is None else orbit.states[0],
+                effects=None if orbit is None else CONTACT_LOSS[fidelity],
+                rtol=rtol,
+                friction_velocity=velocity,
+            )
+        except NumericalError:
+            continue
+    return None
+
+
+def repeated(cycle: xr.Dataset, cycles: int) -> xr.Dataset:
+    """A motion of one mesh cycle, its end left out, over several cycles, the last end included."""
+    samples, period = cycle.sizes["time"], float(cycle["time"][1]) * cycle.sizes["time"]
+    number = np.arange(cycles * samples + 1)
+    time = period * (number // samples) + cycle["time"].to_numpy()[number % samples]
+    repeated = cycle.isel(time=number % samples).assign_coords(time=("time", time, cycle["time"].attrs))
+    repeated.attrs |= {"cycles": cycles}
+    return repeated
