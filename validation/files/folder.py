@@ -77,13 +77,7 @@ def check_target(out: Path, *, force: bool, kind: Kind = REPORT) -> Path:
 @contextmanager
 def whole_folder(out: Path, *, force: bool, kind: Kind = REPORT) -> Iterator[Path]:
     """Give an empty folder to write into, and put it in the place of ``out`` at the end.
-
     On any failure, interruption included, nothing is left behind and earlier results stay as they were.
-
-    Raises
-    ------
-    ParameterError : see ``check_target``
-    StorageError : the disk is full, or the place cannot be written any more
     """
     target = check_target(out, force=force, kind=kind)
     missing = [parent for parent in target.parents if not parent.exists()]
@@ -133,12 +127,7 @@ def _files(folder: Path) -> set[str]:
 
 
 def _written(folder: Path, kind: Kind) -> set[str]:
-    """Files that an earlier run wrote into a folder.
-
-    Raises
-    ------
-    ParameterError : the folder does not say so, or holds something else
-    """
+    """Files that an earlier run wrote into a folder."""
     with suppress(OSError, ValueError, RecursionError, TypeError, KeyError):
         data = json.loads((folder / CONTENTS).read_text(encoding="utf-8"))
         if data["format"] == kind.format:

@@ -27,13 +27,7 @@ COLUMN_DIMENSIONS = ("pair", "multiplier", "law")
 
 
 def check_file(path: Path, suffixes: tuple[str, ...], *, force: bool) -> Path:
-    """Return the path after refusing one that must not be written, before any work is done.
-
-    Raises
-    ------
-    ParameterError : unknown suffix, an existing file without ``force``, or a folder that does not exist or
-        cannot be written
-    """
+    """Return the path after refusing one that must not be written, before any work is done."""
     if path.suffix.lower() not in suffixes:
         allowed = "a name ending in " + ", ".join(suffixes)
         raise refuse("output", path, allowed, "The suffix chooses the format.")
@@ -63,17 +57,9 @@ def not_writable(path: Path, error: OSError) -> ParameterError:
 @contextmanager
 def whole_file(path: Path, *, new: bool = False) -> Iterator[Path]:
     """Give a temporary file beside ``path`` to write, and put it in place of ``path`` at the end.
-
     On any failure nothing is left behind and an existing file stays as it was.
 
-    Parameters
-    ----------
-    path : the file
-    new : whether a file that has appeared there meanwhile stays, too
-
-    Raises
-    ------
-    StorageError : the disk is full, the place cannot be written any more, or a file appeared there
+    ``path``: the file; ``new``: whether a file that has appeared there meanwhile stays, too.
     """
     temporary: Path | None = None
     try:
@@ -182,14 +168,8 @@ def _write_csv(result: xr.Dataset, path: Path) -> None:
 def mat_contents(result: xr.Dataset) -> dict[str, Any]:
     """Return the variables of the MATLAB file of a dataset.
 
-    Returns
-    -------
-    one array per variable and axis, and the structs ``units``, ``long_names``, ``dimensions`` and
-    ``attributes``
-
-    Raises
-    ------
-    ParameterError : a variable whose name MATLAB cannot have
+    Returns one array per variable and axis, and the structs ``units``, ``long_names``, ``dimensions`` and
+    ``attributes``.
     """
     contents: dict[str, Any] = {}
     about: dict[str, dict[str, Any]] = {"units": {}, "long_names": {}, "dimensions": {}}

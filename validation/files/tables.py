@@ -10,10 +10,7 @@ from typing import Any
 def read_table(folder: str, file: str) -> dict[str, Any]:
     """Read a TOML file of a package; the lines of every text in it are joined.
 
-    Parameters
-    ----------
-    folder : package that the file is in
-    file : its name
+    ``folder``: package that the file is in; ``file``: its name.
     """
     found: dict[str, Any] = _joined(tomllib.loads((files(folder) / file).read_text(encoding="utf-8")))
     return found

@@ -65,13 +65,9 @@ def write_interactive_page(
 
 def render(results: PageResults, data_name: str) -> str:
     """Return the page as text.
-
     Its security policy names the page's own scripts by their hashes: nothing else may run or be loaded.
 
-    Parameters
-    ----------
-    results : content
-    data_name : name of the data file, for the text
+    ``data_name``: name of the data file, for the text.
     """
     environment = Environment(
         loader=PackageLoader("validation.interactive", "templates"),
@@ -116,12 +112,7 @@ def _hash(script: str) -> str:
 
 
 def _safe(script: str) -> str:
-    """Return a script of ours or Plotly's after checking that nothing in it ends the script element.
-
-    Raises
-    ------
-    ValueError : it does
-    """
+    """Return a script of ours or Plotly's after checking that nothing in it ends the script element."""
     lower = script.lower()
     if "</script" in lower or "<!--" in lower:
         raise ValueError("a script holds text that would end its element")

@@ -40,12 +40,7 @@ def payload(results: PageResults) -> dict[str, Any]:
 
 
 def script_json(data: Any) -> str:
-    """JSON that may stand inside a script element: no character of it can end the element or open another.
-
-    Raises
-    ------
-    ValueError : a number is not finite
-    """
+    """JSON that may stand inside a script element: no character of it can end the element or open another."""
     text = json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
     return text.replace("&", r"\u0026").replace("<", r"\u003c").replace(">", r"\u003e")
 

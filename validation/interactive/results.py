@@ -141,18 +141,7 @@ def compute(
     sampling: Sampling = FINE,
     progress: Progress | None = None,
 ) -> PageResults:
-    """Compute the content of the page.
-
-    Parameters
-    ----------
-    pair : the gear pair
-    sampling : how finely
-    progress : called with the finished fraction and what is being done
-
-    Raises
-    ------
-    NumericalError : the stability chart or the response with the pair's own law fails
-    """
+    """Compute the content of the page."""
     tell: Progress = progress or (lambda fraction, stage="", /: None)
     try:
         found = modes(pair)
@@ -252,11 +241,8 @@ _LABELS = {
 def _bearing_slices(pair: GearPair, grid: Grid, count: int) -> Slices:
     """Charts with the stiffness of all bearings multiplied by one factor; 1 is the pair itself.
 
-    Parameters
-    ----------
-    pair : the gear pair
-    grid : speed_rpm and damping_ratio
-    count : values of the factor; those that the schema refuses are left out
+    ``grid``: speed_rpm and damping_ratio; ``count``: values of the factor; those that the schema refuses are
+    left out.
     """
     factors = with_point(np.geomspace(*_FACTORS, count), 1.0)
     variants = {float(f): made for f in factors if (made := _stiffer(pair, float(f))) is not None}
@@ -272,11 +258,7 @@ def _bearing_slices(pair: GearPair, grid: Grid, count: int) -> Slices:
 def _friction_slices(pair: GearPair, grid: Grid, count: int) -> Slices:
     """Charts with the friction law scaled to a mean coefficient that is the same at every speed.
 
-    Parameters
-    ----------
-    pair : the gear pair
-    grid : speed_rpm and damping_ratio
-    count : values of the coefficient, from 0
+    ``grid``: speed_rpm and damping_ratio; ``count``: values of the coefficient, from 0.
     """
     name = "friction_coefficient"
     own = gear_axis(name).own(pair)

@@ -61,14 +61,8 @@ class Alignment:
 
 def mesh_cycles(measurement: Measurement, pair: GearPair) -> FloatArray:
     """Mesh cycles of the samples before alignment, (k,) [-].
-
     From roll angles eps of pair A's contact on the pinion, xi = r_bp eps and u = (xi - L_XA)/lambda; from
     times, u = t/T_m at the record's speed.
-
-    Parameters
-    ----------
-    measurement : the record
-    pair : the gear pair
     """
     g = pair.with_({"operating.pinion_speed": measurement.spec.pinion_speed}).geometry
     if measurement.spec.abscissa.kind == "roll_angle":

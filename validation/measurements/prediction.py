@@ -58,12 +58,7 @@ class Prediction:
         return np.asarray(g.L_XA + self.age(cycles, label) * g.base_pitch, dtype=np.float64)
 
     def value(self, quantity: str, cycles: ArrayLike, label: str | None = None) -> FloatArray:
-        """A predicted quantity at mesh cycles u, any shape, in SI; of one labelled pair where it has pairs.
-
-        Raises
-        ------
-        ParameterError : unknown quantity, or a label where there are no pairs
-        """
+        """A predicted quantity [SI] at mesh cycles u; of one labelled pair where it has pairs."""
         if quantity not in QUANTITIES or QUANTITIES[quantity][1] != (label is not None):
             raise refuse("quantity", (quantity, label), "a channel's quantity and pair", "Correct it.")
         places, values = self._curves[quantity]

@@ -112,9 +112,7 @@ def _line(ax: Axes, speed: FloatArray, values: FloatArray, stable: NDArray[np.bo
 def jump_map_figure(data: xr.Dataset) -> Figure:
     """Contact and number of motions, and the largest motion, over speed and a second axis, with the jumps.
 
-    Parameters
-    ----------
-    data : of ``floquet.jump_map``
+    ``data``: of ``floquet.jump_map``.
     """
     (name,) = (str(dim) for dim in data["motions"].dims if dim != "speed_rpm")
     data = data.transpose(name, "speed_rpm", ...).sortby([name, "speed_rpm"])

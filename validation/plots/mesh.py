@@ -44,11 +44,8 @@ _POINTS = 801  # of a mesh cycle
 def path_figure(g: Geometry, profile: xr.Dataset, thresholds: tuple[float, ...]) -> Figure:
     """Sliding and entraining velocity and film parameter along the path of contact.
 
-    Parameters
-    ----------
-    g : geometry of the pair
-    profile : dataset of ``lumped.path_of_contact.friction_profile``
-    thresholds : film parameters at which the lubrication regime changes
+    ``profile``: dataset of ``lumped.path_of_contact.friction_profile``; ``thresholds``: film parameters at
+    which the lubrication regime changes.
     """
     figure, axes = new_figure(1, 2, height=2.7)
     xi, film = 1e3 * profile["xi"].to_numpy(), profile["film_parameter"].to_numpy()
@@ -74,11 +71,7 @@ def path_figure(g: Geometry, profile: xr.Dataset, thresholds: tuple[float, ...])
 def friction_laws_figure(g: Geometry, profile: xr.Dataset, chosen: str) -> Figure:
     """Signed friction coefficient of all laws along the path of contact, the pair's own drawn strongest.
 
-    Parameters
-    ----------
-    g : geometry of the pair
-    profile : dataset of ``lumped.path_of_contact.friction_profile``
-    chosen : name of the pair's law
+    ``profile``: dataset of ``lumped.path_of_contact.friction_profile``.
     """
     figure, ax = one_panel(3.3)
     xi = 1e3 * profile["xi"].to_numpy()
@@ -97,12 +90,7 @@ def friction_laws_figure(g: Geometry, profile: xr.Dataset, chosen: str) -> Figur
 
 
 def stiffness_figure(cycle: MeshCycle) -> Figure:
-    """Stiffness of every tooth pair and of the mesh over one mesh cycle, exact at its jumps.
-
-    Parameters
-    ----------
-    cycle : mesh cycle of the pair
-    """
+    """Stiffness of every tooth pair and of the mesh over one mesh cycle, exact at its jumps."""
     figure, ax = one_panel(2.8)
     times, values = [], []
     for segment, (low, high) in enumerate(zip(cycle.edges[:-1], cycle.edges[1:], strict=True)):
@@ -128,10 +116,7 @@ _HATCHES = ("", "//", "", "xx", "..")
 def stiffness_components_figure(g: Geometry, components: xr.Dataset) -> Figure:
     """Compliance of the parts of a tooth pair, stacked, and the pair's stiffness with ISO's c'.
 
-    Parameters
-    ----------
-    g : geometry of the pair
-    components : dataset of ``lumped.stiffness_components``
+    ``components``: dataset of ``lumped.stiffness_components``.
     """
     figure, axes = new_figure(1, 2, height=3.1)
     left, right = axes[0]
@@ -167,9 +152,7 @@ def stiffness_components_figure(g: Geometry, components: xr.Dataset) -> Figure:
 def energy_mesh_figure(energy: xr.Dataset) -> Figure:
     """Total potential-energy mesh stiffness over the mesh cycle with its mean and ISO's.
 
-    Parameters
-    ----------
-    energy : dataset of ``lumped.mesh_stiffness`` for the energy model
+    ``energy``: dataset of ``lumped.mesh_stiffness`` for the energy model.
     """
     figure, ax = one_panel(2.6)
     total = energy["mesh_stiffness"].to_numpy()
@@ -187,10 +170,7 @@ def energy_mesh_figure(energy: xr.Dataset) -> Figure:
 def tooth_stiffness_figure(g: Geometry, curves: xr.Dataset) -> Figure:
     """Stiffness of a tooth pair alone over the path of contact by several ways.
 
-    Parameters
-    ----------
-    g : geometry of the pair
-    curves : ``curves`` of ``validation.verification.tooth_stiffness.ToothStiffness``
+    ``curves``: ``curves`` of ``validation.verification.tooth_stiffness.ToothStiffness``.
     """
     figure, ax = one_panel(2.8)
     stiffness = curves["stiffness"]
@@ -208,10 +188,7 @@ def tooth_stiffness_figure(g: Geometry, curves: xr.Dataset) -> Figure:
 def load_sharing_figure(g: Geometry, static: xr.Dataset) -> Figure:
     """Share of one tooth pair in the load over its position, beyond A and D where deflection lets it touch.
 
-    Parameters
-    ----------
-    g : geometry of the pair
-    static : dataset of ``lumped.static_transmission_error`` over one mesh cycle
+    ``static``: dataset of ``lumped.static_transmission_error`` over one mesh cycle.
     """
     figure, ax = one_panel(2.9)
     place = static["position"].to_numpy().ravel()
@@ -234,10 +211,8 @@ def load_sharing_figure(g: Geometry, static: xr.Dataset) -> Figure:
 def harris_figure(static: xr.Dataset, harris: xr.Dataset) -> Figure:
     """Curves of static transmission error, and their peak to peak over torque for several flanks.
 
-    Parameters
-    ----------
-    static : dataset of ``lumped.static_transmission_error``
-    harris : ``peak_to_peak`` [m] over ``flank`` and ``torque`` [N m]; attribute ``operating_torque``
+    ``static``: dataset of ``lumped.static_transmission_error``; ``harris``: ``peak_to_peak`` [m] over
+    ``flank`` and ``torque`` [N m]; attribute ``operating_torque``.
     """
     figure, axes = new_figure(1, 2, height=3.3)
     left, right = axes[0]
@@ -266,10 +241,8 @@ def harris_figure(static: xr.Dataset, harris: xr.Dataset) -> Figure:
 def relief_figure(relief: xr.Dataset, optimum: OptimalRelief) -> Figure:
     """Peak to peak static transmission error over amount and length of tip relief, with the optimum.
 
-    Parameters
-    ----------
-    relief : dataset of ``lumped.quasi_static.relief_map``
-    optimum : record of ``lumped.optimal_relief``
+    ``relief``: dataset of ``lumped.quasi_static.relief_map``; ``optimum``: record of
+    ``lumped.optimal_relief``.
     """
     figure, ax = one_panel(3.3)
     values = relief["peak_to_peak"].to_numpy()
@@ -289,10 +262,8 @@ def relief_figure(relief: xr.Dataset, optimum: OptimalRelief) -> Figure:
 def efficiency_figure(losses: xr.Dataset, chosen: str) -> Figure:
     """Relative loss of the mesh by friction law: closed form, quasi-static, periodic motion.
 
-    Parameters
-    ----------
-    losses : ``mesh_efficiency``, ``mesh_efficiency_dynamic`` and ``mesh_efficiency_closed_form`` over ``law``
-    chosen : name of the pair's law
+    ``losses``: ``mesh_efficiency``, ``mesh_efficiency_dynamic`` and ``mesh_efficiency_closed_form`` over
+    ``law``.
     """
     laws = [str(name) for name in losses["law"].to_numpy()]
     figure, ax = one_panel(0.9 + 0.4 * max(len(laws), 2))
@@ -317,11 +288,8 @@ def sliding_power_figure(
 ) -> Figure:
     """Local sliding power of one pair over the path, and instantaneous efficiency over the mesh cycle.
 
-    Parameters
-    ----------
-    g : geometry of the pair
-    quasi_static, periodic : datasets of ``lumped.losses.sliding_power_along_path``
-    instants : datasets with ``instantaneous_efficiency`` over ``time``, quasi-static and periodic
+    quasi_static, periodic: datasets of ``lumped.losses.sliding_power_along_path``; ``instants``: datasets
+    with ``instantaneous_efficiency`` over ``time``, quasi-static and periodic.
     """
     figure, axes = new_figure(1, 2, height=2.9)
     left, right = axes[0]

@@ -95,10 +95,7 @@ def first_figure(
 def history_figure(g: Geometry, result: xr.Dataset) -> Figure:
     """Transmission error, and normal load per tooth pair, over the time of a run.
 
-    Parameters
-    ----------
-    g : geometry of the pair
-    result : dataset of ``simulate`` or ``steady_state`` of either model
+    ``result``: dataset of ``simulate`` or ``steady_state`` of either model.
     """
     figure, axes = new_figure(2, 1, height=4.2, sharex=True)
     top, bottom = axes[:, 0]
@@ -117,11 +114,7 @@ def history_figure(g: Geometry, result: xr.Dataset) -> Figure:
 def transmission_error_figure(pair: GearPair, g: Geometry, motion: xr.Dataset, orders: MeshOrders) -> Figure:
     """Periodic dynamic transmission error: over one mesh cycle, and the amplitudes of its mesh orders.
 
-    Parameters
-    ----------
-    pair, g : the gear pair and its geometry
-    motion : dataset of ``lumped.steady_state``
-    orders : mesh orders of ``motion["dte"]``
+    ``motion``: dataset of ``lumped.steady_state``; ``orders``: mesh orders of ``motion["dte"]``.
     """
     figure, axes = new_figure(1, 2, height=2.7, width_ratios=(1.5, 1.0))
     left, right = axes[0]
@@ -143,10 +136,7 @@ def transmission_error_figure(pair: GearPair, g: Geometry, motion: xr.Dataset, o
 def tooth_forces_figure(pair: GearPair, g: Geometry, motion: xr.Dataset) -> Figure:
     """Normal load and friction force per tooth pair and in total, over one mesh cycle.
 
-    Parameters
-    ----------
-    pair, g : the gear pair and its geometry
-    motion : dataset of ``lumped.steady_state``
+    ``motion``: dataset of ``lumped.steady_state``.
     """
     figure, axes = new_figure(2, 1, height=4.4, sharex=True)
     x = mesh_cycles(motion, g)
@@ -168,10 +158,7 @@ def tooth_forces_figure(pair: GearPair, g: Geometry, motion: xr.Dataset) -> Figu
 def motions_figure(g: Geometry, motion: xr.Dataset) -> Figure:
     """Displacements of both gears about their means, along (LOA) and off (OLOA) the line of action.
 
-    Parameters
-    ----------
-    g : geometry of the pair
-    motion : dataset of ``lumped.steady_state``
+    ``motion``: dataset of ``lumped.steady_state``.
     """
     figure, axes = new_figure(1, 2, height=2.7)
     x = mesh_cycles(motion, g)
@@ -234,9 +221,7 @@ def sweep_figure(
 def overlay_figure(points: xr.Dataset) -> Figure:
     """Measured means per phase bin with their scatter, and the prediction, over the mesh phase.
 
-    Parameters
-    ----------
-    points : of ``validation.measurements.overlay``
+    ``points``: of ``validation.measurements.overlay``.
     """
     names = [str(name) for name in points["channel"].to_numpy()]
     columns = min(len(names), 2)

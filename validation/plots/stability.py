@@ -189,10 +189,7 @@ def _name_regions(
 def tongues_figure(margins: StabilityMargins, operating_range: Speeds = None) -> Figure:
     """Edges of every tongue from zero mesh damping to the damping that closes it.
 
-    Parameters
-    ----------
-    margins : of ``floquet.gear.tongues.stability_margins``
-    operating_range : speeds of operation [rpm]
+    ``margins``: of ``floquet.gear.tongues.stability_margins``.
     """
     figure, ax = one_panel(3.2)
     ax.set(xlim=margins.speed_range, ylim=(0.0, 1.25 * max(margins.critical_damping, margins.damping, 1e-3)))
@@ -210,10 +207,7 @@ def tongues_figure(margins: StabilityMargins, operating_range: Speeds = None) ->
 def boundaries_figure(found: xr.Dataset, operating_range: Speeds = None) -> Figure:
     """Unstable speeds over another parameter, every tongue named.
 
-    Parameters
-    ----------
-    found : dataset of ``floquet.stability_boundaries`` with one more axis
-    operating_range : speeds of operation [rpm]
+    ``found``: dataset of ``floquet.stability_boundaries`` with one more axis.
     """
     (name,) = (str(dim) for dim in found.dims if dim not in ("tongue", "interval", "speed_rpm"))
     figure, ax = one_panel(3.4)
@@ -250,11 +244,7 @@ def campbell_figure(
 ) -> Figure:
     """Frequencies of the Floquet solutions and their growth over pinion speed.
 
-    Parameters
-    ----------
-    diagram : dataset of ``floquet.gear.campbell.campbell``
-    operating_rpm : operating speed, marked [rpm]
-    operating_range : speeds of operation [rpm]
+    ``diagram``: dataset of ``floquet.gear.campbell.campbell``.
     """
     figure, axes = new_figure(2, 1, height=5.2, sharex=True, height_ratios=(2.2, 1.0))
     top, bottom = axes[:, 0]
@@ -297,12 +287,7 @@ def campbell_figure(
 
 
 def multipliers_figure(multipliers: GearPairMultipliers) -> Figure:
-    """Multipliers in the complex plane, with the rigid rotation apart.
-
-    Parameters
-    ----------
-    multipliers : of the gear pair
-    """
+    """Multipliers in the complex plane, with the rigid rotation apart."""
     figure, ax = one_panel(3.4)
     angle, reach = np.linspace(0.0, 2.0 * np.pi, 361), 1.1 * max(1.0, multipliers.spectral_radius)
     ax.plot(np.cos(angle), np.sin(angle), color=BLACK, linewidth=1.0)

@@ -204,11 +204,7 @@ def path_marks(g: Geometry) -> dict[str, float]:
 def save(figure: Figure, path: Path, *, new: bool = False) -> None:
     """Write a figure whole as SVG, PDF or PNG; the same figure gives the same bytes, without dates.
 
-    Parameters
-    ----------
-    figure : the figure
-    path : its suffix names the format
-    new : as for ``validation.files.output.whole_file``
+    ``path``: its suffix names the format; ``new``: as for ``validation.files.output.whole_file``.
     """
     suffix = path.suffix.lower().removeprefix(".")
     dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None, "ModDate": None}}

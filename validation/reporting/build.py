@@ -125,11 +125,7 @@ def written(
 ) -> tuple[Written, ...]:
     """Write chapters, without those that the report leaves out.
 
-    Parameters
-    ----------
-    results : what chapters share, computed when the first of them asks for it
-    chapters : which, in their order
-    progress : called with the finished fraction and what is being done
+    ``chapters``: which, in their order.
     """
     total = sum(chapter.seconds for chapter in chapters)
     made: list[Written] = []

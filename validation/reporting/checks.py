@@ -11,10 +11,7 @@ from validation.verification import Check
 def check_table(key: str, caption: str, checks: Sequence[Check]) -> Table:
     """One row a check, with its error, its limit and its verdict.
 
-    Parameters
-    ----------
-    key, caption : of the table
-    checks : computed errors with their limits
+    key, caption: of the table; ``checks``: computed errors with their limits.
     """
     return table_of(
         key,

@@ -121,14 +121,7 @@ def checked_tolerance(tolerance: float) -> float:
 def load_report(source: str | Path, *, quick: bool) -> dict[str, Any]:
     """Read report.json, or the one of a report folder, which a new report is to be compared with.
 
-    Parameters
-    ----------
-    source : file or folder
-    quick : whether the new report is a quick one
-
-    Raises
-    ------
-    ParameterError : no such file, not a report, of another layout, or of other sampling
+    ``source``: file or folder; ``quick``: whether the new report is a quick one.
     """
     action = "Give the report.json of an earlier report."
     path = file_path("compare", source)
@@ -157,21 +150,13 @@ def _refuse_constant(name: str) -> Never:
 
 def compare(old: Mapping[str, Any], new: Mapping[str, Any], *, tolerance: float = TOLERANCE) -> Comparison:
     """Compare two reports.
-
     A number fails where it changes by more than the tolerance, relative to the larger of the two and to a
     ten-thousandth of the largest number of its unit in its table, without a unit in its column. One that
     measures a numerical error fails where it grows tenfold and beyond rounding. A verdict fails where it gets
     worse, and an entry where it is gone. Texts, new entries, changed parameters and settings are shown and do
     not fail.
 
-    Parameters
-    ----------
-    old, new : data of report.json
-    tolerance : relative change of a number that passes, 0 to 1
-
-    Raises
-    ------
-    ParameterError : the tolerance is out of range
+    old, new: data of report.json; ``tolerance``: relative change of a number that passes, 0 to 1.
     """
     tolerance = checked_tolerance(tolerance)
     before, after = dict(_leaves(old)), dict(_leaves(new))

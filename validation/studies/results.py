@@ -46,11 +46,9 @@ def read_results(folder: str | Path) -> xr.Dataset:
 def results_dataset(cases: CaseList, table: Table) -> xr.Dataset:
     """Label the outcomes of a study.
 
-    Returns
-    -------
-    xarray.Dataset with the study's outputs and ``status`` (flag meanings in its attributes); the failed cases
-    with their error text in ``failure_message`` over ``failure``, the first ``MAX_FAILURES`` of them;
-    the axes in the fields' stated units; sensitivity indices where the design asks for them
+    Returns xarray.Dataset with the study's outputs and ``status`` (flag meanings in its attributes); the
+    failed cases with their error text in ``failure_message`` over ``failure``, the first ``MAX_FAILURES`` of
+    them; the axes in the fields' stated units; sensitivity indices where the design asks for them.
     """
     study = cases.study
     dims, shape = cases.dims, cases.shape
