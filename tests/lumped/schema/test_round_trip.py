@@ -3,6 +3,7 @@
 import copy
 import math
 import pickle
+import tomllib
 
 import numpy as np
 import pytest
@@ -77,6 +78,7 @@ def test_what_a_field_reads_as_can_be_written_back(pair, shafted):
                 == (pair.to_toml().split("[sources]")[0])
             ), path
     assert pair.with_(found) == pair
+    assert load_gear_pair(tomllib.loads(pair.to_toml())) == pair
 
 
 def test_the_same_number_of_another_field_is_carried_over(nasa):
