@@ -35,7 +35,7 @@ class Section(BaseModel):
 def _plain(value: Any, unit: str | None) -> Any:
     if isinstance(value, Section):
         return value.to_mapping()
-    return value if unit is None else to_file(value, unit)
+    return value if unit is None or isinstance(value, str) else to_file(value, unit)
 
 
 @dataclass(frozen=True)

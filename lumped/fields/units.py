@@ -30,7 +30,6 @@ UNITS: dict[str, tuple[str, Decimal, str, str]] = {
     "mm": ("m", Decimal("1e-3"), "a length", "0.125 inch"),
     "um": ("m", Decimal("1e-6"), "a length", "16 microinch"),
     "1/mm": ("1/m", Decimal("1e3"), "an inverse length", "500 1/inch"),
-    "1/inch": ("1/m", Decimal(1) / Decimal("0.0254"), "an inverse length", "8 1/inch"),
     "deg": ("rad", _PI / 180, "an angle", "0.349 rad"),
     "rpm": ("rad/s", _PI / 30, "a rotational speed", "104.7 rad/s"),
     "N*m": ("N*m", Decimal(1), "a torque", "200 lbf*in"),
@@ -221,6 +220,7 @@ class Quantity(Read):
     above, below : open bounds in that unit
     at_least, at_most : closed bounds in that unit
     optional : whether None (in a file: leaving the key out) is a value
+    word : text that is a value too
     action : what to do when the value is refused
     """
 
@@ -230,6 +230,7 @@ class Quantity(Read):
     below: float | None = None
     at_most: float | None = None
     optional: bool = False
+    word: str = ""
     action: str = "Correct the value or its unit."
 
     @property
@@ -237,7 +238,8 @@ class Quantity(Read):
         """The allowed range as text, with its unit."""
         unit = "" if self.unit == "1" else f" {self.unit}"
         parts = (f"{sign} {bound:g}{unit}" for sign, _, bound, _ in self._bounds)
-        return " and ".join(parts) or f"any finite number{unit}"
+        allowed = " and ".join(parts) or f"any finite number{unit}"
+        return f"{allowed} or {self.word!r}" if self.word else allowed
 
     @property
     def _bounds(self) -> list[tuple[str, str, float, Callable[[float, float], bool]]]:
@@ -255,10 +257,10 @@ class Quantity(Read):
         """Comparison and bound in SI, converted like values: a value at a bound equals it bit for bit."""
         return [(holds, to_si(bound, self.unit)) for _, _, bound, holds in self._bounds]
 
-    def parse(self, value: object) -> float | None:
+    def parse(self, value: object) -> Any:
         """Read a number, text with a unit or an `SIValue` into SI, or refuse it."""
-        if value is None and self.optional:
-            return None
+        if (value is None and self.optional) or (isinstance(value, str) and value == self.word != ""):
+            return value
         if isinstance(value, np.generic):
             value = value.item()
         if isinstance(value, bool) or not isinstance(value, (int, float, str)):

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
-from lumped.errors import ParameterError, refuse
+from lumped.errors import refuse
 from lumped.fields.section import Section
-from lumped.fields.units import Quantity, to_stated
+from lumped.fields.units import Quantity
 
 _MODULUS = "Steel has 206 GPa; write the unit where it is another one: '206000 MPa'."
 _SIZE = "Give the size as drawn; check the unit."
@@ -28,24 +27,11 @@ class ProfileRelief(Section):
     )
 
 
-_PITCH = Quantity("1/inch", at_least=0.254, at_most=200)
-
-
-def _with_diametral_pitch(schema: dict[str, Any]) -> None:
-    """Let the JSON Schema take what ``_diametral_pitch`` takes."""
-    described = {"description": "diametral pitch, instead of module"}
-    schema["properties"]["diametral_pitch"] = described | _PITCH.json_schema()
-    others = [name for name in schema.pop("required") if name != "module"]
-    schema["anyOf"] = [{"required": [*others, name]} for name in ("module", "diametral_pitch")]
-
-
 class BasicRack(Section):
-    """Basic rack of both gears (ISO 53). ``diametral_pitch`` may be given instead of ``module``."""
-
-    model_config = ConfigDict(json_schema_extra=_with_diametral_pitch)
+    """Basic rack of both gears (ISO 53)."""
 
     module: Annotated[float, Quantity("mm", above=0, at_most=100, action=_SIZE)] = Field(
-        description="normal module; or give diametral_pitch [1/inch] instead"
+        description="normal module; for a diametral pitch of 8: '25.4/8 mm'"
     )
     pressure_angle: Annotated[float, Quantity("deg", at_least=10, at_most=35)] = Field(
         20.0, description="pressure angle of the basic rack"
@@ -59,24 +45,6 @@ class BasicRack(Section):
     fillet_radius_coefficient: Annotated[float, Quantity("1", at_least=0, at_most=0.6)] = Field(
         0.38, description="root fillet radius of the rack over module"
     )
-
-    @model_validator(mode="before")
-    @classmethod
-    def _diametral_pitch(cls, data: Any) -> Any:
-        if not isinstance(data, dict) or "diametral_pitch" not in data:
-            return data
-        rest = dict(data)
-        given = rest.pop("diametral_pitch")
-        if "module" in rest:
-            allowed = "either module or diametral_pitch"
-            raise refuse("basic_rack.diametral_pitch", given, allowed, "Remove one of the two.")
-        try:
-            pitch = _PITCH.parse(given)
-        except ParameterError as error:
-            (problem,) = error.problems
-            raise ParameterError([replace(problem, field="diametral_pitch")]) from None
-        assert pitch is not None  # only optional quantities are None
-        return {**rest, "module": 25.4 / to_stated(pitch, "1/inch")}
 
     @model_validator(mode="after")
     def _tip_has_room(self) -> Self:

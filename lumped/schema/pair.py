@@ -38,17 +38,6 @@ _SPEED = Quantity(
     at_most=LARGEST_SPEED,
     action="Give the running speed; the pinion drives in its positive sense.",
 )
-_BRAKE = Quantity("N*m", above=0, at_most=1e9, action="Correct the value, or write 'balanced'.")
-
-
-def _brake(value: object) -> object:
-    if value == "balanced":
-        return value
-    try:
-        return _BRAKE.parse(value)
-    except ParameterError as error:
-        (problem,) = error.problems
-        raise ParameterError([replace(problem, allowed=f"{problem.allowed} or 'balanced'")]) from None
 
 
 class OperatingPoint(Section):
@@ -59,12 +48,8 @@ class OperatingPoint(Section):
         description="torque driving the pinion"
     )
     brake_torque: Annotated[
-        Literal["balanced"] | float, BeforeValidator(_brake, json_schema_input_type=float | str)
-    ] = Field(
-        "balanced",
-        description="torque braking the gear [N*m], or 'balanced': no drift of the mean speed",
-        json_schema_extra={"unit": "N*m", "si_unit": "N*m"},
-    )
+        Literal["balanced"] | float, Quantity("N*m", above=0, at_most=1e9, word="balanced")
+    ] = Field("balanced", description="torque braking the gear, or 'balanced': no drift of the mean speed")
     speed_range: Annotated[
         tuple[float, float] | None, QuantityRange(_SPEED, "Give two pinion speeds: 200..3000.")
     ] = Field(
@@ -77,19 +62,15 @@ class OperatingPoint(Section):
 #: Least mass and inertia of a gear as a share of the solid disc's.
 _LIGHTEST = 1e-4
 
-#: Fields that a file may give in another form -> the field that is kept.
-STORED_AS = {"basic_rack.diametral_pitch": "basic_rack.module"}
-
 
 def _sources_in(value: object) -> object:
     if not isinstance(value, dict):
         return value
-    return tuple(sorted((STORED_AS.get(path, path), text) for path, text in value.items()))
+    return tuple(sorted(value.items()))
 
 
 #: Fields of which only one can be given: naming one removes the others.
 _ALTERNATIVES = (
-    ("basic_rack.module", "basic_rack.diametral_pitch"),
     ("pinion.addendum", "pinion.tip_diameter"),
     ("gear.addendum", "gear.tip_diameter"),
     ("lubricant.viscosity", "lubricant.viscosity_law"),
@@ -296,7 +277,7 @@ def _varied(pair: GearPair, changes: Mapping[str, Any]) -> GearPair:
         for known in [key for key in sources if any(key == p or key.startswith(f"{p}.") for p in outdated)]:
             del sources[known]
         if path not in ("name", "description", "sources") and value is not None:
-            sources[STORED_AS.get(path, path)] = "varied by the user"
+            sources[path] = "varied by the user"
     return validated(data, f"{pair.name} varied")
 
 
@@ -325,8 +306,7 @@ def _assign(data: dict[str, Any], path: str, value: Any) -> None:
             raise ParameterError([unknown_key(path, list(map(str, range(len(node)))), leaf)])
         node[int(leaf)] = _plain(value)
     elif value is None:
-        if path not in STORED_AS:
-            field_at(path)  # a name that does not exist is an error also where nothing is set
+        field_at(path)  # a name that does not exist is an error also where nothing is set
         node.pop(leaf, None)
     else:
         node[leaf] = _plain(value)
@@ -371,13 +351,7 @@ def _source_problems(path: str) -> tuple[FieldProblem, ...]:
 
 def stated_unit(path: str) -> str | None:
     """Return the stated unit of a field by dotted path, or None where the field has none."""
-    info = field_at(path)
-    for marker in info.metadata:
-        if isinstance(marker, Read):
-            return marker.unit
-    # A quantity that may also be a word has its unit in the JSON Schema alone.
-    extra = info.json_schema_extra
-    return str(extra["unit"]) if isinstance(extra, dict) and "unit" in extra else None
+    return next((marker.unit for marker in field_at(path).metadata if isinstance(marker, Read)), None)
 
 
 def _unit_beside(path: str, value: object) -> str:

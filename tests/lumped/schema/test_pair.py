@@ -58,18 +58,8 @@ def test_units_reach_the_fields(edited):
     assert pair.basic_rack.module == 3.175e-3
 
 
-def test_diametral_pitch_is_the_module(edited, nasa):
-    data = edited("basic_rack.module", ...)
-    for given in (8, 8.0, "8 1/inch"):
-        data["basic_rack"]["diametral_pitch"] = given
-        assert load_gear_pair(data).basic_rack.module == 3.175e-3  # 25.4/8 exactly
-    assert nasa.with_(basic_rack__diametral_pitch=8).basic_rack == nasa.basic_rack
-
-
-def test_diametral_pitch_replaces_the_source_of_the_module(nasa):
-    sources = dict(nasa.with_(basic_rack__diametral_pitch=8).sources)
-    assert sources["basic_rack.module"] == "varied by the user"
-    assert "basic_rack.diametral_pitch" not in sources
+def test_a_diametral_pitch_is_a_division(nasa):
+    assert nasa.with_(basic_rack__module="25.4/8 mm").basic_rack == nasa.basic_rack
 
 
 def test_an_alternative_drops_the_source_of_what_it_replaces(nasa):

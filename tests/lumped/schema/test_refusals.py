@@ -233,15 +233,6 @@ class TestOtherFields:
 
 
 class TestAlternatives:
-    def test_module_and_diametral_pitch(self, edited):
-        problem(edited("basic_rack.diametral_pitch", 8), "basic_rack.diametral_pitch", allowed="either")
-
-    @pytest.mark.parametrize("value", [-8, 0, True, None, "8 mm", "x", math.nan, math.inf, 1e9, [8]])
-    def test_diametral_pitch_itself(self, edited, value):
-        data = edited("basic_rack.module", ...)
-        data["basic_rack"]["diametral_pitch"] = value
-        problem(data, "basic_rack.diametral_pitch", allowed="1/inch")
-
     def test_addendum_and_tip_diameter(self, edited):
         data = edited("pinion.addendum", 3.0)
         data["pinion"]["tip_diameter"] = 95.0
@@ -406,14 +397,3 @@ def test_a_source_of_a_field_that_does_not_exist_is_refused(nasa, path, suggesti
     data = nasa.to_mapping()
     data["sources"] = {**data["sources"], path: "measured"}
     problem(data, f"sources.{path or '(empty)'}", value="unknown key", action=suggestion)
-
-
-def test_a_source_may_name_what_the_file_gives(nasa):
-    data = nasa.to_mapping()
-    data["basic_rack"] = {**data["basic_rack"], "diametral_pitch": 8}
-    del data["basic_rack"]["module"]
-    data["sources"] = {"basic_rack.diametral_pitch": "drawing", "mesh.stiffness.pair_stiffness": "test"}
-    assert dict(load_gear_pair(data).sources) == {
-        "basic_rack.module": "drawing",
-        "mesh.stiffness.pair_stiffness": "test",
-    }
