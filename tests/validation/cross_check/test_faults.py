@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 import lumped
-from lumped.model import mesh_cycle, mesh_elements, periodic_system
+from lumped.model import mesh_cycle, periodic_system
 from lumped.path_function import PathFunction
+from lumped.quasi_static import prescribed
 from validation.cross_check.comparison import crosscheck
 from validation.cross_check.conservation import fed_back
 from validation.cross_check.variant import asymmetric_variant
@@ -23,10 +24,8 @@ def scaled(law: PathFunction, factor: float) -> PathFunction:
 
 
 def friction(factor):
-    true = mesh_elements.friction_path_function
-    return lambda m: m.setattr(
-        mesh_elements, "friction_path_function", lambda pair: scaled(true(pair), factor)
-    )
+    true = prescribed.friction_path_function
+    return lambda m: m.setattr(prescribed, "friction_path_function", lambda pair: scaled(true(pair), factor))
 
 
 def structure(change):
