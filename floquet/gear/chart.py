@@ -204,5 +204,5 @@ class ChartSlice:
                     self.index[chunk],
                     np.concatenate([found.multipliers, values], axis=1),
                     np.concatenate([found.errors, errors], axis=1),
-                    proven=exact and found.certificate == "proven",
+                    proven=exact,
                 )

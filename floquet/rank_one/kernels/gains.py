@@ -1,4 +1,14 @@
-"""What the Taylor kernel works on: the gains of a system, summed over one piece and carried to one step."""
+"""What the Taylor kernel works on: gains over one piece and one step, and how many terms are enough.
+
+The Taylor coefficients x_k of x' = A(u) x, A(u) = sum_j A_j u^j, obey (k+1) x_{k+1} = sum_j A_j x_{k-j};
+hence |x_k| <= r_k with r_0 = 1, (k+1) r_{k+1} = sum_j a_j r_{k-j}, for any a_j >= |A_j|. The r_k are the
+coefficients of exp g(R), g(R) = sum_j a_j R^(j+1)/(j+1). They are not negative, so that r_k R^k <= exp g(R)
+for every R > 0, and for every R > 1 the terms beyond degree p sum to at most
+
+    exp(g(R)) R^-p/(R - 1)   for all |u| <= 1.
+
+This gives p before any vector is computed.
+"""
 
 from __future__ import annotations
 
@@ -8,11 +18,24 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from floquet.rank_one.kernels.compiled import compiled
-from floquet.rank_one.kernels.lanes import LANES, load, plus, plus_square, scaled, store, total, zero
-from floquet.rank_one.kernels.majorant import MAX_TERMS, norm, powers_of_radii
+from floquet.rank_one.kernels.simd import (
+    LANES,
+    compiled,
+    least,
+    load,
+    plus,
+    plus_square,
+    scaled,
+    store,
+    total,
+    zero,
+)
 from lumped.typing import FloatArray
 
+MAX_TERMS = 64
+"""Largest Taylor degree."""
+RADII = np.geomspace(1.3, 60.0, 2 * LANES)
+"""The R at which the bound is tried."""
 MAX_STEPS = 20_000
 """Steps per period at most."""
 _ROOM = 6_000_000  # entries of their matrices together
@@ -60,13 +83,7 @@ class Problem(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """Accuracy and length of the steps.
-
-    Attributes
-    ----------
-    tolerance : of each step's truncation, relative to 1
-    angle : largest majorant exponent per half of a step
-    """
+    """Truncation of a step relative to 1, and the largest majorant exponent per half of a step."""
 
     tolerance: float
     angle: float
@@ -108,6 +125,30 @@ class Piece(NamedTuple):
     sizes: FloatArray
     ends: FloatArray
     unit: FloatArray
+
+
+@compiled(_nrt=False)
+def norm(row: FloatArray) -> float:
+    total = 0.0
+    for value in row:
+        total += value * value
+    return math.sqrt(total)
+
+
+@compiled()
+def powers_of_radii(count: int) -> FloatArray:
+    """What p at all RADII in two rows of lanes is made of, (2, count + 2, LANES).
+
+    R^(j+1)/((j+1) log R) for a_j, j = 0..count-1; 1/log R for the logarithm of 1/tolerance; and what is left.
+    """
+    powers = np.empty((2, count + 2, LANES))
+    for i in range(2 * LANES):
+        R, row, lane = RADII[i], i // LANES, i % LANES
+        for j in range(count):
+            powers[row, j, lane] = R ** (j + 1) / (j + 1) / math.log(R)
+        powers[row, count, lane] = 1.0 / math.log(R)
+        powers[row, count + 1, lane] = -math.log(R - 1.0) / math.log(R)
+    return powers
 
 
 @compiled()
@@ -209,11 +250,8 @@ def load_piece(
 ) -> tuple[float, float, float, float, float]:
     """Sum the parts of piece i.
 
-    Returns
-    -------
-    bound on |A| per unit time, bound on its error, the ratio wd/w where it is the same for all powers and
-    coordinates, else nan, and bounds on the integrals over time of further errors of A at the start and at
-    the end
+    Returns a bound on |A| per unit time, one on its error, the ratio wd/w where it is the same for all powers
+    and coordinates, else nan, and bounds on the integrals of further errors of A at the start and at the end.
     """
     nu, nu_rate, calm = piece.sizes[0], piece.sizes[1], piece.sizes[2]
     rho, fit = problem.ratios[i], problem.fit_error
@@ -236,10 +274,7 @@ def load_piece(
 
 @compiled(_nrt=False, forceinline=True)
 def load_step(problem: Problem, piece: Piece, part: int, parts: int, h: float, ratio: float) -> int:
-    """Write the gains over one of the steps of length 2 h into which a piece is cut, and their majorant a.
-
-    Returns the degree of a.
-    """
+    """Write the gains over a step of length 2 h and their majorant a; return the degree of a."""
     m = problem.v.size
     nu, nu_rate, calm = piece.sizes[0], piece.sizes[1], piece.sizes[2]
     merged = not math.isnan(ratio)
@@ -266,3 +301,23 @@ def load_step(problem: Problem, piece: Piece, part: int, parts: int, h: float, r
         size = _row_norm(piece.ws, j) * per_h * nu if j <= dw else 0.0
         piece.a[j] = size + _row_norm(piece.wds, j) * nu_rate if j <= dd else size
     return int(max(dw, dd))
+
+
+@compiled(fastmath={"contract"}, _nrt=False, forceinline=True)
+def enough_terms(a: FloatArray, degree: int, log_tolerance: float, powers: FloatArray) -> tuple[int, float]:
+    """Degree p after which the neglected terms sum to less than the tolerance, -1 above MAX_TERMS.
+
+    ``a`` (d+1,) is the majorant, ``powers`` as of `powers_of_radii`. The second result is the sum of all r_k,
+    which measures rounding.
+    """
+    last = powers.shape[1] - 1
+    first = plus(-log_tolerance, load(powers, (0, last - 1)), load(powers, (0, last)))
+    second = plus(-log_tolerance, load(powers, (1, last - 1)), load(powers, (1, last)))
+    exponent = 0.0
+    for j in range(degree + 1):
+        first, second = plus(a[j], load(powers, (0, j)), first), plus(a[j], load(powers, (1, j)), second)
+        exponent += a[j] / (j + 1.0)
+    best, size = least(first, second), math.exp(exponent)
+    if not best <= MAX_TERMS:
+        return -1, size
+    return max(1, math.ceil(best)), size

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from floquet.rank_one.kernels.compiled import compiled
-from floquet.rank_one.kernels.lanes import LANES, load, plus, plus_square, scaled, store, total, zero
+from floquet.rank_one.kernels.simd import LANES, compiled, load, plus, plus_square, scaled, store, total, zero
 from lumped.typing import FloatArray
 
 BLOCKS = 34
@@ -89,18 +88,9 @@ def invert(A: FloatArray, unit: FloatArray, work: FloatArray, out: FloatArray) -
 def divide(
     end: FloatArray, start: FloatArray, unit: FloatArray, scratch: FloatArray, step: FloatArray
 ) -> tuple[float, float]:
-    """Flow over a step, P = E S^-1, from those from its middle to its end E and to its start S.
+    """Flow over a step, P = E S^-1, from those from its middle to its end E and to its start S, (n, lanes).
 
-    Parameters
-    ----------
-    end, start : (n, lanes)
-    unit : rows of the unit matrix
-    scratch : (2, n, lanes)
-    step : (n, lanes), out: P
-
-    Returns
-    -------
-    |P| and a bound on |P S - E|, Frobenius norms
+    Returns |P| and a bound on |P S - E|, Frobenius norms. ``scratch`` is (2, n, lanes).
     """
     n = end.shape[0]
     inverse, back = scratch[0], scratch[1]
@@ -116,27 +106,20 @@ def divide(
 
 
 @compiled(_nrt=False, forceinline=True)
-def _gram(A: FloatArray, out: FloatArray) -> None:
-    """Out = A^T A of A[:, 0:n], (n, lanes)."""
-    n = A.shape[0]
-    for c in range(0, n, LANES):
-        for i in range(n):
-            row = zero()
-            for q in range(n):
-                row = plus(A[q, i], load(A, (q, c)), row)
-            store(out, (i, c), row)
-
-
-@compiled(_nrt=False, forceinline=True)
 def spectral(A: FloatArray, square: FloatArray) -> float:
     """Bound on the 2-norm of A[:, 0:n]: |A|^2 <= |A^T A|_F, too large by at most the fourth root of n.
 
     |A|_F where the fourth powers in that would be lost to underflow.
     """
-    size = frobenius(A)
+    size, n = frobenius(A), A.shape[0]
     if size < 1e-60:
         return size * _SLACK
-    _gram(A, square)
+    for c in range(0, n, LANES):
+        for i in range(n):
+            row = zero()
+            for q in range(n):
+                row = plus(A[q, i], load(A, (q, c)), row)
+            store(square, (i, c), row)
     return math.sqrt(frobenius(square)) * _SLACK
 
 
@@ -151,7 +134,7 @@ def carry(
     work: FloatArray,
     table: FloatArray,
 ) -> float:
-    """Product of the steps and its error bound.
+    """Product of the steps; returns a bound on the Frobenius norm of its error, rounding included.
 
     With Q_j the computed product of the steps before step j, E_j the error of step j with the rounding of its
     multiplication, and S_j the *exact* flow from the end of step j to that of the period, the error of the
@@ -168,10 +151,6 @@ def carry(
     before : (count,) scratch: bounds on |Q_j|
     work : (2 BLOCKS + 1, n, lanes) scratch
     table : (5, BLOCKS) scratch: norm, error, rank of the blocks; norm, error of their product
-
-    Returns
-    -------
-    bound on the Frobenius norm of the error of the product, rounding of the multiplications included
     """
     n = flow.shape[0]
     product = work[0]

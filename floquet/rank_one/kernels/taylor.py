@@ -10,7 +10,7 @@ part omega^2 is skew, so that one step of length 2 h has the matrix A(u) = sum_j
     |A_0| <= a_0 = h (max omega + |C| + |w_0| |v/omega| + |wd_0| |v|),   |A_j| <= a_j likewise without
     omega, C,
 
-which is what `floquet.rank_one.kernels.majorant` needs.
+which is what `floquet.rank_one.kernels.gains` needs.
 
 The series starts in the middle of the step, where it needs fewer terms and where powers of u are small. Its
 sums at u = 1 and -1 are the flows E and S from the middle to the end and back to the start, and P = E S^-1 is
@@ -25,20 +25,20 @@ import math
 
 import numpy as np
 
-from floquet.rank_one.kernels.compiled import compiled
 from floquet.rank_one.kernels.gains import (
+    MAX_TERMS,
     Limits,
     Piece,
     Problem,
+    enough_terms,
     load_piece,
     load_point,
     load_step,
     most_steps,
     scratch_for,
 )
-from floquet.rank_one.kernels.lanes import LANES, load, plus, scaled, store, zero
-from floquet.rank_one.kernels.majorant import MAX_TERMS, enough_terms
 from floquet.rank_one.kernels.product import BLOCKS, carry, divide
+from floquet.rank_one.kernels.simd import LANES, compiled, load, plus, scaled, store, zero
 from lumped.typing import FloatArray
 
 _U = 0.5 * 2.220446049250313e-16
@@ -181,18 +181,9 @@ def steps_of_period(
     local: FloatArray,
     sizes: FloatArray,
 ) -> int:
-    """All steps of one period at one point.
+    """All steps (most, 2m, lanes) of one period at one point, bounds (most,) on their errors and their norms.
 
-    Parameters
-    ----------
-    gains, zeta, T : weights (Q,) of the parts, damping factor, period [s]
-    steps : (most, 2m, lanes), out: transition matrices
-    local : (most,), out: bounds on their errors
-    sizes : (most,), out: bounds on their Frobenius norms
-
-    Returns
-    -------
-    number of steps; -1 if there would be more than ``most`` or MAX_TERMS
+    Returns the number of steps; -1 if there would be more than ``most`` or MAX_TERMS.
     """
     m, most = problem.v.size, steps.shape[0]
     count = 0
@@ -261,17 +252,9 @@ def propagate_points(
     M: FloatArray,
     bound: FloatArray,
 ) -> int:
-    """Monodromy matrices in energy coordinates for many points.
+    """Monodromy matrices M (N, 2m, 2m) in x = (omega eta, eta'), and bounds (N,) on their Frobenius errors.
 
-    Parameters
-    ----------
-    gains, damping_factor, periods : (N, Q), (N,), (N,) [s]
-    M : (N, 2m, 2m), out: Phi(T, 0) in x = (omega eta, eta')
-    bound : (N,), out: bound on the Frobenius norm of the error of M: truncation, fit and rounding
-
-    Returns
-    -------
-    index of the first point that needs more than ``most_steps`` or MAX_TERMS, -1 if none
+    Gains are (N, Q). Returns the index of the first point that needs more than ``most_steps`` or MAX_TERMS.
     """
     piece = scratch_for(problem)
     n, lanes = 2 * problem.v.size, piece.unit.shape[0]

@@ -23,7 +23,7 @@ from floquet import (
 from floquet.gear.axes import GearVariation, vary
 from floquet.rank_one import batch
 from floquet.rank_one.batch import multipliers_of
-from floquet.rank_one.kernels.disks import spectra
+from floquet.rank_one.kernels.eigenvalue_bounds import spectra
 from floquet.rank_one.system import Gains
 from lumped import load_gear_pair, preset_names
 from lumped.errors import NumericalError, ParameterError

@@ -9,10 +9,10 @@ import pytest
 from scipy.linalg import expm
 
 from floquet import RankOneSystem, fast_monodromies
-from floquet.rank_one.kernels.disks import spectra
-from floquet.rank_one.kernels.lanes import LANES
-from floquet.rank_one.kernels.majorant import MAX_TERMS, enough_terms, powers_of_radii
+from floquet.rank_one.kernels.eigenvalue_bounds import spectra
+from floquet.rank_one.kernels.gains import MAX_TERMS, enough_terms, powers_of_radii
 from floquet.rank_one.kernels.product import divide
+from floquet.rank_one.kernels.simd import LANES
 from floquet.rank_one.system import Gains
 
 

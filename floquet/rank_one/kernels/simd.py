@@ -1,4 +1,4 @@
-"""Eight numbers side by side as one value of compiled code: a row of columns in one vector register.
+"""The compiler of the kernels, and eight numbers side by side as one value of compiled code.
 
 The compiler does not turn loops of eight turns over possibly overlapping arrays into vector instructions, so
 the kernels say it themselves. ``load`` and ``store`` move eight numbers of the last axis of an array;
@@ -7,12 +7,26 @@ everything else works on registers. For kernels only: none of these can be calle
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
 
 from llvmlite import ir  # type: ignore[import-untyped]
 from numba.core import cgutils, types
 from numba.core.datamodel import models
 from numba.extending import intrinsic, register_model
+
+from lumped.compiler import Compiler
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+_COMPILE = Compiler(Path(__file__).parent.glob("*.py"))
+
+
+def compiled(**options: Any) -> Callable[[F], F]:
+    """Compile with these options of numba.njit."""
+    return lambda function: _COMPILE(function, **options)
+
 
 LANES = 8
 _VECTOR = ir.VectorType(ir.DoubleType(), LANES)
