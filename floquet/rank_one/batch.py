@@ -53,7 +53,7 @@ class FastMultipliers:
 
     Attributes
     ----------
-    multipliers, errors : (N, 2m) with a proven bound on the error of each, in no particular order
+    multipliers, errors : (N, 2m) with a proven bound on the error of each, dimensionless, in no order
     """
 
     multipliers: ComplexArray
