@@ -47,45 +47,36 @@ class Feedback:
     Attributes
     ----------
     system : x' = A(t) x in these coordinates; modes of a pair on shafts have unit modal mass
-    gyroscopic : (m, m) part of the constant damping that is proportional to speed, over that of the pinion
     metric : (m,) weights of the norm of errors; they make the frictionless mesh symmetric
     separate : decay rates [1/s] and squares of the natural frequencies (k,) of what moves by itself: on
         springs off the line of action, on shafts the modes that count least
     """
 
     system: LTVSystem
-    gyroscopic: FloatArray
     metric: FloatArray
     separate: tuple[FloatArray, FloatArray]
-
-    @property
-    def size(self) -> int:
-        """Number of multipliers, those of the separate motions included."""
-        return self.system.size + 2 * self.separate[0].size
 
 
 def feedback_system(variation: GearVariation) -> Feedback:
     """Return what the mesh couples of a gear pair."""
     system = periodic_system(variation.pair, "mesh", cycle=variation.cycle(), supports=variation.supports)
     if variation.supports == "shafts":
-        return _leading_modes(system, system.gyroscopic)
+        return _leading_modes(system)
     s = system.structure
     separate = s.damping[4:] / (2.0 * s.mass[4:]), s.stiffness[4:] / s.mass[4:]
-    return Feedback(system, system.gyroscopic, 1.0 / np.abs(system.per_load[0]), separate)
+    return Feedback(system, 1.0 / np.abs(system.per_load[0]), separate)
 
 
-def _leading_modes(system: LTVSystem, gyroscopic: FloatArray) -> Feedback:
+def _leading_modes(system: LTVSystem) -> Feedback:
     """The modes that count most of a pair on shafts, the others apart."""
     m = system.deflection.size
     mesh = system.cycle.mean_stiffness * np.outer(system.deflection, system.deflection)
-    modes = eigh(mesh - system.constant[m:, :m])[1]
-    modes = modes @ _turn(_in_modes(system, modes), modes.T @ gyroscopic @ modes)
-    whole, turning = _in_modes(system, modes), modes.T @ gyroscopic @ modes
-    order = np.argsort(-importance(whole, turning), kind="stable")
+    system = _in_modes(system, eigh(mesh - system.constant[m:, :m])[1])
+    whole = _in_modes(system, _turn(system))
+    order = np.argsort(-importance(whole), kind="stable")
     kept, left = (np.sort(part) for part in (order[:MODES], order[MODES:]))
     separate = -0.5 * np.diag(whole.constant[m:, m:])[left], _squares(whole)[left]
-    system = _in_modes(whole, np.eye(m)[:, kept])
-    return Feedback(system, turning[np.ix_(kept, kept)], np.ones(kept.size), separate)
+    return Feedback(_in_modes(whole, np.eye(m)[:, kept]), np.ones(kept.size), separate)
 
 
 def _in_modes(system: LTVSystem, modes: FloatArray) -> LTVSystem:
@@ -110,7 +101,7 @@ def _squares(system: LTVSystem) -> FloatArray:
     return np.asarray(system.cycle.mean_stiffness * v**2 - np.diag(system.constant[m:, :m]))
 
 
-def _turn(system: LTVSystem, gyroscopic: FloatArray) -> FloatArray:
+def _turn(system: LTVSystem) -> FloatArray:
     """Combinations (m, m) of modes of equal frequency of which few count.
 
     The first of each group has all of its deflection, the second all of the gyroscopic moments of the first.
@@ -122,13 +113,13 @@ def _turn(system: LTVSystem, gyroscopic: FloatArray) -> FloatArray:
     ):
         own = np.ix_(group, group)
         first = system.deflection[group]
-        leading = np.column_stack([first, gyroscopic[own] @ first, np.eye(group.size)])
+        leading = np.column_stack([first, system.gyroscopic[own] @ first, np.eye(group.size)])
         leading /= np.maximum(np.linalg.norm(leading, axis=0), np.finfo(float).tiny)
         turn[own] = np.linalg.qr(leading)[0]
     return turn
 
 
-def importance(system: LTVSystem, gyroscopic: FloatArray) -> FloatArray:
+def importance(system: LTVSystem) -> FloatArray:
     """How much each mode (m,) of a pair on shafts counts in the motion of the mesh, whatever the speed.
 
     That is the share that the mode has of the static deflection under a mesh force, and what damping and
@@ -137,8 +128,8 @@ def importance(system: LTVSystem, gyroscopic: FloatArray) -> FloatArray:
     v, squares, g = system.deflection, _squares(system), system.pair.geometry
     share = v**2 / squares / (v**2 / squares).sum()
     omega, m = np.sqrt(squares), squares.size
-    damping = system.constant[m:, m:] + g.omega_pinion * gyroscopic
-    coupling = omega * (np.abs(damping) + omega / system.pair.pinion.teeth * np.abs(gyroscopic))
+    damping = system.constant[m:, m:] + g.omega_pinion * system.gyroscopic
+    coupling = omega * (np.abs(damping) + omega / system.pair.pinion.teeth * np.abs(system.gyroscopic))
     apart = np.maximum(np.abs(squares[:, None] - squares), coupling + np.finfo(float).tiny)
     ratio = coupling / apart
     np.fill_diagonal(ratio, 0.0)
@@ -181,7 +172,7 @@ def gear_block(
 def fitted_block(feedback: Feedback, factor: float, rtol: float, levels: Sequence[float]) -> RankOneSystem:
     """Feedback with its gains as polynomials; ``factor`` and ``levels`` as in `MeshGains`."""
     system, metric, m = feedback.system, feedback.metric, feedback.metric.size
-    turning = system.pair.geometry.omega_pinion * feedback.gyroscopic
+    turning = system.pair.geometry.omega_pinion * system.gyroscopic
     mesh = MeshGains(system, factor, levels, metric)
     phases, fitted, errors, at = fit_pieces(mesh, mesh.edges, metric, rtol=rtol)
     jumps = np.zeros((phases.size, mesh.jumps.shape[0]))

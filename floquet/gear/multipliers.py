@@ -31,20 +31,19 @@ _U = 0.5 * float(np.finfo(np.float64).eps)
 class GearPairMultipliers(Spectrum):
     """Multipliers of a gear pair over one mesh cycle, 10 in all; on shafts two for each mode.
 
+    The double +1 of the free rotation is no part of them: it means a free choice of angle and speed.
+
     Attributes
     ----------
     feedback : (6,) of q = r_bp theta_p - r_bg theta_g, x_p, x_g, which alone can become unstable; on shafts
         those of the modes that count most
     oloa : (4,) of y_p, y_g, two each: driven by friction without acting back, so those of their bearings;
         on shafts those of the other modes, each by itself
-    rigid_body : (2,) of the free rotation, a defective double +1 that the relative coordinate q removes; no
-        part of ``multipliers``, the radius or the verdict, since it means a free choice of angle and speed
     variation : the pair, as it was varied
     """
 
     feedback: ComplexArray
     oloa: ComplexArray
-    rigid_body: ComplexArray
     variation: GearVariation
 
     @cached_property
@@ -197,7 +196,6 @@ def gear_pair_multipliers(
         period=own.period,
         feedback=own.multipliers,
         oloa=oloa,
-        rigid_body=np.ones(2, dtype=complex),
         variation=variation,
         certificate=own.certificate,
     )

@@ -1,4 +1,4 @@
-"""Motions of a gear pair whose teeth may part: single periodic ones, and what a run settles to.
+"""Motions of a gear pair with unilateral contact: single periodic ones, and what a run settles to.
 
 Sources: docs/theory/orbits.md, "Gear pair".
 """
@@ -27,7 +27,6 @@ from lumped.model.results import labelled, response
 from lumped.model.steady import periodic_solution
 from lumped.quasi_static.contacts import mesh_elements
 from lumped.quasi_static.elements import MeshElements
-from lumped.schema.bodies import bodies
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import ComplexArray, FloatArray
@@ -94,8 +93,7 @@ class GearOrbit:
     @property
     def brake_torque(self) -> float:
         """T_g, found or given [N m]."""
-        given = self.pair.operating.brake_torque
-        return self.balanced_torque if given == "balanced" else float(given)
+        return _torques(self.pair, self.orbit.parameter)[1]
 
     @property
     def multipliers(self) -> ComplexArray:
@@ -138,9 +136,8 @@ class GearOrbit:
         o = self.orbit
         if o.start.size == 2 * _WHOLE:
             return o
-        return find_orbit(
-            unilateral_system(self.pair, form="elastic"), _wide(o.start), o.period, o.n, o.parameter
-        )
+        system = unilateral_system(self.pair, form="elastic")
+        return find_orbit(system, _wide(o.start), o.period, o.n, o.parameter)
 
     @cached_property
     def motion(self) -> xr.Dataset:
@@ -178,64 +175,53 @@ class GearOrbit:
         return labelled(time, values, attributes, {"normal_load_back": back})
 
 
+def _torques(pair: GearPair, parameter: float) -> tuple[float, float]:
+    """T_p and T_g [N m], one of them the free parameter."""
+    if pair.operating.brake_torque == "balanced":
+        return pair.operating.pinion_torque, parameter
+    return parameter, float(pair.operating.brake_torque)
+
+
 def absolute_states(pair: GearPair, cycle: MeshCycle, orbit: Orbit, run: Run) -> FloatArray:
-    """(k, 12) states of the lumped model at the samples of a run of a whole orbit.
+    """(k, 12) states of the lumped model at the samples of a run of a whole orbit, the first at phase 0.
 
     The rigid rotation J_p theta_p/r_bp + J_g theta_g/r_bg, which does not act back, follows from torques and
     friction by the trapezoidal rule.
-
-    Parameters
-    ----------
-    pair, cycle : the pair, and the mesh cycle of the orbit's system
-    orbit : motion in (q, x_p, x_g, y_p, y_g)
-    run : its run with samples, the first of them at phase 0
     """
-    g, b = pair.geometry, bodies(pair)
-    time = run.phases * orbit.period
-    torque_p, torque_g = pair.operating.pinion_torque, orbit.parameter
-    if pair.operating.brake_torque != "balanced":
-        torque_p, torque_g = orbit.parameter, float(pair.operating.brake_torque)
+    g, held = pair.geometry, periodic_system(pair, "elastic", cycle=cycle).held
+    time, torques = run.phases * orbit.period, _torques(pair, orbit.parameter)
+    steps = np.diff(time, append=orbit.n * orbit.period)
+
+    def integral(values: FloatArray) -> FloatArray:
+        """From the first time on, of a history that repeats less its mean."""
+        both = 0.5 * (values + np.roll(values, -1))
+        return np.concatenate([[0.0], np.cumsum(steps * (both - steps @ both / steps.sum()))[:-1]])
+
     at = cycle.sample(time)
     friction = at.friction * run.loads[:, : cycle.offsets.size].T
     lever = (g.L_XY - at.position) / g.base_radius_gear - at.position / g.base_radius_pinion
-    push = (friction * lever).sum(axis=0) + torque_p / g.base_radius_pinion - torque_g / g.base_radius_gear
-    rate = _integral(time, push - _mean(time, push, orbit), orbit)
-    rate -= _mean(time, rate, orbit)
-    rigid = np.stack([_integral(time, rate, orbit), rate], axis=1)
-    to_rotations = np.linalg.inv(
-        [
-            [g.base_radius_pinion, -g.base_radius_gear],
-            [b.inertia_pinion / g.base_radius_pinion, b.inertia_gear / g.base_radius_gear],
-        ]
+    push = (
+        (friction * lever).sum(axis=0) + torques[0] / g.base_radius_pinion - torques[1] / g.base_radius_gear
     )
-    states = np.empty((time.size, 12))
-    z = np.stack([run.states[:, :_WHOLE], run.states[:, _WHOLE:] / orbit.period], axis=1)
-    for half in range(2):
-        both = np.stack([z[:, half, 0], rigid[:, half]], axis=1)
-        states[:, 6 * half : 6 * half + 2] = both @ to_rotations.T
-        states[:, 6 * half + 2 : 6 * half + 6] = z[:, half, 1:]
-    return states
-
-
-def _integral(time: FloatArray, values: FloatArray, orbit: Orbit) -> FloatArray:
-    """Integral from the first time on of a history that repeats."""
-    steps = np.diff(time, append=orbit.n * orbit.period)
-    parts = 0.5 * steps * (values + np.roll(values, -1))
-    return np.concatenate([[0.0], np.cumsum(parts)[:-1]])
-
-
-def _mean(time: FloatArray, values: FloatArray, orbit: Orbit) -> float:
-    length = orbit.n * orbit.period
-    steps = np.diff(time, append=length)
-    return float(steps @ (values + np.roll(values, -1))) / (2.0 * length)
+    rate = integral(push)
+    rate = rate - steps @ (rate + np.roll(rate, -1)) / (2.0 * steps.sum())
+    halves = []
+    for z, rigid in (
+        (run.states[:, :_WHOLE], integral(rate)),
+        (run.states[:, _WHOLE:] / orbit.period, rate),
+    ):
+        half = z @ held.back.T
+        missing = (rigid - half @ held.common_weights) / (held.common_weights @ held.common)
+        halves.append(half + np.outer(missing, held.common))
+    return np.concatenate(halves, axis=1)
 
 
 def periodic_orbit(
     pair: AnyPair, n: int = 1, start: ArrayLike | GearOrbit | None = None, *, back_side: bool = False
 ) -> GearOrbit:
-    """One periodic motion of the gear pair whose teeth push and never pull.
+    """One periodic motion of the gear pair with unilateral contact.
 
-    Where contact holds it is that of ``lumped.steady_state``. Where teeth part several motions may exist at
+    Where contact holds it is that of ``lumped.steady_state``. With contact loss several motions may exist at
     one speed: which one is found depends on the start.
 
     Parameters
@@ -320,15 +306,13 @@ def start_of(
 
     ``elements`` are those of the linear model, where they are known already.
     """
-    period = pair.geometry.mesh_period
     if isinstance(start, GearOrbit):
         # Displacements and phase rates of a neighbouring speed are nearer than its rates.
         return _of_form(_wide(start.orbit.start), form), start.orbit.parameter
-    g, operating = pair.geometry, pair.operating
+    g, operating, states = pair.geometry, pair.operating, np.zeros(12)
     given = operating.brake_torque != "balanced"
     torque = operating.pinion_torque * (1.0 if given else g.omega_pinion / g.omega_gear)
-    states = np.zeros(12)
-    cycle = MeshCycle(pair.geometry, mesh_elements(pair) if elements is None else elements)
+    cycle = MeshCycle(g, mesh_elements(pair) if elements is None else elements)
     absolute = periodic_system(pair, "full", cycle=cycle)
     if start is not None:
         states = real_array("start", start)
@@ -341,8 +325,8 @@ def start_of(
             states, torque = linear.states[0], linear.pinion_torque if given else linear.brake_torque
         except NumericalError:
             states[2] = static_deflection(pair)
-    reduction = periodic_system(pair, "elastic", cycle=cycle).reduction
-    wide = np.concatenate([reduction @ states[:6], reduction @ states[6:] * period])
+    relative = absolute.held.relative
+    wide = np.concatenate([relative @ states[:6], relative @ states[6:] * g.mesh_period])
     return _of_form(wide, form), torque
 
 

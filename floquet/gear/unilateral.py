@@ -1,4 +1,4 @@
-"""The gear pair whose teeth push and never pull, as a system that is linear between events.
+"""The gear pair with unilateral contact, as a system that is linear between events.
 
 Sources: docs/theory/orbits.md, "Gear pair".
 """
@@ -24,7 +24,6 @@ from lumped.path_of_contact import friction_path_function
 from lumped.quasi_static.contacts import mesh_elements
 from lumped.quasi_static.tooth_error import error_function
 from lumped.schema.bodies import bodies
-from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -36,7 +35,7 @@ _SAME = 1e-13
 
 
 def unilateral_system(
-    pair: AnyPair, cycle: MeshCycle | None = None, form: ContactForm = "mesh"
+    pair: GearPair, cycle: MeshCycle | None = None, form: ContactForm = "mesh"
 ) -> ContactSystem:
     """Return a gear pair with one unilateral contact for each tooth pair.
 
@@ -55,12 +54,7 @@ def unilateral_system(
     form : "mesh": (q, x_p, x_g), whose motion decides that of y; "elastic": (q, x_p, x_g, y_p, y_g);
         "back_side": the same, and the back sides of the teeth touch after the backlash, with the laws of the
         driving flanks
-
-    Raises
-    ------
-    ParameterError : a law refuses its parameters
     """
-    pair = load_gear_pair(pair)
     cycle = cycle or contact_cycle(pair)
     base = periodic_system(pair, "mesh" if form == "mesh" else "elastic", cycle=cycle)
     s, g = base.structure, pair.geometry
@@ -76,14 +70,15 @@ def unilateral_system(
         phases = phases[np.append(True, np.diff(phases) > _SAME)]
         flanks.append(coast)
     given = pair.operating.brake_torque != "balanced"
-    lift = np.linalg.pinv(base.reduction)
-    torques = rows[:, :2] * [1.0, -1.0]
+    torques, m = rows[:, :2] * [1.0, -1.0], len(base.coordinates)
     known = (
         torques[:, 1] * float(pair.operating.brake_torque) if given else torques[:, 0] * base.pinion_torque
     )
+    # No bearing acts on the rotation.
+    held = np.pad(-base.constant[m:], ((0, 1), (0, 0)))
     return ContactSystem(
-        stiffness=rows @ np.diag(s.stiffness) @ lift,
-        damping=rows @ np.diag(s.damping) @ lift,
+        stiffness=held[:, :m],
+        damping=held[:, m:],
         force=known,
         contacts=tuple(
             _contact(pair, cycle, phases, flank, offset) for flank in flanks for offset in flank.offsets
@@ -179,20 +174,13 @@ def _contact(pair: GearPair, cycle: MeshCycle, phases: FloatArray, flank: _Flank
 
 
 def unilateral_family(
-    pair: AnyPair, slowest_rpm: float, fastest_rpm: float, form: ContactForm = "mesh"
+    pair: GearPair, slowest_rpm: float, fastest_rpm: float, form: ContactForm = "mesh"
 ) -> Family:
     """Return the unilateral system over its period, for speeds of a range.
 
     Where friction depends on speed, its law is a weighted sum of two functions of the position wherever it
-    can be (`floquet.gear.friction_over_speed`); then only the weights change. Elsewhere it is fitted anew.
-
-    Parameters
-    ----------
-    pair : the gear pair
-    slowest_rpm, fastest_rpm : speeds of the pinion [rpm]
-    form : as ``unilateral_system``
+    can be (`friction_families`); then only the weights change. Elsewhere it is fitted anew.
     """
-    pair = load_gear_pair(pair)
     if not depends_on_speed(pair):
         system = unilateral_system(pair, form=form)
         return Family(lambda period: system, constant=True)

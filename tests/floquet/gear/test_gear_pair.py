@@ -99,7 +99,6 @@ def test_rigid_rotation_is_a_defective_double_one_in_twelve_states(pair) -> None
     reduced = gear_pair_multipliers(pair)
     assert unmatched(whole.multipliers[~apart], reduced.multipliers) < 1e-7
     assert reduced.verdict == "stable"
-    assert reduced.rigid_body.tolist() == [1, 1]
 
 
 def test_constant_stiffness_without_friction_is_lti(pair) -> None:
