@@ -1,6 +1,6 @@
 """Independent multibody reference of a spur gear pair in exudyn, at two fidelities."""
 
-from multibody.contact.effects import EFFECTS
+from multibody.run.effects import EFFECTS
 from multibody.run.flow_map import FlowMap, monodromy, steady_state
 from multibody.run.simulation import simulate, speed_sweep
 from multibody.study.balance import PowerBalance, power_balance

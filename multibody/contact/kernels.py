@@ -2,7 +2,7 @@
 
 The geometry comes from ``multibody.contact.kinematics`` and the friction laws from
 ``multibody.contact.friction``; this file adds stiffness, damping and relief of a tooth pair, and the switches
-of the finite-motion effects (``multibody.contact.effects``).
+of the finite-motion effects (``multibody.run.effects``).
 
 State: q = (x_p, y_p, phi_p, x_g, y_g, phi_g), deviations from the nominal position and rotation, world axes
 x, y, angles counter-clockwise. In the drive sense the pinion turns clockwise and the gear counter-clockwise.

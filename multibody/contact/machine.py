@@ -1,10 +1,10 @@
 """A gear pair turned into the plain numbers that a multibody model needs.
 
 Only the stiffness of a tooth pair and how far it moves the next ones are taken from ``lumped``, and the
-coefficient of a friction law that
-``multibody.contact.friction`` does not have. Circles, path of contact, tooth thickness,
-bodies, bearings, damping, relief and friction are derived here again from the fields of the schema, so that
-agreement of the two models is evidence for both (``multibody.SHARED`` lists what is not).
+coefficient of a friction law that ``multibody.contact.friction`` does not have. Circles, path of contact,
+tooth thickness, bodies, bearings, damping, relief and friction are derived here again from the fields of the
+schema: nothing reads ``pair.geometry`` or ``lumped.bodies``, so that agreement of the two models is evidence
+for both. Sources: ISO 21771 for the circles; solid discs, elementary.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
+from scipy.optimize import brentq
 
 from lumped.lubrication.viscosity import ISO_VG_MIDPOINT, viscosity_at_100
 from lumped.model.mesh_cycle import mesh_cycle
@@ -26,10 +27,9 @@ from lumped.quasi_static.contacts import mesh_elements
 from lumped.schema.contact import Lubricant
 from lumped.schema.gear import Gear
 from lumped.schema.pair import GearPair
-from lumped.typing import FloatArray, IntArray
+from lumped.typing import FloatArray
 from multibody.contact import friction as fr
 from multibody.contact import kernels as kn
-from multibody.contact.drawing import base_tooth_angle, bearing_constants, circles, masses, reliefs
 from multibody.contact.elements import stiffness_at
 from multibody.contact.events import SLIDING, SWITCH, event_table
 from multibody.contact.kinematics import DRIVE, MAX_PAIRS, Line, add_wrench, line_of_action, mesh_phase, wrap
@@ -50,12 +50,12 @@ class Machine:
     parameters : geometry, nominal motion and friction, in the order of ``kernels``; behind these the lumped
         model's friction coefficient as rows like ``table``, where the multibody model has no law of its own
     table : stiffness of a tooth pair as ``elements.stiffness_at`` reads it
-    mass, inertia : (2,) pinion, gear [kg], [kg m^2]
-    bearing_stiffness, bearing_damping : (2, 2) rows pinion, gear; columns x, y [N/m], [N s/m]
-    torque_pinion, torque_gear : driving and braking torque, both positive [N m]
+    mass, inertia : (2,) pinion, gear
+    bearing_stiffness, bearing_damping : (2, 2) rows pinion, gear; columns x, y
+    torque_pinion, torque_gear : driving and braking torque, both positive
     pairs : slots of tooth pairs, floor(contact ratio) + 1; more where tip corners lengthen the contact
     ahead : whole pitches by which the pair of the first slot is ahead of the one that was at A
-    period : mesh cycle [s]
+    period : mesh cycle
     switches : phases of the mesh cycle in [0, 1) at which the nominal element laws jump or have a kink
     events : (n, 2) what makes the contact force jump or bend in finite motion, see ``events.event_table``
     train : both shafts where these support the gears, whose bearing springs are then zero; else None
@@ -80,19 +80,6 @@ class Machine:
     def size(self) -> int:
         """Number of coordinates; the first six are those of the gears."""
         return 6 if self.train is None else self.train.size
-
-    @cached_property
-    def units(self) -> FloatArray:
-        """(n,) a metre in each coordinate: 1, or the angle that moves the base circle by as much."""
-        units = np.ones(self.size)
-        for own, radius in zip(self.angles, self.parameters[[kn.RADIUS_P, kn.RADIUS_G]], strict=True):
-            units[own] = 1.0 / radius
-        return units
-
-    @property
-    def angles(self) -> tuple[IntArray, IntArray]:
-        """Coordinates that are angles, about the pinion's and about the gear's axis."""
-        return (np.array([2]), np.array([5])) if self.train is None else self.train.angles
 
     @cached_property
     def overlap(self) -> FloatArray:
@@ -140,11 +127,9 @@ class Machine:
 def machine(pair: GearPair, flags: int = 0, supports: Supports = "springs") -> Machine:
     """Describe a gear pair for the multibody model, both torques being that of the pinion.
 
-    pair : validated gear pair
-    flags : effect switches of ``kernels``; with ``TIP_CONTACT`` or ``CLEARANCE``, and where teeth of the
-        linear mesh may part, the stiffness holds wherever teeth touch; else relief takes it off where the
-        lumped model sees no contact
-    supports : "springs" of the pair's bearings, or "shafts"
+    With the flags ``TIP_CONTACT`` or ``CLEARANCE`` of ``kernels``, and where teeth of the linear mesh may
+    lose contact, the stiffness holds wherever teeth touch; else relief takes it off where the lumped model
+    sees no contact.
     """
     drawn, loaded = circles(pair), pair.mesh.contact == "loaded"
     parts = flags & kn.LINEAR and flags & kn.CONTACT_LOSS
@@ -169,7 +154,7 @@ def machine(pair: GearPair, flags: int = 0, supports: Supports = "springs") -> M
     p[kn.OMEGA_P], p[kn.OMEGA_G] = omega_p, omega_p * r_p / r_g
     p[kn.T_LOW], p[kn.T_HIGH] = -math.inf, math.inf
     mass, inertia = masses(pair)
-    p[kn.DAMPING] = 2.0 * pair.mesh.damping_ratio * math.sqrt(mesh_mass(p, inertia))
+    p[kn.DAMPING] = 2.0 * pair.mesh.damping_ratio * math.sqrt(_mesh_mass(p, inertia))
     p[kn.SOFTENING] = pair.mesh.stiffness.softening(pair)
     p[kn.NOMINAL_FORCE] = pair.operating.pinion_torque / r_p
     relieved = reliefs(pair, drawn)
@@ -242,12 +227,8 @@ def _loaded_laws(pair: GearPair, p: FloatArray) -> tuple[FloatArray, FloatArray]
     return np.ascontiguousarray(np.concatenate(rows)), cycle.edges[:-1] / cycle.period
 
 
-def mesh_mass(p: FloatArray, inertia: FloatArray) -> float:
-    """Mass that the rotations oppose to the mesh [kg], from the moments of a unit contact force.
-
-    p : parameters whose base radii are set
-    inertia : (2,) pinion, gear [kg m^2]
-    """
+def _mesh_mass(p: FloatArray, inertia: FloatArray) -> float:
+    """Mass that the rotations oppose to the mesh [kg], from the moments of a unit contact force."""
     wrench = np.zeros(6)
     line = Line(1.0, 0.0, float(p[kn.L_XY]), DRIVE, float(p[kn.RADIUS_P]), float(p[kn.RADIUS_G]))
     add_wrench(wrench, line, 1.0, 0.0, 0.0, 0.0)
@@ -255,15 +236,11 @@ def mesh_mass(p: FloatArray, inertia: FloatArray) -> float:
 
 
 def loaded_phase(machine: Machine, flags: int, q: FloatArray) -> Machine:
-    """Turn the unloaded gears so that it is the loaded pair that stands at A at t = 0.
+    """Turn the unloaded gears so that it is the loaded pair, in its static state q, that is at A at t = 0.
 
     Wind-up and bearing deflection move the contact along the path, by a constant in the mean. The rigid
     rotation of a free gear train is arbitrary, so that constant is no difference between models but a
     choice of the time origin; it is taken out.
-
-    machine : numbers whose flanks touch at A when unloaded
-    flags : effect switches of the contact core: without moving contacts nothing is turned
-    q : (6,) static state
     """
     p = machine.parameters.copy()
     along, off = (q[3] - q[0], q[4] - q[1]) if flags & kn.MOVING_LINE else (0.0, 0.0)
@@ -285,11 +262,7 @@ def pack(law: PathFunction) -> FloatArray:
 
 
 def switch_phases(places: Sequence[float], l_xa: float, l_xd: float, pitch: float) -> FloatArray:
-    """Phases of the nominal mesh cycle in [0, 1) where a pair meets a jump or a kink; 0 is always one.
-
-    places : of jumps and kinks on the path of contact [m]
-    l_xa, l_xd, pitch : ends of the path, base pitch [m]
-    """
+    """Phases of the nominal mesh cycle in [0, 1) where a pair meets a jump or a kink; 0 is always one."""
     ends_and_places = np.array([l_xa, l_xd, *places])
     phases = np.sort(np.mod((ends_and_places - l_xa) / pitch, 1.0))
     # Places that differ by rounding (or by a whole pitch) are one event.
@@ -313,10 +286,7 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 
 
 def fill_friction(pair: GearPair, p: FloatArray) -> None:
-    """Write a pair's friction parameters behind its geometry and speeds.
-
-    p : (kernels.N_PARAMETERS,) parameters, whose path of contact, base radii and speeds are set
-    """
+    """Write a pair's friction parameters behind its geometry and speeds."""
     law, f = pair.friction, p[kn.FRICTION :]
     width = min(pair.pinion.face_width, pair.gear.face_width)
     roughness = (pair.pinion.roughness, pair.gear.roughness)
@@ -374,8 +344,6 @@ def friction_switches(p: FloatArray) -> list[tuple[float, float]]:
 
     The sign at the pitch point and the bounds of law II are met at a sliding velocity; law V changes over at
     a position, because the film hardly depends on sliding.
-
-    p : parameters of the machine
     """
     found: list[tuple[float, float]] = []
     if _branch(p, p[kn.L_XP] + 0.5 * _CLOSEST) not in (fr.LAWS["none"], fr.LAWS["smoothed_coulomb"]):
@@ -437,61 +405,130 @@ def _mean_of_law_two(p: FloatArray) -> float:
     return total / float(q[kn.L_XD] - q[kn.L_XA])
 
 
-#: Velocity over which tanh changes the sign of friction [m/s]. Halving it changes the transmission error at
-#: 79.1 N m and 800 rpm of the 28/28 pair by some 1e-4 of its peak to peak.
-SMALL_VELOCITY = 1e-4
-#: A law is continuous at the pitch point if it jumps by less than this share of its largest value.
-_CONTINUOUS = 1e-3
-_BESIDE = 1e-9  # m
-_PLACES = 101  # at which the largest coefficient is looked for
+#: Largest operating pressure angle that is looked for [rad].
+_STEEPEST = 1.4
 
 
-def friction_velocity(machine: Machine) -> tuple[float, str]:
-    """Choose the velocity over which friction changes its sign [m/s], 0 for the sign function; and say why.
+@dataclass(frozen=True)
+class Circles:
+    """Circles and path of contact of a pair: base radii, base pitch, tip radii, centre distance [m]."""
 
-    At the pitch point sliding passes zero with a_s = (Omega_p + Omega_g) Omega_p r_bp. Friction that jumps
-    accelerates it by up to a_f = mu N/m_s, with 1/m_s = 1/m_p + 1/m_g + X_p^2/J_p + X_g^2/J_g. Where less
-    than a_f is left of a_s, friction can stick: sign() has no solution there. Vibration takes away at most
-    Q = 1/(2 zeta) times a_f, so sign() is safe where a_s > (1 + Q) a_f.
-    """
-    if _beside_pitch_point(machine) <= _CONTINUOUS * _largest(machine):
-        return 0.0, "sign(): the friction law is continuous at the pitch point"
-    nominal, by_friction, needed = _accelerations(machine)
-    share = nominal / by_friction
-    numbers = f"sliding passes zero at {nominal:.3g} m/s^2, {share:.3g} times what friction can change"
-    if nominal > needed * by_friction:
-        return 0.0, f"sign(): {numbers}, more than the {needed:.3g} times that resonance could take away"
-    return SMALL_VELOCITY, (
-        f"tanh over {SMALL_VELOCITY * 1e3:g} mm/s: {numbers}, less than the {needed:.3g} times that "
-        "resonance could take away, so friction may hold the teeth at zero sliding"
+    base_pinion: float
+    base_gear: float
+    pitch: float
+    tip_pinion: float
+    tip_gear: float
+    centre_distance: float
+
+    @property
+    def reach_pinion(self) -> float:
+        """Length on the pinion's base tangent from X to its tip circle: L_XD."""
+        return math.sqrt(self.tip_pinion**2 - self.base_pinion**2)
+
+    @property
+    def reach_gear(self) -> float:
+        """Length on the gear's base tangent from Y to its tip circle: L_XY - L_XA."""
+        return math.sqrt(self.tip_gear**2 - self.base_gear**2)
+
+    @property
+    def tangent(self) -> float:
+        """Length L_XY of the line of action between the base circles."""
+        return math.sqrt(self.centre_distance**2 - (self.base_pinion + self.base_gear) ** 2)
+
+
+def circles(pair: GearPair) -> Circles:
+    """Circles of a pair."""
+    rack = pair.basic_rack
+    cosine = math.cos(rack.pressure_angle)
+    r_p, r_g = (0.5 * rack.module * gear.teeth * cosine for gear in (pair.pinion, pair.gear))
+    centre = pair.centre_distance
+    return Circles(
+        base_pinion=r_p,
+        base_gear=r_g,
+        pitch=math.pi * rack.module * cosine,
+        tip_pinion=_tip_radius(pair, pair.pinion),
+        tip_gear=_tip_radius(pair, pair.gear),
+        centre_distance=_close_mesh(pair, r_p + r_g) if centre is None else centre,
     )
 
 
-def _accelerations(machine: Machine) -> tuple[float, float, float]:
-    """Return a_s and a_f [m/s^2], and the 1 + Q that a_s/a_f must exceed, see above."""
-    p = machine.parameters
-    arm_p, arm_g = p[kn.L_XP], p[kn.L_XY] - p[kn.L_XP]
-    mobility = float((1.0 / machine.mass).sum())
-    mobility += arm_p**2 / machine.inertia[0] + arm_g**2 / machine.inertia[1]
-    load = machine.torque_pinion / p[kn.RADIUS_P]
-    by_friction = _beside_pitch_point(machine) * load * mobility
-    nominal = (p[kn.OMEGA_P] + p[kn.OMEGA_G]) * p[kn.OMEGA_P] * p[kn.RADIUS_P]
-    if machine.train is None:
-        critical = 2.0 * np.sqrt(machine.bearing_stiffness[:, 1] * machine.mass)
-        ratio = float((machine.bearing_damping[:, 1] / critical).min())  # of the less damped bearing
-    else:
-        ratio = machine.train.damping_ratio
-    needed = 1.0 + (0.5 / ratio if ratio > 0.0 else np.inf)
-    return float(nominal), float(by_friction), needed
+def masses(pair: GearPair) -> tuple[FloatArray, FloatArray]:
+    """Masses [kg] and polar inertias [kg m^2] of pinion and gear, each (2,).
+
+    Given values are taken; a body without is a disc of the reference diameter with the gear's own face width
+    and bore, as the schema says.
+    """
+    bodies = [_disc(pair, gear) for gear in (pair.pinion, pair.gear)]
+    return np.array([mass for mass, _ in bodies]), np.array([inertia for _, inertia in bodies])
 
 
-def _largest(machine: Machine) -> float:
-    """Largest friction coefficient on the path of contact."""
-    p = machine.parameters
-    return max(abs(kn.nominal_friction(p, xi)) for xi in np.linspace(p[kn.L_XA], p[kn.L_XD], _PLACES))
+def bearing_constants(pair: GearPair, mass: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Stiffness [N/m] and damping [N s/m] of the bearings, each (2, 2): rows pinion, gear; columns x, y.
+
+    x is along the line of action and y off it; d = 2 zeta sqrt(k m) is the damping of one mass on one spring.
+    """
+    stiffness, damping = np.empty((2, 2)), np.empty((2, 2))
+    for row, bearing in enumerate((pair.bearings.pinion, pair.bearings.gear)):
+        stiffness[row] = bearing.loa_stiffness, bearing.oloa_stiffness
+        ratio = np.array([bearing.loa_damping_ratio, bearing.oloa_damping_ratio])
+        damping[row] = 2.0 * ratio * np.sqrt(stiffness[row] * mass[row])
+    return stiffness, damping
 
 
-def _beside_pitch_point(machine: Machine) -> float:
-    """Larger friction coefficient just before and after the pitch point."""
-    place = float(machine.parameters[kn.L_XP])
-    return max(abs(kn.nominal_friction(machine.parameters, place + side * _BESIDE)) for side in (-1.0, 1.0))
+def reliefs(pair: GearPair, drawn: Circles) -> list[tuple[float, float, float, float, float]]:
+    """Reliefs that act: gear (0 pinion, 1 gear), roll angles of start and end [rad], amount [m], power.
+
+    A tip relief ends at the tip, a root relief where the mate's tip touches last. Without
+    ``mesh.relief = "static"`` none acts.
+    """
+    rows = []
+    for which, gear, base, tip, mate in (
+        (0.0, pair.pinion, drawn.base_pinion, drawn.reach_pinion, drawn.reach_gear),
+        (1.0, pair.gear, drawn.base_gear, drawn.reach_gear, drawn.reach_pinion),
+    ):
+        for relief, end in ((gear.tip_relief, tip), (gear.root_relief, drawn.tangent - mate)):
+            if pair.mesh.relief == "static" and relief is not None and relief.amount != 0.0:
+                power = 1.0 if relief.shape == "linear" else 2.0
+                rows.append((which, relief.start_roll_angle, end / base, relief.amount, power))
+    return rows
+
+
+def base_tooth_angle(pair: GearPair, gear: Gear, base: float) -> float:
+    """Angle between both flanks of a tooth on the base circle, thinned by its share of the backlash [rad]."""
+    rack = pair.basic_rack
+    alpha = rack.pressure_angle
+    at_reference = (0.5 * math.pi + 2.0 * gear.profile_shift * math.tan(alpha)) / (0.5 * gear.teeth)
+    return at_reference + 2.0 * (math.tan(alpha) - alpha) - 0.5 * pair.mesh.backlash / base
+
+
+def _tip_radius(pair: GearPair, gear: Gear) -> float:
+    if gear.tip_diameter is not None:
+        return gear.tip_diameter / 2.0
+    module, addendum = pair.basic_rack.module, gear.addendum
+    if addendum is None:
+        addendum = (pair.basic_rack.addendum_coefficient + gear.profile_shift) * module
+    return module * gear.teeth / 2.0 + addendum
+
+
+def _close_mesh(pair: GearPair, base: float) -> float:
+    """Centre distance at which the teeth, as the rack cuts them, mesh without backlash [m]."""
+    alpha, teeth = pair.basic_rack.pressure_angle, pair.pinion.teeth + pair.gear.teeth
+    shift = pair.pinion.profile_shift + pair.gear.profile_shift
+
+    def gap(angle: float) -> float:
+        grown = (math.tan(angle) - angle) - (math.tan(alpha) - alpha)
+        return grown - 2.0 * shift / teeth * math.tan(alpha)
+
+    if shift == 0.0:
+        return base / math.cos(alpha)
+    return base / math.cos(float(brentq(gap, 0.0, _STEEPEST, xtol=1e-15, rtol=1e-14)))
+
+
+def _disc(pair: GearPair, gear: Gear) -> tuple[float, float]:
+    outer, inner = pair.basic_rack.module * gear.teeth, gear.bore  # diameters
+    mass = 0.25 * math.pi * (outer**2 - inner**2) * gear.face_width * gear.density
+    inertia = math.pi / 32.0 * (outer**4 - inner**4) * gear.face_width * gear.density
+    return (
+        mass if gear.mass is None else gear.mass,
+        inertia if gear.inertia is None else gear.inertia,
+    )

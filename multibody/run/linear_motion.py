@@ -93,7 +93,10 @@ def linear_motion(machine: Machine, brake: float | None) -> LinearMotion:
 
 def state_scale(machine: Machine, deflection: float) -> FloatArray:
     """Sizes of the 2n states in a vibration: a deflection [m], and that over the mesh cycle times 2 pi."""
-    lengths = deflection * machine.units
+    train, radii = _train(machine), machine.parameters[[kn.RADIUS_P, kn.RADIUS_G]]
+    lengths = np.full(train.size, deflection)
+    for angles, radius in zip(train.angles, radii, strict=True):
+        lengths[angles] *= 1.0 / radius  # an angle that moves the base circle by as much
     return np.concatenate([lengths, lengths * 2.0 * np.pi / machine.period])
 
 
@@ -115,7 +118,7 @@ def _train(machine: Machine) -> Train:
     return machine.train
 
 
-def unpaid(machine: Machine, motion: LinearMotion) -> float:
+def energy_residual(machine: Machine, motion: LinearMotion) -> float:
     """Losses by sliding, tooth dampers, bearings, shafts and couplings less the power that is missing [W].
 
     machine, motion : numbers for the linear mesh, and its periodic motion

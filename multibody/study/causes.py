@@ -12,7 +12,7 @@ import numpy as np
 from lumped.labelling import labelled_dataset, provenance
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import Progress
-from multibody.contact.effects import CAUSES, EFFECTS, default_effects
+from multibody.run.effects import CAUSES, EFFECTS, default_effects
 from multibody.run.flow_map import Orbit, cycles_of, find_orbit
 from multibody.run.setup import prepare
 

@@ -6,7 +6,7 @@ import xarray as xr
 
 import multibody
 from lumped import NumericalError
-from multibody.contact.effects import CAUSES
+from multibody.run.effects import CAUSES
 from validation.cross_check.comparison import CrossCheck
 from validation.cross_check.verdict import Judgement
 from validation.reporting.formatting import number, quantity

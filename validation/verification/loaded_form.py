@@ -24,10 +24,10 @@ from lumped.quasi_static.loaded import FULL_DAMPING
 from lumped.stiffness.foundation import LOCAL_RATIO
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
-from multibody.contact.effects import effect_flags
 from multibody.contact.elements import gradual, shared_loads, stiffness_at
 from multibody.contact.kinematics import DRIVE, Line, corners_at
 from multibody.contact.machine import Machine, machine
+from multibody.run.effects import effect_flags
 from validation.verification.checks import Check, rows_check
 
 _PLACES = 31

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from lumped import GearPair
-from multibody.contact.drawing import circles
+from multibody.contact.machine import circles
 from validation.verification.checks import Check, check
 from validation.verification.published import PublishedValue, published_values, shown
 

@@ -34,7 +34,7 @@ from lumped.stiffness.finite_elements import (
 from lumped.stiffness.foundation import thin_rims
 from lumped.stiffness.neighbours import neighbour_compliances
 from lumped.typing import FloatArray
-from multibody.contact.drawing import circles
+from multibody.contact.machine import circles
 from validation.verification.checks import Check, check, rows_check
 
 if TYPE_CHECKING:

@@ -19,8 +19,7 @@ from lumped.quasi_static.contacts import mesh_elements
 from lumped.quasi_static.tooth_error import relief_error
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
-from multibody.contact.drawing import circles, masses
-from multibody.contact.machine import machine
+from multibody.contact.machine import circles, machine, masses
 from validation.verification.checks import Check, check, rows_check
 from validation.verification.loaded_form import loaded_form
 from validation.verification.on_shafts import on_shafts

@@ -62,7 +62,7 @@ SHARED: tuple[Shared, ...] = (
         "the load of the friction laws: full static load w_n, whatever a tooth pair carries",
         "the paper's assumption; the momentary load is the effect 'friction_load'",
         "the attribution shows what the momentary load changes",
-        ("multibody/contact/effects.py",),
+        ("multibody/run/effects.py",),
     ),
     Shared(
         "viscosity at 100 degC of an oil of an ISO VG grade (tables of ASTM D2270)",

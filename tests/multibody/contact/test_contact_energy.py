@@ -17,9 +17,9 @@ from lumped.quasi_static.kernels import shared_loads as lumped_shared_loads
 from lumped.quasi_static.loaded import StaticMesh
 from multibody.contact import kernels as kn
 from multibody.contact import kinematics as kin
-from multibody.contact.effects import effect_flags
 from multibody.contact.elements import elastic_load, shared_loads, stored_energy
 from multibody.contact.machine import machine
+from multibody.run.effects import effect_flags
 from multibody.run.flow_map import find_orbit
 from multibody.run.setup import prepare
 

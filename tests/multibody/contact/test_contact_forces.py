@@ -8,9 +8,9 @@ import pytest
 import lumped
 from multibody.contact import kernels as kn
 from multibody.contact import kinematics as kin
-from multibody.contact.effects import effect_flags
 from multibody.contact.kernels import linear_forces, tooth_forces
 from multibody.contact.machine import machine
+from multibody.run.effects import effect_flags
 from multibody.run.model import from_lumped_state, to_lumped_state
 
 PAIR = lumped.load_gear_pair("nasa_28_28").with_(friction__law="coulomb", friction__coefficient=0.1)

@@ -9,7 +9,6 @@ import lumped
 import multibody
 from lumped import PathFunction
 from multibody.contact import kernels as kn
-from multibody.contact.effects import effect_flags
 from multibody.contact.events import (
     ENTRY,
     EXIT,
@@ -23,6 +22,7 @@ from multibody.contact.events import (
 )
 from multibody.contact.kinematics import MAX_PAIRS
 from multibody.contact.machine import machine
+from multibody.run.effects import effect_flags
 
 JUMPS = lumped.load_gear_pair("nasa_28_28").with_(
     mesh__relief="ignored", friction__law="coulomb", friction__coefficient=0.05

@@ -8,8 +8,8 @@ import pytest
 import lumped
 from multibody.contact import friction as fr
 from multibody.contact import kernels as kn
-from multibody.contact.effects import effect_flags
 from multibody.contact.machine import machine
+from multibody.run.effects import effect_flags
 
 #: Error of the lumped model's polynomials, which carry the law there.
 FIT = 1e-10

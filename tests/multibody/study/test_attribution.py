@@ -8,7 +8,7 @@ import xarray as xr
 
 import lumped
 import multibody
-from multibody.contact.effects import (
+from multibody.run.effects import (
     CAUSES,
     DEFAULT_EFFECTS,
     EFFECTS,

@@ -11,7 +11,7 @@ import xarray as xr
 
 import lumped
 from lumped import NumericalError
-from multibody.contact.effects import CAUSES
+from multibody.run.effects import CAUSES
 from validation.reporting import cross_check_words
 from validation.reporting.blocks import Fact, Picture, Table, plain
 from validation.reporting.build import document as document_of

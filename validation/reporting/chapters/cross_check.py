@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from lumped.model.results import VARIABLES
-from multibody.contact.effects import CAUSES
+from multibody.run.effects import CAUSES
 from validation.cross_check.agreement import Agreement, off_switch_samples
 from validation.cross_check.comparison import CrossCheck
 from validation.cross_check.conservation import fed_back

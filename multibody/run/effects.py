@@ -13,7 +13,7 @@ and the attribution shows what it does.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,86 +22,38 @@ from lumped.errors import refuse
 from multibody.contact import kernels as kn
 
 
-@dataclass(frozen=True)
-class Effect:
+class Effect(NamedTuple):
     """One finite-motion effect.
 
-    Attributes
-    ----------
     bits : its switches in ``kernels``
-    meaning : what it changes
     cause : the cause of differences that it belongs to, a key of ``CAUSES``
     default : whether it acts where no effects are named
     """
 
     bits: int
-    meaning: str
     cause: str
     default: bool = True
 
 
 EFFECTS: dict[str, Effect] = {
-    "rotation_phase": Effect(
-        kn.ROTATION_PHASE,
-        "the contact moves with the actual rotations, vibration included",
-        "contact_position",
-    ),
-    "moving_line": Effect(
-        kn.MOVING_LINE,
-        "the line of action turns and moves with the actual gear centres",
-        "contact_position",
-    ),
-    "sliding_velocity": Effect(
-        kn.SLIDING,
-        "friction follows the actual sliding and rolling velocities",
-        "sliding_velocity",
-    ),
-    "entry_shift": Effect(
-        kn.ENTRY_SHIFT,
-        "teeth enter and leave where the deflected flanks cross the tip circles",
-        "entry_shift",
-    ),
-    "contact_loss": Effect(
-        kn.CONTACT_LOSS | kn.BACK_SIDE,
-        "teeth push but never pull; after the backlash the back sides touch",
-        "contact_loss",
-    ),
-    "friction_load": Effect(
-        kn.FRICTION_LOAD,
-        "the friction law reads the momentary load of each tooth pair, not the full static load",
-        "friction_load",
-        default=False,
-    ),
-    "path_work": Effect(
-        kn.PATH_WORK,
-        "bent teeth turn the contact normal: the shafts pay for what the teeth store",
-        "path_work",
-        default=False,
-    ),
-    "tip_contact": Effect(
-        kn.TIP_CONTACT,
-        "teeth touch where the gap of flanks and tip corners closes, also before A and behind D",
-        "contact_energy",
-        default=False,
-    ),
-    "clearance": Effect(
-        kn.CLEARANCE,
-        "relief is clearance: teeth touch where their flanks meet, not where statics say",
-        "contact_energy",
-        default=False,
-    ),
-    "contact_law": Effect(
-        kn.CONTACT_LAW,
-        "the contact of a tooth pair grows stiffer with its own momentary load, by Weber and Banaschek",
-        "contact_energy",
-        default=False,
-    ),
-    "neighbours": Effect(
-        kn.NEIGHBOURS,
-        "the load of a tooth moves the next teeth, where the stiffness model knows how far",
-        "contact_energy",
-        default=False,
-    ),
+    # The contact moves with the actual rotations, vibration included ...
+    "rotation_phase": Effect(kn.ROTATION_PHASE, "contact_position"),
+    # ... and its line with the actual gear centres.
+    "moving_line": Effect(kn.MOVING_LINE, "contact_position"),
+    "sliding_velocity": Effect(kn.SLIDING, "sliding_velocity"),
+    "entry_shift": Effect(kn.ENTRY_SHIFT, "entry_shift"),
+    # After the backlash the back sides touch.
+    "contact_loss": Effect(kn.CONTACT_LOSS | kn.BACK_SIDE, "contact_loss"),
+    "friction_load": Effect(kn.FRICTION_LOAD, "friction_load", default=False),
+    "path_work": Effect(kn.PATH_WORK, "path_work", default=False),
+    # Teeth touch where the gap of flanks and tip corners closes, also before A and behind D ...
+    "tip_contact": Effect(kn.TIP_CONTACT, "contact_energy", default=False),
+    # ... and where their flanks meet, not where statics say: relief is clearance.
+    "clearance": Effect(kn.CLEARANCE, "contact_energy", default=False),
+    # The contact grows stiffer with its own momentary load, by Weber and Banaschek.
+    "contact_law": Effect(kn.CONTACT_LAW, "contact_energy", default=False),
+    # The load of a tooth moves the next teeth, where the stiffness model knows how far.
+    "neighbours": Effect(kn.NEIGHBOURS, "contact_energy", default=False),
 }
 #: Why the models may differ, in words. Rotations and centres together place the contact; one without the
 #: other is no motion of the machine, so the two effects count as one cause.
@@ -112,17 +64,14 @@ CAUSES: dict[str, str] = {
     "contact_loss": "teeth push but never pull",
     "friction_load": "friction law at the momentary load of each pair",
     "contact_energy": "contact that follows from clearance and the load of each pair",
-    "path_work": "bent teeth turn the contact normal: the shafts pay for what the teeth store",
+    "path_work": "bent teeth turn the contact normal: the shafts supply what the teeth store",
 }
 #: Effects that act where none are named: all finite motions.
 DEFAULT_EFFECTS: tuple[str, ...] = tuple(name for name, effect in EFFECTS.items() if effect.default)
 
 
 def default_effects(contact: str) -> tuple[str, ...]:
-    """Names of the effects that act where none are named.
-
-    contact : ``mesh.contact`` of the pair: "prescribed", or "loaded" whose contact has an energy
-    """
+    """Names of the effects that act where none are named, with ``mesh.contact`` of the pair."""
     energy = ("contact_energy", "path_work") if contact == "loaded" else ()
     return tuple(name for name, e in EFFECTS.items() if e.default or e.cause in energy)
 
@@ -130,10 +79,8 @@ def default_effects(contact: str) -> tuple[str, ...]:
 def effect_flags(effects: Collection[str] | Mapping[str, bool] | None, contact: str = "prescribed") -> int:
     """Return the kernel's switch bits.
 
-    effects : names of the effects that act, or a mapping name -> bool; names that a mapping
-        leaves out, or all of them with None, act if they are ``DEFAULT_EFFECTS``, with loaded contact of the
-        model those of the contact's energy too
-    contact : ``mesh.contact`` of the pair
+    effects : names of the effects that act, or a mapping name -> bool; names that a mapping leaves out, or
+        all of them with None, act if they are ``default_effects`` of ``contact``
     Raises ParameterError : unknown effect
     """
     default = default_effects(contact)
