@@ -163,7 +163,6 @@ class FrictionLaw:
     signed : (xi [m], path, settings) -> signed mu [-], vectorised over xi
     switches : (path, settings) -> positions where mu jumps or has a kink [m]
     numeral : Roman number in the paper's order; empty for a law that the paper does not have
-    authors : label in a sentence, where it differs from ``label``
     ranges : validity ranges of the law's arguments
     parts : for a law made of others, (xi, path, settings) -> pairs of a law and where it is in force
     coefficient : whether |mu| far from the pitch point is one number, ``friction.coefficient``
@@ -176,7 +175,6 @@ class FrictionLaw:
     signed: Callable[[FloatArray, ContactPath, FrictionSettings], FloatArray]
     switches: Callable[[ContactPath, FrictionSettings], list[float]]
     numeral: str = ""
-    authors: str = ""
     ranges: tuple[ValidityRange, ...] = ()
     parts: (
         Callable[[FloatArray, ContactPath, FrictionSettings], list[tuple[FrictionLaw, BoolArray]]] | None
@@ -189,11 +187,6 @@ class FrictionLaw:
     def title(self) -> str:
         """Number and label, for tables and legends."""
         return f"{self.numeral} {self.label}".lstrip()
-
-    @property
-    def long_name(self) -> str:
-        """Number and authors, for a list of choices."""
-        return ", ".join(filter(None, (self.numeral, self.authors or self.label)))
 
     def is_constant(self, settings: FrictionSettings) -> bool:
         """Whether mu(xi) is the same at every speed and load."""

@@ -147,7 +147,6 @@ LAW = FrictionLaw(
     name="benedict_kelley",
     numeral="II",
     label="Benedict-Kelley",
-    authors="Benedict and Kelley",
     signed=_signed,
     switches=_switches,
     ranges=RANGES,

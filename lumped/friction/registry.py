@@ -41,13 +41,13 @@ def _plain(text: str) -> str:
 _SPELLINGS = {
     _plain(spelling): law.name
     for law in LAWS.values()
-    for spelling in (law.name, law.label, law.numeral, law.title, law.authors, law.long_name)
+    for spelling in (law.name, law.label, law.numeral, law.title)
     if spelling
 }
 
 
 def file_name(spelling: object) -> object:
-    """Return the name in parameter files of a law by number, label or authors: "II", "Coulomb", "law III".
+    """Return the name in parameter files of a law by number or label: "II", "Coulomb", "law III".
 
     Anything else is returned unchanged.
     """

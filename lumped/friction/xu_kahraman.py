@@ -91,7 +91,6 @@ LAW = FrictionLaw(
     name="xu_kahraman",
     numeral="III",
     label="Xu-Kahraman",
-    authors="Xu and Kahraman",
     signed=_signed,
     switches=lambda path, settings: [path.L_XP],
     ranges=RANGES,

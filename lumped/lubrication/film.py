@@ -8,7 +8,6 @@ sine.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -153,23 +152,3 @@ def regime(film_parameter: ArrayLike, thresholds: Sequence[float] = DEFAULT_THRE
         raise refuse("friction.thresholds", shown(thresholds), allowed, "Use for example [1, 4, 10].")
     value = checked("film_parameter", film_parameter, "", allow_zero=True)
     return np.asarray(np.digitize(value, limits), dtype=np.int64)
-
-
-def composite_roughness(pinion: float, gear: float) -> float:
-    """R_comp = sqrt(R_p^2 + R_g^2), the roughness of the gap, in the convention and unit of its arguments.
-
-    The surfaces are independent: variances add. Lambda on Ra is 1.25 times Lambda on Rq for Gaussian heights.
-
-    >>> float(composite_roughness(0.3, 0.4))
-    0.5
-    """
-    return math.hypot(pinion, gear)
-
-
-def mean_roughness(pinion: float, gear: float) -> float:
-    """S = (R_p + R_g)/2, the average roughness that laws II and III take, in the unit of its arguments.
-
-    >>> float(mean_roughness(0.3, 0.4))
-    0.35
-    """
-    return 0.5 * (pinion + gear)

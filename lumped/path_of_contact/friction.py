@@ -6,6 +6,7 @@ friction".
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -19,7 +20,6 @@ from lumped.friction.benedict_kelley import average_coefficient, friction_number
 from lumped.friction.registry import FRICTIONAL, LAWS, law_named
 from lumped.labelling import labelled_dataset
 from lumped.lubrication import film
-from lumped.lubrication.film import composite_roughness, mean_roughness
 from lumped.path_function import PathFunction
 from lumped.ranges import RangeViolation, range_violations, warn_violations
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -44,7 +44,8 @@ def contact_path(pair: AnyPair) -> ContactPath:
     pinion, gear = pair.pinion, pair.gear
     composite = friction.composite_roughness
     if composite is None:
-        composite = composite_roughness(pinion.roughness, gear.roughness)
+        # The surfaces are independent: variances add.
+        composite = math.hypot(pinion.roughness, gear.roughness)
     return ContactPath(
         L_XA=g.L_XA,
         L_XP=g.L_XP,
@@ -59,7 +60,7 @@ def contact_path(pair: AnyPair) -> ContactPath:
         viscosity=lubricant.dynamic_viscosity,
         pressure_viscosity_k=lubricant.pressure_viscosity_k,
         pressure_viscosity_s=lubricant.pressure_viscosity_s,
-        roughness=mean_roughness(pinion.roughness, gear.roughness),
+        roughness=0.5 * (pinion.roughness + gear.roughness),
         composite_roughness=composite,
         film_length=friction.film_length,
     )

@@ -83,7 +83,7 @@ def render(results: PageResults, data_name: str) -> str:
     return environment.get_template("page.html").render(
         pair=pair,
         rpm=operating_rpm(pair),
-        law=LAWS[pair.friction.law].long_name,
+        law=LAWS[pair.friction.law].title,
         found=results.found,
         slices=results.stability.values(),
         step=float(np.diff(next(iter(results.stability.values())).chart["speed_rpm"]).max()),
@@ -92,7 +92,7 @@ def render(results: PageResults, data_name: str) -> str:
         branches=_branch_rows(results.branches) if isinstance(results.branches, xr.Dataset) else [],
         jumps=results.jumps,
         no_branches=results.branches if isinstance(results.branches, str) else "",
-        missing={LAWS[law].long_name: reason for law, reason in results.missing.items()},
+        missing={LAWS[law].title: reason for law, reason in results.missing.items()},
         data_name=data_name,
         policy="script-src " + " ".join(map(_hash, scripts)),
         scripts=[Markup(_safe(script)) for script in scripts],

@@ -80,7 +80,7 @@ def _sweep(results: PageResults) -> dict[str, Any]:
         laws.append(
             {
                 "key": law,
-                "name": LAWS[law].long_name,
+                "name": LAWS[law].title,
                 "note": results.notes[index],
                 **{name: _numbers(1e6 * one[variable].to_numpy()) for name, variable in micrometres.items()},
                 "load": _numbers(one["lowest_load"]),

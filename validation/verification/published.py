@@ -39,7 +39,7 @@ FORMULAS: Mapping[str, frozenset[str]] = {
         "losses.loss_factor": "ohlendorf",
         "losses.published": "anderson_loewenthal_coefficient iso_14179_mean_coefficient",
         "lubrication.film": "film_thickness effective_modulus hertz_half_width hertz_pressure "
-        "pressure_viscosity film_parameter regime composite_roughness mean_roughness",
+        "pressure_viscosity film_parameter regime",
         "lubrication.viscosity": "walther_constants kinematic_viscosity oil_density "
         "viscosity_index viscosity_at_100 grade_viscosity",
         "stiffness.energy": "linear_hertz_compliance contact_half_width local_compliance",

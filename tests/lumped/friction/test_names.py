@@ -9,7 +9,7 @@ from lumped.friction.registry import LAWS, law_named
 NAMES = [
     (law.name, spelled)
     for law in LAWS.values()
-    for text in (law.name, law.label, law.numeral, law.title, law.authors, law.long_name)
+    for text in (law.name, law.label, law.numeral, law.title)
     for spelled in (text, text.upper(), text.lower(), text.replace("-", " "), f"law {text}")
     if text
 ]
