@@ -13,134 +13,30 @@ compiled = Compiler([Path(__file__)])
 
 
 @compiled
-def laws_at(
-    offsets: FloatArray,
-    shift: FloatArray,
-    contact: BoolArray,
-    k_breaks: FloatArray,
-    k_coefficients: FloatArray,
-    c_breaks: FloatArray,
-    c_coefficients: FloatArray,
-    mu_breaks: FloatArray,
-    mu_coefficients: FloatArray,
-    e_breaks: FloatArray,
-    e_coefficients: FloatArray,
-    de_breaks: FloatArray,
-    de_coefficients: FloatArray,
+def law_at(
+    breaks: FloatArray, coefficients: FloatArray, offsets: FloatArray, shift: FloatArray, contact: BoolArray
 ) -> FloatArray:
-    """Five path functions (5, pairs, k) of all pairs where ``contact`` (pairs, k), zero elsewhere.
+    """A path function of all pairs (pairs, k) where ``contact`` (pairs, k), zero elsewhere.
 
-    Parameters
-    ----------
-    offsets : (pairs,) xi_i at the start of the cycle [m]
-    shift : (k,) distance moved along the line of action [m]
+    ``offsets`` are xi_i (pairs,) at the start of the cycle, ``shift`` the way since then (k,) [m].
     """
-    values = np.zeros((5, offsets.size, shift.size))
+    values = np.zeros((offsets.size, shift.size))
+    last = breaks.size - 1
     for pair in range(offsets.size):
-        _law_along(k_breaks, k_coefficients, offsets[pair], shift, contact[pair], values[0, pair])
-        _law_along(c_breaks, c_coefficients, offsets[pair], shift, contact[pair], values[1, pair])
-        _law_along(mu_breaks, mu_coefficients, offsets[pair], shift, contact[pair], values[2, pair])
-        _law_along(e_breaks, e_coefficients, offsets[pair], shift, contact[pair], values[3, pair])
-        _law_along(de_breaks, de_coefficients, offsets[pair], shift, contact[pair], values[4, pair])
+        piece = 0
+        for i in range(shift.size):
+            xi = offsets[pair] + shift[i]
+            if not contact[pair, i] or not breaks[0] <= xi <= breaks[last]:
+                continue
+            # Neighbours mostly lie on the same piece, which is tried first.
+            if not (breaks[piece] <= xi and (xi < breaks[piece + 1] or piece == last - 1)):
+                piece = min(np.searchsorted(breaks, xi, side="right"), last) - 1
+            local = xi - breaks[piece]
+            value = coefficients[0, piece]
+            for power in range(1, coefficients.shape[0]):
+                value = value * local + coefficients[power, piece]
+            values[pair, i] = value
     return values
-
-
-@compiled
-def _law_along(
-    breaks: FloatArray,
-    coefficients: FloatArray,
-    offset: float,
-    shift: FloatArray,
-    contact: BoolArray,
-    values: FloatArray,
-) -> None:
-    """One of them for one pair; neighbours mostly lie on the same piece, which is tried first."""
-    last, piece = breaks.size - 1, 0
-    for i in range(shift.size):
-        xi = offset + shift[i]
-        if not contact[i] or not breaks[0] <= xi <= breaks[last]:
-            continue
-        if not (breaks[piece] <= xi and (xi < breaks[piece + 1] or piece == last - 1)):
-            piece = min(np.searchsorted(breaks, xi, side="right"), last) - 1
-        local = xi - breaks[piece]
-        value = coefficients[0, piece]
-        for power in range(1, coefficients.shape[0]):
-            value = value * local + coefficients[power, piece]
-        values[i] = value
-
-
-@compiled
-def free_steps(
-    h: FloatArray,
-    stiffness: FloatArray,
-    damping: FloatArray,
-    deflection: FloatArray,
-    forces: FloatArray,
-    a: FloatArray,
-    aa: FloatArray,
-    b: FloatArray,
-    ba: FloatArray,
-    c: FloatArray,
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Gauss steps of lengths h (k,) without the mesh, of coordinates that are problems of their own.
-
-    Parameters
-    ----------
-    stiffness, damping, deflection : (m,) z'' by z and by z', and u
-    forces : (m, forcings) z'' by each forcing
-    a, aa, b, ba, c : (s, s) and (s,) tableau, and its products a a and b a
-
-    Returns
-    -------
-    arrays of ``lumped.model.propagation._without_mesh``
-    """
-    s, m, columns = c.size, deflection.size, 2 * deflection.size + forces.shape[1]
-    end, p = np.zeros((h.size, 2 * m, columns)), np.zeros((h.size, s, columns))
-    by_feedback, start = np.zeros((h.size, s, m, s + 2 * m)), np.zeros((h.size, 2 * s, columns))
-    by_p = np.empty((h.size, 2 * s, s))
-    left, solved = np.empty((s, s)), np.empty((m, s, 3 + s))
-    for j in range(h.size):
-        t = h[j]
-        for i in range(m):
-            # Accelerations at the stages by z and by v at the start, by a unit force, and by a force at each.
-            # Most coordinates are held like one before.
-            u, like = deflection[i], 0
-            while like < i and (stiffness[like] != stiffness[i] or damping[like] != damping[i]):
-                like += 1
-            right = solved[like]
-            if like == i:
-                for row in range(s):
-                    for column in range(s):
-                        unit = 1.0 if row == column else 0.0
-                        left[row, column] = (
-                            unit - t**2 * stiffness[i] * aa[row, column] - t * damping[i] * a[row, column]
-                        )
-                        right[row, 3 + column] = unit
-                    right[row, 0] = stiffness[i]
-                    right[row, 1] = t * stiffness[i] * c[row] + damping[i]
-                    right[row, 2] = 1.0
-                _solve(left, right)
-            end[j, i, i], end[j, i, m + i], end[j, m + i, m + i] = 1.0, t, 1.0
-            for row in range(s):
-                to_z, to_v = t**2 * ba[row], t * b[row]
-                for of in range(2):
-                    end[j, i, of * m + i] += to_z * right[row, of]
-                    end[j, m + i, of * m + i] += to_v * right[row, of]
-                    p[j, row, of * m + i] = u * right[row, of]
-                for f in range(forces.shape[1]):
-                    by_force = right[row, 2] * forces[i, f]
-                    end[j, i, 2 * m + f] += to_z * by_force
-                    end[j, m + i, 2 * m + f] += to_v * by_force
-                    p[j, row, 2 * m + f] += u * by_force
-                for stage in range(s):
-                    by_feedback[j, stage, i, row] = u * right[row, 3 + stage]
-                    by_feedback[j, stage, i, s + i] += to_z * right[row, 3 + stage]
-                    by_feedback[j, stage, i, s + m + i] += to_v * right[row, 3 + stage]
-                start[j, row, i], start[j, s + row, m + i], start[j, row, m + i] = u, u, t * c[row] * u
-        for row in range(s):
-            for column in range(s):
-                by_p[j, row, column], by_p[j, s + row, column] = t**2 * aa[row, column], t * a[row, column]
-    return end, p, by_feedback, start, by_p
 
 
 @compiled

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.gear_geometry.geometry import Geometry
-from lumped.model.kernels import laws_at
+from lumped.model.kernels import law_at
 from lumped.quasi_static.contacts import mesh_elements
 from lumped.quasi_static.elements import MeshElements, mean_of_pairs
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -185,8 +185,9 @@ class MeshCycle:
         shift = np.clip(speed * tau, low, high)
         contact, e = np.take(self._contact, index, axis=1), self.elements
         laws = (e.stiffness, e.damping, e.friction, e.error, e.error_slope)
-        tables = [part for law in laws for part in (law.breaks, law.coefficients)]
-        k, c, mu, error, slope = laws_at(self.offsets, shift, contact, *tables)
+        k, c, mu, error, slope = (
+            law_at(law.breaks, law.coefficients, self.offsets, shift, contact) for law in laws
+        )
         position = self.offsets[:, None] + speed * tau
         return PairState(position, contact, k, c, mu, error, error_rate=slope * speed)
 

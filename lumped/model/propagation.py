@@ -10,7 +10,7 @@ import numpy as np
 
 from lumped.errors import NumericalError
 from lumped.gauss_legendre import gauss_tableau
-from lumped.model.kernels import chained, free_steps, gauss_steps, states_along
+from lumped.model.kernels import chained, gauss_steps, states_along
 from lumped.model.mesh_cycle import among
 from lumped.model.periodic_system import LTVSystem
 from lumped.typing import FloatArray, IntArray
@@ -209,43 +209,12 @@ def _without_mesh(
 ) -> tuple[FloatArray, ...]:
     """What ``_steps`` needs of step lengths h (k,); columns are unit states and forcings, s stages.
 
-    Without shafts each coordinate is a problem of its own then, of s equations, for a bearing acts on one.
-
     Returns
     -------
     end (k, 2m, columns) and p (k, s, columns) without feedback; what p, then the end take from the feedback
     n_i (k, s, m, s + 2m); stage deflections, then their rates, by the start (k, 2s, columns) and by p
     (k, 2s, s)
     """
-    m = system.size // 2
-    stiffness, damping = system.constant[m:, :m], system.constant[m:, m:]
-    if _couples(stiffness) or _couples(damping):
-        return _coupled_without_mesh(system, h, extra, gauss)
-    forces = np.column_stack([system.torque_pinion * system.pinion_torque, extra])[m:]
-    a, b, c = gauss
-    found: tuple[FloatArray, ...] = free_steps(
-        h,
-        np.diag(stiffness).copy(),
-        np.diag(damping).copy(),
-        system.deflection,
-        forces,
-        a,
-        a @ a,
-        b,
-        b @ a,
-        c,
-    )
-    return found
-
-
-def _couples(block: FloatArray) -> bool:
-    return bool(np.count_nonzero(block) > np.count_nonzero(np.diag(block)))
-
-
-def _coupled_without_mesh(
-    system: LTVSystem, h: FloatArray, extra: FloatArray, gauss: tuple[FloatArray, FloatArray, FloatArray]
-) -> tuple[FloatArray, ...]:
-    """The same where stiffness and damping couple the coordinates: one problem of s m equations."""
     a, b, c = gauss
     s, m, k, u = c.size, system.size // 2, h.size, system.deflection
     stiffness, damping = system.constant[m:, :m], system.constant[m:, m:]

@@ -15,9 +15,12 @@ import numpy as np
 from scipy.optimize import brentq
 
 from lumped.path_function import PathFunction
+from lumped.schema.contact import Friction
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
 
+#: Speed [rad/s] and friction of the pairs by which static results are cached: any.
+_SPEED, _FRICTION = 100.0, Friction.model_construct(law="none")
 #: Samples over the searched range between which contact begins or ends at most once.
 _SAMPLES = 2000
 
@@ -69,6 +72,20 @@ class Contact(ABC):
     @abstractmethod
     def least_load(self, load: FloatArray, contact: BoolArray) -> float:
         """The smallest of the loads (pairs, k) that must not pull: below zero contact is lost [N]."""
+
+
+def at_rest(pair: GearPair) -> GearPair:
+    """The pair without speed, friction and dampers, which statics does not feel: the key of its results."""
+    fields = {name: getattr(pair, name) for name in GearPair.model_fields}
+    fields |= {
+        "name": "",
+        "description": "",
+        "sources": (),
+        "friction": _FRICTION,
+        "mesh": pair.mesh.model_copy(update={"damping_ratio": 0.0}),
+        "operating": pair.operating.model_copy(update={"pinion_speed": _SPEED}),
+    }
+    return GearPair.model_construct(**fields)
 
 
 def mean_of_pairs(law: PathFunction, pitch: float) -> float:

@@ -22,12 +22,11 @@ from scipy.optimize import brentq
 from lumped.errors import NumericalError
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
-from lumped.quasi_static.elements import Contact, MeshElements, positive_intervals, restricted
+from lumped.quasi_static.elements import Contact, MeshElements, at_rest, positive_intervals, restricted
 from lumped.quasi_static.kernels import approaches, gaps_at, middle_loads
 from lumped.quasi_static.load_sharing import coupled
 from lumped.quasi_static.tooth_error import relief_error, relief_starts
 from lumped.schema.bodies import bodies
-from lumped.schema.contact import Friction
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
 
@@ -37,8 +36,6 @@ _REACH = 0.4
 _SAME = 1e-9
 #: Fit errors over the largest value; lengths are positions' differences, known to some 1e-17 m.
 _TOLERANCE, _LENGTH = 1e-10, 2e-17
-#: Speed [rad/s] and friction of the pairs by which contacts are kept: any.
-_SPEED, _FRICTION = 100.0, Friction.model_construct(law="none")
 #: Below this share of the mean load Hertz's contact is held linear, see ``ContactLaw``.
 LEAST_LOAD = 1e-3
 #: A ramp ends without stiffness; so much of the largest one is left, below the fit error of every law.
@@ -282,17 +279,7 @@ def loaded_contact(pair: GearPair) -> LoadedContact:
     ParameterError : a relief starts outside the active flank
     NumericalError : at some position no pair can carry the load, or contact reaches too far beyond the tips
     """
-    # The static mesh knows neither speed nor friction nor dampers: sweeps and comparisons of laws share one.
-    fields = {name: getattr(pair, name) for name in GearPair.model_fields}
-    fields |= {
-        "name": "",
-        "description": "",
-        "sources": (),
-        "friction": _FRICTION,
-        "mesh": pair.mesh.model_copy(update={"damping_ratio": 0.0}),
-        "operating": pair.operating.model_copy(update={"pinion_speed": _SPEED}),
-    }
-    return _loaded_contact(GearPair.model_construct(**fields))
+    return _loaded_contact(at_rest(pair))
 
 
 @lru_cache(maxsize=32)

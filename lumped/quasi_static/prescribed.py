@@ -10,6 +10,7 @@ Sources: docs/theory/mesh_physics.md, "Load sharing and static transmission erro
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from lumped.errors import NumericalError
 from lumped.gear_geometry.geometry import Geometry
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
-from lumped.quasi_static.elements import Contact, MeshElements, positive_intervals, restricted
+from lumped.quasi_static.elements import Contact, MeshElements, at_rest, positive_intervals, restricted
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.tooth_error import error_function
 from lumped.schema.bodies import bodies
@@ -85,7 +86,11 @@ def loaded_mesh(pair: AnyPair) -> LoadedMesh:
     ParameterError : a relief starts outside the active flank
     NumericalError : at this torque no pair touches at some position
     """
-    pair = load_gear_pair(pair)
+    return _loaded_mesh(at_rest(load_gear_pair(pair)))
+
+
+@lru_cache(maxsize=32)
+def _loaded_mesh(pair: GearPair) -> LoadedMesh:
     g, torque = pair.geometry, pair.operating.pinion_torque
     k, error = pair_stiffness(pair), error_function(pair)
     if not error.coefficients.any():
