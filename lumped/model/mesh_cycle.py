@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.gear_geometry.geometry import Geometry
 from lumped.model.kernels import law_at
+from lumped.path_function import PathFunction
 from lumped.quasi_static.contacts import mesh_elements
 from lumped.quasi_static.elements import MeshElements, mean_of_pairs
 from lumped.schema.files import AnyPair, load_gear_pair
@@ -49,13 +50,7 @@ class PairState:
 
 @dataclass(frozen=True, eq=False)
 class MeshCycle:
-    """The mesh cycle of a gear pair at nominal rotation; t = 0 is pair n at A.
-
-    Attributes
-    ----------
-    geometry : of the pair
-    elements : stiffness, damping, friction coefficient and error of a tooth pair over the path
-    """
+    """The mesh cycle of a pair, from its geometry and elements, at nominal rotation; t = 0 is pair n at A."""
 
     geometry: Geometry
     elements: MeshElements
@@ -90,13 +85,14 @@ class MeshCycle:
 
     @cached_property
     def switch_times(self) -> FloatArray:
-        """Times strictly inside (0, T_m) at which a coefficient jumps or has a kink; increasing [s].
+        """Times strictly inside (0, T_m) at which a coefficient jumps or has a kink; increasing [s]."""
+        entry_pitch_exit = np.array([self.geometry.L_XP, self.start, self.end])
+        return self._times([entry_pitch_exit, *(law.switches for law in self._laws)])
 
-        A pair enters and leaves contact, passes P and the switches of its k, c, mu and e; A is t = 0.
-        """
-        g, e = self.geometry, self.elements
-        functions = (e.stiffness, e.damping, e.friction, e.error)
-        return self._times([np.array([g.L_XP, self.start, self.end]), *(f.switches for f in functions)])
+    @property
+    def _laws(self) -> tuple[PathFunction, ...]:
+        e = self.elements
+        return e.stiffness, e.damping, e.friction, e.error
 
     def _times(self, positions: list[FloatArray]) -> FloatArray:
         """Increasing times strictly inside (0, T_m) at which any pair is at any of the positions [s]."""
@@ -108,26 +104,20 @@ class MeshCycle:
 
     @cached_property
     def edges(self) -> FloatArray:
-        """Ends of the segments without jumps and kinks, 0 and T_m included [s].
-
-        For integrators that control their steps. Whatever relies on smoothness takes ``breaks``.
-        """
+        """Ends of the segments without jumps and kinks, 0 and T_m included [s]; see ``breaks``."""
         return np.concatenate([[0.0], self.switch_times, [self.period]])
 
     @cached_property
     def break_phases(self) -> FloatArray:
         """Phases in [0, 1) at which a pair passes any break of k, c, mu or e, or A, P or D; as computed."""
-        g, e = self.geometry, self.elements
-        functions = (e.stiffness, e.damping, e.friction, e.error)
-        positions = np.concatenate([[g.L_XA, g.L_XP, g.L_XD], *(f.breaks for f in functions)])
+        g = self.geometry
+        positions = np.concatenate([[g.L_XA, g.L_XP, g.L_XD], *(law.breaks for law in self._laws)])
         return np.asarray(np.unique(np.mod((positions - g.L_XA) / g.base_pitch, 1.0)), dtype=np.float64)
 
     @cached_property
     def bends(self) -> FloatArray:
         """Times strictly inside (0, T_m) at which a law of a pair is not smooth, switches included [s]."""
-        e = self.elements
-        bends = [f.bends for f in (e.stiffness, e.damping, e.friction, e.error)]
-        return np.union1d(self.switch_times, self._times(bends))
+        return np.union1d(self.switch_times, self._times([law.bends for law in self._laws]))
 
     @cached_property
     def breaks(self) -> FloatArray:
@@ -141,7 +131,7 @@ class MeshCycle:
         marks = marks[(marks <= 0.0) | (marks >= near)]
         marks = marks[(marks >= self.period) | (marks <= self.period - near)]
         close = np.flatnonzero(np.diff(marks) < near)
-        fixed = among(marks, self.edges)
+        fixed = is_edge(marks, self.edges)
         return np.asarray(np.delete(marks, [j if fixed[j + 1] else j + 1 for j in close]), dtype=np.float64)
 
     @cached_property
@@ -183,16 +173,16 @@ class MeshCycle:
         speed, inside = g.omega_pinion * g.base_radius_pinion, _INSIDE * g.base_pitch
         low, high = speed * self.edges[index] + inside, speed * self.edges[index + 1] - inside
         shift = np.clip(speed * tau, low, high)
-        contact, e = np.take(self._contact, index, axis=1), self.elements
-        laws = (e.stiffness, e.damping, e.friction, e.error, e.error_slope)
+        contact = np.take(self._contact, index, axis=1)
         k, c, mu, error, slope = (
-            law_at(law.breaks, law.coefficients, self.offsets, shift, contact) for law in laws
+            law_at(law.breaks, law.coefficients, self.offsets, shift, contact)
+            for law in (*self._laws, self.elements.error_slope)
         )
         position = self.offsets[:, None] + speed * tau
         return PairState(position, contact, k, c, mu, error, error_rate=slope * speed)
 
 
-def among(times: FloatArray, edges: FloatArray) -> BoolArray:
+def is_edge(times: FloatArray, edges: FloatArray) -> BoolArray:
     """Whether each of some times (k,) is one of the increasing edges; a tenth of the time of `numpy.isin`."""
     return np.asarray(edges[np.minimum(np.searchsorted(edges, times), edges.size - 1)] == times)
 

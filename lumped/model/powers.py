@@ -1,9 +1,8 @@
-"""Where the power of the periodic motion goes: sliding, tooth dampers, bearings, brake; and what nobody pays.
+"""Where the power of the periodic motion goes: sliding, tooth dampers, bearings, brake.
 
-The dampers and bearings of the model take power from the shafts. A force N = k(xi) delta has no potential,
-so the paper's brake torque, which balances moments, leaves the shafts to pay for sliding friction alone.
-Where the elastic energy of the teeth is conserved the mean powers balance exactly, and the brake torque
-follows from them.
+A force N = k(xi) delta has no potential, so with prescribed contact the brake torque, which balances moments,
+balances sliding friction alone, and an energy residual is left. Where the contact is conservative the mean
+powers balance exactly, and the brake torque follows from them.
 
 Sources: docs/theory/contact_energy.md, "Mean powers"; Oh, Grosh and Barber, J. Vib. Acoust. 127 (2005) 208.
 """
@@ -46,10 +45,8 @@ class MeanPowers:
     Attributes
     ----------
     driving : of the pinion's torque
-    sliding : taken by sliding friction at the actual sliding velocities
-    tooth_dampers, bearings, shafts : taken by the dampers of the teeth, of the bearings, and of the elastic
-        shafts with their couplings
-    unpaid : what the losses exceed the difference of driving and braking power of the equations of motion by
+    sliding, tooth_dampers, bearings, shafts : losses by place; couplings belong to the shafts
+    energy_residual : losses less driving and braking power of the equations of motion
     """
 
     driving: float
@@ -57,7 +54,7 @@ class MeanPowers:
     tooth_dampers: float
     bearings: float
     shafts: float
-    unpaid: float
+    energy_residual: float
 
     @property
     def lost(self) -> float:
@@ -66,25 +63,22 @@ class MeanPowers:
 
     @property
     def efficiency(self) -> float:
-        """Share of the driving power that reaches the brake when all losses are paid [-]."""
+        """Share of the driving power that reaches the brake when it balances all losses [-]."""
         return 1.0 - self.lost / self.driving
 
 
-def balance(solution: PeriodicSolution, *, paid: bool | None = None) -> dict[str, float]:
+def balance(solution: PeriodicSolution, *, conservative: bool | None = None) -> dict[str, float]:
     """Torques that hold the mean speed [N m] and efficiency, by name.
-
-    prescribed contact balances moments: its brake torque and efficiency count sliding friction alone. The
-    loaded contact pays for every loss.
 
     Parameters
     ----------
     solution : periodic motion of the "full" system
-    paid : whether every loss is paid; default with loaded contact
+    conservative : whether the brake balances every loss, and not only moments; default that of the contact
     """
-    if not (pays(solution) if paid is None else paid):
-        return solution.balance
     g = solution.system.pair.geometry
-    brake_torque = solution.brake_torque - solution.unpaid / g.omega_gear
+    brake_torque = solution.brake_torque
+    if contact_of(solution.system.pair).conservative if conservative is None else conservative:
+        brake_torque -= solution.energy_residual / g.omega_gear
     return {
         "brake_torque": brake_torque,
         "pinion_torque": solution.pinion_torque,
@@ -92,27 +86,18 @@ def balance(solution: PeriodicSolution, *, paid: bool | None = None) -> dict[str
     }
 
 
-def pays(solution: PeriodicSolution) -> bool:
-    """Whether the contact has an energy, so that the brake pays for every loss."""
-    return contact_of(solution.system.pair).conservative
-
-
 def power_attributes(solution: PeriodicSolution) -> dict[str, float]:
-    """Mean losses by place, and what of them nobody pays [W], as attributes of a result."""
+    """Mean losses by place, and those that no torque balances [W], as attributes of a result."""
     powers = mean_powers(solution)
     places = ("sliding", "tooth_dampers", *solution.system.held.places)
     found: dict[str, float] = {f"power_{place}": getattr(powers, place) for place in places}
-    return found | {"power_unpaid": 0.0 if pays(solution) else powers.unpaid}
+    conservative = contact_of(solution.system.pair).conservative
+    return found | {"power_energy_residual": 0.0 if conservative else powers.energy_residual}
 
 
 @lru_cache(maxsize=4)
 def mean_powers(solution: PeriodicSolution) -> MeanPowers:
-    """Mean powers of a periodic motion, by Gauss quadrature in the intervals of its integration.
-
-    Parameters
-    ----------
-    solution : periodic motion of the "full" system
-    """
+    """Mean powers of a periodic motion of the "full" system, by Gauss quadrature in its intervals."""
     times, states, weights = _between(solution)
     power = _powers(solution, times, states) @ weights
     return MeanPowers(
@@ -121,17 +106,15 @@ def mean_powers(solution: PeriodicSolution) -> MeanPowers:
         tooth_dampers=float(power[1]),
         bearings=float(power[2]),
         shafts=float(power[3]),
-        unpaid=solution.unpaid,
+        energy_residual=solution.energy_residual,
     )
 
 
 def _between(solution: PeriodicSolution) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Gauss nodes inside the intervals of the integration [s], states there, and weights of a mean [-].
 
-    Inside an interval, in which the fastest vibration turns by half a radian, the motion is the quintic that
-    has its displacements, rates and accelerations at both ends: the losses err by some
-    1e-7 of themselves (1e-5 at a quarter of critical damping, 5e-5 at 3 rpm, where the number of
-    intervals is bounded).
+    Inside an interval the motion is the quintic that has its displacements, rates and accelerations at both
+    ends: the losses err by some 1e-7 of themselves (5e-5 at 3 rpm, where intervals are bounded in number).
     """
     time, states = solution.cycle_time, solution.cycle_states
     m = len(solution.system.coordinates)

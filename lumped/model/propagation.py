@@ -11,7 +11,7 @@ import numpy as np
 from lumped.errors import NumericalError
 from lumped.gauss_legendre import gauss_tableau
 from lumped.model.kernels import chained, gauss_steps, states_along
-from lumped.model.mesh_cycle import among
+from lumped.model.mesh_cycle import is_edge
 from lumped.model.periodic_system import LTVSystem
 from lumped.typing import FloatArray, IntArray
 
@@ -81,7 +81,7 @@ class StepMaps:
         found: FloatArray = states_along(self.maps, initial, weights)
         return found
 
-    def unpaid(self, initial: FloatArray, weights: FloatArray) -> float:
+    def energy_residual(self, initial: FloatArray, weights: FloatArray) -> float:
         """Mean power that losses take beyond what torques bring [W], of the periodic motion from x(0).
 
         The tooth forces N_i do the work N_i delta' on the bodies, with both gears' rigid rotation none; the
@@ -299,5 +299,5 @@ def _distinct(marks: FloatArray, system: LTVSystem) -> FloatArray:
     close = np.flatnonzero(np.diff(marks) < 1e-13 * system.period)
     if close.size == 0:
         return marks
-    fixed = among(marks[close + 1], system.cycle.edges)
+    fixed = is_edge(marks[close + 1], system.cycle.edges)
     return np.asarray(np.delete(marks, np.where(fixed, close, close + 1)), dtype=np.float64)

@@ -54,15 +54,7 @@ def labelled(
     attributes: Mapping[str, Any],
     further: Mapping[str, Variable] | None = None,
 ) -> xr.Dataset:
-    """Put arrays under their names, units and dimensions.
-
-    Parameters
-    ----------
-    time : (k,) [s]
-    values : variable name -> array of the dimensions in ``VARIABLES``; pair 0 is the one ahead
-    attributes : of the dataset
-    further : variables that only this result has
-    """
+    """Put arrays of ``VARIABLES``, and ``further`` ones, under their names, units and dimensions."""
     variables: dict[str, Variable] = {
         name: (dims, values[name], unit, text)
         for name, (dims, unit, text) in VARIABLES.items()
@@ -76,28 +68,15 @@ def labelled(
 def dataset(
     system: LTVSystem, time: FloatArray, states: FloatArray, attributes: Mapping[str, Any]
 ) -> xr.Dataset:
-    """Return states of the "full" system with all loads and velocities that follow from them.
-
-    Parameters
-    ----------
-    system : the "full" system of a gear pair
-    time : (k,) [s]
-    states : (k, n)
-    attributes : of the dataset
-    """
+    """Return states (k, n) of the "full" system with all loads and velocities that follow from them."""
     return system.held.labelled(labelled(time, response(system, time, states), attributes), states)
 
 
 def load_range(contact_form: str, load: FloatArray, contact: FloatArray) -> tuple[float, float]:
     """Largest load of a tooth pair, and smallest load: negative where the teeth would separate [N].
 
-    With prescribed contact every pair in contact must press. With loaded contact, where pairs begin and end
-    their contact gradually, all pairs together must.
-
-    Parameters
-    ----------
-    contact_form : ``mesh.contact`` of the pair
-    load, contact : (pairs, k) normal load [N], and whether the pair can touch
+    ``contact_form`` is the pair's ``mesh.contact``, which says what must press, see ``Contact.least_load``;
+    ``contact`` (pairs, k) whether the pair can touch.
     """
     touching = contact > 0
     return float(load[touching].max()), CONTACTS[contact_form].least_load(load, touching)
@@ -108,11 +87,8 @@ def farthest_reversal(distance: FloatArray, sliding: FloatArray, loaded: BoolArr
 
     Between two samples of which one slides backwards the velocity is a straight line.
 
-    Parameters
-    ----------
-    distance : (pairs, k) from the pitch point, signed [m]
-    sliding : (pairs, k) sliding velocity [m/s], nominally of the sign of ``distance``
-    loaded : (pairs, k) whether the pair carries load
+    All (pairs, k): signed distance from the pitch point [m], sliding velocity, nominally of the sign of the
+    distance [m/s], and whether the pair carries load.
     """
     forwards = sliding * np.sign(distance)
     farthest = float(np.where(loaded & (forwards < 0.0), np.abs(distance), 0.0).max())
@@ -127,16 +103,15 @@ def farthest_reversal(distance: FloatArray, sliding: FloatArray, loaded: BoolArr
 def response(
     system: LTVSystem, time: FloatArray, states: FloatArray, normal_load: FloatArray | None = None
 ) -> dict[str, FloatArray]:
-    """Return the arrays of ``dataset`` by name, without labels; arguments as there.
+    """Return the arrays of ``dataset`` by name, without labels.
 
-    ``normal_load`` (pairs, k) [N] replaces what the linear model's teeth carry, where they may part.
+    ``normal_load`` (pairs, k) [N] replaces what the linear model's teeth carry, where contact may be lost.
     """
     g, s = system.pair.geometry, system.structure
     z, rates = system.gear_motion(states)
     dte, dte_dot = z @ s.deflection, rates @ s.deflection
     pairs = system.cycle.sample(time)
-    normal = normal_load
-    if normal is None:
+    if (normal := normal_load) is None:
         normal = pairs.stiffness * (dte - pairs.error) + pairs.damping * (dte_dot - pairs.error_rate)
     friction = pairs.friction * normal
     arm_g = g.L_XY - pairs.position
@@ -169,11 +144,6 @@ def peak_to_peak(time: FloatArray, values: FloatArray, rates: FloatArray) -> flo
 
     Between samples the motion is the cubic with their values and rates. Its error falls with the fourth power
     of the interval; where a force jumps inside an interval, with the square.
-
-    Parameters
-    ----------
-    time : (k,) increasing [s]
-    values, rates : (k,) motion and its derivative
     """
     step = np.diff(time)
     rise, start, end = np.diff(values), rates[:-1] * step, rates[1:] * step
@@ -189,14 +159,7 @@ def peak_to_peak(time: FloatArray, values: FloatArray, rates: FloatArray) -> flo
 
 
 def cycle_peak_to_peak(run: xr.Dataset, name: str, period: float | None = None) -> float:
-    """Peak to peak of a displacement of a result.
-
-    Parameters
-    ----------
-    run : result with ``name`` and ``name_dot`` over ``time``
-    name : a displacement of ``lumped.model.results.VARIABLES``
-    period : of a motion that closes and whose last sample is left out [s]
-    """
+    """Peak to peak of a displacement of a result; ``period`` where it closes and leaves its end out [s]."""
     time, values, rates = (run[key].to_numpy() for key in ("time", name, f"{name}_dot"))
     if period is not None:
         time, values, rates = (

@@ -164,8 +164,8 @@ def steady_state(
     -------
     xarray.Dataset as of ``simulate`` over one cycle; the attributes carry ``brake_torque`` and
     ``pinion_torque`` [N m] that hold the mean speed, ``mesh_efficiency`` = T_g Omega_g / (T_p Omega_p),
-    the mean losses ``power_sliding``, ``power_tooth_dampers`` and ``power_bearings`` [W], ``power_unpaid``,
-    what of them the brake torque leaves out in prescribed contact [W],
+    the mean losses ``power_sliding``, ``power_tooth_dampers`` and ``power_bearings`` [W],
+    ``power_energy_residual``, what of them no torque balances with prescribed contact [W],
     ``error_estimate``, the relative error of the dynamic transmission error, ``dte_peak_to_peak`` [m], its
     peak to peak whatever the sampling (and so for the translations), and ``spectral_radius``, the
     largest modulus of the Floquet multipliers: above 1 the motion is unstable, and a pair leaves it

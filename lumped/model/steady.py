@@ -67,24 +67,14 @@ class PeriodicSolution:
         return _peaks(self.system, self.cycle_time, self.cycle_states)
 
     @cached_property
-    def unpaid(self) -> float:
-        """Mean power that the losses take beyond what the torques bring, see ``StepMaps.unpaid`` [W]."""
-        return self._maps.unpaid(self.cycle_states[0], self._weights)
+    def energy_residual(self) -> float:
+        """Mean power of the losses that no torque balances, see ``StepMaps.energy_residual`` [W]."""
+        return self._maps.energy_residual(self.cycle_states[0], self._weights)
 
     @property
     def values(self) -> dict[str, FloatArray]:
         """Variable of ``lumped.model.results.VARIABLES`` -> (k,) or (pairs, k), in SI."""
         return response(self.system, self.time, self.states)
-
-    @property
-    def balance(self) -> dict[str, float]:
-        """The torques that hold the mean speed [N m] and the mesh efficiency, by name."""
-        g = self.system.pair.geometry
-        return {
-            "brake_torque": self.brake_torque,
-            "pinion_torque": self.pinion_torque,
-            "mesh_efficiency": self.brake_torque * g.omega_gear / (self.pinion_torque * g.omega_pinion),
-        }
 
 
 def periodic_solution(
@@ -102,10 +92,6 @@ def periodic_solution(
     system : the "full" system of a gear pair
     times : increasing, within [0, T_m) [s]
     estimate_error : whether to compute ``error``, by a second integration of lower order
-
-    Raises
-    ------
-    NumericalError : the speed sits on a stability boundary, where no periodic motion exists
     """
     torques = np.stack([system.torque_pinion, system.torque_gear], axis=1)
     maps = step_maps(system, torques, outputs=times, every_step=True)
@@ -137,27 +123,14 @@ def periodic_solution(
 
 
 def periodic_cycle(pair: GearPair, samples: int, *, supports: Supports = "springs") -> PeriodicSolution:
-    """Periodic motion of a gear pair without error estimate, labels and provenance: half the time.
-
-    Parameters
-    ----------
-    pair : a validated gear pair
-    samples : times per mesh cycle
-    supports : of the gears
-
-    Raises
-    ------
-    NumericalError : the speed sits on a stability boundary, where no periodic motion exists
-    """
+    """Periodic motion without error estimate, labels and provenance: half the time of ``steady_state``."""
     system = periodic_system(pair, "full", supports=supports)
     return periodic_solution(system, sample_times(system.period, samples), estimate_error=False)
 
 
 def _peaks(system: LTVSystem, times: FloatArray, states: FloatArray) -> dict[str, float]:
     """Peak to peak of the transmission error and of the translations."""
-    to = {"dte": system.structure.deflection} | {
-        name: np.eye(6)[j] for j, name in enumerate(COORDINATES) if j > 1
-    }
+    to = {"dte": system.structure.deflection} | dict(zip(COORDINATES[2:], np.eye(6)[2:], strict=True))
     z, rates = system.gear_motion(states)
     return {name: peak_to_peak(times, z @ v, rates @ v) for name, v in to.items()}
 
@@ -173,15 +146,10 @@ def _closure(system: LTVSystem, states: FloatArray) -> float:
 
 
 def relative_spectral_radius(system: LTVSystem, phi: FloatArray) -> float:
-    """Largest modulus of the multipliers of the map of an "full" system without its rigid rotation.
+    """Largest modulus of the multipliers of the map phi (n, n) of a "full" system, rigid rotation left out.
 
-    Nothing depends on the rotations but through q = r_bp theta_p - r_bg theta_g, so with S from all states
-    to those of q and the translations, S phi = phi_rel S; any right inverse R of S gives phi_rel = S phi R.
-
-    Parameters
-    ----------
-    system : the "full" system
-    phi : (n, n) map of the states over one mesh cycle
+    Nothing depends on the common rotation, so with S to the coordinates without it S phi = phi_rel S; any
+    right inverse R of S gives phi_rel = S phi R.
     """
     twice = np.eye(2)
     relative = np.kron(twice, system.held.relative) @ phi @ np.kron(twice, system.held.back)
@@ -226,11 +194,6 @@ def _static(system: LTVSystem) -> float:
 
 
 def sample_times(period: float, samples: int) -> FloatArray:
-    """Evenly spaced times over one period, the end left out; (samples,) [s].
-
-    Raises
-    ------
-    ParameterError : not a whole number from 8 to 65536
-    """
+    """Evenly spaced times over one period, the end left out; (samples,) [s]."""
     count = whole_number("samples_per_cycle", samples, 8, 65536)
     return np.asarray(np.arange(count) * (period / count), dtype=np.float64)

@@ -198,7 +198,7 @@ def _on_springs(
 ) -> _Start:
     """Loads and initial state of the lumped model."""
     balance = periodic_solution(system, np.zeros(1), estimate_error=False)
-    mean_balance = balance_of(balance, paid=bool(flags & kn.PATH_WORK))
+    mean_balance = balance_of(balance, conservative=bool(flags & kn.PATH_WORK))
     torques = mean_balance["pinion_torque"], mean_balance["brake_torque"]
     numbers = replace(numbers, torque_pinion=torques[0], torque_gear=torques[1])
     static, _ = from_lumped_state(initial_state(system, "static", balance))

@@ -94,8 +94,8 @@ def simulate(
     }
     # With prescribed contact the brake torque balances sliding alone.
     prescribed = form == "prescribed"
-    if prescribed and "power_unpaid" in result.attrs:
-        numbers["power_unpaid"] = float(result.attrs["power_unpaid"])
+    if prescribed and "power_energy_residual" in result.attrs:
+        numbers["power_energy_residual"] = float(result.attrs["power_energy_residual"])
     if as_json:
         print_json({"gear_pair": gear_pair.name, "model": model, "supports": supports} | numbers)
     else:
@@ -110,8 +110,8 @@ def simulate(
             f"mesh efficiency{', sliding alone' * prescribed}": f"{100.0 * numbers['mesh_efficiency']:.2f} %",
             "brake torque that holds the speed": quantity(numbers["brake_torque"], "N m", 6),
         }
-        if "power_unpaid" in numbers:
-            rows["losses that the torques do not balance"] = quantity(numbers["power_unpaid"], "W")
+        if "power_energy_residual" in numbers:
+            rows["losses that the torques do not balance"] = quantity(numbers["power_energy_residual"], "W")
         title = f"{gear_pair.name} on {supports}, last mesh cycle"
         stdout().print(table(title, "quantity", ">value", rows=rows.items()))
     separation = contact_loss(gear_pair, g, last)

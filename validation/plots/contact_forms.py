@@ -62,7 +62,7 @@ def losses_over_speed_figure(losses: xr.Dataset, operating_rpm: float) -> Figure
     for ax, form in zip(axes[0], ("loaded", "prescribed"), strict=True):
         of = losses.sel(form=form)
         for i, (name, words) in enumerate(PLACES.items()):
-            if name == "unpaid" and form == "loaded":
+            if name == "energy_residual" and form == "loaded":
                 continue
             share = 100.0 * of[name].to_numpy() / of["driving"].to_numpy()
             ax.plot(speed, share, **look(i), label=words)

@@ -27,6 +27,7 @@ def contact_form(results: Results) -> str:
     return (
         f"Exact contact, from gaps and an elastic energy, gives {told['exact']} peak to peak. The paper's "
         f"form, linear and with contact by decree, is off it by up to {off['prescribed']}\u00a0% of that and "
-        f"leaves {quantity(powers.unpaid, 'W', 3)} of losses unpaid ({quantity(powers.driving, 'W', 3)} put "
-        f"in); loaded contact gives {told['loaded']} and is off by up to {off['loaded']}\u00a0%."
+        f"leaves {quantity(powers.energy_residual, 'W', 3)} of losses unpaid "
+        f"({quantity(powers.driving, 'W', 3)} put in); "
+        f"loaded contact gives {told['loaded']} and is off by up to {off['loaded']}\u00a0%."
     )

@@ -28,7 +28,12 @@ from lumped.typing import FloatArray, Progress
 #: Form -> what it is in words.
 FORMS = {"prescribed": "prescribed contact", "loaded": "loaded contact"}
 #: Places of losses, attributes of ``MeanPowers`` -> words.
-PLACES = {"sliding": "sliding", "tooth_dampers": "tooth dampers", "bearings": "bearings", "unpaid": "unpaid"}
+PLACES = {
+    "sliding": "sliding",
+    "tooth_dampers": "tooth dampers",
+    "bearings": "bearings",
+    "energy_residual": "energy residual",
+}
 
 
 @dataclass(frozen=True, eq=False)

@@ -100,7 +100,7 @@ def _powers_error(pair: GearPair) -> float:
         (found.sliding, wanted["friction"]),
         (found.tooth_dampers, wanted["mesh_damping"]),
         (found.bearings, wanted["bearings"]),
-        (found.unpaid, -wanted["mesh_stiffness"]),
+        (found.energy_residual, -wanted["mesh_stiffness"]),
     )
     return max(abs(one - other) for one, other in pairs) / found.driving
 

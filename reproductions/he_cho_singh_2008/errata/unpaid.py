@@ -28,7 +28,7 @@ def erratum_3(pair: GearPair) -> Erratum:
         {
             "lost": powers.lost,
             "driving": powers.driving,
-            "unpaid": mean_powers(_motion(pair)).unpaid,
+            "unpaid": mean_powers(_motion(pair)).energy_residual,
             "efficiency_printed": brake / powers.driving,
             "efficiency_repaired": paid.efficiency,
             "missing_printed": powers.driving - brake - powers.lost,

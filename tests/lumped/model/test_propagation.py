@@ -202,7 +202,7 @@ class TestSteps:
         a, b = (m.states(x, np.array([1.0])) for m in (maps, again))
         # Rounding over some hundred steps.
         assert np.all(np.abs(a - b) <= 1e-10 * np.abs(a).max(axis=0))
-        kept, anew = (m.unpaid(x, np.array([1.0])) for m in (maps, again))
+        kept, anew = (m.energy_residual(x, np.array([1.0])) for m in (maps, again))
         assert kept == pytest.approx(anew, rel=1e-9)
 
     def test_a_standstill_is_refused_before_memory_runs_out(self, nasa):

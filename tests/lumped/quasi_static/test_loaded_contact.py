@@ -181,8 +181,8 @@ def test_what_the_papers_form_leaves_unpaid_has_a_closed_form():
     at_a, at_d = motion.states[:, :6] @ system.structure.deflection
     powers = mean_powers(motion)
     assert powers.sliding == pytest.approx(0.0, abs=1e-9 * powers.driving)
-    assert powers.unpaid == pytest.approx(k * (at_a**2 - at_d**2) / 2 / system.period, rel=1e-6)
-    assert powers.lost == pytest.approx(powers.unpaid, rel=1e-6)
+    assert powers.energy_residual == pytest.approx(k * (at_a**2 - at_d**2) / 2 / system.period, rel=1e-6)
+    assert powers.lost == pytest.approx(powers.energy_residual, rel=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -229,7 +229,7 @@ def test_all_losses_are_paid_by_the_moments_and_the_force_along_the_path(name):
         return 0.5 * (e.stiffness(place) * (dte - contact.error(place)) ** 2).sum()
 
     by_jumps = (stored(1.0) - stored(-1.0)) / g.mesh_period
-    assert by_jumps - by_path == pytest.approx(powers.unpaid, rel=2e-3)
+    assert by_jumps - by_path == pytest.approx(powers.energy_residual, rel=2e-3)
     assert motion.attrs["mesh_efficiency"] == pytest.approx(powers.efficiency, abs=1e-9)
 
 
@@ -237,7 +237,7 @@ def test_the_brake_of_unequal_gears_takes_what_no_loss_takes():
     pair, powers = FORMS["unequal"], mean_powers(solution(FORMS["unequal"]))
     found = lumped.steady_state(pair, samples_per_cycle=16).attrs
     taken = found["brake_torque"] * lumped.geometry(pair).omega_gear
-    assert found["power_unpaid"] == 0.0
+    assert found["power_energy_residual"] == 0.0
     assert taken == pytest.approx(powers.driving - powers.lost, rel=1e-9)
 
 

@@ -54,7 +54,7 @@ def test_page_1_judges_the_papers_form_by_the_exact_contact_and_says_what_is_unp
     assert f"gives {1e6 * swing:.2f}\u00a0µm peak to peak" in told
     assert f"loaded contact gives {1e6 * loaded.attrs['dte_peak_to_peak']:.2f}\u00a0µm" in told
     assert told.index(paper_off) < told.index("loaded contact") < told.index(loaded_off)
-    assert f"{paper.attrs['power_unpaid']:.2f}\u00a0W of losses unpaid" in told
+    assert f"{paper.attrs['power_energy_residual']:.2f}\u00a0W of losses unpaid" in told
 
 
 def test_a_motion_that_is_refuted_or_not_compared_is_no_prediction(results, monkeypatch):

@@ -113,7 +113,7 @@ def test_report_json_is_strict_and_says_what_the_page_says(written, page, hostil
     # The paper's brake pays for sliding alone, but the efficiency that is told leaves no loss out.
     attrs = lumped.steady_state(hostile).attrs
     driving = attrs["pinion_torque"] * hostile.operating.pinion_speed
-    every_loss = attrs["mesh_efficiency"] - attrs["power_unpaid"] / driving
+    every_loss = attrs["mesh_efficiency"] - attrs["power_energy_residual"] / driving
     assert steady["total_efficiency"]["value"] == pytest.approx(every_loss, abs=1e-8)
 
 

@@ -73,7 +73,7 @@ def write(results: Results) -> Content:
                         words,
                         lambda form, place=place: (
                             None  # type: ignore[misc]
-                            if place == "unpaid" and form == "loaded"
+                            if place == "energy_residual" and form == "loaded"
                             else Quantity(float(getattr(found.powers[form], place)), "W")
                         ),
                     )

@@ -67,7 +67,7 @@ def write(results: Results) -> Content:
             "",
             "all losses counted" if lawful(results) else f"do not rely on it: {unlawful(results)}",
         ),
-        ("power_unpaid", "unpaid power", float(attrs["power_unpaid"]), "W", unpaid),
+        ("power_energy_residual", "unpaid power", float(attrs["power_energy_residual"]), "W", unpaid),
         ("brake_torque", "brake torque that holds the speed", attrs["brake_torque"], "N m", paid),
         ("friction_power", "mean friction power", friction, "W", "negative: it is lost"),
         ("error_estimate", "estimated relative error of the motion", float(attrs["error_estimate"])),
