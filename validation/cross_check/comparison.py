@@ -225,7 +225,8 @@ def _compared(
 ) -> CrossCheck:
     """The cross-check without the variant; where both motions repeat, two cycles tell as much as many."""
     # So many times as many samples as asked for, that the vibration is seen.
-    every = -int(-_PER_SWING * machine(pair).vibrations_per_cycle // samples_per_cycle)
+    numbers = machine(pair)
+    every = -int(-_PER_SWING * numbers.vibrations_per_cycle // samples_per_cycle)
     samples, runs = every * samples_per_cycle, 1 + len(fidelities)
 
     def part(done: int) -> Progress:
@@ -276,6 +277,7 @@ def _compared(
         ]
     checks, powers = conservation(
         pair,
+        numbers,
         cycle,
         results,
         periodic=exact is not None,

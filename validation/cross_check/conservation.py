@@ -15,13 +15,12 @@ from typing import cast
 import numpy as np
 import xarray as xr
 
-import multibody
 from lumped import GearPair
 from lumped.model.periodic_system import periodic_system
 from lumped.model.steady import periodic_solution
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
-from multibody.contact.machine import Machine, machine
+from multibody.contact.machine import Machine
 from multibody.run.setup import prepare
 from multibody.study.balance import balance_of
 from validation.cross_check.agreement import Fidelity
@@ -47,6 +46,7 @@ _INTEGRATION: Mapping[str, float] = {"lumped": 1e-8, "linear": 1e-8, "exact": 1e
 
 def conservation(
     pair: GearPair,
+    m: Machine,
     reference: xr.Dataset,
     runs: Mapping[Fidelity, xr.Dataset],
     *,
@@ -57,32 +57,32 @@ def conservation(
 
     Parameters
     ----------
-    pair : a validated gear pair
+    pair, m : a validated gear pair, and its numbers as the multibody model derives them
     reference : lumped periodic motion, one mesh cycle without its end
     runs : fidelity -> motion of the multibody model over whole cycles, the last end included
     periodic : whether "exact" is a periodic motion
-    contact_loss : whether the motions lose contact; then the powers of the lumped model are not computed
+    contact_loss : whether the motions lose contact; then powers are those of "exact" alone
 
     Returns
     -------
     the checks, and model -> power -> mean over the mesh cycle [W]
     """
-    m, samples = machine(pair), reference.sizes["time"]
+    samples = reference.sizes["time"]
     motions = {"lumped": reference} | {
         name: run.isel(time=slice(-samples - 1, -1)) for name, run in runs.items()
     }
+    system = periodic_system(pair, "full")
     powers: dict[str, Mapping[str, float]] = {}
     histories = _friction_histories(reference)
     if not contact_loss:
-        system = periodic_system(pair, "full")
         times, weights = quadrature(system)
         own = periodic_solution(system, times, estimate_error=False)
         powers["lumped"] = lumped_powers(own, m, weights)
         histories = _friction_histories(own.values)  # on both sides of every jump
-        linear = multibody.power_balance(pair, 1, fidelity="linear", initial="periodic", rtol=1e-10)
-        powers["linear"] = multibody_powers(linear, m.period)
-    if "exact" in runs and periodic:
-        powers["exact"] = _exact_powers(pair, motions["exact"], m.period)
+    for fidelity in runs:
+        if periodic if fidelity == "exact" else not contact_loss:
+            start, rtol = motions[fidelity].isel(time=0), 1e-8 if fidelity == "exact" else 1e-10
+            powers[fidelity] = _run_again(pair, fidelity, start, system.state_names, rtol, m.period)
     variation = tuple(float(np.abs(np.diff(h, append=h[:1])).sum()) for h in histories)
     found = []
     for name, motion in motions.items():
@@ -93,7 +93,7 @@ def conservation(
             found += _mean_bearing_loads(m, name, motion, pair.operating.pinion_torque, variation)
     for name, one in powers.items():
         found += _first_law(name, one)
-    if "linear" in powers:
+    if "linear" in powers and "lumped" in powers:
         found += _same_powers(powers["lumped"], powers["linear"])
     if "exact" in powers and pair.mesh.contact == "loaded":
         exact = powers["exact"]
@@ -138,13 +138,15 @@ def _friction_histories(motion: Mapping[str, FloatArray] | xr.Dataset) -> tuple[
     return (force * place).sum(axis=0), force.sum(axis=0)
 
 
-def _exact_powers(pair: GearPair, exact: xr.Dataset, period: float) -> dict[str, float]:
-    names = periodic_system(pair, "full").state_names
-    state = np.array([float(exact[name][0]) for name in names])
-    effects = str(exact.attrs["effects"]).split(", ")
-    velocity = float(exact.attrs["friction_velocity"])
-    setup = prepare(pair, "exact", state, effects, friction_velocity=velocity)
-    setup = setup.with_torques(setup.machine.torque_pinion, float(exact.attrs["brake_torque"]))
+def _run_again(
+    pair: GearPair, fidelity: Fidelity, start: xr.Dataset, states: Sequence[str], rtol: float, period: float
+) -> dict[str, float]:
+    """Mean powers of a multibody motion, from a run over one mesh cycle from one of its states."""
+    state = np.array([float(start[name]) for name in states])
+    effects = [name for name in str(start.attrs["effects"]).split(", ") if name]
+    velocity = float(start.attrs["friction_velocity"])
+    setup = prepare(pair, fidelity, state, effects, rtol, velocity)
+    setup = setup.with_torques(setup.machine.torque_pinion, float(start.attrs["brake_torque"]))
     return multibody_powers(balance_of(setup, 1), period)
 
 
