@@ -121,8 +121,7 @@ class Orbit:
 
     state : (12,) lumped states at t = 0; on shafts (2n,) coordinates and velocities
     machine : numbers of the pair, with the brake torque that balances this motion
-    flow : its flow map
-    closure : largest change of the state over one cycle, relative to its scale
+    flow, closure : its flow map, and the largest change of the state over it, relative to its scale
     matrix : of the step that found it; near the motion, of the steps to others near by
     """
 
@@ -138,17 +137,13 @@ def find_orbit(
 ) -> Orbit:
     """Periodic motion near the initial state of ``setup``, with the brake torque as unknown.
 
-    Broyden's method starts from the monodromy matrix of the lumped model, on shafts from that of the model's
-    own linear mesh. It differs from that of the motion looked for by a few per cent, and by much where
-    friction holds the teeth for a time. Each step runs the
-    cycles and corrects the matrix along the way it went; the motion found does not depend on the matrix.
+    Broyden's method (Math. Comp. 19 (1965) 577-593) starts from the monodromy matrix of the lumped model, on
+    shafts from that of the model's own linear mesh. It differs from that of the motion looked for by a few
+    per cent, and by much where friction sticks for a time. Each step runs the cycles and corrects the
+    matrix along the way it went; the motion found does not depend on the matrix.
 
-    setup : model ready to run
-    cycles : mesh cycles after which the motion repeats
     near_lumped : False where the lumped model has no such motion: then the matrix is that of differences
     near : motion of the pair with other effects, to start from with its matrix
-    C. G. Broyden, "A class of methods for solving nonlinear simultaneous equations", Math. Comp. 19 (1965)
-    577-593.
     Raises NumericalError : the iteration does not close the cycle
     """
     scale, machine = _scale(setup), setup.machine

@@ -66,11 +66,9 @@ def bridge(
     To start exudyn's solver costs as much as three of its steps; behind an event the step size is found here.
     Source: J. R. Dormand and P. J. Prince, J. Comput. Appl. Math. 6 (1980) 19-26.
 
-    stop : where to arrive [s]
     ordinary : step of exudyn away from events, and the first to try [s]
     times : (n,) receives the ends of the steps; the first is given [s]
     states : (3, n, 6) coordinates, velocities and accelerations, of which the first rows are given
-    p, flags, table : as ``kernels.contact_forces``
     bodies : (4, 6) as ``Machine.bodies``
     rtol, atol : largest error of a step: rtol times the value, and atol
     tableau : ``_TABLEAU``; as a constant it would be compiled into unrolled loops
@@ -215,15 +213,11 @@ def integrate(
     clamp: bool,
     visit: Callable[[int, Segment], None],
 ) -> tuple[FloatArray, FloatArray]:
-    """Integrate over consecutive intervals.
+    """Integrate over consecutive intervals from the state (q, v); returns that at the last edge.
 
-    model : assembled model
-    q, v : (size,) initial state
     edges : (m + 1,) ends of the intervals [s]
-    rtol, atol : tolerances of the step-size control
     clamp : evaluate the nominal phase strictly inside each interval (the edges are switches)
     visit : called with (interval number, its segment)
-    Returns (q, v) at the last edge
     Raises NumericalError : a force or a state is not finite, or more evaluations of the force than allowed
     """
     s = settings(rtol, atol, model.machine.period)

@@ -41,8 +41,7 @@ class LinearMotion:
 
     state : (2n,) coordinates and velocities at t = 0
     torque_pinion, torque_gear : driving and braking torque that hold the mean speed [N m]
-    transition : (2n, 2n) map of the states over one mesh cycle
-    by_torque : (2n,) change of the state after one cycle by a unit braking torque
+    transition, by_torque : (2n, 2n) map of the states over one mesh cycle; (2n,) change by a unit of brake
     """
 
     state: FloatArray
@@ -55,7 +54,6 @@ class LinearMotion:
 def linear_motion(machine: Machine, brake: float | None) -> LinearMotion:
     """Find the periodic motion.
 
-    machine : numbers of a pair on shafts, for the linear mesh
     brake : braking torque, so that the driving one balances; None: the driving torque is the machine's
     Raises NumericalError : the speed sits on a stability boundary
     """
@@ -119,10 +117,7 @@ def _train(machine: Machine) -> Train:
 
 
 def energy_residual(machine: Machine, motion: LinearMotion) -> float:
-    """Losses by sliding, tooth dampers, bearings, shafts and couplings less the power that is missing [W].
-
-    machine, motion : numbers for the linear mesh, and its periodic motion
-    """
+    """Losses by sliding, tooth dampers, bearings, shafts and couplings less the power that is missing [W]."""
     train, p = _train(machine), machine.parameters
     n, lost = train.size, 0.0
     weights = np.array([[1.0], [motion.torque_pinion - machine.torque_pinion], [motion.torque_gear]])
@@ -146,11 +141,8 @@ def _propagated(
 ) -> Iterator[tuple[tuple[float, float], float, FloatArray]]:
     """Steps over one mesh cycle: the smooth interval that each lies in, its time and the states (2n, m).
 
-    Every interval yields its start, too.
-
-    machine : numbers for the linear mesh
-    start : (2n, m)
-    forcing : (3, k) weights of the three forcings in the last k columns
+    Every interval yields its start, too. ``forcing`` (3, k) has the weights of the three forcings in the last
+    k columns of ``start`` (2n, m).
     """
     train, period = _train(machine), machine.period
     n, k = train.size, forcing.shape[1]
@@ -196,9 +188,7 @@ def mesh_wrench(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Wrench of the linear mesh per unit overlap, per unit rate of it, and without both, each (k, 6).
 
-    machine : numbers for the linear mesh
-    times : (k,) [s]
-    low, high : ends of the smooth interval that they lie in [s]
+    The times (k,) lie in the smooth interval from ``low`` to ``high`` [s].
     """
     at_rest, moved = np.zeros((times.size, 6)), np.zeros((times.size, 6))
     moved[:, 0] = 1.0

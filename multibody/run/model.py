@@ -97,15 +97,10 @@ class CallBudget:
 class ExudynModel:
     """An assembled exudyn system and the buffers its user function writes.
 
-    machine : the numbers it was built from
-    flags : effect switches of the force core, or ``kernels.LINEAR``
-    system : exudyn MainSystem
     container : exudyn SystemContainer (must stay alive; also holds the renderer)
     sensors : numbers of the sensors that store coordinates and velocities at every step: of both gears, or of
         each shaft with its gear
-    nodes : numbers of the nodes of pinion and gear
     parameters : the core's parameter vector, may be changed between runs
-    budget : counter of force evaluations
     """
 
     machine: Machine
@@ -118,20 +113,8 @@ class ExudynModel:
     budget: CallBudget
 
 
-def build(
-    machine: Machine,
-    flags: int,
-    call_limit: int,
-    *,
-    turning: bool = False,
-) -> ExudynModel:
-    """Assemble the exudyn system.
-
-    machine : numbers of the gear pair
-    flags : effect switches (bits of ``kernels``), or ``kernels.LINEAR``
-    call_limit : most force evaluations of one integration interval
-    turning : the nodes hold whole angles and speeds, nominal rotation included, not deviations from it
-    """
+def build(machine: Machine, flags: int, call_limit: int) -> ExudynModel:
+    """Assemble the exudyn system; ``call_limit`` is the most force evaluations of one interval."""
     container = exu.SystemContainer()
     system = container.AddSystem()
     p = machine.parameters
@@ -145,14 +128,12 @@ def build(
     else:
         nodes, bodies = _add_shafts(system, machine.train, centres, torques)
     parameters = p.copy()
-    if turning:  # the force core has no nominal rotation to add
-        parameters[[kn.T_LOW, kn.T_HIGH]] = 0.0
     budget = CallBudget(call_limit)
     mesh = system.AddObject(
         items.ObjectGenericODE2(
             nodeNumbers=list(nodes),
             massMatrix=np.zeros((6, 6)),
-            forceUserFunction=_force_function(machine, flags, parameters, budget, turning),
+            forceUserFunction=_force_function(machine, flags, parameters, budget),
         )
     )
     position, velocity = (
@@ -260,7 +241,6 @@ def _force_function(
     flags: int,
     p: FloatArray,
     budget: CallBudget,
-    turning: bool,
 ) -> Callable[..., list[float]]:
     """Return the user function of the contact object; it writes into its own buffers.
 
@@ -269,7 +249,7 @@ def _force_function(
     """
     buffer = bytearray(struct.calcsize("18d"))
     state = np.frombuffer(buffer).reshape(3, 6)
-    v, wrench = state[1:]
+    wrench = state[2]
     contacts = np.empty((2 * MAX_PAIRS, kn.N_RECORD))
     table, pack = machine.table, struct.Struct("12d").pack_into
     as_list: Callable[[], list[float]] = wrench.tolist
@@ -288,9 +268,6 @@ def _force_function(
             return found
         budget.last, last_coordinates, last_rates = t, coordinates, rates
         pack(buffer, 0, *coordinates, *rates)
-        if turning:  # the core wants rates beyond the nominal speeds
-            v[2] += p[kn.OMEGA_P]
-            v[5] -= p[kn.OMEGA_G]
         if tooth_forces(t, state, p, flags, table, contacts) < 0:
             budget.reason = "not finite"
             raise _Stop
@@ -303,10 +280,8 @@ def _force_function(
 def contact_state(
     model: ExudynModel, times: FloatArray, q: FloatArray, v: FloatArray
 ) -> tuple[FloatArray, FloatArray, IntArray]:
-    """Evaluate the force core at given states, without exudyn.
+    """Evaluate the force core at n states (n, size), without exudyn.
 
-    times : (n,) [s]
-    q, v : (n, size) coordinates and velocities, of which those of the gears are read
     Returns (wrenches, contacts, counts) : (n, 6) contact wrench of pinion and gear [N, N m]; contact records
         (n, 2 MAX_PAIRS, kernels.N_RECORD), of which the first counts (n,) are valid
     """
@@ -320,12 +295,7 @@ def contact_state(
 
 
 def accelerations(model: ExudynModel, times: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
-    """Accelerations from Newton's and Euler's laws at given states, without exudyn.
-
-    times : (n,) [s]
-    q, v : (n, size) coordinates and velocities
-    Returns (n, size) second derivatives of the coordinates
-    """
+    """Accelerations (n, size) from Newton's and Euler's laws at n states (n, size), without exudyn."""
     force = contact_state(model, times, q, v)[0]
     train = model.machine.train
     if train is not None:

@@ -51,10 +51,7 @@ _ATOL_SHARE_ON_SHAFTS = 10.0
 class Setup:
     """A multibody model ready to run, with the lumped model's loads and initial state.
 
-    model : assembled exudyn model
-    system : the lumped equations of motion
     q, v : (size,) initial state in the model's coordinates
-    rtol : relative tolerance of the integration
     deflection : static deflection of the mesh under the driving torque [m]
     attributes : provenance of results
     motion : on shafts, the model's own periodic motion with the linear mesh

@@ -48,11 +48,7 @@ _COLUMNS = {
 
 
 class Recorder:
-    """Collects states and contacts at the output times while the integration runs.
-
-    model : the model that is integrated; its force core is evaluated again at the output times
-    time : (n,) output times, increasing [s]
-    """
+    """Collects states and contacts at the output times (n,) [s] while the integration runs."""
 
     def __init__(self, model: ExudynModel, time: FloatArray) -> None:
         self.model, self.time = model, time
@@ -234,11 +230,7 @@ def record(
 ) -> tuple[xr.Dataset, FloatArray, FloatArray]:
     """Run a model and keep the variables of the last cycles.
 
-    setup : model ready to run
-    cycles : mesh cycles to run
-    samples_per_cycle : output times per mesh cycle
     first_cycle : the first one whose variables are kept
-    progress : called with the finished fraction
     run : visits the segments of a run that was made; None makes it
     Returns (dataset, q, v) : the variables, and the state (size,) at the end in the model's coordinates
     """

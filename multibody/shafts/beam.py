@@ -25,11 +25,7 @@ from lumped.typing import FloatArray, IntArray
 
 @dataclass(frozen=True)
 class Interval:
-    """A piece of a shaft between two stations, SI.
-
-    length, diameter, bore : [m]
-    youngs_modulus, poisson_ratio, density : [Pa], [-], [kg/m^3]
-    """
+    """A piece of a shaft between two stations, SI."""
 
     length: float
     diameter: float
@@ -75,14 +71,12 @@ class Bending:
     mass, stiffness : (n, n) with rotary inertia and shear
     spin : (n, n) integral of the polar moment of inertia over psi psi; times the speed, it couples the planes
     rotation : number of the first coordinate of psi; psi of station i is ``rotation + i``
-    order : polynomial order of w
     """
 
     mass: FloatArray
     stiffness: FloatArray
     spin: FloatArray
     rotation: int
-    order: int
 
 
 def shape_functions(order: int, places: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -112,11 +106,7 @@ def field_size(order: int, count: int) -> int:
 
 
 def bending(intervals: Sequence[Interval], order: int) -> Bending:
-    """Assemble one plane of bending.
-
-    intervals : from one end of the shaft to the other
-    order : polynomial order of w, at least 2; psi has one less
-    """
+    """Assemble one plane of bending, with polynomials of an order of at least 2 for w; psi has one less."""
     count = len(intervals)
     rotation = field_size(order, count)
     size = rotation + field_size(order - 1, count)
@@ -137,7 +127,7 @@ def bending(intervals: Sequence[Interval], order: int) -> Bending:
         turning = part.density * part.second_moment * (turn * measure) @ turn.T
         mass[both] += part.density * part.area * (move * measure) @ move.T + turning
         spin[both] += 2.0 * turning
-    return Bending(mass, stiffness, spin, rotation, order)
+    return Bending(mass, stiffness, spin, rotation)
 
 
 def torsion(intervals: Sequence[Interval], order: int) -> tuple[FloatArray, FloatArray]:
@@ -182,7 +172,6 @@ def reduce_fields(
 ) -> tuple[tuple[Reduced, ...], int, float]:
     """Raise the order of all fields of a shaft until their kept modes stand, and reduce them.
 
-    fields : functions that make the matrices of each
     highest : modes above this are left out [rad/s]
     modal_masses : that of every mode of a field, so that modal coordinates have the size of the kept one
     Returns (reduced, order, error) : the fields, the order of the polynomials, and the largest change of a

@@ -39,10 +39,9 @@ _WAVES = 4.0
 
 @dataclass(frozen=True)
 class Disc:
-    """A gear as a rigid disc, SI.
+    """A gear as a rigid disc, SI: mass, polar and diametral moment of inertia.
 
-    mass, inertia, tilting : [kg], polar and diametral moment of inertia [kg m^2]
-    twist_stiffness : of its body between rim and shaft [N m/rad], infinite where it is rigid
+    twist_stiffness : of its body between rim and shaft, infinite where it is rigid
     """
 
     mass: float
@@ -90,12 +89,9 @@ def reduced_shaft(
 ) -> ReducedShaft:
     """Assemble and reduce one shaft.
 
-    shaft, coupled : of the schema
-    disc : the gear
     speed : of rotation, counter-clockwise in (x, y) positive [rad/s]
     damping_ratio : of every mode that deforms, teeth apart
     highest : modes with the gear held are kept up to this [rad/s]
-    Raises NumericalError : see ``reduction.reduce_fields``
     """
     places = [shaft.gear_position, *(bearing.position for bearing in shaft.bearings)]
     if coupled is not None:
@@ -321,10 +317,7 @@ class Train:
         return np.asarray(-(stiffness * (self.bearings @ q.T) + damping * (self.bearings @ v.T)))
 
     def fastest(self, mesh_stiffness: FloatArray) -> tuple[float, float]:
-        """Largest natural frequency, and largest rate of a root with all dampers [rad/s].
-
-        mesh_stiffness : (6, 6) between the gears [N/m] and so on
-        """
+        """Largest natural frequency with the mesh (6, 6), and largest rate of a root with dampers [rad/s]."""
         n, stiffness = self.size, self.stiffness.copy()
         stiffness[:6, :6] += mesh_stiffness
         state = np.zeros((2 * n, 2 * n))
@@ -366,12 +359,9 @@ def train(
 ) -> Train:
     """Both shafts of a pair.
 
-    pair : a validated gear pair with shafts
-    mass, inertia : (2,) of pinion and gear, polar [kg], [kg m^2]
-    speeds : of pinion and gear, both positive [rad/s]; the pinion turns clockwise
+    mass, inertia, speeds : of pinion and gear; the speeds are positive, and the pinion turns clockwise
     enough : modes with the gears held are kept up to this where the pair does not say it [Hz]
     Raises ParameterError : the pair has no shafts
-    NumericalError : see ``shaft.reduced_shaft``
     """
     if pair.shafts is None:
         raise refuse(
@@ -404,11 +394,7 @@ def train(
 
 
 def disc(pair: GearPair, gear: Gear, mass: float, inertia: float) -> Disc:
-    """A gear as a rigid disc whose rim is tied to the shaft by the twist of its bored body (Lame).
-
-    pair, gear : the pair and which of its gears
-    mass, inertia : [kg], [kg m^2]
-    """
+    """A gear as a rigid disc whose rim is tied to the shaft by the twist of its bored body (Lame)."""
     twist = math.inf
     if gear.bore > 0.0:
         rack = pair.basic_rack
