@@ -2,6 +2,7 @@
 # make test     set up .venv if needed and run the tests
 # make lint     ruff and mypy --strict
 # make reproduce   compute figures, claims and errata of the published model again, in build/reproductions/
+# make evidence   compute the evidence about the program again (two minutes) and store it in validation/evidence.json
 # make package-check   build sdist and wheel, install and try the wheel on every Python 3.11 or later found here
 # make docs     set up .venv if needed and build the documentation to build/docs; warnings are errors
 # PYTHON=python3.12 chooses the interpreter, VENV=path another environment.
@@ -14,7 +15,7 @@ OUT ?= report
 export OPENBLAS_NUM_THREADS ?= 1
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: report reproduce test lint docs package-check clean
+.PHONY: report reproduce evidence test lint docs package-check clean
 
 report: $(VENV)/.ready
 	$(BIN)/spurcheck report --output $(OUT) --force || test $$? -eq 1
@@ -22,6 +23,9 @@ report: $(VENV)/.ready
 
 reproduce: $(VENV)/.ready
 	$(BIN)/python -m reproductions.he_cho_singh_2008 build/reproductions/he_cho_singh_2008
+
+evidence: $(VENV)/.ready-test
+	$(BIN)/python -m tests.evidence
 
 test: $(VENV)/.ready-test
 	$(BIN)/python -m pytest -n 2

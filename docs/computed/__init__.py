@@ -30,7 +30,6 @@ def writers() -> Mapping[str, Callable[[], str]]:
         errata,
         faults,
         figures,
-        floquet,
         interface,
         paper,
         schema,
@@ -42,7 +41,6 @@ def writers() -> Mapping[str, Callable[[], str]]:
         for module in (
             verification,
             faults,
-            floquet,
             agreement,
             errata,
             paper,

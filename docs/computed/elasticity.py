@@ -9,7 +9,7 @@ from computed import DOCS
 from computed.diagrams import svg
 from computed.markdown import table
 from lumped import load_gear_pair, preset_names
-from validation.verification.published_stiffness import framed, framed_pairs, published_stiffness
+from tests.evidence.published_stiffness import framed, framed_pairs, published_stiffness
 
 
 def thin_rims() -> str:

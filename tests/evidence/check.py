@@ -6,6 +6,9 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 
 @dataclass(frozen=True)
 class Check:
@@ -30,6 +33,13 @@ class Check:
     def passes(self) -> bool:
         """Whether the number is one and within its limit."""
         return math.isfinite(self.value) and abs(self.value - (self.theory or 0.0)) <= self.limit
+
+
+def rows(subject: str, exact: str, limit: float, values: ArrayLike) -> Check:
+    """Largest relative difference between numbers (rows, 2): found, and what they must be."""
+    found, wanted = np.asarray(values, dtype=float).T
+    error = np.max(np.abs(found - wanted) / np.maximum(np.abs(wanted), 1e-300))
+    return Check(subject, exact, float(error), limit)
 
 
 def order(subject: str, value: float, theory: float, limit: float) -> Check:

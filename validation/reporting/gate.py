@@ -26,10 +26,8 @@ _ERRORS = frozenset(
 )
 _ERROR_TABLES = frozenset(
     {
-        "code_verification/closed_forms",
+        "code_verification/evidence",
         "solution_verification/refinement",
-        "reference_model/checks",
-        "stability/routes",
     }
 )
 #: A number counts as zero below this share of the largest of its unit in its table, or of its column.

@@ -29,10 +29,7 @@ from validation.validity.contact_forms import ContactForms, contact_forms
 from validation.validity.flags import LOAD_NOISE, Flag, speed_drift, supports, validity_flags
 from validation.validity.four_springs import FourSprings, four_springs
 from validation.validity.plausibility import doubts
-from validation.verification import Check
-from validation.verification.on_shafts import on_shafts
-from validation.verification.reference_model import ReferenceModel, reference_model
-from validation.verification.stability_routes import StabilityRoutes, stability_routes
+from validation.verification.checks import Check, on_shafts
 from validation.verification.tooth_stiffness import ToothStiffness, tooth_stiffness
 
 T = TypeVar("T")
@@ -52,7 +49,7 @@ class Effort:
     map_speeds, map_torques : points of the validity map
     shaft_speeds : at which four springs are compared with shafts
     full : whether to search the best tip relief, to solve the periodic motion of every law, to switch the
-        finite-motion effects one at a time, to check the code against closed forms and to refine solutions
+        finite-motion effects one at a time, and to refine solutions
     """
 
     samples: int
@@ -252,18 +249,6 @@ class Results:
         return gear_pair_multipliers(self.pair)
 
     @cached_property
-    def routes(self) -> StabilityRoutes | str:
-        """Floquet multipliers by two routes; why the second one cannot be computed."""
-        self.stage("multipliers by the multibody model")
-        return _or_why_not(stability_routes, self.pair)
-
-    @cached_property
-    def reference(self) -> ReferenceModel:
-        """Checks of the multibody model."""
-        self.stage("checks of the multibody model")
-        return reference_model(self.pair, self.static_load)
-
-    @cached_property
     def tooth_stiffness(self) -> ToothStiffness | str:
         """Tooth stiffness beside plane elasticity; why it cannot be computed."""
         self.stage("tooth stiffness by elasticity")
@@ -271,13 +256,9 @@ class Results:
 
     @property
     def checks(self) -> tuple[Check, ...]:
-        """Checks of multibody model, multipliers and tooth stiffness, which every report has."""
-        others = (found for found in (self.routes, self.tooth_stiffness) if not isinstance(found, str))
-        return (
-            *self.reference.checks,
-            *(check for found in others for check in found.checks),
-            *self.on_shafts,
-        )
+        """Checks of the tooth stiffness and of the pair on its shafts, which every report has."""
+        found = self.tooth_stiffness
+        return (*(() if isinstance(found, str) else found.checks), *self.on_shafts)
 
     @cached_property
     def on_shafts(self) -> tuple[Check, ...]:

@@ -229,15 +229,14 @@ def stability(results: Results) -> str:
         return (
             f"A disturbance of this motion fades to {left}\u00a0% in a mesh cycle. {jumps(results)}".rstrip()
         )
-    found, routes = results.multipliers, results.routes
-    doubt = "" if isinstance(routes, str) or routes.agree else ", which a second route does not confirm"
+    found = results.multipliers
     radius, certain = found.spectral_radius, digits(found.error / found.spectral_radius)
     left = number(100 * radius, min(certain, 2))
     here = {
         "stable": f"A disturbance of this motion fades to {left}\u00a0% in a mesh cycle",
         "unstable": f"A disturbance of this motion grows {number(radius, certain)} times in a mesh cycle",
     }.get(found.verdict, "Whether a disturbance of this motion fades cannot be decided")
-    over = f"{here}{doubt}; the computed motion is stable {stable_speeds(results)}."
+    over = f"{here}; the computed motion is stable {stable_speeds(results)}."
     return f"{over} {jumps(results)}".rstrip()
 
 

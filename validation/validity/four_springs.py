@@ -3,7 +3,7 @@
 Four lumped models differ in their supports alone: the springs of the parameters, the springs and masses to
 which the shafts condense at rest and at the mesh frequency, and the shafts with their modes. The machine in
 exudyn, with beams of its own and the exact contact, shows what all of them leave out; with the linear mesh it
-is compared with the last one in every report (``validation.verification.on_shafts``).
+is compared with the last one in every report (``on_shafts`` of ``validation.verification.checks``).
 
 Sources: docs/theory/shafts.md, "Four springs".
 """

@@ -1,12 +1,6 @@
-"""Verification while you wait: the code against closed forms, the solutions against finer ones."""
+"""This pair's solutions against finer ones, its teeth against elasticity; evidence of the program."""
 
-from validation.verification.checks import Check, Refinement
-from validation.verification.code import code_checks
-from validation.verification.solution import refinements
+from validation.verification.checks import Check
+from validation.verification.solution import Refinement, refinements
 
-__all__ = [
-    "Check",
-    "Refinement",
-    "code_checks",
-    "refinements",
-]
+__all__ = ["Check", "Refinement", "refinements"]

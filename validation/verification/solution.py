@@ -5,7 +5,9 @@ Sources: Oberkampf and Roy, Verification and Validation in Scientific Computing,
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,9 +20,57 @@ from lumped.model.propagation import STAGES, STEP_ANGLE, step_maps
 from lumped.model.steady import periodic_cycle
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
-from validation.verification.checks import Level, Refinement, refinement
 
 _SAMPLES = 64
+
+
+@dataclass(frozen=True)
+class Level:
+    """One resolution of a refinement.
+
+    Attributes
+    ----------
+    setting : the resolution in words
+    error : difference from the finest one, see ``Refinement.measure``
+    used : whether the report's numbers are computed with it
+    """
+
+    setting: str
+    error: float
+    used: bool = False
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """One solution of this gear pair at several resolutions.
+
+    Attributes
+    ----------
+    key : stable name for programs
+    subject : the solution
+    measure : what the error is of, and relative to what
+    levels : from coarse to fine
+    limit : largest error of the resolution that is used
+    reason : why the limit is what it is
+    """
+
+    key: str
+    subject: str
+    measure: str
+    levels: tuple[Level, ...]
+    limit: float
+    reason: str
+
+    @property
+    def error(self) -> float:
+        """Error of the resolution that is used."""
+        return next(level.error for level in self.levels if level.used)
+
+    @property
+    def passes(self) -> bool:
+        """Whether the used resolution is within its limit and refining has brought the error down to it."""
+        first, used = self.levels[0].error, self.error
+        return math.isfinite(used) and used <= self.limit and used <= max(first, self.limit)
 
 
 def refinements(pair: AnyPair, samples: int) -> tuple[Refinement, ...]:
@@ -61,7 +111,14 @@ def _stages(pair: GearPair) -> Refinement:
         found = _periodic_state(system, stages)
         error = float(np.abs(found - finest)[: system.size // 2].max() / scale)
         levels.append(Level(f"Gauss, {stages} stages, order {2 * stages}", error, stages == STAGES))
-    return refinement("steady_state", levels, stages=STAGES + 2)
+    return Refinement(
+        "steady_state",
+        "periodic motion: order of the steps",
+        f"displacements at the start of the cycle against {STAGES + 2} stages, over the largest",
+        tuple(levels),
+        1e-9,
+        "far below every difference that is discussed",
+    )
 
 
 def _sampling(pair: GearPair, samples: int) -> Refinement:
@@ -72,7 +129,14 @@ def _sampling(pair: GearPair, samples: int) -> Refinement:
         for count, span in spans.items()
         if count != finest
     ]
-    return refinement("sampling", levels, samples=finest)
+    return Refinement(
+        "sampling",
+        "periodic motion: samples per mesh cycle",
+        f"peak to peak of the transmission error against {finest} samples, relative",
+        tuple(levels),
+        5e-4,
+        "half a unit of the third digit, the last one shown; samples are doubled until this holds",
+    )
 
 
 def _over_tolerance(error: Callable[[float], float], *tolerances: float) -> tuple[Level, ...]:
@@ -93,8 +157,14 @@ def _multibody(pair: GearPair) -> Refinement:
         )
         return np.asarray(run["dte"].to_numpy(), dtype=np.float64)
 
-    levels = _over_tolerance(_against(dte, 1e-10), 1e-5, 1e-6, 1e-8)
-    return refinement("multibody", levels)
+    return Refinement(
+        "multibody",
+        "exact multibody model, a mesh cycle from the lumped periodic motion: tolerance",
+        "transmission error against rtol 1e-10, largest difference over the peak to peak",
+        _over_tolerance(_against(dte, 1e-10), 1e-5, 1e-6, 1e-8),
+        1e-4,
+        "a hundredth of the smallest difference of the models that is discussed",
+    )
 
 
 def _monodromy(pair: GearPair) -> Refinement:
@@ -102,4 +172,11 @@ def _monodromy(pair: GearPair) -> Refinement:
     system = gear_pair_system(pair, "mesh")
     other, found = (monodromy(system, 1e-8, method=method).matrix for method in ("dop853", "gauss"))
     error = float(np.linalg.norm(found - other)) / float(np.linalg.norm(other))
-    return refinement("monodromy", (Level("rtol 1e-08, Gauss", error, True),))
+    return Refinement(
+        "monodromy",
+        "monodromy matrix: method",
+        "matrix by Gauss collocation against that by Dormand and Prince, order 8, relative to its norm",
+        (Level("rtol 1e-08, Gauss", error, True),),
+        1e-7,
+        "ten times what is asked for: the norm of the comparison is not the balanced one",
+    )

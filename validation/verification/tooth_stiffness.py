@@ -11,7 +11,7 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,22 +20,17 @@ from lumped import GearPair, ParameterError, plane_compliance
 from lumped.labelling import labelled_dataset
 from lumped.path_of_contact import pair_stiffness
 from lumped.stiffness import iso6336
-from lumped.stiffness.energy import contact_half_width, energy_curve
+from lumped.stiffness.energy import energy_curve
 from lumped.stiffness.finite_elements import (
-    ElasticTooth,
     Plane,
     Support,
-    cross_compliance,
     elastic_teeth,
-    hertz_half_width,
     pair_error,
     self_compliance,
 )
 from lumped.stiffness.foundation import thin_rims
-from lumped.stiffness.neighbours import neighbour_compliances
 from lumped.typing import FloatArray
-from multibody.contact.machine import circles
-from validation.verification.checks import Check, check, rows_check
+from validation.verification.checks import Check
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -176,11 +171,8 @@ def tooth_stiffness(pair: GearPair) -> ToothStiffness:
         allowed=_allowed(pair),
         checks=(
             *_energy(pair, float(np.mean(energy / elastic))),
-            _formulas(pair, iso),
             _standard(pair, iso[1], xi),
             *_unheld(pair, float(unheld.mean() / elastic.mean())),
-            _neighbours(pair, ring),
-            _contact(pair, elastic_free, xi),
             *_read(pair, read.mean(), float(own.mean()), xi),
         ),
         error=float(pair_error(pair, ring, xi).max()),
@@ -194,24 +186,15 @@ def _energy(pair: GearPair, ratio: float) -> Iterator[Check]:
         return  # the foundation's fit goes to infinity there, which harms this model only
     poisson = 0.5 * (pair.pinion.poisson_ratio + pair.gear.poisson_ratio)
     expected = _EXPECTED + _PER_POISSON * (poisson - 0.3)
-    yield check("energy_elastic", abs(ratio - expected), ratio=f"{ratio:.3f}", expected=f"{expected:.3f}")
-
-
-def _formulas(pair: GearPair, iso: tuple[float, float]) -> Check:
-    """The standard's c' b and c_gamma b, eqs. (82) to (93), once more from the drawing."""
-    gears = sorted((pair.pinion, pair.gear), key=lambda gear: (gear.teeth, -gear.profile_shift))
-    (z1, x1), (z2, x2) = ((gear.teeth, gear.profile_shift) for gear in gears)
-    q = 0.04723 + 0.15551 / z1 + 0.25791 / z2 - 0.00635 * x1 - 0.11654 * x1 / z1 - 0.00193 * x2
-    q += -0.24188 * x2 / z2 + 0.00529 * x1**2 + 0.00182 * x2**2
-    rack = pair.basic_rack
-    factor = 1.0 + 0.5 * (1.2 - rack.dedendum_coefficient)
-    factor *= 1.0 - 0.02 * (20.0 - math.degrees(rack.pressure_angle))
-    e1, e2 = pair.pinion.youngs_modulus, pair.gear.youngs_modulus
-    width = min(pair.pinion.face_width, pair.gear.face_width)
-    single = 0.8 * factor / q * 2.0 * e1 * e2 / (e1 + e2) / 206e9 * 1e9 * width
-    c = circles(pair)
-    contact_ratio = (c.reach_pinion - c.tangent + c.reach_gear) / c.pitch
-    return rows_check("iso6336", np.stack([iso, (single, single * (0.75 * contact_ratio + 0.25))], axis=-1))
+    yield Check(
+        "energy_elastic",
+        f"stiffness by the energy method, mean over the path: {ratio:.3f} of plane elasticity on its ring",
+        f"{expected:.3f} of it: beams, a fitted foundation and a contact are so much softer; difference",
+        abs(ratio - expected),
+        0.05,
+        "0.915 to 0.99 at nu = 0.3 on presets and 75 random pairs, 10 to 250 teeth, 12° to 30°, shifts "
+        "-0.3 to 0.6; the foundation's fit has no nu. 10 % of k is seen on each of them",
+    )
 
 
 def _standard(pair: GearPair, mean: float, xi: FloatArray) -> Check:
@@ -234,8 +217,19 @@ def _standard(pair: GearPair, mean: float, xi: FloatArray) -> Check:
     fitted = bool(((low <= values) & (values <= high)).all())
     terms = (1.0, *shifts, *(1.0 / z for z in teeth), (angle - 20.0) / 20.0, dedendum - 1.2)
     expected = float(np.dot(_STANDARD, terms)) if fitted else 1.0
-    key = "standard_elastic" if fitted else "standard_elastic_unfitted"
-    return check(key, abs(ratio - expected), ratio=f"{ratio:.3f}", expected=f"{expected:.3f}")
+    reason = (
+        "the standard is a fit of measurements: each of 160 pairs is foretold within 0.084 from the others"
+        if fitted
+        else "outside the pairs for which their ratio was fitted: 0.84 to 1.16 on 20 unusual pairs"
+    )
+    return Check(
+        "standard_elastic",
+        f"c_γ of ISO 6336-1: {ratio:.3f} of the mean by plane elasticity on the energy method's ring",
+        f"{expected:.3f}" + (", a fit to 160 other pairs" if fitted else "") + "; difference",
+        abs(ratio - expected),
+        0.085 if fitted else 0.2,
+        reason,
+    )
 
 
 def _unheld(pair: GearPair, ratio: float) -> Iterator[Check]:
@@ -245,33 +239,14 @@ def _unheld(pair: GearPair, ratio: float) -> Iterator[Check]:
     constant, by_teeth, by_angle = _FREE
     expected = constant + by_teeth * sum(1.0 / w.tooth.teeth for w in pair.wheels)
     expected += by_angle * (math.degrees(pair.wheels[0].tooth.pressure_angle) - 20.0) / 20.0
-    yield check("free_elastic", abs(ratio - expected), ratio=f"{ratio:.3f}", expected=f"{expected:.3f}")
-
-
-def _neighbours(pair: GearPair, ring: tuple[ElasticTooth, ElasticTooth]) -> Check:
-    """Motion of the next pair by finite elements, over that of the Fourier ring."""
-    g = pair.geometry
-    place = np.array([0.5 * (g.L_XA + g.L_XD - g.base_pitch)])
-    by_fourier = neighbour_compliances(pair)[0](place)[0]
-    ratio = float(cross_compliance(pair, ring, 1, place)[0] / by_fourier)
-    return check("neighbours_elastic", abs(ratio - 1.0), ratio=f"{ratio:.3f}")
-
-
-def _contact(pair: GearPair, teeth: tuple[ElasticTooth, ElasticTooth], xi: FloatArray) -> Check:
-    """In plane strain no depth is left: u_c + (2 ln(2/a) - nu')/pi over E', with the other formula for a."""
-    g, bodies = pair.geometry, (pair.pinion, pair.gear)
-    load = pair.operating.pinion_torque / (g.base_radius_pinion * g.face_width)
-    moduli = bodies[0].youngs_modulus, bodies[1].youngs_modulus
-    ratios = bodies[0].poisson_ratio, bodies[1].poisson_ratio
-    half = contact_half_width(load, xi * (g.L_XY - xi) / g.L_XY, moduli, ratios)
-    rows = []
-    for tooth, length, modulus, nu in zip(teeth, (xi, g.L_XY - xi), moduli, ratios, strict=True):
-        module = tooth.wheel.tooth.module
-        whole = tooth.flank.deflection(length / module)
-        whole = whole + (2.0 * np.log(2.0 * module / half) - nu / (1.0 - nu)) / math.pi
-        found = replace(tooth, plane="strain").compliance(length, hertz_half_width(pair, xi))
-        rows.append(np.stack([found * modulus / (1.0 - nu**2), whole], axis=-1))
-    return rows_check("contact_elastic", np.concatenate(rows))
+    yield Check(
+        "free_elastic",
+        f"plane elasticity of the free gears: k {ratio:.3f} of that on the energy method's ring",
+        f"{expected:.3f}: the rim does not move against a bore; difference",
+        abs(ratio - expected),
+        0.04,
+        "a fit to the same 160 pairs, within 0.007; 0.032 with 10 teeth",
+    )
 
 
 def _read(pair: GearPair, mean: float, sampled: float, xi: FloatArray) -> Iterator[Check]:
@@ -289,7 +264,8 @@ def _read(pair: GearPair, mean: float, sampled: float, xi: FloatArray) -> Iterat
         ratio = mean / iso6336.single_of(pair)
     else:
         ratio = mean * path / iso6336.mean_of(pair)
-    yield check("stiffness_read", abs(ratio - 1.0), model=model.model)
+    subject = f"stiffness that both models read, mean over the path, over that by its model: {model.model}"
+    yield Check("stiffness_read", subject, "1; difference", abs(ratio - 1.0), 1e-6, "fits of polynomials")
 
 
 def _given(pair: GearPair) -> bool:

@@ -5,44 +5,22 @@ from __future__ import annotations
 import time
 import tomllib
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 
 from lumped import GearPair, LawRangeWarning, load_gear_pair
 from lumped.typing import FloatArray
+from tests.evidence.check import failing
 from tests.evidence.faults.fault import Fault
 from tests.evidence.faults.quantities import FELT, change, quantities
 from tests.evidence.faults.rewriting import applied
+from tests.evidence.kinds import OF_PAIRS
+from tests.evidence.pairs import pairs
 from validation.cross_check.comparison import crosscheck
 from validation.reporting.results import QUICK, Results
-from validation.verification import Check, Refinement, code_checks, refinements
+from validation.verification import refinements
 
-PAIR = "nasa_28_28"
-#: The default pair with nothing alike on both sides, where faults show that symmetry hides.
-TWIN: Mapping[str, object] = {
-    "pinion.teeth": 23,
-    "gear.teeth": 31,
-    "pinion.profile_shift": 0.25,
-    "gear.profile_shift": 0.1,
-    "centre_distance": None,
-    "pinion.face_width": 6.0,
-    "gear.face_width": 7.5,
-    "gear.density": 7600.0,
-    "gear.youngs_modulus": 180.0,
-    "pinion.roughness": 0.09,
-    "gear.roughness": 0.12,
-    "pinion.tip_relief": None,
-    "gear.tip_relief": None,
-    "bearings.pinion.loa_stiffness": 8e7,
-    "bearings.pinion.oloa_stiffness": 1.5e8,
-    "bearings.gear.loa_stiffness": 2e8,
-    "bearings.gear.oloa_stiffness": 5e7,
-    "bearings.gear.oloa_damping_ratio": 0.08,
-    "basic_rack.dedendum_coefficient": 1.3,
-    "operating.pinion_speed": 3700.0,
-}
-_RELIEF = {"shape": "linear", "amount": 15.0, "start_roll_angle": 26.0}
 _CYCLES, _SAMPLES = 6, 64
 
 
@@ -72,24 +50,6 @@ class Outcome:
     def first(self) -> str:
         """The first check that fails; empty where the fault is missed."""
         return next((f"{part}: {checks[0]}" for part, checks in self.caught.items() if checks), "")
-
-
-def pairs(fault: Fault | None = None, *, wrong: bool = False) -> Iterator[GearPair]:
-    """The default pair without relief, with which its teeth would part, and its unlike twin.
-
-    Both have what the fault needs.
-
-    Parameters
-    ----------
-    fault : whose fields are set
-    wrong : whether its wrong input is in the file
-    """
-    own = {} if fault is None else dict(fault.on) | (dict(fault.input) if wrong else {})
-    for changes in ({}, TWIN):
-        fields = {"mesh.relief": "ignored", **changes, **own}
-        if changes and "mesh.relief" in own:
-            fields |= {"pinion.tip_relief": _RELIEF, "gear.tip_relief": _RELIEF | {"amount": 10.0}}
-        yield load_gear_pair(PAIR).with_(fields)
 
 
 def judge(fault: Fault, *, thorough: bool = True) -> Outcome:
@@ -157,15 +117,24 @@ def _crossed(pair: GearPair) -> list[str]:
     return [one.check for one in crosscheck(pair, cycles=_CYCLES, samples_per_cycle=_SAMPLES).failures]
 
 
-def _failed(checks: Iterable[Check | Refinement]) -> list[str]:
-    return [check.key for check in checks if not check.passes]
+def _reported(pair: GearPair) -> list[str]:
+    """Checks of every report, quick ones too."""
+    return [check.key for check in Results(pair, QUICK).checks if not check.passes]
 
 
-#: Part of the verdicts -> names of the checks that fail. "models": the multibody model by itself, and the
-#: multipliers by two routes.
+def _refined(pair: GearPair) -> list[str]:
+    return [refinement.key for refinement in refinements(pair, _SAMPLES) if not refinement.passes]
+
+
+def _evidence(pair: GearPair) -> list[str]:
+    """Checks of the evidence, which the tests make."""
+    return [check.subject for _, compute in OF_PAIRS.values() for check in failing(compute(pair))]
+
+
+#: Part of the program or of its tests -> names of the checks that fail.
 _CHECKS: Mapping[str, Callable[[GearPair], list[str]]] = {
     "cross-check": _crossed,
-    "code verification": lambda pair: _failed(code_checks(pair)),
-    "solution verification": lambda pair: _failed(refinements(pair, _SAMPLES)),
-    "models": lambda pair: _failed(Results(pair, QUICK).checks),
+    "report": _reported,
+    "full report": _refined,
+    "tests": _evidence,
 }

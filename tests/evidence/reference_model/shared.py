@@ -34,7 +34,7 @@ SHARED: tuple[Shared, ...] = (
         "stiffness k of a tooth pair along the path of contact",
         "rigid bodies have no elasticity; with mesh.relief = 'static' the stretch under load is part of k",
         "the mean against ISO 6336-1 method B, the tooth as a cantilever, published curves, energy balance",
-        ("lumped/path_of_contact/iso_comparison.py", "tests/lumped/stiffness", "docs/theory/mesh_physics.md"),
+        ("lumped/path_of_contact/stiffness.py", "tests/lumped/stiffness", "docs/theory/mesh_physics.md"),
     ),
     Shared(
         "how far the load of a tooth pair moves the next pairs",
@@ -53,7 +53,7 @@ SHARED: tuple[Shared, ...] = (
         "they are what the prediction is about; each is written twice",
         "values that are published or worked out by hand, computed by both models on every installation",
         (
-            "validation/verification/published.py",
+            "tests/evidence/published.py",
             "tests/lumped/friction",
             "docs/theory/friction.md",
         ),

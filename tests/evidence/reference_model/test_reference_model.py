@@ -15,42 +15,21 @@ from multibody.contact import kernels as kn
 from multibody.contact.machine import machine
 from multibody.run.linear_motion import mesh_wrench
 from multibody.run.setup import prepare
+from tests.evidence.check import failing
 from tests.evidence.reference_model import third_build as turning
 from tests.evidence.reference_model.blanks import blanks
+from tests.evidence.reference_model.checks import PAIR, UNLIKE, reference_model
 from tests.evidence.reference_model.free_vibration import damping_check
 from tests.evidence.reference_model.frozen_modes import frozen_modes, held, linearised, modes_of
 from tests.evidence.reference_model.reversal_convergence import reversal_changes
 from tests.evidence.reference_model.shared import SHARED
 
 ROOT = Path(__file__).parents[3]
-PAIR = lumped.load_gear_pair("nasa_28_28").with_(mesh__relief="ignored")
-#: Nothing alike: teeth, shifts, all damping ratios and bearings.
-UNLIKE = lumped.load_gear_pair("fzg_c").with_(
-    mesh__damping_ratio=0.07,
-    mesh__stiffness={"model": "parabolic"},
-    bearings__pinion={
-        "loa_stiffness": 2e8,
-        "oloa_stiffness": 5e7,
-        "loa_damping_ratio": 0.02,
-        "oloa_damping_ratio": 0.4,
-    },
-    bearings__gear={
-        "loa_stiffness": 3e8,
-        "oloa_stiffness": 1e8,
-        "loa_damping_ratio": 1.2,
-        "oloa_damping_ratio": 0.03,
-    },
-)
 
 
-def test_free_vibration_decays_with_the_damping_ratios_of_the_schema():
-    """Under-damped and over-damped: the decay of an oscillator is known exactly."""
-    decays = damping_check(UNLIKE)
-    assert [d.motion for d in decays] == ["mesh", "pinion x", "pinion y", "gear x", "gear y"]
-    np.testing.assert_allclose([d.given for d in decays], [0.07, 0.02, 0.4, 1.2, 0.03], rtol=1e-14)
-    np.testing.assert_allclose([d.measured for d in decays], [d.given for d in decays], rtol=1e-6)
-    body, k = lumped.bodies(UNLIKE), UNLIKE.bearings.gear.loa_stiffness
-    assert decays[3].frequency == pytest.approx(np.sqrt(k / body.mass_gear) / (2 * np.pi), rel=1e-6)
+def test_every_number_keeps_its_limit():
+    checks = list(reference_model())
+    assert [check.subject for check in failing(checks)] == []
 
 
 def test_a_wrong_damping_constant_is_seen_in_the_decay(monkeypatch):
@@ -64,19 +43,6 @@ def test_a_wrong_damping_constant_is_seen_in_the_decay(monkeypatch):
     measured = [d.measured / d.given for d in damping_check(UNLIKE)]
     assert measured[0] == pytest.approx(2.0, rel=1e-6)
     assert all(abs(ratio - 1.0) > 0.2 for ratio in measured[1:])
-
-
-@pytest.mark.parametrize("name", lumped.preset_names())
-def test_bodies_by_their_outline(name):
-    """Discs stand for gears within a tenth."""
-    pair = lumped.load_gear_pair(name)
-    for which, blank in zip(("pinion", "gear"), blanks(pair), strict=True):
-        assert blank.error < 1e-6
-        assert abs(blank.taken_mass / blank.mass - 1.0) < 0.03
-        assert abs(blank.taken_inertia / blank.inertia - 1.0) < 0.1
-        body = lumped.bodies(pair)
-        assert blank.taken_mass == pytest.approx(getattr(body, f"mass_{which}"), rel=1e-12)
-        assert blank.taken_inertia == pytest.approx(getattr(body, f"inertia_{which}"), rel=1e-12)
 
 
 def test_a_bore_takes_its_disc_out_of_the_outline():
@@ -103,13 +69,8 @@ def test_bodies_that_turn_move_like_those_that_deviate(monkeypatch):
 
 def test_frozen_modes_are_the_lumped_ones_but_for_the_turned_line():
     result = frozen_modes(PAIR, phase=0.3)
-    frozen, linear, exact, turned = (
-        result[name] for name in ("lumped frozen", "exudyn linear", "exudyn exact", "lumped turned line")
-    )
+    frozen, exact, turned = (result[name] for name in ("lumped frozen", "exudyn exact", "lumped turned line"))
     np.testing.assert_allclose(frozen[0, [0, -1]], [2237.677, 8691.553], atol=1e-3)
-    # exudyn differentiates numerically.
-    np.testing.assert_allclose(linear[0], frozen[0], rtol=1e-7)
-    np.testing.assert_allclose(linear[1], frozen[1], rtol=1e-6)
     assert exact[0, 1] - frozen[0, 1] == pytest.approx(turned[0, 1] - frozen[0, 1], rel=0.01)
     assert turned[0, 1] - frozen[0, 1] == pytest.approx(-1.27, abs=0.01)
     np.testing.assert_allclose(exact[0, [0, 2, 3, 4]], frozen[0, [0, 2, 3, 4]], rtol=1e-6)

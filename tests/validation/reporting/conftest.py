@@ -52,7 +52,7 @@ def sharing(computed):
 
     All of them are computed here: a test may put a fault into the program before it asks for one.
     """
-    shared = ("check", "sweep", "margins", "routes", "reference")
+    shared = ("check", "sweep", "margins", "tooth_stiffness")
     for name in shared:
         getattr(computed, name)
 

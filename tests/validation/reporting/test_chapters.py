@@ -21,14 +21,13 @@ from validation.reporting.chapters import (
     code_verification,
     cross_check,
     parameters,
-    reference_model,
     solution_verification,
     stability,
 )
 from validation.reporting.page import layers, numbered
 from validation.reporting.results import FULL, QUICK
 from validation.reporting.words import sentence
-from validation.verification import code_checks, refinements
+from validation.verification import refinements
 
 ASKED = [
     "steady_state",
@@ -47,7 +46,6 @@ ASKED = [
     "tooth_stiffness",
     "code_verification",
     "solution_verification",
-    "reference_model",
     "provenance",
 ]
 
@@ -65,7 +63,7 @@ def test_every_block_is_in_one_layer_and_figures_and_tables_are_counted_through(
     assert [part.chapter.key for part in front] == ASKED[:10]
     keys = {block.key for part in front for block in part.blocks if isinstance(block, Table | Picture)}
     assert {"speed_sweep", "flags", "stability_chart", "efficiency_by_law"} <= keys
-    assert not {"metrics", "orders", "parameters", "multipliers_table", "closed_forms"} & keys
+    assert not {"metrics", "orders", "parameters", "multipliers_table", "evidence"} & keys
     assert len({part.anchor for part in (*front, *evidence)}) == len(front) + len(evidence)
     for kind, first in ((Picture, 2), (Table, 1)):  # figure 1 is that of the first page
         blocks = [b for part in (*front, *evidence) for b in part.blocks if isinstance(b, kind)]
@@ -94,7 +92,7 @@ def test_a_chapter_imports_no_other_chapter():
 def test_a_quick_report_says_nothing_of_verification(pair, sharing):
     quick = sharing(pair)
     keys = {chapter.key for chapter, _ in written(quick, CHAPTERS)}
-    left = {"code_verification", "solution_verification", "contact_loss"}
+    left = {"solution_verification", "contact_loss"}
     assert set(ASKED) - keys == left
     assert sentence(quick)
     assert FULL.full
@@ -126,49 +124,34 @@ def failing(check):
     return dataclasses.replace(check, value=2.0 * check.limit + 1.0)
 
 
-def test_one_failing_check_turns_the_chapter(pair):
-    checks, studies = code_checks(pair)[:3], refinements(pair, 64)
-    wrong_check = failing(checks[0])
+def test_one_failing_refinement_turns_the_chapter(pair):
+    studies = refinements(pair, 64)
     levels = tuple(dataclasses.replace(level, error=2 * studies[0].limit) for level in studies[0].levels)
-    wrong_study = dataclasses.replace(studies[0], levels=levels)
-    assert code_verification.content(checks).badge.state == "confirmed"
-    for made in (
-        code_verification.content((wrong_check, *checks[1:])),
-        solution_verification.content((wrong_study, *studies[1:])),
-    ):
-        assert made.badge.state == "not confirmed"
+    wrong = dataclasses.replace(studies[0], levels=levels)
+    assert solution_verification.content(studies).badge.state == "confirmed"
+    assert solution_verification.content((wrong, *studies[1:])).badge.state == "not confirmed"
 
 
-def test_a_failing_check_of_the_models_turns_its_chapter_and_the_headline(sharing, pair):
-    """The multibody model's load at rest; the second route to the multipliers."""
+def test_stored_evidence_says_where_it_is_of_another_source_and_which_kind_fails():
+    check = {"subject": "s", "exact": "e", "value": 2.0, "limit": 0.3, "theory": 2.1}
+    kinds = [{"key": "k", "title": "orders", "checks": [check, check | {"value": 3.0}]}]
+    stored = {"date": "2026-01-01", "source_sha256": "a", "kinds": kinds}
+    stored |= {"faults": {"all": 9, "tests": 9}, "sound_pairs": {"confirmed": 5}}
+    text, table = code_verification.content(stored, "a").blocks
+    assert "1 of 2 checks pass. The source of this program is the one that was checked." in text.text
+    ((title, count, use, verdict),) = table.rows
+    assert (title, count, verdict.state) == ("orders", 2, "outside")
+    assert use == pytest.approx(3.0)
+    assert "has changed since" in code_verification.content(stored, "b").blocks[0].text
+
+
+def test_a_failing_check_of_the_models_turns_the_headline(sharing, pair):
     wrong = sharing(pair)
-    *others, static = sorted(wrong.reference.checks, key=lambda check: check.key == "static_load")
-    wrong.reference = dataclasses.replace(wrong.reference, checks=(*others, failing(static)))
-    assert reference_model.CHAPTER.write(wrong).badge.state == "not confirmed"
+    first, *others = wrong.tooth_stiffness.checks
+    wrong.tooth_stiffness = dataclasses.replace(wrong.tooth_stiffness, checks=(failing(first), *others))
     assert stability.answer(wrong).badge.state == "stable"
-    assert "checks of the models fail (static_load)" in sentence(wrong).partition(". ")[0]
-    wrong = sharing(pair)
-    wrong.routes = dataclasses.replace(wrong.routes, checks=tuple(map(failing, wrong.routes.checks)))
-    assert stability.CHAPTER.write(wrong).badge.state == "not confirmed"
-    assert stability.answer(wrong).badge.state == "not confirmed"
-    assert "flow_map" in sentence(wrong).partition(". ")[0]
-    assert "which a second route does not confirm" in sentence(wrong)
-
-
-def test_a_second_route_that_cannot_be_computed_is_said(sharing, pair):
-    without = sharing(pair)
-    without.routes = "No periodic motion."
-    content = stability.CHAPTER.write(without)
-    assert content.badge.state == "stable"
-    assert any("No periodic motion." in getattr(block, "text", "") for block in content.blocks)
-
-
-def test_the_chapter_on_the_multibody_model_shows_both_values_of_every_law(chapters):
-    rows = table_of(chapters["reference_model"], "published").rows
-    laws = {"coulomb", "benedict_kelley", "xu_kahraman", "smoothed_coulomb", "film_parameter"}
-    both = {row[0].partition("(")[0]: row[1:4] for row in rows if row[3] is not None}
-    assert laws <= set(both)
-    assert all(len({*map(float, values)}) == 1 for values in both.values())
+    told = "Do not rely on this prediction: checks of the models fail (energy_elastic)"
+    assert sentence(wrong).startswith(told)
 
 
 @pytest.fixture

@@ -149,11 +149,11 @@ def test_a_number_is_small_beside_those_of_its_own_unit(document):
 def test_a_table_of_errors_may_grow_tenfold(document):
     document["chapters"]["code_verification"] = {
         "title": "Code",
-        "closed_forms": [{"key": "meissner", "value": 2e-7, "limit": 1e-5}],
+        "evidence": [{"kind": "orders", "use": 2e-7}],
     }
     for factor, fails in ((0.1, False), (9.0, False), (11.0, True)):
         new = copy.deepcopy(document)
-        new["chapters"]["code_verification"]["closed_forms"][0]["value"] *= factor
+        new["chapters"]["code_verification"]["evidence"][0]["use"] *= factor
         assert bool(compare(document, new).regressions) is fails, factor
 
 

@@ -37,7 +37,6 @@ def test_the_headline_says_do_not_rely_and_states_no_efficiency(report):
     assert "no mesh efficiency, because a conservation law does not hold" in data["verdict"]
     assert "the prediction holds" not in data["verdict"]
     assert re.search(r"transmission error \S+\s% off with the same equations, limit", data["verdict"])
-    assert "a second route does not confirm" in data["verdict"]
 
 
 def test_nothing_on_the_page_says_that_a_model_confirms(report):
@@ -52,16 +51,11 @@ def test_every_chapter_on_the_motion_warns_and_every_verdict_on_it_is_bad(report
         assert data["chapters"][key]["text"][0][0].startswith("Warning: do not rely on"), key
     states = {key: chapter.get("verdict", {}).get("state") for key, chapter in data["chapters"].items()}
     assert states["losses"] == "violated"
-    assert states["stability"] == "not confirmed"
     assert states["cross_check"] == "fails"
     note = data["chapters"]["steady_state"]["key_results"]["total_efficiency"]["note"]
     assert "do not rely on it" in note
     named = {line.split(": ")[1] for line in failures(data)}
-    assert {
-        "What does the model predict?",
-        "Does the independent model agree?",
-        "Is the motion stable?",
-    } <= named
+    assert {"What does the model predict?", "Does the independent model agree?"} <= named
 
 
 def test_what_other_reports_share_is_of_the_sound_program(report, computed, pair, tiny):

@@ -14,7 +14,6 @@ from validation.files.folder import whole_folder
 from validation.reporting import build
 from validation.reporting.blocks import Answer, Badge, Content, Fact, Facts, Picture, Quantity, Table
 from validation.reporting.chapter import Chapter
-from validation.reporting.chapters import provenance
 from validation.reporting.page import render
 
 HOSTILE = '<script>alert("x")</script> & "Getriebe" \'1\''
@@ -232,21 +231,3 @@ def test_numbers_stand_to_the_right_under_their_heading_gaps_included(pair):
     assert text.count('<div class="long">') == 1
     assert '<p class="verdict fair">' in text  # a doubt on a given value stands under the first words
     assert "<li>Is it 5?</li>" in text
-
-
-def test_the_source_hash_sees_every_package(tmp_path, monkeypatch):
-    roots = {}
-    for package in provenance._OWN:
-        roots[package] = tmp_path / package
-        roots[package].mkdir()
-        (roots[package] / "a.py").write_text("x = 1")
-    monkeypatch.setattr(provenance.resources, "files", lambda name: roots[name])
-    first = provenance.source_hash.__wrapped__()
-    assert len(first) == 64
-    assert provenance.source_hash.__wrapped__() == first
-    for package in provenance._OWN:
-        (roots[package] / "a.py").write_text("x = 2")
-        assert provenance.source_hash.__wrapped__() != first
-        (roots[package] / "a.py").write_text("x = 1")
-    (roots["lumped"] / "a.py").rename(roots["lumped"] / "b.py")
-    assert provenance.source_hash.__wrapped__() != first

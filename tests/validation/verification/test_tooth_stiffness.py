@@ -7,10 +7,7 @@ from lumped import load_gear_pair, plane_compliance, preset_names
 from validation.verification import tooth_stiffness as module
 from validation.verification.tooth_stiffness import tooth_stiffness
 
-KEYS = [
-    *("energy_elastic", "iso6336", "standard_elastic", "free_elastic", "neighbours_elastic"),
-    *("contact_elastic", "stiffness_read"),
-]
+KEYS = ["energy_elastic", "standard_elastic", "free_elastic", "stiffness_read"]
 
 
 def failing(found):
@@ -33,12 +30,8 @@ def test_presets_pass_and_a_tenth_of_the_energy_stiffness_is_seen(name, monkeypa
 
 def test_each_way_is_seen_to_be_wrong(pair, monkeypatch):
     for fault, target, name, seen in (
-        (lambda whole: lambda p: 0.85 * whole(p), module.iso6336, "mean_of", ["iso6336", "standard_elastic"]),
-        (lambda whole: lambda p: 1.01 * whole(p), module.iso6336, "mean_of", ["iso6336"]),
-        (lambda whole: lambda p: 1.01 * whole(p), module.iso6336, "single_of", ["iso6336"]),
+        (lambda whole: lambda p: 0.85 * whole(p), module.iso6336, "mean_of", ["standard_elastic"]),
         (lambda whole: lambda p: whole(p).scaled(1.01), module, "pair_stiffness", ["stiffness_read"]),
-        (lambda whole: lambda *a: 1.1 * whole(*a), module, "together", ["neighbours_elastic"]),
-        (lambda whole: lambda *a: 1.1 * whole(*a), module, "hertz_half_width", ["contact_elastic"]),
     ):
         with monkeypatch.context() as change:
             change.setattr(target, name, fault(getattr(target, name)))

@@ -18,7 +18,6 @@ from validation.reporting.chapters import (
     parameters,
     path_of_contact,
     provenance,
-    reference_model,
     solution_verification,
     stability,
     stability_margins,
@@ -48,7 +47,6 @@ CHAPTERS: tuple[Chapter, ...] = tuple(
         tooth_stiffness,
         code_verification,
         solution_verification,
-        reference_model,
         provenance,
     )
 )

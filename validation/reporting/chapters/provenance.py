@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import hashlib
 import platform
-from functools import cache
-from importlib import metadata, resources
-from pathlib import Path
+from importlib import metadata
 
 from lumped.labelling import parameters_hash
 from validation.reporting.blocks import Content, Table, Text, facts
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
+from validation.verification.evidence import source_hash
 
-_OWN = ("lumped", "multibody", "floquet", "validation")
-_SUFFIXES = frozenset({".py", ".toml", ".html", ".css", ".js"})
 _PACKAGES = ("spurcheck", "numpy", "scipy", "numba", "exudyn", "control", "xarray", "matplotlib")
 
 
@@ -49,18 +45,6 @@ def write(results: Results) -> Content:
         "(data/parameters.toml)."
     )
     return Content((text, made, versions))
-
-
-@cache
-def source_hash() -> str:
-    """SHA-256 over names and contents of the four packages' files: says more than a version does."""
-    digest = hashlib.sha256()
-    for package in _OWN:
-        root = Path(str(resources.files(package)))
-        for path in sorted(p for p in root.rglob("*") if p.suffix in _SUFFIXES):
-            digest.update(f"{package}/{path.relative_to(root).as_posix()}\0".encode())
-            digest.update(path.read_bytes() + b"\0")
-    return digest.hexdigest()
 
 
 CHAPTER = Chapter("provenance", "Versions and hashes", write)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from floquet.gear.axes import chart_axes
 from floquet.gear.chart import stability_chart
@@ -22,7 +21,6 @@ from validation.reporting.blocks import (
     facts,
 )
 from validation.reporting.chapter import Chapter
-from validation.reporting.checks import check_table
 from validation.reporting.results import Results
 
 
@@ -110,69 +108,29 @@ def write(results: Results) -> Content:
             "free rotation of the pair is a double multiplier at +1 by nature and is taken out.",
             lambda: multipliers_figure(found),
         ),
-        *_routes(results),
+        _multipliers(results),
     ]
-    return Content(tuple(blocks), _badge(results), {"stability_chart": chart})
+    return Content(tuple(blocks), Badge(found.verdict), {"stability_chart": chart})
 
 
-def _routes(results: Results) -> tuple[Block, ...]:
-    """The multipliers, beside those of the same states by a second route."""
-    found, routes = results.multipliers, results.routes
+def _multipliers(results: Results) -> Table:
+    """Every multiplier, by size; of two of one size in an order that rounding cannot change."""
+    found = results.multipliers
     rows: Rows = []
-    parts = (("mesh: q, x_p, x_g", found.feedback, "feedback"), ("bearings: y_p, y_g", found.oloa, "oloa"))
-    for part, values, name in parts:
-        # By size, and of two of one size in an order that rounding cannot change.
-        ours = np.array(sorted(values, key=lambda v: (-round(abs(v), 9), -round(v.real, 9), -v.imag)))
-        theirs = np.full(ours.size, np.nan + 0j)
-        if not isinstance(routes, str):
-            other = getattr(routes, name)
-            nearest = linear_sum_assignment(np.abs(np.subtract.outer(ours, other)))[1]
-            theirs = other[nearest]
-        rows += [
-            (part, *map(float, (a.real, a.imag, abs(a), b.real, b.imag, abs(a - b))))
-            for a, b in zip(ours, theirs, strict=True)
-        ]
-    return (
-        Text(
-            "The multipliers are computed by two routes that share no code but the laws of the tooth pairs. "
-            "In the first the compiled kernel of the chart propagates z'' + D z' + L z + w (v·z) + wd (v·z') "
-            "= 0 by Taylor series, and those of the bearings have a closed form. In the second the multibody "
-            "model at fidelity linear runs in exudyn from perturbed states over one mesh cycle."
-        ),
-        Table(
-            "multipliers_table",
-            "Multipliers at the operating point.",
-            {
-                "part": "states",
-                "real": "real part",
-                "imag": "imaginary part",
-                "modulus": "modulus",
-                "flow_real": "real part, multibody",
-                "flow_imag": "imaginary part, multibody",
-                "error": "distance",
-            },
-            tuple(rows),
-            note="Where two multipliers nearly meet, a small error of the matrix moves them far apart. The "
-            "verdict is therefore on the coefficients of their characteristic polynomial, and on the whole "
-            "matrix.",
-        ),
-        Text(f"The second route cannot be computed: {routes}")
-        if isinstance(routes, str)
-        else check_table("routes", "The two routes compared.", routes.checks),
+    for part, values in (("mesh: q, x_p, x_g", found.feedback), ("bearings: y_p, y_g", found.oloa)):
+        ordered = sorted(values, key=lambda v: (-round(abs(v), 9), -round(v.real, 9), -v.imag))
+        rows += [(part, float(v.real), float(v.imag), float(abs(v))) for v in ordered]
+    return Table(
+        "multipliers_table",
+        "Multipliers at the operating point.",
+        {"part": "states", "real": "real part", "imag": "imaginary part", "modulus": "modulus"},
+        tuple(rows),
     )
-
-
-def _badge(results: Results) -> Badge:
-    """The verdict, which a second route must not contradict."""
-    routes, verdict = results.routes, results.multipliers.verdict
-    if isinstance(routes, str) or routes.agree:
-        return Badge(verdict)
-    return Badge("not confirmed", f"{verdict} by one route, not confirmed by the other")
 
 
 def answer(results: Results) -> Answer:
     """Whether the periodic motion is stable at the operating point, and at which other speeds."""
-    badge = Badge("stable") if words.confirmed_parting(results) else _badge(results)
+    badge = Badge("stable" if words.confirmed_parting(results) else results.multipliers.verdict)
     return Answer("Is the motion stable?", badge, words.stability(results))
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from validation.verification.published_stiffness import RIMS, framed, framed_pairs, held_rim
+from tests.evidence.published_stiffness import RIMS, framed, framed_pairs, held_rim
 
 
 def test_finite_elements_of_another_program_on_a_held_rim():

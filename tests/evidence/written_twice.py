@@ -1,14 +1,16 @@
-"""The contact of the statically loaded mesh once more, by the multibody model and by other routes.
+"""What the lumped and the multibody model each work out from the drawing, side by side before any motion.
 
-Both models read the stiffness of a pair, its softening by load and the coupling of neighbours; the loaded
-form solves the static mesh with them. Here that mesh is solved with the exact contact's kinematics, corner
-gaps and shared loads, and what is common to both models is worked out by a route of its own.
+The cross-check compares motions; here the numbers that enter them are compared, for every friction law, so
+that a difference has a name. Both models read the stiffness of a pair, its softening by load and the
+coupling of neighbours; loaded contact solves the static mesh with them. Here that mesh is solved with the
+exact contact's kinematics, corner gaps and shared loads, and what is common to both by other means.
 
 Sources: docs/theory/contact_energy.md.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -16,28 +18,126 @@ from functools import cached_property, lru_cache
 import numpy as np
 from scipy.optimize import brentq
 
-from lumped import GearPair
+from lumped import GearPair, bodies
+from lumped.errors import ParameterError
+from lumped.friction.registry import FRICTIONAL
 from lumped.gear_geometry.geometry import Wheel
-from lumped.path_of_contact import pair_stiffness
+from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.quasi_static.contacts import mesh_elements
 from lumped.quasi_static.loaded import FULL_DAMPING
+from lumped.quasi_static.tooth_error import relief_error
 from lumped.stiffness.foundation import LOCAL_RATIO
 from lumped.typing import FloatArray
 from multibody.contact import kernels as kn
 from multibody.contact.elements import gradual, shared_loads, stiffness_at
 from multibody.contact.kinematics import DRIVE, Line, corners_at
-from multibody.contact.machine import Machine, machine
+from multibody.contact.machine import Machine, circles, machine, masses
 from multibody.run.effects import effect_flags
-from validation.verification.checks import Check, rows_check
+from tests.evidence.check import Check, rows
 
-_PLACES = 31
+_OWN = "the same from the drawing by the multibody model"
+_PLACES = 101
+_FEW = 31
 #: Change of a compression for a tangent, over the approach.
 _STEP = 1e-4
 #: Of the ring: harmonics, nodes over the radius, nodes over a foot.
 _HARMONICS, _RADII, _FOOT = 400, 48, 40
 
 
-def loaded_form(pair: GearPair) -> Iterator[Check]:
+def written_twice(pair: GearPair) -> Iterator[Check]:
+    """Geometry, bodies, damping, relief, every friction law and the static mesh, from both models."""
+    yield _geometry(pair)
+    yield _bodies(pair)
+    yield from _damping(pair)
+    yield _laws(pair)
+    yield from _relief(pair)
+    yield from _loaded(pair)
+
+
+def _geometry(pair: GearPair) -> Check:
+    g, c = pair.geometry, circles(pair)
+    both = c.base_pinion + c.base_gear
+    omega = pair.operating.pinion_speed
+    start, end = c.tangent - c.reach_gear, c.reach_pinion
+    both_ways = [
+        (g.base_radius_pinion, c.base_pinion),
+        (g.base_radius_gear, c.base_gear),
+        (g.tip_radius_pinion, c.tip_pinion),
+        (g.tip_radius_gear, c.tip_gear),
+        (g.base_pitch, c.pitch),
+        (g.centre_distance, c.centre_distance),
+        (g.L_XY, c.tangent),
+        (g.L_XA, start),
+        (g.L_XB, end - c.pitch),
+        (g.L_XP, c.tangent * c.base_pinion / both),
+        (g.L_XC, start + c.pitch),
+        (g.L_XD, end),
+        (g.contact_ratio, (end - start) / c.pitch),
+        (g.pairs, math.floor((end - start) / c.pitch) + 1),
+        (g.omega_gear, omega * pair.pinion.teeth / pair.gear.teeth),
+        (g.mesh_period, 2.0 * math.pi / (omega * pair.pinion.teeth)),
+        (g.face_width, min(pair.pinion.face_width, pair.gear.face_width)),
+    ]
+    return rows("circles, path of contact, speeds", _OWN, 1e-9, both_ways)
+
+
+def _bodies(pair: GearPair) -> Check:
+    b, (mass, inertia) = bodies(pair), masses(pair)
+    c = circles(pair)
+    own = 1.0 / (c.base_pinion**2 / inertia[0] + c.base_gear**2 / inertia[1])
+    found = [b.mass_pinion, b.mass_gear, b.inertia_pinion, b.inertia_gear, b.effective_mass]
+    return rows("masses and inertias", _OWN, 1e-12, list(zip(found, [*mass, *inertia, own], strict=True)))
+
+
+def _inside(pair: GearPair) -> FloatArray:
+    g = pair.geometry
+    return np.linspace(g.L_XA, g.L_XD, _PLACES + 2)[1:-1]
+
+
+def _damping(pair: GearPair) -> Iterator[Check]:
+    """Of prescribed contact; that of loaded contact belongs to its static mesh."""
+    if pair.mesh.contact == "loaded":
+        return
+    elements, xi, p = mesh_elements(pair), _inside(pair), machine(pair).parameters
+    own = p[kn.DAMPING] * np.sqrt(np.maximum(elements.stiffness(xi), 0.0))
+    scale = max(float(np.abs(own).max()), 1e-300)
+    found = elements.damping(xi)
+    yield rows("damping of a tooth pair", _OWN, 1e-6, np.stack([found, own], axis=1) / scale + 1.0)
+
+
+def _laws(pair: GearPair) -> Check:
+    """Largest difference of a friction coefficient, over its largest value."""
+    worst, xi = 0.0, _inside(pair)
+    for name in FRICTIONAL:
+        try:
+            law = friction_path_function(pair, name)
+            p = machine(pair.with_(friction__law=name)).parameters
+        except ParameterError:  # a law that this pair does not allow
+            continue
+        own = np.array([kn.nominal_friction(p, x) for x in xi])
+        away = np.abs(law(xi) - own)
+        # Where a law jumps, rounding of the place decides; such a place is left out.
+        away[np.abs(xi[:, None] - np.append(law.switches, 0.0)).min(axis=1) < 1e-9] = 0.0
+        worst = max(worst, float(away.max() / max(np.abs(own).max(), 1e-300)))
+    # Laws near the pitch point vary fast; polynomials are fitted to 1e-10.
+    return Check(
+        "every friction law over the path of contact", f"{_OWN}; over its largest value", worst, 1e-8
+    )
+
+
+def _relief(pair: GearPair) -> Iterator[Check]:
+    reliefs = [r for gear in (pair.pinion, pair.gear) for r in (gear.tip_relief, gear.root_relief) if r]
+    if not reliefs:
+        return
+    xi, p = _inside(pair), machine(pair.with_({"mesh.relief": "static"})).parameters
+    own = np.array([kn.relief_at(p, x)[0] for x in xi])
+    scale = float(sum(r.amount for r in reliefs))
+    yield rows(
+        "relief of both flanks", _OWN, 1e-9, np.stack([relief_error(pair, xi), own], axis=1) / scale + 1.0
+    )
+
+
+def _loaded(pair: GearPair) -> Iterator[Check]:
     """Static mesh, softening and neighbours of a pair, as far as it has them."""
     if pair.mesh.contact == "loaded":
         yield _static_mesh(pair)
@@ -122,7 +222,7 @@ class _Mesh:
 def _static_mesh(pair: GearPair) -> Check:
     mesh, elements = _Mesh(machine(pair, effect_flags(None, "loaded"))), mesh_elements(pair)
     low, high = elements.stiffness.interval
-    places = low + (high - low) * (np.arange(_PLACES) + 0.5) / _PLACES
+    places = low + (high - low) * (np.arange(_FEW) + 0.5) / _FEW
     places = places[np.abs(places[:, None] - elements.stiffness.switches).min(axis=1) > 1e-5 * (high - low)]
     # At the end of a ramp neither load nor tangent is left.
     places = places[elements.stiffness(places) > 1e-6 * float(elements.stiffness(places).max())]
@@ -132,14 +232,17 @@ def _static_mesh(pair: GearPair) -> Check:
         "error": np.array([one.approach - one.load / one.tangent for one in found]),
         "damping": np.array([one.damping for one in found]),
     }
-    delta, rows = found[0].approach, []
+    delta, found_rows = found[0].approach, []
     for name, values in own.items():
         scale = delta if name == "error" else max(float(values.max()), 1e-300)
-        rows.append(np.stack([getattr(elements, name)(places), values], axis=1) / scale + 1.0)
+        found_rows.append(np.stack([getattr(elements, name)(places), values], axis=1) / scale + 1.0)
     # Contact begins and ends where nothing is left of a pair's compression.
     ends = [mesh.at(xi).pressed for xi in (low, high)]
-    rows.append(np.array([(1.0 + one / delta, 1.0) for one in ends]))
-    return rows_check("static_mesh", np.concatenate(rows))
+    found_rows.append(np.array([(1.0 + one / delta, 1.0) for one in ends]))
+    exact = (
+        "the static mesh by kinematics, corner gaps and shared loads of the exact contact; over the largest"
+    )
+    return rows("static mesh", exact, 1e-6, np.concatenate(found_rows))  # laws: 1e-8
 
 
 def _softening(pair: GearPair, softening: float) -> Check:
@@ -147,12 +250,14 @@ def _softening(pair: GearPair, softening: float) -> Check:
     torque, places = pair.operating.pinion_torque, np.linspace(*pair_stiffness(pair).interval, 5)[1:-1]
     twice = pair.with_({"operating.pinion_torque": 2.0 * torque})
     found = (1.0 / pair_stiffness(pair)(places) - 1.0 / pair_stiffness(twice)(places)) / np.log(2.0)
-    return rows_check("softening", np.stack([np.full(places.size, softening), found], axis=1))
+    exact = "stiffness curves at two torques"  # fitted to 1e-10, of which the softening is a hundredth
+    both = np.stack([np.full(places.size, softening), found], axis=1)
+    return rows("softening of a pair by load, Hertz", exact, 1e-6, both)
 
 
 def _neighbours(pair: GearPair) -> Check:
     """From the ring solved by collocation over the radius, tractions and motions summed over the feet."""
-    g, rows = pair.geometry, []
+    g, both = pair.geometry, []
     for apart, function in enumerate(pair.mesh.stiffness.neighbours(pair), 1):
         low, high = function.interval
         places = low + (high - low) * np.array([0.3, 0.8])
@@ -166,8 +271,9 @@ def _neighbours(pair: GearPair) -> Check:
             feet = _feet(wheel.tooth.root_half_angle, angle, gear.poisson_ratio)
             root, tip = (_foot_loads(wheel, lengths + s * g.base_pitch) for s in (0, apart))
             total += np.sum(tip * (feet @ root), axis=0) / gear.youngs_modulus / g.face_width
-        rows.append(np.stack([function(places), total], axis=1))
-    return rows_check("neighbours", np.concatenate(rows))
+        both.append(np.stack([function(places), total], axis=1))
+    # 400 orders of a series whose terms fall as their third power.
+    return rows("motion by the load of a neighbour", "ring by collocation", 2e-3, np.concatenate(both))
 
 
 def _foot_loads(wheel: Wheel, length: FloatArray) -> FloatArray:
