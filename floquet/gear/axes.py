@@ -1,25 +1,36 @@
-"""What a stability chart of a gear pair can vary: units, how the pair changes, and the range to show."""
+"""What a stability chart of a gear pair can vary: units, how the pair changes, and the range to show.
+
+Friction changes with speed: speeds over which one fit serves, with factors, are a family.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import get_args
 
 import numpy as np
+import numpy.typing as npt
 
 from floquet.engine.chart import Axes, ChartAxis, checked_axes
 from lumped.arguments import one_of, real_array
 from lumped.errors import refuse, shown
 from lumped.fields.units import SIValue, to_stated
 from lumped.friction import LAWS, mean_coefficient
-from lumped.labelling import Coordinate
+from lumped.friction.base import PITCH_RESOLUTION, ContactPath
+from lumped.friction.registry import law_named
 from lumped.model.mesh_cycle import MeshCycle, mesh_cycle
 from lumped.model.periodic_system import Supports
+from lumped.path_of_contact.friction import contact_path, fit_law
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import LARGEST_SPEED, GearPair
 from lumped.typing import FloatArray
+
+_POSITIONS = 8
+# Agreement along the path, relative to mu: rounding of the laws, far below the 1e-10 to which mu is fitted.
+_SAME = 1e-12
 
 
 @dataclass(frozen=True)
@@ -80,10 +91,7 @@ class GearAxis(ChartAxis):
 
 
 def _field(*paths: str) -> Callable[[GearVariation, float], GearVariation]:
-    def apply(variation: GearVariation, value: float) -> GearVariation:
-        return replace(variation, pair=variation.pair.with_(dict.fromkeys(paths, value)))
-
-    return apply
+    return lambda variation, value: replace(variation, pair=variation.pair.with_(dict.fromkeys(paths, value)))
 
 
 def _friction(variation: GearVariation, value: float) -> GearVariation:
@@ -164,36 +172,14 @@ GEAR_AXES: Mapping[str, GearAxis] = {
 """Axis name -> what it varies."""
 
 
-def gear_axis(name: str) -> GearAxis:
-    """Return the axis of this name.
-
-    Raises
-    ------
-    ParameterError : unknown name
-    """
-    return GEAR_AXES[one_of("axes", name, GEAR_AXES)]
-
-
 def gear_grid(axes: Axes, supports: Supports = "springs") -> dict[str, FloatArray]:
-    """Axes of gear-pair parameters as 1-D arrays.
-
-    Raises
-    ------
-    ParameterError : unknown name, values outside the range of their axis, or an axis of other supports
-    """
+    """Axes of gear-pair parameters as 1-D arrays, or the refusal of names, values or supports."""
     grid = checked_axes(axes)
     for name, values in grid.items():
-        gear_axis(name).check(name, values)
+        GEAR_AXES[one_of("axes", name, GEAR_AXES)].check(name, values)
     if supports == "shafts" and "bearing_stiffness" in grid:
         raise refuse("axes", "bearing_stiffness", "not with shafts", "Their bearings are fields of [shafts].")
     return grid
-
-
-def axis_coordinates(grid: Mapping[str, FloatArray]) -> dict[str, Coordinate]:
-    """Values of some axes with units and plain names; "value" for a name that is no axis."""
-    unnamed = ("1", "value")
-    known = {name: (axis.units, axis.long_name) for name, axis in GEAR_AXES.items()}
-    return {name: (values, *known.get(name, unnamed)) for name, values in grid.items()}
 
 
 def vary(
@@ -202,7 +188,7 @@ def vary(
     """Return the pair at one point of a chart."""
     variation = GearVariation.of(pair, supports)
     for name, value in point.items():
-        variation = gear_axis(name).apply(variation, value)
+        variation = GEAR_AXES[name].apply(variation, value)
     return variation
 
 
@@ -221,12 +207,7 @@ def speed_range(pair: GearPair) -> tuple[float, float]:
 
 
 def checked_range(field: str, speeds: tuple[float, float]) -> tuple[float, float]:
-    """Slowest and fastest speed [rpm] that an argument gives.
-
-    Raises
-    ------
-    ParameterError : no range of speeds
-    """
+    """Slowest and fastest speed [rpm] that an argument gives, or its refusal."""
     given = np.atleast_1d(real_array(field, speeds))
     if given.shape != (2,) or not 0.0 < given[0] < given[1] <= LARGEST_SPEED:
         allowed = f"slowest and fastest speed, 0 < low < high <= {LARGEST_SPEED:g} rpm"
@@ -249,3 +230,118 @@ def with_point(values: FloatArray, point: float) -> FloatArray:
     if nodes.min() <= point <= nodes.max():
         nodes[np.argmin(np.abs(nodes - point))] = point
     return nodes
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionFamily:
+    """Speeds at which mu is a weighted sum of two functions of the position.
+
+    Attributes
+    ----------
+    speed_rpm : the speed whose friction law is the reference
+    members : (k,) indices of the speeds
+    level : |mu| of the second function, which only changes sign at the pitch point; None where one is enough
+    factors : (k, 1) of mu at the reference speed; or (k, 2) of mu less the level, and of the level
+    law : the law at other speeds; None where it is the same at all
+    """
+
+    speed_rpm: float
+    members: npt.NDArray[np.intp]
+    level: float | None
+    factors: FloatArray
+    law: _Law | None
+
+    def factors_at(self, speeds_rpm: FloatArray) -> FloatArray | None:
+        """Factors (k, 1 or 2) at further speeds; None where these are not all of the family."""
+        if self.law is None:
+            return np.ones((speeds_rpm.size, 1))
+        members, weights = self.law.weights(self.speed_rpm, speeds_rpm)
+        if members.size < speeds_rpm.size or (self.level is None and weights[:, 1].any()):
+            return None
+        return self.law.factors(self.speed_rpm, self.level is not None, weights)
+
+
+def depends_on_speed(pair: GearPair) -> bool:
+    """Say whether mu(xi) changes with speed: every law but a constant one whose coefficient is given."""
+    return not law_named(pair.friction.law).is_constant(pair.friction)
+
+
+def friction_families(variation: GearVariation, speeds_rpm: FloatArray) -> list[FrictionFamily]:
+    """Group speeds (k,), all different, over which friction needs but one fit.
+
+    Law III goes with a power of speed, I and IV with their mean coefficient, and law II, a logarithm, rises
+    and falls as a whole. Law V is each of these as long as its regimes do not move. None of this is taken for
+    granted: the law is evaluated along the path at every speed, and its switches are compared.
+    """
+    pair, rest = variation.pair, np.arange(speeds_rpm.size)
+    if not depends_on_speed(pair):
+        return [FrictionFamily(operating_rpm(pair), rest, None, np.ones((rest.size, 1)), None)]
+    law, families = _Law(variation), []
+    while rest.size:
+        reference = float(speeds_rpm[rest[rest.size // 2]])
+        members, weights = law.weights(reference, speeds_rpm[rest])
+        apart = bool(weights[:, 1].any())
+        level = (variation.friction_mean or law.mean(reference)) if apart else None
+        factors = law.factors(reference, apart, weights)
+        families.append(FrictionFamily(reference, rest[members], level, factors, law))
+        rest = np.delete(rest, members)
+    return families
+
+
+class _Law:
+    """The friction law of a pair at other speeds than its own."""
+
+    def __init__(self, variation: GearVariation) -> None:
+        self.path, self.settings = contact_path(variation.pair), variation.pair.friction
+        self.law, self.to_mean = law_named(self.settings.law), variation.friction_mean is not None
+        self.positions, self.values = _positions(self.path), cache(self._values)
+
+    def at(self, rpm: float) -> ContactPath:
+        ratio, omega = self.path.omega_gear / self.path.omega_pinion, rpm * np.pi / 30.0
+        return replace(self.path, omega_pinion=omega, omega_gear=omega * ratio)
+
+    def _values(self, rpm: float) -> tuple[FloatArray, FloatArray]:
+        """Mu at the positions, and the positions of its switches, at a speed."""
+        there = self.at(rpm)
+        switches = np.sort(self.law.switches(there, self.settings))
+        return self.law.signed(self.positions, there, self.settings), switches
+
+    def weights(self, reference: float, speeds_rpm: FloatArray) -> tuple[npt.NDArray[np.intp], FloatArray]:
+        """Speeds (k,) at which mu = a mu_reference + b sign(xi - L_XP), and a, b there, (k, 2)."""
+        mu, switches = self.values(reference)
+        basis = np.stack([mu, np.sign(self.positions - self.path.L_XP)], axis=1)
+        near, members, found = _SAME * self.path.L_XY, [], []
+        for i, rpm in enumerate(speeds_rpm):
+            now, others = self.values(float(rpm))
+            one = np.array([now @ mu / (mu @ mu) if mu.any() else 1.0, 0.0])
+            for pair in (one, np.linalg.lstsq(basis, now, rcond=None)[0]):
+                if np.abs(basis @ pair - now).max() <= _SAME * np.abs(now).max():
+                    if switches.shape == others.shape and np.allclose(switches, others, 0.0, near):
+                        members.append(i)
+                        found.append(pair)
+                    break
+        return np.array(members, dtype=np.intp), np.array(found)
+
+    def factors(self, reference: float, apart: bool, weights: FloatArray) -> FloatArray:
+        """Factors of mu, or of mu less its mean and of the mean, from the weights of mu and of the sign.
+
+        mu = a mu_0 + b sign = a (mu_0 - mean sign) + (a + b/mean) (mean sign)
+        """
+        a, b = weights.T
+        if self.to_mean:  # the law is scaled to one mean, whatever the speed
+            mean = self.mean(reference)
+            a, b = weights.T * (mean / (a * mean + b))
+        return np.stack([a, a + b / self.mean(reference)], axis=1) if apart else a[:, None]
+
+    def mean(self, reference: float) -> float:
+        """Mean of |mu| over the path."""
+        return mean_coefficient(fit_law(self.at(reference), self.settings, self.law.name))
+
+
+def _positions(path: ContactPath) -> FloatArray:
+    """Positions on either side of P, from where laws are held constant to the ends of the path."""
+    sides = []
+    for reach in (path.L_XA - path.L_XP, path.L_XD - path.L_XP):
+        near = np.geomspace(math.copysign(0.5 * PITCH_RESOLUTION, reach), 0.1 * reach, _POSITIONS)
+        sides += [near, np.linspace(0.1 * reach, reach, _POSITIONS + 2)[1:-1]]
+    return path.L_XP + np.concatenate(sides)

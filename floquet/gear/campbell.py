@@ -12,7 +12,7 @@ import numpy.typing as npt
 from scipy.optimize import linear_sum_assignment
 
 from floquet.engine.tongues import mode_shares, tongue_coordinates
-from floquet.gear.axes import axis_coordinates, vary
+from floquet.gear.axes import vary
 from floquet.gear.block import gear_block
 from floquet.gear.tongues import predicted_lines
 from floquet.rank_one.batch import fast_monodromies
@@ -81,37 +81,27 @@ def campbell(
         frequency[index] = exponents.imag / (2.0 * np.pi)
         decay[index] = -exponents.real
         radius[index] = np.exp(exponents.real.max() * block.period)
-    teeth = pair.pinion.teeth
-    mesh_order = np.arange(1, mesh_orders + 1)
+    teeth, mesh_order = pair.pinion.teeth, np.arange(1, mesh_orders + 1)
+    mesh = speeds[:, None] * teeth / 60.0 * mesh_order
     lines = {
         tongue: speed
         for tongue, speed in predicted_lines(pair, orders).items()
         if speeds[0] <= speed <= speeds[-1] and meshing[tongue.mode_i - 1] and meshing[tongue.mode_j - 1]
     }
     line_speed = np.array(list(lines.values()))
-    each = ("speed_rpm", "mode")
+    each, orders_over = ("speed_rpm", "mode"), ("speed_rpm", "mesh_order")
     return labelled_dataset(
         {
             "frequency": (each, frequency, "Hz", "frequency of the Floquet solution"),
             "decay": (each, decay, "1/s", "decay rate, < 0 growth"),
-            "natural_frequency": (
-                "mode",
-                modes / (2.0 * np.pi),
-                "Hz",
-                "that of the mean system",
-            ),
-            "mesh_frequency": (
-                ("speed_rpm", "mesh_order"),
-                speeds[:, None] * teeth / 60.0 * mesh_order,
-                "Hz",
-                "multiples of the mesh frequency",
-            ),
+            "natural_frequency": ("mode", modes / (2.0 * np.pi), "Hz", "that of the mean system"),
+            "mesh_frequency": (orders_over, mesh, "Hz", "multiples of the mesh frequency"),
             "line_speed": ("line", line_speed, "rpm", "predicted speed of a tongue"),
             "line_frequency": ("line", line_speed * teeth / 60.0, "Hz", "mesh frequency on the line"),
             "spectral_radius": ("speed_rpm", radius, "1", "spectral radius"),
         },
         {
-            **axis_coordinates({"speed_rpm": speeds}),
+            "speed_rpm": (speeds, "rpm", "pinion speed"),
             "mode": (np.arange(1, modes.size + 1), "1", "mode of the mean system"),
             "mesh_order": (mesh_order, "1", "multiple of the mesh frequency"),
         },

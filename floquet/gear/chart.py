@@ -16,9 +16,8 @@ import numpy.typing as npt
 
 from floquet.engine.chart import Axes, chart_dataset
 from floquet.engine.multipliers import radii_with_bounds
-from floquet.gear.axes import GEAR_AXES, GearVariation, gear_grid, operating_rpm, vary
+from floquet.gear.axes import GEAR_AXES, GearVariation, friction_families, gear_grid, operating_rpm, vary
 from floquet.gear.block import feedback_system, fitted_block
-from floquet.gear.friction_over_speed import friction_families
 from floquet.gear.multipliers import OffLineOfAction
 from floquet.rank_one.batch import fast_multipliers
 from lumped.arguments import one_of, real_number

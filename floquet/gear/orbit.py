@@ -86,11 +86,6 @@ class GearOrbit:
         return self.orbit.run.largest_load
 
     @property
-    def balanced_torque(self) -> float:
-        """Brake torque that holds the mean speed, or pinion torque where the brake torque is given [N m]."""
-        return self.orbit.parameter
-
-    @property
     def brake_torque(self) -> float:
         """T_g, found or given [N m]."""
         return _torques(self.pair, self.orbit.parameter)[1]

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from floquet.gear.axes import checked_range, operating_rpm, speed_range
-from floquet.gear.friction_over_speed import depends_on_speed
+from floquet.gear.axes import checked_range, depends_on_speed, operating_rpm, speed_range
 from floquet.gear.orbit import (
     MOST_CYCLES,
     GearOrbit,

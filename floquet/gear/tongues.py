@@ -28,7 +28,7 @@ from floquet.engine.tongues import (
     tongue_tip,
     unstable_intervals,
 )
-from floquet.gear.axes import GearVariation, axis_coordinates, checked_range, gear_grid, operating_rpm, vary
+from floquet.gear.axes import GEAR_AXES, GearVariation, checked_range, gear_grid, operating_rpm, vary
 from floquet.gear.block import gear_block
 from floquet.gear.chart import stability_chart
 from floquet.rank_one.batch import fast_monodromies, spectral_radii
@@ -248,7 +248,7 @@ def _boundaries_dataset(
             numbers[:, row, column] = lower.min(), upper.max(), top.peak, top.peak_radius
             open_end[row, column] = any(part.open_below or part.open_above for part in parts)
             count[row, column] = len(parts)
-    dims, each = ("tongue", name), ("tongue", name, "interval")
+    dims, each, axis = ("tongue", name), ("tongue", name, "interval"), GEAR_AXES.get(name)
     return labelled_dataset(
         {
             "lower": (dims, numbers[0], "rpm", "lower boundary of the tongue"),
@@ -262,7 +262,7 @@ def _boundaries_dataset(
             "interval_upper": (each, ends[1], "rpm", "upper ends of the intervals"),
             "complete": (name, complete, "1", "grid as fine as the damping asks for"),
         },
-        axis_coordinates({name: values}),
+        {name: (values, axis.units, axis.long_name) if axis else (values, "1", "value")},
         {"title": f"stability boundaries of {pair.name}", "friction_law": pair.friction.law},
     ).assign_coords(tongue_coordinates("tongue", tongues))
 

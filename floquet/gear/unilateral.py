@@ -12,8 +12,13 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from floquet.gear.axes import GearVariation, operating_rpm
-from floquet.gear.friction_over_speed import FrictionFamily, depends_on_speed, friction_families
+from floquet.gear.axes import (
+    FrictionFamily,
+    GearVariation,
+    depends_on_speed,
+    friction_families,
+    operating_rpm,
+)
 from floquet.orbits.branch import Family
 from floquet.orbits.system import Contact, ContactSystem
 from lumped.gear_geometry.tooth_profile import tooth_half_angle
@@ -239,10 +244,9 @@ def _widened(rows: FloatArray, width: int) -> FloatArray:
 
 def _signed(like: PathFunction, pitch_point: float, level: float) -> PathFunction:
     """The level with the sign of xi - L_XP, on the pieces of a law."""
-    function = like.split([pitch_point]).scaled(0.0)
-    rows = function.coefficients.copy()
-    rows[-1] = level * np.sign(0.5 * (function.breaks[:-1] + function.breaks[1:]) - pitch_point)
-    return PathFunction(function.breaks, rows, like.switches)
+    breaks = like.split([pitch_point]).breaks
+    sign = np.sign(0.5 * (breaks[:-1] + breaks[1:]) - pitch_point)
+    return PathFunction(breaks, level * sign[None], like.switches)
 
 
 def _plus(one: PathFunction, other: PathFunction, factor: float) -> PathFunction:

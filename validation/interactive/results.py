@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 import lumped
-from floquet.gear.axes import chart_axes, gear_axis, speed_range, with_point
+from floquet.gear.axes import GEAR_AXES, chart_axes, speed_range, with_point
 from floquet.gear.chart import stability_chart
 from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
 from floquet.gear.response import ResponseBranches
@@ -261,11 +261,11 @@ def _friction_slices(pair: GearPair, grid: Grid, count: int) -> Slices:
     ``grid``: speed_rpm and damping_ratio; ``count``: values of the coefficient, from 0.
     """
     name = "friction_coefficient"
-    own = gear_axis(name).own(pair)
+    own = GEAR_AXES[name].own(pair)
     values = with_point(np.linspace(0.0, min(max(_LEAST_FRICTION_RANGE, 2.0 * own), 1.0), count), own)
     chart = stability_chart(pair, {**grid, name: values}, rtol=_RTOL)
     tongues = [tuple(label_regions(pair, chart.isel({name: [i]}))) for i in range(count)]
-    attrs = {"units": "1", "long_name": gear_axis(name).long_name}
+    attrs = {"units": "1", "long_name": GEAR_AXES[name].long_name}
     chart[name].attrs.update(attrs)
     return Slices(name, int(np.argmin(np.abs(values - own))), _ordered(chart[_VARIABLES]), tuple(tongues))
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from floquet import gear_block, gear_pair_multipliers, scan, stability_chart
-from floquet.gear.axes import GearVariation, vary
-from floquet.gear.friction_over_speed import friction_families
+from floquet.gear.axes import GearVariation, friction_families, vary
 from lumped import load_gear_pair, preset_names
 from lumped.errors import ParameterError
 from lumped.path_of_contact.friction import friction_path_function

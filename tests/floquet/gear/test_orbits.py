@@ -40,7 +40,7 @@ def test_where_contact_holds_it_is_the_linear_motion(brake):
     multipliers = floquet.monodromy(floquet.gear_pair_system(pair, "mesh")).multipliers
     assert orbit.spectral_radius == pytest.approx(np.abs(multipliers).max(), abs=1e-9)
     torque = linear.attrs["brake_torque" if brake == "balanced" else "pinion_torque"]
-    assert orbit.balanced_torque == pytest.approx(torque, rel=1e-10)
+    assert orbit.orbit.parameter == pytest.approx(torque, rel=1e-10)
 
 
 def test_without_clearance_motions_are_proportional_to_the_torque(frictionless):

@@ -60,7 +60,7 @@ def test_the_multibody_model_has_the_same_periodic_motion(effects):
         assert run[name].values == pytest.approx(own, abs=1e-6 * np.ptp(own)), name
     loads = orbit.motion.normal_load.values
     assert run.normal_load.values == pytest.approx(loads, abs=1e-6 * loads.max())
-    assert run.attrs["brake_torque"] == pytest.approx(orbit.balanced_torque, rel=1e-6)
+    assert run.attrs["brake_torque"] == pytest.approx(orbit.brake_torque, rel=1e-6)
 
 
 def test_motions_of_two_cycles_are_found_too(pair_beyond):
