@@ -3,8 +3,6 @@ from .engine.coefficients import FourierSeries as FourierSeries
 from .engine.coefficients import KnownMatrix as KnownMatrix
 from .engine.coefficients import PeriodicMatrix as PeriodicMatrix
 from .engine.coefficients import PiecewisePolynomial as PiecewisePolynomial
-from .engine.forced import PeriodicMotion as PeriodicMotion
-from .engine.forced import periodic_motion as periodic_motion
 from .engine.monodromy import Monodromy as Monodromy
 from .engine.monodromy import monodromy as monodromy
 from .engine.multipliers import Spectrum as Spectrum

@@ -85,33 +85,15 @@ def _initial_grid(system: PeriodicSystem, method: Propagator, d: FloatArray) -> 
     return np.concatenate(start), np.concatenate(end)
 
 
-def propagate_fixed(system: PeriodicSystem, method: Propagator, substeps: int) -> FloatArray:
-    """Monodromy matrix with the given number of equal steps in each smooth segment, without error control.
-
-    For studies of convergence; `propagate` chooses its steps itself.
-    """
-    grids = [
-        np.linspace(a, b, substeps + 1) for a, b in zip(system.edges[:-1], system.edges[1:], strict=True)
-    ]
-    start = np.concatenate([g[:-1] for g in grids])
-    end = np.concatenate([g[1:] for g in grids])
-    steps, _ = _step_batch(system, method, start, end, np.ones(system.dimension))
-    product = np.eye(system.dimension)
-    for step in steps:
-        product = step @ product
-    return product
-
-
 def propagate(
     system: PeriodicSystem,
     method: Propagator,
     rtol: float,
     max_substeps: int = 200_000,
-    scaling: FloatArray | None = None,
 ) -> Propagation:
     """Transition matrices of one period, each step accurate to rtol h/T of its own norm.
 
-    The norm is taken in the coordinates x_i / scaling_i, by default those of `PeriodicSystem.balancing`.
+    The norm is taken in the coordinates x_i / d_i of `PeriodicSystem.balancing`.
 
     Every step is taken once whole and once as two halves. Their difference, which is an estimate of the error
     of the whole step and so an overestimate (by 2^p - 1 where the method shows its order) of that of the
@@ -123,7 +105,7 @@ def propagate(
     NumericalError
         Non-finite A, or more than ``max_substeps`` steps are needed.
     """
-    d = system.balancing() if scaling is None else scaling
+    d = system.balancing()
     start, end = _initial_grid(system, method, d)
     done: list[tuple[FloatArray, FloatArray, FloatArray, FloatArray]] = []
     accepted, warned = 0, False
@@ -160,7 +142,7 @@ def propagate(
             warnings.warn(
                 f"A(t) has a feature near t = {middle[missed[0]]:g} s that the samples of a step "
                 f"had missed; it is now resolved, but others narrower than {system.period / LOOKS:.2g} s may "
-                "not be. Name such times as breakpoints, or give A as a KnownMatrix.",
+                "not be. Name such times as breakpoints.",
                 ResolutionWarning,
                 stacklevel=3,
             )

@@ -1,4 +1,4 @@
-"""Periodic linear systems x' = A(t) x (+ b(t)): what every routine of this package consumes.
+"""Periodic linear systems x' = A(t) x: what every routine of this package consumes.
 
 Sources: docs/theory/floquet.md, "From the equations to a matrix".
 """
@@ -34,17 +34,16 @@ def second_order(stiffness: npt.ArrayLike, damping: npt.ArrayLike) -> FloatArray
 
 @dataclass(frozen=True, eq=False)
 class PeriodicSystem:
-    """A linear system x' = A(t) x + b(t) whose coefficients repeat after one period.
+    """A linear system x' = A(t) x whose coefficients repeat after one period.
 
     Parameters
     ----------
     A : callable, t [s] -> (n, n); with ``vectorized``, (k,) -> (k, n, n). It is only ever evaluated strictly
-        inside the smooth segments, so its value *at* a switch does not matter. Or a `KnownMatrix`: bounds can
-        then be proven, and its breaks need not be named.
+        inside the smooth segments, so its value *at* a switch does not matter. Or a `KnownMatrix`, whose
+        breaks need not be named.
     period : T > 0 [s]
-    breakpoints : times in [0, T] at which A or b jumps or has a kink; 0 and T are always segment ends
-    vectorized : whether A (and b) take a vector of times
-    b : forcing, t -> (n,); with ``vectorized``, (k,) -> (k, n). None: no forcing.
+    breakpoints : times in [0, T] at which A jumps or has a kink; 0 and T are always segment ends
+    vectorized : whether A takes a vector of times
 
     Attributes
     ----------
@@ -63,16 +62,13 @@ class PeriodicSystem:
     period: float
     breakpoints: Sequence[float] = ()
     vectorized: bool = False
-    b: Callable[..., npt.ArrayLike] | None = None
     dimension: int = field(init=False)
     edges: FloatArray = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        for name, returned in (("A", "(n, n)"), ("b", "(n,)")):
-            function = getattr(self, name)
-            if not callable(function) and not (name == "b" and function is None):
-                advice = "Wrap a constant as a function of t."
-                raise refuse(name, type(function).__name__, f"a callable t -> {returned}", advice)
+        if not callable(self.A):
+            advice = "Wrap a constant as a function of t."
+            raise refuse("A", type(self.A).__name__, "a callable t -> (n, n)", advice)
         period = real_number(
             "period", self.period, 0.0, above=True, unit="s", action="Give the length of one cycle."
         )
@@ -96,15 +92,15 @@ class PeriodicSystem:
         object.__setattr__(self, "edges", np.array([*kept, self.period]))
         object.__setattr__(self, "breakpoints", tuple(float(t) for t in breaks))
 
-        probe = np.asarray(self._call(self.A, np.array([0.5 * (self.edges[0] + self.edges[1])])))
+        probe = np.asarray(self._call(np.array([0.5 * (self.edges[0] + self.edges[1])])))
         if probe.ndim != 3 or probe.shape[1] != probe.shape[2] or probe.shape[1] == 0:
             shape = probe.shape if self.vectorized else probe.shape[1:]
             want = "(k, n, n) for k times (vectorized=True)" if self.vectorized else "(n, n)"
             raise refuse("A", f"shape {shape}", want, "Check the shape that the callable returns.")
         object.__setattr__(self, "dimension", int(probe.shape[1]))
 
-    def _call(self, function: Callable[..., npt.ArrayLike], times: FloatArray) -> FloatArray:
-        values = function(times) if self.vectorized else [function(float(t)) for t in times]
+    def _call(self, times: FloatArray) -> FloatArray:
+        values = self.A(times) if self.vectorized else [self.A(float(t)) for t in times]
         try:
             found = np.asarray(values)
         except ValueError:
@@ -113,21 +109,27 @@ class PeriodicSystem:
             kind = (
                 "numbers of different shapes" if found.dtype.kind == "O" else f"values of type {found.dtype}"
             )
-            raise refuse("A or b", kind, "real numbers", "Return real numbers of one shape for every time.")
+            raise refuse("A", kind, "real numbers", "Return real numbers of one shape for every time.")
         return found.astype(float)
 
     def evaluate(self, times: npt.ArrayLike) -> FloatArray:
         """Return A at times [s] strictly inside smooth segments, (k,) -> (k, n, n); checked finite."""
         t = np.asarray(times, dtype=float)
-        values = self._call(self.A, t)
-        return self._checked(values, t, (self.dimension, self.dimension), "A(t)")
-
-    def forcing(self, times: npt.ArrayLike) -> FloatArray:
-        """Return b at times [s], (k,) -> (k, n); zeros when the system has no forcing."""
-        t = np.asarray(times, dtype=float)
-        if self.b is None:
-            return np.zeros((t.size, self.dimension))
-        return self._checked(self._call(self.b, t), t, (self.dimension,), "b(t)")
+        values, shape = self._call(t), (self.dimension, self.dimension)
+        if values.shape != (t.size, *shape):
+            raise refuse(
+                "A",
+                f"shape {values.shape[1:]} at t = {t[0] if t.size else 0.0:g} s",
+                f"{shape} at every time",
+                "Return the same shape for every time.",
+            )
+        if not np.isfinite(values).all():
+            bad = t[~np.isfinite(values).reshape(t.size, -1).all(axis=1)][0]
+            raise NumericalError(
+                f"A(t) is not finite at t = {bad:.17g} s. Check the coefficients there; if this is a "
+                "switch, add it to breakpoints: nothing is evaluated at the ends of a segment."
+            )
+        return values
 
     def inside(self, times: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
         """Move times that touch the ends of their interval [start, end] strictly inside it."""
@@ -146,20 +148,3 @@ class PeriodicSystem:
         magnitude = np.abs(self.evaluate(places.ravel())).max(axis=0)
         _, (scale, _) = matrix_balance(magnitude, permute=False, separate=True)
         return np.asarray(scale, dtype=float)
-
-    @staticmethod
-    def _checked(values: FloatArray, t: FloatArray, shape: tuple[int, ...], name: str) -> FloatArray:
-        if values.shape != (t.size, *shape):
-            raise refuse(
-                name[0],
-                f"shape {values.shape[1:]} at t = {t[0] if t.size else 0.0:g} s",
-                f"{shape} at every time",
-                "Return the same shape for every time.",
-            )
-        if not np.isfinite(values).all():
-            bad = t[~np.isfinite(values).reshape(t.size, -1).all(axis=1)][0]
-            raise NumericalError(
-                f"{name} is not finite at t = {bad:.17g} s. Check the coefficients there; if this is a "
-                "switch, add it to breakpoints: nothing is evaluated at the ends of a segment."
-            )
-        return values

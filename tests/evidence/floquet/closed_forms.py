@@ -7,6 +7,7 @@ Sources: docs/verification/floquet.md; Oberkampf and Roy, Verification and Valid
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import expm
@@ -17,9 +18,8 @@ from floquet import (
     Monodromy,
     PeriodicSystem,
     monodromy,
-    periodic_motion,
 )
-from floquet.engine.propagation import propagate_fixed
+from floquet.engine.propagators.one_step import Propagator
 from floquet.engine.propagators.registry import propagator
 from lumped.typing import FloatArray
 from tests.evidence.check import Check, order
@@ -72,22 +72,17 @@ def check_closed_forms() -> Iterator[Check]:
     yield Check("Mathieu's equation with damping", exact, worst, 1e-9)
 
 
-def harmonic_motion_error(rtol: float = 1e-11, unit: float = 1.0) -> float:
-    """Error of the periodic motion of x' = A x + c cos Wt over its largest state.
-
-    Its closed form is Re((iW - A)^-1 c exp(iWt)); ``unit`` scales c.
-    """
-    rng = np.random.default_rng(4)
-    A, c, T = rng.normal(size=(4, 4)), rng.normal(size=4) / unit, 1.7
-    W, times = 2.0 * np.pi / T, T * np.array([0.0, 0.21, 0.5, 0.999, 1.0])
-    exact = (np.linalg.solve(1j * W * np.eye(4) - A, c) * np.exp(1j * W * times)[:, None]).real
-    motion = periodic_motion(PeriodicSystem(lambda t: A, T, b=lambda t: c * np.cos(W * t)), times, rtol)
-    return float(np.abs(motion.states - exact).max() / np.abs(exact).max())
-
-
-def check_forced_motion() -> Iterator[Check]:
-    """Periodic motion of the general engine."""
-    yield Check("forced motion of constant coefficients", "closed form", harmonic_motion_error(), 1e-9)
+def propagate_fixed(system: PeriodicSystem, method: Propagator, substeps: int) -> FloatArray:
+    """Monodromy matrix with so many equal steps in each smooth segment, without error control."""
+    product = np.eye(system.dimension)
+    for a, b in pairwise(system.edges):
+        h, s = (b - a) / substeps, method.nodes.size
+        start = (a + h * np.arange(substeps))[:, None]
+        times = system.inside(start + h * method.nodes, start, start + h).ravel()
+        A = system.evaluate(times).reshape(substeps, s, system.dimension, system.dimension)
+        for step in method.step_matrices(A, np.full(substeps, h)):
+            product = step @ product
+    return product
 
 
 def _smooth(coefficients: FloatArray, jump: float = 0.0) -> PeriodicSystem:

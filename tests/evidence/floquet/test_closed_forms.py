@@ -12,7 +12,6 @@ from floquet.engine.propagators.one_step import GaussLegendre
 from tests.evidence.floquet import closed_forms, combinations, coulomb_zones
 from tests.evidence.floquet.closed_forms import (
     constant_error,
-    harmonic_motion_error,
     mathieu_error,
     meissner_error,
     symplectic_defect,
@@ -26,7 +25,6 @@ extended = pytest.mark.skipif(
 )
 CHECKS = (
     closed_forms.check_closed_forms,
-    closed_forms.check_forced_motion,
     closed_forms.check_invariants,
     closed_forms.check_orders,
     pytest.param(closed_forms.check_random_gears, marks=extended),
@@ -74,10 +72,6 @@ def test_methods_are_symplectic_as_registered(method: str) -> None:
     # Gauss methods conserve quadratic invariants.
     defect = symplectic_defect(method)
     assert defect < 1e-12 if PROPAGATORS[method].symplectic else defect > 1e-9
-
-
-def test_units_of_the_forcing_do_not_matter() -> None:
-    assert harmonic_motion_error(1e-10, unit=1e9) < 1e-8
 
 
 def failing(function) -> set[str]:

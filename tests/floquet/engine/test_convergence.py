@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from floquet import PROPAGATORS, PeriodicSystem
-from floquet.engine.propagation import propagate_fixed
 from floquet.engine.propagators.one_step import GaussLegendre, Propagator
 from floquet.engine.propagators.registry import propagator
+from tests.evidence.floquet.closed_forms import propagate_fixed
 
 
 def error(method: Propagator, system: PeriodicSystem, exact: np.ndarray, steps: int) -> float:
