@@ -1,6 +1,8 @@
 """Coefficients of A(t), and matrices of them, that are given as formulas: their breaks are known.
 
 Piecewise polynomials and Fourier series, their sums and products.
+
+Sources: docs/theory/floquet.md, "From matrices of mass, damping and stiffness".
 """
 
 from __future__ import annotations
