@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -47,9 +47,6 @@ def response(
         ),
     ] = None,
     speeds: Annotated[int, typer.Option(help="With --map: number of speeds.")] = 800,
-    multibody: Annotated[
-        int, typer.Option(help="Speeds of multibody sweeps up and down, drawn as points; some seconds each.")
-    ] = 0,
     back_side: Annotated[
         bool, typer.Option("--back-side", help="Also let the back sides of the teeth touch.")
     ] = False,
@@ -72,11 +69,12 @@ def response(
 
     spurcheck response my_pair.toml --range 200..3000 -o response.png
 
-    spurcheck response --multibody 40 -o response.svg
-
     spurcheck response my_pair.toml --map torque=20:300:26 -o jumps.png
     """
+    import numpy as np
+
     import floquet
+    import lumped
     from floquet.gear.axes import operating_rpm
     from lumped.arguments import whole_number
 
@@ -87,7 +85,6 @@ def response(
         _map(gear_pair, over, speeds, seeds or 0, target, as_json, force)
         return
     whole_number("--periods", periods, 1, 8)
-    whole_number("--multibody", multibody, 0, 1000)
     with progress_bar("branches") as tell:
         found = floquet.response_branches(
             gear_pair,
@@ -114,31 +111,9 @@ def response(
     if target is not None:
         from validation.plots.contact_loss import response_figure
 
-        linear, runs = _others(gear_pair, found.speeds_rpm, multibody)
-        draw = partial(response_figure, found.dataset, linear, runs)
+        linear = lumped.speed_sweep(gear_pair, np.linspace(*found.speeds_rpm, _LINEAR_SPEEDS))
+        draw = partial(response_figure, found.dataset, linear)
         opt.write_result(target, found.dataset, draw, force=force)
-
-
-def _others(
-    pair: GearPair, speeds: tuple[float, float], count: int
-) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
-    """The linear model over the same speeds, and multibody sweeps."""
-    import numpy as np
-
-    import lumped
-
-    linear = lumped.speed_sweep(pair, np.linspace(*speeds, _LINEAR_SPEEDS))
-    if count < 2:
-        return linear, {}
-    import multibody
-
-    rising, runs = np.linspace(*speeds, count), dict[str, Any]()
-    with progress_bar("multibody sweeps") as tell:
-        for part, (way, values) in enumerate({"up": rising, "down": rising[::-1]}.items()):
-            runs[way] = multibody.speed_sweep(
-                pair, values, progress=lambda done, part=part: tell(0.5 * (part + done))
-            )
-    return linear, runs
 
 
 def _print(pair: GearPair, found: ResponseBranches) -> None:

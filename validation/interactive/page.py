@@ -20,7 +20,6 @@ from lumped.typing import Progress
 from validation.files.output import write_dataset, write_text
 from validation.interactive.payload import payload, script_json
 from validation.interactive.results import FINE, PageResults, Sampling, compute
-from validation.validity.map import STATES, speed_spans
 
 #: Parts of the page's own script, in this order.
 _SCRIPTS = ("data.js", "chart.js", "stability.js", "branches.js", "sweep.js", "jumps.js", "start.js")
@@ -85,11 +84,8 @@ def render(results: PageResults, data_name: str) -> str:
         rpm=operating_rpm(pair),
         law=LAWS[pair.friction.law].title,
         found=results.found,
-        slices=results.stability.values(),
         step=float(np.diff(next(iter(results.stability.values())).chart["speed_rpm"]).max()),
-        unstable=unstable_speeds,
-        response=_response_rows(results),
-        branches=_branch_rows(results.branches) if isinstance(results.branches, xr.Dataset) else [],
+        branches=isinstance(results.branches, xr.Dataset),
         jumps=results.jumps,
         no_branches=results.branches if isinstance(results.branches, str) else "",
         missing={LAWS[law].title: reason for law, reason in results.missing.items()},
@@ -117,49 +113,3 @@ def _safe(script: str) -> str:
     if "</script" in lower or "<!--" in lower:
         raise ValueError("a script holds text that would end its element")
     return script
-
-
-def unstable_speeds(chart: xr.Dataset, key: str, index: int, damping: float) -> str:
-    """Speeds of a slice that are not stable at a damping ratio, in words."""
-    row = chart.isel({key: index}).sel(damping_ratio=damping, method="nearest")
-    return ", ".join(speed_spans(row["speed_rpm"].to_numpy(), row["verdict"].to_numpy() != 1)) or "none"
-
-
-def _response_rows(results: PageResults) -> list[list[str]]:
-    """Rows of the response of the pair's law, at a few speeds, for readers without scripts."""
-    sweep = results.sweep.isel(law=results.own_law)
-    step = -(-sweep.sizes["speed"] // 16)
-    few = sweep.isel(speed=slice(None, None, step))
-    columns = (
-        (few["speed"], 1.0, 5),
-        (few["dte_peak_to_peak"], 1e6, 4),
-        (few["y_p_peak_to_peak"], 1e6, 4),
-        (few["lowest_load"], 1.0, 3),
-    )
-    texts = [[_text(factor * v, digits) for v in values.to_numpy()] for values, factor, digits in columns]
-    texts.append([STATES[state] for state in few["validity"].to_numpy()])
-    return [list(row) for row in zip(*texts, strict=True)]
-
-
-def _branch_rows(data: xr.Dataset) -> list[list[str]]:
-    """Rows of a few motions of every branch, for readers without scripts."""
-    rows = []
-    for branch in np.unique(data["branch"]):
-        one = data.isel(orbit=data["branch"].to_numpy() == branch)
-        for i in range(0, one.sizes["orbit"], -(-one.sizes["orbit"] // 6)):
-            at = one.isel(orbit=i)
-            rows.append(
-                [
-                    _text(float(at["branch_speed_rpm"]), 5),
-                    _text(1e6 * float(at["branch_dte_peak_to_peak"]), 4),
-                    _text(float(at["branch_largest_load"]), 4),
-                    f"{float(at['branch_spectral_radius']):.6f}",
-                    str(int(at["branch_n"])),
-                    "stable" if at["branch_stable"] else "unstable",
-                ]
-            )
-    return rows
-
-
-def _text(value: float, digits: int) -> str:
-    return f"{value:.{digits}g}" if np.isfinite(value) else "–"

@@ -44,9 +44,7 @@ _POINT: Any = {"marker": "o", "markersize": 6, "markerfacecolor": "white", "mark
 _NEAR = 0.06
 
 
-def response_figure(
-    branches: xr.Dataset, linear: xr.Dataset | None = None, runs: dict[str, xr.Dataset] | None = None
-) -> Figure:
+def response_figure(branches: xr.Dataset, linear: xr.Dataset | None = None) -> Figure:
     """Root mean square of the transmission error over speed, stable and unstable, with multipliers below.
 
     Arrows are jumps on running up and down.
@@ -55,7 +53,6 @@ def response_figure(
     ----------
     branches : ``dataset`` of ``floquet.response_branches``
     linear : sweep of the linear model, ``lumped.speed_sweep``; None: not drawn
-    runs : "up" and "down" -> ``multibody.speed_sweep``; None: not drawn
     """
     figure, axes = new_figure(2, 1, height=5.2, sharex=True, height_ratios=(2.2, 1.0))
     top, bottom = axes[:, 0]
@@ -75,10 +72,6 @@ def response_figure(
     if linear is not None:
         dotted: Any = {"color": BLACK, "linestyle": ":", "linewidth": 1.0, "label": "linear model"}
         handles += top.plot(linear["speed"], linear["dte_rms"] / factor, **dotted)
-    for (way, run), marker in zip((runs or {}).items(), ("^", "v"), strict=False):
-        style: Any = {"color": BLACK, "marker": marker, "linestyle": "", "markersize": 3.2}
-        words = f"multibody, running {way}"
-        handles += top.plot(run["speed"], run["dte_rms"] / factor, **style, fillstyle="none", label=words)
     for j in range(branches.sizes["jump"]):
         one = branches.isel(jump=j)
         at, start, end = (float(one[f"jump_{name}"]) for name in ("speed_rpm", "dte_rms", "dte_rms_after"))
