@@ -69,12 +69,12 @@ QUICK = Effort(128, 16, 48, 16, 4, 1e-6, 7, 3, 13, full=False)
 
 
 @dataclass(frozen=True, eq=False)
-class Parting:
-    """What the pair does where the linear motion needs teeth that pull.
+class ContactLoss:
+    """What the pair does where the linear motion has negative tooth loads.
 
     Attributes
     ----------
-    orbit : the same equations with teeth that push only
+    orbit : the same equations with unilateral contact
     exact : a mesh cycle of the multibody model
     exact_peak_to_peak : its transmission error [m]
     judged : whether the cross-check compares these two
@@ -167,7 +167,7 @@ class Results:
 
     @property
     def separating_share(self) -> float:
-        """Share of the range of speeds in which a tooth pair would have to pull."""
+        """Share of the range of speeds with negative tooth loads."""
         low = self.sweep["normal_load_min"].to_numpy()  # NaN where there is no periodic motion
         return self.share_of_range(low < -LOAD_NOISE * self.static_load)
 
@@ -189,8 +189,11 @@ class Results:
         return attribution(self.check)
 
     @cached_property
-    def parting(self) -> Parting | str | None:
-        """The motion of teeth that push only; None where the linear one keeps contact; why there is none."""
+    def contact_loss(self) -> ContactLoss | str | None:
+        """The motion with unilateral contact.
+
+        None: contact is never lost. A string: the computation failed, with the reason.
+        """
         loads = self.motion["normal_load"].where(self.motion["contact"] > 0)
         if float(loads.min()) >= -LOAD_NOISE * self.static_load:
             return None
@@ -201,13 +204,14 @@ class Results:
             return str(error)
         run = self.check.multibody["exact"]
         exact = run.sel(time=slice(float(run["time"][-1]) - 1.000001 * self.geometry.mesh_period, None))
-        return Parting(orbit, exact, cycle_peak_to_peak(exact, "dte"), self.check.orbit is not None)
+        return ContactLoss(orbit, exact, cycle_peak_to_peak(exact, "dte"), self.check.orbit is not None)
 
     @cached_property
     def branches(self) -> ResponseBranches | str | None:
-        """Motions of teeth that push only, about the operating speed; why there are none.
+        """Motions with unilateral contact about the operating speed.
 
-        None where the linear model keeps contact at all speeds of the range, and in a quick report.
+        None: contact is never lost in the range of speeds, or a quick report. A string: the computation
+        failed, with the reason.
         """
         if not self.effort.full or not self.separating_share:
             return None
@@ -215,7 +219,7 @@ class Results:
 
     @cached_property
     def jump_map(self) -> xr.Dataset | str | None:
-        """Where the pair can jump over speed and torque; why it is not known; None where ``branches`` is."""
+        """Where the pair can jump over speed and torque; a string or None as for ``branches``."""
         if self.branches is None:
             return None
         return jumps_about_operation(self.pair, progress=self.stage("jumps over speed and torque"))
@@ -232,10 +236,10 @@ class Results:
 
     @cached_property
     def lifting(self) -> xr.Dataset | None:
-        """Loaded contact's motion with pairs that push only, where one pulls while all together push."""
-        found, forms = self.parting, self.forms
+        """The motion with unilateral contact, where a pair pulls but the total load is positive."""
+        found, forms = self.contact_loss, self.forms
         if (
-            not isinstance(found, Parting)
+            not isinstance(found, ContactLoss)
             or found.judged
             or isinstance(forms, str)
             or forms.own == "prescribed"

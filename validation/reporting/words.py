@@ -8,10 +8,9 @@ import xarray as xr
 from lumped import GearPair
 from validation.cross_check.verdict import Verdict
 from validation.reporting.blocks import Text
-from validation.reporting.contact_words import contact_form
 from validation.reporting.cross_check_words import cause_of_difference, failed_checks, whole_difference
 from validation.reporting.formatting import digits, number, quantity
-from validation.reporting.results import Parting, Results
+from validation.reporting.results import ContactLoss, Results
 from validation.validity.four_springs import LIMITS, FourSprings
 
 #: Largest difference of the transmission error from exact contact, over its peak to peak, that the first
@@ -29,19 +28,19 @@ def headline(results: Results) -> str:
     near = [f"“{flag.name.lower()}” is near its limit" for flag in results.flags if flag.state == "warning"]
     near += ["check the values named below"] if results.doubts else []
     care = f"{', with care: ' if near else ''}{'; '.join(near)}"
-    if confirmed_parting(results):
+    if confirmed_contact_loss(results):
         return (
-            f"{here} teeth part: the linear model does not hold, its equations with teeth that push only do"
-            f"{care}."
+            f"{here} contact is lost: the linear model does not hold, its equations with unilateral contact "
+            f"do{care}."
         )
     return f"{here} the prediction holds{care}."
 
 
-def confirmed_parting(results: Results) -> Parting | None:
-    """The motion of teeth that part, where the cross-check compares and does not refute it."""
-    found = results.parting
-    judged = isinstance(found, Parting) and found.judged and results.check.verdict is not Verdict.FAILS
-    return found if judged and isinstance(found, Parting) else None
+def confirmed_contact_loss(results: Results) -> ContactLoss | None:
+    """The motion with contact loss, where the cross-check compares it and does not fail."""
+    found = results.contact_loss
+    judged = isinstance(found, ContactLoss) and found.judged and results.check.verdict is not Verdict.FAILS
+    return found if judged and isinstance(found, ContactLoss) else None
 
 
 def contact_off(results: Results) -> str:
@@ -49,7 +48,7 @@ def contact_off(results: Results) -> str:
     forms = results.forms
     if isinstance(forms, str) or forms.difference[forms.own] <= _CONTACT_LIMIT:
         return ""
-    if found := confirmed_parting(results):
+    if found := confirmed_contact_loss(results):
         follows = forms.spans(results.geometry.mesh_period)["exact"]
         low, high = found.orbit.dte_range
         if abs(high - low - follows) <= _CONTACT_LIMIT * follows:
@@ -61,7 +60,7 @@ def contact_off(results: Results) -> str:
     reason = "their contact is too simple: with contact that follows the load"
     right = forms.spans(results.geometry.mesh_period)["exact"]
     if (pushing := lifting(results)) is not None:
-        reason = "one tooth pair lifts off while another carries: with pairs that push only"
+        reason = "one tooth pair lifts off while another carries: with unilateral contact of each pair"
         right = pushing.attrs["dte_peak_to_peak"]
     most = number(100 * forms.difference[forms.own], 2)
     return (
@@ -71,7 +70,7 @@ def contact_off(results: Results) -> str:
 
 
 def lifting(results: Results) -> xr.Dataset | None:
-    """The motion of pairs that push only, where loaded contact is off because it lets one of them pull."""
+    """The motion with unilateral contact, where loaded contact is off because it lets one pair pull."""
     motion, forms = results.lifting, results.forms
     return None if motion is None or isinstance(forms, str) or forms.off(motion) > _CONTACT_LIMIT else motion
 
@@ -84,7 +83,7 @@ def sentence(results: Results) -> str:
 
 def motion(results: Results) -> str:
     """What the model computes, in the digits that its sampling allows."""
-    if found := confirmed_parting(results):
+    if found := confirmed_contact_loss(results):
         return f"{with_loss_of_contact(results, found)}{ignored_relief(results.pair)}"
     load, error = largest_load(results)
     factor = number(load / results.static_load, digits(error / load), measured=True)
@@ -95,20 +94,22 @@ def motion(results: Results) -> str:
     numbers += ignored_relief(results.pair)
     if objections(results):
         told = f"Computed, but not what a gear pair would show: {numbers}"
-        return f"{told} {parted(results) if pulls(results) else ''}".rstrip() + on_shafts(results)
+        return f"{told} {with_unilateral_contact(results) if pulls(results) else ''}".rstrip() + on_shafts(
+            results
+        )
     return numbers[0].upper() + numbers[1:]
 
 
-def with_loss_of_contact(results: Results, found: Parting) -> str:
-    """What the equations with teeth that push only give."""
+def with_loss_of_contact(results: Results, found: ContactLoss) -> str:
+    """What the equations with unilateral contact give."""
     low, high = found.orbit.dte_range
     driving = results.pair.operating.pinion_torque * results.geometry.omega_pinion
     lost = -float(found.orbit.motion["friction_power"].sum("pair").mean()) / driving
     return (
-        f"With teeth that push and never pull: transmission error {quantity(high - low, 'm', 3)} peak to "
+        f"With unilateral contact: transmission error {quantity(high - low, 'm', 3)} peak to "
         f"peak, tooth load up to {number(found.orbit.largest_load / results.static_load, 3)} times the "
-        f"static load, {number(100 * lost, 2)}\u00a0% of the power lost in sliding. The linear model, whose "
-        f"teeth would pull, gives {span(results)}."
+        f"static load, {number(100 * lost, 2)}\u00a0% of the power lost in sliding. The linear model, with "
+        f"negative tooth loads, gives {span(results)}."
     )
 
 
@@ -156,19 +157,19 @@ def on_shafts(results: Results) -> str:
 
 
 def pulls(results: Results) -> bool:
-    """Whether the linear motion at the operating point needs teeth that pull."""
+    """Whether the linear motion at the operating point has negative tooth loads."""
     return any(flag.key == "contact_loss" and flag.state != "ok" for flag in results.flags)
 
 
-def parted(results: Results) -> str:
-    """What the pair does instead where the linear motion needs teeth that pull; empty where it does not."""
-    found = results.parting
+def with_unilateral_contact(results: Results) -> str:
+    """What the pair does where the linear motion has negative tooth loads; empty where it has none."""
+    found = results.contact_loss
     if found is None or isinstance(found, str):
         return ""
     low, high = found.orbit.dte_range
     off = abs(high - low - found.exact_peak_to_peak) / found.exact_peak_to_peak
     return (
-        f"With teeth that push and never pull the same equations give {quantity(high - low, 'm', 3)} peak to "
+        f"With unilateral contact the same equations give {quantity(high - low, 'm', 3)} peak to "
         f"peak, {number(100 * off, 2)}\u00a0% off the multibody model."
     )
 
@@ -222,10 +223,33 @@ def agreement(results: Results) -> str:
     return f"{told} {contact_form(results)}".rstrip() if same else told
 
 
+def contact_form(results: Results) -> str:
+    """How far the form of the contact is off the exact one; empty where the exact contact has no motion."""
+    forms = results.forms
+    if isinstance(forms, str):
+        return ""
+    spans = forms.spans(results.geometry.mesh_period)
+    off = {name: number(100 * value, 2) for name, value in forms.difference.items()}
+    told = {name: quantity(value, "m", 3) for name, value in spans.items()}
+    if forms.own == "loaded":
+        return (
+            "The contact follows the load: this form is off the exact contact by up to "
+            f"{off['loaded']}\u00a0% of the transmission error's peak to peak, prescribed contact by "
+            f"{off['prescribed']}\u00a0%."
+        )
+    powers = forms.powers["prescribed"]
+    return (
+        f"Exact contact, from gaps and an elastic energy, gives {told['exact']} peak to peak. Prescribed "
+        f"contact is off it by up to {off['prescribed']}\u00a0% of that, with an energy residual of "
+        f"{quantity(powers.energy_residual, 'W', 3)} ({quantity(powers.driving, 'W', 3)} input); loaded "
+        f"contact gives {told['loaded']} and is off by up to {off['loaded']}\u00a0%."
+    )
+
+
 def stability(results: Results) -> str:
     """Whether the motion is stable here, and at which other speeds."""
-    if parting := confirmed_parting(results):
-        left = number(100 * parting.orbit.spectral_radius, 2)
+    if loss := confirmed_contact_loss(results):
+        left = number(100 * loss.orbit.spectral_radius, 2)
         return (
             f"A disturbance of this motion fades to {left}\u00a0% in a mesh cycle. {jumps(results)}".rstrip()
         )
@@ -255,7 +279,7 @@ def unlawful(results: Results) -> str:
 
 def objections(results: Results) -> list[str]:
     """Reasons why a gear pair would not show the predicted motion."""
-    verdict, parts = results.multipliers.verdict, confirmed_parting(results)
+    verdict, parts = results.multipliers.verdict, confirmed_contact_loss(results)
     if parts:  # the motion of the linear model is not the one that is predicted
         verdict = "stable"
     found = [] if verdict == "stable" else [f"the periodic motion is {verdict}, so a pair would leave it"]
@@ -275,10 +299,10 @@ def objections(results: Results) -> list[str]:
 def cautions(results: Results) -> tuple[Text, ...]:
     """What a chapter on the periodic motion says first where that motion is not to be relied on."""
     stability, check, found = results.multipliers, results.check, []
-    if confirmed_parting(results):
+    if confirmed_contact_loss(results):
         found.append(
-            "The numbers of the linear model in this chapter are those of teeth that would pull. What the "
-            "pair does is in the chapter “Where teeth part”."
+            "The numbers of the linear model in this chapter are those of negative tooth loads. What the "
+            "pair does is in the chapter “Contact loss”."
         )
     elif stability.verdict != "stable":
         found.append(
@@ -309,7 +333,7 @@ def stable_speeds(results: Results) -> str:
 
 
 def validity(results: Results) -> str:
-    """Which assumptions hold here, and over how much of the speed range teeth stay in contact."""
+    """Which assumptions hold here, and over how much of the speed range contact holds."""
     states = {"warning": "near its limit", "violated": "violated"}
     raised = [f"{flag.name.lower()} ({states[flag.state]})" for flag in results.flags if flag.state != "ok"]
     if contact_off(results):
@@ -324,6 +348,6 @@ def validity(results: Results) -> str:
     if not share:
         return f"{text}."
     return (
-        f"{text}; from {low:.0f} to {high:.0f} rpm teeth would separate at {100 * share:.2g}\u00a0% of the "
+        f"{text}; from {low:.0f} to {high:.0f} rpm contact is lost at {100 * share:.2g}\u00a0% of the "
         "speeds, where the linear model does not hold."
     )

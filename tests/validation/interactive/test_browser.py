@@ -148,7 +148,7 @@ def test_hover_over_the_jump_map_shows_the_data_file(page, data):
         f"largest motion {1e6 * float(one['map_dte_rms_largest']):.4g} µm rms, "
         f"tooth load up to {float(one['map_largest_load']):.4g} N",
         "1 stable motion",
-        "contact kept" if one["map_contact_kept"] else "teeth part",
+        "contact kept" if one["map_contact_kept"] else "contact loss",
     ]
     assert "; ".join(lines) in page.text("jumps-text")
 

@@ -155,7 +155,7 @@ def contrast(one, other):
     return (high + 0.05) / (low + 0.05)
 
 
-def test_without_scripts_the_page_is_its_tables(browser, written, data):
+def test_without_scripts_the_page_says_where_the_numbers_are(browser, written):
     from selenium.common.exceptions import WebDriverException
 
     command = browser.open(written, scripts=False).driver.execute_cdp_cmd

@@ -7,7 +7,7 @@ function jumpWords(i, j) {
     `${plain(jumpMap.speed[j], 5)} rpm, ${plain(jumpMap.torque[i], 4)} N m`,
     `largest motion ${plain(jumpMap.rms[i][j], 4)} µm rms, tooth load up to ${plain(jumpMap.load[i][j], 4)} N`,
     count ? `${count} stable motion${count > 1 ? "s side by side" : ""}` : "beats, chaos or several mesh cycles",
-    jumpMap.kept[i][j] ? "contact kept" : "teeth part",
+    jumpMap.kept[i][j] ? "contact kept" : "contact loss",
   ];
 }
 

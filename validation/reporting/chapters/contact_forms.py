@@ -1,4 +1,4 @@
-"""How far the paper's contact is off the exact one, and what loaded contact gives for the same pair."""
+"""How far prescribed and loaded contact are off the exact contact for the same pair."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 from validation.plots.contact_forms import contact_forms_figure, losses_over_speed_figure
 from validation.reporting.blocks import Block, Content, Picture, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
-from validation.reporting.contact_words import contact_form
 from validation.reporting.results import Results
+from validation.reporting.words import contact_form
 from validation.validity.contact_forms import FORMS, PLACES, losses_over_speed
 
 #: Speeds of the figure of losses.
@@ -23,11 +23,11 @@ def write(results: Results) -> Content:
     if isinstance(found, str):
         return Content((Text(f"The exact contact has no motion to compare with: {found}"),))
     spans, motions, off = found.spans(results.geometry.mesh_period), dict(found.motions), found.difference
-    names = FORMS | {"exact": "exact contact", "pushing": "loaded contact, no pair pulls"}
+    names = FORMS | {"exact": "exact contact", "pushing": "loaded contact, unilateral"}
     if (pushing := results.lifting) is not None:
         motions["pushing"], off["pushing"] = pushing, found.off(pushing)
         spans["pushing"] = pushing.attrs["dte_peak_to_peak"]
-    statics = "its teeth touch from A to D by decree, with a stiffness that does not know its load"
+    statics = "contact is prescribed from A to D, with a stiffness independent of the load"
     blocks: list[Block] = [
         Text(
             f"{contact_form(results)} With prescribed contact {statics}; the exact contact follows from gaps "
@@ -85,9 +85,9 @@ def write(results: Results) -> Content:
                 ),
             },
             marked=lambda form: form == found.own,
-            note="The paper's brake torque balances moments and so pays for sliding alone. What bearings and "
-            "tooth dampers turn to heat beside it is unpaid: a force N = k(ξ) δ has no potential, and feeds "
-            "in what the brake does not give (Oh, Grosh and Barber 2005). Loaded contact's brake pays.",
+            note="With prescribed contact the brake torque balances moments, so the sliding loss alone. The "
+            "losses of bearings and tooth dampers are its energy residual: a force N = k(ξ) δ has no "
+            "potential (Oh, Grosh and Barber 2005). Loaded contact satisfies the power balance.",
         ),
     ]
     data = {f"contact_{name}": motion for name, motion in found.motions.items()}

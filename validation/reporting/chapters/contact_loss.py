@@ -1,4 +1,4 @@
-"""What the pair does where the linear motion would need teeth that pull."""
+"""What the pair does where the linear motion has negative tooth loads."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from validation.plots.contact_loss import jump_map_figure, response_figure
 from validation.reporting.blocks import Block, Content, Picture, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.formatting import number, quantity
-from validation.reporting.results import Parting, Results
-from validation.reporting.words import jumps, parted
+from validation.reporting.results import ContactLoss, Results
+from validation.reporting.words import jumps, with_unilateral_contact
 
 #: Most jumps of which it is looked for what removes them: some seconds each.
 _FEW = 4
@@ -23,23 +23,23 @@ _MOTIONS = {"beats": "beats", "chaos": "chaos", "grows": "grows beyond the backl
 
 
 def write(results: Results) -> Content | None:
-    """Write the chapter; nothing where all teeth that the linear model holds together push at all speeds."""
-    found = results.parting
+    """Write the chapter; None where the linear model has no negative tooth loads at any speed."""
+    found = results.contact_loss
     if found is None:
         about = (
-            "At the operating speed all teeth push; at other speeds the linear model needs teeth that pull."
+            "Contact holds at the operating speed; at other speeds the linear model has negative tooth loads."
         )
         over_speed = _over_speed(results)
         return Content((Text(about), *over_speed)) if over_speed else None
     if isinstance(found, str):
-        return Content((Text(f"Teeth that may part have no periodic motion that was found: {found}"),))
+        return Content((Text(f"No periodic motion with unilateral contact was found: {found}"),))
     orbit, linear, exact = found.orbit, results.motion, found.exact
     loads = linear["normal_load"].where(linear["contact"] > 0)
     rows: dict[str, tuple[float, float, float]] = {
-        "linear model, teeth may pull": (
+        "linear model, teeth can pull": (
             float(linear.attrs["dte_peak_to_peak"]), float(loads.max()), float(loads.min())
         ),
-        "same equations, teeth push only": (
+        "same equations, unilateral contact": (
             orbit.dte_range[1] - orbit.dte_range[0], orbit.largest_load, 0.0
         ),
         "multibody model": (found.exact_peak_to_peak, float(exact["normal_load"].max()), 0.0),
@@ -47,14 +47,13 @@ def write(results: Results) -> Content | None:
     stable = "a disturbance of it fades" if orbit.stable else "it is unstable: a pair leaves it"
     blocks: list[Block] = [
         Text(
-            "The motion of the linear model needs tooth pairs that pull by up to "
-            f"{quantity(abs(float(loads.min())), 'N', 3)}. {parted(results)} Between losing and finding "
-            "contact the motion is exact, and its multipliers say that "
-            f"{stable} (largest {number(orbit.spectral_radius, 3)} per mesh cycle). {_compared(results)}"
+            f"Smallest tooth load of the linear model: {quantity(float(loads.min()), 'N', 3)}. "
+            f"{with_unilateral_contact(results)} The multipliers of this motion say that {stable} (largest "
+            f"{number(orbit.spectral_radius, 3)} per mesh cycle). {_compared(results)}"
         ),
         table_of(
             "contact_loss",
-            "The motion at the operating point with and without teeth that pull.",
+            "The motion at the operating point with and without contact loss.",
             list(rows),
             {
                 "model": ("model", str),
@@ -69,12 +68,12 @@ def write(results: Results) -> Content | None:
 
 def _compared(results: Results) -> str:
     """Which motion the cross-check compares, and why."""
-    found, linear = results.parting, results.motion
-    if isinstance(found, Parting) and found.judged:
+    found, linear = results.contact_loss, results.motion
+    if isinstance(found, ContactLoss) and found.judged:
         return "The cross-check compares this motion."
     loads = linear["normal_load"].to_numpy(), linear["contact"].to_numpy()
     if load_range(results.pair.mesh.contact, *loads)[1] >= 0.0:
-        return "All tooth pairs together push all the time, so the cross-check compares the linear motion."
+        return "The total mesh force is never negative, so the cross-check compares the linear motion."
     return "The cross-check compares it only where it is stable and no back sides of teeth touch."
 
 
@@ -88,8 +87,8 @@ def _over_speed(results: Results) -> list[Block]:
     blocks: list[Block] = [
         Picture(
             "response",
-            "Motions with teeth that push only over speed, stable (solid) and unstable (dashed); arrows are "
-            "jumps. The linear model, dotted, holds its teeth together.",
+            "Motions with unilateral contact over speed, stable (solid) and unstable (dashed); arrows are "
+            "jumps. Dotted: the linear model.",
             partial(response_figure, found.dataset, results.sweep),
         ),
         Text(f"{jumps(results)} {_removed(results)}".strip()),
@@ -123,7 +122,7 @@ def _over_torque(results: Results) -> list[Block]:
     low, high = (quantity(float(value), "N m", 3) for value in torques[[0, -1]])
     where = f"At {torques.size} torques from {low} to {high} and the same speeds"
     if bool(((found["motions"] == 1) & found["contact_kept"]).all()):
-        return [Text(f"{where} no motion parts the teeth, and there is one stable motion everywhere.")]
+        return [Text(f"{where} contact is never lost, and there is one stable motion everywhere.")]
     several = float((found["motions"] > 1).mean())
     largest = found["dte_rms_largest"]
     return [
@@ -171,5 +170,5 @@ def _removed(results: Results) -> str:
 
 
 CHAPTER = Chapter(
-    "contact_loss", "Where teeth part", write, front=("contact_loss", "response", "jumps"), seconds=12
+    "contact_loss", "Contact loss", write, front=("contact_loss", "response", "jumps"), seconds=12
 )

@@ -130,7 +130,7 @@ def _multipliers(results: Results) -> Table:
 
 def answer(results: Results) -> Answer:
     """Whether the periodic motion is stable at the operating point, and at which other speeds."""
-    badge = Badge("stable" if words.confirmed_parting(results) else results.multipliers.verdict)
+    badge = Badge("stable" if words.confirmed_contact_loss(results) else results.multipliers.verdict)
     return Answer("Is the motion stable?", badge, words.stability(results))
 
 

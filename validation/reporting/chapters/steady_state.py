@@ -39,7 +39,7 @@ _ORDERS = 10
 
 #: Sentences of a caption, where the figure has what they explain.
 _DOTTED = " Dotted: speeds at which the mesh frequency meets a natural frequency of the averaged pair."
-_NEGATIVE = " Where the smallest load is negative the teeth would separate and the lumped model is not valid."
+_NEGATIVE = " Where the smallest load is negative contact is lost and the lumped model is not valid."
 
 
 def write(results: Results) -> Content:
@@ -50,9 +50,9 @@ def write(results: Results) -> Content:
     radius = f"largest multiplier {multipliers.spectral_radius:.4g}"
     places = ("power_sliding", "power_tooth_dampers", "power_bearings")
     lost = sum(float(attrs[place]) for place in places) / (attrs["pinion_torque"] * g.omega_pinion)
-    unpaid, paid = "of bearings and tooth dampers, left out by the paper's brake", "pays for sliding alone"
+    residual, brake = "of bearings and tooth dampers, see the form of the contact", "balances sliding alone"
     if pair.mesh.contact == "loaded":
-        unpaid, paid = "the brake pays for every loss", ""
+        residual, brake = "the brake torque balances every loss", ""
     key_results = facts(
         "key_results",
         ("stability", "this periodic motion is", Badge(multipliers.verdict), "", radius),
@@ -67,8 +67,8 @@ def write(results: Results) -> Content:
             "",
             "all losses counted" if lawful(results) else f"do not rely on it: {unlawful(results)}",
         ),
-        ("power_energy_residual", "unpaid power", float(attrs["power_energy_residual"]), "W", unpaid),
-        ("brake_torque", "brake torque that holds the speed", attrs["brake_torque"], "N m", paid),
+        ("power_energy_residual", "energy residual", float(attrs["power_energy_residual"]), "W", residual),
+        ("brake_torque", "brake torque that holds the speed", attrs["brake_torque"], "N m", brake),
         ("friction_power", "mean friction power", friction, "W", "negative: it is lost"),
         ("error_estimate", "estimated relative error of the motion", float(attrs["error_estimate"])),
     )
