@@ -2,9 +2,9 @@
 Where a pair can jump
 =====================
 
-Tip relief is cut for one torque, here some 70 N m. Far below it the teeth part in the gap that relief leaves,
-far above it where the stiffness changes; there two motions exist at one speed, and the pair jumps where one
-of them ends. Between is a band of torques in which contact is kept and nothing can jump.
+Tip relief is cut for one torque, here some 70 N m. Far below it contact is lost in the gap that relief
+leaves, far above it where the stiffness changes. There two motions exist at one speed, and the pair jumps
+where one of them ends. Between is a band of torques without contact loss and without jumps.
 """
 
 from collections.abc import Sequence

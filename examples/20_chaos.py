@@ -3,7 +3,7 @@ Two motions, one of them chaotic
 ================================
 
 At 5250 rpm the lightly damped 50/50 pair has a quiet periodic motion that keeps contact. Started six static
-deflections away, its teeth part and strike, never twice the same: looked at once each mesh cycle it is a
+deflections away, it loses contact and strikes, never twice the same: looked at once each mesh cycle it is a
 cloud with folds, and neighbours in it run apart by a factor e in seven or eight cycles.
 """
 

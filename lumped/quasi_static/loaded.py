@@ -36,7 +36,7 @@ _REACH = 0.4
 _SAME = 1e-9
 #: Fit errors over the largest value; lengths are positions' differences, known to some 1e-17 m.
 _TOLERANCE, _LENGTH = 1e-10, 2e-17
-#: Below this share of the mean load Hertz's contact is held linear, see ``ContactLaw``.
+#: Below this share of the mean load Hertz's contact is linear, see ``ContactLaw``.
 LEAST_LOAD = 1e-3
 #: A ramp ends without stiffness; so much of the largest one is left, below the fit error of every law.
 _LEAST_STIFFNESS = 1e-11

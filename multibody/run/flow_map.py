@@ -221,7 +221,7 @@ def steady_state(
     fidelity, effects, rtol, friction_velocity, supports : as ``multibody.simulate``
     samples_per_cycle : output times in [0, T_m)
     initial : 12 states near which the motion is looked for, as ``lumped.simulate`` takes them; None: those of
-        the lumped motion, on shafts the motion with the linear mesh. Where teeth part several may exist
+        the lumped motion, on shafts the motion with the linear mesh. With contact loss several may exist
     cycles : mesh cycles after which the motion repeats, 1 to 64
 
     Returns

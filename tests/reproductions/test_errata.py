@@ -247,7 +247,7 @@ def test_the_printed_film_puts_law_v_into_boundary_lubrication(chapter):
     assert y.printed > 2.0 * y.repaired  # y goes with the coefficient
 
 
-def test_what_the_equations_leave_unpaid_is_what_bearings_and_tooth_dampers_take(chapter):
+def test_the_energy_residual_is_what_bearings_and_tooth_dampers_take(chapter):
     """Without friction nothing else takes power: the loss of the repaired efficiency, and of the books."""
     (row,) = (e for e in chapter.errata if e.equation == "3")
     found = {e.quantity: e for e in row.evidence}

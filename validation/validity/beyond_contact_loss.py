@@ -1,4 +1,4 @@
-"""Motions of teeth that push only, at the speeds and torques about the operating point."""
+"""Motions with unilateral contact, at the speeds and torques about the operating point."""
 
 from __future__ import annotations
 

@@ -9,11 +9,11 @@ import math
 
 from lumped.path_of_contact import contact_path
 from lumped.schema.files import AnyPair
+from reproductions.he_cho_singh_2008.errata.energy_residual import erratum_3
 from reproductions.he_cho_singh_2008.errata.film import film_errata
 from reproductions.he_cho_singh_2008.errata.laws import law_errata
 from reproductions.he_cho_singh_2008.errata.signs import sign_errata
 from reproductions.he_cho_singh_2008.errata.structure import erratum_5b, erratum_8
-from reproductions.he_cho_singh_2008.errata.unpaid import erratum_3
 from reproductions.he_cho_singh_2008.operating_points import papers_pair
 from reproductions.he_cho_singh_2008.records import ErrataChapter
 

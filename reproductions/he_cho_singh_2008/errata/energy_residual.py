@@ -1,4 +1,4 @@
-"""What the equations of this class of models leave unpaid.
+"""The energy residual of the equations of this class of models.
 
 Sources: docs/theory/contact_energy.md; Oh, Grosh and Barber, J. Vib. Acoust. 127 (2005) 208.
 """
@@ -28,7 +28,7 @@ def erratum_3(pair: GearPair) -> Erratum:
         {
             "lost": powers.lost,
             "driving": powers.driving,
-            "unpaid": mean_powers(_motion(pair)).energy_residual,
+            "energy_residual": mean_powers(_motion(pair)).energy_residual,
             "efficiency_printed": brake / powers.driving,
             "efficiency_repaired": paid.efficiency,
             "missing_printed": powers.driving - brake - powers.lost,
