@@ -26,13 +26,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cache
-from typing import Literal, get_args
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field
 
-from lumped.arguments import one_of
 from lumped.errors import NumericalError
 from lumped.gear_geometry.geometry import Wheel
 from lumped.gear_geometry.tooth_profile import ToothProfile
@@ -185,14 +184,10 @@ Contact = Literal["linear", "weber_banaschek"]
 
 
 @dataclass(frozen=True)
-class ToothCompliance:
+class ToothCompliance(BeamCompliance):
     """Compliances (n,) of one tooth along the line of action [m/N]."""
 
-    bending: FloatArray
-    shear: FloatArray
-    axial: FloatArray
     foundation: FloatArray
-    quadrature_error: float
 
     @property
     def total(self) -> FloatArray:
@@ -237,12 +232,22 @@ def pair_compliance(
     )
 
 
+def _elastic(pair: MeshingPair) -> tuple[tuple[float, float], tuple[float, float]]:
+    """E [Pa] and nu of both gears."""
+    moduli = (pair.pinion.youngs_modulus, pair.gear.youngs_modulus)
+    return moduli, (pair.pinion.poisson_ratio, pair.gear.poisson_ratio)
+
+
+def contact_softening(pair: MeshingPair) -> float:
+    """D of Weber and Banaschek's contact in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N]."""
+    return softening(*_elastic(pair)) / pair.geometry.face_width
+
+
 def _contact(pair: MeshingPair, xi: FloatArray, hertz: Contact) -> FloatArray:
     g = pair.geometry
     width = g.face_width
-    moduli = (pair.pinion.youngs_modulus, pair.gear.youngs_modulus)
-    ratios = (pair.pinion.poisson_ratio, pair.gear.poisson_ratio)
-    if one_of("hertz", hertz, get_args(Contact)) == "linear":
+    moduli, ratios = _elastic(pair)
+    if hertz == "linear":
         return np.full(xi.shape, linear_hertz_compliance(moduli, ratios) / width)
     load = pair.operating.pinion_torque / g.base_radius_pinion / width
     radius = xi * (g.L_XY - xi) / g.L_XY
@@ -316,8 +321,4 @@ class EnergyStiffness(StiffnessModel):
     def softening(self, pair: MeshingPair) -> float:
         """Of Weber and Banaschek's contact; curves that are scaled or ramped keep the operating torque."""
         changed = self.scale != "none" or self.ramp_length > 0.0
-        if self.hertz != "weber_banaschek" or changed:
-            return 0.0
-        moduli = (pair.pinion.youngs_modulus, pair.gear.youngs_modulus)
-        ratios = (pair.pinion.poisson_ratio, pair.gear.poisson_ratio)
-        return softening(moduli, ratios) / pair.geometry.face_width
+        return 0.0 if self.hertz == "linear" or changed else contact_softening(pair)

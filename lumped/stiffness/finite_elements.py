@@ -25,7 +25,7 @@ from lumped.gear_geometry.geometry import Wheel
 from lumped.path_function import PathFunction
 from lumped.ranges import RangeViolation
 from lumped.stiffness.base import Material, MeshingPair, StiffnessModel, fitted_series
-from lumped.stiffness.energy import softening
+from lumped.stiffness.energy import contact_softening
 from lumped.stiffness.foundation import thin_rims
 from lumped.stiffness.neighbours import REACH, coupled_pairs
 from lumped.typing import FloatArray
@@ -188,6 +188,4 @@ class FiniteElementStiffness(StiffnessModel):
 
     def softening(self, pair: MeshingPair) -> float:
         """Of the contact [m/N]."""
-        moduli = (pair.pinion.youngs_modulus, pair.gear.youngs_modulus)
-        ratios = (pair.pinion.poisson_ratio, pair.gear.poisson_ratio)
-        return softening(moduli, ratios) / pair.geometry.face_width
+        return contact_softening(pair)
