@@ -113,8 +113,8 @@ class PathFunction:
         before = shifted(self.coefficients[:, :-1], pieces[:-1])
         powers = np.arange(len(before) - 1, -1, -1)[:, None]
         off = np.sum(np.abs(before - self.coefficients[:, 1:]) * beyond**powers, axis=0)
-        found: FloatArray = self.breaks[1:-1][off > _SMOOTH * np.abs(self.coefficients[-1]).max()]
-        return found
+        result: FloatArray = self.breaks[1:-1][off > _SMOOTH * np.abs(self.coefficients[-1]).max()]
+        return result
 
     def mean(self) -> float:
         """Mean value over the interval."""
@@ -177,7 +177,7 @@ class PathFunction:
         """
         low, high = np.array(breaks[:-1], dtype=float), np.array(breaks[1:], dtype=float)
         most = max(_MAX_PIECES, 4 * low.size)  # a table brings as many pieces as it has points
-        found: list[tuple[FloatArray, FloatArray, FloatArray]] = []
+        result: list[tuple[FloatArray, FloatArray, FloatArray]] = []
         for last in [False] * _MAX_CUTS + [True]:
             half = 0.5 * (high - low)
             series = _values(function, low, half, _NODES) @ _TO_SERIES
@@ -186,18 +186,18 @@ class PathFunction:
             if by_length:
                 error *= np.minimum(1.0, 2.0 * half / (_FULL_LENGTH * (breaks[-1] - breaks[0])))
             good = error <= (1e3 * tolerance if last else tolerance)
-            found.append((low[good], half[good], series[good]))
+            result.append((low[good], half[good], series[good]))
             if good.all():
                 break
             low, high = low[~good], high[~good]
-            if last or low.size + sum(start.size for start, *_ in found) > most:
+            if last or low.size + sum(start.size for start, *_ in result) > most:
                 raise NumericalError(
                     f"No polynomial fit to {tolerance:.2g} near xi = {low[0]:.6g} m: the function is noisy "
                     "there, or has a jump or kink that is no break; name it, or raise the tolerance."
                 )
             middle = cut(low, high)
             low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
-        start, half, series = (np.concatenate(part) for part in zip(*found, strict=True))
+        start, half, series = (np.concatenate(part) for part in zip(*result, strict=True))
         order = np.argsort(start)
         powers = series[order] @ _TO_POWERS / half[order, None] ** np.arange(FIT_DEGREE + 1)
         return cls(np.append(start[order], breaks[-1]), powers.T[::-1], np.asarray(switches))

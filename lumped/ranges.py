@@ -72,21 +72,21 @@ def range_violations(
     law: str, ranges: Iterable[ValidityRange], values: Mapping[str, ArrayLike]
 ) -> tuple[RangeViolation, ...]:
     """Compare a law's arguments by name, any shape, in the units of the ranges, with its validity ranges."""
-    found = []
+    result = []
     for limits in ranges:
         if not limits.stated or limits.quantity not in values:
             continue
-        given = np.asarray(values[limits.quantity], dtype=float)
-        outside = np.zeros(given.shape, dtype=bool)
+        value = np.asarray(values[limits.quantity], dtype=float)
+        outside = np.zeros(value.shape, dtype=bool)
         if limits.low is not None:
-            outside |= given < limits.low
+            outside |= value < limits.low
         if limits.high is not None:
-            outside |= given > limits.high
+            outside |= value > limits.high
         if outside.any():
-            found.append(
-                RangeViolation(law, limits, float(given.min()), float(given.max()), float(outside.mean()))
+            result.append(
+                RangeViolation(law, limits, float(value.min()), float(value.max()), float(outside.mean()))
             )
-    return tuple(found)
+    return tuple(result)
 
 
 def warn_violations(violations: Iterable[RangeViolation]) -> None:

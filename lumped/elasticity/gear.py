@@ -77,8 +77,8 @@ class FlankCompliance:
 
     def moved(self, apart: int, loaded: ArrayLike, length: ArrayLike) -> FloatArray:
         """Motion of the tooth ``apart`` pitches ahead of a loaded one, at lengths of the same shape [-]."""
-        found = chebyshev.chebval2d(self._at(loaded), self._at(length), self.cross[apart - 1])
-        return np.asarray(found, dtype=np.float64)
+        result = chebyshev.chebval2d(self._at(loaded), self._at(length), self.cross[apart - 1])
+        return np.asarray(result, dtype=np.float64)
 
     def _at(self, length: ArrayLike) -> FloatArray:
         low, high = self.interval

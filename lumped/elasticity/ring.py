@@ -118,8 +118,8 @@ def compliances(
         balance[-3:] -= resultants
         kept[[0, 1, cut - 1]] = False  # three pins: the balanced gear does not feel them
     moved = np.linalg.solve(stiffness[np.ix_(kept, kept)], forces[kept])
-    found = balance.T @ (work + forces[kept].T @ moved) @ balance
-    points = found[count:-3, :count] - resultants[:, count:-3].T @ taken
+    result = balance.T @ (work + forces[kept].T @ moved) @ balance
+    points = result[count:-3, :count] - resultants[:, count:-3].T @ taken
     return np.asarray(points.reshape(reach + 1, count, count))
 
 
@@ -181,12 +181,12 @@ def _joined(a: Chain, b: Chain, turn: float) -> Chain:
 
 def _row(one: Chain, count: int, pitch: float) -> Chain:
     """Equal pitches in a row."""
-    found, found_count, power, power_count = None, 0, one, 1
+    result, found_count, power, power_count = None, 0, one, 1
     while True:
         if count & power_count:
-            found = power if found is None else _joined(found, power, found_count * pitch)
+            result = power if result is None else _joined(result, power, found_count * pitch)
             found_count += power_count
         if found_count == count:
-            assert found is not None
-            return found
+            assert result is not None
+            return result
         power, power_count = _joined(power, power, power_count * pitch), 2 * power_count

@@ -24,9 +24,9 @@ _NO_TABLE = {"model_type", "model_attributes_type", "dict_type"}
 def translated(error: ValidationError, root: type[BaseModel]) -> list[FieldProblem]:
     """Return one problem per field that pydantic refused while it made the model ``root``."""
     items = error.errors(include_url=False)[:MOST_PROBLEMS]
-    found = [problem for item in items for problem in _problems(item, root)]
+    result = [problem for item in items for problem in _problems(item, root)]
     first: dict[str, FieldProblem] = {}
-    for problem in found:
+    for problem in result:
         first.setdefault(problem.field, problem)
     # A list whose items are refused is also "too short" for pydantic; the items are the reason.
     return [p for path, p in first.items() if not any(other.startswith(f"{path}.") for other in first)]
@@ -100,9 +100,9 @@ def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
     if kind == "missing" and parts and parts[-1].isidentifier():
         return [FieldProblem(path, "missing", _description(field_of(root, path)), "Add it.")]
     if kind in ("union_tag_invalid", "union_tag_not_found"):
-        given = context.get("tag", "missing")
+        request = context.get("tag", "missing")
         tags = [str(tag) for model in models_in(field_of(root, path).annotation) for tag in _tags(model)]
-        return [_choice(f"{path}.model", given, tags)]
+        return [_choice(f"{path}.model", request, tags)]
     if kind == "literal_error":
         info = field_of(root, path)
         marker = next((m for m in info.metadata if isinstance(m, OneOf)), None)
@@ -121,8 +121,8 @@ def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
     allowed = item["msg"]
     if kind == "tuple_type":
         allowed = "a list of tables" if models else "a list"
-    if found := re.fullmatch(r"Tuple should have (at \w+ \d+ items?) after validation, not (\d+)", allowed):
-        allowed = f"{found[1]} instead of {found[2]}"
+    if count := re.fullmatch(r"Tuple should have (at \w+ \d+ items?) after validation, not (\d+)", allowed):
+        allowed = f"{count[1]} instead of {count[2]}"
     for start in ("Input should be ", "Value should be ", "Input should ", "Value should "):
         allowed = allowed.removeprefix(start)
     return [FieldProblem(path or "file", value, allowed, "Correct the value.")]
@@ -158,9 +158,9 @@ def _tags(model: type[BaseModel]) -> tuple[Any, ...]:
     return get_args(info.annotation) if info and get_origin(info.annotation) is Literal else ()
 
 
-def _choice(path: str, given: object, names: list[str]) -> FieldProblem:
-    action = nearest(str(given), names) or "Choose one of them."
-    return FieldProblem(path, shown(given), "one of " + ", ".join(names), action)
+def _choice(path: str, value: object, names: list[str]) -> FieldProblem:
+    action = nearest(str(value), names) or "Choose one of them."
+    return FieldProblem(path, shown(value), "one of " + ", ".join(names), action)
 
 
 def _whole_number(info: FieldInfo) -> str:

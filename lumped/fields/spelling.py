@@ -61,12 +61,12 @@ def about_digits(text: str) -> str:
     """Return what to write instead of a number with a comma or with gaps; nothing where it has neither."""
     if _GAP.search(text):  # pint would multiply the parts
         return f"leave the gap between the digits out: write '{_GAP.sub('', text)}'"
-    found = _COMMA.match(text)
-    if found is None:
+    result = _COMMA.match(text)
+    if result is None:
         return "write decimals with a point" if "," in text else ""
-    whole, decimals = found[1].replace(".", ""), found[2]
-    rest = text[found.end() :]
-    if len(decimals) == 3 and "." not in found[1]:
+    whole, decimals = result[1].replace(".", ""), result[2]
+    rest = text[result.end() :]
+    if len(decimals) == 3 and "." not in result[1]:
         return (
             f"the comma may be a decimal comma or part thousands: write '{whole}.{decimals}{rest}' or "
             f"'{whole}{decimals}{rest}'"

@@ -22,10 +22,10 @@ def parse_toml(text: str, source: str) -> dict[str, Any]:
     """
     try:
         parts = 0
-        for found in re.finditer(r"^[ \t]*#.*|[.,=\[\]{}\n]", text, re.MULTILINE):
-            parts = parts + 1 if found[0] == "." else 0
+        for sign in re.finditer(r"^[ \t]*#.*|[.,=\[\]{}\n]", text, re.MULTILINE):
+            parts = parts + 1 if sign[0] == "." else 0
             if parts > _MAX_PARTS:
-                raise ValueError(f"more than {_MAX_PARTS} dots in a row (at character {found.start()})")
+                raise ValueError(f"more than {_MAX_PARTS} dots in a row (at character {sign.start()})")
         return tomllib.loads(text)
     except (RecursionError, ValueError) as error:
         why = f"The TOML is malformed: {error}."

@@ -115,7 +115,7 @@ class ContactPath:
         leave their bounds close to P. Two roots within four per cent of the same distance would be missed:
         the function then touches its level without consequence.
         """
-        found = []
+        result = []
         for side, reach in ((-1.0, self.L_XP - self.L_XA), (1.0, self.L_XD - self.L_XP)):
             distances = np.geomspace(PITCH_RESOLUTION, reach * (1.0 - 1e-12), _SEARCH_POINTS)
             values = function(self.L_XP + side * distances)
@@ -128,8 +128,8 @@ class ContactPath:
                 if at(low) * at(high) > 0.0:  # a root on the grid, taken by its neighbour
                     continue
                 root = brentq(at, low, high, xtol=1e-9 * PITCH_RESOLUTION, rtol=_ROOT_TOLERANCE)
-                found.append(self.L_XP + side * float(root))
-        return sorted(xi for xi in found if self.L_XA < xi < self.L_XD)
+                result.append(self.L_XP + side * float(root))
+        return sorted(xi for xi in result if self.L_XA < xi < self.L_XD)
 
 
 class FrictionSettings(Protocol):

@@ -42,8 +42,8 @@ def existence_problems(pinion: Wheel, gear: Wheel, g: Geometry, backlash: float)
         problems += _of_one_gear(name, wheel, tip, start, g)
     play = theoretical_backlash(pinion, gear, g.operating_pressure_angle) + backlash
     if play < -_WEDGE_TOLERANCE * pinion.tooth.module:
-        given = f"{g.centre_distance * 1e3:.6g} mm (backlash {play * 1e3:.4f} mm)"
-        problems.append(FieldProblem("centre_distance", given, "normal backlash >= 0", _WEDGE))
+        value = f"{g.centre_distance * 1e3:.6g} mm (backlash {play * 1e3:.4f} mm)"
+        problems.append(FieldProblem("centre_distance", value, "normal backlash >= 0", _WEDGE))
     return problems
 
 

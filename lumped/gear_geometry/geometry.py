@@ -184,15 +184,15 @@ def _build(
     )
 
 
-def _centre_distance(pinion: ToothProfile, gear: ToothProfile, given: float | None) -> tuple[float, float]:
+def _centre_distance(pinion: ToothProfile, gear: ToothProfile, distance: float | None) -> tuple[float, float]:
     """Centre distance [m] and operating pressure angle [rad]."""
     teeth, alpha = pinion.teeth + gear.teeth, pinion.pressure_angle
     base = 0.5 * pinion.module * teeth * math.cos(alpha)
-    if given is not None:
-        if given <= base:
+    if distance is not None:
+        if distance <= base:
             allowed = f"> {base * 1e3:.4f} mm, the sum of the base radii"
-            raise refuse("centre_distance", f"{given * 1e3:.6g} mm", allowed, "Raise the centre distance.")
-        return given, math.acos(base / given)
+            raise refuse("centre_distance", f"{distance * 1e3:.6g} mm", allowed, "Raise the centre distance.")
+        return distance, math.acos(base / distance)
     shift = pinion.profile_shift + gear.profile_shift
     value = involute(alpha) + 2.0 * shift / teeth * math.tan(alpha)
     if value < 0.0:

@@ -81,8 +81,8 @@ class ViscosityLaw(Section):
     @model_validator(mode="after")
     def _grade_or_two_points(self) -> Self:
         points = (self.kinematic_viscosity_40, self.kinematic_viscosity_100)
-        given = [v is not None for v in points]
-        if not (all(given) if self.iso_vg is None else not any(given)):
+        value = [v is not None for v in points]
+        if not (all(value) if self.iso_vg is None else not any(value)):
             allowed = "iso_vg, or kinematic_viscosity_40 and kinematic_viscosity_100"
             raise refuse("iso_vg", self.iso_vg, allowed, "Give one of the two descriptions.")
         if self.iso_vg is not None:
@@ -122,8 +122,8 @@ class Lubricant(Section):
     @model_validator(mode="after")
     def _one_viscosity(self) -> Self:
         if (self.viscosity is None) == (self.viscosity_law is None):
-            given = "both" if self.viscosity is not None else "neither"
-            raise refuse("viscosity", given, "viscosity or viscosity_law", "Give exactly one of them.")
+            value = "both" if self.viscosity is not None else "neither"
+            raise refuse("viscosity", value, "viscosity or viscosity_law", "Give exactly one of them.")
         return self
 
     @property

@@ -111,6 +111,6 @@ class Gear(Section):
     @model_validator(mode="after")
     def _one_tip(self) -> Self:
         if self.addendum is not None and self.tip_diameter is not None:
-            given = f"{self.tip_diameter * 1e3:g} mm"
-            raise refuse("tip_diameter", given, "either addendum or tip_diameter", "Remove one.")
+            value = f"{self.tip_diameter * 1e3:g} mm"
+            raise refuse("tip_diameter", value, "either addendum or tip_diameter", "Remove one.")
         return self

@@ -139,10 +139,10 @@ class GearPair(Section):
         of_it = [problem for problem in problems if problem.field == "centre_distance"]
         fits = f"{free.centre_distance * 1e3:.6g} mm"
         allowed = ", ".join([*(problem.allowed for problem in of_it), f"about {fits} for these teeth"])
-        given = of_it[0].value if of_it else f"{self.centre_distance * 1e3:.6g} mm"
+        value = of_it[0].value if of_it else f"{self.centre_distance * 1e3:.6g} mm"
         advice = f"Delete centre_distance or set it to {fits}."
         action = " ".join([*(problem.action for problem in of_it), advice])
-        first = FieldProblem("centre_distance", given, allowed, action)
+        first = FieldProblem("centre_distance", value, allowed, action)
         return [first, *(problem for problem in problems if problem not in of_it)]
 
     @cached_property
@@ -175,11 +175,11 @@ class GearPair(Section):
         radius = 0.5 * self.basic_rack.module * gear.teeth
         mass = gear.density * math.pi * radius**2 * gear.face_width
         for field, disc, unit in (("mass", mass, "kg"), ("inertia", 0.5 * mass * radius**2, "kg*m**2")):
-            given = getattr(gear, field)
-            if given is not None and given < _LIGHTEST * disc:
+            value = getattr(gear, field)
+            if value is not None and value < _LIGHTEST * disc:
                 allowed = f">= {_LIGHTEST * disc:.3g} {unit}, {_LIGHTEST:g} of the solid disc's"
                 action = "Check the unit, or leave it out: the disc's is taken."
-                yield FieldProblem(f"{name}.{field}", f"{given:g} {unit}", allowed, action)
+                yield FieldProblem(f"{name}.{field}", f"{value:g} {unit}", allowed, action)
 
     def __repr__(self) -> str:
         """Return the pair in one line; ``to_toml()`` says every field."""
@@ -233,7 +233,7 @@ def leaf_paths(pair: GearPair) -> dict[str, Any]:
 
     An entry of a list of tables has its number, from 0 on, as part of its path.
     """
-    found: dict[str, Any] = {}
+    result: dict[str, Any] = {}
 
     def walk(data: Mapping[str, Any], prefix: str) -> None:
         for key, value in data.items():
@@ -243,10 +243,10 @@ def leaf_paths(pair: GearPair) -> dict[str, Any]:
             elif isinstance(value, list) and value and isinstance(value[0], Mapping):
                 walk({str(number): entry for number, entry in enumerate(value)}, f"{path}.")
             else:
-                found[path] = value
+                result[path] = value
 
     walk({k: v for k, v in pair.to_mapping().items() if k != "sources"}, "")
-    return found
+    return result
 
 
 def validated(data: Mapping[str, Any], source: str, folder: Path = Path()) -> GearPair:
@@ -263,8 +263,8 @@ def validated(data: Mapping[str, Any], source: str, folder: Path = Path()) -> Ge
 def _varied(pair: GearPair, changes: Mapping[str, Any]) -> GearPair:
     data = pair.to_mapping()
     sources: dict[str, str] = data.setdefault("sources", {})
-    for path, given in changes.items():
-        value = given.item() if isinstance(given, np.generic) else given
+    for path, request in changes.items():
+        value = request.item() if isinstance(request, np.generic) else request
         if _reads(pair, path, value):
             continue
         outdated = [path]
@@ -283,15 +283,15 @@ def _varied(pair: GearPair, changes: Mapping[str, Any]) -> GearPair:
 
 def _reads(pair: GearPair, path: str, value: object) -> bool:
     """Whether a field reads as this value already."""
-    found: object = pair
+    result: object = pair
     for part in path.split("."):
-        if isinstance(found, tuple) and _is_entry(found, part):
-            found = found[int(part)]
-        elif isinstance(found, Section) and part in type(found).model_fields:
-            found = getattr(found, part)
+        if isinstance(result, tuple) and _is_entry(result, part):
+            result = result[int(part)]
+        elif isinstance(result, Section) and part in type(result).model_fields:
+            result = getattr(result, part)
         else:
             return False
-    return type(found) is type(value) and repr(found) == repr(value)
+    return type(result) is type(value) and repr(result) == repr(value)
 
 
 def _assign(data: dict[str, Any], path: str, value: Any) -> None:

@@ -61,9 +61,9 @@ class ShaftSegment(Section):
     def _has_a_wall(self) -> Self:
         largest = (1.0 - 2.0 * _WALL) * self.diameter
         if self.bore > largest:
-            given, allowed = f"{self.bore * 1e3:g} mm", f"<= {largest * 1e3:.6g} mm"
+            value, allowed = f"{self.bore * 1e3:g} mm", f"<= {largest * 1e3:.6g} mm"
             action = "Lower the bore, or raise the diameter."
-            raise refuse("bore", given, f"{allowed}, a wall of {_WALL:.0%} of the diameter", action)
+            raise refuse("bore", value, f"{allowed}, a wall of {_WALL:.0%} of the diameter", action)
         return self
 
 
@@ -121,9 +121,9 @@ class Shaft(Section):
         """Segments that together are no shaft."""
         mean = sum(s.length * s.diameter for s in self.segments) / self.length
         if not 1.0 / _SLENDER <= self.length / mean <= _SLENDER:
-            given = f"{self.length * 1e3:.6g} mm long, mean diameter {mean * 1e3:.6g} mm"
+            value = f"{self.length * 1e3:.6g} mm long, mean diameter {mean * 1e3:.6g} mm"
             allowed = f"length over diameter from {1.0 / _SLENDER:g} to {_SLENDER:g}"
-            yield FieldProblem("segments", given, allowed, _SIZE)
+            yield FieldProblem("segments", value, allowed, _SIZE)
 
     def _may_tilt(self) -> Iterator[FieldProblem]:
         """A shaft that turns about a bearing freely, instead of being held."""

@@ -283,11 +283,11 @@ def energy_curve(pair: MeshingPair, hertz: Contact = "weber_banaschek") -> PathF
 
 def foundation_violations(pair: MeshingPair) -> tuple[RangeViolation, ...]:
     """Fitted range of the foundation formula that the two gears leave, and their thin rims."""
-    found: list[RangeViolation] = []
+    result: list[RangeViolation] = []
     for name, wheel in zip(("pinion", "gear"), pair.wheels, strict=True):
         half = {HALF_ANGLE.quantity: wheel.tooth.root_half_angle}
-        found += range_violations(f"fillet foundation of the {name}", (HALF_ANGLE,), half)
-    return (*found, *thin_rims(pair))
+        result += range_violations(f"fillet foundation of the {name}", (HALF_ANGLE,), half)
+    return (*result, *thin_rims(pair))
 
 
 class EnergyStiffness(StiffnessModel):

@@ -90,7 +90,7 @@ def elastic_teeth(
     NumericalError : the teeth cannot be meshed
     """
     apart = math.floor(pair.geometry.contact_ratio + 2.0 * REACH)
-    found = []
+    result = []
     for name, wheel, material in zip(("pinion", "gear"), pair.wheels, (pair.pinion, pair.gear), strict=True):
         tooth, module = replace(wheel.tooth, module=1.0), wheel.tooth.module
         radius = 0.5 * wheel.bore / module if bore is None else tooth.root_radius / bore
@@ -109,8 +109,8 @@ def elastic_teeth(
             # Lame's ring, G = 1/(2 (1 + nu)).
             inverse = (radius**-2 - tooth.root_radius**-2) / (2.0 * math.pi)
             twist = tooth.base_radius**2 * (1.0 + nu) * inverse
-        found.append(ElasticTooth(wheel, material, plane, flank_compliance(blank), twist))
-    return found[0], found[1]
+        result.append(ElasticTooth(wheel, material, plane, flank_compliance(blank), twist))
+    return result[0], result[1]
 
 
 def hertz_half_width(pair: MeshingPair, xi: FloatArray) -> FloatArray:

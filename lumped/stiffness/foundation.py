@@ -127,9 +127,9 @@ def body_twist(pair: MeshingPair) -> tuple[float, float]:
 
 def thin_rims(pair: MeshingPair) -> tuple[RangeViolation, ...]:
     """Bored gears whose rim is too thin for the stiffness of a solid body."""
-    found: list[RangeViolation] = []
+    result: list[RangeViolation] = []
     for name, wheel in zip(("pinion", "gear"), pair.wheels, strict=True):
         if wheel.bore > 0.0:
             ratio = {BODY_RATIO.quantity: wheel.tooth.root_radius / (0.5 * wheel.bore)}
-            found += range_violations(f"rim of the {name}", (BODY_RATIO,), ratio)
-    return tuple(found)
+            result += range_violations(f"rim of the {name}", (BODY_RATIO,), ratio)
+    return tuple(result)

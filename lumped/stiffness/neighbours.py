@@ -54,14 +54,14 @@ def coupled_pairs(
     """
     g = pair.geometry
     low, high = g.L_XA - REACH * g.base_pitch, g.L_XD + REACH * g.base_pitch
-    found = []
+    result = []
     for apart in range(1, math.floor((high - low) / g.base_pitch) + 1):
         # Analytic and nearly constant: one polynomial for the whole path.
         ends = (low, high - apart * g.base_pitch)
         series = Chebyshev.interpolate(partial(moved, apart), FIT_DEGREE, ends).convert(kind=Polynomial)
         powers = np.asarray(series(Polynomial([low, 1.0])).coef, dtype=np.float64)
-        found.append(PathFunction(np.array(ends), powers[::-1, None], np.empty(0)))
-    return tuple(found)
+        result.append(PathFunction(np.array(ends), powers[::-1, None], np.empty(0)))
+    return tuple(result)
 
 
 def _moved(wheel: Wheel, material: Material, length: FloatArray, apart: int, distance: float) -> FloatArray:
