@@ -84,7 +84,7 @@ def test_a_repeated_state_is_evaluated_again_in_a_new_run():
     """The last stage of a step is the first of the next; a new run may have other parameters."""
     setup, budget = prepare(PAIR, fidelity="linear"), CallBudget(100)
     p, t = setup.model.parameters, 0.3 * setup.machine.period
-    forces = _force_function(setup.machine, setup.model.flags, p, budget, False)
+    forces = _force_function(setup.machine, setup.model.flags, p, budget)
     state = setup.q.tolist(), [0.1] * 6
     before = forces(None, t, 0, *state)
     p[kn.DAMPING] *= 2.0
