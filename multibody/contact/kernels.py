@@ -241,8 +241,8 @@ def contact_forces(
 
     t : time [s]
     state : (3, 6) deviations from nominal position and rotation, and their rates [m, rad, s]; and the wrench,
-        which is written: (Fx, Fy, M) of pinion and gear [N, N m]. One array, for Python pays for every one
-        that it hands over
+        which is written: (Fx, Fy, M) of pinion and gear [N, N m]. One array, for each costs Python
+        time when it is handed over
     p : (N_PARAMETERS,) parameters in the order named above
     flags : effect switches, a sum of bits
     table : the stiffness, see ``elements.stiffness_and_slope``

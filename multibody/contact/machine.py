@@ -20,10 +20,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 from lumped.lubrication.viscosity import ISO_VG_MIDPOINT, viscosity_at_100
-from lumped.model.mesh_cycle import mesh_cycle
+from lumped.model.mesh_cycle import MeshCycle
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
-from lumped.quasi_static.contacts import mesh_elements
+from lumped.quasi_static.contacts import contact_of
 from lumped.schema.contact import Lubricant
 from lumped.schema.gear import Gear
 from lumped.schema.pair import GearPair
@@ -124,17 +124,21 @@ class Machine:
         return self.train.fastest(mesh)
 
 
-def machine(pair: GearPair, flags: int = 0, supports: Supports = "springs") -> Machine:
+def machine(
+    pair: GearPair, flags: int = 0, supports: Supports = "springs", cycle: MeshCycle | None = None
+) -> Machine:
     """Describe a gear pair for the multibody model, both torques being that of the pinion.
 
     With the flags ``TIP_CONTACT`` or ``CLEARANCE`` of ``kernels``, and where teeth of the linear mesh may
     lose contact, the stiffness holds wherever teeth touch; else relief takes it off where the lumped model
-    sees no contact.
+    sees no contact. ``cycle`` is the lumped mesh cycle, where it is known.
     """
     drawn, loaded = circles(pair), pair.mesh.contact == "loaded"
     parts = flags & kn.LINEAR and flags & kn.CONTACT_LOSS
     whole = loaded or parts or flags & (kn.TIP_CONTACT | kn.CLEARANCE)
-    stiffness = pair_stiffness(pair) if whole else mesh_elements(pair).stiffness
+    if cycle is None and (not whole or (loaded and flags & kn.LINEAR)):
+        cycle = MeshCycle(pair.geometry, contact_of(pair).elements(pair))
+    stiffness = pair_stiffness(pair) if whole or cycle is None else cycle.elements.stiffness
     r_p, r_g, pitch, l_xy = drawn.base_pinion, drawn.base_gear, drawn.pitch, drawn.tangent
     tip_p, tip_g = drawn.reach_pinion, drawn.reach_gear
     l_xa, l_xp = l_xy - tip_g, l_xy * r_p / (r_p + r_g)
@@ -176,8 +180,8 @@ def machine(pair: GearPair, flags: int = 0, supports: Supports = "springs") -> M
     bearing_stiffness, bearing_damping = bearing_constants(pair, mass)
     table = pack(stiffness)
     switches = switch_phases([*stiffness.switches, *starts, *places], l_xa, tip_p, pitch)
-    if loaded and flags & kn.LINEAR:
-        table, switches = _loaded_laws(pair, p)
+    if loaded and flags & kn.LINEAR and cycle is not None:
+        table, switches = _loaded_laws(cycle, p)
     found = Machine(
         parameters=p,
         table=table,
@@ -212,12 +216,11 @@ def _highest(machine: Machine) -> float:
     return max(fast, _MESH_ORDERS) / machine.period
 
 
-def _loaded_laws(pair: GearPair, p: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _loaded_laws(cycle: MeshCycle, p: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Table of the lumped loaded contact's k, c, e and gap, one below the other, and its switches as phases.
 
     The linear mesh with loaded contact checks the equations alone: it reads the lumped element laws.
     """
-    cycle = mesh_cycle(pair)
     e = cycle.elements
     laws = [pack(law) for law in (e.stiffness, e.damping, e.error, e.error if e.gap is None else e.gap)]
     p[[kn.K_ROWS, kn.C_ROWS, kn.E_ROWS]] = [len(law) for law in laws[:3]]

@@ -131,8 +131,8 @@ _FIRST_STEP = 1e-4
 #: A run stands still when some hundred force evaluations advance the time by less than this, over the mesh
 #: cycle; at the call limit they advance it a thousand times as much.
 _STANDSTILL = 1e-6
-#: Most predictions in one interval. A mesh cycle takes some ten; friction that holds the teeth at zero
-#: sliding would take them without end.
+#: Most predictions in one interval. A mesh cycle takes some ten; friction that sticks would
+#: take them without end.
 _MOST_EVENTS = 64
 #: A Taylor polynomial of second order foretells vibration over this share of a swing of the fastest mode.
 _NEAR = 0.2

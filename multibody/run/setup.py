@@ -132,9 +132,9 @@ def prepare(
             allowed = "at most contact_loss at fidelity 'linear'"
             raise refuse("effects", shown(effects), allowed, "Use fidelity='exact'.")
         flags |= kn.LINEAR
-    numbers = machine(pair, flags, supports)
-    call_limit = _call_limit(numbers)
     system = periodic_system(pair, "full")
+    numbers = machine(pair, flags, supports, system.cycle)
+    call_limit = _call_limit(numbers)
     if pair.mesh.contact == "loaded":
         offsets, start = system.cycle.offsets, system.cycle.geometry.L_XA
         ahead = round((float(offsets[0]) - start) / system.cycle.geometry.base_pitch)
@@ -214,7 +214,7 @@ def _on_shafts(
             "initial", shown(initial), "'static' or 'periodic' with supports='shafts'", "Choose one of them."
         )
     one_of("initial", initial, get_args(Initial))
-    straight = replace(machine(pair, kn.LINEAR), train=train)
+    straight = replace(machine(pair, kn.LINEAR, cycle=system.cycle), train=train)
     brake = pair.operating.brake_torque
     motion = linear_motion(straight, None if brake == "balanced" else brake)
     omega_p, omega_g = numbers.parameters[[kn.OMEGA_P, kn.OMEGA_G]]
@@ -296,5 +296,5 @@ def choose_friction_velocity(machine: Machine) -> tuple[float, str]:
         return 0.0, f"sign(): {numbers}, more than the {needed:.3g} times that resonance could take away"
     return SMALL_VELOCITY, (
         f"tanh over {SMALL_VELOCITY * 1e3:g} mm/s: {numbers}, less than the {needed:.3g} times that "
-        "resonance could take away, so friction may hold the teeth at zero sliding"
+        "resonance could take away, so friction may stick at the pitch point"
     )

@@ -195,7 +195,7 @@ def test_arguments_without_sense_are_refused(options, field):
     ],
 )
 def test_calls_without_sense_are_refused(call, field):
-    """A ledger over no cycle balances; a run in which flanks meet the next tooth looks like any other."""
+    """A balance over no cycle closes; a run in which flanks meet the next tooth looks like any other."""
     with pytest.raises(lumped.ParameterError, match=field):
         call()
 
