@@ -188,8 +188,8 @@ def dynamic_losses(pair: AnyPair, solution: xr.Dataset) -> xr.Dataset:
 def sliding_power_along_path(solution: xr.Dataset) -> xr.Dataset:
     """Local sliding power of one tooth pair over the path of contact.
 
-    Every pair in contact at every time of a solution is one point of the path; over one mesh cycle of a
-    periodic solution the pairs together cover it once.
+    Every pair in contact at every time of a solution is one point; over one mesh cycle of a periodic solution
+    the pairs together cover the path once.
 
     Parameters
     ----------
@@ -197,8 +197,7 @@ def sliding_power_along_path(solution: xr.Dataset) -> xr.Dataset:
 
     Returns
     -------
-    xarray.Dataset over ``xi`` [m], increasing: sliding_power [W] (>= 0 where friction opposes sliding) and
-    normal_load [N]
+    xarray.Dataset over ``xi`` [m]: sliding_power [W] (>= 0 where friction opposes sliding), normal_load [N]
     """
     name = "friction_power_nominal" if "friction_power_nominal" in solution else "friction_power"
     touching = solution["contact"].to_numpy().ravel() > 0.0

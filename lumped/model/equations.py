@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumped.arguments import some_of
-from lumped.schema.bodies import bodies
+from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
 
@@ -23,15 +23,7 @@ PRINTED_EQUATIONS = (1, 2, 7, 9)
 
 @dataclass(frozen=True)
 class Signs:
-    """Sign of the disputed term of each equation: +1 as repaired, -1 as printed.
-
-    Attributes
-    ----------
-    pinion_friction : of the friction moment in eq. 1
-    gear_mesh : of the mesh moment in eq. 2
-    gear_loa : of the mesh force in eq. 7
-    gear_oloa : of the friction force in eq. 9
-    """
+    """Signs, -1 as printed: friction moment of eq. 1, mesh moment of 2, mesh force of 7, friction of 9."""
 
     pinion_friction: float = 1.0
     gear_mesh: float = 1.0
@@ -40,16 +32,7 @@ class Signs:
 
 
 def signs(as_printed: Collection[int] = ()) -> Signs:
-    """Return the signs with the named equations as printed.
-
-    Parameters
-    ----------
-    as_printed : equation numbers out of 1, 2, 7, 9
-
-    Raises
-    ------
-    ParameterError : a number that has no printed alternative
-    """
+    """Return the signs with the named equations as printed."""
     chosen = some_of("as_printed", as_printed, PRINTED_EQUATIONS, "Name equations whose sign was repaired.")
     return Signs(*(-1.0 if number in chosen else 1.0 for number in PRINTED_EQUATIONS))
 
@@ -85,13 +68,8 @@ def structure(pair: GearPair, as_printed: Collection[int] = ()) -> Structure:
     Each column of forces reads like the paper: per unit N_i the pinion gets -r_bp (1), the gear +r_bg (2),
     x_p -1 (6), x_g +1 (7); per unit F_i the pinion gets -X_pi (1), the gear +X_gi = L_XY - X_pi (2),
     y_p +1 (8), y_g -1 (9).
-
-    Parameters
-    ----------
-    pair : a validated gear pair
-    as_printed : equations out of 1, 2, 7, 9 whose printed sign is used
     """
-    g, b, s = pair.geometry, bodies(pair), signs(as_printed)
+    g, b, s = pair.geometry, bodies_of(pair), signs(as_printed)
     r_bp, r_bg = g.base_radius_pinion, g.base_radius_gear
     mass = np.array(
         [b.inertia_pinion, b.inertia_gear, b.mass_pinion, b.mass_gear, b.mass_pinion, b.mass_gear]

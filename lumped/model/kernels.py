@@ -53,13 +53,8 @@ def gauss_steps(
 ) -> tuple[FloatArray, FloatArray]:
     """Maps (k, 2m, columns) of Gauss steps, and to delta and its rate at their stages (k, 2, s, columns).
 
-    See ``lumped.model.propagation``; columns are states and forcings.
-
-    Parameters
-    ----------
-    which : (k,) length of each step, a row of the next five
-    free_end, free_p, by_feedback, start, by_p : of ``_without_mesh``
-    stiffness, damping, error : (k, s, m) gains of the mesh at the stages
+    ``which`` (k,) is the length of each step, a row of the next five, which are those of
+    ``lumped.model.propagation._without_mesh``; then (k, s, m) the gains of the mesh at the stages.
     """
     k, stages, m = stiffness.shape
     rows, columns = stages + 2 * m, free_end.shape[2]

@@ -15,9 +15,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import one_of
 from lumped.model.equations import Structure, structure
-from lumped.model.mesh_cycle import MeshCycle, PairState, mesh_cycle
+from lumped.model.mesh_cycle import MeshCycle, PairState
 from lumped.model.supports import SUPPORTS, Form
 from lumped.model.supports import Supports as _Supports
+from lumped.quasi_static.contacts import contact_of
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -28,15 +29,7 @@ Supports = Literal["springs", "shafts"]
 
 @dataclass(frozen=True, eq=False)
 class MeshGain:
-    """Rank-one feedback of the mesh: z'' = ... + gain_k (u.z) + gain_c (u.z') + gain_0, arrays (k, m).
-
-    Attributes
-    ----------
-    stiffness : acceleration per unit dynamic transmission error [1/s^2] (rotations: [rad/(m s^2)])
-    damping : acceleration per unit rate of it
-    error : acceleration by the unloaded tooth error
-    pairs : the tooth pairs that it is of
-    """
+    """Feedback z'' = ... + stiffness (u.z) + damping (u.z') + error of the mesh, (k, m), by ``pairs``."""
 
     stiffness: FloatArray
     damping: FloatArray
@@ -196,7 +189,7 @@ def periodic_system(
         pair=pair,
         form=form,
         coordinates=z.names,
-        cycle=cycle or mesh_cycle(pair),
+        cycle=cycle or MeshCycle(pair.geometry, contact_of(pair).elements(pair)),
         constant=constant,
         torque_pinion=torques[0],
         torque_gear=torques[1],

@@ -138,16 +138,10 @@ def step_maps(
 
     Parameters
     ----------
-    system : the periodic system
     extra : (n, columns) constant forcings of the rates to carry beside the system's own
     outputs : times in [0, T_m] that end an interval [s]; by default there is one interval
     every_step : whether every step ends one, as long as there are not too many for the memory
     step_angle : largest angle of the fastest frequency per step [rad]
-    stages : of the Gauss method; the order is twice as large
-
-    Raises
-    ------
-    NumericalError : the result is not finite
     """
     grid = _step_grid(system, np.empty(0) if outputs is None else outputs, every_step, step_angle)
     forcings = 1 + extra.shape[1]

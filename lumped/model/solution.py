@@ -101,12 +101,7 @@ def simulate(
 
 
 def initial_state(system: LTVSystem, initial: Initial | ArrayLike, balance: PeriodicSolution) -> FloatArray:
-    """Return the states at t = 0 for ``initial`` as ``simulate`` takes it.
-
-    Raises
-    ------
-    ParameterError : not one of the names, another number of states, or not finite
-    """
+    """Return the states at t = 0 for ``initial`` as ``simulate`` takes it."""
     if isinstance(initial, str):
         if initial == "static":
             return static_deflection(system, balance.pinion_torque)
@@ -123,13 +118,7 @@ def initial_state(system: LTVSystem, initial: Initial | ArrayLike, balance: Peri
 def static_deflection(system: LTVSystem, pinion_torque: float | None = None) -> FloatArray:
     """At rest under the mean mesh load T_p / r_bp and the mean mesh stiffness: all states, rates zero.
 
-    The rotations split the wind-up so that J_p theta_p / r_bp + J_g theta_g / r_bg = 0, as two free rotors
-    would.
-
-    Parameters
-    ----------
-    system : the "full" system of a gear pair
-    pinion_torque : T_p [N m]; default the operating point's
+    ``system`` is the "full" one; the torque [N m] is by default the operating point's.
     """
     g, held, m = system.pair.geometry, system.held, len(system.coordinates)
     load = (system.pinion_torque if pinion_torque is None else pinion_torque) / g.base_radius_pinion

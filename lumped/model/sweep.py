@@ -145,12 +145,7 @@ def _reversal(run: Mapping[str, FloatArray], pitch_point: float) -> float:
 
 
 def running_speeds(speeds_rpm: Iterable[float]) -> FloatArray:
-    """Return speeds [rpm] as an array, each checked to be positive and finite.
-
-    Raises
-    ------
-    ParameterError : something else than positive finite numbers
-    """
+    """Return speeds [rpm] as an array, each checked to be positive and finite."""
     return real_numbers("speeds_rpm", speeds_rpm, 0.0, above=True, unit="rpm", action="Give running speeds.")
 
 

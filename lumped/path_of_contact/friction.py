@@ -105,14 +105,14 @@ def friction_path_function(
 
 
 def law_range_violations(pair: AnyPair, law: str | None = None) -> tuple[RangeViolation, ...]:
-    """List where a pair leaves the validity ranges of a friction law.
+    """List where a pair leaves the validity ranges of a friction law, by default its own.
 
     A law made of others (V) is checked against each of them where that one is in force.
 
     Parameters
     ----------
     pair : the gear pair
-    law : name of a friction law; default ``pair.friction.law``
+    law : name of a friction law
     """
     pair = load_gear_pair(pair)
     return violations_of(contact_path(pair), pair.friction, _name(pair, law))

@@ -97,14 +97,9 @@ def mean_of_pairs(law: PathFunction, pitch: float) -> float:
 def positive_intervals(
     function: Callable[[FloatArray], FloatArray], low: float, high: float, kinks: FloatArray, pitch: float
 ) -> FloatArray:
-    """Intervals of [low, high] in which a piecewise smooth function is positive; (n, 2) [m].
+    """Intervals (n, 2) of [low, high] in which a function (n,) -> (n,) of positions is positive [m].
 
-    Parameters
-    ----------
-    function : (n,) -> (n,) over positions [m]
-    low, high : range that is searched [m]
-    kinks : positions where the function jumps or has a kink, any shape [m]
-    pitch : base pitch [m], the scale of what is close
+    ``kinks`` are where it jumps or has a kink, any shape; the base pitch is the scale of what is close.
     """
     inside = 1e-12 * pitch
     marks = np.unique(kinks[(kinks > low + inside) & (kinks < high - inside)])

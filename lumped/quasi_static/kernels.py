@@ -62,17 +62,9 @@ def shared_loads(
     """Loads of tooth pairs that move each other, and how they grow when all are compressed further together.
 
     Each pair has ``load_of`` what its neighbours leave of its compression, p_i - sum_j w_ij N_j; loads that
-    are relaxed one after the other find the minimum of a convex energy.
-
-    Parameters
-    ----------
-    compression, stiffness : (pairs,) p_i [m], negative where apart, and k_i, zero for a pair that is not
-        followed [N/m]
-    coupling : (pairs, pairs) w_ij, zero on the diagonal [m/N]
-    softening, nominal, least : as ``load_of``
-    loads : (pairs,) first guess, receives N_i [N]
-    tangents : (pairs,) receives dN_i/dp at a common p [N/m]
-    alone : (pairs,) zero for a pair that is not followed; receives the tangents of pairs alone [N/m]
+    are relaxed one after the other find the minimum of a convex energy. A pair of k_i = 0 is not followed;
+    ``coupling`` is w_ij, zero on the diagonal [m/N]. ``loads`` are a first guess and receive N_i,
+    ``tangents`` receive dN_i/dp at a common p, ``alone`` the same of pairs alone (zero where not followed).
     """
     most = _SWEEPS if coupling.any() else 1
     for _ in range(most):
@@ -205,15 +197,10 @@ def approaches(
 ) -> FloatArray:
     """Static approach delta at n phases, where the loads of all pairs make the force; (n,) [m], or NaN.
 
-    Parameters
-    ----------
-    place, stiffness, relief : (n, pairs) xi_i [m], k_i, zero for a pair that is not followed [N/m], and the
-        material missing on both flanks [m]
-    coupling : (n, pairs, pairs) w_ij, see ``shared_loads`` [m/N]
-    force : mean load, at which k holds too [N]
-    lengthening : of the line of action by the loaded bearings [m]
-    softening, least : of the contact law, see ``ContactLaw`` [m/N], [N]
-    ends : as ``gap_at``
+    ``place``, ``stiffness``, ``relief`` (n, pairs) are xi_i, k_i and the material missing on both flanks;
+    ``coupling`` as in ``shared_loads``, ``force`` the mean load, at which k holds, ``lengthening`` that of
+    the line of action by the loaded bearings, ``softening`` and ``least`` as in ``ContactLaw``, ``ends``
+    as in ``gap_at``.
     """
     found = np.full(place.shape[0], np.nan)
     pairs = place.shape[1]

@@ -24,13 +24,7 @@ _NO_PAIR = "At some position no tooth pair can carry the load: check stiffness a
 
 @dataclass(frozen=True)
 class LoadSharing:
-    """Static equilibrium of a mesh.
-
-    Attributes
-    ----------
-    transmission_error : delta, approach of the rigid flanks along the line of action; (..., ) [m]
-    load : k_i (delta - e_i - sum_j w_ij N_j) where positive, 0 elsewhere; (..., pairs) [N]
-    """
+    """Static equilibrium: ``transmission_error`` delta (...,) [m] and ``load`` N_i (..., pairs) [N]."""
 
     transmission_error: FloatArray
     load: FloatArray
@@ -141,11 +135,7 @@ def _sets(can: BoolArray) -> list[list[int]]:
 def coupled(neighbours: Sequence[PathFunction], place: FloatArray, near: BoolArray) -> FloatArray:
     """How far pairs at xi (n, pairs) [m], whole pitches apart, move each other; (n, pairs, pairs) [m/N].
 
-    Parameters
-    ----------
-    neighbours : w_m(xi) of the stiffness model
-    place : the pair behind first
-    near : whether a pair is followed
+    ``neighbours`` are w_m(xi) of the stiffness model; the pair behind is first; ``near`` pairs are followed.
     """
     pairs = place.shape[1]
     found = np.zeros((*place.shape, pairs))

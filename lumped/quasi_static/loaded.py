@@ -26,7 +26,7 @@ from lumped.quasi_static.elements import Contact, MeshElements, at_rest, positiv
 from lumped.quasi_static.kernels import approaches, gaps_at, middle_loads
 from lumped.quasi_static.load_sharing import coupled
 from lumped.quasi_static.tooth_error import relief_error, relief_starts
-from lumped.schema.bodies import bodies
+from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
 
@@ -56,7 +56,7 @@ class Loaded(Contact):
         """The laws about the static loaded motion; the damper takes hold as the load does."""
         contact = loaded_contact(pair)
         low, high = contact.stiffness.interval
-        scale = 2.0 * pair.mesh.damping_ratio * np.sqrt(bodies(pair).effective_mass)
+        scale = 2.0 * pair.mesh.damping_ratio * np.sqrt(bodies_of(pair).effective_mass)
 
         def damping(xi: FloatArray) -> FloatArray:
             root = np.sqrt(np.maximum(contact.secant(xi), 0.0))
@@ -126,14 +126,9 @@ class ContactLaw:
 
 
 class StaticPair(NamedTuple):
-    """One pair in static equilibrium at n positions.
+    """One pair in static equilibrium at n positions: delta [m], N [N] and dN/ddelta [N/m], gap [m].
 
-    Attributes
-    ----------
-    approach : delta, common to all pairs, (n,) [m]
-    load, tangent : N [N] and dN/ddelta [N/m], (n,)
-    gap : between flanks and tip corners without deflection, (n,) [m]
-    pressed : by the own load, what gap and neighbours leave of the approach; negative where apart, (n,) [m]
+    ``pressed`` is what gap and neighbours leave of the approach, negative where the pair is apart [m].
     """
 
     approach: FloatArray
@@ -171,12 +166,7 @@ class LoadedContact:
 
 
 class StaticMesh:
-    """Static equilibrium of the mesh under the mean load at any position of a tooth pair.
-
-    Parameters
-    ----------
-    pair : a validated gear pair
-    """
+    """Static equilibrium of the mesh under the mean load at any position of a tooth pair."""
 
     def __init__(self, pair: GearPair) -> None:
         g, bearings = pair.geometry, pair.bearings
@@ -206,7 +196,7 @@ class StaticMesh:
         """Static approach delta (n,) [m] with a tooth pair at the positions xi (n,) [m]."""
         place, near = self.pairs(xi)
         law, k = self.law, np.where(near, self.law.held(place), 0.0)
-        relief, coupling = self.relief(place), self.coupling(place, near)
+        relief, coupling = self.relief(place), coupled(self.neighbours, place, near)
         found = approaches(
             place, k, relief, coupling, self.force, self.lengthening, law.softening, law.least, self.ends
         )
@@ -227,18 +217,11 @@ class StaticMesh:
         return StaticPair(delta[:, middle], load, tangent, gap[:, middle], pressed)
 
     def half(self, xi: FloatArray) -> FloatArray:
-        """Half of approach and lengthening, (n,) [m].
-
-        The teeth are deflected, so the contact point lies so far beyond where the tips leave the line of
-        action.
-        """
+        """How far the contact point of deflected teeth is beyond where the tips leave the line, (n,) [m]."""
         return np.asarray(0.5 * (self.approach(xi) + self.lengthening), dtype=np.float64)
 
     def gap(self, xi: FloatArray, half: FloatArray, longer: FloatArray) -> FloatArray:
-        """Gap of the pair at xi without deflection, (n,) [m].
-
-        ``half`` is half the approach and the lengthening, ``longer`` that of the line of action, (n,) [m].
-        """
+        """Gap of the pair at xi without deflection, (n,) [m]; ``half`` and ``longer`` as in ``gap_at``."""
         return np.asarray(gaps_at(xi, self.relief(xi), half, longer, self.ends), dtype=np.float64)
 
     def together(
@@ -246,39 +229,16 @@ class StaticMesh:
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Of the middle one of pairs that share a load N [N], dN/ddelta [N/m] and what presses it [m]; (n,).
 
-        Parameters
-        ----------
-        place, compression : (n, pairs) xi, whole pitches apart, the pair behind first, and delta less gap [m]
-        near : whether a pair is followed
+        ``place`` and ``compression``, delta less gap, are (n, pairs), the pair behind first.
         """
         law, k = self.law, np.where(near, self.law.held(place), 0.0)
-        coupling = self.coupling(place, near)
+        coupling = coupled(self.neighbours, place, near)
         found = middle_loads(compression, k, coupling, law.softening, law.nominal, law.least)
         return found[:, 0], found[:, 1], found[:, 2]
 
-    def coupling(self, place: FloatArray, near: BoolArray) -> FloatArray:
-        """How far pairs at xi (n, pairs) [m], whole pitches apart, move each other; (n, pairs, pairs) [m/N].
-
-        Parameters
-        ----------
-        place : the pair behind first
-        near : whether a pair is followed
-        """
-        return coupled(self.neighbours, place, near)
-
 
 def loaded_contact(pair: GearPair) -> LoadedContact:
-    """Contact of a tooth pair in the mesh under the mean torque.
-
-    Parameters
-    ----------
-    pair : a validated gear pair
-
-    Raises
-    ------
-    ParameterError : a relief starts outside the active flank
-    NumericalError : at some position no pair can carry the load, or contact reaches too far beyond the tips
-    """
+    """Contact of a tooth pair in the mesh under the mean torque."""
     return _loaded_contact(at_rest(pair))
 
 

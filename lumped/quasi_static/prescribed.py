@@ -21,8 +21,7 @@ from lumped.path_of_contact import friction_path_function, pair_stiffness
 from lumped.quasi_static.elements import Contact, MeshElements, at_rest, positive_intervals, restricted
 from lumped.quasi_static.load_sharing import share_load
 from lumped.quasi_static.tooth_error import error_function
-from lumped.schema.bodies import bodies
-from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.typing import BoolArray, FloatArray
 
@@ -48,7 +47,7 @@ class Prescribed(Contact):
             error = PathFunction.constant(0.0, *stiffness.interval)
         return MeshElements(
             stiffness=stiffness,
-            damping=_damping(stiffness, pair.mesh.damping_ratio, bodies(pair).effective_mass),
+            damping=_damping(stiffness, pair.mesh.damping_ratio, bodies_of(pair).effective_mass),
             friction=friction_path_function(pair),
             error=error,
         )
@@ -64,29 +63,16 @@ class Prescribed(Contact):
 
 @dataclass(frozen=True, eq=False)
 class LoadedMesh:
-    """One tooth pair in the statically loaded mesh, over xi in [L_XA, L_XD].
-
-    Attributes
-    ----------
-    stiffness : k(xi; T), zero where the loaded pair is apart [N/m]
-    error : e(xi), unloaded [m]
-    contact : (n, 2) intervals of xi in which the pair carries load [m]
-    """
+    """k(xi; T) [N/m], zero where the loaded pair is apart, e(xi) [m], and the intervals of contact (n, 2)."""
 
     stiffness: PathFunction
     error: PathFunction
     contact: FloatArray
 
 
-def loaded_mesh(pair: AnyPair) -> LoadedMesh:
-    """Stiffness and unloaded error of a tooth pair for the linear model at the operating torque.
-
-    Raises
-    ------
-    ParameterError : a relief starts outside the active flank
-    NumericalError : at this torque no pair touches at some position
-    """
-    return _loaded_mesh(at_rest(load_gear_pair(pair)))
+def loaded_mesh(pair: GearPair) -> LoadedMesh:
+    """Stiffness and unloaded error of a tooth pair for the linear model at the operating torque."""
+    return _loaded_mesh(at_rest(pair))
 
 
 @lru_cache(maxsize=32)

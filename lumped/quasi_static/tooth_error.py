@@ -18,7 +18,6 @@ import numpy as np
 from lumped.errors import refuse
 from lumped.path_function import PathFunction
 from lumped.quasi_static.kernels import gaps_at
-from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.typing import FloatArray
 
 if TYPE_CHECKING:
@@ -28,50 +27,25 @@ if TYPE_CHECKING:
 
 
 def flank_relief(relief: ProfileRelief, end: float, roll: FloatArray) -> FloatArray:
-    """Material removed from a flank by one tip or root relief [m].
+    """Material removed at roll angles of any shape: C s (linear) or C s^2 (parabolic) [m].
 
-    Parameters
-    ----------
-    relief : shape, amount C [m] and start roll angle [rad]
-    end : roll angle at which the amount is reached: of the tip circle for tip relief, of the start of the
-        active flank (the mate's tip) for root relief [rad]
-    roll : roll angles [rad], any shape
-
-    Returns
-    -------
-    C s (linear) or C s^2 (parabolic), s = (roll - start)/(end - start) where positive, 0 elsewhere
+    s = (roll - start)/(end - start) where positive; ``end`` [rad] is that of the tip circle for tip
+    relief, of the start of the active flank (the mate's tip) for root relief.
     """
     s = np.maximum((roll - relief.start_roll_angle) / (end - relief.start_roll_angle), 0.0)
     return np.asarray(relief.amount * (s if relief.shape == "linear" else s**2), dtype=np.float64)
 
 
-def relief_error(pair: AnyPair, xi: FloatArray) -> FloatArray:
-    """Sum of the reliefs of both flanks at the contact position xi [m].
-
-    Parameters
-    ----------
-    pair : the gear pair
-    xi : positions from X [m], any shape
-
-    Raises
-    ------
-    ParameterError : a relief starts outside the active flank
-    """
-    pair = load_gear_pair(pair)
+def relief_error(pair: GearPair, xi: FloatArray) -> FloatArray:
+    """Sum of the reliefs of both flanks at positions xi of any shape [m]."""
     total = np.zeros(np.shape(xi))
     for relief in _reliefs(pair):
         total = total + relief(np.asarray(xi, dtype=float))
     return total
 
 
-def error_function(pair: AnyPair) -> PathFunction:
-    """Unloaded error e(xi) of a tooth pair from A to D [m], exactly, with switches where a relief starts.
-
-    Raises
-    ------
-    ParameterError : a relief starts outside the active flank
-    """
-    pair = load_gear_pair(pair)
+def error_function(pair: GearPair) -> PathFunction:
+    """Unloaded error e(xi) of a tooth pair from A to D [m], exactly, with switches where a relief starts."""
     low, high = pair.geometry.L_XA, pair.geometry.L_XD
     switches = relief_starts(pair)
     breaks = np.array([low, *switches, high])
@@ -93,12 +67,7 @@ def corner_gap(geometry: Geometry, xi: FloatArray) -> FloatArray:
 
     Before A the corner of the gear's tip faces the pinion's flank, behind D the corner of the pinion's tip
     faces the gear's. The gap is measured on the tangent from the corner to the flank's base circle: involutes
-    of one base circle are parallel curves.
-
-    Parameters
-    ----------
-    geometry : the pair's geometry
-    xi : positions from X, any shape; those outside [L_XA, L_XD] are where longer teeth would touch [m]
+    of one base circle are parallel curves. xi of any shape outside is where longer teeth would touch [m].
     """
     g, place = geometry, np.asarray(xi, dtype=float)
     ends = np.array([g.L_XA, g.L_XD, g.L_XY, g.base_radius_pinion, g.base_radius_gear])

@@ -66,10 +66,6 @@ def mesh_positions(pair: AnyPair, *, phases: int = 256, extended: bool = True) -
     pair : a validated gear pair
     phases : positions per mesh cycle, evenly spaced from a pair at A
     extended : whether deflection lets pairs touch before A and behind D
-
-    Raises
-    ------
-    ParameterError : a relief starts outside the active flank, or too few phases
     """
     pair = load_gear_pair(pair)
     phases = whole_number("phases", phases, 2, 65536, "Give the number of positions per mesh cycle.")

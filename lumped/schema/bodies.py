@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.gear import Gear
+from lumped.schema.pair import GearPair
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,11 @@ def solid_disc(radius: float, width: float, density: float, bore: float = 0.0) -
 
 def bodies(pair: AnyPair) -> Bodies:
     """Return masses and inertias: those given, else the disc of reference diameter and face width."""
-    pair = load_gear_pair(pair)
+    return bodies_of(load_gear_pair(pair))
+
+
+def bodies_of(pair: GearPair) -> Bodies:
+    """``bodies`` of a pair that is loaded."""
     g = pair.geometry
     m_p, j_p = _resolved(pair.pinion, g.reference_radius_pinion)
     m_g, j_g = _resolved(pair.gear, g.reference_radius_gear)

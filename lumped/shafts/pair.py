@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumped.errors import refuse
-from lumped.schema.bodies import bodies
+from lumped.schema.bodies import bodies_of
 from lumped.schema.pair import GearPair
 from lumped.shafts.supported import Disc, SupportedShaft, supported_shaft
 from lumped.stiffness.foundation import body_twist
@@ -81,12 +81,12 @@ def highest_frequency(pair: GearPair) -> float:
     if pair.shafts.max_frequency is not None:
         return 2.0 * math.pi * pair.shafts.max_frequency
     stiffness = _TOOTH * min(pair.pinion.face_width, pair.gear.face_width)
-    return _ABOVE * math.sqrt(stiffness / bodies(pair).effective_mass)
+    return _ABOVE * math.sqrt(stiffness / bodies_of(pair).effective_mass)
 
 
 def discs(pair: GearPair) -> tuple[Disc, Disc]:
     """Both gears as rigid discs: mass and polar inertia as without shafts, J/2 + m b^2/12 against tilting."""
-    b, twist = bodies(pair), body_twist(pair)
+    b, twist = bodies_of(pair), body_twist(pair)
 
     def disc(mass: float, inertia: float, width: float, stiffness: float) -> Disc:
         return Disc(mass, inertia, 0.5 * inertia + mass * width**2 / 12.0, float(stiffness))
@@ -96,12 +96,7 @@ def discs(pair: GearPair) -> tuple[Disc, Disc]:
 
 
 def supported_shafts(pair: GearPair) -> tuple[SupportedShaft, SupportedShaft]:
-    """Modes of the pinion's and of the gear's shaft.
-
-    Raises
-    ------
-    ParameterError : the pair has no shafts
-    """
+    """Modes of the pinion's and of the gear's shaft."""
     shafts = pair.shafts
     if shafts is None:
         action = "Describe the shafts in the parameter file, or take supports='springs'."
@@ -115,12 +110,7 @@ def supported_shafts(pair: GearPair) -> tuple[SupportedShaft, SupportedShaft]:
 
 
 def shafted_pair(pair: GearPair) -> ShaftedPair:
-    """Return the modal data of a pair on its shafts.
-
-    Raises
-    ------
-    ParameterError : no shafts, or so many modes that a periodic motion would take minutes
-    """
+    """Return the modal data of a pair on its shafts."""
     both = supported_shafts(pair)
     shafts, g = pair.shafts, pair.geometry
     assert shafts is not None

@@ -45,16 +45,10 @@ class Modes:
 def reduced_modes(
     mass: FloatArray, stiffness: FloatArray, boundary: int, highest: float, *, floating: bool = False
 ) -> Modes:
-    """Modes of what remains of a structure: the static shape of a boundary coordinate and modes with it held.
+    """Modes of what remains of a structure: the static shape of a boundary coordinate, modes with it fixed.
 
-    Statics by forces on the boundary is kept exactly.
-
-    Parameters
-    ----------
-    mass, stiffness : (n, n) symmetric
-    boundary : the coordinate that forces act on
-    highest : modes with the boundary held are kept up to this [rad/s]
-    floating : whether nothing holds the structure but its boundary, so that its first mode is rigid
+    Statics by forces on the boundary is kept exactly. Modes with the boundary fixed are kept up to
+    ``highest`` [rad/s]; nothing else holds a ``floating`` structure, whose first mode is rigid.
     """
     n = mass.shape[0]
     inner = np.delete(np.arange(n), boundary)
@@ -122,15 +116,7 @@ def supported_shaft(
 ) -> SupportedShaft:
     """Modes of a shaft in its bearings, on elements halved until its frequencies have settled.
 
-    Parameters
-    ----------
-    shaft, coupled : of the schema
-    disc : the gear
-    highest : modes with the gear's centre and rim held are kept up to this [rad/s]
-
-    Raises
-    ------
-    NumericalError : too many elements, or frequencies that do not settle
+    Modes with the gear's centre and rim fixed are kept up to ``highest`` [rad/s].
     """
     pieces = [
         Piece(s.length, s.diameter, s.bore, shaft.youngs_modulus, shaft.poisson_ratio, shaft.density)

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from lumped import ParameterError, geometry, load_gear_pair
-from lumped.quasi_static import corner_gap, error_function, relief_error
+from lumped.quasi_static.tooth_error import corner_gap, error_function, relief_error
 
 UNEQUAL = {"centre_distance": None, "gear.teeth": 40, "gear.tip_relief": None, "pinion.tip_relief": None}
 

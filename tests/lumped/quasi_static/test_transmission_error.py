@@ -8,13 +8,13 @@ import pytest
 from lumped import NumericalError, ParameterError, geometry, load_gear_pair
 from lumped.path_of_contact import pair_stiffness
 from lumped.quasi_static import (
-    loaded_mesh,
     optimal_relief,
     relief_map,
     share_load,
     static_transmission_error,
     with_tip_relief,
 )
+from lumped.quasi_static.prescribed import loaded_mesh
 
 K = 1e8  # N/m per pair
 ROUNDING = 1e-12

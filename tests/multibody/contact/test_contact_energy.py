@@ -11,10 +11,10 @@ from scipy.special import lambertw
 
 import lumped
 import multibody
-from lumped.quasi_static import corner_gap as lumped_corner_gap
 from lumped.quasi_static.kernels import load_of
 from lumped.quasi_static.kernels import shared_loads as lumped_shared_loads
 from lumped.quasi_static.loaded import StaticMesh
+from lumped.quasi_static.tooth_error import corner_gap as lumped_corner_gap
 from multibody.contact import kernels as kn
 from multibody.contact import kinematics as kin
 from multibody.contact.elements import elastic_load, shared_loads, stored_energy
