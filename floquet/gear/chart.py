@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import TYPE_CHECKING, Literal
 
@@ -23,7 +23,7 @@ from floquet.rank_one.batch import fast_multipliers
 from lumped.arguments import one_of, real_number
 from lumped.errors import refuse
 from lumped.model.periodic_system import Supports
-from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.files import AnyPair
 from lumped.typing import ComplexArray, FloatArray, Progress
 
 if TYPE_CHECKING:
@@ -76,21 +76,15 @@ def stability_chart(
     NumericalError
         A point fails; the message names it.
     """
-    variation = GearVariation.of(load_gear_pair(pair), supports)
-    grid = gear_grid(axes, supports)
+    variation, grid = GearVariation.of(pair, supports), gear_grid(axes, supports)
     points = math.prod(values.size for values in grid.values())
     if points > _LARGEST:
         raise refuse("points of the chart", points, f"at most {_LARGEST}", "Give the axes smaller counts.")
     one_of("store", store, ("all", "radius"))
     rtol = real_number("rtol", rtol, 1e-13, 1e-3, action="Use 1e-8 for charts, 1e-10 for verdicts.")
     if friction_law is not None:
-        variation = GearVariation.of(variation.pair.with_({"friction.law": friction_law}), supports)
-    found, done = _Store(points, everything=store == "all"), 0
-    for part in _slices(variation, grid):
-        part.solve(found, rtol)
-        done += part.index.size
-        if progress is not None:
-            progress(done / points)
+        variation = replace(variation, pair=variation.pair.with_({"friction.law": friction_law}))
+    found = solved(variation, grid, rtol, everything=store == "all", progress=progress)
     dataset = chart_dataset(
         grid, found.multipliers, found.errors, found.radius, found.radius_error, found.proven
     )
@@ -100,7 +94,26 @@ def stability_chart(
     return dataset.assign_attrs(title=title, friction_law=law, supports=supports, rtol=rtol)
 
 
-class _Store:
+def solved(
+    variation: GearVariation,
+    grid: Mapping[str, FloatArray],
+    rtol: float,
+    *,
+    everything: bool = False,
+    progress: Progress | None = None,
+) -> Store:
+    """Multipliers of a variation of a pair at all points of a grid, or their spectral radii alone."""
+    count = math.prod(values.size for values in grid.values())
+    found, done = Store(count, everything=everything), 0
+    for part in _slices(variation, grid):
+        part.solve(found, rtol)
+        done += part.index.size
+        if progress is not None:
+            progress(done / count)
+    return found
+
+
+class Store:
     """Multipliers of many points, or no more than their spectral radius.
 
     Attributes
@@ -172,7 +185,7 @@ class ChartSlice:
     flat: Mapping[str, FloatArray]
     index: npt.NDArray[np.intp]
 
-    def solve(self, store: _Store, rtol: float) -> None:
+    def solve(self, store: Store, rtol: float) -> None:
         """Put the multipliers of all points into the store; ``rtol`` is relative to each monodromy matrix."""
         count = self.index.size
         speeds = self.flat.get("speed_rpm", np.full(count, operating_rpm(self.reference.pair)))

@@ -30,7 +30,7 @@ from floquet.engine.tongues import (
 )
 from floquet.gear.axes import GEAR_AXES, GearVariation, checked_range, gear_grid, operating_rpm, vary
 from floquet.gear.block import gear_block
-from floquet.gear.chart import stability_chart
+from floquet.gear.chart import solved
 from floquet.rank_one.batch import fast_monodromies, spectral_radii
 from floquet.rank_one.system import RankOneSystem
 from lumped.arguments import real_number, whole_number
@@ -178,10 +178,10 @@ def stability_boundaries(
     ------
     ParameterError : unusable range or axis
     """
-    pair = GearVariation.of(load_gear_pair(pair), supports).pair
+    own = GearVariation.of(pair, supports)
     low, high = checked_range("speed_rpm", speed_rpm)
     nodes = whole_number("nodes", nodes, 0, 1_000_000)
-    xtol = real_number("xtol", xtol, 1e-15, 0.1)
+    xtol, rtol = real_number("xtol", xtol, 1e-15, 0.1), real_number("rtol", rtol, 1e-13, 1e-3)
     checked = gear_grid(axes, supports) if axes is not None else {}
     if axes is not None and (len(checked) != 1 or "speed_rpm" in checked):
         raise refuse("axes", ", ".join(checked), "one other than speed_rpm", "Scan other axes one at a time.")
@@ -189,23 +189,20 @@ def stability_boundaries(
     found: dict[Tongue, dict[int, list[UnstableInterval]]] = {}
     complete = np.ones(values.size, dtype=bool)
     for index, value in enumerate(values):
-        point = {name: float(value)} if axes else {}
-        here = vary(pair, point, supports)
+        here = vary(own, {name: float(value)} if axes else {})
         lines = np.array(list(predicted_lines(here, orders).values()))
         dense, complete[index] = search_grid(gear_block(here), low, high)
 
-        def radius(speeds: FloatArray, point: dict[str, float] = point) -> FloatArray:
-            grid = {"speed_rpm": speeds} | {key: np.array([at]) for key, at in point.items()}
-            chart = stability_chart(pair, grid, rtol=rtol, store="radius", supports=supports)
-            return np.ravel(chart.spectral_radius.values)
+        def radius(speeds: FloatArray, here: GearVariation = here) -> FloatArray:
+            return solved(here, {"speed_rpm": speeds}, rtol).radius
 
         start = np.union1d(dense, seeded_nodes(lines, low, high, nodes))
         for interval in unstable_intervals(radius, start, xtol=xtol):
-            label = label_variation(vary(pair, {**point, "speed_rpm": interval.peak}, supports))
+            label = label_variation(vary(here, {"speed_rpm": interval.peak}))
             found.setdefault(label, {}).setdefault(index, []).append(interval)
         if progress is not None:
             progress((index + 1) / values.size)
-    result = _boundaries_dataset(pair, found, name, values, complete).assign_attrs(supports=supports)
+    result = _boundaries_dataset(own.pair, found, name, values, complete).assign_attrs(supports=supports)
     return result if axes else result.isel({name: 0}, drop=True)
 
 
@@ -522,6 +519,6 @@ def _edges(
 def _law_difference(pair: GearPair, held: GearPair, tongues: tuple[TongueMargin, ...]) -> float | None:
     if not tongues:
         return None
-    axes = {"speed_rpm": [0.5 * (t.lower + t.upper) for t in tongues], "damping_ratio": [0.0]}
-    radii = [stability_chart(p, axes, rtol=_RTOL)["spectral_radius"].to_numpy() for p in (pair, held)]
-    return float(np.abs(radii[0] - radii[1]).max())
+    middles = {"speed_rpm": np.array([0.5 * (t.lower + t.upper) for t in tongues])}
+    one, other = (solved(vary(p, {"damping_ratio": 0.0}), middles, _RTOL).radius for p in (pair, held))
+    return float(np.abs(one - other).max())
