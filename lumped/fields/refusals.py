@@ -14,7 +14,7 @@ from pydantic.fields import FieldInfo
 
 from lumped.errors import MOST_PROBLEMS, FieldProblem, ParameterError, quoted, shown
 from lumped.fields.section import OneOf
-from lumped.fields.units import Read
+from lumped.fields.units import Quantity
 
 #: What pydantic puts into a place for the parts of a union of plain types.
 _UNION_PARTS = {"int", "float", "str"}
@@ -170,6 +170,6 @@ def _whole_number(info: FieldInfo) -> str:
 
 
 def _description(info: FieldInfo) -> str:
-    quantity = next((m for m in info.metadata if isinstance(m, Read)), None)
+    quantity = next((m for m in info.metadata if isinstance(m, Quantity)), None)
     text = info.description or "a section of the parameter file"
     return f"{quantity.allowed} ({text})" if quantity else text

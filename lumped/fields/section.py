@@ -11,7 +11,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, GetCoreSchemaHandler
 from pydantic_core import core_schema
 
 from lumped.errors import refuse
-from lumped.fields.units import Read, to_file
+from lumped.fields.units import Quantity, to_file
 
 
 class Section(BaseModel):
@@ -24,7 +24,7 @@ class Section(BaseModel):
         result: dict[str, Any] = {}
         for name, info in type(self).model_fields.items():
             value = getattr(self, name)
-            unit = next((m.unit for m in info.metadata if isinstance(m, Read)), None)
+            unit = next((m.unit for m in info.metadata if isinstance(m, Quantity)), None)
             if isinstance(value, tuple):
                 result[name] = [_plain(one, unit) for one in value]
             elif value is not None:

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 import operator
 import re
-from abc import abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from decimal import Decimal, DivisionByZero, InvalidOperation, Overflow
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any
@@ -174,45 +173,11 @@ def to_stated(value: float, unit: str) -> float:
     return short if to_si(short, unit) == value else float(stated)
 
 
-class Read:
-    """Annotation of a field whose value is read by ``parse``: what a user writes -> SI, or a refusal.
-
-    The refusal has no field; pydantic knows the place.
-    """
-
-    #: Stated unit of a bare number.
-    unit: str
-
-    @property
-    @abstractmethod
-    def allowed(self) -> str:
-        """What is allowed, as text."""
-
-    @abstractmethod
-    def parse(self, value: object) -> Any:
-        """Read what a user writes into SI, or refuse it."""
-
-    @abstractmethod
-    def json_schema(self) -> JsonSchemaValue:
-        """JSON Schema of what a user writes."""
-
-    def _refusal(self, value: str, action: str) -> ParameterError:
-        return refuse("", value, self.allowed, action)
-
-    def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
-    ) -> core_schema.CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.parse)
-
-    def __get_pydantic_json_schema__(
-        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
-    ) -> JsonSchemaValue:
-        return self.json_schema()
-
-
 @dataclass(frozen=True)
-class Quantity(Read):
+class Quantity:
     """Annotation of a float field: its stated unit and allowed range, both as a user writes them.
+
+    Its refusals have no field; pydantic knows the place.
 
     Attributes
     ----------
@@ -257,6 +222,9 @@ class Quantity(Read):
         """Comparison and bound in SI, converted like values: a value at a bound equals it bit for bit."""
         return [(holds, to_si(bound, self.unit)) for _, _, bound, holds in self._bounds]
 
+    def _refusal(self, value: str, action: str) -> ParameterError:
+        return refuse("", value, self.allowed, action)
+
     def parse(self, value: object) -> Any:
         """Read a number, text with a unit or an `SIValue` into SI, or refuse it."""
         if (value is None and self.optional) or (isinstance(value, str) and value == self.word != ""):
@@ -277,6 +245,16 @@ class Quantity(Read):
             raise self._refusal(text, self.action if finite else "Give a finite number.")
         return si if self.unit == "1" else SIValue(si, UNITS[self.unit][0])
 
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.parse)
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        return self.json_schema()
+
     def json_schema(self) -> JsonSchemaValue:
         """JSON Schema of the quantity: a number in the stated unit with its bounds, or text with a unit."""
         number = {"type": "number"} | {key: bound for _, key, bound, _ in self._bounds}
@@ -284,27 +262,13 @@ class Quantity(Read):
         return {"anyOf": [number, text], "unit": self.unit, "si_unit": UNITS[self.unit][0]}
 
 
-@dataclass(frozen=True)
-class QuantityRange(Read):
-    """Annotation of a field that holds the lower and the upper end of a range, or None.
-
-    Attributes
-    ----------
-    end : what each end may be
-    action : what to do when the range is refused
-    """
-
-    end: Quantity
-    action: str
-    unit: str = field(init=False)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "unit", self.end.unit)
+class QuantityRange(Quantity):
+    """Annotation of a field that holds the lower and the upper end of a range of quantities, or None."""
 
     @property
     def allowed(self) -> str:
         """The allowed ranges as text."""
-        return f"two increasing values FROM..TO, each {self.end.allowed}"
+        return f"two increasing values FROM..TO, each {super().allowed}"
 
     def parse(self, value: object) -> tuple[float, float] | None:
         """Read two ends, or text FROM..TO, into SI, or refuse it."""
@@ -313,17 +277,16 @@ class QuantityRange(Read):
         ends = _ends(value) if isinstance(value, str) else value
         if not isinstance(ends, (list, tuple)) or len(ends) != 2:
             raise self._refusal(shown(value), self.action)
-        low, high = (self.end.parse(end) for end in ends)
-        if low is None or high is None or low >= high:
+        low, high = super().parse(ends[0]), super().parse(ends[1])
+        if low >= high:
             raise self._refusal(shown(value), self.action)
         return low, high
 
     def json_schema(self) -> JsonSchemaValue:
         """Two ends, or text."""
-        ends = {"type": "array", "items": self.end.json_schema(), "minItems": 2, "maxItems": 2}
+        ends = {"type": "array", "items": super().json_schema(), "minItems": 2, "maxItems": 2}
         text = {"type": "string", "examples": ["200..3000"]}
-        si = UNITS[self.unit][0]
-        return {"anyOf": [ends, text], "unit": self.unit, "si_unit": si}
+        return {"anyOf": [ends, text], "unit": self.unit, "si_unit": UNITS[self.unit][0]}
 
 
 def _ends(text: str) -> list[float | str]:

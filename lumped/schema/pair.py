@@ -22,7 +22,7 @@ from pydantic.fields import FieldInfo
 from lumped.errors import FieldProblem, ParameterError, refuse
 from lumped.fields.refusals import field_of, translated, unknown_key
 from lumped.fields.section import Section, Text
-from lumped.fields.units import Quantity, QuantityRange, Read, to_stated
+from lumped.fields.units import Quantity, QuantityRange, to_stated
 from lumped.gear_geometry.existence import existence_problems
 from lumped.gear_geometry.geometry import Geometry, Wheel, build_geometry
 from lumped.gear_geometry.tooth_profile import ToothProfile
@@ -32,18 +32,15 @@ from lumped.schema.shafts import Bearings, Shafts
 
 #: Largest speed of a pinion [rpm].
 LARGEST_SPEED = 200000.0
-_SPEED = Quantity(
-    "rpm",
-    above=0,
-    at_most=LARGEST_SPEED,
-    action="Give the running speed; the pinion drives in its positive sense.",
-)
 
 
 class OperatingPoint(Section):
     """Where the pair runs. The pinion drives, in its positive sense."""
 
-    pinion_speed: Annotated[float, _SPEED] = Field(description="nominal speed of the pinion")
+    pinion_speed: Annotated[
+        float,
+        Quantity("rpm", above=0, at_most=LARGEST_SPEED, action="The pinion drives in its positive sense."),
+    ] = Field(description="nominal speed of the pinion")
     pinion_torque: Annotated[float, Quantity("N*m", at_least=1e-9, at_most=1e9)] = Field(
         description="torque driving the pinion"
     )
@@ -51,7 +48,8 @@ class OperatingPoint(Section):
         Literal["balanced"] | float, Quantity("N*m", above=0, at_most=1e9, word="balanced")
     ] = Field("balanced", description="torque braking the gear, or 'balanced': no drift of the mean speed")
     speed_range: Annotated[
-        tuple[float, float] | None, QuantityRange(_SPEED, "Give two pinion speeds: 200..3000.")
+        tuple[float, float] | None,
+        QuantityRange("rpm", above=0, at_most=LARGEST_SPEED, action="Give two pinion speeds: 200..3000."),
     ] = Field(
         None,
         description="lowest and highest pinion speed of charts, sweeps and margins; default: from a tenth of "
@@ -351,7 +349,7 @@ def _source_problems(path: str) -> tuple[FieldProblem, ...]:
 
 def stated_unit(path: str) -> str | None:
     """Return the stated unit of a field by dotted path, or None where the field has none."""
-    return next((marker.unit for marker in field_at(path).metadata if isinstance(marker, Read)), None)
+    return next((marker.unit for marker in field_at(path).metadata if isinstance(marker, Quantity)), None)
 
 
 def _unit_beside(path: str, value: object) -> str:

@@ -18,7 +18,7 @@ def _quantities(model, prefix=""):
     from lumped.fields.refusals import models_in
 
     for name, info in model.model_fields.items():
-        quantity = next((m for m in info.metadata if isinstance(m, Quantity)), None)
+        quantity = next((m for m in info.metadata if type(m) is Quantity), None)
         if quantity is not None:
             yield f"{prefix}{name}", quantity
         entry = "0." if get_origin(info.annotation) is tuple else ""

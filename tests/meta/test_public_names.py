@@ -22,7 +22,6 @@ BOOKKEEPING = re.compile(
     r"lumped\.(errors|schema\.(pair|files))"
     r"|floquet\.engine\.chart"
     r"|validation\.(files|exchange|studies|plots|reporting|commands|interactive|measurements\.record)\b.*"
-    r"|validation\.paper\.(records|figure_record|reproduction|claims|plots|figures)\b.*"
     r"|validation\.verification\.(checks|evidence)"
 )
 SOURCE = re.compile(r"\beqs?\. |\bISO\b|\b(18|19|20)\d\d\b|docs/theory/\w+\.md")

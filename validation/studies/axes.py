@@ -45,7 +45,7 @@ def target_of(path: str) -> Target:
         raise refuse("field", repr(path[:80]), known, "Correct the path.")
     info = field_at(path)
     for marker in info.metadata:
-        if isinstance(marker, Quantity):
+        if type(marker) is Quantity:
             return Target(marker.unit, info.description or path, "float")
     return Target("", info.description or path, "int" if _is_integer(info.annotation) else "other")
 
