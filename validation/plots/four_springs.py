@@ -38,8 +38,8 @@ def four_springs_figure(found: FourSprings, operating_rpm: float) -> Figure:
             lines += ax.plot(speed, values.sel(model=model) / factor, **look(i), label=MODELS[model])
         machine = values.sel(model="machine") / factor  # it has no multipliers
         lines += ax.plot(speed, machine, "o", color=BLACK, markersize=4, label=MODELS["machine"])
-        for miss in found.misses:
-            ax.axvspan(miss.low, miss.high, color="#f3ddd3", zorder=0, linewidth=0)
+        for low, high in found.ranges(hold=False):
+            ax.axvspan(low, high, color="#f3ddd3", zorder=0, linewidth=0)
         top = float(values.sel(model=["shafts", "machine"]).max()) / factor
         # Springs may be far off: what the shafts do fills the panel.
         ax.set(ylabel=f"{words} [{unit}]", ylim=(0.0, 1.6 * top), xlim=(speed[0], speed[-1]))

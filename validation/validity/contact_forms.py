@@ -16,14 +16,9 @@ import xarray as xr
 import lumped
 import multibody
 from lumped import GearPair
-from lumped.arguments import real_numbers
-from lumped.errors import NumericalError
-from lumped.labelling import labelled_dataset
 from lumped.model.powers import MeanPowers, mean_powers
 from lumped.model.results import cycle_peak_to_peak
-from lumped.model.steady import periodic_cycle, periodic_solution
-from lumped.model.sweep import systems_over_speed
-from lumped.typing import FloatArray, Progress
+from lumped.model.steady import periodic_cycle
 
 #: Form -> what it is in words.
 FORMS = {"prescribed": "prescribed contact", "loaded": "loaded contact"}
@@ -87,39 +82,3 @@ def contact_forms(pair: GearPair, samples: int = 256, exact: xr.Dataset | None =
     solutions = {form: periodic_cycle(of, 8) for form, of in pairs.items()}
     powers = {form: mean_powers(solution) for form, solution in solutions.items()}
     return ContactForms(pair.mesh.contact, motions, powers)
-
-
-def losses_over_speed(pair: GearPair, speeds_rpm: FloatArray, progress: Progress | None = None) -> xr.Dataset:
-    """Mean losses by place over speed, in both forms.
-
-    Parameters
-    ----------
-    pair : a validated gear pair, in either form
-    speeds_rpm : pinion speeds [rpm]
-    progress : called with the finished fraction
-
-    Returns
-    -------
-    xarray.Dataset over ``form`` and ``speed`` [rpm]: the attributes of ``MeanPowers`` [W]; NaN where a form
-    has no periodic motion
-    """
-    speeds = real_numbers("speeds_rpm", speeds_rpm, 0.0, above=True, unit="rpm")
-    names = ("driving", *PLACES)
-    found = np.full((len(names), len(FORMS), speeds.size), np.nan)
-    for i, form in enumerate(FORMS):
-        at = [pair.with_({"mesh.contact": form, "operating.pinion_speed": float(rpm)}) for rpm in speeds]
-        for j, system in enumerate(systems_over_speed(at)):
-            try:
-                powers = mean_powers(periodic_solution(system, np.zeros(1), estimate_error=False))
-            except NumericalError:
-                continue
-            found[:, i, j] = [getattr(powers, name) for name in names]
-            if progress is not None:
-                progress((i * speeds.size + j + 1) / (len(FORMS) * speeds.size))
-    return labelled_dataset(
-        {name: (("form", "speed"), found[k], "W", name.replace("_", " ")) for k, name in enumerate(names)},
-        {
-            "form": (list(FORMS), "1", "form of the contact"),
-            "speed": (speeds, "rpm", "pinion speed"),
-        },
-    )

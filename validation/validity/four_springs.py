@@ -11,9 +11,7 @@ Sources: docs/theory/shafts.md, "Four springs".
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 import xarray as xr
@@ -28,7 +26,7 @@ from lumped.model.periodic_system import Supports
 from lumped.model.results import cycle_peak_to_peak
 from lumped.model.steady import UNSTABLE, PeriodicSolution, periodic_cycle
 from lumped.shafts.pair import highest_frequency
-from lumped.typing import BoolArray, ComplexArray, FloatArray, Progress
+from lumped.typing import FloatArray, Progress
 
 #: Model -> what it is in words.
 MODELS = {
@@ -49,29 +47,6 @@ LIMITS = (0.1, 0.3)
 _SAMPLES = 64
 #: Speeds at which the machine runs.
 _MACHINE_SPEEDS = 5
-_ORDERS = 6
-
-
-@dataclass(frozen=True)
-class Miss:
-    """A range of speeds at which four springs do not hold, and why.
-
-    Attributes
-    ----------
-    low, high : of the pinion [rpm]
-    largest : difference in it, as ``FourSprings.off``
-    speed : where that is [rpm]
-    order : of the mesh frequency whose part of the transmission error differs most there
-    mode, frequency : the mode on shafts that this order is nearest to, and its frequency [Hz]
-    """
-
-    low: float
-    high: float
-    largest: float
-    speed: float
-    order: int
-    mode: str
-    frequency: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,17 +59,20 @@ class FourSprings:
     over_speed : dataset over ``model`` and ``speed`` [rpm]: the quantities of ``QUANTITIES`` and
         ``spectral_radius``; NaN where there is no periodic motion, and at most speeds of the machine
     modes : dataset of ``lumped.shaft_modes``
-    misses : ranges of speeds at which the springs of the parameters do not hold
     """
 
     pair: GearPair
     over_speed: xr.Dataset
     modes: xr.Dataset
-    misses: tuple[Miss, ...]
 
     def off(self, model: str) -> FloatArray:
         """Largest relative difference of any quantity from the model on shafts, over speed; inf: unstable."""
-        return _off(self.over_speed, model)
+        one, shafts = self.over_speed.sel(model=model), self.over_speed.sel(model="shafts")
+        off = np.max([np.abs(one[name] / shafts[name] - 1.0) for name in QUANTITIES], axis=0)
+        if model != "machine":
+            stable = (one["spectral_radius"] <= UNSTABLE) == (shafts["spectral_radius"] <= UNSTABLE)
+            off = np.where(stable & ~np.isnan(off), off, np.inf)
+        return np.asarray(off)
 
     def off_here(self, model: str) -> float:
         """The same at the operating speed."""
@@ -109,9 +87,15 @@ class FourSprings:
         """Number of the operating speed."""
         return int(np.argmin(np.abs(self.over_speed["speed"].to_numpy() - operating_rpm(self.pair))))
 
-    def holds(self, model: str) -> BoolArray:
-        """Speeds at which four springs hold, (k,)."""
-        return np.asarray(self.off(model) <= LIMITS[1])
+    def ranges(self, *, hold: bool) -> list[tuple[float, float]]:
+        """Ranges of speeds at which the springs of the parameters hold, or do not [rpm].
+
+        They end halfway between two speeds.
+        """
+        speeds, good = self.over_speed["speed"].to_numpy(), (self.off("springs") <= LIMITS[1]) == hold
+        middles = np.concatenate([speeds[:1], 0.5 * (speeds[1:] + speeds[:-1]), speeds[-1:]])
+        edges = middles[np.flatnonzero(np.diff(good.astype(int), prepend=0, append=0))].tolist()
+        return list(zip(edges[::2], edges[1::2], strict=True))
 
 
 def four_springs(pair: GearPair, speeds_rpm: FloatArray, progress: Progress | None = None) -> FourSprings:
@@ -131,27 +115,24 @@ def four_springs(pair: GearPair, speeds_rpm: FloatArray, progress: Progress | No
     # What hangs on a gear's shaft by a coupling does not turn with it at mesh frequencies.
     at_rest = lumped.condensed_bearings(pair.with_({"shafts.motor": None, "shafts.load": None}))
     speeds = np.union1d(np.asarray(speeds_rpm, dtype=float), operating_rpm(pair))
-    table, spectra = _over_speed(pair, at_rest, speeds, progress)
+    table = _over_speed(pair, at_rest, speeds, progress)
     step = max(1, round(speeds.size / _MACHINE_SPEEDS))
     here = int(np.argmin(np.abs(speeds - operating_rpm(pair))))
     for j in sorted({*range(step // 2, speeds.size, step), here}):
         _machine_at(table, pair, j, float(speeds[j]))
-    modes = lumped.shaft_modes(pair)
-    over_speed = _dataset(table, speeds)
-    return FourSprings(
-        pair=pair,
-        over_speed=over_speed,
-        modes=modes,
-        misses=_misses(over_speed, spectra, modes, pair),
+    about = QUANTITIES | {"spectral_radius": ("1", "largest modulus of the multipliers")}
+    over_speed = labelled_dataset(
+        {name: (("model", "speed"), values, *about[name]) for name, values in table.items()},
+        {"model": (list(MODELS), "1", "model"), "speed": (speeds, "rpm", "pinion speed")},
     )
+    return FourSprings(pair, over_speed, lumped.shaft_modes(pair))
 
 
 def _over_speed(
     pair: GearPair, at_rest: GearPair, speeds: FloatArray, progress: Progress | None
-) -> tuple[dict[str, FloatArray], dict[str, ComplexArray]]:
-    """Quantities (models, speeds), and orders of the transmission error, (speeds, orders)."""
+) -> dict[str, FloatArray]:
+    """Quantities, (models, speeds)."""
     table = {name: np.full((len(MODELS), speeds.size), np.nan) for name in (*QUANTITIES, "spectral_radius")}
-    spectra = {name: np.zeros((speeds.size, _ORDERS + 1), dtype=complex) for name in MODELS}
     for j, rpm in enumerate(speeds):
         here, rest = (one.with_({"operating.pinion_speed": float(rpm)}) for one in (pair, at_rest))
         models: dict[str, tuple[GearPair, Supports]] = {
@@ -169,10 +150,9 @@ def _over_speed(
             except NumericalError:
                 continue
             _enter(table, list(MODELS).index(name), j, found)
-            spectra[name][j] = np.fft.rfft(found.values["dte"])[: _ORDERS + 1] / _SAMPLES
         if progress is not None:
             progress((j + 1) / speeds.size)
-    return table, spectra
+    return table
 
 
 def _enter(table: dict[str, FloatArray], i: int, j: int, found: PeriodicSolution) -> None:
@@ -193,62 +173,3 @@ def _machine_at(table: dict[str, FloatArray], pair: GearPair, j: int, rpm: float
     table["dte"][row, j] = cycle_peak_to_peak(run, "dte", at.geometry.mesh_period)
     table["force_p"][row, j] = np.ptp(run["bearing_force_x_p"].to_numpy())
     table["force_g"][row, j] = np.ptp(run["bearing_force_x_g"].to_numpy())
-
-
-def _dataset(table: Mapping[str, FloatArray], speeds: FloatArray) -> xr.Dataset:
-    about = QUANTITIES | {"spectral_radius": ("1", "largest modulus of the multipliers")}
-    return labelled_dataset(
-        {name: (("model", "speed"), values, *about[name]) for name, values in table.items()},
-        {"model": (list(MODELS), "1", "model"), "speed": (speeds, "rpm", "pinion speed")},
-    )
-
-
-def _off(over_speed: xr.Dataset, model: str) -> FloatArray:
-    one, shafts = over_speed.sel(model=model), over_speed.sel(model="shafts")
-    off = np.max([np.abs(one[name] / shafts[name] - 1.0) for name in QUANTITIES], axis=0)
-    if model != "machine":
-        stable = (one["spectral_radius"] <= UNSTABLE) == (shafts["spectral_radius"] <= UNSTABLE)
-        off = np.where(stable & ~np.isnan(off), off, np.inf)
-    return np.asarray(off)
-
-
-def _misses(
-    over_speed: xr.Dataset, spectra: Mapping[str, ComplexArray], modes: xr.Dataset, pair: GearPair
-) -> tuple[Miss, ...]:
-    speeds, off = over_speed["speed"].to_numpy(), _off(over_speed, "springs")
-    bad = np.concatenate([[False], off > LIMITS[1], [False]])
-    edges = np.flatnonzero(np.diff(bad))
-    frequencies, found = modes["natural_frequency"].to_numpy(), []
-    for first, end in zip(edges[::2], edges[1::2], strict=True):
-        worst = first + int(np.argmax(off[first:end]))
-        apart = np.abs(spectra["springs"][worst] - spectra["shafts"][worst])
-        order = 1 + int(np.argmax(apart[1:]))
-        met = order * speeds[worst] / 60.0 * pair.pinion.teeth
-        near = int(np.argmin(np.abs(np.log(frequencies / met))))
-        low, high = (_between(speeds, first - 1), _between(speeds, end - 1))
-        found.append(
-            Miss(
-                low=low,
-                high=high,
-                largest=float(off[worst]),
-                speed=float(speeds[worst]),
-                order=order,
-                mode=str(modes["name"].to_numpy()[near]),
-                frequency=float(frequencies[near]),
-            )
-        )
-    return tuple(found)
-
-
-def _between(speeds: FloatArray, j: int) -> float:
-    """Middle between a speed and the next; the ends of the range at its ends."""
-    if j < 0 or j + 1 >= speeds.size:
-        return float(speeds[0] if j < 0 else speeds[-1])
-    return float(0.5 * (speeds[j] + speeds[j + 1]))
-
-
-def valid_ranges(found: FourSprings, model: str = "springs") -> tuple[tuple[float, float], ...]:
-    """Ranges of speeds at which four springs hold [rpm]."""
-    speeds, good = found.over_speed["speed"].to_numpy(), found.holds(model)
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], good, [False]]))).tolist()
-    return tuple((_between(speeds, a - 1), _between(speeds, b - 1)) for a, b in list(pairwise(edges))[::2])

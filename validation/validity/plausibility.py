@@ -12,8 +12,8 @@ from lumped.errors import ParameterError
 from lumped.path_of_contact.friction import contact_path
 from lumped.path_of_contact.stiffness import mesh_stiffness
 from lumped.schema.bodies import bodies
-from lumped.schema.files import AnyPair, load_gear_pair, preset_names
-from lumped.schema.pair import GearPair, leaf_paths
+from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.pair import GearPair
 from lumped.shafts.equivalents import condensed_bearings
 
 #: Hertzian pressure that no steel bears [Pa].
@@ -30,7 +30,6 @@ _OSCILLATIONS = 1000.0
 _SLOW = 5.0
 #: Springs and shafts are not of one machine where their stiffness differs by more than this factor.
 _FAR = 2.0
-_DESIGN = ("basic_rack.", "pinion.", "gear.", "centre_distance")
 
 
 def doubts(pair: AnyPair) -> tuple[str, ...]:
@@ -48,7 +47,6 @@ def doubts(pair: AnyPair) -> tuple[str, ...]:
         *_load(pair),
         *_speed(pair),
         *_roughness(pair),
-        *_preset(pair),
     )
 
 
@@ -153,21 +151,3 @@ def _roughness(pair: GearPair) -> Iterator[str]:
             f"friction.composite_roughness = {given * 1e6:.3g} um is used for the film, not the root sum "
             f"square {both * 1e6:.3g} um of both roughnesses. Delete it if the roughnesses are meant."
         )
-
-
-def _preset(pair: GearPair) -> Iterator[str]:
-    """The story of a preset above teeth that it does not have."""
-    values = leaf_paths(pair)
-    for preset in map(load_gear_pair, preset_names()):
-        if pair.description and pair.description == preset.description:
-            theirs = leaf_paths(preset)
-            changed = [
-                path
-                for path in {**theirs, **values}
-                if path.startswith(_DESIGN) and values.get(path) != theirs.get(path)
-            ]
-            if changed:
-                yield (
-                    f"description is still that of {preset.name}, but {', '.join(sorted(changed)[:3])} "
-                    f"{'differs' if len(changed) == 1 else 'differ'}: write your own name and description."
-                )

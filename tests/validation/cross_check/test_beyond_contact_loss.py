@@ -19,7 +19,7 @@ from validation.cross_check.verdict import Verdict
 
 @pytest.fixture(scope="module")
 def pair_beyond():
-    """At 8000 rpm teeth part."""
+    """At 8000 rpm contact is lost."""
     return lumped.load_gear_pair("nasa_28_28").with_(
         mesh__damping_ratio=0.05,
         mesh__relief="ignored",

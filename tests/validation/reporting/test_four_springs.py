@@ -11,7 +11,7 @@ from validation.reporting.formatting import quantity
 from validation.reporting.results import Results
 from validation.reporting.words import on_shafts
 from validation.validity.flags import supports
-from validation.validity.four_springs import LIMITS, four_springs, valid_ranges
+from validation.validity.four_springs import LIMITS, four_springs
 
 
 def _on(pair, diameter, length, places, stiffness):
@@ -54,16 +54,11 @@ def test_slender_shafts_are_no_springs(slender):
     found = slender.four_springs
     assert found.off_here("springs") > LIMITS[1]
     assert supports(found).state == "violated"
-    (miss, *_) = found.misses
-    assert miss.low <= miss.speed <= miss.high
-    named = found.modes["natural_frequency"][list(found.modes["name"].to_numpy()).index(miss.mode) :]
-    assert miss.frequency in named.to_numpy()
-    # The mode is the one nearest to the order that is named, at the speed that is named.
-    met = miss.order * miss.speed / 60 * found.pair.pinion.teeth
-    nearest = np.argmin(np.abs(np.log(found.modes["natural_frequency"].to_numpy() / met)))
-    assert miss.frequency == float(found.modes["natural_frequency"][nearest])
-    for low, high in valid_ranges(found):
-        assert not miss.low <= 0.5 * (low + high) <= miss.high
+    speeds = found.over_speed["speed"].to_numpy()
+    ends = sorted([*found.ranges(hold=True), *found.ranges(hold=False)])
+    assert [low for low, _ in ends] + [speeds[-1]] == [speeds[0]] + [high for _, high in ends]
+    for speed, off in zip(speeds, found.off("springs"), strict=True):
+        assert any(low <= speed <= high for low, high in found.ranges(hold=off <= LIMITS[1]))
     content = CHAPTER.write(slender)
     assert content.badge.state == "violated"
     assert "not enough here" in content.blocks[0].text
@@ -75,9 +70,9 @@ def test_short_and_stiff_shafts_are_springs(stiff):
     for model in ("springs", "condensed"):
         assert found.off(model).max() < 0.02, model  # the shafts weigh a thousandth of the gears
     assert supports(found).state == "ok"
-    assert found.misses == ()
+    assert found.ranges(hold=False) == []
     low, high = found.over_speed["speed"].to_numpy()[[0, -1]]
-    assert valid_ranges(found) == ((low, high),)
+    assert found.ranges(hold=True) == [(low, high)]
     assert CHAPTER.write(stiff).badge.state == "confirmed"
     assert f"at all speeds from {low:.0f} to {high:.0f} rpm" in CHAPTER.write(stiff).blocks[0].text
 

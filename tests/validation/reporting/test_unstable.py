@@ -16,7 +16,7 @@ from validation.reporting.gate import failures
 def unstable(pair, no_variant, sharing):
     """Results in the widest tongue of the default pair: largest multiplier 1.29 without mesh damping.
 
-    As if teeth that push only had no stable motion there. Margins over all speeds and other forms of contact
+    As if unilateral contact had no stable motion there. Margins over all speeds and other forms of contact
     do not tell this motion.
     """
     with pytest.MonkeyPatch.context() as patched:

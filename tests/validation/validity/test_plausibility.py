@@ -29,7 +29,6 @@ def test_a_sensible_pair_raises_no_doubt(name, speed):
         ({"operating.pinion_speed": 1.45}, "Then write 1450."),
         ({"friction.composite_roughness": 0.8}, "Delete it if the roughnesses are meant"),
         ({"bearings.pinion.oloa_stiffness": 1e16}, "the multibody model needs"),
-        ({"pinion.face_width": 10}, "description is still that of nasa_28_28, but pinion.face_width differs"),
     ],
 )
 def test_a_value_that_hardly_can_be_meant_is_named_with_its_cause(nasa_pair, changes, said):

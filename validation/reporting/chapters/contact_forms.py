@@ -4,17 +4,12 @@ from __future__ import annotations
 
 from functools import partial
 
-import numpy as np
-
-from validation.plots.contact_forms import contact_forms_figure, losses_over_speed_figure
+from validation.plots.contact_forms import contact_forms_figure
 from validation.reporting.blocks import Block, Content, Picture, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results
 from validation.reporting.words import contact_form
-from validation.validity.contact_forms import FORMS, PLACES, losses_over_speed
-
-#: Speeds of the figure of losses.
-_SPEEDS = 21
+from validation.validity.contact_forms import FORMS, PLACES
 
 
 def write(results: Results) -> Content:
@@ -91,18 +86,6 @@ def write(results: Results) -> Content:
         ),
     ]
     data = {f"contact_{name}": motion for name, motion in found.motions.items()}
-    if results.effort.full:
-        stage = results.stage("losses over speed")
-        low, high = results.speeds
-        losses = losses_over_speed(results.pair, np.linspace(low, high, _SPEEDS), stage)
-        data["losses_over_speed"] = losses
-        blocks.append(
-            Picture(
-                "losses_over_speed",
-                "Losses over speed by place, in both forms.",
-                partial(losses_over_speed_figure, losses, results.operating_rpm),
-            )
-        )
     return Content(tuple(blocks), data=data)
 
 

@@ -12,7 +12,7 @@ from validation.reporting.blocks import Badge, Block, Content, Picture, Quantity
 from validation.reporting.chapter import Chapter
 from validation.reporting.formatting import number
 from validation.reporting.results import Results
-from validation.validity.four_springs import LIMITS, MODELS, FourSprings, valid_ranges
+from validation.validity.four_springs import LIMITS, MODELS, FourSprings
 
 _STATES = ("confirmed", "warning", "violated")
 #: Modes listed: those up to this many mesh frequencies.
@@ -53,25 +53,6 @@ def write(results: Results) -> Content | None:
             f"{LIMITS[1]:.0%} four springs do not hold. Its own contact makes the machine differ.",
         ),
     ]
-    if found.misses:
-        blocks.append(
-            table_of(
-                "four_springs_misses",
-                "Speeds at which the given springs do not hold, and the mode that is missing.",
-                found.misses,
-                {
-                    "low": ("from", lambda m: Quantity(m.low, "rpm")),
-                    "high": ("to", lambda m: Quantity(m.high, "rpm")),
-                    "largest": (
-                        "largest difference",
-                        lambda m: m.largest if np.isfinite(m.largest) else None,
-                    ),
-                    "order": ("mesh order", lambda m: m.order),
-                    "mode": ("nearest mode", lambda m: m.mode),
-                    "frequency": ("its frequency", lambda m: Quantity(m.frequency, "Hz")),
-                },
-            )
-        )
     blocks += [
         Picture(
             "shafts",
@@ -96,15 +77,11 @@ def _answer(found: FourSprings) -> str:
     ]
     told = f"Four springs {here} here: off by {_differs(off)}"
     told += f", with springs condensed from the shafts by {_differs(better)}."
-    good = ", ".join(f"{a:.0f} to {b:.0f}" for a, b in valid_ranges(found))
-    if not found.misses:
+    good = [f"{a:.0f} to {b:.0f}" for a, b in found.ranges(hold=True)]
+    if not found.ranges(hold=False):
         return f"{told} They hold at all speeds from {low} to {high} rpm."
-    worst = max(found.misses, key=lambda miss: miss.largest)
-    where = f"Within {LIMITS[1]:.0%} they hold at {good} rpm" if good else "They hold nowhere in the range"
-    return (
-        f"{told} {where}; at {worst.speed:.0f} rpm what is missing is {worst.mode} "
-        f"({number(worst.frequency, 4)} Hz, mesh order {worst.order})."
-    )
+    where = f"at {', '.join(good)} rpm" if good else "nowhere in the range"
+    return f"{told} Within {LIMITS[1]:.0%} they hold {where}; the figure shows which modes are missing."
 
 
 def _differs(off: float) -> str:
@@ -181,6 +158,6 @@ CHAPTER = Chapter(
     "four_springs",
     "Are four springs enough?",
     write,
-    front=("four_springs", "four_springs_models", "four_springs_misses"),
+    front=("four_springs", "four_springs_models"),
     seconds=10,
 )
