@@ -1,4 +1,4 @@
-"""The paper's contact and the loaded one beside the exact contact, and where the losses go over speed."""
+"""Prescribed and loaded contact beside the exact contact."""
 
 from __future__ import annotations
 
@@ -18,13 +18,7 @@ from validation.validity.contact_forms import FORMS, ContactForms
 
 
 def contact_forms_figure(pair: GearPair, found: ContactForms) -> Figure:
-    """Transmission error of both forms and of the exact contact over one mesh cycle.
-
-    Parameters
-    ----------
-    pair : the gear pair
-    found : of ``contact_forms``
-    """
+    """Transmission error of both forms and of the exact contact over one mesh cycle."""
     figure, ax = one_panel(2.6)
     exact = found.motions["exact"]["dte"].to_numpy()
     factor, unit = scaled(exact, unit="m")

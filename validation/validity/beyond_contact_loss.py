@@ -23,11 +23,7 @@ def branches_about_operation(
 ) -> ResponseBranches | str:
     """Branches of periodic motions about the operating speed; why they cannot be computed.
 
-    Parameters
-    ----------
-    pair : the gear pair
-    factors : slowest and fastest speed over the operating speed; cut to the pair's range
-    progress : called with the finished fraction
+    ``factors`` are the slowest and fastest speed over the operating speed, cut to the pair's range.
     """
     try:
         return response_branches(pair, _speeds(pair, factors), seeds=0, progress=progress)
@@ -43,14 +39,8 @@ def jumps_about_operation(
 ) -> xr.Dataset | str:
     """Jump map over speed and torque about the operating point; why it cannot be computed.
 
-    Motions of one mesh cycle, without friction, which hardly moves them and triples the time.
-
-    Parameters
-    ----------
-    pair : the gear pair
-    factors : slowest and fastest speed over the operating speed; cut to the pair's range
-    size : number of torques, in equal ratios, and of speeds
-    progress : called with the finished fraction
+    Motions of one mesh cycle, without friction, which hardly moves them and triples the time. ``size`` is the
+    number of torques, in equal ratios, and of speeds.
     """
     smooth = pair.with_(friction__law="none")
     axes = {

@@ -1,4 +1,4 @@
-"""The paper's contact and the loaded one of the same gear pair, against the exact contact with all effects.
+"""Prescribed and loaded contact of the same gear pair, against the exact contact with all effects.
 
 Both forms of the lumped model are judged by the same motion: that of the multibody model whose contact has an
 energy and follows from clearance. So prescribed contact is not judged by a model that shares its contact.

@@ -74,7 +74,7 @@ def worst_state(flags: Sequence[Flag]) -> State:
 
 
 def flag(key: str, state: State, value: float | None, detail: str) -> Flag:
-    """The flag of a key of ``flags.toml``; it tells what to do only where something needs doing."""
+    """The flag of a key of ``flags.toml``."""
     words = _ABOUT[key] | ({"action": ""} if state == "ok" else {})
     return Flag(key=key, state=state, value=value, detail=detail, **words)
 

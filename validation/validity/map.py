@@ -21,6 +21,12 @@ from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
 #: Values of ``state``: the worst of contact, sliding and stability.
 STATES = ("valid", "warning", "violated", "no periodic motion")
 _SAMPLES = 96  # per mesh cycle
+_NAMES = {
+    "lowest_load": "smallest normal load of a pair in contact over the static load",
+    "reversal": "largest distance of reversed sliding from the pitch point over the base pitch",
+    "spectral_radius": "largest Floquet multiplier of the periodic motion",
+    "film_parameter": "smallest film parameter along the path of contact",
+}
 
 
 def validity_map(
@@ -50,8 +56,7 @@ def validity_map(
     speed = real_numbers("speeds_rpm", speeds_rpm, 0.0, above=True, increasing=True, unit="rpm")
     torque = real_numbers("torques", torques, 0.0, above=True, increasing=True, unit="N m")
     shape = (torque.size, speed.size)
-    names = ("lowest_load", "reversal", "spectral_radius", "film_parameter")
-    found: dict[str, FloatArray] = {name: np.full(shape, np.nan) for name in names}
+    found: dict[str, FloatArray] = {name: np.full(shape, np.nan) for name in _NAMES}
     g = pair.geometry
     with warnings.catch_warnings():
         # The map itself shows the regime; one warning per point would say less.
@@ -69,19 +74,26 @@ def validity_map(
                 found["film_parameter"][row, column] = film.min()
             if progress is not None:
                 progress((row + 1) / torque.size)
-    return _dataset(pair, speed, torque, found)
+    state = validity_state(found["lowest_load"], found["reversal"], found["spectral_radius"])
+    dims = ("torque", "speed")
+    film_regime = regime(found["film_parameter"], pair.friction.thresholds)
+    return labelled_dataset(
+        {name: (dims, found[name], "1", text) for name, text in _NAMES.items()}
+        | {
+            "regime": (dims, film_regime, "1", "0 to 3: " + ", ".join(REGIMES)),
+            "state": (dims, state, "1", "0 to 3: " + ", ".join(STATES)),
+        },
+        {"speed": (speed, "rpm", "pinion speed"), "torque": (torque, "N m", "pinion torque")},
+        provenance(pair) | {"model": "lumped"},
+    )
 
 
 def validity_state(
     lowest_load: FloatArray, reversal: FloatArray, spectral_radius: FloatArray | None = None
 ) -> NDArray[np.int64]:
-    """Index into ``STATES``: the worst of contact, sliding and stability.
+    """Index into ``STATES``: the worst of contact, sliding and, where it counts, stability.
 
-    Parameters
-    ----------
-    lowest_load : smallest load over the static load; NaN for a point without a periodic motion
-    reversal : largest distance of reversed sliding from the pitch point over the base pitch
-    spectral_radius : largest Floquet multiplier, where stability counts
+    ``lowest_load`` is over the static load, NaN without a periodic motion; ``reversal`` over the base pitch.
     """
     state = np.zeros(lowest_load.shape, dtype=np.int64)
     state[reversal > REVERSAL_LIMITS[0]] = 1
@@ -99,26 +111,3 @@ def speed_spans(speed: FloatArray, chosen: BoolArray) -> list[str]:
         f"{speed[first]:.5g}" if end - first == 1 else f"{speed[first]:.5g} to {speed[end - 1]:.5g}"
         for first, end in zip(edges[::2], edges[1::2], strict=True)
     ]
-
-
-def _dataset(
-    pair: GearPair, speed: FloatArray, torque: FloatArray, found: dict[str, FloatArray]
-) -> xr.Dataset:
-    state = validity_state(found["lowest_load"], found["reversal"], found["spectral_radius"])
-    dims = ("torque", "speed")
-    names = {
-        "lowest_load": "smallest normal load of a pair in contact over the static load",
-        "reversal": "largest distance of reversed sliding from the pitch point over the base pitch",
-        "spectral_radius": "largest Floquet multiplier of the periodic motion",
-        "film_parameter": "smallest film parameter along the path of contact",
-    }
-    film = regime(found["film_parameter"], pair.friction.thresholds)
-    return labelled_dataset(
-        {name: (dims, found[name], "1", text) for name, text in names.items()}
-        | {
-            "regime": (dims, film, "1", "0 to 3: " + ", ".join(REGIMES)),
-            "state": (dims, state, "1", "0 to 3: " + ", ".join(STATES)),
-        },
-        {"speed": (speed, "rpm", "pinion speed"), "torque": (torque, "N m", "pinion torque")},
-        provenance(pair) | {"model": "lumped"},
-    )
