@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
 #: Gauss-Legendre rule per polynomial piece of the average, exact to degree 47.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
-INPUTS = ("torque_pinion", "torque_gear")
-OUTPUTS = ("dte", "x_p", "x_g")
 
 
 def averaged_matrix(system: LTVSystem) -> FloatArray:
@@ -63,8 +61,8 @@ def averaged_state_space(pair: GearPair, form: Form = "elastic") -> control.Stat
         b,
         c,
         np.zeros((3, 2)),
-        inputs=list(INPUTS),
-        outputs=list(OUTPUTS),
+        inputs=["torque_pinion", "torque_gear"],
+        outputs=["dte", "x_p", "x_g"],
         states=list(system.state_names),
         name=pair.name.replace(".", "_"),  # python-control refuses a dot
     )

@@ -21,22 +21,6 @@ COORDINATES = ("theta_p", "theta_g", "x_p", "x_g", "y_p", "y_g")
 PRINTED_EQUATIONS = (1, 2, 7, 9)
 
 
-@dataclass(frozen=True)
-class Signs:
-    """Signs, -1 as printed: friction moment of eq. 1, mesh moment of 2, mesh force of 7, friction of 9."""
-
-    pinion_friction: float = 1.0
-    gear_mesh: float = 1.0
-    gear_loa: float = 1.0
-    gear_oloa: float = 1.0
-
-
-def signs(as_printed: Collection[int] = ()) -> Signs:
-    """Return the signs with the named equations as printed."""
-    chosen = some_of("as_printed", as_printed, PRINTED_EQUATIONS, "Name equations whose sign was repaired.")
-    return Signs(*(-1.0 if number in chosen else 1.0 for number in PRINTED_EQUATIONS))
-
-
 @dataclass(frozen=True, eq=False)
 class Structure:
     """Constant data of the equations of motion, SI, in the order of ``COORDINATES``.
@@ -69,7 +53,10 @@ def structure(pair: GearPair, as_printed: Collection[int] = ()) -> Structure:
     x_p -1 (6), x_g +1 (7); per unit F_i the pinion gets -X_pi (1), the gear +X_gi = L_XY - X_pi (2),
     y_p +1 (8), y_g -1 (9).
     """
-    g, b, s = pair.geometry, bodies_of(pair), signs(as_printed)
+    g, b = pair.geometry, bodies_of(pair)
+    printed = some_of("as_printed", as_printed, PRINTED_EQUATIONS, "Name equations whose sign was repaired.")
+    # Friction moment of eq. 1, mesh moment of 2, mesh force of 7, friction force of 9.
+    s1, s2, s7, s9 = (-1.0 if number in printed else 1.0 for number in PRINTED_EQUATIONS)
     r_bp, r_bg = g.base_radius_pinion, g.base_radius_gear
     mass = np.array(
         [b.inertia_pinion, b.inertia_gear, b.mass_pinion, b.mass_gear, b.mass_pinion, b.mass_gear]
@@ -78,25 +65,17 @@ def structure(pair: GearPair, as_printed: Collection[int] = ()) -> Structure:
     bearing = np.array(
         [0.0, 0.0, pinion.loa_stiffness, gear.loa_stiffness, pinion.oloa_stiffness, gear.oloa_stiffness]
     )
-    ratio = np.array(
-        [
-            0.0,
-            0.0,
-            pinion.loa_damping_ratio,
-            gear.loa_damping_ratio,
-            pinion.oloa_damping_ratio,
-            gear.oloa_damping_ratio,
-        ]
-    )
+    ratio = [0.0, 0.0, pinion.loa_damping_ratio, gear.loa_damping_ratio]
+    ratio += [pinion.oloa_damping_ratio, gear.oloa_damping_ratio]
     arm = np.zeros((6, 2))
-    arm[0] = 0.0, -s.pinion_friction
+    arm[0] = 0.0, -s1
     arm[1] = g.L_XY, -1.0
-    arm[4:, 0] = 1.0, -s.gear_oloa
+    arm[4:, 0] = 1.0, -s9
     return Structure(
         mass=mass,
-        damping=2.0 * ratio * np.sqrt(bearing * mass),
+        damping=2.0 * np.array(ratio) * np.sqrt(bearing * mass),
         stiffness=bearing,
         deflection=np.array([r_bp, -r_bg, 1.0, -1.0, 0.0, 0.0]),
-        normal=np.array([-r_bp, s.gear_mesh * r_bg, -1.0, s.gear_loa, 0.0, 0.0]),
+        normal=np.array([-r_bp, s2 * r_bg, -1.0, s7, 0.0, 0.0]),
         friction_arm=arm,
     )

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lumped import geometry, periodic_system, simulate, steady_state
-from lumped.model.equations import signs, structure
+from lumped.model.equations import structure
 
 
 def static_torques(pair, xi, mu, as_printed=()):
@@ -83,14 +83,6 @@ class TestEquations7And9:
             run = steady_state(coulomb_pair, as_printed=printed)
             assert float(run[g].mean()) == pytest.approx(sign * float(run[p].mean()), rel=1e-6)
             assert abs(float(run[p].mean())) > 0.0
-
-
-def test_one_sign_at_a_time():
-    names = {1: "pinion_friction", 2: "gear_mesh", 7: "gear_loa", 9: "gear_oloa"}
-    for number, name in names.items():
-        flipped = signs((number,))
-        assert {n for n in names.values() if getattr(flipped, n) == -1.0} == {name}
-    assert signs() == signs([])
 
 
 def test_printed_signs_change_only_their_own_rows(nasa):

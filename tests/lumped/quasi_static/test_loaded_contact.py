@@ -169,7 +169,7 @@ def test_a_quarter_of_the_torque_at_half_the_speed_makes_a_quarter_of_the_motion
     assert np.log2(here / softer) / 2.0 < 1.4
 
 
-def test_what_the_papers_form_leaves_unpaid_has_a_closed_form():
+def test_the_energy_residual_of_prescribed_contact_has_a_closed_form():
     """Where k jumps from 0 at A and to 0 at D, k delta^2/2 comes and goes without work."""
     pair = lumped.load_gear_pair("nasa_28_28").with_(
         mesh__relief="ignored", friction={"law": "coulomb", "coefficient": 0.0}
