@@ -260,6 +260,10 @@ def _export_pair(
         raise refuse("--form", "with a REXS file", "a linear model", "Leave it out.")
     path = check_file(output, (output.suffix.lower(),), force=force)
     write_rexs(pair, path, rexs_version or WRITTEN[-1])
+    note(
+        "REXS is written without bearings, shafts, damping, friction law, stiffness model and inertia: "
+        "keep the parameter file"
+    )
 
 
 def _export_result(source: str, output: Path, *, force: bool) -> None:
