@@ -49,6 +49,23 @@ _MOST_ROUNDS = 10
 #: The range is left by steps and differences, the axis is not: least value over the lower end.
 _LEAST = 1e-3
 
+#: Variable of the map, field of a row, unit, name.
+_OVER_SPEED = (
+    ("motions", "motions", "1", "stable periodic motions"),
+    ("contact_kept", "kept", "1", "always some tooth load"),
+    ("dte_rms_smallest", "smallest", "m", "smallest dynamic transmission error, rms"),
+    ("dte_rms_largest", "largest", "m", "largest dynamic transmission error, rms"),
+    ("largest_load", "load", "N", "largest normal load"),
+)
+#: Field of a jump, unit, name.
+_OF_JUMPS = (
+    ("speed_rpm", "rpm", "where a stable motion ends"),
+    ("rising", "1", "on running up"),
+    ("dte_rms", "m", "rms before the jump"),
+    ("dte_rms_after", "m", "rms behind the jump"),
+    ("n", "1", "mesh cycles of the motion before"),
+)
+
 
 def _with_relief(variation: GearVariation, micrometres: float) -> GearVariation:
     amount = SIValue(1e-6 * micrometres, "m")
@@ -139,7 +156,7 @@ def jump_map(
     )
     rows, jumps = list[_Row](), list[tuple[float, _Jump]]()
     for j, (one, response, value) in enumerate(zip(members, stack, values, strict=True)):
-        rows.append(_row(one, response, speeds, cycle))
+        rows.append(_Row(one, response, speeds, cycle))
         jumps += [(float(value), jump) for jump in _jumps(one, response, cycle)]
         report(0.8 + 0.2 * (j + 1) / values.size)
     dataset = _dataset(name, values, speeds, rows, jumps)
@@ -181,29 +198,18 @@ def checked_axis(pair: GearPair, name: str, field: str = "axis") -> None:
     JUMP_AXES[name].own(pair)
 
 
-class _Row(NamedTuple):
-    """Over the speeds, for one value of the second axis."""
+class _Row:
+    """What the map has over the speeds (k,), for one value of the second axis."""
 
-    motions: IntArray
-    kept: BoolArray
-    smallest: FloatArray
-    largest: FloatArray
-    load: FloatArray
-
-
-def _row(one: Member, response: Response, speeds: FloatArray, cycle: float) -> _Row:
-    count = speeds.size
-    row = _Row(
-        np.zeros(count, dtype=int), np.ones(count, dtype=bool),
-        np.full(count, np.inf), np.full(count, -np.inf), np.full(count, -np.inf),
-    )  # fmt: skip
-    for branch in response.branches:
-        _add(row, branch, speeds, cycle)
-    empty = np.flatnonzero(row.motions == 0)
-    if empty.size:
-        for group in np.split(empty, np.flatnonzero(np.diff(empty) > 1) + 1):
-            _run_through(row, group, one, response, speeds, cycle)
-    return row
+    def __init__(self, one: Member, response: Response, speeds: FloatArray, cycle: float) -> None:
+        self.motions, self.kept = np.zeros(speeds.size, dtype=int), np.ones(speeds.size, dtype=bool)
+        self.smallest, self.largest, self.load = np.full((3, speeds.size), [[np.inf], [-np.inf], [-np.inf]])
+        for branch in response.branches:
+            _add(self, branch, speeds, cycle)
+        empty = np.flatnonzero(self.motions == 0)
+        if empty.size:
+            for group in np.split(empty, np.flatnonzero(np.diff(empty) > 1) + 1):
+                _run_through(self, group, one, response, speeds, cycle)
 
 
 def _add(row: _Row, branch: Branch, speeds: FloatArray, cycle: float) -> None:
@@ -315,22 +321,12 @@ def _dataset(
 ) -> xr.Dataset:
     axis, both = JUMP_AXES[name], (name, "speed_rpm")
     table: dict[str, Variable] = {
-        "motions": (both, np.array([row.motions for row in rows]), "1", "stable periodic motions"),
-        "contact_kept": (both, np.array([row.kept for row in rows]), "1", "always some tooth load"),
-        "dte_rms_smallest": (
-            both, np.array([row.smallest for row in rows]), "m", "smallest dynamic transmission error, rms",
-        ),
-        "dte_rms_largest": (
-            both, np.array([row.largest for row in rows]), "m", "largest dynamic transmission error, rms",
-        ),
-        "largest_load": (both, np.array([row.load for row in rows]), "N", "largest normal load"),
-        f"jump_{name}": ("jump", [value for value, _ in jumps], axis.units, axis.long_name),
-        "jump_speed_rpm": ("jump", [j.speed_rpm for _, j in jumps], "rpm", "where a stable motion ends"),
-        "jump_rising": ("jump", [j.rising for _, j in jumps], "1", "on running up"),
-        "jump_dte_rms": ("jump", [j.dte_rms for _, j in jumps], "m", "rms before the jump"),
-        "jump_dte_rms_after": ("jump", [j.dte_rms_after for _, j in jumps], "m", "rms behind the jump"),
-        "jump_n": ("jump", [j.n for _, j in jumps], "1", "mesh cycles of the motion before"),
-    }  # fmt: skip
+        label: (both, np.array([getattr(row, field) for row in rows]), unit, text)
+        for label, field, unit, text in _OVER_SPEED
+    }
+    table[f"jump_{name}"] = "jump", [value for value, _ in jumps], axis.units, axis.long_name
+    for field, unit, text in _OF_JUMPS:
+        table[f"jump_{field}"] = "jump", [getattr(jump, field) for _, jump in jumps], unit, text
     return labelled_dataset(
         table,
         {

@@ -153,7 +153,7 @@ class GearOrbit:
         o, cycle = self.whole, contact_cycle(self.pair)
         phases = np.arange(samples_per_cycle) / samples_per_cycle
         run = o.system.run(o.start, o.period, o.n, o.parameter, samples=phases)
-        states = absolute_states(self.pair, cycle, o, run)
+        states = _absolute_states(self.pair, cycle, o, run)
         system = periodic_system(self.pair, "full", cycle=cycle)
         time, drive = run.phases * o.period, cycle.offsets.size
         values = response(system, time, states, run.loads[:, :drive].T)
@@ -177,7 +177,7 @@ def _torques(pair: GearPair, parameter: float) -> tuple[float, float]:
     return parameter, float(pair.operating.brake_torque)
 
 
-def absolute_states(pair: GearPair, cycle: MeshCycle, orbit: Orbit, run: Run) -> FloatArray:
+def _absolute_states(pair: GearPair, cycle: MeshCycle, orbit: Orbit, run: Run) -> FloatArray:
     """(k, 12) states of the lumped model at the samples of a run of a whole orbit, the first at phase 0.
 
     The rigid rotation J_p theta_p/r_bp + J_g theta_g/r_bg, which does not act back, follows from torques and

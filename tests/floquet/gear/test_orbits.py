@@ -228,10 +228,10 @@ def test_jumps_are_removed_at_one_ratio_of_torque_to_relief():
 
 
 def test_where_contact_is_kept_runs_settle_from_starts_apart_only(frictionless):
-    """Up and down they would stay on the one motion; where teeth part every start is used."""
+    """Up and down they would stay on the one motion; with contact loss every start is used."""
     held = floquet.response_branches(frictionless, (4400.0, 4600.0), (1,), seeds=2)
     assert held.contact_kept
     assert len(held.response.settled) == 2
-    parting = floquet.response_branches(frictionless, (8000.0, 8100.0), (1,), seeds=1)
-    assert not parting.contact_kept
-    assert len(parting.response.settled) == 4
+    lossy = floquet.response_branches(frictionless, (8000.0, 8100.0), (1,), seeds=1)
+    assert not lossy.contact_kept
+    assert len(lossy.response.settled) == 4
