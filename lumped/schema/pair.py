@@ -23,8 +23,7 @@ from lumped.errors import FieldProblem, ParameterError, refuse
 from lumped.fields.refusals import field_of, translated, unknown_key
 from lumped.fields.section import Section, Text
 from lumped.fields.units import Quantity, QuantityRange, to_stated
-from lumped.gear_geometry.existence import existence_problems
-from lumped.gear_geometry.geometry import Geometry, Wheel, build_geometry
+from lumped.gear_geometry.geometry import Geometry, Wheel, build_geometry, existence_problems
 from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.schema.contact import Friction, Lubricant, Mesh
 from lumped.schema.gear import BasicRack, Gear
