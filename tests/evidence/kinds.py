@@ -15,7 +15,6 @@ from tests.evidence.check import Check
 from tests.evidence.elasticity import elasticity
 from tests.evidence.floquet.closed_forms import (
     check_closed_forms,
-    check_forced_motion,
     check_invariants,
     check_orders,
     check_random_gears,
@@ -72,7 +71,7 @@ KINDS: Mapping[str, tuple[str, Callable[[], Iterable[Check]]]] = {
     "multibody": ("the multibody model by other means", reference_model),
     "floquet": (
         "the Floquet engine against closed forms and invariants",
-        partial(joined, check_closed_forms, check_forced_motion, check_invariants),
+        partial(joined, check_closed_forms, check_invariants),
     ),
     "orders": ("orders of convergence of the propagators", check_orders),
     "combinations": ("combination resonances", partial(joined, check_hsu, check_gear_chain)),
