@@ -53,8 +53,8 @@ def spurcheck(
     Speeds are pinion speeds in rpm, torques pinion torques in N m; other units may be written out ("200
     lbf*in").
 
-    Exit codes: 0 done, 1 a verdict fails, 2 an input is refused, 3 a computation or the
-    writing of its result fails, 130 stopped by a signal.
+    Exit codes: 0 done, 1 a verdict fails, 2 an input is refused, 3 a computation or the writing of its
+    result fails, 4 the models differ (crosscheck), 130 stopped by a signal.
     """
 
 

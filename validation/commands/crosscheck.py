@@ -184,7 +184,7 @@ def _write(check: CrossCheck, target: Path, force: bool) -> None:
     if target.suffix.lower() == ".json":
         write_text(target, json.dumps(_data(check), indent=1, allow_nan=False) + "\n", new=not force)
         return
-    from validation.plots.cross_check import cross_check_figure
+    from validation.plots.models import cross_check_figure
     from validation.plots.style import save
 
     keep = off_switch_samples(check.pair, check.lumped["time"].to_numpy())

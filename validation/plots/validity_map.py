@@ -25,10 +25,8 @@ _REGIMES = ("#c65d2e", "#f5d58a", "#d5ecdf", "#8fc1e3")
 def validity_map_figure(data: xr.Dataset, point: tuple[float, float] | None = None) -> Figure:
     """Contact, sliding and film over speed and torque, a panel each; crosses where the motion is unstable.
 
-    Parameters
-    ----------
-    data : of ``validation.validity.map.validity_map``
-    point : operating point (rpm, N m), marked where it is within; None: not marked
+    ``data``: of ``validation.validity.map.validity_map``; ``point``: operating point (rpm, N m), marked where
+    it is within; None: not marked.
     """
     figure, axes = new_figure(1, 3, height=3.5, sharey=True)
     speed, torque = data["speed"].to_numpy(), data["torque"].to_numpy()

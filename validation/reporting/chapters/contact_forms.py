@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from validation.plots.contact_forms import contact_forms_figure
+from validation.plots.models import contact_forms_figure
 from validation.reporting.blocks import Block, Content, Picture, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
 from validation.reporting.results import Results

@@ -15,7 +15,7 @@ from validation.cross_check.comparison import CrossCheck
 from validation.cross_check.conservation import fed_back
 from validation.cross_check.power_balance import POWERS
 from validation.cross_check.verdict import Judgement
-from validation.plots.cross_check import cross_check_figure
+from validation.plots.models import cross_check_figure
 from validation.reporting.blocks import (
     Answer,
     Badge,

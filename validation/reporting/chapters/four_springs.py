@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from validation.plots.four_springs import four_springs_figure
+from validation.plots.models import four_springs_figure
 from validation.plots.shafts import shafts_figure
 from validation.reporting.blocks import Badge, Block, Content, Picture, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter

@@ -7,7 +7,6 @@ from functools import partial
 from validation.plots.mesh import tooth_stiffness_figure
 from validation.reporting.blocks import Badge, Block, Content, Picture, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
-from validation.reporting.checks import check_table
 from validation.reporting.results import Results
 from validation.verification.tooth_stiffness import ToothStiffness
 
@@ -25,7 +24,20 @@ def write(results: Results) -> Content:
             "about it. Plane finite elements of both whole gears share the outline of the teeth with the "
             f"other ways and no formula. {passed} of {len(found.checks)} checks pass. {_own(found)}"
         ),
-        check_table("checks", "Formulas for the tooth stiffness against plane elasticity.", found.checks),
+        table_of(
+            "checks",
+            "Formulas for the tooth stiffness against plane elasticity.",
+            found.checks,
+            {
+                "key": ("check", lambda c: c.key),
+                "subject": ("what is checked", lambda c: c.subject),
+                "exact": ("what it must equal", lambda c: c.exact),
+                "value": ("error", lambda c: c.value),
+                "limit": ("limit", lambda c: c.limit),
+                "verdict": ("verdict", lambda c: Badge("within" if c.passes else "outside")),
+            },
+            note="Why these limits: " + "; ".join(f"{c.key}: {c.reason}" for c in found.checks) + ".",
+        ),
         Picture(
             "tooth_stiffness",
             "Stiffness of a tooth pair alone over the path of contact, by plane elasticity and by formulas.",
