@@ -472,7 +472,7 @@ class _Removal:
             return Continuation(family, n, limits)
 
         try:
-            curve = FoldContinuation(along, self.low, self.high).follow(value, orbit, sign, turn=True)
+            curve = FoldContinuation(along, self.low, self.high).follow(value, orbit, sign)
         except NumericalError:
             return value, self.cycle / orbit.period
         fold = max(curve.points, key=lambda point: point.value * sign)

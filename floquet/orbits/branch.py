@@ -67,15 +67,7 @@ class Limits:
 
 @dataclass(eq=False)
 class Path:
-    """Points of a branch in one direction.
-
-    Attributes
-    ----------
-    X : scaled unknowns of each
-    orbits : the motions
-    tangents : unit vectors along the branch, (X's size,)
-    end : why it ends
-    """
+    """Points of a branch in one direction: scaled unknowns X, motions, unit tangents, and why it ends."""
 
     X: list[FloatArray]
     orbits: list[Orbit]
@@ -94,14 +86,7 @@ class Path:
 
 
 class Continuation:
-    """Follows orbits of n cycles in (x, p, 1/T), scaled so that each is of order one.
-
-    Parameters
-    ----------
-    family : the system over its period
-    n : cycles
-    limits : where to end
-    """
+    """Follows orbits of n cycles in (x, p, 1/T), scaled so that each is of order one."""
 
     def __init__(self, family: Family, n: int, limits: Limits) -> None:
         self.family, self.n, self.limits = family, n, limits
@@ -150,12 +135,7 @@ class Continuation:
         return np.asarray((ends[0] - ends[1]) / (2.0 * _PERIOD_STEP * T))
 
     def correct(self, X: FloatArray, border: FloatArray) -> tuple[FloatArray, Orbit, FloatArray, int]:
-        """Newton's method in the plane through X across the border -> X, orbit, tangent, iterations.
-
-        Raises
-        ------
-        NumericalError : it does not settle
-        """
+        """Newton's method in the plane through X across the border -> X, orbit, tangent, iterations."""
         plane = float(border @ X)
         right = np.zeros((X.size, 2))
         right[-1, 1] = 1.0
@@ -176,13 +156,9 @@ class Continuation:
         raise NumericalError("Newton's method did not settle on the branch.")
 
     def follow(self, orbit: Orbit, direction: float = 1.0, tangent: FloatArray | None = None) -> Path:
-        """Orbits from one on until an end of the limits.
+        """Orbits from one on until an end of the limits, towards higher (+1) or lower speeds (-1).
 
-        Parameters
-        ----------
-        orbit : where to start
-        direction : +1 towards higher speeds, -1 towards lower
-        tangent : along which to start instead, where the orbit is a bifurcation
+        ``tangent`` is the one to start along instead, where the orbit is a bifurcation.
         """
         X = self.unknowns(orbit)
         if tangent is None:

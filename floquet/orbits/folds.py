@@ -73,15 +73,10 @@ class FoldCurve:
 
 
 class FoldContinuation:
-    """Follows folds of n cycles in (x, p, 1/T, second parameter).
+    """Follows folds of n cycles in (x, p, 1/T, second parameter), for values between low and high.
 
     Unknowns are scaled at each value by that value's own sizes, so that a system that only changes its scale
-    moves along the parameter alone.
-
-    Parameters
-    ----------
-    at : value -> the continuation of orbits there
-    low, high : range of values
+    moves along the parameter alone. ``at`` gives the continuation of orbits at a value.
     """
 
     def __init__(self, at: Callable[[float], Continuation], low: float, high: float) -> None:
@@ -133,18 +128,10 @@ class FoldContinuation:
             Y = Y + step
         raise NumericalError("Newton's method did not settle on the fold.")
 
-    def follow(self, value: float, orbit: Orbit, direction: float, *, turn: bool = False) -> FoldCurve:
-        """Folds from one on until the end of a range.
+    def follow(self, value: float, orbit: Orbit, direction: float) -> FoldCurve:
+        """Folds from one on, to larger (+1) or smaller values (-1), until the value turns or a range ends.
 
-        Parameters
-        ----------
-        value, orbit : where to start
-        direction : +1 towards larger values, -1 towards smaller
-        turn : whether to end where the value turns, which is refined; else it goes on
-
-        Raises
-        ------
-        NumericalError : there is no fold at the start
+        Raises NumericalError where there is no fold at the start.
         """
         Y = np.append(self.at(value).unknowns(orbit), value / self._size)
         border = np.zeros(Y.size)
@@ -167,7 +154,7 @@ class FoldContinuation:
                 edge = self.low if fold.value < self.low else self.high
                 points += self._at_value(Y, new, edge)
                 return FoldCurve(tuple(points), "value")
-            if turn and turned[-1] * tangent[-1] < 0.0:
+            if turned[-1] * tangent[-1] < 0.0:
                 return FoldCurve((*points, self._turning(Y, tangent, step, fold)), "turn")
             points.append(fold)
             Y, tangent = new, turned

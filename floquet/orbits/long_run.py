@@ -79,10 +79,6 @@ def long_run(
 
     Parameters
     ----------
-    system : the system
-    start : (2m,) displacements and phase rates
-    period : T [s]
-    parameter : the free parameter during the run
     settle : cycles before it is looked at for the first time
     observe : cycles over which exponents and means are taken
     most_cycles : largest n
@@ -138,15 +134,9 @@ def _grown(parameter: float) -> LongRun:
 def lyapunov_exponent(
     system: ContactSystem, start: FloatArray, period: float, parameter: float = 0.0, cycles: int = 800
 ) -> tuple[float, float]:
-    """Largest Lyapunov exponent per cycle and its standard error by blocks of the run.
+    """Largest Lyapunov exponent per cycle and its standard error by blocks, from a state on the motion.
 
-    Parameters
-    ----------
-    system : the system
-    start : (2m,) on the motion
-    period : T [s]
-    parameter : the free parameter
-    cycles : how many; the first eighth turns the vector into its direction and is not counted
+    The first eighth of the cycles turns the vector into its direction and is not counted.
     """
     scale = state_scale(start)
     vector = 1.0 / (1.0 + 0.6180339887 * np.arange(start.size))

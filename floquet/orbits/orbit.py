@@ -139,19 +139,10 @@ def one_pass(
 def find_orbit(
     system: ContactSystem, start: FloatArray, period: float, n: int = 1, parameter: float = 0.0
 ) -> Orbit:
-    """Newton's method at a fixed period.
+    """Periodic motion of n cycles by Newton's method at a fixed period T [s].
 
-    Parameters
-    ----------
-    system : the system
-    start : (2m,) displacements and phase rates to start from
-    period : T [s]
-    n : number of cycles
-    parameter : to start from, where the system has an accumulated row
-
-    Raises
-    ------
-    NumericalError : no periodic motion was found from there
+    It starts from displacements and phase rates (2m,), and from ``parameter`` where the system has an
+    accumulated row. Raises NumericalError where no motion is found.
     """
     x, size = np.array(start, dtype=float), system.size
     unknowns = [*range(size), *([size + 1] if system.balanced else [])]

@@ -138,14 +138,7 @@ def find_response(
 
 @dataclass(frozen=True)
 class Member:
-    """A system of a stack: what `find_response` takes.
-
-    Attributes
-    ----------
-    family : the system over its period
-    limits : range of speeds, sizes and amplitude
-    start : from where to look for the first motions
-    """
+    """A system of a stack: what `find_response` takes."""
 
     family: Family
     limits: Limits
@@ -163,13 +156,6 @@ def find_stack(
 
     Each is looked at by itself as in `find_response`, and from motions of its neighbours on both sides, so
     that an isolated branch is found wherever it exists once one member has shown it.
-
-    Parameters
-    ----------
-    members : the systems, of neighbouring values of the parameter
-    periods : numbers of cycles of the motions wanted
-    seeds : speeds at which runs settle, for each
-    progress : called with the finished fraction
     """
     searches: list[_Search] = []
     for j, member in enumerate(members):

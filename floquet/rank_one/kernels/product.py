@@ -142,15 +142,9 @@ def carry(
     each the computed product of 2^k steps (a binary counter, from the last step backwards), so that its own
     error stays small.
 
-    Parameters
-    ----------
-    steps : (count, n, lanes)
-    local : (count,) bound on |E_j|, 2-norm
-    sizes : (count,) bounds on the Frobenius norms of the steps
-    flow : (n, lanes), out: the product
-    before : (count,) scratch: bounds on |Q_j|
-    work : (2 BLOCKS + 1, n, lanes) scratch
-    table : (5, BLOCKS) scratch: norm, error, rank of the blocks; norm, error of their product
+    Steps are (count, n, lanes), ``local`` bounds |E_j|, ``sizes`` the Frobenius norms of the steps; the
+    product goes to ``flow``. Scratch: ``before`` bounds |Q_j|, ``work`` is (2 BLOCKS + 1, n, lanes),
+    ``table`` (5, BLOCKS) holds norm, error, rank of the blocks and norm, error of their product.
     """
     n = flow.shape[0]
     product = work[0]
