@@ -25,7 +25,7 @@ def rows(name: str) -> list[dict[str, Any]]:
 
 
 def faults(stored: Sequence[Row]) -> str:
-    """How many faults are seen, the faults of each group, and the laws of nature that they break."""
+    """How many faults are seen, the faults of each group, and the conservation laws that they break."""
     text = ", ".join(f"{number} {name}" for name, number in sorted(counts(stored).items())) + ".\n"
     for group in GROUPS:
         mine = [_fault(one) for one in stored if one["group"] == group]
@@ -37,7 +37,7 @@ def faults(stored: Sequence[Row]) -> str:
         for law in sorted({law for law, _ in acting})
     ]
     words = "Faults that break each law, by the model on which it is checked."
-    return f"{text}\n## Laws of nature\n\n{words}\n\n{table(('law', *_MODELS), laws)}"
+    return f"{text}\n## Conservation laws\n\n{words}\n\n{table(('law', *_MODELS), laws)}"
 
 
 def _fault(one: Row) -> tuple[str, ...]:
@@ -49,14 +49,14 @@ def _fault(one: Row) -> tuple[str, ...]:
         one["words"],
         "not computed" if one["size"] is None else f"{100.0 * one['size']:.3g} %",
         one["quantity"],
-        "fails" if {"refused", "cross-check"} & caught.keys() else "passes",
-        "fails" if caught else "passes",
+        "sees it" if {"refused", "cross-check"} & caught.keys() else "",
+        "sees it" if caught.keys() - {"tests"} else "",
         seen,
     )
 
 
 def sound_pairs(stored: Sequence[Row]) -> str:
-    """What became of sound pairs; those that were not confirmed one by one."""
+    """What became of sound pairs; those that failed one by one."""
     verdicts = Counter(row["verdict"] for row in stored)
     worst = max((row for row in stored if "use" in row), key=lambda row: row["use"])
     seconds = sum(row["seconds"] for row in stored) / len(stored)
@@ -65,7 +65,7 @@ def sound_pairs(stored: Sequence[Row]) -> str:
         f"{len(stored)} pairs: {counted}. Largest use of a limit: {worst['use']:.2f} ({worst['check']}). "
         f"{seconds:.1f} s per pair.\n"
     )
-    wrong = [row for row in stored if row["verdict"] == "not confirmed"]
+    wrong = [row for row in stored if row["verdict"] == "fails"]
     return text + "".join(
         f"\n- {row['name']} ({row['preset']}): {'; '.join(row['failures'])}" for row in wrong
     )

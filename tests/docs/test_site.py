@@ -36,10 +36,10 @@ def test_table_cells_are_not_markup():
 
 
 def test_the_table_of_faults_says_which_check_saw_one():
-    outcome = Outcome(0.9, "speed", {"cross-check": (), "code verification": ("frequencies",)})
+    outcome = Outcome(0.9, "speed", {"cross-check": (), "tests": ("frequencies",)})
     shown = faults([row(FAULTS["speed_unit"], outcome)])
     # The cross-check does not use it.
-    assert "| 90 % | speed | passes | fails | code verification: frequencies |" in shown
+    assert "| 90 % | speed |  |  | tests: frequencies |" in shown
 
 
 def test_fields_of_a_docstring():

@@ -222,7 +222,10 @@ class _Mesh:
 def _static_mesh(pair: GearPair) -> Check:
     mesh, elements = _Mesh(machine(pair, effect_flags(None, "loaded"))), mesh_elements(pair)
     low, high = elements.stiffness.interval
-    places = low + (high - low) * (np.arange(_FEW) + 0.5) / _FEW
+    # Close to both ends a pair takes up its first load, and with it its damper.
+    near = np.array([0.002, 0.004])
+    shares = np.concatenate([near, (np.arange(_FEW) + 0.5) / _FEW, 1.0 - near[::-1]])
+    places = low + (high - low) * shares
     places = places[np.abs(places[:, None] - elements.stiffness.switches).min(axis=1) > 1e-5 * (high - low)]
     # At the end of a ramp neither load nor tangent is left.
     places = places[elements.stiffness(places) > 1e-6 * float(elements.stiffness(places).max())]

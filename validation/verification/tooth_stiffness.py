@@ -260,8 +260,8 @@ def _read(pair: GearPair, mean: float, sampled: float, xi: FloatArray) -> Iterat
         )
     elif model.model == "energy" and model.scale == "none":
         ratio = mean / energy_curve(pair, model.hertz).mean()
-    elif model.model == "rectangular":
-        ratio = mean / iso6336.single_of(pair)
+    elif model.model == "rectangular":  # c' by c_gamma, which plane elasticity judges
+        ratio = mean * (0.75 * path + 0.25) / iso6336.mean_of(pair)
     else:
         ratio = mean * path / iso6336.mean_of(pair)
     subject = f"stiffness that both models read, mean over the path, over that by its model: {model.model}"

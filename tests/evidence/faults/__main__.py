@@ -9,7 +9,7 @@ from pathlib import Path
 from tests.evidence.faults.fault import FAULTS
 from tests.evidence.faults.judging import judge
 from tests.evidence.faults.sound import sound_pairs
-from tests.evidence.faults.table import counts, row, sample, save, verdict
+from tests.evidence.faults.table import counts, row, sample, save, stored, verdict
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -24,7 +24,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument(
         "--thorough", action="store_true", help="ask every part, also after the first that sees it"
     )
-    parser.add_argument("-o", "--output", type=Path, help="rows as .json")
+    parser.add_argument("-o", "--output", type=Path, help="rows as .json; those of other faults stay")
     given = parser.parse_args(arguments)
     if given.sound is not None:
         return sound_pairs(given.sound, given.seed, given.output, relief=given.relief, loaded=given.loaded)
@@ -33,15 +33,15 @@ def main(arguments: list[str] | None = None) -> int:
     chosen = [FAULTS[key] for key in given.keys] or list(FAULTS.values())
     if given.sample is not None:
         chosen = list(sample(given.sample, given.seed))
-    rows = []
+    rows = stored(given.output)
     for fault in chosen:
         outcome = judge(fault, thorough=given.thorough)
-        rows.append(row(fault, outcome))
+        rows[fault.key] = row(fault, outcome)
         said = outcome.first or verdict(fault, outcome)
         print(f"{fault.key:24} {100.0 * outcome.size:9.3g} % {outcome.quantity:32.32} {said}", flush=True)
         if given.output is not None:
             save(rows, given.output)
-    found = counts(rows)
+    found = counts(rows[fault.key] for fault in chosen)
     print(", ".join(f"{number} {name}" for name, number in found.items()))
     return int(found.get("missed", 0) > 0)
 

@@ -67,20 +67,19 @@ def judge(fault: Fault, *, thorough: bool = True) -> Outcome:
     with warnings.catch_warnings():
         for kind in (LawRangeWarning, RuntimeWarning):
             warnings.simplefilter("ignore", kind)
-        texts = tuple(pair.to_toml() for pair in pairs(fault))
-        before, differing = _sound(texts), [_differing(text) for text in texts]
+        sound = _sound(tuple(pair.to_toml() for pair in pairs(fault)))
         started = time.perf_counter()
         size, quantity = 0.0, ""
         caught: dict[str, tuple[str, ...]] = {}
         with applied(fault):
             made = list(_made(fault, caught))
-            for old, pair in zip(before, made, strict=False):
+            for (old, _), pair in zip(sound, made, strict=False):
                 size, quantity = max((size, quantity), change(old, quantities(pair)))
             for part, checks in _CHECKS.items():
                 if not thorough and any(caught.values()):
                     break
                 names: list[str] = []
-                for pair, known in zip(made, differing, strict=False):
+                for (_, known), pair in zip(sound, made, strict=False):
                     if thorough or not names:
                         names += [name for name in _failing(checks, pair) if name not in known]
                 caught[part] = tuple(dict.fromkeys(names))
@@ -90,15 +89,10 @@ def judge(fault: Fault, *, thorough: bool = True) -> Outcome:
 
 
 @lru_cache(maxsize=64)
-def _sound(texts: tuple[str, ...]) -> tuple[Mapping[str, FloatArray], ...]:
-    """Quantities of the sound program for pairs given as text."""
-    return tuple(quantities(load_gear_pair(tomllib.loads(text))) for text in texts)
-
-
-@lru_cache(maxsize=64)
-def _differing(text: str) -> frozenset[str]:
-    """What the cross-check says of the sound program: said of a wrong one too, it shows no fault."""
-    return frozenset(_crossed(load_gear_pair(tomllib.loads(text))))
+def _sound(texts: tuple[str, ...]) -> tuple[tuple[Mapping[str, FloatArray], list[str]], ...]:
+    """Quantities of the sound program for pairs given as text, and in what its two models differ."""
+    made = [load_gear_pair(tomllib.loads(text)) for text in texts]
+    return tuple((quantities(pair), _failing(_crossed, pair)) for pair in made)
 
 
 def _made(fault: Fault, caught: dict[str, tuple[str, ...]]) -> Iterator[GearPair]:
@@ -123,8 +117,8 @@ def _line(error: Exception) -> str:
 def _crossed(pair: GearPair) -> list[str]:
     """Checks of the program that fail, and quantities in which the exact model differs."""
     check = crosscheck(pair, cycles=_CYCLES, samples_per_cycle=_SAMPLES)
-    differing = [a.judgement for a in check.of("exact") if not a.within]
-    return [one.check for one in (*check.failures, *differing)]
+    differing = [one.quantity for one in check.of("exact") if not one.within]
+    return [*(one.check for one in check.failures), *(f"differs: {name}" for name in differing)]
 
 
 def _reported(pair: GearPair) -> list[str]:

@@ -82,15 +82,16 @@ def _not_cached(
 
 def forget() -> None:
     """Drop every result that a function of the packages keeps."""
-    for module in _modules():
+    for module in _modules(_PACKAGES):
         for value in list(vars(module).values()):
             clear = getattr(value, "cache_clear", None)
             if clear is not None and not isinstance(value, type):
                 clear()
 
 
-def _modules() -> list[types.ModuleType]:
-    names = [name for name in sys.modules if name.partition(".")[0] in _PACKAGES]
+def _modules(packages: tuple[str, ...] = (*_PACKAGES, "tests")) -> list[types.ModuleType]:
+    """Those of the packages, and of the evidence, which hold functions too."""
+    names = [name for name in sys.modules if name.partition(".")[0] in packages]
     return [sys.modules[name] for name in names if isinstance(sys.modules[name], types.ModuleType)]
 
 

@@ -8,7 +8,7 @@ import math
 import random
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -61,16 +61,27 @@ def counts(rows: Iterable[Mapping[str, Any]]) -> dict[str, int]:
 
 
 def laws_that_act(rows: Iterable[Mapping[str, Any]]) -> dict[tuple[str, str], int]:
-    """Law of nature and model -> how many faults of the rows break it there."""
+    """Conservation law and model -> how many faults of the rows break it there."""
     found: Counter[tuple[str, str]] = Counter()
     for one in rows:
-        checks = [check.removeprefix("twin: ") for names in one["caught"].values() for check in names]
-        laws = {check.removeprefix("nature: ") for check in checks if check.startswith("nature: ")}
+        checks = [check.removeprefix("variant: ") for names in one["caught"].values() for check in names]
+        laws = {
+            check.removeprefix("conservation: ") for check in checks if check.startswith("conservation: ")
+        }
         split = (law.rsplit(", ", 1) for law in laws)
         found.update({(_AXIS.sub("", law), model) for law, model in split})
     return dict(found)
 
 
-def save(rows: Sequence[Mapping[str, Any]], target: Path) -> None:
-    """Write rows as JSON."""
-    target.write_text(json.dumps(rows, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+def stored(source: Path | None) -> dict[str, Any]:
+    """Rows of a file by their keys, of faults that exist; none without a file."""
+    if source is None or not source.exists():
+        return {}
+    rows = json.loads(source.read_text(encoding="utf-8"))
+    return {one["key"]: one for one in rows if one["key"] in FAULTS}
+
+
+def save(rows: Mapping[str, Any], target: Path) -> None:
+    """Write rows as JSON, in the order of the catalogue."""
+    ordered = [rows[key] for key in FAULTS if key in rows]
+    target.write_text(json.dumps(ordered, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")

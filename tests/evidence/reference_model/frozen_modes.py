@@ -4,7 +4,7 @@ exudyn differentiates the forces of the assembled system at its initial values. 
 be the lumped matrix A(t) of the same instant. At fidelity "exact" the line of action turns with the gear
 centres: the total normal load N acts as a spring -N/L_XY between y_p and y_g, which the lumped model has not.
 
-Sources: docs/theory/multibody.md, "Three builds of one machine".
+Sources: docs/theory/multibody.md, "Two builds of one machine".
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Does the multibody model's own evidence hold: its damping, its bodies, its third build, its modes?"""
+"""Does the multibody model's own evidence hold: its damping, its bodies, its modes?"""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ from multibody.contact.machine import machine
 from multibody.run.linear_motion import mesh_wrench
 from multibody.run.setup import prepare
 from tests.evidence.check import failing
-from tests.evidence.reference_model import third_build as turning
 from tests.evidence.reference_model.blanks import blanks
 from tests.evidence.reference_model.checks import PAIR, UNLIKE, reference_model
 from tests.evidence.reference_model.free_vibration import damping_check
@@ -50,21 +49,6 @@ def test_a_bore_takes_its_disc_out_of_the_outline():
     hole = PAIR.pinion.density * PAIR.pinion.face_width * np.pi * 0.02**2
     assert solid.mass - bored.mass == pytest.approx(hole, rel=1e-12)
     assert solid.inertia - bored.inertia == pytest.approx(0.5 * hole * 0.02**2, rel=1e-12)
-
-
-def test_bodies_that_turn_move_like_those_that_deviate(monkeypatch):
-    """atol 1e-8 leaves some 1e-11 m, 1e-9 a tenth of that; one per cent of the mass leaves more."""
-    (loose, span), (sharp, _) = (turning.third_build(PAIR, 2, atol=atol) for atol in (1e-8, 1e-9))
-    assert loose < 3e-11
-    assert sharp < 0.3 * loose
-    assert span > 1e-5
-    true = turning.build
-    monkeypatch.setattr(
-        turning,
-        "build",
-        lambda numbers, *rest, **options: true(replace(numbers, mass=1.01 * numbers.mass), *rest, **options),
-    )
-    assert turning.third_build(PAIR, 1)[0] > 100.0 * loose
 
 
 def test_frozen_modes_are_the_lumped_ones_but_for_the_turned_line():

@@ -136,7 +136,7 @@ def test_stored_evidence_says_where_it_is_of_another_source_and_which_kind_fails
     check = {"subject": "s", "exact": "e", "value": 2.0, "limit": 0.3, "theory": 2.1}
     kinds = [{"key": "k", "title": "orders", "checks": [check, check | {"value": 3.0}]}]
     stored = {"date": "2026-01-01", "source_sha256": "a", "kinds": kinds}
-    stored |= {"faults": {"all": 9, "tests": 9}, "sound_pairs": {"confirmed": 5}}
+    stored |= {"faults": {"all": 9, "tests": 9}, "sound_pairs": {"agrees": 5}}
     text, table = code_verification.content(stored, "a").blocks
     assert "1 of 2 checks pass. The source of this program is the one that was checked." in text.text
     ((title, count, use, verdict),) = table.rows

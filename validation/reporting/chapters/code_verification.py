@@ -39,7 +39,7 @@ def content(evidence: Mapping[str, Any], source: str) -> Content:
     note = (
         f"Of {faults['all']} faults put into the program on purpose, {faults.get('missed', 0)} are missed by "
         f"all checks. Of {sum(sound.values())} random sound pairs the cross-check refuses "
-        f"{sound.get('not confirmed', 0)}."
+        f"{sound.get('fails', 0)}."
     )
     table = Table(
         "evidence",
