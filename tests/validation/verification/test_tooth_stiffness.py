@@ -30,7 +30,12 @@ def test_presets_pass_and_a_tenth_of_the_energy_stiffness_is_seen(name, monkeypa
 
 def test_each_way_is_seen_to_be_wrong(pair, monkeypatch):
     for fault, target, name, seen in (
-        (lambda whole: lambda p: 0.85 * whole(p), module.iso6336, "mean_of", ["standard_elastic", "stiffness_read"]),
+        (
+            lambda whole: lambda p: 0.85 * whole(p),
+            module.iso6336,
+            "mean_of",
+            ["standard_elastic", "stiffness_read"],
+        ),
         (lambda whole: lambda p: whole(p).scaled(1.01), module, "pair_stiffness", ["stiffness_read"]),
     ):
         with monkeypatch.context() as change:
