@@ -51,7 +51,7 @@ if TYPE_CHECKING:
         steady_state,
     )
     from multibody import attribution, power_balance
-    from validation import crosscheck, plot, report, validity_flags, write_interactive_page
+    from validation import crosscheck, plot, report, uncertainty, validity_flags, write_interactive_page
     from validation.exchange import gear_pair_from_rexs, write_results, write_rexs
     from validation.studies import load_study, read_results, run_sweep
 
@@ -98,6 +98,7 @@ __all__ = [
     "stability_margins",
     "static_transmission_error",
     "steady_state",
+    "uncertainty",
     "validation",
     "validity_flags",
     "write_interactive_page",

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 LONG = (
     (
         "floquet/orbits", "floquet/gear", "floquet/rank_one", "validation/reporting", "examples", "docs",
-        "validation/commands", "validation/interactive", "packaging", "validation/verification",
+        "validation/commands", "validation/interactive", "packaging",
         "reproductions", "lumped/friction",
     ),
     (

@@ -2,6 +2,7 @@ from .cross_check.comparison import CrossCheck as CrossCheck
 from .cross_check.comparison import crosscheck as crosscheck
 from .interactive import write_interactive_page as write_interactive_page
 from .plots.of_result import plot as plot
+from .prediction.uncertainty import uncertainty as uncertainty
 from .reporting import Report as Report
 from .reporting import report as report
 from .validity.flags import Flag as Flag

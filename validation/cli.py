@@ -22,6 +22,7 @@ from validation.commands.response import response
 from validation.commands.simulate import simulate
 from validation.commands.stability import stability
 from validation.commands.sweep import sweep
+from validation.commands.uncertainty import uncertainty
 from validation.stop_signals import interrupt_once
 
 app = typer.Typer(
@@ -53,8 +54,8 @@ def spurcheck(
     Speeds are pinion speeds in rpm, torques pinion torques in N m; other units may be written out ("200
     lbf*in").
 
-    Exit codes: 0 done, 1 a verdict fails, 2 an input is refused, 3 a computation or the writing of its
-    result fails, 4 the models differ (crosscheck), 130 stopped by a signal.
+    Exit codes: 0 done, 1 a check of the program fails, 2 an input is refused, 3 a computation or the writing
+    of its result fails, 4 the models differ, or a finding that --require forbids, 130 stopped by a signal.
     """
 
 
@@ -71,6 +72,7 @@ COMMANDS = (
     simulate,
     export,
     crosscheck,
+    uncertainty,
     stability,
     floquet,
     response,

@@ -6,7 +6,7 @@ import re
 import unicodedata
 from collections.abc import Iterable, Sequence
 
-from validation.reporting.formatting import number
+from validation.files.formatting import number
 
 _NAMES = "alpha|delta|epsilon|zeta|eta|theta|lambda|mu|xi|pi|rho|sigma|omega|Lambda|Phi|Omega"
 _GREEK = re.compile(rf"(?<![\w`])(?:{_NAMES})(?![a-zA-Z0-9`])")

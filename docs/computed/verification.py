@@ -7,8 +7,8 @@ from functools import partial
 
 import lumped
 from computed.markdown import must_pass, table
-from validation.verification import refinements
-from validation.verification.evidence import stored_evidence
+from tests.evidence.refinement import refinements
+from validation.reporting.stored_evidence import stored_evidence
 
 #: File -> kinds of evidence.
 _PARTS = {

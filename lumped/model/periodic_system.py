@@ -15,10 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.arguments import one_of
 from lumped.model.equations import Structure, structure
-from lumped.model.mesh_cycle import MeshCycle, PairState
+from lumped.model.mesh_cycle import MeshCycle, PairState, mesh_cycle
 from lumped.model.supports import SUPPORTS, Form
 from lumped.model.supports import Supports as _Supports
-from lumped.quasi_static.contacts import contact_of
 from lumped.schema.files import AnyPair, load_gear_pair
 from lumped.schema.pair import GearPair
 from lumped.typing import FloatArray
@@ -189,7 +188,7 @@ def periodic_system(
         pair=pair,
         form=form,
         coordinates=z.names,
-        cycle=cycle or MeshCycle(pair.geometry, contact_of(pair).elements(pair)),
+        cycle=cycle or mesh_cycle(pair),
         constant=constant,
         torque_pinion=torques[0],
         torque_gear=torques[1],

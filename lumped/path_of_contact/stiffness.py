@@ -34,7 +34,17 @@ def pair_stiffness(pair: AnyPair) -> PathFunction:
     ParameterError : the model's parameters do not fit this pair
     """
     pair = load_gear_pair(pair)
-    return pair.mesh.stiffness.curve(pair)
+    return pair.mesh.stiffness.curve(pair).scaled(pair.mesh.stiffness_factor)
+
+
+def contact_softening(pair: GearPair) -> float:
+    """How the compliance of a tooth pair falls with load, D in 1/k(T) = 1/k(T_0) - D ln(T/T_0) [m/N]."""
+    return pair.mesh.stiffness.softening(pair) / pair.mesh.stiffness_factor
+
+
+def cross_compliances(pair: GearPair) -> tuple[PathFunction, ...]:
+    """How far a unit load on a tooth pair moves the pair m base pitches ahead, m = 1, 2, ... [m/N]."""
+    return tuple(w.scaled(1.0 / pair.mesh.stiffness_factor) for w in pair.mesh.stiffness.neighbours(pair))
 
 
 def stiffness_components(pair: AnyPair, points: int = 201) -> xr.Dataset:

@@ -22,7 +22,7 @@ from lumped.typing import BoolArray, FloatArray
 #: Speed [rad/s] and friction of the pairs by which static results are cached: any.
 _SPEED, _FRICTION = 100.0, Friction.model_construct(law="none")
 #: Samples over the searched range between which contact begins or ends at most once.
-_SAMPLES = 2000
+_SAMPLES = 500
 
 
 @dataclass(frozen=True, eq=False)

@@ -117,17 +117,6 @@ def corner_gap_at(
 
 
 @compiled
-def corner_gaps(
-    beyond: FloatArray, start: FloatArray, tangent: FloatArray, flank_radius: float, tip_radius: float
-) -> FloatArray:
-    """``corner_gap_at`` of n corners on lines of action of their own, (n,)."""
-    found = np.empty(beyond.size)
-    for i in range(beyond.size):
-        found[i] = corner_gap_at(beyond[i], start[i], tangent[i], flank_radius, tip_radius)
-    return found
-
-
-@compiled
 def gap_at(place: float, relief: float, half: float, longer: float, ends: FloatArray) -> float:
     """Gap of a pair at xi = ``place`` [m], its contact point ``half`` beyond where the tips leave the line.
 

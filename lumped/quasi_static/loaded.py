@@ -22,6 +22,7 @@ from scipy.optimize import brentq
 from lumped.errors import NumericalError
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
+from lumped.path_of_contact.stiffness import contact_softening, cross_compliances
 from lumped.quasi_static.elements import Contact, MeshElements, at_rest, positive_intervals, restricted
 from lumped.quasi_static.kernels import approaches, gaps_at, middle_loads
 from lumped.quasi_static.load_sharing import coupled
@@ -36,6 +37,8 @@ _REACH = 0.4
 _SAME = 1e-9
 #: Fit errors over the largest value; lengths are positions' differences, known to some 1e-17 m.
 _TOLERANCE, _LENGTH = 1e-10, 2e-17
+#: Fit error of the approach over that of the laws that follow from it.
+_APPROACH = 1e-2
 #: Below this share of the mean load Hertz's contact is linear, see ``ContactLaw``.
 LEAST_LOAD = 1e-3
 #: A ramp ends without stiffness; so much of the largest one is left, below the fit error of every law.
@@ -79,7 +82,7 @@ class Loaded(Contact):
 
     def neighbours(self, pair: GearPair) -> Sequence[PathFunction]:
         """Those of the stiffness model."""
-        return pair.mesh.stiffness.neighbours(pair)
+        return cross_compliances(pair)
 
     def least_load(self, load: FloatArray, contact: BoolArray) -> float:
         """All pairs together must press: each begins and ends its contact gradually."""
@@ -172,14 +175,15 @@ class StaticMesh:
         g, bearings = pair.geometry, pair.bearings
         self.pair, self.geometry = pair, g
         self.force = pair.operating.pinion_torque / g.base_radius_pinion
-        self.neighbours = pair.mesh.stiffness.neighbours(pair)
-        self.law = ContactLaw(pair_stiffness(pair), pair.mesh.stiffness.softening(pair), self.force)
+        self.neighbours = cross_compliances(pair)
+        self.law = ContactLaw(pair_stiffness(pair), contact_softening(pair), self.force)
         compliance = 1.0 / bearings.pinion.loa_stiffness + 1.0 / bearings.gear.loa_stiffness
         self.lengthening = self.force * compliance  # of the line of action, by the bearings
         reach = int(np.ceil(g.contact_ratio + 2.0 * _REACH))
         self.shifts = np.arange(-reach, reach + 1) * g.base_pitch
         self.ends = np.array([g.L_XA, g.L_XD, g.L_XY, g.base_radius_pinion, g.base_radius_gear])
         self.low, self.high = g.L_XA - _REACH * g.base_pitch, g.L_XD + _REACH * g.base_pitch
+        self._fitted: PathFunction | None = None
 
     def relief(self, place: FloatArray) -> FloatArray:
         """Material missing on both flanks at positions of any shape, held beyond A and D [m]."""
@@ -194,6 +198,9 @@ class StaticMesh:
 
     def approach(self, xi: FloatArray) -> FloatArray:
         """Static approach delta (n,) [m] with a tooth pair at the positions xi (n,) [m]."""
+        if self._fitted is not None:
+            start = self._fitted.breaks[0]
+            return self._fitted(start + np.mod(xi - start, self.geometry.base_pitch))
         place, near = self.pairs(xi)
         law, k = self.law, np.where(near, self.law.held(place), 0.0)
         relief, coupling = self.relief(place), coupled(self.neighbours, place, near)
@@ -205,6 +212,22 @@ class StaticMesh:
                 "At some position no tooth pair can carry the load: check stiffness and relief."
             )
         return np.asarray(found, dtype=np.float64)
+
+    def fit_approach(self, marks: FloatArray, tolerance: float) -> None:
+        """Fit the approach, which repeats with every pitch, once: all laws of a pair follow from it.
+
+        Parameters
+        ----------
+        marks : positions of kinks of the approach, any whole number of pitches off [m]
+        tolerance : largest error [m]
+        """
+        start, pitch = self.geometry.L_XA, self.geometry.base_pitch
+        inside = np.unique(start + np.mod(marks - start, pitch))
+        near = _SAME * pitch
+        inside = inside[(inside > start + near) & (inside < start + pitch - near)]
+        inside = inside[np.diff(inside, prepend=-np.inf) > near]
+        breaks = np.concatenate([[start], inside, [start + pitch]])
+        self._fitted = PathFunction.fit(self.approach, breaks, inside, tolerance=tolerance)
 
     def static(self, xi: FloatArray) -> StaticPair:
         """The pair at xi (n,) [m] in equilibrium."""
@@ -270,6 +293,9 @@ def _loaded_contact(pair: GearPair) -> LoadedContact:
     largest = float(law.held(np.linspace(low, high, 101)).max())
     deflection = mesh.force / largest
     relative = max(_TOLERANCE, _LENGTH / (FULL_DAMPING * deflection))
+    # Not below the rounding of positions, several times over: the approach is solved for by iteration.
+    exact = max(_APPROACH * relative * deflection, 5.0 * _LENGTH)
+    mesh.fit_approach(np.concatenate([marks.ravel(), law.stiffness.breaks]), exact)
 
     # With a linear law of pairs that stand alone the pieces are those of the stiffness.
     ends = pieces if law.softening == 0.0 and not mesh.neighbours else breaks

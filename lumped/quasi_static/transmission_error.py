@@ -17,6 +17,7 @@ from lumped.arguments import real_numbers, whole_number
 from lumped.errors import NumericalError
 from lumped.labelling import labelled_dataset
 from lumped.path_of_contact import pair_stiffness
+from lumped.path_of_contact.stiffness import contact_softening
 from lumped.quasi_static.contacts import contact_of
 from lumped.quasi_static.load_sharing import coupled, share_load
 from lumped.quasi_static.tooth_error import corner_gap, relief_error
@@ -163,7 +164,7 @@ def static_transmission_error(
 
 def _at_torques(stiffness: FloatArray, torque: FloatArray, pair: GearPair) -> FloatArray:
     """Stiffness of the pairs at every torque; (torques or 1, k, pairs) [N/m]."""
-    softening = pair.mesh.stiffness.softening(pair)
+    softening = contact_softening(pair)
     if softening == 0.0:
         return stiffness[None]
     ratio = np.maximum(torque / pair.operating.pinion_torque, _LEAST_TORQUE)

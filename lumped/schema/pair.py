@@ -38,7 +38,12 @@ class OperatingPoint(Section):
 
     pinion_speed: Annotated[
         float,
-        Quantity("rpm", above=0, at_most=LARGEST_SPEED, action="The pinion drives in its positive sense."),
+        Quantity(
+            "rpm",
+            above=0,
+            at_most=LARGEST_SPEED,
+            action="Give the running speed; the pinion drives in its positive sense.",
+        ),
     ] = Field(description="nominal speed of the pinion")
     pinion_torque: Annotated[float, Quantity("N*m", at_least=1e-9, at_most=1e9)] = Field(
         description="torque driving the pinion"
@@ -80,6 +85,22 @@ Sources = Annotated[
 ]
 
 
+def _spreads_in(value: object) -> object:
+    if not isinstance(value, dict):
+        return value
+    return tuple(sorted((path, tuple(s) if isinstance(s, list) else s) for path, s in value.items()))
+
+
+Spreads = Annotated[
+    tuple[tuple[str, str | tuple[str, ...]], ...],
+    BeforeValidator(_spreads_in, json_schema_input_type=dict[str, str | list[str]]),
+    PlainSerializer(
+        lambda spreads: {path: list(s) if isinstance(s, tuple) else s for path, s in spreads},
+        return_type=dict[str, str | list[str]],
+    ),
+]
+
+
 class GearPair(Section):
     """A spur gear pair with everything that spurcheck needs to know about it."""
 
@@ -98,6 +119,11 @@ class GearPair(Section):
     friction: Friction
     operating: OperatingPoint
     sources: Sources = Field((), description="field path -> where its value comes from, or 'assumed'")
+    uncertainty: Spreads = Field(
+        (),
+        description="field path -> how far its value may be off: '0.02 .. 0.10', '+- 2 um', '+- 10 %', "
+        "'/ 2 .. * 2', or a list of choices",
+    )
 
     @model_validator(mode="after")
     def _must_exist(self) -> GearPair:
@@ -106,7 +132,8 @@ class GearPair(Section):
         problems += [*self._too_light("pinion"), *self._too_light("gear")]
         if problems:
             raise ParameterError(problems, self.name)
-        wrong = [problem for path, _ in self.sources for problem in _source_problems(path)]
+        wrong = [problem for path, _ in self.sources for problem in _path_problems(path, "sources")]
+        wrong += [problem for path, _ in self.uncertainty for problem in _path_problems(path, "uncertainty")]
         if wrong:
             raise ParameterError(wrong)
         return self
@@ -203,8 +230,8 @@ class GearPair(Section):
     def to_mapping(self) -> dict[str, Any]:
         """Return the pair as nested plain data for TOML or JSON; reading it back gives an equal pair."""
         data = super().to_mapping()
-        sources = dict(data.pop("sources"))
-        return data | {"sources": sources} if sources else data
+        tables = {name: data.pop(name) for name in ("sources", "uncertainty")}
+        return data | {name: dict(table) for name, table in tables.items() if table}
 
     def to_toml(self) -> str:
         """Return the pair as TOML text; reading it back gives an equal pair."""
@@ -226,7 +253,9 @@ class GearPair(Section):
 
 
 def leaf_paths(pair: GearPair) -> dict[str, Any]:
-    """Return every set field of a pair as dotted path -> value in file units, ``sources`` apart.
+    """Return every set field of a pair as dotted path -> value in file units.
+
+    The tables ``sources`` and ``uncertainty`` are left out.
 
     An entry of a list of tables has its number, from 0 on, as part of its path.
     """
@@ -242,7 +271,7 @@ def leaf_paths(pair: GearPair) -> dict[str, Any]:
             else:
                 result[path] = value
 
-    walk({k: v for k, v in pair.to_mapping().items() if k != "sources"}, "")
+    walk({k: v for k, v in pair.to_mapping().items() if k not in ("sources", "uncertainty")}, "")
     return result
 
 
@@ -273,7 +302,7 @@ def _varied(pair: GearPair, changes: Mapping[str, Any]) -> GearPair:
         _assign(data, path, value)
         for known in [key for key in sources if any(key == p or key.startswith(f"{p}.") for p in outdated)]:
             del sources[known]
-        if path not in ("name", "description", "sources") and value is not None:
+        if path not in ("name", "description", "sources", "uncertainty") and value is not None:
             sources[path] = "varied by the user"
     return validated(data, f"{pair.name} varied")
 
@@ -337,12 +366,12 @@ def field_at(path: str) -> FieldInfo:
 
 
 @lru_cache(maxsize=1024)  # every variation of a pair has the same paths
-def _source_problems(path: str) -> tuple[FieldProblem, ...]:
+def _path_problems(path: str, table: str) -> tuple[FieldProblem, ...]:
     """A misspelt path would leave its value without a source."""
     try:
         field_at(path)
     except ParameterError as error:
-        return tuple(replace(problem, field=f"sources.{problem.field}") for problem in error.problems)
+        return tuple(replace(problem, field=f"{table}.{problem.field}") for problem in error.problems)
     return ()
 
 

@@ -23,6 +23,7 @@ from lumped.lubrication.viscosity import ISO_VG_MIDPOINT, viscosity_at_100
 from lumped.model.mesh_cycle import MeshCycle
 from lumped.path_function import PathFunction
 from lumped.path_of_contact import friction_path_function, pair_stiffness
+from lumped.path_of_contact.stiffness import contact_softening, cross_compliances
 from lumped.quasi_static.contacts import contact_of
 from lumped.schema.contact import Lubricant
 from lumped.schema.gear import Gear
@@ -159,12 +160,12 @@ def machine(
     p[kn.T_LOW], p[kn.T_HIGH] = -math.inf, math.inf
     mass, inertia = masses(pair)
     p[kn.DAMPING] = 2.0 * pair.mesh.damping_ratio * math.sqrt(_mesh_mass(p, inertia))
-    p[kn.SOFTENING] = pair.mesh.stiffness.softening(pair)
+    p[kn.SOFTENING] = contact_softening(pair)
     p[kn.NOMINAL_FORCE] = pair.operating.pinion_torque / r_p
     relieved = reliefs(pair, drawn)
     p[kn.RELIEFS] = len(relieved)
     p[kn.FIRST_RELIEF : kn.FIRST_RELIEF + kn.RELIEF_COLUMNS * len(relieved)] = np.ravel(relieved)
-    for apart, moved in enumerate(pair.mesh.stiffness.neighbours(pair)[: MAX_PAIRS - 1]):
+    for apart, moved in enumerate(cross_compliances(pair)[: MAX_PAIRS - 1]):
         first = kn.FIRST_COUPLED + kn.COUPLED_COLUMNS * apart
         p[first : first + kn.COUPLED_COLUMNS] = pack(moved)[0]
         p[kn.COUPLED] = apart + 1

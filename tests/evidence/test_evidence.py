@@ -12,7 +12,7 @@ from tests.evidence.__main__ import main
 from tests.evidence.check import Check, failing
 from tests.evidence.kinds import KINDS, OF_PAIRS, TARGET
 from tests.evidence.pairs import gear_pairs
-from validation.verification import evidence
+from validation.reporting import stored_evidence as evidence
 
 
 @pytest.mark.parametrize("number", range(3), ids=["default", "asymmetric", "loaded"])

@@ -19,7 +19,6 @@ from lumped.model.averaged import averaged_state_space
 from lumped.path_of_contact.friction import friction_profile
 from validation import crosscheck
 from validation.measurements import predict
-from validation.verification import refinements
 
 PAIR = lumped.load_gear_pair("nasa_28_28")
 SYSTEM = floquet.PeriodicSystem(lambda t: np.array([[0.0, 1.0], [-1.0 - np.cos(t), -0.1]]), 2.0 * np.pi)
@@ -80,7 +79,6 @@ CALLS = {
     floquet.gear_block: ({"source": PAIR}, "rtol friction_level"),
     crosscheck: ({"pair": PAIR}, "cycles samples_per_cycle fidelities limit"),
     predict: ({"pair": PAIR}, "speed torque recurrence"),
-    refinements: ({"pair": PAIR}, "samples"),
 }
 #: Names that a refusal gives where a pair's own field takes the argument in.
 OWN = {

@@ -91,27 +91,23 @@ assert floquet.gear_pair_multipliers(pair).spectral_radius < 1.0
 CHAPTER = {
     "validation/reporting/chapters/loudness.py": """
 from validation.plots.loudness import loudness_figure
-from validation.reporting.blocks import Answer, Badge, Content, Fact, Facts, Picture
+from validation.reporting.blocks import Content, Picture, quantities
 from validation.reporting.chapter import Chapter
 
 def write(results):
-    history = results.motion[["dte"]]
-    facts = Facts("level", (Fact("samples", "samples", results.effort.samples),))
-    picture = Picture("loudness", "The sound of the gears.", lambda: loudness_figure(history))
-    return Content((facts, picture), Badge("ok"), {"loudness": history})
+    history = results.prediction.cycle[["dte"]]
+    table = quantities("level", "How loud.", ("mean", float(history["dte"].mean()), "m"))
+    return Content("It is quiet.", (table, Picture("loudness", "The sound.", history, loudness_figure)))
 
-def answer(results):
-    return Answer("Is it loud?", Badge("ok"), "No.")
-
-CHAPTER = Chapter("loudness", "Loudness", write, answer)
+CHAPTER = Chapter("loudness", "Loudness", write)
 """,
     "validation/plots/loudness.py": """
-from validation.plots.style import new_figure
+from validation.plots.axes import draw_curves
+from validation.plots.style import one_panel
 
 def loudness_figure(history):
-    figure, axes = new_figure()
-    axes[0, 0].plot(history["dte"])
-    axes[0, 0].set(xlabel="sample [-]", ylabel="transmission error [m]")
+    figure, ax = one_panel(2.0)
+    draw_curves(ax, history, ["dte"])
     return figure
 """,
     "validation/reporting/chapters/__init__.py": (
@@ -121,23 +117,20 @@ def loudness_figure(history):
     ),
 }
 WRITE = """
-import dataclasses, json, xarray as xr
+import dataclasses, json
 from pathlib import Path
-from validation.plots.style import new_figure
 from validation.reporting import build, report
-from validation.reporting.blocks import Picture
 
-build.QUICK = dataclasses.replace(build.QUICK, samples=64, cycles=6, sweep_speeds=4)
-build.CHAPTERS = build.CHAPTERS[-2:]  # the others are computed by other tests
-build.sentence = build.headline = lambda _: "Loud."
-build.answer_figure = lambda _: Picture("answer", "Loud.", lambda: new_figure()[0])
+build.QUICK = dataclasses.replace(
+    build.QUICK, sweep_speeds=8, line_speeds=11, chart_speeds=5, chart_dampings=3, orders_speeds=5
+)
+build.CHAPTERS = build.CHAPTERS[-1:]  # the others are computed by other tests
 made = report("nasa_28_28", "out", quick=True)
 data = json.loads(Path("out/report.json").read_text())
-assert made.verdicts == {"loudness": "ok"}
-assert data["chapters"]["loudness"]["level"]["samples"]["value"] == 64
-assert [answer["chapter"] for answer in data["answers"]] == ["loudness"]
+assert list(data["chapters"]) == ["loudness"]
+assert data["chapters"]["loudness"]["level"][0]["value"]["unit"] == "m"
 assert "Loudness" in Path("out/index.html").read_text()
-assert Path("out/figures/loudness.svg").is_file() and xr.open_dataset("out/data/loudness.nc").dte.size == 64
+assert Path("out/figures/loudness.svg").is_file() and Path("out/tables/figure_loudness.csv").is_file()
 """
 COMMAND = {
     "validation/commands/count.py": """

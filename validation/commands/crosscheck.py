@@ -111,7 +111,7 @@ def crosscheck(
 
 def _print(check: CrossCheck) -> None:
     from validation.cross_check.verdict import Verdict
-    from validation.reporting.cross_check_words import cause_of_difference, failed_checks, whole_difference
+    from validation.cross_check.words import cause_of_difference, failed_checks, whole_difference
 
     console = stdout()
     for shown in _tables(check):
@@ -150,7 +150,7 @@ def _data(check: CrossCheck) -> Any:
 
 def _tables(check: CrossCheck) -> list[Table]:
     from validation.cross_check.conservation import worst_of_each
-    from validation.reporting.formatting import number
+    from validation.files.formatting import number
 
     name, found = check.pair.name, []
     for fidelity, title in (("linear", "same equations"), ("exact", "exact contact")):
@@ -199,8 +199,8 @@ def _grid(output: Path | None, checkpoint: Path | None, given: list[str], force:
     from lumped.errors import refuse
     from validation.cross_check.grid import COMPARED, CONTACT_LOST, broken_rules
     from validation.cross_check.grid import crosscheck_grid as run
+    from validation.files.formatting import number
     from validation.files.output import check_file, write_dataset
-    from validation.reporting.formatting import number
 
     if given:
         raise refuse("--grid", " ".join(given), "no options of a single pair", "The grid covers all presets.")

@@ -102,7 +102,7 @@ def _print(source: Path, found: Monodromy) -> None:
     from cmath import phase
     from math import degrees
 
-    from validation.reporting.formatting import number
+    from validation.files.formatting import number
 
     found_all = zip(found.multipliers.tolist(), found.multiplier_errors.tolist(), strict=True)
     rows = [(f"{abs(z):.12g}", f"{degrees(phase(z)):.4f}", number(error, 2)) for z, error in found_all]

@@ -96,7 +96,7 @@ def _write_example(gear_pair: Any, record: Path, *, force: bool) -> None:
 
 
 def _show(found: Evaluation) -> None:
-    from validation.reporting.formatting import number, quantity
+    from validation.files.formatting import number, quantity
 
     spec, console = found.measurement.spec, stdout()
     rpm = spec.pinion_speed * 30.0 / math.pi

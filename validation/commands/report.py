@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 
 #: Changes listed in the terminal.
 _MOST = 30
+#: Exit code where a finding about the machine is one that ``--require`` forbids.
+_FOUND = 4
+_REQUIRE = ("holds", "stable", "contact")
 
 
 @guarded
@@ -22,8 +25,16 @@ def report(
     pair: opt.PairArgument = opt.DEFAULT_PAIR,
     output: Annotated[Path, opt.output("Folder to write, new or empty.")] = Path("spurcheck-report"),
     quick: Annotated[
-        bool, typer.Option("--quick", help="Coarser sampling and no verification, for a first look.")
+        bool, typer.Option("--quick", help="Coarser sampling, inputs not varied, for a first look.")
     ] = False,
+    require: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--require",
+            help="Exit 4 unless the model holds, the motion is stable, or contact is kept: holds, stable, "
+            "contact.",
+        ),
+    ] = None,
     compare: Annotated[
         Path | None,
         typer.Option(
@@ -44,10 +55,10 @@ def report(
 ) -> None:
     """Write the verification report of a gear pair.
 
-    One folder: index.html (opens in any browser, without network), report.json (every number), figures (SVG)
-    and data (NetCDF). It says what the lumped model predicts, whether the multibody model agrees, whether the
-    motion is stable over speed, and where the model stops being valid. The exit code is 1 when any verdict
-    fails.
+    One folder: index.html (opens in any browser, without network), report.json (every number), figures
+    (SVG), tables (CSV and one workbook) and data (NetCDF). It says what the model predicts, how sure that is,
+    whether a second program agrees, whether the motion is stable, and what to do next. The exit code is 1 if
+    a check of the program fails.
 
     [bold]Examples[/bold]
 
@@ -55,11 +66,13 @@ def report(
 
     spurcheck report my_pair.toml --speed "3000 rpm" --torque "500 lbf*in" --range 200..6000 -o report_3000
 
-    spurcheck report my_pair.toml -o new --compare old/report.json --tolerance 0.01
+    spurcheck report my_pair.toml -o new --compare old/report.json --tolerance 0.01 --require contact
     """
+    from lumped.arguments import some_of
     from validation.files.folder import check_target
     from validation.reporting import report as write
 
+    required = some_of("--require", require or (), _REQUIRE)
     check_target(output, force=force)
     gear_pair = opt.gear_pair(pair, speed, torque, law, settings, speed_range)
     with progress_bar("report") as tell:
@@ -70,18 +83,27 @@ def report(
             quick=quick,
             compare=compare,
             tolerance=tolerance,
+            name=pair,
             progress=tell,
         )
-    console = stdout()
-    console.print(written.sentence)
+    console, first = stdout(), written.first
+    console.print(first.title)
+    console.print(f"{first.headline} {first.reason}".strip(), style="bold")
+    for number in first.numbers:
+        note = f"  ({number.note})" if number.note else ""
+        console.print(f"  {number.label}: {number.shown}{f', {number.range}' if number.range else ''}{note}")
+    for action in first.actions:
+        console.print(f"next: {action.text}{f': {action.command}' if action.command else ''}")
     console.print(f"\nreport: {written.folder / 'index.html'} ({written.seconds:.0f} s)")
     if written.comparison is not None:
         _show_changes(written.comparison)
-    for line in written.failures:
+    for line in written.failed:
         console.print(f"fails: {line}")
-    changed = written.comparison is not None and written.comparison.regressions
-    if changed or written.failures:
+    if written.failed or (written.comparison is not None and written.comparison.regressions):
         raise typer.Exit(FAILED)
+    if missed := sorted(written.findings & set(required)):
+        console.print(f"--require is not met: {', '.join(missed)}")
+        raise typer.Exit(_FOUND)
 
 
 def _show_changes(comparison: Comparison) -> None:
@@ -94,4 +116,4 @@ def _show_changes(comparison: Comparison) -> None:
         mark = "past tolerance" if change.fails else "within"
         console.print(f"  {mark}  {change}", style="red" if change.fails else None)
     if len(comparison.changes) > _MOST:
-        console.print(f"  and {len(comparison.changes) - _MOST} more: see report.json")
+        console.print(f"  and {len(comparison.changes) - _MOST} more")

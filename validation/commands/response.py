@@ -117,7 +117,7 @@ def response(
 
 
 def _print(pair: GearPair, found: ResponseBranches) -> None:
-    from validation.reporting.formatting import number, quantity
+    from validation.files.formatting import number, quantity
 
     def motion(rms: float, load: float, kind: str, n: int) -> str:
         if kind == "grows":
@@ -216,7 +216,7 @@ def _rows(found: xr.Dataset) -> list[dict[str, float]]:
 
 
 def _print_map(pair: GearPair, found: xr.Dataset, name: str, removed: tuple[JumpRemoval, ...]) -> None:
-    from validation.reporting.formatting import number
+    from validation.files.formatting import number
 
     unit = found[name].attrs["units"]
     unit = "" if unit == "1" else f" {unit}"

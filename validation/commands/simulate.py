@@ -74,7 +74,7 @@ def simulate(
             common |= {"fidelity": fidelity, "initial": initial}
             result = multibody.simulate(gear_pair, cycles, progress=tell, **common)
     from lumped.model.results import cycle_peak_to_peak, load_range
-    from validation.reporting.formatting import number, quantity
+    from validation.files.formatting import number, quantity
     from validation.validity.flags import contact_loss
 
     g = gear_pair.geometry

@@ -118,7 +118,7 @@ def stability(
         point |= {"certificate": found.certificate, "margin": margin}
         print_json({"gear_pair": gear_pair.name, "supports": supports} | point)
     else:
-        from validation.reporting.formatting import number
+        from validation.files.formatting import number
 
         rows = {
             "verdict": found.verdict,

@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from lumped import GearPair, Geometry
+from lumped import Geometry
 from lumped.typing import FloatArray
 from validation.plots.style import (
     BLACK,
@@ -18,17 +18,9 @@ from validation.plots.style import (
     DASHES,
     RED,
     legend_above,
-    legend_outside,
-    look,
-    mark_operation,
-    mesh_cycles,
     new_figure,
-    one_panel,
     scale_y,
-    scaled,
 )
-from validation.validity.contact_forms import FORMS, ContactForms
-from validation.validity.four_springs import LIMITS, MODELS, FourSprings
 
 _LABELS = {
     "dte": "transmission error",
@@ -94,63 +86,9 @@ def cross_check_figure(
     return figure
 
 
-def contact_forms_figure(pair: GearPair, found: ContactForms) -> Figure:
-    """Transmission error of both forms and of the exact contact over one mesh cycle.
-
-    ``found``: of ``contact_forms``.
-    """
-    figure, ax = one_panel(2.6)
-    factor = scale_y(ax, "transmission error", "m", found.motions["exact"]["dte"])
-    looks = {
-        "exact": (BLACK, "-", "exact contact, all effects"),
-        "loaded": (BLUE, (0, (5, 1.5)), FORMS["loaded"]),
-        "prescribed": (RED, (0, (1.2, 1.2)), FORMS["prescribed"]),
-    }
-    for name, (colour, dashes, words) in looks.items():
-        motion = found.motions[name]
-        x = mesh_cycles(motion, pair.geometry)
-        ax.plot(x, motion["dte"].to_numpy() / factor, color=colour, linestyle=dashes, label=words)
-    ax.set(xlabel="time [mesh cycles]", xlim=(0.0, 1.0))
-    legend_above(ax, 3)
-    return figure
-
-
 #: Quantity -> words of its axis.
 _PANELS = {
     "dte": "transmission error,\npeak to peak",
     "force_p": "bearing forces, pinion,\nalong the LOA, p-p",
     "spectral_radius": "largest multiplier",
 }
-
-
-def four_springs_figure(found: FourSprings, operating_rpm: float) -> Figure:
-    """Transmission error, bearing forces and largest multiplier of all models over speed.
-    Shaded: speeds at which the springs of the parameters do not hold.
-
-    ``found``: of ``four_springs``; ``operating_rpm``: marked [rpm].
-    """
-    figure, axes = new_figure(len(_PANELS), 1, height=5.6, sharex=True)
-    speed = found.over_speed["speed"].to_numpy()
-    handles = []
-    for ax, (name, words) in zip(axes[:, 0], _PANELS.items(), strict=True):
-        values = found.over_speed[name]
-        factor, unit = (1.0, "-")
-        if name != "spectral_radius":
-            factor, unit = scaled(values.sel(model="shafts").to_numpy(), unit=str(values.attrs["units"]))
-        lines = []
-        for i, model in enumerate(("shafts", "springs", "condensed", "dynamic")):
-            lines += ax.plot(speed, values.sel(model=model) / factor, **look(i), label=MODELS[model])
-        machine = values.sel(model="machine") / factor  # it has no multipliers
-        lines += ax.plot(speed, machine, "o", color=BLACK, markersize=4, label=MODELS["machine"])
-        for low, high in found.ranges(hold=False):
-            ax.axvspan(low, high, color="#f3ddd3", zorder=0, linewidth=0)
-        top = float(values.sel(model=["shafts", "machine"]).max()) / factor
-        # Springs may be far off: what the shafts do fills the panel.
-        ax.set(ylabel=f"{words} [{unit}]", ylim=(0.0, 1.6 * top), xlim=(speed[0], speed[-1]))
-        handles = lines
-    mark_operation(axes[0, 0], operating_rpm, "operating point")
-    axes[-1, 0].set_xlabel(
-        f"pinion speed [rpm]; shaded: the given springs are off by more than {LIMITS[1]:.0%}"
-    )
-    legend_outside(figure, handles, 2)
-    return figure

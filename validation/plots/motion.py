@@ -10,86 +10,21 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from lumped import Geometry, mesh_cycle
+from lumped import Geometry
 from lumped.model.steady import UNSTABLE
-from lumped.schema.pair import GearPair
-from validation.cross_check.metrics import MeshOrders
 from validation.plots.style import (
-    BLACK,
     BLUE,
-    DASHES,
-    GREEN,
     GREY,
     LINES,
     RED,
-    legend,
     legend_above,
     legend_outside,
     look,
     mark_operation,
-    mark_switches,
     mesh_cycles,
     new_figure,
     scale_y,
-    scaled,
-    switches_in_cycles,
 )
-
-
-def first_figure(
-    lumped: xr.Dataset,
-    multibody: xr.Dataset,
-    period: float,
-    sweep: xr.Dataset,
-    operating_rpm: float,
-    static_load: float,
-    branches: xr.Dataset | None = None,
-) -> Figure:
-    """Transmission error of both models over the last mesh cycle, and its peak to peak over speed.
-
-    Parameters
-    ----------
-    lumped, multibody : histories of ``dte`` at the same times
-    period : mesh period [s]
-    sweep : dataset of ``lumped.speed_sweep``
-    operating_rpm : operating speed, marked [rpm]
-    static_load : T_p/r_bp; where the smallest load is negative beside it, contact is lost [N]
-    branches : ``dataset`` of ``floquet.response_branches``, of which the stable motions are drawn
-    """
-    figure, axes = new_figure(2, 1, height=4.9)
-    figure.set_figwidth(4.6)
-    top, bottom = axes[:, 0]
-    time = lumped["time"].to_numpy()
-    last = time >= time[-1] - (1.0 + 1e-9) * period
-    x = (time[last] - time[last][0]) / period
-    here = lumped["dte"].to_numpy()[last]
-    factor = scale_y(top, "transmission error", "m", here)
-    top.plot(x, here / factor, color=BLUE, linewidth=2.6, alpha=0.5, label="this model")
-    other = multibody["dte"].to_numpy()[last]
-    top.plot(x, other / factor, color=RED, linewidth=1.1, label="independent model")
-    top.set(xlabel="time [mesh cycles]", xlim=(0.0, 1.0))
-    legend_above(top, 2)
-    speed, values = sweep["speed"].to_numpy(), sweep["dte_peak_to_peak"].to_numpy()
-    wrong = sweep["normal_load_min"].to_numpy() < -1e-9 * static_load
-    wrong |= sweep["spectral_radius"].to_numpy() > UNSTABLE
-    factor = scale_y(bottom, "peak to peak", "m", values)
-    bottom.plot(speed, np.where(wrong, np.nan, values) / factor, color=BLUE, label="holds")
-    if wrong.any():
-        dotted: dict[str, Any] = {"color": GREY, "linewidth": 0.9, "linestyle": ":", "zorder": 1.5}
-        bottom.plot(speed, values / factor, label="not as computed", **dotted)
-    if branches is not None:
-        for number in np.unique(branches["branch"]):
-            one = branches.isel(point=branches["branch"].to_numpy() == number)
-            stable = np.where(one["stable"], one["dte_peak_to_peak"] / factor, np.nan)
-            bottom.plot(one["speed_rpm"], stable, color=GREEN)
-        bottom.plot([], [], color=GREEN, label="unilateral contact")
-    bottom.set(xlabel="pinion speed [rpm]", ylim=(0.0, None), xlim=(speed[0], speed[-1]))
-    mark_operation(bottom, operating_rpm, "")
-    if speed[0] <= operating_rpm <= speed[-1]:
-        point = float(np.ptp(here)) / factor
-        bottom.plot([operating_rpm], [point], "o", color=RED, markersize=5, label="operating point")
-    legend_above(bottom, 2 if branches is not None else 3)
-    return figure
 
 
 def history_figure(g: Geometry, result: xr.Dataset) -> Figure:
@@ -108,70 +43,6 @@ def history_figure(g: Geometry, result: xr.Dataset) -> Figure:
     bottom.axhline(0.0, color=GREY, linewidth=0.6)
     bottom.set(xlabel="time [mesh cycles]", xlim=(x[0], x[-1]))
     legend_above(bottom, len(load))
-    return figure
-
-
-def transmission_error_figure(pair: GearPair, g: Geometry, motion: xr.Dataset, orders: MeshOrders) -> Figure:
-    """Periodic dynamic transmission error: over one mesh cycle, and the amplitudes of its mesh orders.
-
-    ``motion``: dataset of ``lumped.steady_state``; ``orders``: mesh orders of ``motion["dte"]``.
-    """
-    figure, axes = new_figure(1, 2, height=2.7, width_ratios=(1.5, 1.0))
-    left, right = axes[0]
-    dte = motion["dte"].to_numpy()
-    factor = scale_y(left, "dynamic transmission error", "m", dte)
-    left.plot(mesh_cycles(motion, g), dte / factor, color=BLUE)
-    left.axhline(float(dte.mean()) / factor, color=GREY, linewidth=0.8, linestyle=":")
-    left.set(xlim=(0.0, 1.0), xlabel="time [mesh cycles]")
-    mark_switches(left, switches_in_cycles(mesh_cycle(pair)))
-    amplitude = orders.amplitude[1:]
-    heights = amplitude / scale_y(right, "amplitude", "m", amplitude)
-    right.bar(orders.order[1:], heights, width=0.6, color=BLUE)
-    right.set_xticks(orders.order[1:])
-    right.set(xlabel="mesh order [-]")
-    right.grid(False, axis="x")
-    return figure
-
-
-def tooth_forces_figure(pair: GearPair, g: Geometry, motion: xr.Dataset) -> Figure:
-    """Normal load and friction force per tooth pair and in total, over one mesh cycle.
-
-    ``motion``: dataset of ``lumped.steady_state``.
-    """
-    figure, axes = new_figure(2, 1, height=4.4, sharex=True)
-    x = mesh_cycles(motion, g)
-    touching = motion["contact"].to_numpy() > 0
-    for ax, name in zip(axes[:, 0], ("normal_load", "friction_force"), strict=True):
-        values = motion[name].to_numpy()
-        factor = scale_y(ax, name.replace("_", " "), "N", values, values.sum(axis=0))
-        ax.plot(x, values.sum(axis=0) / factor, color=BLACK, linewidth=0.9, label="all pairs")
-        for i, row in enumerate(values):
-            label = f"pair {i}" + (" (ahead)" if i == 0 else "")
-            ax.plot(x, np.where(touching[i], row, np.nan) / factor, **look(i), linewidth=1.8, label=label)
-        ax.axhline(0.0, color=GREY, linewidth=0.6)
-        mark_switches(ax, switches_in_cycles(mesh_cycle(pair)), letters=ax is axes[0, 0])
-    axes[1, 0].set(xlabel="time [mesh cycles]", xlim=(0.0, 1.0))
-    legend_above(axes[0, 0], 4, letters=True)
-    return figure
-
-
-def motions_figure(g: Geometry, motion: xr.Dataset) -> Figure:
-    """Displacements of both gears about their means, along (LOA) and off (OLOA) the line of action.
-
-    ``motion``: dataset of ``lumped.steady_state``.
-    """
-    figure, axes = new_figure(1, 2, height=2.7)
-    x = mesh_cycles(motion, g)
-    for ax, axis, label in zip(axes[0], "xy", ("along", "off"), strict=True):
-        curves = {gear: motion[f"{axis}_{gear}"].to_numpy() for gear in "pg"}
-        moving = {gear: values - values.mean() for gear, values in curves.items()}
-        factor = scale_y(ax, f"{label} the line of action\nabout the mean", "m", *moving.values())
-        for gear, name, colour, dash in (("p", "pinion", BLUE, DASHES[0]), ("g", "gear", RED, DASHES[1])):
-            mean, mean_unit = scaled(curves[gear], unit="m")
-            text = f"{name}, mean {curves[gear].mean() / mean:.3g} {mean_unit}"
-            ax.plot(x, moving[gear] / factor, color=colour, linestyle=dash, label=text)
-        ax.set(xlim=(0.0, 1.0), xlabel="time [mesh cycles]")
-        legend(ax, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=1)
     return figure
 
 

@@ -18,12 +18,10 @@ from matplotlib.image import AxesImage
 from scipy.ndimage import maximum_filter
 from scipy.optimize import isotonic_regression
 
-from floquet.gear.multipliers import GearPairMultipliers
 from floquet.gear.tongues import LabelledRegion, StabilityMargins, TongueMargin
 from lumped.typing import FloatArray
 from validation.plots.style import (
     BLACK,
-    BLUE,
     GREY,
     IN_X,
     RED,
@@ -283,26 +281,6 @@ def campbell_figure(
         mark_operating_value(ax, operating_rpm, "operating point" if ax is top else "")
     mark_operating_range(top, operating_range, lower=True)
     top.tick_params(labelbottom=False)
-    return figure
-
-
-def multipliers_figure(multipliers: GearPairMultipliers) -> Figure:
-    """Multipliers in the complex plane, with the rigid rotation apart."""
-    figure, ax = one_panel(3.4)
-    angle, reach = np.linspace(0.0, 2.0 * np.pi, 361), 1.1 * max(1.0, multipliers.spectral_radius)
-    ax.plot(np.cos(angle), np.sin(angle), color=BLACK, linewidth=1.0)
-    ax.axhline(0.0, color=GREY, linewidth=0.5)
-    ax.axvline(0.0, color=GREY, linewidth=0.5)
-    for values, marker, colour, label in (
-        (multipliers.feedback, "o", BLUE, "mesh: q, x of pinion and gear"),
-        (multipliers.oloa, "s", RED, "bearings: y of pinion and gear"),
-    ):
-        style: Any = {"markerfacecolor": "none", "markeredgecolor": colour, "markeredgewidth": 1.6}
-        ax.plot(values.real, values.imag, marker, markersize=7, label=label, **style)
-    ax.plot([1.0], [0.0], "x", color=BLACK, markersize=7, label="rigid rotation (taken out)")
-    ax.set(xlim=(-reach, reach), ylim=(-reach, reach), xlabel="real part [-]", ylabel="imaginary part [-]")
-    ax.set_aspect("equal")
-    legend(ax, loc="center left", bbox_to_anchor=(1.02, 0.5), handlelength=1.2)
     return figure
 
 

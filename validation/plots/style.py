@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from lumped import Geometry, MeshCycle
+from lumped import Geometry
 from lumped.typing import FloatArray
 from validation.files.output import whole_file
 
@@ -64,30 +64,30 @@ _RC: Any = {
 
 
 def new_figure(
-    rows: int = 1, columns: int = 1, height: float = 2.9, **options: Any
+    rows: int = 1, columns: int = 1, height: float = 2.9, width: float = WIDTH, **options: Any
 ) -> tuple[Figure, NDArray[np.object_]]:
     """Return an empty figure and its axes (rows, columns), in the house style.
 
     Parameters
     ----------
     rows, columns : panels
-    height : of the figure [inch]; its width is ``WIDTH``
+    height, width : of the figure [inch]
     **options : of ``Figure.subplots``
     """
     with mpl.rc_context(_RC):
-        figure = Figure(figsize=(WIDTH, height), layout="constrained")
+        figure = Figure(figsize=(width, height), layout="constrained")
         axes = figure.subplots(rows, columns, squeeze=False, **options)
     for ax in axes.flat:
-        width, tall = WIDTH * ax.get_position().width, height * ax.get_position().height
-        ax.locator_params(axis="x", nbins=max(3, min(round(2.6 * width), 9)), steps=(1, 2, 5, 10))
+        wide, tall = width * ax.get_position().width, height * ax.get_position().height
+        ax.locator_params(axis="x", nbins=max(3, min(round(2.6 * wide), 9)), steps=(1, 2, 5, 10))
         ax.locator_params(axis="y", nbins=max(3, min(round(4.0 * tall), 6)), steps=(1, 2, 5, 10))
         ax.tick_params(width=0.6, length=3, grid_color="#d9d9d9", grid_linewidth=0.5)
     return figure, axes
 
 
-def one_panel(height: float) -> tuple[Figure, Axes]:
-    """Return an empty figure of one panel and its axes; height [inch]."""
-    figure, axes = new_figure(height=height)
+def one_panel(height: float, width: float = WIDTH) -> tuple[Figure, Axes]:
+    """Return an empty figure of one panel and its axes; height and width [inch]."""
+    figure, axes = new_figure(height=height, width=width)
     return figure, axes[0, 0]
 
 
@@ -152,11 +152,6 @@ def mark_switches(ax: Axes, events: Mapping[str, float], *, letters: bool = True
         if not letters:
             continue
         write_beside(ax, ", ".join(names), (place, 1.0), (0, 2), IN_X, ha="center", va="bottom", color=GREY)
-
-
-def switches_in_cycles(cycle: MeshCycle) -> dict[str, float]:
-    """Letters of the events of a mesh cycle -> time [mesh cycles]."""
-    return {name: time / cycle.period for name, time in cycle.events.items()}
 
 
 def path_axis(ax: Axes, g: Geometry, ends: FloatArray | None = None) -> None:

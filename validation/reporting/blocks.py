@@ -1,15 +1,14 @@
-"""What a chapter of the report is made of: plain data that becomes both HTML and JSON.
+"""What the report is made of: plain data that becomes HTML, JSON and CSV.
 
-Chapters show numbers only through these blocks, and every block goes into report.json. The page therefore
-shows no number that report.json does not have.
+Chapters show numbers only through these blocks, so the page shows no number that report.json does not have. A
+picture draws one dataset, which is written beside it.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Any, TypeVar
 
 import xarray as xr
@@ -18,20 +17,15 @@ from matplotlib.figure import Figure
 #: State of a badge -> its class in the page. The words themselves always stand beside the colour.
 STATES = {
     "ok": "good",
-    "confirmed": "good",
     "agrees": "good",
     "stable": "good",
-    "within": "good",
     "warning": "fair",
     "differs": "fair",
-    "not checked": "fair",
     "undecided": "fair",
     "violated": "bad",
-    "not confirmed": "bad",
-    "fails": "bad",
+    "failed": "bad",
     "unstable": "bad",
-    "outside": "bad",
-    "prediction": "plain",
+    "plain": "plain",
 }
 
 
@@ -62,7 +56,6 @@ class Quantity:
 
 
 Cell = str | int | float | bool | Quantity | Badge | None
-Rows = list[tuple[Cell, ...]]
 T = TypeVar("T")
 
 
@@ -72,11 +65,10 @@ class Table:
 
     Attributes
     ----------
-    key : name in report.json
+    key : name in report.json, and of its CSV file
     caption : what it shows
     columns : name in report.json -> heading
     rows : cells, one per column
-    marked : indices of rows to highlight
     note : remark below
     """
 
@@ -84,7 +76,6 @@ class Table:
     caption: str
     columns: Mapping[str, str]
     rows: tuple[tuple[Cell, ...], ...]
-    marked: frozenset[int] = frozenset()
     note: str = ""
 
 
@@ -93,8 +84,6 @@ def table_of(
     caption: str,
     items: Sequence[T],
     columns: Mapping[str, tuple[str, Callable[[T], Cell]]],
-    *,
-    marked: Callable[[T], bool] = lambda item: False,
     note: str = "",
 ) -> Table:
     """Table with one row per item.
@@ -104,63 +93,42 @@ def table_of(
     key, caption, note : of the table
     items : what the rows are about
     columns : name in report.json -> heading, and the cell of an item
-    marked : whether to highlight an item's row
     """
     return Table(
         key,
         caption,
         {name: heading for name, (heading, _) in columns.items()},
         tuple(tuple(cell(item) for _, cell in columns.values()) for item in items),
-        frozenset(place for place, item in enumerate(items) if marked(item)),
         note,
     )
 
 
-@dataclass(frozen=True)
-class Fact:
-    """One named number or word with what it means."""
-
-    key: str
-    label: str
-    value: Cell
-    note: str = ""
-
-
-@dataclass(frozen=True)
-class Facts:
-    """A list of facts."""
-
-    key: str
-    items: tuple[Fact, ...]
-
-
-FactRow = tuple[str, str, Cell] | tuple[str, str, Cell, str] | tuple[str, str, Cell, str, str]
-
-
-def facts(key: str, *rows: FactRow) -> Facts:
-    """List of facts: a row is key, label and value, then the unit of a number ("" for none), then a note."""
-    return Facts(key, tuple(map(_fact, rows)))
-
-
-def _fact(row: FactRow) -> Fact:
-    key, label, value, unit, note = (*row, "", "")[:5]
-    return Fact(key, label, Quantity(float(value), unit) if unit else value, note)
+def quantities(key: str, caption: str, *rows: tuple[str, float, str] | tuple[str, float, str, str]) -> Table:
+    """Table of named numbers: a row is a label, a number, its unit in SI, and a note."""
+    cells = tuple((row[0], Quantity(float(row[1]), row[2]), row[3] if len(row) > 3 else "") for row in rows)
+    return Table(key, caption, {"name": "", "value": "value", "note": ""}, cells)
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure, drawn when it is needed.
+    """A figure of one dataset.
 
     Attributes
     ----------
     key : file name without suffix, and name in report.json
     caption : what it shows and what to see in it
-    draw : makes the figure
+    data : what is drawn; it is written as CSV beside the figure
+    draw : makes the figure from the dataset
     """
 
     key: str
     caption: str
-    draw: Callable[[], Figure]
+    data: xr.Dataset
+    draw: Callable[[xr.Dataset], Figure]
+
+    def figure(self) -> Figure:
+        """The figure of its dataset."""
+        return self.draw(self.data)
 
 
 @dataclass(frozen=True)
@@ -171,23 +139,7 @@ class Text:
     items: tuple[str, ...] = ()
 
 
-Block = Text | Facts | Table | Picture
-
-
-@dataclass(frozen=True)
-class Answer:
-    """A question that the reader has, answered at the top of the report.
-
-    Attributes
-    ----------
-    question : in plain words
-    badge : the verdict
-    text : the answer in a line
-    """
-
-    question: str
-    badge: Badge
-    text: str
+Block = Text | Table | Picture
 
 
 @dataclass(frozen=True)
@@ -196,16 +148,12 @@ class Content:
 
     Attributes
     ----------
+    result : its result in one sentence
     blocks : in order
-    badge : verdict beside the heading, if the chapter has one
-    data : file name below data/ without suffix -> dataset behind the figures
-    write_more : writes further files into the folder data/
     """
 
+    result: str
     blocks: tuple[Block, ...]
-    badge: Badge | None = None
-    data: Mapping[str, xr.Dataset] = field(default_factory=dict)
-    write_more: Callable[[Path], None] | None = None
 
 
 def plain(value: Cell) -> Any:
@@ -225,13 +173,9 @@ REMARKS = ("text", "figures", "captions", "tables")
 
 def chapter_data(title: str, content: Content) -> dict[str, Any]:
     """Everything a chapter shows, as JSON data."""
-    data: dict[str, Any] = {"title": title}
-    if content.badge is not None:
-        data["verdict"] = plain(content.badge)
+    data: dict[str, Any] = {"title": title, "text": [[content.result]]}
     for block in content.blocks:
-        if isinstance(block, Facts):
-            data[block.key] = {fact.key: _fact_data(fact) for fact in block.items}
-        elif isinstance(block, Table):
+        if isinstance(block, Table):
             data[block.key] = [dict(zip(block.columns, map(plain, row), strict=True)) for row in block.rows]
             about = {"caption": block.caption} | ({"note": block.note} if block.note else {})
             data.setdefault("tables", {})[block.key] = about
@@ -239,10 +183,5 @@ def chapter_data(title: str, content: Content) -> dict[str, Any]:
             data.setdefault("figures", []).append(block.key)
             data.setdefault("captions", {})[block.key] = block.caption
         else:
-            data.setdefault("text", []).append([block.text, *block.items])
+            data["text"].append([block.text, *block.items])
     return data
-
-
-def _fact_data(fact: Fact) -> dict[str, Any]:
-    data: dict[str, Any] = {"label": fact.label, "value": plain(fact.value)}
-    return data | {"note": fact.note} if fact.note else data

@@ -4,30 +4,34 @@ from __future__ import annotations
 
 import base64
 import json
-import resource
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from floquet.gear.response import ResponseBranches
+import xarray as xr
+
 from lumped import GearPair, load_gear_pair
-from lumped.arguments import file_path
+from lumped.arguments import file_path, real_number
+from lumped.outcomes import Absent
 from lumped.typing import Progress
 from validation.files.folder import FORMAT, FORMAT_VERSION, whole_folder
 from validation.files.output import write_dataset
-from validation.plots.motion import first_figure
 from validation.plots.style import save
-from validation.reporting.blocks import Answer, Picture, chapter_data, plain
+from validation.reporting.blocks import Picture, Table, chapter_data, plain
 from validation.reporting.chapter import Chapter, Written
 from validation.reporting.chapters import CHAPTERS
-from validation.reporting.gate import TOLERANCE, Comparison, checked_tolerance, failures, load_report
+from validation.reporting.first_figures import first_figures
+from validation.reporting.gate import TOLERANCE, Comparison, load_report
 from validation.reporting.gate import compare as compare_reports
 from validation.reporting.page import render
+from validation.reporting.page_one import Number, PageOne, page_one
+from validation.reporting.relations import failed_checks
 from validation.reporting.results import FULL, QUICK, Results
-from validation.reporting.words import headline, sentence
+from validation.reporting.tables import write_tables
 
 
 @dataclass(frozen=True)
@@ -37,17 +41,17 @@ class Report:
     Attributes
     ----------
     folder : where it is
-    sentence : its verdict in one sentence
-    verdicts : chapter -> word of its verdict
-    failures : verdicts that are bad, one line each
+    first : what page 1 says
+    failed : checks of the program that fail, one phrase each
+    findings : findings about the machine, for gates: "contact", "stable", "holds"
     seconds : wall time [s]
     comparison : with an earlier report, where one was given
     """
 
     folder: Path
-    sentence: str
-    verdicts: dict[str, str]
-    failures: tuple[str, ...]
+    first: PageOne
+    failed: tuple[str, ...]
+    findings: frozenset[str]
     seconds: float
     comparison: Comparison | None = None
 
@@ -60,22 +64,24 @@ def report(
     quick: bool = False,
     compare: str | Path | None = None,
     tolerance: float = TOLERANCE,
+    name: str = "",
     progress: Progress | None = None,
 ) -> Report:
     """Write the verification report of a gear pair into a folder.
 
-    The folder gets ``index.html`` (self-contained: it needs no network and no other file),
-    ``report.json`` (every number shown), ``figures/`` (SVG) and ``data/`` (NetCDF and the parameter file). It
-    is written whole or not at all.
+    The folder gets ``index.html`` (self-contained: it needs no network and no other file), ``report.json``
+    (every number shown), ``figures/`` (SVG), ``tables/`` (CSV of every table and figure, and one workbook)
+    and ``data/`` (NetCDF and the parameter file). It is written whole or not at all.
 
     Parameters
     ----------
     pair : gear pair, preset name or parameter file
     out : folder, new or empty
     force : replace an earlier report in that folder
-    quick : coarser sampling and no verification, for a first look
+    quick : coarser sampling, inputs not varied, for a first look
     compare : report.json of an earlier report, or its folder
     tolerance : relative change of a number that passes in this comparison
+    name : how commands name the pair, its file or preset; default the pair's name
     progress : called with the finished fraction and what is being done
 
     Raises
@@ -86,47 +92,49 @@ def report(
     started = time.perf_counter()
     tell: Progress = progress or (lambda fraction, stage="", /: None)
     gear_pair = load_gear_pair(pair)
+    named = name or (str(pair) if isinstance(pair, (str, Path)) else gear_pair.name)
     target = file_path("out", out)
     earlier = None if compare is None else load_report(compare, quick=quick)
-    checked_tolerance(tolerance)
+    real_number("--tolerance", tolerance, 0.0, 1.0, action="0.001 lets numbers change by 0.1 %.")
     with whole_folder(target, force=force) as folder:
-        effort = QUICK if quick else FULL
-        results = Results(gear_pair, effort)
+        results = Results(gear_pair, QUICK if quick else FULL, named)
         chapters = written(results, CHAPTERS, lambda f, stage="", /: tell(0.85 * f, stage))
-        computed = time.perf_counter()
-        first = answer_figure(results)
-        pictures = (first, *_pictures(chapters))
-        images = _draw(pictures, folder / "figures", lambda f, stage="", /: tell(0.85 + 0.12 * f, stage))
+        first, pictures = page_one(results), first_figures(results)
+        blocks = [block for _, content in chapters for block in content.blocks]
+        every = (*pictures, *(block for block in blocks if isinstance(block, Picture)))
+        images = _draw(every, folder / "figures", lambda f, stage="", /: tell(0.85 + 0.12 * f, stage))
         tell(0.97, "data")
-        _write_data(results, chapters, folder / "data")
-        data = document(results, chapters, quick=quick)
-        seconds = {"compute": computed - started, "all": time.perf_counter() - started}
+        _write_data(results, folder / "data")
+        (folder / "tables").mkdir()
+        write_tables([block for block in blocks if isinstance(block, Table)], every, folder / "tables")
+        data = document(results, first, chapters, quick=quick)
         data["timestamps"] = {
             "created": datetime.now(UTC).isoformat(timespec="seconds"),
-            "seconds": {name: round(value, 2) for name, value in seconds.items()},
-            "peak_memory_MB": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, 1),
+            "seconds": round(time.perf_counter() - started, 2),
         }
         for name, text in {
             "report.json": json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n",
-            "index.html": render(gear_pair, first, answers(results, chapters), chapters, images, data),
+            "index.html": render(first, pictures, chapters, images, data),
         }.items():
             (folder / name).write_text(text, encoding="utf-8")
     tell(1.0, "done")
-    verdicts = {
-        chapter.key: content.badge.state for chapter, content in chapters if content.badge is not None
+    changes = None if earlier is None else compare_reports(earlier, data, tolerance)
+    seconds = time.perf_counter() - started
+    return Report(target, first, failed_checks(results), findings(results), seconds, changes)
+
+
+def findings(results: Results) -> frozenset[str]:
+    """Findings about the machine: "contact" is lost, it is not "stable", the model does not "hold"."""
+    found = {
+        "contact": results.prediction.contact_lost,
+        "stable": not results.prediction.stable,
+        "holds": bool(results.outside) or results.prediction.contact_lost or not results.prediction.stable,
     }
-    comparison = None if earlier is None else compare_reports(earlier, data, tolerance=tolerance)
-    seconds_all = time.perf_counter() - started
-    return Report(target, data["verdict"], verdicts, failures(data), seconds_all, comparison)
+    return frozenset(name for name, there in found.items() if there)
 
 
-def written(
-    results: Results, chapters: tuple[Chapter, ...], progress: Progress | None = None
-) -> tuple[Written, ...]:
-    """Write chapters, without those that the report leaves out.
-
-    ``chapters``: which, in their order.
-    """
+def written(results: Results, chapters: Sequence[Chapter], progress: Progress) -> tuple[Written, ...]:
+    """Write chapters, without those that the report leaves out."""
     total = sum(chapter.seconds for chapter in chapters)
     made: list[Written] = []
     done = shown = 0.0
@@ -134,8 +142,7 @@ def written(
     def tell(first: float, own: float, fraction: float, stage: str = "", /) -> None:
         nonlocal shown
         shown = max(shown, (first + fraction * own) / total)  # a chapter may compute several results
-        if progress is not None:
-            progress(shown, stage)
+        progress(shown, stage)
 
     for chapter in chapters:
         results.progress = partial(tell, done, chapter.seconds)
@@ -146,12 +153,9 @@ def written(
     return tuple(made)
 
 
-def answers(results: Results, chapters: tuple[Written, ...]) -> dict[str, Answer]:
-    """Answers at the top of the report: key of the chapter that says why -> answer."""
-    return {chapter.key: chapter.answer(results) for chapter, _ in chapters if chapter.answer is not None}
-
-
-def document(results: Results, chapters: tuple[Written, ...], *, quick: bool) -> dict[str, Any]:
+def document(
+    results: Results, first: PageOne, chapters: tuple[Written, ...], *, quick: bool
+) -> dict[str, Any]:
     """report.json without its timestamps: the same parameters and software give the same data."""
     return {
         "format": FORMAT,
@@ -159,60 +163,49 @@ def document(results: Results, chapters: tuple[Written, ...], *, quick: bool) ->
         "gear_pair": results.pair.name,
         "description": results.pair.description,
         "quick": quick,
-        "headline": headline(results),
-        "verdict": sentence(results),
-        "doubts": list(results.doubts),
-        "answers": [
-            {"question": a.question, "verdict": plain(a.badge), "text": a.text, "chapter": key}
-            for key, a in answers(results, chapters).items()
-        ],
+        "verdict": {"kind": first.verdict.name, "headline": first.headline, "reason": first.reason},
+        "numbers": {number.key: _number(number) for number in first.numbers},
+        "actions": [{"text": a.text, "command": a.command, "gain": a.gain} for a in first.actions],
+        "how_sure": list(first.sure),
+        "warnings": list(first.warnings),
+        "findings": sorted(findings(results)),
+        "failed_checks": list(failed_checks(results)),
         "chapters": {chapter.key: chapter_data(chapter.title, content) for chapter, content in chapters},
         "parameters": results.pair.to_mapping(),
     }
 
 
-def answer_figure(results: Results) -> Picture:
-    """The one figure of the first page: the answer in time and over speed."""
-    check, branches = results.check, results.branches
-    return Picture(
-        "answer",
-        "Transmission error over one mesh cycle by both models, and its peak to peak over pinion speed.",
-        partial(
-            first_figure,
-            check.lumped,
-            check.multibody["exact"],
-            results.geometry.mesh_period,
-            results.sweep,
-            results.operating_rpm,
-            results.static_load,
-            branches.dataset if isinstance(branches, ResponseBranches) else None,
-        ),
-    )
+def _number(number: Number) -> dict[str, Any]:
+    sizes = {name: plain(float(getattr(number, name))) for name in ("value", "low", "high", "second")}
+    return {"label": number.label, "unit": number.unit, "note": number.note} | sizes
 
 
-def _pictures(chapters: tuple[Written, ...]) -> tuple[Picture, ...]:
-    return tuple(block for _, content in chapters for block in content.blocks if isinstance(block, Picture))
-
-
-def _draw(pictures: tuple[Picture, ...], folder: Path, tell: Progress) -> dict[str, str]:
-    """Write all figures; return them as data URIs by key."""
+def _draw(pictures: Sequence[Picture], folder: Path, progress: Progress) -> dict[str, str]:
+    """Draw the pictures; key -> data URI of its file."""
     folder.mkdir()
-    images: dict[str, str] = {}
-    for done, picture in enumerate(pictures, 1):
+    images = {}
+    for count, picture in enumerate(pictures):
+        progress(count / len(pictures), "figures")
         path = folder / f"{picture.key}.svg"
-        save(picture.draw(), path)
-        images[picture.key] = (
-            f"data:image/svg+xml;base64,{base64.b64encode(path.read_bytes()).decode('ascii')}"
-        )
-        tell(done / len(pictures), "figures")
+        save(picture.figure(), path, new=True)
+        images[picture.key] = "data:image/svg+xml;base64," + base64.b64encode(path.read_bytes()).decode()
     return images
 
 
-def _write_data(results: Results, chapters: tuple[Written, ...], folder: Path) -> None:
+def _write_data(results: Results, folder: Path) -> None:
+    """Write the datasets that the numbers come from, and the parameter file."""
     folder.mkdir()
-    for _, content in chapters:
-        for name, dataset in content.data.items():
-            write_dataset(dataset, folder / f"{name}.nc")
-        if content.write_more is not None:
-            content.write_more(folder)
+    second = results.second
+    found: dict[str, xr.Dataset | Absent] = {
+        "prediction": results.prediction.cycle,
+        "linear": results.linear,
+        "second_program": second if isinstance(second, Absent) else second.cycle,
+        "sweep": results.sweep,
+        "uncertainty": results.uncertainty,
+        "budget": results.budget,
+        "stability": results.chart,
+    }
+    for name, data in found.items():
+        if not isinstance(data, Absent):
+            write_dataset(data, folder / f"{name}.nc")
     (folder / "parameters.toml").write_text(results.pair.to_toml(), encoding="utf-8")

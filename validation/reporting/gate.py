@@ -1,4 +1,4 @@
-"""Report.json as a gate: verdicts that fail, and what changed since an earlier report."""
+"""Report.json as a gate: what changed since an earlier report."""
 
 from __future__ import annotations
 
@@ -6,64 +6,26 @@ import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Never
+from typing import Any
 
-from lumped.arguments import file_path, real_number
+from lumped.arguments import file_path
 from lumped.errors import refuse
 from lumped.fields.text_file import read_text
 from validation.files.folder import FORMAT, FORMAT_VERSION, REPORT
-from validation.reporting.blocks import REMARKS, STATES
+from validation.reporting.blocks import REMARKS
+from validation.reporting.page_one import Verdict
 
 #: Relative change of a number that passes; numbers are compared as computed, not as shown.
 TOLERANCE = 1e-3
-#: Numbers that measure a numerical error change with every rounding; they may grow by this factor.
-_ERROR_GROWTH = 10.0
-#: Errors below this are rounding, whatever they were before.
-_ROUNDING = 1e-9
-#: Names of such numbers, and tables that hold nothing else.
-_ERRORS = frozenset(
-    {"error", "error_estimate", "liouville_residual", "unsettled", "law_difference", "bound", "closure"}
-)
-_ERROR_TABLES = frozenset(
-    {
-        "code_verification/evidence",
-        "solution_verification/refinement",
-    }
-)
-#: A number counts as zero below this share of the largest of its unit in its table, or of its column.
+#: A number counts as zero below this share of the largest of its column.
 _SMALL = 1e-4
+#: Tables of numerical errors, which change with every rounding; their limits judge them in every report.
+_ERRORS = frozenset({"agreement", "conservation", "error_budget"})
+#: Chapters that repeat the input or name the software, which is free to change.
+_FREE = frozenset({"inputs", "evidence"})
 _MAX_BYTES = 100_000_000
-_LARGEST_TEXT = 60
-#: Blocks that repeat the input, or name the software, which is free to change.
-_NOT_COMPARED = {("parameters", "parameters"), ("provenance", "versions")}
-#: First parts of the paths of what a report is made from.
-_INPUT = ("input/", "provenance/")
-_TONES = {"good": 0, "plain": 0, "fair": 1, "bad": 2}
-
-
-def failures(document: Mapping[str, Any]) -> tuple[str, ...]:
-    """Verdicts of report.json that are bad, one line each: the answers on top, chapters, rows of tables."""
-    bad = [f"answers: {a['question']}: {a['verdict']['text']}" for a in document["answers"] if _rank(a) == 2]
-    for key, chapter in document["chapters"].items():
-        if _rank(chapter) == 2:
-            bad.append(f"{key}: {chapter['title']}: {chapter['verdict']['text']}")
-        for name, block in chapter.items():
-            for row_name, row in zip(_row_names(block), block, strict=True) if _is_table(block) else ():
-                # Other badges only mark a row.
-                for column in ("verdict", "state"):
-                    if _rank(row, column) == 2:
-                        bad.append(f"{key}.{name}: {row_name}: {row[column]['text']}")
-    return tuple(bad)
-
-
-def _is_table(block: Any) -> bool:
-    return isinstance(block, list) and all(isinstance(row, dict) for row in block)
-
-
-def _rank(row: Mapping[str, Any], column: str = "verdict") -> int:
-    """How bad the badge of a row is, 0 to 2; 0 without one."""
-    badge = row.get(column)
-    return _TONES[STATES.get(badge["state"], "plain")] if isinstance(badge, dict) and "state" in badge else 0
+#: Verdicts of page 1, the worst last.
+_RANK = {verdict.name: rank for rank, verdict in enumerate(Verdict)}
 
 
 @dataclass(frozen=True)
@@ -81,8 +43,8 @@ class Change:
     path: str
     old: str
     new: str
-    size: float = 0.0
-    fails: bool = False
+    size: float
+    fails: bool
 
     def __str__(self) -> str:
         size = f" ({100 * self.size:.3g} %)" if self.size else ""
@@ -110,183 +72,104 @@ class Comparison:
         return tuple(change for change in self.changes if change.fails)
 
 
-def checked_tolerance(tolerance: float) -> float:
-    """Return the tolerance of a comparison, or refuse it."""
-    advice = "0.001 lets numbers change by a tenth of a percent."
-    return real_number("--tolerance", tolerance, 0.0, 1.0, action=advice)
+def compare(old: Mapping[str, Any], new: Mapping[str, Any], tolerance: float = TOLERANCE) -> Comparison:
+    """Compare two reports.
+
+    A number fails where it changes by more than the tolerance, relative to the larger of the two and to a
+    ten-thousandth of the largest number of its column. The verdict fails where it gets worse, an entry where
+    it is gone. New entries and changed parameters are shown and do not fail.
+
+    Parameters
+    ----------
+    old, new : data of report.json
+    tolerance : relative change of a number that passes
+    """
+    before, after = dict(_leaves(old)), dict(_leaves(new))
+    largest: dict[str, float] = {}
+    for path, value in before.items():
+        if isinstance(value, float):
+            column = _column(path)
+            largest[column] = max(largest.get(column, 0.0), abs(value))
+    changes = []
+    for path in before | after:
+        one, other = before.get(path), after.get(path)
+        if one == other:
+            continue
+        size = 0.0
+        fails = path in before and not path.startswith("parameters/")
+        if path == "verdict":
+            fails = _RANK[str(other)] > _RANK[str(one)]
+        elif path not in before:
+            fails = False
+        elif isinstance(one, float) and isinstance(other, float):
+            scale = max(abs(one), abs(other), _SMALL * largest[_column(path)])
+            size = abs(one - other) / scale
+            fails = fails and size > tolerance
+        changes.append(Change(path, _shown(one), _shown(other), size, fails))
+    changes.sort(key=lambda c: (not c.fails, -c.size))
+    return Comparison(str(old.get("gear_pair", "")), len(before.keys() & after.keys()), tuple(changes))
 
 
 def load_report(source: str | Path, *, quick: bool) -> dict[str, Any]:
-    """Read report.json, or the one of a report folder, which a new report is to be compared with.
+    """Read report.json of an earlier report.
 
-    ``source``: file or folder; ``quick``: whether the new report is a quick one.
+    Parameters
+    ----------
+    source : the file, or the folder of the report
+    quick : whether the new report samples coarsely; the earlier one must too
+
+    Raises
+    ------
+    ParameterError : no report of this layout and sampling
     """
-    action = "Give the report.json of an earlier report."
-    path = file_path("compare", source)
+    path = file_path("--compare", source)
     path = path / REPORT.file if path.is_dir() else path
-    text = read_text(path, _MAX_BYTES, field="--compare", kind="report.json", action=action)
     try:
-        data = json.loads(text, parse_constant=_refuse_constant)
-        dict(_leaves(data))
-        name, version, sampled = data["format"], data["format_version"], data["quick"]
-    except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError) as error:
-        why = f"This is no report, or only a part of one ({type(error).__name__}: {error}). {action}"
-        raise refuse("--compare", source, "a report.json as it was written", why) from None
-    if (name, version) != (FORMAT, FORMAT_VERSION):
-        why = f"This one is {name} {version}: write the earlier report again with this version of spurcheck."
-        raise refuse("--compare", source, f"a report of layout {FORMAT} {FORMAT_VERSION}", why)
-    if sampled != quick:
-        words = {True: "a quick report", False: "a full report"}
-        why = f"The earlier one is {words[bool(sampled)]}: sample both alike, with or without --quick."
-        raise refuse("--compare", source, f"{words[quick]}, as the new one", why)
-    return dict(data)
+        found = json.loads(read_text(path, _MAX_BYTES, field="--compare", kind="report.json"))
+    except ValueError as error:
+        raise refuse("--compare", path, "report.json of a report", f"It is no JSON: {error}.") from None
+    layout = (found.get("format"), found.get("format_version")) if isinstance(found, dict) else ()
+    if layout != (FORMAT, FORMAT_VERSION):
+        raise refuse("--compare", path, "report.json of this layout", "Make the earlier report again.")
+    if found["quick"] != quick:
+        action = "Compare reports that are both made with --quick, or both without."
+        raise refuse("--compare", path, "a report of the same sampling", action)
+    return dict(found)
 
 
-def _refuse_constant(name: str) -> Never:
-    raise ValueError(f"{name} is no number")
-
-
-def compare(old: Mapping[str, Any], new: Mapping[str, Any], *, tolerance: float = TOLERANCE) -> Comparison:
-    """Compare two reports.
-    A number fails where it changes by more than the tolerance, relative to the larger of the two and to a
-    ten-thousandth of the largest number of its unit in its table, without a unit in its column. One that
-    measures a numerical error fails where it grows tenfold and beyond rounding. A verdict fails where it gets
-    worse, and an entry where it is gone. Texts, new entries, changed parameters and settings are shown and do
-    not fail.
-
-    old, new: data of report.json; ``tolerance``: relative change of a number that passes, 0 to 1.
-    """
-    tolerance = checked_tolerance(tolerance)
-    before, after = dict(_leaves(old)), dict(_leaves(new))
-    scales: dict[tuple[str, str, str], float] = {}
-    for path, leaf in before.items():
-        if isinstance(leaf, _Number):
-            kind = _kind(path, leaf)
-            scales[kind] = max(scales.get(kind, 0.0), abs(leaf.value))
-    changes = [
-        change
-        for path in before | after
-        if (change := _change(path, before, after, tolerance, scales)) is not None
-    ]
-    changes.sort(key=lambda c: (not c.fails, -c.size))
-    return Comparison(str(old["gear_pair"]), len(before.keys() & after.keys()), tuple(changes))
-
-
-@dataclass(frozen=True)
-class _State:
-    """Verdict at a leaf."""
-
-    state: str
-    text: str
-
-    @property
-    def rank(self) -> int:
-        return _TONES.get(STATES.get(self.state, "plain"), 0)
-
-
-@dataclass(frozen=True)
-class _Number:
-    """Number at a leaf."""
-
-    value: float
-    unit: str = ""
-
-
-Leaf = _Number | _State | str | bool | None
-
-
-def _leaves(document: Mapping[str, Any]) -> Iterator[tuple[str, Leaf]]:
-    """Paths and values of everything that a report says; versions are left out."""
-    for answer in document["answers"]:
-        yield f"answers/{answer['question']}", _State(answer["verdict"]["state"], answer["verdict"]["text"])
+def _leaves(document: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Paths and values of what is compared."""
+    yield "verdict", document["verdict"]["kind"]
+    for key, one in document["numbers"].items():
+        for name in ("value", "low", "high", "second"):
+            if one[name] is not None:
+                yield f"page 1/{key}/{name}", float(one[name])
     for key, chapter in document["chapters"].items():
-        for name, block in chapter.items():
-            if name not in ("title", *REMARKS) and (key, name) not in _NOT_COMPARED:
-                yield from _walk(f"{key}/{name}", block)
-    yield from _walk("input", document["parameters"])
+        for name, table in chapter.items() if key not in _FREE else ():
+            if name in ("title", *REMARKS) or name in _ERRORS:
+                continue
+            for place, row in enumerate(table):
+                title = next((v for v in row.values() if isinstance(v, str) and v), str(place))
+                for column, value in row.items():
+                    measured = isinstance(value, dict) and "unit" in value
+                    number, unit = (value["value"], f" [{value['unit']}]") if measured else (value, "")
+                    if isinstance(number, (int, float)) and not isinstance(number, bool):
+                        yield f"{key}/{name}/{title} {place}/{column}{unit}", float(number)
+    yield from _parameters(document["parameters"], "parameters")
 
 
-def _walk(path: str, value: Any) -> Iterator[tuple[str, Leaf]]:
-    if isinstance(value, dict):
-        if set(value) == {"state", "text"}:
-            yield path, _State(str(value["state"]), str(value["text"]))
-        elif set(value) == {"value", "unit"}:
-            number = value["value"]
-            yield path, None if number is None else _Number(float(number), str(value["unit"]))
-        elif {"label", "value"} <= set(value) <= {"label", "value", "note"}:
-            yield from _walk(path, value["value"])
+def _parameters(data: Mapping[str, Any], prefix: str) -> Iterator[tuple[str, Any]]:
+    for key, value in data.items():
+        if isinstance(value, Mapping):
+            yield from _parameters(value, f"{prefix}/{key}")
         else:
-            for key, item in value.items():
-                yield from _walk(f"{path}/{key}", item)
-    elif isinstance(value, list):
-        for name, item in zip(_row_names(value), value, strict=True):
-            yield from _walk(f"{path}/{name}", item)
-    else:
-        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        yield path, _Number(float(value)) if is_number else value
+            yield f"{prefix}/{key}", str(value)
 
 
-def _row_names(rows: list[Any]) -> list[str]:
-    """Names of a table's rows: as many leading words and whole numbers as tell them apart, else numbered."""
-    words = [
-        [str(v) for v in row.values() if type(v) in (str, int)] if isinstance(row, dict) else []
-        for row in rows
-    ]
-    names = [""] * len(rows)
-    for count in (1, 2):
-        names = [", ".join(w[:_LARGEST_TEXT] for w in found[:count]) for found in words]
-        if len(set(names)) == len(names):
-            return names
-    return [f"{name} ({names[: place + 1].count(name)})".strip() for place, name in enumerate(names)]
-
-
-def _kind(path: str, number: _Number) -> tuple[str, str, str]:
-    """What tells the numbers that this one may be small beside: table and unit, or table and column."""
-    table, column = _column(path)
-    return (table, "", number.unit) if number.unit not in ("", "1") else (table, column, "")
-
-
-def _column(path: str) -> tuple[str, str]:
+def _column(path: str) -> str:
     parts = path.split("/")
-    return "/".join(parts[:2]), parts[-1]
+    return path if parts[0] == "page 1" else "/".join([*parts[:2], parts[-1]])
 
 
-def _change(
-    path: str,
-    before: Mapping[str, Leaf],
-    after: Mapping[str, Leaf],
-    tolerance: float,
-    scales: Mapping[tuple[str, str, str], float],
-) -> Change | None:
-    if path not in before:
-        return Change(path, "not there", _shown(after[path]))
-    if path not in after:
-        return Change(path, _shown(before[path]), "gone", fails=not path.startswith(_INPUT))
-    old, new = before[path], after[path]
-    if old == new and type(old) is type(new):
-        return None
-    texts = _shown(old), _shown(new)
-    if path.startswith(_INPUT):
-        return Change(path, *texts)
-    if isinstance(old, _Number) and isinstance(new, _Number) and old.unit == new.unit:
-        table, column = _column(path)
-        difference, largest = abs(new.value - old.value), max(abs(old.value), abs(new.value))
-        if column in _ERRORS or table in _ERROR_TABLES:
-            fails = new.value > max(_ERROR_GROWTH * old.value, _ROUNDING)
-            return Change(path, *texts, difference / largest, fails)
-        size = difference / max(largest, _SMALL * scales.get(_kind(path, old), 0.0))
-        return Change(path, *texts, size, size > tolerance)
-    if isinstance(old, _State) and isinstance(new, _State):
-        return None if old.state == new.state else Change(path, *texts, fails=new.rank > old.rank)
-    # A number that is gone, or one where there was a word, is a change of what is said.
-    fails = isinstance(old, (_Number, _State)) or isinstance(new, (_Number, _State))
-    return Change(path, *texts, fails=fails)
-
-
-def _shown(value: Leaf) -> str:
-    if isinstance(value, _State):
-        return value.text
-    if isinstance(value, _Number):
-        return f"{value.value:.6g} {value.unit}".rstrip()
-    text = "no value" if value is None else str(value)
-    return text if len(text) <= _LARGEST_TEXT else text[:_LARGEST_TEXT] + "…"
+def _shown(value: Any) -> str:
+    return "nothing" if value is None else f"{value:.6g}" if isinstance(value, float) else str(value)

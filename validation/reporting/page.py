@@ -1,127 +1,91 @@
-"""The HTML page, by a jinja2 template that escapes everything."""
+"""The report as one self-contained HTML file: page 1, then the chapters."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+import jinja2
 
-from lumped import GearPair
-from validation.reporting.blocks import Answer, Badge, Block, Facts, Picture, Quantity, Table, Text
-from validation.reporting.chapter import Chapter, Written
-from validation.reporting.formatting import cell, prose
-
-
-def render(
-    pair: GearPair,
-    answer_figure: Picture,
-    answers: Mapping[str, Answer],
-    chapters: tuple[Written, ...],
-    images: Mapping[str, str],
-    data: Mapping[str, Any],
-) -> str:
-    """Return the page as text.
-
-    Parameters
-    ----------
-    pair : the gear pair
-    answer_figure : the figure of the first page
-    answers : key of the chapter that says why -> answer at the top
-    chapters : content
-    images : figure key -> data URI
-    data : what report.json holds, for verdict, dates and mode
-    """
-    environment = Environment(
-        loader=PackageLoader("validation", "templates"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["cell"] = cell
-    environment.filters["prose"] = prose
-    environment.filters["kind"] = _kind
-    environment.filters["id"] = id
-    environment.filters["numeric_columns"] = _numeric_columns
-    environment.tests["badge"] = lambda value: isinstance(value, Badge)
-    environment.tests["numeric"] = _is_numeric
-    template = environment.get_template("report.html")
-    front, evidence = layers(chapters)
-    return template.render(
-        pair=pair,
-        answer_figure=answer_figure,
-        tone=max(
-            *(a.badge.tone for a in answers.values()),
-            "fair" if data["doubts"] else "plain",
-            key=_TONES.index,
-        ),
-        answers=answers,
-        front=front,
-        evidence=evidence,
-        numbers=numbered((*front, *evidence)),
-        images=images,
-        data=data,
-    )
+from validation.files.formatting import number, prose, quantity
+from validation.reporting.blocks import Badge, Block, Cell, Picture, Quantity, Table
+from validation.reporting.chapter import Written
+from validation.reporting.page_one import NOT_MODELLED, PageOne
 
 
 @dataclass(frozen=True)
 class Part:
-    """What one layer of the page shows of a chapter.
-
-    Attributes
-    ----------
-    anchor : its id in the page
-    number : of the chapter in its layer
-    chapter : title, key
-    badge : verdict beside the heading
-    blocks : in order
-    """
+    """A chapter as the page shows it: its number and anchor, title, result in a sentence, and blocks."""
 
     anchor: str
-    number: str
-    chapter: Chapter
-    badge: Badge | None
+    number: int
+    title: str
+    result: str
     blocks: tuple[Block, ...]
 
 
-def layers(chapters: tuple[Written, ...]) -> tuple[tuple[Part, ...], tuple[Part, ...]]:
-    """The chapters for the reader who decides, then the evidence; every block is in one of them."""
-    front: list[Part] = []
-    evidence: list[Part] = []
-    for chapter, content in chapters:
-        shown = [block for block in content.blocks if getattr(block, "key", None) in chapter.front]
-        if shown:
-            first = content.blocks.index(shown[0])
-            shown = [b for b in content.blocks[:first] if isinstance(b, Text)] + shown
-            front.append(Part(chapter.key, str(len(front) + 1), chapter, content.badge, tuple(shown)))
-        rest = tuple(block for block in content.blocks if not any(block is one for one in shown))
-        if rest:
-            anchor = f"{chapter.key}-evidence" if shown else chapter.key
-            evidence.append(Part(anchor, f"A{len(evidence) + 1}", chapter, content.badge, rest))
-    return tuple(front), tuple(evidence)
+def render(
+    first: PageOne,
+    pictures: tuple[Picture, ...],
+    chapters: tuple[Written, ...],
+    images: Mapping[str, str],
+    data: Mapping[str, Any],
+) -> str:
+    """Return index.html.
+
+    Parameters
+    ----------
+    first : page 1
+    pictures : its figures
+    chapters : with their content
+    images : key of a picture -> data URI
+    data : report.json
+    """
+    parts = tuple(
+        Part(chapter.key, number, chapter.title, content.result, content.blocks)
+        for number, (chapter, content) in enumerate(chapters, 1)
+    )
+    shown = [block for part in parts for block in part.blocks]
+    numbers = {
+        id(block): count
+        for kind, start in ((Picture, len(pictures) + 1), (Table, 1))
+        for count, block in enumerate((b for b in shown if isinstance(b, kind)), start)
+    }
+    return (
+        _environment()
+        .get_template("report.html")
+        .render(
+            first=first,
+            pictures=pictures,
+            parts=parts,
+            numbers=numbers,
+            images=images,
+            data=data,
+            not_modelled=NOT_MODELLED,
+        )
+    )
 
 
-def numbered(parts: tuple[Part, ...]) -> dict[int, int]:
-    """Number of every figure, and of every table, in the order of the page, by the block's identity."""
-    numbers: dict[int, int] = {}
-    for kind in (Picture, Table):
-        shown = (block for part in parts for block in part.blocks if isinstance(block, kind))
-        numbers |= {id(block): count for count, block in enumerate(shown, 2 if kind is Picture else 1)}
-    return numbers
-
-
-#: Tones of badges, the worst last.
-_TONES = ("plain", "good", "fair", "bad")
-
-
-def _kind(block: Block) -> str:
-    if isinstance(block, Facts):
-        return "facts"
-    if isinstance(block, Table):
-        return "table"
-    return "picture" if isinstance(block, Picture) else "text"
+@lru_cache(maxsize=1)
+def _environment() -> jinja2.Environment:
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("validation", "templates"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {
+        "cell": cell,
+        "prose": prose,
+        "id": id,
+        "kind": lambda block: type(block).__name__,
+        "numeric_columns": _numeric_columns,
+    }
+    environment.tests |= {"badge": lambda value: isinstance(value, Badge), "numeric": _is_numeric}
+    return environment
 
 
 def _is_numeric(value: object) -> bool:
@@ -131,3 +95,20 @@ def _is_numeric(value: object) -> bool:
 def _numeric_columns(table: Table) -> list[bool]:
     """Which columns hold numbers, at least in one row: their headings and gaps stand to the right too."""
     return [any(_is_numeric(row[k]) for row in table.rows) for k in range(len(table.columns))]
+
+
+def cell(value: Cell, digits: int = 4) -> str:
+    """Text of a table cell."""
+    if value is None:
+        return "–"
+    if isinstance(value, Badge):
+        return value.label
+    if isinstance(value, Quantity):
+        return quantity(value.value, value.unit, digits)
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return number(value, digits)
+    if isinstance(value, int):
+        return str(value).replace("-", "\u2212")
+    return prose(str(value))

@@ -1,38 +1,38 @@
-"""Results that several chapters of the report share, each computed when it is first asked for."""
+"""Results that the report shares, each computed when it is first asked for."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, partial
-from typing import TypeVar
+from functools import cached_property
 
 import numpy as np
 import xarray as xr
 
+import floquet
 import lumped
+import multibody
 from floquet.gear.axes import operating_rpm, speed_range
-from floquet.gear.multipliers import GearPairMultipliers, gear_pair_multipliers
-from floquet.gear.orbit import GearOrbit, periodic_orbit
 from floquet.gear.response import ResponseBranches
-from floquet.gear.tongues import StabilityMargins, stability_margins
-from lumped import GearPair, Geometry, NumericalError, ParameterError
+from lumped.errors import NumericalError, ParameterError
+from lumped.labelling import labelled_dataset
 from lumped.model.averaged import Mode, modes
-from lumped.model.results import cycle_peak_to_peak
 from lumped.model.sweep import resolved_sweep
-from lumped.path_of_contact import friction_profile
-from lumped.typing import BoolArray, Progress
+from lumped.outcomes import Absent, Outcome
+from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray, Progress
 from validation.cross_check.comparison import CrossCheck, crosscheck
-from validation.reporting.cross_check_words import attribution
-from validation.validity.beyond_contact_loss import branches_about_operation, jumps_about_operation
-from validation.validity.contact_forms import ContactForms, contact_forms
-from validation.validity.flags import LOAD_NOISE, Flag, speed_drift, supports, validity_flags
-from validation.validity.four_springs import FourSprings, four_springs
-from validation.validity.plausibility import doubts
-from validation.verification.checks import Check, on_shafts
-from validation.verification.tooth_stiffness import ToothStiffness, tooth_stiffness
+from validation.cross_check.verdict import Verdict
+from validation.prediction.budget import error_budget
+from validation.prediction.inputs import given_and_assumed, uncertain_inputs
+from validation.prediction.motion import Motion, Prediction, measured, predicted
+from validation.prediction.uncertainty import speed_band, uncertainty
+from validation.validity.flags import Flag, validity_flags
+from validation.validity.plausibility import doubts as warnings_of
 
-T = TypeVar("T")
+#: Speeds of the motions beyond contact loss, over the operating speed.
+BRANCH_SPEEDS = (0.8, 1.25)
+#: Times in a mesh cycle of the second program on shafts.
+_SAMPLES = 512
 
 
 @dataclass(frozen=True)
@@ -41,49 +41,28 @@ class Effort:
 
     Attributes
     ----------
-    samples : per mesh cycle of the periodic motion
-    cycles : of the cross-check
+    samples : of the uncertain inputs; 0: they are not varied
+    band_samples, band_speeds : of the range over speed
     sweep_speeds : of the response over speed, at most
+    line_speeds : at which stability is looked at, at the given damping
     chart_speeds, chart_dampings : nodes of the stability chart
-    chart_rtol : accuracy of the monodromy matrices in the chart
-    map_speeds, map_torques : points of the validity map
-    shaft_speeds : at which four springs are compared with shafts
-    full : whether to search the best tip relief, to solve the periodic motion of every law, to switch the
-        finite-motion effects one at a time, and to refine solutions
+    orders_speeds : of the map of orders over speed
+    full : whether the budget has finite elements, and motions beyond contact loss are followed over speed
     """
 
     samples: int
-    cycles: int
+    band_samples: int
+    band_speeds: int
     sweep_speeds: int
+    line_speeds: int
     chart_speeds: int
     chart_dampings: int
-    chart_rtol: float
-    map_speeds: int
-    map_torques: int
-    shaft_speeds: int
+    orders_speeds: int
     full: bool
 
 
-FULL = Effort(512, 6, 240, 121, 17, 1e-6, 15, 5, 41, full=True)
-QUICK = Effort(128, 16, 48, 16, 4, 1e-6, 7, 3, 13, full=False)
-
-
-@dataclass(frozen=True, eq=False)
-class ContactLoss:
-    """What the pair does where the linear motion has negative tooth loads.
-
-    Attributes
-    ----------
-    orbit : the same equations with unilateral contact
-    exact : a mesh cycle of the multibody model
-    exact_peak_to_peak : its transmission error [m]
-    judged : whether the cross-check compares these two
-    """
-
-    orbit: GearOrbit
-    exact: xr.Dataset
-    exact_peak_to_peak: float
-    judged: bool
+FULL = Effort(128, 32, 61, 160, 2001, 161, 25, 61, full=True)
+QUICK = Effort(0, 0, 0, 48, 401, 61, 9, 25, full=False)
 
 
 class Results:
@@ -93,6 +72,7 @@ class Results:
     ----------
     pair : the gear pair
     effort : how finely
+    name : how a command names the pair: its file, or the preset
     progress : called with the finished fraction of the present computation and its name
 
     Raises
@@ -100,9 +80,12 @@ class Results:
     NumericalError : from whichever result a model cannot compute; the text says what to try
     """
 
-    def __init__(self, pair: GearPair, effort: Effort, progress: Progress | None = None) -> None:
+    def __init__(
+        self, pair: GearPair, effort: Effort, name: str = "", progress: Progress | None = None
+    ) -> None:
         self.pair = pair
         self.effort = effort
+        self.name = name or pair.name
         self.progress: Progress = progress or (lambda fraction, stage="", /: None)
 
     def stage(self, name: str) -> Progress:
@@ -111,30 +94,103 @@ class Results:
         return lambda fraction, _="", /: self.progress(fraction, name)
 
     @property
-    def geometry(self) -> Geometry:
-        """Geometry of the pair."""
-        return self.pair.geometry
-
-    @property
     def operating_rpm(self) -> float:
         """Pinion speed [rpm]."""
         return operating_rpm(self.pair)
 
-    @property
-    def static_load(self) -> float:
-        """Normal load of all pairs at rest, T_p/r_bp [N]."""
-        return self.pair.operating.pinion_torque / self.geometry.base_radius_pinion
+    @cached_property
+    def speeds(self) -> tuple[float, float]:
+        """Range of pinion speeds of everything over speed [rpm]."""
+        return speed_range(self.pair)
 
     @cached_property
-    def motion(self) -> xr.Dataset:
-        """Periodic motion at the operating point."""
-        self.stage("periodic motion")
-        return lumped.steady_state(self.pair, samples_per_cycle=self.effort.samples)
+    def prediction(self) -> Prediction:
+        """The best motion at the operating point."""
+        self.stage("motion")
+        return predicted(self.pair)
 
     @cached_property
-    def profile(self) -> xr.Dataset:
-        """Contact conditions and every friction law along the path of contact."""
-        return friction_profile(self.pair)
+    def linear(self) -> xr.Dataset | Absent:
+        """The linear motion on springs, whose stability and response over speed are charted."""
+        try:
+            return lumped.steady_state(self.pair)
+        except NumericalError as error:
+            return Absent(Outcome.FAILED, str(error))
+
+    @cached_property
+    def check(self) -> CrossCheck:
+        """The second program beside the lumped model."""
+        return crosscheck(self.pair, cycles=6, progress=self.stage("second program"))
+
+    @cached_property
+    def second(self) -> Prediction | Absent:
+        """The motion of the second program at the operating point, on the shafts where they are given."""
+        if self.pair.shafts is not None:
+            self.stage("second program on the shafts")
+            try:
+                machine = multibody.steady_state(self.pair, supports="shafts", samples_per_cycle=_SAMPLES)
+            except NumericalError as error:
+                return Absent(Outcome.FAILED, str(error))
+            return measured(self.pair, machine, Motion.SECOND)
+        run = self.check.multibody.get("exact")
+        if run is None:
+            return Absent(Outcome.NOT_ASKED)
+        period = self.pair.geometry.mesh_period
+        last = run.sel(time=slice(float(run["time"][-1]) - 1.000001 * period, None)).isel(time=slice(1, None))
+        return measured(self.pair, last, Motion.SECOND)
+
+    @cached_property
+    def uncertainty(self) -> xr.Dataset | Absent:
+        """How far the prediction moves with its uncertain inputs."""
+        if not self.effort.samples or not uncertain_inputs(self.pair):
+            return Absent(Outcome.NOT_ASKED)
+        stage = self.stage("uncertain inputs")
+        return uncertainty(self.pair, self.effort.samples, progress=stage)
+
+    @cached_property
+    def inputs(self) -> tuple[int, int]:
+        """Number of values that are given, and of those that are assumed."""
+        return given_and_assumed(self.pair)
+
+    @cached_property
+    def sweep(self) -> xr.Dataset:
+        """Linear motion over speed."""
+        stage = self.stage("response over speed")
+        return resolved_sweep(self.pair, self.speeds, most=self.effort.sweep_speeds, progress=stage)
+
+    @cached_property
+    def band(self) -> xr.Dataset | Absent:
+        """Range of the transmission error over speed with the uncertain inputs."""
+        if isinstance(self.uncertainty, Absent):
+            return self.uncertainty
+        self.stage("range over speed")
+        speeds = np.linspace(*self.speeds, self.effort.band_speeds)
+        return speed_band(self.pair, speeds, self.effort.band_samples)
+
+    @cached_property
+    def loses_contact(self) -> bool:
+        """Whether contact is lost at the operating point or, by the linear motion, near it."""
+        if self.prediction.contact_lost:
+            return True
+        speed = self.sweep["speed"].to_numpy()
+        near = (speed > BRANCH_SPEEDS[0] * self.operating_rpm) & (
+            speed < BRANCH_SPEEDS[1] * self.operating_rpm
+        )
+        return bool((self.sweep["normal_load_min"].to_numpy()[near] <= 0.0).any())
+
+    @cached_property
+    def branches(self) -> ResponseBranches | Absent:
+        """Motions with unilateral contact about the operating speed."""
+        if not self.loses_contact:
+            return Absent(Outcome.CONTACT_NOT_LOST)
+        if not self.effort.full and not self.prediction.contact_lost:
+            return Absent(Outcome.NOT_ASKED)
+        low, high = (factor * self.operating_rpm for factor in BRANCH_SPEEDS)
+        ends = max(low, self.speeds[0]), min(high, self.speeds[1])
+        try:
+            return floquet.response_branches(self.pair, ends, seeds=0, progress=self.stage("contact loss"))
+        except (NumericalError, ParameterError) as error:
+            return Absent(Outcome.FAILED, str(error))
 
     @cached_property
     def modes(self) -> tuple[Mode, ...]:
@@ -145,158 +201,121 @@ class Results:
             return ()
 
     @cached_property
-    def speeds(self) -> tuple[float, float]:
-        """Range of pinion speeds of everything over speed [rpm]."""
-        return speed_range(self.pair)
+    def multipliers(self) -> floquet.GearPairMultipliers:
+        """Floquet multipliers of the linear motion at the operating point."""
+        return floquet.gear_pair_multipliers(self.pair)
 
     @cached_property
-    def sweep(self) -> xr.Dataset:
-        """Periodic motion over speed."""
-        return resolved_sweep(
-            self.pair,
-            self.speeds,
-            most=self.effort.sweep_speeds,
-            samples_per_cycle=128,
-            progress=self.stage("response over speed"),
+    def stability_line(self) -> xr.Dataset:
+        """Spectral radius over speed at the given damping."""
+        self.stage("stability over speed")
+        speeds = np.union1d(np.linspace(*self.speeds, self.effort.line_speeds), self.operating_rpm)
+        return floquet.stability_chart(self.pair, {"speed_rpm": speeds})
+
+    @cached_property
+    def chart(self) -> xr.Dataset:
+        """Stability over speed and mesh damping."""
+        top = max(0.1, 1.2 * self.pair.mesh.damping_ratio)
+        axes = {
+            "speed_rpm": np.linspace(*self.speeds, self.effort.chart_speeds),
+            "damping_ratio": np.linspace(0.0, top, self.effort.chart_dampings),
+        }
+        return floquet.stability_chart(self.pair, axes, progress=self.stage("stability chart"))
+
+    @cached_property
+    def orders_over_speed(self) -> xr.Dataset:
+        """Amplitudes of the pinion's bearing force by mesh order over speed, linear motion."""
+        self.stage("orders over speed")
+        speeds = np.linspace(*self.speeds, self.effort.orders_speeds)
+        rows = []
+        for rpm in speeds:
+            try:
+                there = self.pair.with_({"operating.pinion_speed": float(rpm)})
+                cycle = lumped.steady_state(there, samples_per_cycle=128)
+                rows.append(measured(there, cycle, Motion.LINEAR).bearing_orders)
+            except NumericalError:
+                rows.append(np.full(10, np.nan))
+        return labelled_dataset(
+            {"amplitude": (("speed_rpm", "order"), np.stack(rows), "N", "force on the pinion bearings")},
+            {
+                "speed_rpm": (speeds, "rpm", "pinion speed"),
+                "order": (np.arange(1, 11), "1", "mesh order"),
+            },
         )
 
     @cached_property
-    def doubts(self) -> tuple[str, ...]:
-        """Sentences on given values that hardly can be meant."""
-        return doubts(self.pair)
-
-    @property
-    def separating_share(self) -> float:
-        """Share of the range of speeds with negative tooth loads."""
-        low = self.sweep["normal_load_min"].to_numpy()  # NaN where there is no periodic motion
-        return self.share_of_range(low < -LOAD_NOISE * self.static_load)
-
-    def share_of_range(self, where: BoolArray) -> float:
-        """Share of the range of speeds taken by the speeds of the sweep that are marked."""
-        speed = self.sweep["speed"].to_numpy()
-        return float(np.trapezoid(where.astype(float), speed) / (speed[-1] - speed[0]))
-
-    @cached_property
-    def check(self) -> CrossCheck:
-        """Cross-check against the multibody model."""
-        stage = self.stage("cross-check against the multibody model")
-        return crosscheck(self.pair, cycles=self.effort.cycles, progress=stage)
-
-    @cached_property
-    def attribution(self) -> xr.Dataset | None:
-        """Effects of the exact model one by one; None where contact is lost or it has no periodic motion."""
-        self.stage("effects of the exact model")
-        return attribution(self.check)
-
-    @cached_property
-    def contact_loss(self) -> ContactLoss | str | None:
-        """The motion with unilateral contact.
-
-        None: contact is never lost. A string: the computation failed, with the reason.
-        """
-        loads = self.motion["normal_load"].where(self.motion["contact"] > 0)
-        if float(loads.min()) >= -LOAD_NOISE * self.static_load:
-            return None
-        orbit = self.check.orbit
-        try:
-            orbit = orbit or periodic_orbit(self.pair)
-        except NumericalError as error:
-            return str(error)
-        run = self.check.multibody["exact"]
-        exact = run.sel(time=slice(float(run["time"][-1]) - 1.000001 * self.geometry.mesh_period, None))
-        return ContactLoss(orbit, exact, cycle_peak_to_peak(exact, "dte"), self.check.orbit is not None)
-
-    @cached_property
-    def branches(self) -> ResponseBranches | str | None:
-        """Motions with unilateral contact about the operating speed.
-
-        None: contact is never lost in the range of speeds, or a quick report. A string: the computation
-        failed, with the reason.
-        """
-        if not self.effort.full or not self.separating_share:
-            return None
-        return branches_about_operation(self.pair, progress=self.stage("motions beyond contact loss"))
-
-    @cached_property
-    def jump_map(self) -> xr.Dataset | str | None:
-        """Where the pair can jump over speed and torque; a string or None as for ``branches``."""
-        if self.branches is None:
-            return None
-        return jumps_about_operation(self.pair, progress=self.stage("jumps over speed and torque"))
-
-    @cached_property
-    def forms(self) -> ContactForms | str:
-        """Both forms of the contact and the exact one; why they cannot be computed."""
-        self.stage("forms of the contact")
-        check, exact = self.check, None
-        samples = check.lumped.sizes["time"] // check.cycles
-        if self.pair.mesh.contact == "loaded" and check.periodic:
-            exact = check.multibody["exact"].isel(time=slice(samples))
-        return _or_why_not(partial(contact_forms, samples=samples, exact=exact), self.pair)
-
-    @cached_property
-    def lifting(self) -> xr.Dataset | None:
-        """The motion with unilateral contact, where a pair pulls but the total load is positive."""
-        found, forms = self.contact_loss, self.forms
-        if (
-            not isinstance(found, ContactLoss)
-            or found.judged
-            or isinstance(forms, str)
-            or forms.own == "prescribed"
-        ):
-            return None
-        return found.orbit.sampled(forms.motions["exact"].sizes["time"])
-
-    @cached_property
-    def multipliers(self) -> GearPairMultipliers:
-        """Floquet multipliers at the operating point."""
-        return gear_pair_multipliers(self.pair)
-
-    @cached_property
-    def tooth_stiffness(self) -> ToothStiffness | str:
-        """Tooth stiffness beside plane elasticity; why it cannot be computed."""
-        self.stage("tooth stiffness by elasticity")
-        return _or_why_not(tooth_stiffness, self.pair)
-
-    @property
-    def checks(self) -> tuple[Check, ...]:
-        """Checks of the tooth stiffness and of the pair on its shafts, which every report has."""
-        found = self.tooth_stiffness
-        return (*(() if isinstance(found, str) else found.checks), *self.on_shafts)
-
-    @cached_property
-    def on_shafts(self) -> tuple[Check, ...]:
-        """The machine against the model on shafts; empty without shafts."""
-        return tuple(on_shafts(self.pair))
-
-    @cached_property
-    def margins(self) -> StabilityMargins:
-        """Tongues of instability over the range of speeds, and the distances to them."""
-        self.stage("stability margins")
-        return stability_margins(self.pair, self.speeds)
-
-    @cached_property
     def flags(self) -> tuple[Flag, ...]:
-        """Assumptions of the lumped model, checked at the operating point."""
-        found = [*validity_flags(self.pair, self.motion, self.multipliers)]
-        found.append(speed_drift(self.geometry, self.check.multibody["linear"]))
-        if isinstance(self.four_springs, FourSprings):
-            found.append(supports(self.four_springs))
-        return tuple(found)
+        """Assumptions of the lumped model, checked on the linear motion."""
+        return (
+            ()
+            if isinstance(self.linear, Absent)
+            else validity_flags(self.pair, self.linear, self.multipliers)
+        )
 
     @cached_property
-    def four_springs(self) -> FourSprings | str | None:
-        """The pair on its shafts beside four springs; why it cannot be computed; None without shafts."""
-        if self.pair.shafts is None:
-            return None
-        speeds = np.linspace(*self.speeds, self.effort.shaft_speeds)
-        stage = self.stage("the pair on its shafts")
-        return _or_why_not(partial(four_springs, speeds_rpm=speeds, progress=stage), self.pair)
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences on given values that hardly can be meant."""
+        return warnings_of(self.pair)
 
+    @property
+    def finite_elements(self) -> bool:
+        """Whether the budget predicts the pair with tooth stiffness by finite elements."""
+        return self.effort.full
 
-def _or_why_not(compute: Callable[[GearPair], T], pair: GearPair) -> T | str:
-    """What is computed of the pair, or the text of why it cannot be."""
-    try:
-        return compute(pair)
-    except (NumericalError, ParameterError) as error:
-        return str(error)
+    @cached_property
+    def same_equations(self) -> float | None:
+        """Largest difference of the same equations in both programs, over peak to peak."""
+        found = [a.difference for a in self.check.of("linear") if a.quantity in ("dte", "x_p", "x_g")]
+        return max(found, default=None)
+
+    @cached_property
+    def measured_error(self) -> float | None:
+        """Peak to peak of a measured record less that of the prediction [m]; None without a record."""
+        return None
+
+    @cached_property
+    def outside(self) -> tuple[str, ...]:
+        """What the model does not have and this pair needs, one phrase each."""
+        skip = ("contact_loss", "stability")
+        return tuple(f.detail for f in self.flags if f.state == "violated" and f.key not in skip)
+
+    @property
+    def second_words(self) -> str:
+        """Whether both programs agree, in a sentence."""
+        check = self.check
+        if check.verdict is Verdict.NOT_CHECKED:
+            return "The equations are; the second program has no motion to compare."
+        if check.verdict is Verdict.FAILS:
+            return "No: a check of the program fails."
+        worst = next(a for a in check.of("exact") if a.quantity == "dte")
+        apart = f"{max(100.0 * worst.difference, 0.01):.2g} %"
+        if check.verdict is Verdict.AGREES:
+            return f"Yes: a second program agrees to {apart}."
+        own = max((a for a in check.of("exact")), key=lambda a: a.difference / a.limit)
+        return (
+            f"Yes, but the second program, with exact contact, differs: {own.long_name} by "
+            f"{100.0 * own.difference:.2g} %, the transmission error by {apart}."
+        )
+
+    @cached_property
+    def budget(self) -> xr.Dataset:
+        """Every error of the prediction, in one table."""
+        self.stage("error budget")
+        return error_budget(self)
+
+    @cached_property
+    def unstable_speeds(self) -> FloatArray:
+        """Speeds of ``stability_line`` that are unstable [rpm]."""
+        verdict = self.stability_line["verdict"].to_numpy()
+        return np.asarray(self.stability_line["speed_rpm"].to_numpy()[verdict < 0], dtype=np.float64)
+
+    @property
+    def nearest_hazard(self) -> tuple[float, str] | None:
+        """Speed [rpm] and kind of the unstable speed or jump that is nearest to the operating speed."""
+        found = [(float(rpm), "unstable speed") for rpm in self.unstable_speeds]
+        if isinstance(self.branches, ResponseBranches):
+            found += [
+                (jump.speed_rpm, f"jump, running {'up' if jump.rising else 'down'}")
+                for jump in self.branches.jumps
+            ]
+        return min(found, key=lambda one: abs(one[0] - self.operating_rpm), default=None)

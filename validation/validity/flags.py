@@ -25,7 +25,6 @@ from validation.files.tables import read_table
 
 if TYPE_CHECKING:
     from floquet.gear.multipliers import GearPairMultipliers
-    from validation.validity.four_springs import FourSprings
 
 #: Loads below this share of the static load are zero for the question whether teeth separate.
 LOAD_NOISE = 1e-4
@@ -271,18 +270,4 @@ def stability(multipliers: GearPairMultipliers) -> Flag:
         radius,
         f"{multipliers.verdict}: largest multiplier {radius:.6f}, error bound {error:.1e}; the rigid "
         "rotation is taken out, not tolerated",
-    )
-
-
-def supports(found: FourSprings) -> Flag:
-    """Springs at the gears move as the shafts do."""
-    from validation.validity.four_springs import LIMITS
-
-    off = found.off_here("springs")
-    return flag(
-        "supports",
-        _state(off, LIMITS),
-        off,
-        f"transmission error or bearing forces differ by up to {100 * off:.3g} % from those on the shafts, "
-        f"with condensed springs by {100 * found.off_here('condensed'):.3g} %",
     )

@@ -17,9 +17,10 @@ from tests.evidence.faults.quantities import FELT, change, quantities
 from tests.evidence.faults.rewriting import applied
 from tests.evidence.kinds import OF_PAIRS
 from tests.evidence.pairs import pairs
+from tests.evidence.refinement import refinements
 from validation.cross_check.comparison import crosscheck
+from validation.reporting.relations import broken_relations
 from validation.reporting.results import QUICK, Results
-from validation.verification import refinements
 
 _CYCLES, _SAMPLES = 6, 64
 
@@ -122,8 +123,8 @@ def _crossed(pair: GearPair) -> list[str]:
 
 
 def _reported(pair: GearPair) -> list[str]:
-    """Checks of every report, quick ones too."""
-    return [check.key for check in Results(pair, QUICK).checks if not check.passes]
+    """Relations between the numbers of every report, quick ones too."""
+    return list(broken_relations(Results(pair, QUICK)))
 
 
 def _refined(pair: GearPair) -> list[str]:

@@ -21,7 +21,7 @@ from lumped.path_of_contact import friction_profile, iso_comparison
 from lumped.quasi_static.contacts import mesh_elements
 from lumped.typing import FloatArray
 from validation.cross_check.metrics import mesh_orders
-from validation.reporting.results import QUICK, Results
+from validation.prediction.motion import predicted
 
 #: Times per mesh cycle.
 SAMPLES = 64
@@ -127,13 +127,14 @@ def _motion(pair: GearPair) -> dict[str, FloatArray]:
 
 def _report(pair: GearPair) -> dict[str, FloatArray]:
     """Arithmetic of the report."""
-    results = Results(pair, QUICK)
+    prediction = predicted(pair)
     motion = lumped.steady_state(pair, samples_per_cycle=SAMPLES)
     static = quasi_static_losses(pair, samples_per_cycle=SAMPLES)
     losses = dynamic_losses(pair, motion)
     found = {
         "speed": np.array([operating_rpm(pair)]),
-        "static load": np.array([results.static_load]),
+        "static load": np.array([prediction.static_force]),
+        **{name: np.array([value]) for name, value in prediction.numbers.items()},
         "loss factor": np.array([ohlendorf_of(pair)]),
         "mesh orders": mesh_orders(motion["dte"].to_numpy(), SAMPLES, 6).amplitude,
         "natural frequencies": np.array([mode.natural_frequency for mode in modes(pair)]),

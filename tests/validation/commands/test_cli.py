@@ -15,6 +15,8 @@ from validation.commands import options
 from validation.cross_check.verdict import Verdict
 from validation.reporting import Report
 from validation.reporting.gate import Change, Comparison
+from validation.reporting.page_one import PageOne
+from validation.reporting.page_one import Verdict as VERDICT
 
 COMMANDS = ("report", "presets", "init", "simulate", "crosscheck", "stability")
 
@@ -157,12 +159,13 @@ def test_stability_exits_by_the_operating_point(tmp_path):
 
 @pytest.fixture
 def asked(monkeypatch):
-    """Arguments that reach the report, which is not computed; its failures can be set."""
-    told = {"failures": (), "comparison": None}
+    """Arguments that reach the report, which is not computed; what it finds can be set."""
+    told = {"failed": (), "findings": frozenset(), "comparison": None}
 
     def write(pair, out, **options):
         told.update(options, pair=pair, out=out)
-        return Report(out, "It holds.", {}, told["failures"], 1.0, told["comparison"])
+        first = PageOne("a pair", VERDICT.COMPARE, "It compares.", "", (), (), (), "", ())
+        return Report(out, first, told["failed"], told["findings"], 1.0, told["comparison"])
 
     monkeypatch.setattr("validation.reporting.report", write)
     return told
@@ -173,37 +176,48 @@ def test_options_reach_the_report(asked, tmp_path):
     options = ("--quick", "--speed", "3000 rpm", "--law", "coulomb", "--tolerance", "0.01")
     result = run("report", "fzg_c", "-o", out, *options, "--compare", old)
     assert result.exit_code == 0, result.stderr
-    assert "It holds." in result.stdout
+    assert "It compares." in result.stdout
     assert asked["pair"].friction.law == "coulomb"
     assert asked["pair"].operating.pinion_speed == pytest.approx(100 * math.pi)
-    expected = {
-        "out": out,
-        "quick": True,
-        "compare": old,
-        "tolerance": 0.01,
-        "force": False,
-    }
+    expected = {"out": out, "quick": True, "compare": old, "tolerance": 0.01, "force": False, "name": "fzg_c"}
     assert asked | expected == asked
 
 
-@pytest.mark.parametrize("bad", [(), ("validity: Torques balance: violated",)])
-def test_a_report_with_a_failing_verdict_exits_1_and_names_it(asked, tmp_path, bad):
-    asked["failures"] = bad
+@pytest.mark.parametrize("bad", [(), ("conservation: efficiency, lumped",)])
+def test_a_report_with_a_failing_check_exits_1_and_names_it(asked, tmp_path, bad):
+    asked["failed"] = bad
     result = run("report", "-o", tmp_path / "out")
     assert result.exit_code == (1 if bad else 0)
-    assert ("fails: validity: Torques balance" in result.stdout) == bool(bad)
+    assert ("fails: conservation: efficiency" in result.stdout) == bool(bad)
+
+
+@pytest.mark.parametrize(
+    ("require", "found", "code"),
+    [
+        ((), {"contact", "holds"}, 0),
+        (("contact",), {"contact", "holds"}, 4),
+        (("stable",), {"contact"}, 0),
+        (("stable", "holds"), {"holds"}, 4),
+        (("contact",), set(), 0),
+    ],
+)
+def test_findings_about_the_machine_exit_4_where_a_gate_forbids_them(asked, tmp_path, require, found, code):
+    asked["findings"] = frozenset(found)
+    result = run("report", "-o", tmp_path / "out", *(word for one in require for word in ("--require", one)))
+    assert result.exit_code == code
+    assert "holds, stable, contact" in refused("report", "-o", tmp_path / "out", "--require", "quiet")
 
 
 @pytest.mark.parametrize("fails", [False, True])
 def test_a_change_past_its_tolerance_exits_1(asked, tmp_path, fails):
-    change = Change("steady_state/dte", "1", "2", 0.5, fails)
-    inputs = Change("input/mesh/damping_ratio", "0.05", "0.06")
+    change = Change("response/motion/dte", "1", "2", 0.5, fails)
+    inputs = Change("parameters/mesh/damping_ratio", "0.05", "0.06", 0.0, False)
     asked["comparison"] = Comparison("old", 7, (change, inputs))
     result = run("report", "-o", tmp_path / "out", "--compare", tmp_path / "old")
     assert result.exit_code == int(fails)
     assert f"2 changed, {int(fails)} past tolerance" in result.stdout
-    assert f"{'past tolerance' if fails else 'within'}  steady_state/dte: 1 -> 2 (50 %)" in result.stdout
-    assert "within  input/mesh/damping_ratio: 0.05 -> 0.06" in result.stdout
+    assert f"{'past tolerance' if fails else 'within'}  response/motion/dte: 1 -> 2 (50 %)" in result.stdout
+    assert "within  parameters/mesh/damping_ratio: 0.05 -> 0.06" in result.stdout
 
 
 def test_overrides_reach_the_pair():

@@ -12,7 +12,7 @@ from validation.cross_check import comparison
 from validation.cross_check.agreement import QUANTITIES, off_switch_samples
 from validation.cross_check.comparison import crosscheck
 from validation.cross_check.verdict import Verdict, limit_of
-from validation.reporting.cross_check_words import cause_of_difference, failed_checks, whole_difference
+from validation.cross_check.words import cause_of_difference, failed_checks, whole_difference
 
 
 def test_linear_fidelity_solves_the_same_equations(check):

@@ -1,74 +1,69 @@
-"""Results and chapters on few points, shared by the tests of the report, which look at words, not physics."""
+"""Reports of two unequal pairs, one that keeps contact and one that loses it, written once."""
 
-import dataclasses
+from __future__ import annotations
+
+import json
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
 
 import pytest
+import xarray as xr
 
-from validation.reporting import build, results
-from validation.reporting.results import QUICK, Results
+import lumped
+from validation.exchange.new_pair_file import new_pair_text
+from validation.reporting import build
+from validation.reporting.results import Effort
 
-TINY = dataclasses.replace(
-    QUICK,
-    samples=64,
-    cycles=6,
-    sweep_speeds=9,
-    chart_speeds=4,
-    chart_dampings=2,
-    map_speeds=2,
-    map_torques=2,
-    shaft_speeds=3,
-)
+#: Few samples and speeds: what is tested is what is done with them.
+SMALL = Effort(16, 4, 9, 32, 101, 21, 5, 9, full=False)
 
 
-@pytest.fixture(scope="package", autouse=True)
-def tiny():
-    """A quick report on even fewer points."""
+@dataclass(frozen=True)
+class Written:
+    """A report in its folder, with its files read again."""
+
+    folder: Path
+    result: build.Report
+    document: dict
+    page: str
+
+    def data(self, name: str) -> xr.Dataset:
+        """A dataset of the folder data/."""
+        return xr.load_dataset(self.folder / "data" / f"{name}.nc", engine="h5netcdf")
+
+    @property
+    def parameters(self) -> dict:
+        """The parameter file of the report, as plain data."""
+        return tomllib.loads((self.folder / "data" / "parameters.toml").read_text(encoding="utf-8"))
+
+
+def pair(name: str, teeth: str, speed: float, torque: float, **more: object) -> lumped.GearPair:
+    """A pair whose gears, speed and torque all differ."""
+    request = {
+        "teeth": teeth,
+        "basic_rack.module": 3.0,
+        "pinion.face_width": 26.0,
+        "gear.face_width": 25.0,
+        "operating.pinion_speed": speed,
+        "operating.pinion_torque": torque,
+        "mesh.stiffness.model": "rectangular",
+    }
+    return lumped.load_gear_pair(tomllib.loads(new_pair_text(name, request | more)))
+
+
+PAIRS = {
+    "calm": lambda: pair("calm", "19/41", 1450.0, 80.0),
+    "lost": lambda: pair("lost", "31/57", 12000.0, 150.0),
+}
+
+
+@pytest.fixture(scope="session", params=list(PAIRS))
+def written(request, tmp_path_factory) -> Written:
+    """The report of each pair."""
+    folder = tmp_path_factory.mktemp(request.param) / "report"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(build, "QUICK", TINY)
-        yield TINY
-
-
-@pytest.fixture(scope="package")
-def computed(pair):
-    """Results of everything that a full report computes."""
-    return Results(pair, dataclasses.replace(TINY, full=True))
-
-
-@pytest.fixture(scope="package")
-def chapters(computed):
-    """Key -> content of every chapter of a full report."""
-    return {chapter.key: content for chapter, content in build.written(computed, build.CHAPTERS)}
-
-
-@pytest.fixture(scope="package")
-def check(computed):
-    """Cross-check of the default pair, that of the report."""
-    return computed.check
-
-
-@pytest.fixture(scope="package")
-def sharing(computed):
-    """Makes results of a quick report that take the long ones of ``computed``.
-
-    All of them are computed here: a test may put a fault into the program before it asks for one.
-    """
-    shared = ("check", "sweep", "margins", "tooth_stiffness")
-    for name in shared:
-        getattr(computed, name)
-
-    def make(pair, names=shared):
-        made = Results(pair, TINY)
-        for name in names:
-            setattr(made, name, getattr(computed, name))
-        return made
-
-    return make
-
-
-@pytest.fixture(scope="module")
-def no_variant():
-    """The cross-check of a report without its asymmetric variant."""
-    true = results.crosscheck
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(results, "crosscheck", lambda *a, **k: true(*a, **k, variant=False))
-        yield
+        patch.setattr(build, "FULL", SMALL)
+        result = build.report(PAIRS[request.param](), folder)
+    document = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+    return Written(folder, result, document, (folder / "index.html").read_text(encoding="utf-8"))

@@ -1,174 +1,152 @@
-"""What the pair does where the linear motion has negative tooth loads."""
+"""Where contact is lost, the motions there, and the speeds at which the pair jumps from one to another."""
 
 from __future__ import annotations
 
 from functools import partial
 
 import numpy as np
+import xarray as xr
 
-from floquet.gear.jump_map import jumps_removed_by
 from floquet.gear.response import ResponseBranches
-from lumped.model.results import load_range
-from validation.plots.contact_loss import jump_map_figure, response_figure
+from lumped.labelling import labelled_dataset
+from lumped.outcomes import Absent, Outcome
+from validation.files.formatting import number
+from validation.plots.prediction import over_speed_figure
+from validation.plots.style import WIDTH
 from validation.reporting.blocks import Block, Content, Picture, Quantity, Text, table_of
 from validation.reporting.chapter import Chapter
-from validation.reporting.formatting import number, quantity
-from validation.reporting.results import ContactLoss, Results
-from validation.reporting.words import jumps, with_unilateral_contact
-
-#: Most jumps of which it is looked for what removes them: some seconds each.
-_FEW = 4
-#: What a motion is that does not repeat.
-_MOTIONS = {"beats": "beats", "chaos": "chaos", "grows": "grows beyond the backlash"}
+from validation.reporting.results import BRANCH_SPEEDS, Results
 
 
-def write(results: Results) -> Content | None:
-    """Write the chapter; None where the linear model has no negative tooth loads at any speed."""
-    found = results.contact_loss
-    if found is None:
-        about = (
-            "Contact holds at the operating speed; at other speeds the linear model has negative tooth loads."
-        )
-        over_speed = _over_speed(results)
-        return Content((Text(about), *over_speed)) if over_speed else None
-    if isinstance(found, str):
-        return Content((Text(f"No periodic motion with unilateral contact was found: {found}"),))
-    orbit, linear, exact = found.orbit, results.motion, found.exact
-    loads = linear["normal_load"].where(linear["contact"] > 0)
-    rows: dict[str, tuple[float, float, float]] = {
-        "linear model, teeth can pull": (
-            float(linear.attrs["dte_peak_to_peak"]), float(loads.max()), float(loads.min())
-        ),
-        "same equations, unilateral contact": (
-            orbit.dte_range[1] - orbit.dte_range[0], orbit.largest_load, 0.0
-        ),
-        "multibody model": (found.exact_peak_to_peak, float(exact["normal_load"].max()), 0.0),
-    }  # fmt: skip
-    stable = "a disturbance of it fades" if orbit.stable else "it is unstable: a pair leaves it"
+def write(results: Results) -> Content:
+    """Write the chapter."""
+    branches = results.branches
+    if isinstance(branches, Absent):
+        low, high = (number(f * results.operating_rpm, 5) for f in BRANCH_SPEEDS)
+        kept = branches.outcome is Outcome.CONTACT_NOT_LOST
+        words = f"Contact is never lost from {low} to {high} rpm." if kept else str(branches)
+        shared = _load_sharing(results)
+        return Content(words, (Text(shared),) if shared else ())
+    jumps = branches.jumps
+    lost = "Contact is lost" if results.prediction.contact_lost else "Contact is kept"
+    low, high = (number(speed, 5) for speed in branches.speeds_rpm)
+    result = f"{lost} at the operating point. From {low} to {high} rpm {_count(len(jumps), 'jump')} found."
     blocks: list[Block] = [
-        Text(
-            f"Smallest tooth load of the linear model: {quantity(float(loads.min()), 'N', 3)}. "
-            f"{with_unilateral_contact(results)} The multipliers of this motion say that {stable} (largest "
-            f"{number(orbit.spectral_radius, 3)} per mesh cycle). {_compared(results)}"
+        Picture(
+            "motions_over_speed",
+            "Peak to peak of every motion that was found over speed, with jumps.",
+            motions(results, branches),
+            partial(over_speed_figure, operating_rpm=results.operating_rpm, size=(3.4, WIDTH)),
         ),
         table_of(
-            "contact_loss",
-            "The motion at the operating point with and without contact loss.",
-            list(rows),
+            "jumps",
+            "Jumps: where a stable motion ends as the speed rises or falls.",
+            jumps,
             {
-                "model": ("model", str),
-                "dte": ("transmission error, peak to peak", lambda name: Quantity(rows[name][0], "m")),
-                "largest_load": ("largest load of a pair", lambda name: Quantity(rows[name][1], "N")),
-                "smallest_load": ("smallest load of a pair", lambda name: Quantity(rows[name][2], "N")),
+                "speed": ("speed", lambda j: Quantity(j.speed_rpm, "rpm")),
+                "way": ("running", lambda j: "up" if j.rising else "down"),
+                "before": ("transmission error before, rms", lambda j: Quantity(j.dte_rms, "m")),
+                "after": ("after, rms", lambda j: Quantity(j.dte_rms_after, "m")),
+                "load": ("largest tooth load after", lambda j: Quantity(j.largest_load_after, "N")),
+                "motion": ("motion after", lambda j: str(j.after)),
             },
         ),
     ]
-    return Content((*blocks, *_over_speed(results)))
-
-
-def _compared(results: Results) -> str:
-    """Which motion the cross-check compares, and why."""
-    found, linear = results.contact_loss, results.motion
-    if isinstance(found, ContactLoss) and found.judged:
-        return "The cross-check compares this motion."
-    loads = linear["normal_load"].to_numpy(), linear["contact"].to_numpy()
-    if load_range(results.pair.mesh.contact, *loads)[1] >= 0.0:
-        return "The total mesh force is never negative, so the cross-check compares the linear motion."
-    return "The cross-check compares it only where it is stable and no back sides of teeth touch."
-
-
-def _over_speed(results: Results) -> list[Block]:
-    """Branches of motions about the operating speed, and the jumps between them."""
-    found = results.branches
-    if found is None:
-        return []
-    if isinstance(found, str):
-        return [Text(f"The motions over speed were not found: {found}")]
-    blocks: list[Block] = [
-        Picture(
-            "response",
-            "Motions with unilateral contact over speed, stable (solid) and unstable (dashed); arrows are "
-            "jumps. Dotted: the linear model.",
-            partial(response_figure, found.dataset, results.sweep),
-        ),
-        Text(f"{jumps(results)} {_removed(results)}".strip()),
-    ]
-    if found.jumps:
+    here = branches.at(results.operating_rpm)
+    if len(here) > 1:
         blocks.append(
             table_of(
-                "jumps",
-                "Speeds at which a stable motion ends, and the motion right behind.",
-                found.jumps,
+                "motions_here",
+                "All motions that were found at the operating speed.",
+                here,
                 {
-                    "speed": ("pinion speed", lambda jump: Quantity(jump.speed_rpm, "rpm")),
-                    "way": ("running", lambda jump: "up" if jump.rising else "down"),
-                    "before": ("rms before", lambda jump: Quantity(jump.dte_rms, "m")),
-                    "load_before": ("largest load before", lambda jump: Quantity(jump.largest_load, "N")),
-                    "after": ("rms after", lambda jump: _known(jump.dte_rms_after, "m")),
-                    "load_after": ("largest load after", lambda jump: _known(jump.largest_load_after, "N")),
-                    "kind": ("motion after", lambda jump: _MOTIONS.get(jump.after, _cycles(jump.n_after))),
+                    "cycles": ("mesh cycles", lambda o: o.n),
+                    "stable": ("stable", lambda o: o.stable),
+                    "size": (
+                        "transmission error, peak to peak",
+                        lambda o: Quantity(float(np.ptp(o.dte_range)), "m"),
+                    ),
+                    "load": ("largest tooth load", lambda o: Quantity(o.largest_load, "N")),
                 },
             )
         )
-    return [*blocks, *_over_torque(results)]
+    for gap in branches.restless:
+        blocks.append(
+            Text(
+                f"From {number(gap.low_rpm, 5)} to {number(gap.high_rpm, 5)} rpm no stable motion repeats; a "
+                f"run ends in {gap.kind}, {number(1e6 * gap.dte_rms, 3)} µm rms."
+            )
+        )
+    return Content(result, tuple(blocks))
 
 
-def _over_torque(results: Results) -> list[Block]:
-    """The jump map about the operating point; a sentence where nothing happens on it."""
-    found = results.jump_map
-    if found is None or isinstance(found, str):
-        return [Text(f"Where the pair jumps at other torques was not found: {found}")] if found else []
-    torques, speeds = found["torque"].to_numpy(), found["speed_rpm"].to_numpy()
-    low, high = (quantity(float(value), "N m", 3) for value in torques[[0, -1]])
-    where = f"At {torques.size} torques from {low} to {high} and the same speeds"
-    if bool(((found["motions"] == 1) & found["contact_kept"]).all()):
-        return [Text(f"{where} contact is never lost, and there is one stable motion everywhere.")]
-    several = float((found["motions"] > 1).mean())
-    largest = found["dte_rms_largest"]
-    return [
-        Text(
-            f"{where} the pair has several stable motions at {number(100 * several, 2)}\u00a0% of the "
-            f"points, the largest of {quantity(float(largest.max()), 'm', 3)} root mean square."
-        ),
-        Picture(
-            "jump_map",
-            f"Where the pair can jump, over speed and torque ({torques.size} torques, {speeds.size} speeds, "
-            "motions of one mesh cycle, without friction, which hardly moves them); right: the largest "
-            "stable motion.",
-            partial(jump_map_figure, found),
-        ),
-    ]
+def _count(count: int, word: str) -> str:
+    return f"no {word} was" if count == 0 else f"one {word} was" if count == 1 else f"{count} {word}s were"
 
 
-def _known(value: float, unit: str) -> Quantity | None:
-    return Quantity(value, unit) if np.isfinite(value) else None
-
-
-def _cycles(n: int) -> str:
-    return "repeats each mesh cycle" if n == 1 else f"repeats after {n} mesh cycles"
-
-
-def _removed(results: Results) -> str:
-    """Which torque or damping leaves no jumps."""
-    found = results.branches
-    if not isinstance(found, ResponseBranches) or not found.jumps:
+def _load_sharing(results: Results) -> str:
+    """A note where a pair carries nothing for a time while others do: what relief is for."""
+    cycle = results.prediction.cycle
+    idle = (cycle["contact"].to_numpy() > 0) & (cycle["normal_load"].to_numpy() <= 0.0)
+    if not idle.any():
         return ""
-    if len(found.jumps) > _FEW:
-        return "Which torque or damping removes them: spurcheck response --map."
-    told = []
-    for axis, name, unit in (
-        ("torque", "a torque", "N m"),
-        ("damping_ratio", "a damping ratio of the mesh", ""),
-    ):
-        for way in jumps_removed_by(found, axis):
-            if way.found:
-                value = quantity(way.value, unit, 3) if unit else number(way.value, 3)
-                told.append(f"{name} {'above' if way.direction == 'larger' else 'below'} {value}")
-    if not told:
-        return "No torque from a quarter to four times the given one and no such damping removes all folds."
-    return f"Stable motions have no folds here, and so do not end at once, with {' or '.join(told)}."
+    return "A tooth pair begins to carry late or ends early while others carry: load sharing by relief."
 
 
-CHAPTER = Chapter(
-    "contact_loss", "Contact loss", write, front=("contact_loss", "response", "jumps"), seconds=12
-)
+def motions(results: Results, branches: ResponseBranches) -> xr.Dataset:
+    """What ``over_speed_figure`` draws: linear motion, range, motions with unilateral contact, jumps."""
+    data = linear_over_speed(results)
+    period = results.pair.geometry.mesh_period * results.operating_rpm
+    orbits = [orbit for branch in branches.branches for orbit in branch.orbits]
+    speed = np.array([period / orbit.period for orbit in orbits])
+    size = np.array([orbit.run.most - orbit.run.least for orbit in orbits])
+    stable = np.array([float(orbit.stable) for orbit in orbits])
+    jumps = [j for j in branches.jumps if np.isfinite(j.dte_rms_after)]
+    at = np.array([j.speed_rpm for j in jumps])
+    near = [_peak_at(branches, j.speed_rpm, j.dte_rms, j.dte_rms_after, j.rising) for j in jumps]
+    text = "transmission error, peak to peak"
+    more = labelled_dataset(
+        {
+            "motion": ("motion_speed_rpm", size, "m", f"{text}, unilateral contact"),
+            "motion_stable": ("motion_speed_rpm", stable, "1", "whether the motion is stable"),
+            "jump_from": ("jump_speed_rpm", np.array([a for a, _ in near]), "m", f"{text}, before the jump"),
+            "jump_to": ("jump_speed_rpm", np.array([b for _, b in near]), "m", f"{text}, after the jump"),
+        },
+        {
+            "motion_speed_rpm": (speed, "rpm", "pinion speed"),
+            "jump_speed_rpm": (at, "rpm", "pinion speed"),
+        },
+    )
+    return data.merge(more)
+
+
+def linear_over_speed(results: Results) -> xr.Dataset:
+    """Linear peak to peak over speed, and its range where the inputs were varied."""
+    sweep, band = results.sweep, results.band
+    speeds = sweep["speed"].to_numpy()
+    holds = (sweep["spectral_radius"].to_numpy() <= 1.0) & (sweep["normal_load_min"].to_numpy() > 0.0)
+    values = np.where(holds, sweep["dte_peak_to_peak"].to_numpy(), np.nan)
+    text = "transmission error, peak to peak"
+    variables = {"linear": ("speed_rpm", values, "m", text)}
+    if isinstance(band, xr.Dataset):
+        for name in ("low", "high"):
+            ends = np.interp(speeds, band["speed_rpm"], band[name])
+            variables[name] = ("speed_rpm", ends, "m", str(band[name].attrs["long_name"]))
+    return labelled_dataset(variables, {"speed_rpm": (speeds, "rpm", "pinion speed")})
+
+
+def _peak_at(
+    branches: ResponseBranches, rpm: float, before: float, after: float, rising: bool
+) -> tuple[float, float]:
+    """Peak to peak just before and just behind a jump: of the motions there with the nearest rms."""
+    found = []
+    for rms, side in ((before, -1.0), (after, 1.0)):
+        speed = rpm * (1.0 + 1e-3 * side * (1.0 if rising else -1.0))
+        low, high = branches.speeds_rpm
+        there = branches.at(min(max(speed, low), high))
+        orbit = min(there, key=lambda o: abs(o.dte_rms - rms), default=None)
+        found.append(float(np.ptp(orbit.dte_range)) if orbit is not None else np.nan)
+    return found[0], found[1]
+
+
+CHAPTER = Chapter("contact_loss", "Contact loss and jumps", write, seconds=2.0)

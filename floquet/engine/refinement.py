@@ -1,0 +1,188 @@
+"""Charts over two axes that are evaluated near the edges of instability and interpolated elsewhere.
+
+A box of nodes is a leaf when all verdicts known in it are equal and the growth rate g = n ln(radius), with n
+cycles in a unit of time, is bilinear in it to the tolerance; else it is cut. The whole lowest row of the
+second axis is evaluated first: where damping is least, tongues of instability are widest, so it seeds them.
+
+Both sides of every edge are evaluated. A region can be missed that lies wholly inside a leaf and touches
+neither the lowest row nor an evaluated node.
+
+Sources: docs/theory/floquet.md, "Charts that refine themselves".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from lumped.typing import BoolArray, FloatArray, IntArray
+
+#: Largest error of the spectral radius at an interpolated node.
+TOLERANCE = 4e-3
+#: Nodes along the first axis of a box to begin with; the second axis is whole.
+_FIRST = 64
+#: Misfits along both axes within this factor cut a box along both.
+_ALIKE = 2.0
+_LEAST_RADIUS = 1e-12
+
+#: Flat indices (k,) of nodes -> their spectral radius and verdict (k,).
+Ask = Callable[[IntArray], tuple[FloatArray, IntArray]]
+Box = tuple[int, int, int, int]
+
+
+@dataclass(frozen=True, eq=False)
+class Refined:
+    """A chart of N x M nodes, first axis first.
+
+    Attributes
+    ----------
+    radius : spectral radius, interpolated where ``known`` is False
+    verdict : 1 stable, 0 undecided, -1 unstable; of its leaf where it is not known
+    known : whether the node was evaluated
+    misfit : of an interpolated node the largest misfit known in its leaf, at least the tolerance; 0 else
+    """
+
+    radius: FloatArray
+    verdict: IntArray
+    known: BoolArray
+    misfit: FloatArray
+
+
+def refine(shape: tuple[int, int], cycles: FloatArray, ask: Ask, tolerance: float = TOLERANCE) -> Refined:
+    """Evaluate a chart where its verdict or its growth rate changes, and interpolate the rest.
+
+    Parameters
+    ----------
+    shape : numbers of nodes N, M along both axes, at least 2 each; axes increase
+    cycles : (N,) or (N, M) cycles in a unit of time, by which the logarithm of the radius is smooth
+    ask : evaluates nodes by their flat index i M + j
+    tolerance : largest error of the radius at an interpolated node, as far as nodes of its leaf tell
+    """
+    state = _State(shape, np.broadcast_to(np.reshape(cycles, (shape[0], -1)), shape), ask)
+    n, m = shape
+    state.look(np.arange(n), np.zeros(n, dtype=np.intp))
+    starts = [*range(0, n - 1, _FIRST)]
+    new: list[Box] = [(i, min(i + _FIRST, n - 1), 0, m - 1) for i in starts]
+    leaves: dict[Box, int] = {}
+    while new:
+        nodes = np.concatenate([_nine(box) for box in new])
+        state.look(nodes[:, 0], nodes[:, 1])
+        # What was asked for a neighbour may lie in a leaf too: it is judged again.
+        again = [box for box, count in leaves.items() if state.count(box) != count]
+        boxes, new = [*new, *again], []
+        for box in boxes:
+            leaves.pop(box, None)
+            cuts = state.cuts(box, tolerance)
+            if cuts:
+                new += cuts
+            else:
+                leaves[box] = state.count(box)
+    return state.filled(leaves, tolerance)
+
+
+def _nine(box: Box) -> IntArray:
+    """Corners, middles of edges and centre of a box, (9, 2)."""
+    a, b, c, d = box
+    return np.array([(i, j) for i in (a, (a + b) // 2, b) for j in (c, (c + d) // 2, d)], dtype=np.intp)
+
+
+class _State:
+    def __init__(self, shape: tuple[int, int], cycles: FloatArray, ask: Ask) -> None:
+        self.ask, self.cycles = ask, cycles
+        self.radius, self.growth = np.full(shape, np.nan), np.full(shape, np.nan)
+        self.verdict = np.zeros(shape, dtype=np.intp)
+        self.known = np.zeros(shape, dtype=bool)
+
+    def look(self, i: IntArray, j: IntArray) -> None:
+        """Evaluate the nodes that are not known yet."""
+        flat = np.unique(i * self.known.shape[1] + j)
+        flat = flat[~self.known.ravel()[flat]]
+        if not flat.size:
+            return
+        radius, verdict = self.ask(flat)
+        places = np.unravel_index(flat, self.known.shape)
+        self.radius[places], self.verdict[places], self.known[places] = radius, verdict, True
+        self.growth[places] = self.cycles[places] * np.log(np.maximum(radius, _LEAST_RADIUS))
+
+    def count(self, box: Box) -> int:
+        a, b, c, d = box
+        return int(np.count_nonzero(self.known[a : b + 1, c : d + 1]))
+
+    def misfit(self, box: Box) -> tuple[IntArray, IntArray, FloatArray]:
+        """Known nodes of a box, and how far their radius is from the bilinear one."""
+        a, b, c, d = box
+        i, j = np.nonzero(self.known[a : b + 1, c : d + 1])
+        i, j = i + a, j + c
+        found = np.exp(self._bilinear(box, i, j) / self.cycles[i, j])
+        return i, j, np.abs(found - self.radius[i, j])
+
+    def _bilinear(self, box: Box, i: npt.NDArray[np.intp], j: npt.NDArray[np.intp]) -> FloatArray:
+        a, b, c, d = box
+        s, t = (i - a) / max(b - a, 1), (j - c) / max(d - c, 1)
+        g = self.growth
+        low = g[a, c] * (1.0 - s) + g[b, c] * s
+        high = g[a, d] * (1.0 - s) + g[b, d] * s
+        return np.asarray(low * (1.0 - t) + high * t, dtype=np.float64)
+
+    def cuts(self, box: Box, tolerance: float) -> list[Box]:
+        """The parts of a box that is no leaf; empty for a leaf."""
+        a, b, c, d = box
+        wide, tall = b - a > 1, d - c > 1
+        if not (wide or tall):
+            return []
+        i, j, error = self.misfit(box)
+        verdict = self.verdict[i, j]
+        mixed = bool((verdict != verdict[0]).any())
+        if not mixed:
+            allowed = np.full(error.size, tolerance)
+            if verdict[0] != 0:
+                allowed = np.minimum(allowed, 0.5 * np.abs(self.radius[i, j] - 1.0))
+            if (error <= allowed).all():
+                return []
+        along, up = self._ways(box, i, j, error, mixed=mixed)
+        along, up = (along and wide) or not tall, (up and tall) or not wide
+        return _parts(box, along=along and wide, up=up and tall)
+
+    def _ways(
+        self, box: Box, i: IntArray, j: IntArray, error: FloatArray, *, mixed: bool
+    ) -> tuple[bool, bool]:
+        """Whether to cut along the first and along the second axis."""
+        a, b, c, d = box
+        if mixed:
+            edges = [self.verdict[i[on], j[on]] for on in (j == c, j == d, i == a, i == b)]
+            lower, upper, left, right = (bool((edge != edge[0]).any()) for edge in edges)
+            along, up = lower or upper, left or right
+            return (along, up) if along or up else (True, True)
+        across = error[(j == c) | (j == d)].max(initial=0.0)
+        upward = error[(i == a) | (i == b)].max(initial=0.0)
+        return across * _ALIKE >= upward, upward * _ALIKE >= across
+
+    def filled(self, leaves: dict[Box, int], tolerance: float) -> Refined:
+        """Interpolate what is not known, in the four quarters of each leaf."""
+        misfit = np.zeros(self.known.shape)
+        for box in leaves:
+            a, b, c, d = box
+            here = slice(a, b + 1), slice(c, d + 1)
+            if self.known[here].all():
+                continue
+            _, _, error = self.misfit(box)
+            size = max(tolerance, float(error.max()))
+            verdict = self.verdict[a, c]
+            for part in _parts(box, along=b - a > 1, up=d - c > 1):
+                p, q, r, s = part
+                inner = slice(p, q + 1), slice(r, s + 1)
+                i, j = np.nonzero(~self.known[inner])
+                i, j = i + p, j + r
+                self.radius[i, j] = np.exp(self._bilinear(part, i, j) / self.cycles[i, j])
+                self.verdict[i, j], misfit[i, j] = verdict, size
+        return Refined(self.radius, self.verdict, self.known, misfit)
+
+
+def _parts(box: Box, *, along: bool, up: bool) -> list[Box]:
+    a, b, c, d = box
+    columns = [(a, (a + b) // 2), ((a + b) // 2, b)] if along else [(a, b)]
+    rows = [(c, (c + d) // 2), ((c + d) // 2, d)] if up else [(c, d)]
+    return [(*column, *row) for column in columns for row in rows]

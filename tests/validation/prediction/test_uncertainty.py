@@ -1,0 +1,94 @@
+"""Do the samples say what the uncertain inputs do? Closed forms where the result is known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.stats import binom
+
+import lumped
+from lumped.errors import ParameterError
+from validation.prediction.uncertainty import percentile_interval, speed_band, uncertainty
+
+#: Linear in the torque: without friction and relief, contact from A to D, every load grows with it.
+LINEAR = lumped.load_gear_pair("nasa_28_28").with_(
+    {
+        "friction.law": "none",
+        "mesh.relief": "ignored",
+        "operating.pinion_speed": 800.0,
+        "sources": {},
+        "uncertainty": {"operating.pinion_torque": "+- 4 %"},
+    }
+)
+
+
+def exact_only(pair: lumped.GearPair) -> lumped.GearPair:
+    """The pair with every value stated, so that only its own ranges vary."""
+    from lumped.schema.pair import leaf_paths
+
+    known = {path: "stated" for path in leaf_paths(pair) if path not in ("name", "description")}
+    return pair.with_({"sources": known})
+
+
+@pytest.fixture(scope="module")
+def torque():
+    return uncertainty(exact_only(LINEAR), 64, seed=3)
+
+
+def test_percentiles_of_a_result_that_grows_with_the_input(torque):
+    """Transmission error T (1 + 0.04 (2 u - 1)) with u uniform: its percentile p is at u = p."""
+    given = torque.attrs["given_dte_peak_to_peak"]
+    assert list(torque["input"].to_numpy()) == ["operating.pinion_torque"]
+    expected = given * (1.0 + 0.04 * (2.0 * np.array([0.05, 0.5, 0.95]) - 1.0))
+    # 64 scrambled Sobol points fill the interval evenly to 1/64.
+    np.testing.assert_allclose(torque["dte_peak_to_peak_percentile"], expected, rtol=0.08 / 64)
+    np.testing.assert_allclose(torque["dte_peak_to_peak_swing"][0], expected[[0, 2]], rtol=1e-9)
+    assert torque["dte_peak_to_peak_rank_correlation"].item() == pytest.approx(1.0)
+    # Ratios do not change with the torque.
+    np.testing.assert_allclose(torque["dynamic_factor"], torque.attrs["given_dynamic_factor"], rtol=1e-9)
+
+
+def test_the_interval_holds_its_percentile(torque):
+    interval = torque["dte_peak_to_peak_interval"].to_numpy()
+    found = torque["dte_peak_to_peak_percentile"].to_numpy()
+    assert ((interval[:, 0] <= found) & (found <= interval[:, 1])).all()
+
+
+@pytest.mark.parametrize("count", [64, 128, 4096])
+@pytest.mark.parametrize("percentile", [5.0, 50.0, 95.0])
+def test_the_interval_of_a_percentile_has_its_probability(count, percentile):
+    """P(X_(low) <= q < X_(high)) is a sum of binomial terms (David and Nagaraja 2003, eq. 7.1.1)."""
+    low, high = percentile_interval(count, percentile)
+    p = percentile / 100.0
+    below = binom.pmf(np.arange(low + 1, high + 1), count, p).sum()
+    if low > 0 and high < count - 1:
+        assert 0.89 < below < 0.99
+
+
+def test_the_same_seed_gives_the_same_samples_and_another_one_others(torque):
+    again = uncertainty(exact_only(LINEAR), 64, seed=3)
+    other = uncertainty(exact_only(LINEAR), 64, seed=4)
+    np.testing.assert_array_equal(torque["dte_peak_to_peak"], again["dte_peak_to_peak"])
+    assert not np.array_equal(torque["dte_peak_to_peak"], other["dte_peak_to_peak"])
+
+
+def test_refused_samples_are_counted():
+    """A stiffness table without its file cannot be: half of the samples of this choice are refused."""
+    pair = exact_only(LINEAR).with_({"uncertainty": {"mesh.stiffness": ["rectangular", "table"]}})
+    found = uncertainty(pair, 16)
+    assert found.attrs["refused"] == 16 - found.sizes["sample"] == 8
+
+
+def test_a_pair_without_uncertain_inputs_is_refused():
+    pair = exact_only(LINEAR).with_({"uncertainty": {}})
+    with pytest.raises(ParameterError, match="uncertainty"):
+        uncertainty(pair, 16)
+
+
+def test_the_band_over_speed_is_about_the_sweep():
+    pair = exact_only(LINEAR)
+    speeds = np.array([700.0, 900.0, 1100.0])
+    band = speed_band(pair, speeds, 16)
+    middle = lumped.speed_sweep(pair, speeds)["dte_peak_to_peak"].to_numpy()
+    np.testing.assert_allclose(band["low"], middle * 0.964, rtol=0.01)
+    np.testing.assert_allclose(band["high"], middle * 1.036, rtol=0.01)

@@ -1,0 +1,74 @@
+"""spurcheck uncertainty: how far the prediction moves with the uncertain inputs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from validation.commands import options as opt
+from validation.commands.terminal import guarded, progress_bar, stderr, stdout, table
+
+_SUFFIXES = (".csv", ".nc", ".mat")
+
+
+@guarded
+def uncertainty(
+    pair: opt.PairArgument = opt.DEFAULT_PAIR,
+    samples: Annotated[int, typer.Option("--samples", help="Number of predictions.")] = 128,
+    seed: Annotated[int, typer.Option("--seed", help="Of the sampled points.")] = 1,
+    speed: opt.Speed = None,
+    torque: opt.Torque = None,
+    law: opt.Law = None,
+    settings: opt.Settings = None,
+    output: Annotated[
+        Path | None, opt.output("File for all samples: .nc (NetCDF), .mat (MATLAB) or .csv.")
+    ] = None,
+    force: opt.Force = False,
+) -> None:
+    r"""Predict a gear pair many times while its uncertain inputs vary.
+
+    Inputs vary as the section \\[uncertainty] of the file states, and by documented defaults where the source
+    of a value says that it is assumed.
+
+    [bold]Examples[/bold]
+
+    spurcheck uncertainty my_pair.toml
+
+    spurcheck uncertainty my_pair.toml --samples 512 -o samples.nc
+    """
+    import numpy as np
+
+    from validation.exchange.results import write_results
+    from validation.files.formatting import number, quantity
+    from validation.files.output import check_file
+    from validation.prediction.motion import QUANTITIES
+    from validation.prediction.uncertainty import uncertainty as run
+
+    target = None if output is None else check_file(output, _SUFFIXES, force=force)
+    gear_pair = opt.gear_pair(pair, speed, torque, law, settings)
+    with progress_bar("uncertain inputs") as tell:
+        found = run(gear_pair, samples, seed, progress=tell)
+    console = stdout()
+    shown = table(f"{gear_pair.name}: results", "result", ">as given", ">5 %", ">50 %", ">95 %")
+    for name, (unit, words) in QUANTITIES.items():
+        ends = found[f"{name}_percentile"].to_numpy()
+        given = float(found.attrs[f"given_{name}"])
+        shown.add_row(words, *(quantity(float(v), unit, 3) for v in (given, *ends)))
+    console.print(shown)
+    shown = table("what moves the transmission error", "input", "range", ">from", ">to", ">rank correlation")
+    swing = found["dte_peak_to_peak_swing"].to_numpy()
+    for j in np.argsort(-np.nan_to_num(np.ptp(swing, axis=1)), kind="stable"):
+        moved = (quantity(float(end), "m", 3) for end in (swing[j].min(), swing[j].max()))
+        correlation = number(float(found["dte_peak_to_peak_rank_correlation"][j]), 2)
+        shown.add_row(str(found["input"].to_numpy()[j]), str(found.attrs["written"][j]), *moved, correlation)
+    console.print(shown)
+    counts = ("refused", "contact_lost", "unstable")
+    console.print(
+        f"{samples} samples, seed {seed}: "
+        + ", ".join(f"{found.attrs[name]} {name.replace('_', ' ')}" for name in counts)
+    )
+    if target is not None:
+        write_results(found, target, force=force)
+        stderr().print(f"wrote {target}")

@@ -1,0 +1,94 @@
+"""What several chapters and commands say about the cross-check of both models."""
+
+from __future__ import annotations
+
+import xarray as xr
+
+import multibody
+from lumped import NumericalError
+from multibody.run.effects import CAUSES
+from validation.cross_check.comparison import CrossCheck
+from validation.cross_check.verdict import Judgement
+from validation.files.formatting import number, quantity
+
+#: Short names of the quantities that the models are compared by.
+NAMES = {
+    "dte": "transmission error",
+    "x_p": "pinion x",
+    "x_g": "gear x",
+    "y_p": "pinion y",
+    "y_g": "gear y",
+    "normal_load": "normal load",
+    "friction_force": "friction force",
+}
+
+
+def failed_checks(check: CrossCheck, most: int = 3) -> str:
+    """The first checks that fail, with value and limit."""
+    failed = check.failures
+    told = [_failed(j) for j in failed[:most]]
+    more = [f"and {len(failed) - most} more"] if len(failed) > most else []
+    return "; ".join(told + more)
+
+
+def _failed(judgement: Judgement) -> str:
+    """One check that fails; a difference of the motions in words."""
+    check = judgement.check.removeprefix("variant: ")
+    kind, _, name = check.partition(": ")
+    if kind != "same equations":
+        return f"{judgement.check} {number(judgement.value, 2)}, limit {number(judgement.limit, 2)}"
+    of = " of its asymmetric variant" if check != judgement.check else ""
+    value, limit = percent(judgement.value), percent(judgement.limit)
+    return f"{NAMES[name]}{of} {value} off with the same equations, limit {limit}"
+
+
+def same_equations(check: CrossCheck) -> str:
+    """How well the multibody model agrees when it holds the equations of the lumped model."""
+    worst = check.worst("linear")
+    verb = "agrees" if worst.within else "does not agree"
+    return (
+        f"With the same equations the multibody model {verb}: {NAMES[worst.quantity]} to "
+        f"{number(worst.difference, 2)} of its peak to peak, limit {number(worst.limit, 2)}."
+    )
+
+
+def whole_difference(check: CrossCheck) -> str:
+    """How much the exact model differs: in the transmission error, and in what uses most of its limit."""
+    dte = next(a for a in check.of("exact") if a.quantity == "dte")
+    worst = check.worst("exact")
+    own, other = (quantity(value, "m", 3) for value in (dte.peak_to_peak, dte.peak_to_peak_multibody))
+    told = (
+        f"The transmission error of the multibody model is {other} peak to peak beside {own}, and differs by "
+        f"at most {percent(dte.difference)} of that"
+    )
+    if worst.quantity == "dte":
+        return f"{told}, limit {percent(dte.limit)}."
+    return f"{told}; {NAMES[worst.quantity]} by {percent(worst.difference)}, limit {percent(worst.limit)}."
+
+
+def attribution(check: CrossCheck) -> xr.Dataset | None:
+    """Effects of the exact model one by one; None where contact is lost or it has no periodic motion."""
+    if check.orbit is not None:
+        return None
+    try:
+        return multibody.attribution(check.pair)
+    except NumericalError:
+        return None
+
+
+def cause_of_difference(check: CrossCheck, found: xr.Dataset | None = None) -> str:
+    """The effect of the exact model that explains most of the difference; empty where that is not known.
+
+    ``found`` is the ``attribution``, where it is known already.
+    """
+    found = attribution(check) if found is None else found
+    if found is None:
+        return ""
+    name = str(found.attrs["largest"])
+    change = float(found["alone"].sel(cause=name, quantity="dte"))
+    return f"Most of it comes from one effect: {CAUSES[name]}, alone {percent(change)}."
+
+
+def percent(ratio: float) -> str:
+    """A ratio in percent, two digits."""
+    return quantity(100 * ratio, "%", 2)

@@ -1,0 +1,63 @@
+"""Numbers for readers: significant digits, SI prefixes, powers of ten."""
+
+from __future__ import annotations
+
+import math
+import re
+
+_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_MINUS = "\u2212"
+#: A number and its unit stay on one line.
+_SPACE = "\u00a0"
+#: Mantissa and exponent of a number as a computer writes it.
+_EXPONENT = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e(-\d+|\+\d{2,})(?!\w)")
+_PREFIXED = frozenset({"m", "N", "Pa", "N/m", "W", "s", "Hz", "m/s", "N s/m"})
+_PREFIXES = {9: "G", 6: "M", 3: "k", 0: "", -3: "m", -6: "µ", -9: "n", -12: "p"}
+
+
+def number(value: float, digits: int = 4, *, measured: bool = False) -> str:
+    """A number with significant digits; powers of ten outside 0.001 to 99999.
+
+    Zeros at the end are left out, but where the number is good to that many digits (``measured``).
+    """
+    if not math.isfinite(value):
+        return "n/a"
+    if value == 0.0:
+        return "0"
+    if 1e-3 <= abs(value) < 1e5:
+        # Digits before the point are never rounded away: 16663 stays 16660 at four digits, not 1.666e+04.
+        places = max(digits - 1 - math.floor(math.log10(abs(value))), 0)
+        text = f"{float(f'{value:.{digits}g}'):.{places}f}"
+        text = text.rstrip("0").rstrip(".") if "." in text and not measured else text
+        return text.replace("-", _MINUS)
+    mantissa, exponent = f"{value:.{min(digits, 3) - 1}e}".split("e")
+    return f"{mantissa}{_SPACE}×{_SPACE}10{str(int(exponent)).translate(_SUPERSCRIPT)}".replace("-", _MINUS)
+
+
+def quantity(value: float, unit: str, digits: int = 4, *, measured: bool = False) -> str:
+    """A number in SI with its unit, prefixed where that is usual; arguments as those of ``number``."""
+    if unit == "1" or value == 0.0:  # nothing has no unit that a reader would miss
+        return number(value, digits, measured=measured)
+    if unit in _PREFIXED and math.isfinite(value):
+        exponent = 3 * math.floor(math.log10(abs(value)) / 3)
+        exponent = min(max(exponent, -12), 9)
+        scaled = value / 10.0**exponent
+        if abs(float(f"{scaled:.{digits}g}")) >= 1000.0 and exponent < 9:  # 999.99 rounds to 1000
+            exponent += 3
+            scaled = value / 10.0**exponent
+        value, unit = scaled, f"{_PREFIXES[exponent]}{unit}"
+    return f"{number(value, digits, measured=measured)}{_SPACE}{unit.replace(' ', _SPACE)}"
+
+
+def prose(text: str) -> str:
+    """Text in which numbers as a computer writes them (9.43e-03) are as people write them."""
+    return _EXPONENT.sub(_plain, text)
+
+
+def _plain(match: re.Match[str]) -> str:
+    mantissa, exponent = match[1], int(match[2])
+    if -3 <= exponent <= 4:
+        places = max(len(mantissa.partition(".")[2]) - exponent, 0)
+        return f"{float(match[0]):.{places}f}"
+    factor = "" if mantissa == "1" else f"{mantissa}{_SPACE}×{_SPACE}"
+    return f"{factor}10{str(exponent).translate(_SUPERSCRIPT)}"

@@ -1,0 +1,100 @@
+"""Maps: a result over two axes as colour, all with one colour map and a colour bar with numbers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm, Normalize
+from matplotlib.figure import Figure
+
+from validation.plots.axes import label_axis, scale_of
+from validation.plots.style import BLACK, GREY, RED, one_panel
+
+#: Perceived alike with every colour vision deficiency, and in print.
+COLOURS = "cividis"
+
+
+def map_figure(
+    values: xr.DataArray, x: str, y: str, *, log: bool = False, height: float = 3.4
+) -> tuple[Figure, Axes]:
+    """Return a figure of a result over two of its coordinates, and its panel.
+
+    Parameters
+    ----------
+    values : over ``x`` and ``y``
+    x, y : names of the coordinates
+    log : colours by the logarithm
+    height : of the figure [inch]
+    """
+    figure, ax = one_panel(height)
+    values = values.transpose(y, x).sortby([x, y])
+    factor, unit = scale_of(values)
+    shown = values.to_numpy() / factor
+    finite = shown[np.isfinite(shown)]
+    norm: Any = Normalize(finite.min(), finite.max())
+    if log:
+        norm = LogNorm(max(finite.max() * 1e-3, 1e-30), finite.max(), clip=True)
+    across, up = label_axis(ax, "x", values[x]), label_axis(ax, "y", values[y])
+    drawn = ax.pcolormesh(
+        values[x].to_numpy() / across,
+        values[y].to_numpy() / up,
+        shown,
+        cmap=COLOURS,
+        norm=norm,
+        shading="nearest",
+        rasterized=True,
+    )
+    bar = figure.colorbar(drawn, ax=ax, pad=0.01)
+    bar.set_label(f"{values.attrs['long_name']} [{unit}]", fontsize=8.5)
+    bar.outline.set_linewidth(0.5)
+    ax.grid(False)
+    return figure, ax
+
+
+def orders_map_figure(data: xr.Dataset, operating_rpm: float, resonances: list[float]) -> Figure:
+    """Orders of the bearing force over speed, with the speeds at which an order meets a natural frequency.
+
+    Parameters
+    ----------
+    data : ``amplitude`` over ``speed_rpm`` and ``order``
+    operating_rpm : operating speed [rpm]
+    resonances : speeds at which the first order meets a natural frequency [rpm]
+    """
+    figure, ax = map_figure(data["amplitude"], "speed_rpm", "order", log=True)
+    low, high = ax.get_xlim()
+    orders = data["order"].to_numpy()
+    for first in resonances:
+        place = first / orders
+        inside = (place >= low) & (place <= high)
+        ax.plot(place[inside], orders[inside], color=RED, linewidth=0.8, marker="o", markersize=2.5)
+    ax.axvline(operating_rpm, color="white", linewidth=1.0, linestyle="--")
+    ax.set_yticks(orders)
+    return figure
+
+
+def stability_map_figure(data: xr.Dataset, point: tuple[float, float]) -> Figure:
+    """Growth of a disturbance in a mesh cycle over speed and damping; the edges of instability as lines.
+
+    Parameters
+    ----------
+    data : ``growth`` over ``speed_rpm`` and ``damping_ratio``, negative where disturbances decay
+    point : operating speed [rpm] and damping ratio
+    """
+    growth = data["growth"]
+    figure, ax = map_figure(growth, "speed_rpm", "damping_ratio")
+    values = growth.transpose("damping_ratio", "speed_rpm").to_numpy()
+    if min(values.shape) > 1 and values.min() < 0.0 < values.max():
+        ax.contour(
+            data["speed_rpm"], data["damping_ratio"], values, levels=[0.0], colors=[RED], linewidths=1.4
+        )
+    if (data["verdict"].to_numpy() == 0).any():
+        undecided = data["verdict"].transpose("damping_ratio", "speed_rpm").to_numpy() == 0
+        rows, columns = np.nonzero(undecided)
+        ax.plot(
+            data["speed_rpm"].to_numpy()[columns], data["damping_ratio"].to_numpy()[rows], ",", color=GREY
+        )
+    ax.plot(*point, marker="o", markersize=7, markerfacecolor="white", markeredgecolor=BLACK, clip_on=False)
+    return figure

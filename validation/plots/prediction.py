@@ -1,0 +1,158 @@
+"""Pictures of the prediction: over speed with its range, orders of the bearing force, error budget."""
+
+from __future__ import annotations
+
+import textwrap
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from validation.plots.axes import label_axis, scale_of
+from validation.plots.style import BLACK, BLUE, GREY, IN_X, ORANGE, RED, SKY, legend, one_panel, write_beside
+
+#: Height and width of a figure of page 1, three of which stand side by side [inch].
+SMALL = (3.0, 4.2)
+_COLUMN = 22
+
+
+def over_speed_figure(data: xr.Dataset, operating_rpm: float, size: tuple[float, float] = SMALL) -> Figure:
+    """Peak to peak of the transmission error over speed, with its range and the motions beyond contact loss.
+
+    Parameters
+    ----------
+    data : over ``speed_rpm``: ``linear`` (NaN where it does not hold), ``low`` and ``high`` where the inputs
+        were varied; over ``motion_speed_rpm``: ``motion`` with ``motion_stable`` where contact is lost; over
+        ``jump_speed_rpm``: ``jump_from``, ``jump_to``
+    operating_rpm : operating speed [rpm]
+    size : height and width [inch]
+    """
+    figure, ax = one_panel(*size)
+    speed, linear = data["speed_rpm"], data["linear"]
+    shared = [linear, *(data[name] for name in ("low", "high", "motion") if name in data)]
+    label_axis(ax, "x", speed)
+    factor = label_axis(ax, "y", *shared, text="transmission error, p-p")
+    x = speed.to_numpy()
+    if "low" in data:
+        low, high = data["low"].to_numpy() / factor, data["high"].to_numpy() / factor
+        ax.fill_between(x, low, high, color=SKY, alpha=0.4, linewidth=0.0, label="5 to 95 % of the samples")
+    ax.plot(x, linear.to_numpy() / factor, color=BLUE, linewidth=1.6, gid="linear", label="as given")
+    if "motion" in data:
+        stable = data["motion_stable"].to_numpy() > 0
+        place, sizes = data["motion_speed_rpm"].to_numpy(), data["motion"].to_numpy() / factor
+        look: dict[str, Any] = {"linestyle": "none", "marker": ".", "markersize": 3.5}
+        ax.plot(place[stable], sizes[stable], color=RED, label="with contact loss", gid="motion", **look)
+        ax.plot(place[~stable], sizes[~stable], color=GREY, label="unstable", **look)
+        for at, start, end in zip(
+            data["jump_speed_rpm"].to_numpy(),
+            data["jump_from"].to_numpy() / factor,
+            data["jump_to"].to_numpy() / factor,
+            strict=True,
+        ):
+            if np.isfinite(end):
+                ax.annotate(
+                    "", (at, end), xytext=(at, start), arrowprops={"arrowstyle": "->", "color": ORANGE}
+                )
+    ax.axvline(operating_rpm, color=BLACK, linewidth=0.9, linestyle="--")
+    write_beside(ax, f"{operating_rpm:.5g} rpm", (operating_rpm, 1.0), (0, 2), IN_X, ha="center")
+    ax.set_xlim(x[0], x[-1])
+    ax.set_ylim(bottom=0.0)
+    legend(ax, loc="best")
+    return figure
+
+
+def orders_figure(data: xr.Dataset) -> Figure:
+    """Amplitudes of a force by mesh order, with the range of each where the inputs were varied.
+
+    Parameters
+    ----------
+    data : over ``order``: ``amplitude``, and ``low`` and ``high`` where there are any; the attribute
+        ``mesh_frequency`` [Hz]
+    """
+    figure, ax = one_panel(*SMALL)
+    order, amplitude = data["order"], data["amplitude"]
+    ends = [data[name] for name in ("low", "high") if name in data]
+    factor = label_axis(ax, "y", amplitude, *ends)
+    ax.set_xlabel(f"mesh order [-]; 1 is {data.attrs['mesh_frequency']:.4g} Hz")
+    x = order.to_numpy()
+    ax.bar(x, amplitude.to_numpy() / factor, width=0.65, color=BLUE, label="as given")
+    if ends:
+        low, high = (end.to_numpy() / factor for end in ends)
+        ax.vlines(x, low, high, color=BLACK, linewidth=1.3, label="5 to 95 % of the samples")
+        legend(ax, loc="best")
+    ax.set_xticks(x)
+    ax.set_ylim(bottom=0.0)
+    ax.grid(False, axis="x")
+    return figure
+
+
+def swings_figure(data: xr.Dataset) -> Figure:
+    """How far each input alone moves the result: bars from its 5 to its 95 % value, the largest on top.
+
+    Parameters
+    ----------
+    data : over ``input``, largest swing first: ``low`` and ``high``; attribute ``given``, the result with the
+        inputs as given, and ``names``, plain names of the inputs
+    """
+    figure, ax = one_panel(*SMALL)
+    low, high = data["low"], data["high"]
+    factor = label_axis(ax, "x", low, high, text=str(data.attrs["quantity"]))
+    place = np.arange(low.size)[::-1]
+    start, end = low.to_numpy() / factor, high.to_numpy() / factor
+    given = float(data.attrs["given"]) / factor
+    ax.barh(place, end - start, left=start, height=0.6, color=BLUE)
+    ax.axvline(given, color=BLACK, linewidth=1.0)
+    ax.set_yticks(place, [textwrap.fill(name, _COLUMN) for name in data.attrs["names"]])
+    ax.set_ylabel("input")
+    ax.grid(False, axis="y")
+    return figure
+
+
+def budget_figure(data: xr.Dataset) -> Figure:
+    """Every error of the prediction as a bar on a logarithmic axis.
+
+    Parameters
+    ----------
+    data : over ``row``: ``share``, of the transmission error's peak to peak [%], NaN where it is not known;
+        attribute ``names``
+    """
+    share = data["share"]
+    figure, ax = one_panel(0.6 + 0.32 * share.size)
+    label_axis(ax, "x", share)
+    place, values = np.arange(share.size)[::-1], share.to_numpy()
+    known = np.isfinite(values) & (values > 0.0)
+    floor = 10.0 ** np.floor(np.log10(values[known].min(initial=1e-3)) - 0.5)
+    colours = [RED if known[i] and values[i] == np.nanmax(values) else BLUE for i in range(values.size)]
+    ax.barh(place, np.where(known, values, floor), left=0.0, height=0.6, color=colours)
+    ax.set_xscale("log")
+    ax.set_xlim(floor, max(200.0, 2.0 * float(np.nanmax(values))))
+    for at, value, fine in zip(place, values, known, strict=True):
+        words = f"{value:.2g} %" if fine else "0" if value == 0.0 else "not known"
+        write_beside(ax, words, (value if fine else floor, at), (3, 0), va="center")
+    ax.set_yticks(place, list(data.attrs["names"]))
+    ax.set_ylabel("error")
+    ax.grid(False, axis="y")
+    return figure
+
+
+def overlay_figure(data: xr.Dataset) -> Figure:
+    """One quantity by two programs over a mesh cycle, and their difference below.
+
+    Parameters
+    ----------
+    data : over ``cycle``: ``prediction``, ``second`` and ``difference``, of one unit
+    """
+    from validation.plots.axes import draw_curves
+    from validation.plots.style import legend_above, new_figure
+
+    figure, axes = new_figure(2, 1, height=3.6, sharex=True, height_ratios=(2.0, 1.0))
+    top, bottom = axes[:, 0]
+    draw_curves(top, data, ["prediction", "second"], text="transmission error")
+    legend_above(top, 2)
+    draw_curves(bottom, data, ["difference"])
+    bottom.set_xlim(0.0, 1.0)
+    top.set_xlabel("")
+    _, unit = scale_of(data["difference"])
+    bottom.set_ylabel(f"difference [{unit}]")
+    return figure

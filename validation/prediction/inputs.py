@@ -1,0 +1,199 @@
+"""Inputs of a pair that are not known exactly, and what each may be: as stated, or by documented defaults.
+
+A range is log-uniform where both ends are positive and one is at least twice the other, else uniform.
+"""
+
+from __future__ import annotations
+
+import fnmatch
+import functools
+import re
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.resources import files
+from typing import Any
+
+from lumped.errors import ParameterError, refuse
+from lumped.fields.units import to_si, to_stated
+from lumped.friction.registry import LAWS
+from lumped.schema.pair import GearPair, field_at, leaf_paths, stated_unit
+from lumped.stiffness.registry import MODELS
+
+_NUMBER = r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)"
+_OFFSET = re.compile(rf"\+-\s*{_NUMBER}\s*(.*)")
+_FACTORS = re.compile(rf"([*/])\s*{_NUMBER}\s*\.\.\s*([*/])\s*{_NUMBER}\s*")
+_WRITTEN = "'0.02 .. 0.10', '+- 2 um', '+- 10 %', '/ 2 .. * 2', or a list of choices"
+#: A range whose upper end is at least this many times the lower one is log-uniform.
+_WIDE = 2.0
+#: Field -> the names that a choice may have.
+_CHOICES: Mapping[str, tuple[str, ...]] = {"friction.law": tuple(LAWS), "mesh.stiffness": tuple(MODELS)}
+
+
+@dataclass(frozen=True)
+class Input:
+    """One value that is not known exactly.
+
+    Attributes
+    ----------
+    field : dotted path in the parameter file
+    low, high : ends of its range, in file units; NaN for a choice
+    choices : what it may be instead; empty for a range
+    unit : of the ends
+    written : the spread as the file or the default states it
+    reason : why so far: the default's reason, or that the file states it
+    """
+
+    field: str
+    low: float
+    high: float
+    choices: tuple[str, ...]
+    unit: str
+    written: str
+    reason: str
+
+    def at(self, share: float) -> float | str:
+        """The value that a share of the distribution lies below, in file units."""
+        if self.choices:
+            return self.choices[min(int(share * len(self.choices)), len(self.choices) - 1)]
+        if self.low > 0.0 and self.high >= _WIDE * self.low:
+            return float(self.low * (self.high / self.low) ** share)
+        return self.low + (self.high - self.low) * share
+
+    def change(self, value: float | str) -> tuple[str, Any]:
+        """Field and value as ``GearPair.with_`` takes them."""
+        return self.field, {"model": value} if self.field == "mesh.stiffness" else value
+
+
+def uncertain_inputs(pair: GearPair) -> tuple[Input, ...]:
+    """Return every input of a pair that may be another value than the file has.
+
+    Those of ``[uncertainty]``, and by documented defaults every value whose source says that it is assumed.
+
+    Raises
+    ------
+    ParameterError : a spread that cannot be read, or values that the field cannot have
+    """
+    stated = dict(pair.uncertainty)
+    found = [_input(pair, field, spread, "stated in the file") for field, spread in stated.items()]
+    values, sources = leaf_paths(pair), dict(pair.sources)
+    candidates = [*values, "mesh.stiffness", "mesh.stiffness_factor"]
+    for field in dict.fromkeys(candidates):
+        default = _default(field)
+        if default is None or _covered(field, stated):
+            continue
+        source = _source(default.get("with", field), sources)
+        if source is None or "assumed" in source:
+            if field == "mesh.stiffness" and pair.mesh.stiffness.model == "table":
+                continue
+            spread = default["spread"]
+            if isinstance(spread, list):
+                spread = list(dict.fromkeys([_chosen(pair, field), *spread]))
+            found.append(_input(pair, field, spread, default["reason"]))
+    return tuple(found)
+
+
+def given_and_assumed(pair: GearPair) -> tuple[int, int]:
+    """Number of values of a pair that a source states, and of those that are assumed."""
+    sources = dict(pair.sources)
+    fields = [field for field in leaf_paths(pair) if field not in ("name", "description")]
+    assumed = sum("assumed" in (_source(field, sources) or "assumed") for field in fields)
+    return len(fields) - assumed, assumed
+
+
+@functools.cache
+def _defaults() -> tuple[dict[str, Any], ...]:
+    text = files("validation.prediction").joinpath("defaults.toml").read_text(encoding="utf-8")
+    return tuple(tomllib.loads(text)["spread"])
+
+
+def _default(field: str) -> dict[str, Any] | None:
+    return next((entry for entry in _defaults() if fnmatch.fnmatchcase(field, entry["field"])), None)
+
+
+def source_of(pair: GearPair, field: str) -> str | None:
+    """Where a value of a pair comes from; None where the file does not say."""
+    return _source(field, dict(pair.sources))
+
+
+def _source(field: str, sources: Mapping[str, str]) -> str | None:
+    """Where a value comes from: of the field, or of the section that it is in."""
+    parts = field.split(".")
+    paths = [".".join(parts[: len(parts) - n]) for n in range(len(parts))]
+    inside = [text for path, text in sources.items() if path.startswith(f"{field}.")]
+    return next((sources[path] for path in paths if path in sources), inside[0] if inside else None)
+
+
+def _covered(field: str, stated: Mapping[str, Any]) -> bool:
+    return any(field == one or field.startswith(f"{one}.") or one.startswith(f"{field}.") for one in stated)
+
+
+def _chosen(pair: GearPair, field: str) -> str:
+    return pair.mesh.stiffness.model if field == "mesh.stiffness" else pair.friction.law
+
+
+def _input(pair: GearPair, field: str, spread: object, reason: str) -> Input:
+    where = f"uncertainty.{field}"
+    if isinstance(spread, (list, tuple)):
+        known = _CHOICES.get(field)
+        wrong = known is None or len(spread) < 2 or any(one not in known for one in spread)
+        if wrong:
+            allowed = f"at least two of {', '.join(known)}" if known else f"a range: {_WRITTEN}"
+            raise refuse(where, ", ".join(map(str, spread)), allowed, "Correct the list.")
+        text = " or ".join(map(str, spread))
+        return Input(field, float("nan"), float("nan"), tuple(map(str, spread)), "1", text, reason)
+    field_at(field)
+    unit = stated_unit(field)
+    value = leaf_paths(pair).get(field)
+    if unit is None or isinstance(value, bool) or value is None or not isinstance(spread, str):
+        raise refuse(where, spread, f"a field that has a number, and {_WRITTEN}", "Correct the entry.")
+    low, high = _ends(where, spread, float(to_stated(to_si(value, unit), unit)), unit)
+    for end in (low, high):
+        try:
+            pair.with_({field: end})
+        except ParameterError as error:
+            raise refuse(
+                where,
+                spread,
+                f"values that {field} may have: {error.problems[0].allowed}",
+                "Narrow the range.",
+            ) from None
+    return Input(field, low, high, (), unit, spread, reason)
+
+
+def _ends(where: str, spread: str, value: float, unit: str) -> tuple[float, float]:
+    """Both ends of a written range in the field's unit."""
+    text = spread.strip()
+    if match := _FACTORS.fullmatch(text):
+        factors = [
+            float(x) if sign == "*" else 1.0 / float(x) for sign, x in (match.group(1, 2), match.group(3, 4))
+        ]
+        ends = value * factors[0], value * factors[1]
+    elif match := _OFFSET.fullmatch(text):
+        size, of = float(match[1]), match[2].strip()
+        if of == "%":
+            off = abs(value) * size / 100.0
+        elif unit == "degC":
+            off = size  # a difference of temperatures, in K
+        else:
+            off = _stated(where, f"{size} {of}" if of else size, unit)
+        ends = value - off, value + off
+    elif text.count("..") == 1:
+        low, high = (part.strip() for part in text.split(".."))
+        ends = _stated(where, low, unit), _stated(where, high, unit)
+    else:
+        raise refuse(where, spread, _WRITTEN, "Correct the text.")
+    if not ends[0] < ends[1]:
+        raise refuse(where, spread, "a lower end below the upper end", "Correct the range.")
+    return ends
+
+
+def _stated(where: str, text: str | float, unit: str) -> float:
+    try:
+        number: str | float = float(text)
+    except ValueError:
+        number = text
+    try:
+        return to_stated(to_si(number, unit), unit)
+    except ValueError as error:
+        raise refuse(where, text, _WRITTEN, f"{error}.") from None

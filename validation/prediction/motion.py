@@ -1,0 +1,250 @@
+"""The prediction for a pair at its operating point: the best motion that the program has, and its numbers.
+
+The linear motion about the static state is the prediction while every tooth pair pushes. Elsewhere it is the
+motion with unilateral contact: the one that Newton's method finds from the linear motion, if it is stable,
+else the one to which a run from there settles. Contact is lost where the total mesh force is zero.
+
+Sources: docs/theory/orbits.md, "Gear pair"; docs/theory/validity.md, "Prediction".
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from functools import cached_property
+
+import numpy as np
+import xarray as xr
+
+import floquet
+import lumped
+from floquet.gear.orbit import GearOrbit
+from floquet.gear.unilateral import contact_cycle
+from lumped.errors import NumericalError
+from lumped.model.equations import COORDINATES
+from lumped.model.results import cycle_peak_to_peak
+from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray
+
+_SAMPLES = 512
+#: Load of a tooth pair over the mean mesh force that counts as pulling: rounding of a pair that just touches.
+_PULLS = -1e-6
+ORDERS = 10
+
+
+class Motion(Enum):
+    """Which motion the prediction is; the value is the text that a reader gets."""
+
+    LINEAR = "the linear motion: every tooth pair pushes"
+    SHAFTS = "the linear motion on the shafts"
+    UNILATERAL = "the motion with unilateral contact"
+    SETTLED = "the motion with unilateral contact to which a run settles"
+    SECOND = "the motion of the multibody model"
+
+    @property
+    def text(self) -> str:
+        """The meaning, as a phrase."""
+        return self.value
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """The predicted motion of a pair at its operating point.
+
+    Attributes
+    ----------
+    pair : the gear pair
+    motion : which motion it is
+    cycle : that motion at even times over its period, with the variables of ``lumped.steady_state``
+    peak_to_peak : of the transmission error, between samples too [m]
+    stable : whether the motion returns after a small disturbance
+    mesh_cycles : after which the motion repeats
+    efficiency : share of the driving power that reaches the brake [-]
+    """
+
+    pair: GearPair
+    motion: Motion
+    cycle: xr.Dataset
+    peak_to_peak: float
+    stable: bool
+    mesh_cycles: int
+    efficiency: float
+
+    @property
+    def static_force(self) -> float:
+        """Mean mesh force, T_p / r_bp [N]."""
+        return self.pair.operating.pinion_torque / self.pair.geometry.base_radius_pinion
+
+    @cached_property
+    def mesh_force(self) -> FloatArray:
+        """Total normal load of all tooth pairs at the times of ``cycle`` [N]."""
+        return np.asarray(self.cycle["normal_load"].sum("pair").to_numpy(), dtype=np.float64)
+
+    @property
+    def dynamic_factor(self) -> float:
+        """Largest mesh force over the static one [-]."""
+        return float(self.mesh_force.max()) / self.static_force
+
+    @property
+    def least_force(self) -> float:
+        """Smallest mesh force over the static one; 0 is contact loss [-]."""
+        return max(float(self.mesh_force.min()) / self.static_force, 0.0)
+
+    @property
+    def contact_lost(self) -> bool:
+        """Whether the total mesh force reaches zero."""
+        return float(self.mesh_force.min()) <= 0.0
+
+    @property
+    def tooth_load(self) -> float:
+        """Largest load of one tooth pair over the static mesh force [-]."""
+        return float(self.cycle["normal_load"].max()) / self.static_force
+
+    @cached_property
+    def bearing_orders(self) -> FloatArray:
+        """(``ORDERS``,) amplitudes of the pinion's bearing force at the mesh orders 1, 2, ... [N].
+
+        Both directions together: the root of the sum of their squared amplitudes.
+        """
+        along, off = (self.orders_of(f"bearing_force_{line}_p") for line in "xy")
+        return np.asarray(np.hypot(along, off), dtype=np.float64)
+
+    @property
+    def bearing_rms(self) -> float:
+        """Root mean square of the pinion's bearing force about its mean, both directions together [N]."""
+        along, off = (float(self.cycle[f"bearing_force_{line}_p"].std()) for line in "xy")
+        return float(np.hypot(along, off))
+
+    def orders_of(self, name: str) -> FloatArray:
+        """(``ORDERS``,) amplitudes of a variable of ``cycle`` at the mesh orders 1, 2, ..."""
+        values = self.cycle[name].to_numpy()
+        found = 2.0 * np.abs(np.fft.rfft(values)) / values.size
+        return np.asarray(found[self.mesh_cycles :: self.mesh_cycles][:ORDERS], dtype=np.float64)
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """The scalar results by name, in SI; see ``QUANTITIES``."""
+        return {
+            "dte_peak_to_peak": self.peak_to_peak,
+            "dynamic_factor": self.dynamic_factor,
+            "tooth_load": self.tooth_load,
+            "least_force": self.least_force,
+            "bearing_rms": self.bearing_rms,
+            "efficiency": self.efficiency,
+        }
+
+
+#: Result -> its unit and plain name.
+QUANTITIES = {
+    "dte_peak_to_peak": ("m", "transmission error, peak to peak"),
+    "dynamic_factor": ("1", "largest mesh force over the static one"),
+    "tooth_load": ("1", "largest load of a tooth over the static mesh force"),
+    "least_force": ("1", "smallest mesh force over the static one"),
+    "bearing_rms": ("N", "force on the pinion bearings, rms about its mean"),
+    "efficiency": ("1", "mesh efficiency"),
+}
+
+
+def predicted(pair: GearPair) -> Prediction:
+    """Return the prediction for a pair at its operating point.
+
+    Parameters
+    ----------
+    pair : a validated gear pair; on its shafts where it has them
+
+    Raises
+    ------
+    NumericalError : no motion was found, or it does not stay bounded
+    """
+    if pair.shafts is not None:
+        return _of_cycle(pair, lumped.steady_state(pair, supports="shafts", samples_per_cycle=_SAMPLES))
+    force = pair.operating.pinion_torque / pair.geometry.base_radius_pinion
+    try:
+        linear = lumped.steady_state(pair, samples_per_cycle=_SAMPLES)
+    except NumericalError:
+        linear = None
+    if linear is not None and float(linear["normal_load"].min()) >= _PULLS * force:
+        return _of_cycle(pair, linear)
+    try:
+        orbit, motion = floquet.periodic_orbit(pair), Motion.UNILATERAL
+    except NumericalError:
+        orbit = None
+    if orbit is None or not orbit.stable:
+        settled, motion = floquet.long_run(pair), Motion.SETTLED
+        if settled.orbit is None:
+            raise NumericalError(
+                f"The motion with unilateral contact does not repeat: {settled.kind}. Read its branches over "
+                "speed: spurcheck response."
+            )
+        orbit = GearOrbit(pair, settled.orbit)
+    return _of_orbit(orbit, motion)
+
+
+def measured(pair: GearPair, cycle: xr.Dataset, motion: Motion) -> Prediction:
+    """Return the numbers of any motion over one mesh cycle, e.g. of the multibody model.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    cycle : the motion at even times, the end left out
+    motion : which it is
+    """
+    sliding = -float(cycle["friction_power"].sum("pair").mean())
+    attributes = cycle.attrs
+    lost = sum(float(attributes[key]) for key in attributes if key in _LOSSES) or sliding
+    return Prediction(
+        pair=pair,
+        motion=motion,
+        cycle=cycle,
+        peak_to_peak=cycle_peak_to_peak(cycle, "dte"),
+        stable=True,
+        mesh_cycles=1,
+        efficiency=_efficiency(pair, lost),
+    )
+
+
+def _of_cycle(pair: GearPair, cycle: xr.Dataset) -> Prediction:
+    attributes = cycle.attrs
+    return Prediction(
+        pair=pair,
+        motion=Motion.LINEAR if attributes["supports"] == "springs" else Motion.SHAFTS,
+        cycle=cycle,
+        peak_to_peak=float(attributes["dte_peak_to_peak"]),
+        stable=float(attributes["spectral_radius"]) <= 1.0,
+        mesh_cycles=1,
+        efficiency=_efficiency(pair, sum(attributes[key] for key in attributes if key in _LOSSES)),
+    )
+
+
+#: Attributes of ``lumped.steady_state`` that are mean losses [W].
+_LOSSES = ("power_sliding", "power_tooth_dampers", "power_bearings", "power_shafts")
+
+
+def _efficiency(pair: GearPair, lost: float) -> float:
+    return 1.0 - lost / (pair.operating.pinion_torque * pair.geometry.omega_pinion)
+
+
+def _of_orbit(orbit: GearOrbit, motion: Motion) -> Prediction:
+    pair, cycle = orbit.pair, orbit.sampled(_SAMPLES)
+    low, high = orbit.dte_range
+    return Prediction(
+        pair=pair,
+        motion=motion,
+        cycle=cycle,
+        peak_to_peak=high - low,
+        stable=orbit.stable,
+        mesh_cycles=orbit.n,
+        efficiency=_efficiency(pair, _lost(pair, cycle)),
+    )
+
+
+def _lost(pair: GearPair, motion: xr.Dataset) -> float:
+    """Mean power that sliding, tooth dampers and bearings take from a motion with unilateral contact [W]."""
+    mesh = contact_cycle(pair)
+    at = mesh.sample(np.mod(motion["time"].to_numpy(), mesh.period))
+    load, closing = motion["normal_load"].to_numpy(), motion["dte_dot"].to_numpy() - at.error_rate
+    damper = np.where(load > 0.0, load - at.stiffness * (motion["dte"].to_numpy() - at.error), 0.0)
+    rates = np.stack([motion[f"{name}_dot"].to_numpy() for name in COORDINATES])
+    bearings = lumped.periodic_system(pair, "full").structure.damping @ rates**2
+    sliding = -motion["friction_power"].sum("pair").to_numpy()
+    return float(np.mean(sliding + bearings + (damper * closing).sum(axis=0)))

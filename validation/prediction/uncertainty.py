@@ -1,0 +1,243 @@
+"""How far the prediction moves with its uncertain inputs: samples, percentiles, swing of each input.
+
+Sources: scrambled Sobol points, A. B. Owen, J. Complexity 14 (1998) 466; intervals of percentiles from the
+binomial distribution of order statistics, David and Nagaraja, Order Statistics, 2003, section 7.1.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from scipy.stats import binom, qmc, rankdata
+
+from lumped.arguments import whole_number
+from lumped.errors import LawRangeWarning, NumericalError, SpurcheckError, refuse
+from lumped.labelling import Variable, labelled_dataset, provenance
+from lumped.model.sweep import speed_sweep
+from lumped.schema.files import AnyPair, load_gear_pair
+from lumped.schema.pair import GearPair
+from lumped.typing import FloatArray, Progress
+from validation.prediction.inputs import Input, uncertain_inputs
+from validation.prediction.motion import ORDERS, QUANTITIES, predicted
+
+#: Percentiles that are told; the swing of an input runs between the first and the last.
+PERCENTILES = (5.0, 50.0, 95.0)
+#: Probability with which the interval of a percentile holds it.
+_SURE = 0.9
+#: Samples of which most must be left after refusals.
+_LEAST = 0.5
+_ORDER_NAMES = tuple(f"bearing_order_{m}" for m in range(1, ORDERS + 1))
+
+
+def uncertainty(
+    pair: AnyPair, samples: int = 128, seed: int = 1, *, progress: Progress | None = None
+) -> xr.Dataset:
+    """Return how the prediction varies when every uncertain input takes any value of its range.
+
+    Parameters
+    ----------
+    pair : the gear pair; its inputs vary as ``[uncertainty]`` states, and by documented defaults where the
+        source of a value says that it is assumed
+    samples : number of predictions, 16 to 65536; powers of two fill the space most evenly
+    seed : of the scrambled Sobol points
+    progress : called with the finished fraction
+
+    Returns
+    -------
+    xarray.Dataset over ``sample``, ``percentile`` and ``input``. Each quantity q of the prediction, in SI:
+    ``q`` (sample); ``q_percentile`` (percentile) with ``q_interval`` (percentile, end), in which it lies with
+    a probability of 0.9; ``q_swing`` (input, end) with that input alone at its 5 and 95 % value, of a choice
+    the smallest and largest result; ``q_rank_correlation`` (input), Spearman's. ``value`` (input, sample)
+    holds the inputs, a choice by its number. Attributes: ``refused``, ``contact_lost``, ``unstable`` (counts
+    of samples), ``seed``, and the result with the inputs as given, ``given_q``
+
+    Raises
+    ------
+    ParameterError : a spread that cannot be read, or no uncertain input
+    NumericalError : fewer than half of the samples have a prediction
+    """
+    pair = load_gear_pair(pair)
+    samples = whole_number("samples", samples, 16, 65536)
+    inputs = uncertain_inputs(pair)
+    if not inputs:
+        action = "State ranges in [uncertainty], or sources that say what is assumed."
+        raise refuse("uncertainty", "none", "at least one uncertain input", action)
+    points = qmc.Sobol(len(inputs), rng=np.random.default_rng(seed)).random(samples)
+    alone = [(j, share) for j, one in enumerate(inputs) for share in _shares(one)]
+    total = samples + len(alone) + 1
+    done = 0
+
+    def row(changes: Sequence[tuple[Input, float]]) -> FloatArray | None:
+        nonlocal done
+        done += 1
+        if progress is not None:
+            progress(done / total)
+        return _numbers(pair, changes)
+
+    given = row(())
+    if given is None:
+        raise NumericalError("The pair has no prediction with its inputs as given.")
+    swings = [row([(inputs[j], share)]) for j, share in alone]
+    rows = [row([(one, float(u)) for one, u in zip(inputs, point, strict=True)]) for point in points]
+    kept = np.array([found is not None for found in rows])
+    if kept.sum() < _LEAST * samples:
+        raise NumericalError(
+            f"Only {kept.sum()} of {samples} samples have a prediction: narrow the ranges in [uncertainty]."
+        )
+    table = np.stack([found for found in rows if found is not None])
+    return _dataset(pair, inputs, points[kept], table, given, alone, swings, samples, seed)
+
+
+def speed_band(pair: AnyPair, speeds_rpm: FloatArray, samples: int = 32, seed: int = 1) -> xr.Dataset:
+    """Return the range of the transmission error's peak to peak over speed, linear motion.
+
+    Parameters
+    ----------
+    pair : the gear pair
+    speeds_rpm : (n,) pinion speeds [rpm]
+    samples : of the uncertain inputs
+    seed : of the scrambled Sobol points
+
+    Returns
+    -------
+    xarray.Dataset over ``speed_rpm``: ``low`` and ``high``, the 5 and 95 % of the samples [m]
+    """
+    pair = load_gear_pair(pair)
+    inputs = uncertain_inputs(pair)
+    found = []
+    for point in qmc.Sobol(max(len(inputs), 1), rng=np.random.default_rng(seed)).random(samples):
+        try:
+            sweep = speed_sweep(
+                _varied(pair, [(one, float(u)) for one, u in zip(inputs, point, strict=False)]), speeds_rpm
+            )
+        except SpurcheckError:
+            continue
+        found.append(sweep["dte_peak_to_peak"].to_numpy())
+    table = np.stack(found)
+    low = np.asarray(np.nanpercentile(table, PERCENTILES[0], axis=0))
+    high = np.asarray(np.nanpercentile(table, PERCENTILES[-1], axis=0))
+    text = "transmission error, peak to peak"
+    return labelled_dataset(
+        {
+            "low": ("speed_rpm", low, "m", f"{text}, 5 % of the samples"),
+            "high": ("speed_rpm", high, "m", f"{text}, 95 % of the samples"),
+        },
+        {"speed_rpm": (np.asarray(speeds_rpm), "rpm", "pinion speed")},
+        {"samples": len(found)},
+    )
+
+
+def percentile_interval(count: int, percentile: float) -> tuple[int, int]:
+    """Numbers, from 0, of the order statistics of ``count`` samples between which a percentile lies.
+
+    The number of samples below it is binomial, so the interval holds whatever the distribution is.
+    """
+    low, high = (
+        float(binom.ppf(p, count, percentile / 100.0)) for p in (0.5 - 0.5 * _SURE, 0.5 + 0.5 * _SURE)
+    )
+    return max(int(low) - 1, 0), min(int(high), count - 1)
+
+
+def _shares(one: Input) -> list[float]:
+    if one.choices:
+        return [(k + 0.5) / len(one.choices) for k in range(len(one.choices))]
+    return [PERCENTILES[0] / 100.0, PERCENTILES[-1] / 100.0]
+
+
+def _varied(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> GearPair:
+    return pair.with_(dict(one.change(one.at(share)) for one, share in changes)) if changes else pair
+
+
+def _numbers(pair: GearPair, changes: Sequence[tuple[Input, float]]) -> FloatArray | None:
+    """Quantities, orders of the bearing force, contact loss, instability; None where there is no motion."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", LawRangeWarning)
+            found = predicted(_varied(pair, changes))
+    except SpurcheckError:
+        return None
+    orders = np.zeros(ORDERS)
+    orders[: found.bearing_orders.size] = found.bearing_orders
+    flags = [float(found.contact_lost), float(not found.stable)]
+    return np.array([*found.numbers.values(), *orders, *flags])
+
+
+def _dataset(
+    pair: GearPair,
+    inputs: Sequence[Input],
+    points: FloatArray,
+    table: FloatArray,
+    given: FloatArray,
+    alone: Sequence[tuple[int, float]],
+    swings: Sequence[FloatArray | None],
+    samples: int,
+    seed: int,
+) -> xr.Dataset:
+    names = [*QUANTITIES, *_ORDER_NAMES]
+    units = [unit for unit, _ in QUANTITIES.values()] + ["N"] * ORDERS
+    texts = [text for _, text in QUANTITIES.values()]
+    texts += [f"force on the pinion bearings, mesh order {m}" for m in range(1, ORDERS + 1)]
+    places = [percentile_interval(len(table), p) for p in PERCENTILES]
+    ordered = np.sort(table, axis=0)
+    ranks = rankdata(points, axis=0)
+    variables: dict[str, Variable] = {}
+    for column, (name, unit, text) in enumerate(zip(names, units, texts, strict=True)):
+        values = table[:, column]
+        swing = np.full((len(inputs), 2), np.nan)
+        for j in range(len(inputs)):
+            ends = [s[column] for (i, _), s in zip(alone, swings, strict=True) if i == j and s is not None]
+            if ends:
+                swing[j] = (min(ends), max(ends)) if inputs[j].choices else (ends[0], ends[-1])
+        variables |= {
+            name: ("sample", values, unit, text),
+            f"{name}_percentile": ("percentile", np.percentile(values, PERCENTILES), unit, text),
+            f"{name}_interval": (
+                ("percentile", "end"),
+                np.array([[ordered[a, column], ordered[b, column]] for a, b in places]),
+                unit,
+                f"{text}, interval of the percentile",
+            ),
+            f"{name}_swing": (("input", "end"), swing, unit, f"{text}, one input alone at its ends"),
+            f"{name}_rank_correlation": (
+                "input",
+                _rank_correlation(ranks, values),
+                "1",
+                f"{text}, rank correlation with the input",
+            ),
+        }
+    values = np.array([[_number(one, float(u)) for u in points[:, j]] for j, one in enumerate(inputs)])
+    variables["value"] = (("input", "sample"), values, "1", "value of the input, in its own unit")
+    attributes = provenance(pair, samples=samples, seed=seed) | {
+        "refused": samples - len(table),
+        "contact_lost": int(table[:, -2].sum()),
+        "unstable": int(table[:, -1].sum()),
+        "seed": seed,
+        "written": [one.written for one in inputs],
+        "reason": [one.reason for one in inputs],
+    }
+    attributes |= {f"given_{name}": float(given[column]) for column, name in enumerate(names)}
+    return labelled_dataset(
+        variables,
+        {
+            "percentile": (list(PERCENTILES), "%", "share of the samples below"),
+            "input": ([one.field for one in inputs], "1", "uncertain input"),
+        },
+        attributes,
+    )
+
+
+def _number(one: Input, share: float) -> float:
+    value = one.at(share)
+    return float(one.choices.index(value)) if isinstance(value, str) else value
+
+
+def _rank_correlation(ranks: FloatArray, values: FloatArray) -> FloatArray:
+    """Spearman's coefficient of each input's ranks (samples, inputs) with a result; 0 for a constant."""
+    own = rankdata(values)
+    own, ranks = own - own.mean(), ranks - ranks.mean(axis=0)
+    size = np.sqrt((own @ own) * (ranks**2).sum(axis=0))
+    found = np.divide(own @ ranks, size, out=np.zeros(ranks.shape[1]), where=size > 0.0)
+    return np.asarray(found, dtype=np.float64)

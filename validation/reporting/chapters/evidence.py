@@ -1,0 +1,74 @@
+"""Evidence about the program, assumptions checked for this pair, versions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from validation.reporting.blocks import Badge, Block, Content, Table, Text, table_of
+from validation.reporting.chapter import Chapter
+from validation.reporting.relations import broken_relations, failed_checks
+from validation.reporting.results import Results
+from validation.reporting.stored_evidence import source_hash, stored_evidence
+
+
+def write(results: Results) -> Content:
+    """Write the chapter."""
+    failed = failed_checks(results)
+    blocks: list[Block] = [
+        table_of(
+            "assumptions",
+            "Assumptions of the linear model, checked at the operating point.",
+            results.flags,
+            {
+                "name": ("assumption", lambda f: f.name),
+                "state": ("", lambda f: Badge(f.state)),
+                "detail": ("found", lambda f: f.detail),
+                "action": ("what to do", lambda f: f.action),
+            },
+        ),
+        Table(
+            "relations",
+            "Relations between the numbers of this report.",
+            {"relation": "", "state": ""},
+            tuple((text, Badge("failed")) for text in broken_relations(results))
+            or (("all hold", Badge("ok")),),
+        ),
+    ]
+    attributes = results.prediction.cycle.attrs
+    versions = str(attributes.get("versions", ""))
+    blocks += _program(stored_evidence(), source_hash())
+    blocks.append(
+        Table(
+            "made_from",
+            "What this report was made from.",
+            {"name": "", "value": ""},
+            (("versions", versions), ("parameters, SHA-256", str(attributes.get("parameters_sha256", "")))),
+        )
+    )
+    result = (
+        "Every check of the program passes." if not failed else f"{len(failed)} checks of the program fail."
+    )
+    return Content(result, tuple(blocks))
+
+
+def _program(evidence: Mapping[str, Any], source: str) -> list[Block]:
+    """What is known of the program itself, whatever the pair: one paragraph and one table."""
+    rows = []
+    for kind in evidence["kinds"]:
+        away = [(abs(one["value"] - one.get("theory", 0.0)), one["limit"]) for one in kind["checks"]]
+        use = max((error / limit for error, limit in away if limit), default=0.0)
+        passed = all(error <= limit for error, limit in away)
+        rows.append((kind["title"], len(away), use, Badge("ok" if passed else "failed")))
+    same = evidence["source_sha256"] == source
+    made = f"Checks of the program itself were computed on {evidence['date']}. "
+    made += "They are of this source." if same else "The source has changed since: run “make evidence”."
+    faults = evidence["faults"]
+    note = (
+        f"Of {faults['all']} faults put into the program, {faults.get('missed', 0)} are missed by all checks."
+    )
+    columns = {"kind": "kind", "checks": "checks", "use": "largest error / limit", "state": ""}
+    return [Text(made), Table("evidence", "Evidence about the program.", columns, tuple(rows), note)]
+
+
+CHAPTER = Chapter("evidence", "Evidence and versions", write, seconds=0.2)

@@ -1,0 +1,117 @@
+"""Forces on teeth and bearings, load sharing, and Hertzian pressure."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from lumped.labelling import Variable, labelled_dataset
+from lumped.path_of_contact import contact_path
+from validation.files.formatting import number, quantity
+from validation.plots.histories import cycle_figure, two_panels_figure
+from validation.reporting.blocks import Content, Picture, quantities
+from validation.reporting.chapter import Chapter
+from validation.reporting.results import Results
+
+_BEARINGS = {
+    "bearing_force_x_p": "pinion, along the line of action",
+    "bearing_force_y_p": "pinion, off it",
+    "bearing_force_x_g": "gear, along the line of action",
+    "bearing_force_y_g": "gear, off it",
+}
+
+
+def write(results: Results) -> Content:
+    """Write the chapter."""
+    prediction = results.prediction
+    cycle = prediction.cycle
+    path = contact_path(results.pair)
+    load, place = cycle["normal_load"].to_numpy(), cycle["position"].to_numpy()
+    # Hertzian pressure grows with the root of the load.
+    touching = load > 0.0
+    at = np.clip(place[touching], path.L_XA, path.L_XD)
+    share = load[touching] / prediction.static_force
+    pressure = float((path.hertz_pressure(at) * np.sqrt(share)).max())
+    bearings = _over_cycle(
+        results,
+        {name: (cycle[name].to_numpy(), "N", words) for name, words in _BEARINGS.items()},
+    )
+    table = quantities(
+        "forces",
+        "Forces at the operating point.",
+        ("static mesh force", prediction.static_force, "N", "torque over base radius"),
+        ("largest mesh force", float(prediction.mesh_force.max()), "N"),
+        ("smallest mesh force", max(float(prediction.mesh_force.min()), 0.0), "N", "0 is contact loss"),
+        ("largest load of one tooth pair", float(load.max()), "N"),
+        ("largest Hertzian pressure", pressure, "Pa"),
+        *(
+            (
+                f"bearing force, {words}, mean",
+                float(cycle[name].mean()),
+                "N",
+                f"rms about it {quantity(float(cycle[name].std()), 'N', 3)}",
+            )
+            for name, words in _BEARINGS.items()
+        ),
+    )
+    result = (
+        f"The largest mesh force is {number(prediction.dynamic_factor, 3)} times the static "
+        f"{quantity(prediction.static_force, 'N', 3)}; one tooth pair carries at most "
+        f"{number(prediction.tooth_load, 3)} times the static force."
+    )
+    forces = tooth_forces(results)
+    pairs = [name for name in map(str, forces.data_vars) if name.startswith("load_")]
+    frictions = [name for name in map(str, forces.data_vars) if name.startswith("friction_")]
+    return Content(
+        result,
+        (
+            Picture(
+                "tooth_forces",
+                "Normal load and friction force of each tooth pair, and the mesh force, over time.",
+                forces,
+                partial(
+                    two_panels_figure,
+                    top=["mesh_force", *pairs],
+                    bottom=frictions,
+                    texts=("normal load", "friction force"),
+                ),
+            ),
+            Picture(
+                "bearing_forces",
+                "Bearing forces about their means.",
+                _about_mean(bearings),
+                partial(cycle_figure, names=list(_BEARINGS), text="bearing force about its mean"),
+            ),
+            table,
+        ),
+    )
+
+
+def tooth_forces(results: Results) -> xr.Dataset:
+    """Mesh force, and load and friction of every pair, over time in mesh cycles."""
+    cycle = results.prediction.cycle
+    found: dict[str, tuple[np.ndarray, str, str]] = {
+        "mesh_force": (results.prediction.mesh_force, "N", "all pairs")
+    }
+    for kind, name in (("load", "normal_load"), ("friction", "friction_force")):
+        for i, row in enumerate(cycle[name].to_numpy()):
+            if np.any(cycle["normal_load"].to_numpy()[i] > 0.0):
+                found[f"{kind}_{i}"] = (row, "N", f"pair {i}")
+    return _over_cycle(results, found)
+
+
+def _over_cycle(results: Results, values: dict[str, tuple[np.ndarray, str, str]]) -> xr.Dataset:
+    time = results.prediction.cycle["time"].to_numpy() / results.pair.geometry.mesh_period
+    variables: dict[str, Variable] = {
+        name: ("cycles", array, unit, words) for name, (array, unit, words) in values.items()
+    }
+    return labelled_dataset(variables, {"cycles": (time, "mesh cycles", "time")})
+
+
+def _about_mean(data: xr.Dataset) -> xr.Dataset:
+    return data.map(lambda one: (one - one.mean()).assign_attrs(one.attrs))
+
+
+CHAPTER = Chapter("forces", "Forces", write, seconds=0.3)

@@ -1,0 +1,124 @@
+"""How sure the prediction is: what its inputs do, and the error budget."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from lumped.outcomes import Absent
+from validation.files.formatting import number, quantity
+from validation.plots.prediction import budget_figure
+from validation.prediction.motion import QUANTITIES
+from validation.reporting.blocks import Block, Cell, Content, Picture, Quantity, Table, Text
+from validation.reporting.chapter import Chapter
+from validation.reporting.results import Results
+
+
+def write(results: Results) -> Content:
+    """Write the chapter."""
+    budget = results.budget
+    blocks: list[Block] = [_budget_table(budget)]
+    blocks.append(
+        Picture(
+            "error_budget",
+            "The errors of the prediction, over its peak to peak. Red: the largest.",
+            budget,
+            budget_figure,
+        )
+    )
+    result = f"The largest error of the prediction is “{budget.attrs['largest_name']}”."
+    found = results.uncertainty
+    if isinstance(found, Absent):
+        blocks.append(Text("The inputs were not varied in this report."))
+        return Content(result, tuple(blocks))
+    blocks += [_ranges(found), _inputs(found)]
+    samples = int(found.sizes["sample"])
+    lost, unstable = int(found.attrs["contact_lost"]), int(found.attrs["unstable"])
+    blocks.append(
+        Text(
+            f"{samples} samples (scrambled Sobol points, seed {found.attrs['seed']}); "
+            f"{found.attrs['refused']} were refused. Contact is lost in {lost} of them, {unstable} are "
+            "unstable."
+        )
+    )
+    low, high = found["dte_peak_to_peak_percentile"].to_numpy()[[0, -1]]
+    result = (
+        f"With its uncertain inputs the transmission error lies between {quantity(low, 'm', 2)} and "
+        f"{quantity(high, 'm', 2)} (5 to 95 %). {result}"
+    )
+    return Content(result, tuple(blocks))
+
+
+def _budget_table(budget: xr.Dataset) -> Table:
+    def shown(value: float, unit: str) -> Quantity | None:
+        return Quantity(value, unit) if math.isfinite(value) else None
+
+    rows = tuple(
+        (
+            name,
+            shown(float(one["dte"]), "m"),
+            float(one["share"]) if math.isfinite(float(one["share"])) else None,
+            shown(float(one["tooth_force"]), "N"),
+            shown(float(one["bearing_force"]), "N"),
+            note,
+        )
+        for name, note, one in zip(
+            budget.attrs["names"],
+            budget.attrs["notes"],
+            (budget.isel(row=k) for k in range(budget.sizes["row"])),
+            strict=True,
+        )
+    )
+    columns = {
+        "error": "error",
+        "dte": "transmission error",
+        "share": "% of peak to peak",
+        "tooth_force": "tooth load",
+        "bearing_force": "bearing force, rms",
+        "note": "",
+    }
+    return Table("error_budget", "Error budget of the prediction.", columns, rows)
+
+
+def _ranges(found: xr.Dataset) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for name, (unit, words) in QUANTITIES.items():
+        low, middle, high = found[f"{name}_percentile"].to_numpy()
+        given = float(found.attrs[f"given_{name}"])
+        rows.append((words, *(Quantity(float(v), unit) for v in (given, low, middle, high))))
+    columns = {"result": "result", "given": "as given", "low": "5 %", "middle": "50 %", "high": "95 %"}
+    return Table("ranges", "Results with the uncertain inputs.", columns, tuple(rows))
+
+
+def _inputs(found: xr.Dataset) -> Table:
+    swing = found["dte_peak_to_peak_swing"].to_numpy()
+    order = np.argsort(-np.nan_to_num(np.ptp(swing, axis=1)), kind="stable")
+    rows = tuple(
+        (
+            str(found["input"].to_numpy()[j]),
+            str(found.attrs["written"][j]),
+            Quantity(float(swing[j].min()), "m"),
+            Quantity(float(swing[j].max()), "m"),
+            float(
+                number(float(found["dte_peak_to_peak_rank_correlation"].to_numpy()[j]), 2).replace(
+                    "\u2212", "-"
+                )
+            ),
+            str(found.attrs["reason"][j]),
+        )
+        for j in order
+    )
+    columns = {
+        "field": "input",
+        "spread": "range",
+        "low": "transmission error, smallest",
+        "high": "largest",
+        "correlation": "rank correlation",
+        "reason": "why this range",
+    }
+    return Table("inputs_varied", "Each uncertain input alone, the largest effect first.", columns, rows)
+
+
+CHAPTER = Chapter("how_sure", "How sure", write, seconds=8.0)

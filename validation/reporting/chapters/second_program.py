@@ -1,0 +1,91 @@
+"""The prediction beside the second program, and what both must conserve."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from lumped.labelling import labelled_dataset
+from lumped.outcomes import Absent
+from validation.plots.prediction import overlay_figure
+from validation.reporting.blocks import Badge, Block, Content, Picture, Text, table_of
+from validation.reporting.chapter import Chapter
+from validation.reporting.results import Results
+
+
+def write(results: Results) -> Content:
+    """Write the chapter."""
+    check, second = results.check, results.second
+    blocks: list[Block] = []
+    if not isinstance(second, Absent):
+        blocks.append(
+            Picture(
+                "overlay",
+                "The prediction and the second program over one mesh cycle; below, their difference.",
+                overlay(results),
+                overlay_figure,
+            )
+        )
+    blocks.append(
+        table_of(
+            "agreement",
+            "Largest difference of the second program, over the peak to peak.",
+            check.agreements,
+            {
+                "quantity": ("quantity", lambda a: a.long_name),
+                "fidelity": ("second program", lambda a: _FIDELITY[a.fidelity]),
+                "difference": ("difference", lambda a: a.difference),
+                "limit": ("limit", lambda a: a.limit),
+                "state": ("", lambda a: Badge("ok" if a.within else "differs")),
+            },
+        )
+    )
+    blocks.append(
+        table_of(
+            "conservation",
+            "Conservation laws, checked on both programs.",
+            check.conservation,
+            {
+                "check": ("check", lambda j: j.check),
+                "value": ("residual", lambda j: j.value),
+                "limit": ("limit", lambda j: j.limit),
+                "state": ("", lambda j: Badge("ok" if j.within else "failed")),
+            },
+        )
+    )
+    if isinstance(second, Absent):
+        blocks.append(Text(str(second)))
+    return Content(results.second_words, tuple(blocks))
+
+
+_FIDELITY = {"linear": "same equations", "exact": "exact contact, finite motions"}
+
+
+def overlay(results: Results) -> xr.Dataset:
+    """Transmission error of the prediction and of the second program over one mesh cycle."""
+    second = results.second
+    assert not isinstance(second, Absent)
+    period = results.pair.geometry.mesh_period
+    phase = np.arange(257) / 256.0
+    curves = {}
+    for name, motion in (("prediction", results.prediction), ("second", second)):
+        time = motion.cycle["time"].to_numpy() / period
+        curves[name] = np.interp(
+            phase, np.mod(time, 1.0) if motion is second else time, motion.cycle["dte"].to_numpy(), period=1.0
+        )
+    return labelled_dataset(
+        {
+            "prediction": ("cycle", curves["prediction"], "m", "prediction"),
+            "second": ("cycle", curves["second"], "m", "second program"),
+            "difference": (
+                "cycle",
+                curves["second"] - curves["prediction"],
+                "m",
+                "second program less prediction",
+            ),
+        },
+        {"cycle": (phase, "mesh cycles", "time")},
+    )
+
+
+CHAPTER = Chapter("second_program", "Second program", write, seconds=4.0)

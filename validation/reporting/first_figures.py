@@ -1,0 +1,113 @@
+"""The three figures of page 1: over speed, orders of the bearing force, and what the result depends on."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from floquet.gear.response import ResponseBranches
+from lumped.labelling import Variable, labelled_dataset
+from lumped.outcomes import Absent
+from validation.plots.histories import cycle_figure
+from validation.plots.prediction import SMALL, orders_figure, over_speed_figure, swings_figure
+from validation.reporting.blocks import Picture
+from validation.reporting.chapters.contact_loss import linear_over_speed, motions
+from validation.reporting.chapters.forces import tooth_forces
+from validation.reporting.results import Results
+
+#: Inputs in the figure of swings.
+_MOST = 6
+_ORDERS = 8
+
+
+def first_figures(results: Results) -> tuple[Picture, ...]:
+    """Return the figures of page 1; where contact is lost the mesh force takes the place of the swings."""
+    branches = results.branches
+    over = (
+        motions(results, branches) if isinstance(branches, ResponseBranches) else linear_over_speed(results)
+    )
+    found = [
+        Picture(
+            "over_speed",
+            "Transmission error over speed",
+            over,
+            partial(over_speed_figure, operating_rpm=results.operating_rpm),
+        ),
+        Picture("bearing_orders", "Force on the pinion bearings", bearing_orders(results), orders_figure),
+    ]
+    if results.prediction.contact_lost:
+        found.append(
+            Picture(
+                "mesh_force",
+                "The teeth leave contact",
+                tooth_forces(results)[["mesh_force"]],
+                partial(cycle_figure, names=["mesh_force"], text="mesh force", size=SMALL),
+            )
+        )
+    elif isinstance(results.uncertainty, xr.Dataset):
+        found.append(
+            Picture("swings", "What the result depends on", swings(results.uncertainty), swings_figure)
+        )
+    return tuple(found)
+
+
+def bearing_orders(results: Results) -> xr.Dataset:
+    """Orders of the pinion's bearing force with their ranges."""
+    amplitude = results.prediction.bearing_orders[:_ORDERS]
+    order = np.arange(1, amplitude.size + 1)
+    text = "force on the pinion bearings"
+    variables: dict[str, Variable] = {"amplitude": ("order", amplitude, "N", text)}
+    found = results.uncertainty
+    if not isinstance(found, Absent):
+        ends = np.array([found[f"bearing_order_{m}_percentile"].to_numpy()[[0, -1]] for m in order])
+        variables["low"] = ("order", ends[:, 0], "N", f"{text}, 5 % of the samples")
+        variables["high"] = ("order", ends[:, 1], "N", f"{text}, 95 % of the samples")
+    return labelled_dataset(
+        variables,
+        {"order": (order, "1", "mesh order")},
+        {"mesh_frequency": results.pair.geometry.mesh_frequency},
+    )
+
+
+def swings(found: xr.Dataset) -> xr.Dataset:
+    """The inputs that move the transmission error most, the largest first."""
+    swing = found["dte_peak_to_peak_swing"].to_numpy()
+    order = np.argsort(-np.nan_to_num(np.ptp(swing, axis=1)), kind="stable")[:_MOST]
+    names = [str(found["input"].to_numpy()[j]) for j in order]
+    text = "transmission error, p-p"
+    return labelled_dataset(
+        {
+            "low": ("input", swing[order].min(axis=1), "m", f"{text}, smallest"),
+            "high": ("input", swing[order].max(axis=1), "m", f"{text}, largest"),
+        },
+        {"input": (names, "1", "uncertain input")},
+        {
+            "names": [plain_name(name) for name in names],
+            "quantity": text,
+            "given": float(found.attrs["given_dte_peak_to_peak"]),
+        },
+    )
+
+
+def plain_name(field: str) -> str:
+    """A field in words: ``bearings.pinion.loa_stiffness`` as "pinion bearing, stiffness along ..."."""
+    whole = {
+        "mesh.stiffness": "tooth stiffness model",
+        "mesh.stiffness_factor": "tooth stiffness",
+        "mesh.damping_ratio": "mesh damping",
+        "mesh.backlash": "backlash",
+        "friction.law": "friction law",
+        "friction.coefficient": "friction coefficient",
+        "lubricant.viscosity": "oil viscosity",
+        "operating.pinion_torque": "torque",
+    }
+    if field in whole:
+        return whole[field]
+    if field.startswith("bearings."):
+        _, gear, what = field.split(".")
+        line = "off-line" if what.startswith("oloa") else "on-line"
+        kind = "stiffness" if what.endswith("stiffness") else "damping"
+        return f"{gear} bearing {kind}, {line}"
+    return field.replace(".", " ").replace("_", " ")

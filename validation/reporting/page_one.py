@@ -1,0 +1,361 @@
+"""Page 1 of the report: one verdict, six numbers, what to do next, how sure, three figures."""
+
+from __future__ import annotations
+
+import fnmatch
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+import xarray as xr
+
+from floquet.gear.response import ResponseBranches
+from lumped.outcomes import Absent
+from validation.files.formatting import number, quantity
+from validation.files.tables import read_table
+from validation.prediction.motion import QUANTITIES, Prediction
+from validation.reporting.relations import failed_checks
+from validation.reporting.results import Results
+
+#: Largest half range of the transmission error, over its median, of a prediction for absolute levels.
+ABSOLUTE = 0.10
+#: A jump or an unstable speed nearer than this share of the operating speed counts as at it.
+NEAR = 0.05
+#: An input counts whose swing is at least this share of the result.
+_COUNTS = 0.05
+_MOST_ACTIONS = 3
+_ADVICE = read_table("validation.reporting", "advice.toml")["advice"]
+NOT_MODELLED = (
+    "Not modelled: pitch errors, eccentricity and sidebands; helix; misalignment; "
+    "housing and sound radiation."
+)
+
+
+class Verdict(Enum):
+    """What the prediction may be used for; the value is the title that the reader gets."""
+
+    ABSOLUTE = "Usable for absolute levels."
+    COMPARE = "Usable to compare variants. Not yet usable for absolute levels."
+    DO_NOT_RUN = "Do not run here"
+    OUTSIDE = "Outside the model"
+    BROKEN = "Do not rely on this: a check of the program failed."
+
+    @property
+    def tone(self) -> str:
+        """Class of the box on the page: good, fair or bad."""
+        return {"ABSOLUTE": "good", "COMPARE": "fair", "OUTSIDE": "fair"}.get(self.name, "bad")
+
+
+@dataclass(frozen=True)
+class Number:
+    """One row of the table of page 1.
+
+    Attributes
+    ----------
+    key, label : stable name, and words
+    value, unit : the result, SI; "1" for a ratio, "rpm" for a distance of speeds
+    low, high : 5 and 95 % of the samples; NaN where the inputs were not varied
+    second : by the second program; NaN where it was not computed
+    note : beside the label
+    """
+
+    key: str
+    label: str
+    value: float
+    unit: str
+    low: float = math.nan
+    high: float = math.nan
+    second: float = math.nan
+    note: str = ""
+
+    @property
+    def digits(self) -> int:
+        """Digits that the range supports: two where it is wider than 5 % to each side, else three."""
+        wide = math.isfinite(self.low) and self.high - self.low > 0.1 * abs(self.value)
+        return 2 if wide else 3
+
+    @property
+    def shown(self) -> str:
+        """The result as printed."""
+        return _printed(self.value, self.unit, self.digits)
+
+    @property
+    def range(self) -> str:
+        """The range as printed; empty where there is none."""
+        if not math.isfinite(self.low):
+            return ""
+        low, high = (_printed(end, self.unit, self.digits) for end in (self.low, self.high))
+        number, _, unit = low.partition("\u00a0")
+        return f"{number if high.endswith(unit) else low} to {high}"
+
+    @property
+    def second_shown(self) -> str:
+        """The second program's result as printed."""
+        return _printed(self.second, self.unit, 3) if math.isfinite(self.second) else "not computed"
+
+
+@dataclass(frozen=True)
+class Action:
+    """One thing to do: what, the field or command, and what it gains."""
+
+    text: str
+    command: str
+    gain: str
+
+
+@dataclass(frozen=True)
+class PageOne:
+    """What the first page says.
+
+    Attributes
+    ----------
+    title : of the pair, in one line
+    verdict, headline : the verdict, and its words
+    reason : one or two sentences
+    numbers : six rows
+    actions : at most three
+    sure : how sure, one line each
+    remark : below the table; may be empty
+    warnings : values that hardly can be meant
+    """
+
+    title: str
+    verdict: Verdict
+    headline: str
+    reason: str
+    numbers: tuple[Number, ...]
+    actions: tuple[Action, ...]
+    sure: tuple[str, ...]
+    remark: str
+    warnings: tuple[str, ...]
+
+
+def page_one(results: Results) -> PageOne:
+    """Return what the first page says of a pair."""
+    verdict, headline, reason = _verdict(results)
+    return PageOne(
+        title=title(results),
+        verdict=verdict,
+        headline=headline,
+        reason=reason,
+        numbers=six_numbers(results),
+        actions=_actions(results, verdict),
+        sure=_sure(results),
+        remark=_remark(results),
+        warnings=results.warnings,
+    )
+
+
+def title(results: Results) -> str:
+    """Teeth, module, width, speed, torque and power of the pair."""
+    pair = results.pair
+    width = 1e3 * min(pair.pinion.face_width, pair.gear.face_width)
+    power = pair.operating.pinion_torque * pair.operating.pinion_speed
+    return (
+        f"{pair.name}: spur gears {pair.pinion.teeth}/{pair.gear.teeth}, "
+        f"m {1e3 * pair.basic_rack.module:.4g}, b {width:.4g} mm, {_rpm(results.operating_rpm)}, "
+        f"{pair.operating.pinion_torque:.4g} N m ({quantity(power, 'W', 3)})"
+    )
+
+
+def six_numbers(results: Results) -> tuple[Number, ...]:
+    """The rows of the table: result, range of the samples, second program."""
+    prediction, second = results.prediction, results.second
+    rows = [
+        _row(results, "dte_peak_to_peak", "Transmission error, peak to peak"),
+        _row(results, "dynamic_factor", "Dynamic factor: largest mesh force / static"),
+        _row(results, "tooth_load", "Largest load on one tooth / static mesh force"),
+        _row(results, "bearing_rms", "Dynamic force on the pinion bearings, rms", note=_orders(results)),
+        _row(results, "efficiency", "Mesh efficiency"),
+    ]
+    if prediction.contact_lost:
+        of_second = math.nan if isinstance(second, Absent) else second.least_force
+        rows[4:4] = [
+            Number(
+                "least_force",
+                "Smallest mesh force / static",
+                prediction.least_force,
+                "1",
+                second=of_second,
+                note="0 is contact loss",
+            )
+        ]
+        rows = rows[:3] + rows[4:]  # six rows: the bearing force gives way
+    hazard = results.nearest_hazard
+    low, high = (_rpm(speed) for speed in results.speeds)
+    label = "Distance to the nearest unstable speed or jump"
+    if hazard is None:
+        rows.append(Number("hazard", label, math.nan, "rpm", note=f"none from {low} to {high}"))
+    else:
+        rows.append(
+            Number(
+                "hazard",
+                label,
+                hazard[0] - results.operating_rpm,
+                "rpm",
+                note=f"{hazard[1]} at {_rpm(hazard[0])}",
+            )
+        )
+    return tuple(rows)
+
+
+def _row(results: Results, key: str, label: str, note: str = "") -> Number:
+    prediction, second, found = results.prediction, results.second, results.uncertainty
+    unit = "%" if key == "efficiency" else QUANTITIES[key][0]
+    low = high = math.nan
+    if isinstance(found, xr.Dataset):
+        low, high = (float(end) for end in found[f"{key}_percentile"].to_numpy()[[0, -1]])
+    of_second = math.nan if isinstance(second, Absent) else second.numbers[key]
+    return Number(key, label, prediction.numbers[key], unit, low, high, of_second, note)
+
+
+def _orders(results: Results) -> str:
+    """The two largest orders of the bearing force, with their frequencies."""
+    amplitude = results.prediction.bearing_orders
+    frequency = results.pair.geometry.mesh_frequency
+    loudest = sorted(np.argsort(-amplitude)[:2] + 1)
+    orders = " and ".join(str(order) for order in loudest)
+    hertz = " and ".join(quantity(order * frequency, "Hz", 2) for order in loudest)
+    forces = " and ".join(quantity(float(amplitude[order - 1]), "N", 2) for order in loudest)
+    return f"largest orders {orders} × mesh ({hertz}): {forces}"
+
+
+def _verdict(results: Results) -> tuple[Verdict, str, str]:
+    if broken := failed_checks(results):
+        return Verdict.BROKEN, Verdict.BROKEN.value, f"Failed: {'; '.join(broken[:3])}."
+    prediction = results.prediction
+    if outside := results.outside:
+        return Verdict.OUTSIDE, f"{Verdict.OUTSIDE.value}: {outside[0]}.", "; ".join(outside[1:])
+    if reason := _hazard(results, prediction):
+        return Verdict.DO_NOT_RUN, f"{Verdict.DO_NOT_RUN.value}: {reason[0]}.", reason[1]
+    calm = _calm(results)
+    found = results.uncertainty
+    given, assumed = results.inputs
+    inputs = f"{assumed} of {given + assumed} inputs are assumed"
+    if isinstance(found, Absent):
+        return Verdict.COMPARE, Verdict.COMPARE.value, f"{calm} But {inputs}, and they were not varied."
+    low, middle, high = found["dte_peak_to_peak_percentile"].to_numpy()
+    half = 0.5 * (high - low) / middle
+    if half <= ABSOLUTE and results.measured_error is not None:
+        return Verdict.ABSOLUTE, Verdict.ABSOLUTE.value, f"{calm} The inputs leave {100 * half:.0f} %."
+    if half <= ABSOLUTE:
+        text = f"{calm} The inputs leave {100 * half:.0f} %; no measurement confirms it."
+        return Verdict.ABSOLUTE, Verdict.ABSOLUTE.value, text
+    return (
+        Verdict.COMPARE,
+        Verdict.COMPARE.value,
+        f"{calm} But {inputs}, and they move the result by {100 * half:.0f} %.",
+    )
+
+
+def _hazard(results: Results, prediction: Prediction) -> tuple[str, str] | None:
+    """Why the pair must not run here, and what happens; None where it may."""
+    hazard = results.nearest_hazard
+    near = hazard is not None and abs(hazard[0] / results.operating_rpm - 1.0) <= NEAR
+    what = f"{hazard[1]} at {_rpm(hazard[0])}" if near and hazard else ""
+    if prediction.contact_lost:
+        apart = 0.0 if hazard is None else 100.0 * (results.operating_rpm / hazard[0] - 1.0)
+        side = "above" if apart > 0.0 else "below"
+        kind = "" if hazard is None else "a jump" if "jump" in hazard[1] else "an unstable speed"
+        place = f", {abs(apart):.0f} % {side} {kind}" if near else ""
+        rises = (
+            f"The mesh force falls to zero and rises to {prediction.dynamic_factor:.2g} times the static one."
+        )
+        return f"the teeth lose contact{place}", f"{rises} {_jump_words(results)}".strip()
+    if not prediction.stable:
+        return "the motion is unstable", "A small disturbance grows until contact is lost."
+    if near:
+        return what, f"The operating speed is {_rpm(results.operating_rpm)}."
+    return None
+
+
+def _jump_words(results: Results) -> str:
+    """What happens at the nearest jump; empty where there is none."""
+    if not isinstance(results.branches, ResponseBranches) or not results.branches.jumps:
+        return ""
+    jump = min(results.branches.jumps, key=lambda j: abs(j.speed_rpm - results.operating_rpm))
+    way = "up" if jump.rising else "down"
+    if not math.isfinite(jump.dte_rms_after):
+        return f"Running {way}, the vibration grows without bound at {_rpm(jump.speed_rpm)}."
+    factor = jump.dte_rms_after / jump.dte_rms
+    return f"Running {way}, the vibration jumps at {_rpm(jump.speed_rpm)} to {factor:.2g} times (rms)."
+
+
+def _calm(results: Results) -> str:
+    low, high = (_rpm(speed) for speed in results.speeds)
+    if results.nearest_hazard is None:
+        return f"The pair runs smoothly: contact is kept, and no speed from {low} to {high} is unstable."
+    return "The pair runs smoothly at this speed: contact is kept and the motion is stable."
+
+
+def _actions(results: Results, verdict: Verdict) -> tuple[Action, ...]:
+    found: list[Action] = []
+    if verdict is Verdict.BROKEN:
+        return (Action("Report this failure with the parameter file", "report.json", ""),)
+    if verdict is Verdict.DO_NOT_RUN:
+        hazard = results.nearest_hazard
+        if hazard is not None and "jump" in hazard[1]:
+            found.append(Action(f"Do not pass {_rpm(hazard[0])} at this torque", "", ""))
+        found.append(
+            Action(
+                "See where the pair can jump, over speed and torque",
+                f"spurcheck response {results.name} --map",
+                "",
+            )
+        )
+        found.append(Action("Try tip relief for this torque", "--set pinion.tip_relief.amount=...", ""))
+    return (*found, *_of_inputs(results))[:_MOST_ACTIONS]
+
+
+def _of_inputs(results: Results) -> list[Action]:
+    """What to do about the inputs that move the result most, one action a kind of input."""
+    found = results.uncertainty
+    if isinstance(found, Absent):
+        return [Action("Vary the assumed inputs", f"spurcheck uncertainty {results.name}", "")]
+    given = results.prediction.peak_to_peak
+    swing = found["dte_peak_to_peak_swing"].to_numpy()
+    actions: dict[str, Action] = {}
+    for j in np.argsort(-np.nan_to_num(np.ptp(swing, axis=1))):
+        low, high = swing[j].min(), swing[j].max()
+        if high - low < _COUNTS * given:
+            break
+        field = str(found["input"].to_numpy()[j])
+        advice = next((one for one in _ADVICE if fnmatch.fnmatchcase(field, one["field"])), None)
+        if advice is not None and advice["text"] not in actions:
+            gain = f"it moves the transmission error from {quantity(low, 'm', 2)} to {quantity(high, 'm', 2)}"
+            actions[advice["text"]] = Action(advice["text"], advice["command"], gain)
+    return list(actions.values())
+
+
+def _sure(results: Results) -> tuple[str, ...]:
+    given, assumed = results.inputs
+    measured = results.measured_error
+    compared = "no" if measured is None else f"yes, it differs by {quantity(measured, 'm', 2)}"
+    return (
+        f"Solved right? {results.second_words}",
+        f"Inputs: {given} given, {assumed} assumed.",
+        f"Compared with a measurement? {compared[0].upper()}{compared[1:]}.",
+    )
+
+
+def _remark(results: Results) -> str:
+    prediction, linear = results.prediction, results.linear
+    if prediction.contact_lost and not isinstance(linear, Absent):
+        size = quantity(float(linear.attrs["dte_peak_to_peak"]), "m", 3)
+        return f"The linear model would give {size}. It lets teeth pull, so it is not used here."
+    return ""
+
+
+def _rpm(speed: float) -> str:
+    return f"{number(speed, 5)} rpm"
+
+
+def _printed(value: float, unit: str, digits: int) -> str:
+    if not math.isfinite(value):
+        return "none"
+    if unit == "rpm":
+        return f"{value:+.0f} rpm".replace("-", "\u2212")
+    if unit == "%":
+        return f"{100.0 * value:.{max(digits - 2, 0) + 1}f} %"
+    return quantity(value, unit, digits, measured=True)
