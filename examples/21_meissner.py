@@ -29,7 +29,7 @@ def exact_trace(delta: np.ndarray) -> np.ndarray:
 
 
 def compute() -> xr.Dataset:
-    """Multipliers over δ with their bounds, and the trace by hand."""
+    """Multipliers over δ by proven bounds, and the trace by hand."""
     delta = np.linspace(0.5, 4.5, 61)
     labels = {"delta": ("1", "mean stiffness δ")}
     chart = floquet.scan(system, {"delta": delta}, labels=labels, rtol=1e-10)

@@ -1,8 +1,9 @@
-"""Coefficients of A(t), and matrices of them, that are given as formulas: their breaks are known.
+"""Coefficients of A(t), and matrices of them, that are known as formulas, so that all can be bounded.
 
-Piecewise polynomials and Fourier series, their sums and products.
+Piecewise polynomials and Fourier series, their sums and products. Each gives its Taylor polynomial on an
+interval with a bound on what that leaves out and on its rounding: what a callable cannot tell.
 
-Sources: docs/theory/floquet.md, "From matrices of mass, damping and stiffness".
+Sources: docs/theory/proven_bounds.md, "Coefficients given as formulas".
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ import numpy.typing as npt
 from lumped.arguments import real_array, real_number, real_numbers
 from lumped.errors import refuse, shown
 from lumped.typing import FloatArray
+
+_U = 0.5 * float(np.finfo(np.float64).eps)
 
 
 class Coefficient(ABC):
@@ -33,6 +36,20 @@ class Coefficient(ABC):
     def __call__(self, times: npt.ArrayLike) -> FloatArray:
         """Values at times [s], any shape."""
 
+    @abstractmethod
+    def taylor(self, start: FloatArray, length: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
+        """Polynomials on intervals that no break lies inside.
+
+        Parameters
+        ----------
+        start, length : (k,) the intervals start + length s, 0 <= s <= 1 [s]
+        degree : of the polynomials
+
+        Returns
+        -------
+        (k, degree + 1) coefficients of the powers of s, and (k,) bounds on their errors over 0 <= s <= 1
+        """
+
     def repeats(self, period: float) -> bool:
         """Whether it is the same one period later; one with breaks is asked for its first period only."""
         if self.breaks:
@@ -43,11 +60,11 @@ class Coefficient(ABC):
 
     def __add__(self, other: Coefficient | float) -> Coefficient:
         """The sum."""
-        return _Joined(np.add, self, _known(other))
+        return _Sum(self, _known(other))
 
     def __mul__(self, other: Coefficient | float) -> Coefficient:
         """The product."""
-        return _Joined(np.multiply, self, _known(other))
+        return _Product(self, _known(other))
 
     def __neg__(self) -> Coefficient:
         """The negative."""
@@ -93,6 +110,27 @@ class PiecewisePolynomial(Coefficient):
             value = value * (t - self._ends[piece]) + self._rows[piece, j]
         return value
 
+    def taylor(self, start: FloatArray, length: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
+        """See `Coefficient`; the place since the start of the piece is wrong by 2 u of the times."""
+        piece = self._piece(start + 0.5 * length)
+        x = start - self._ends[piece]
+        rows = self._rows[piece]
+        most = rows.shape[1] - 1
+        reach = np.abs(x) + length
+        sizes = np.abs(rows) * reach[:, None] ** np.arange(most + 1)
+        slope = (sizes * np.arange(most + 1)).sum(axis=1) / reach
+        place = 4.0 * _U * (np.abs(start) + np.abs(self._ends[piece]) + length)
+        moved = rows.copy()
+        for j in range(most):
+            for i in range(most - 1, j - 1, -1):
+                moved[:, i] += x * moved[:, i + 1]
+        moved *= length[:, None] ** np.arange(most + 1)
+        errors = (4.0 * most + 8.0) * _U * sizes.sum(axis=1) + place * slope
+        errors += np.abs(moved[:, degree + 1 :]).sum(axis=1)
+        out = np.zeros((start.size, degree + 1))
+        out[:, : most + 1] = moved[:, : degree + 1]
+        return out, errors
+
 
 class FourierSeries(Coefficient):
     """Mean + sum of cosines[k-1] cos(k Omega t) + sines[k-1] sin(k Omega t), Omega = 2 pi/period.
@@ -119,16 +157,59 @@ class FourierSeries(Coefficient):
         angle = np.multiply.outer(np.asarray(times, dtype=float) * self._omega, self._order)
         return np.asarray(self._mean + np.cos(angle) @ self._a + np.sin(angle) @ self._b)
 
+    def taylor(self, start: FloatArray, length: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
+        """See `Coefficient`; cos and sin of the library are taken to be right to 4 u."""
+        angle = start[:, None] * self._omega * self._order
+        turn = length[:, None] * self._omega * self._order
+        cos, sin = np.cos(angle), np.sin(angle)
+        derivatives = [self._a * cos + self._b * sin, self._b * cos - self._a * sin]
+        size = np.abs(self._a) + np.abs(self._b)
+        out = np.zeros((start.size, degree + 1))
+        factor = np.ones_like(turn)
+        for j in range(degree + 1):
+            sign = 1.0 if j % 4 < 2 else -1.0
+            out[:, j] = sign * (derivatives[j % 2] * factor).sum(axis=1)
+            factor = factor * turn / (j + 1)
+        out[:, 0] += self._mean
+        # Lagrange's remainder, and the rounding of the angle, of cos and sin and of the sums. 1e-3: the rest.
+        rounding = (
+            (4.0 * np.abs(angle) + 4.0 * degree + 16.0 + self._order.size)
+            * _U
+            * np.exp(np.minimum(turn, 500.0))
+        )
+        return out, 1.001 * (size * (factor + rounding)).sum(axis=1) + 2.0 * _U * abs(self._mean)
 
-class _Joined(Coefficient):
-    """The sum or the product of two."""
 
-    def __init__(self, join: np.ufunc, first: Coefficient, second: Coefficient) -> None:
-        self._join, self._first, self._second = join, first, second
+class _Sum(Coefficient):
+    def __init__(self, first: Coefficient, second: Coefficient) -> None:
+        self._first, self._second = first, second
         self.breaks = first.breaks + second.breaks
 
     def __call__(self, times: npt.ArrayLike) -> FloatArray:
-        return np.asarray(self._join(self._first(times), self._second(times)))
+        return self._first(times) + self._second(times)
+
+    def taylor(self, start: FloatArray, length: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
+        (a, da), (b, db) = (f.taylor(start, length, degree) for f in (self._first, self._second))
+        return a + b, (da + db + 2.0 * _U * (np.abs(a) + np.abs(b)).sum(axis=1)) * (1.0 + 8.0 * _U)
+
+
+class _Product(Coefficient):
+    def __init__(self, first: Coefficient, second: Coefficient) -> None:
+        self._first, self._second = first, second
+        self.breaks = first.breaks + second.breaks
+
+    def __call__(self, times: npt.ArrayLike) -> FloatArray:
+        return self._first(times) * self._second(times)
+
+    def taylor(self, start: FloatArray, length: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
+        (a, da), (b, db) = (f.taylor(start, length, degree) for f in (self._first, self._second))
+        out = np.zeros((start.size, 2 * degree + 1))
+        for j in range(degree + 1):
+            out[:, j : j + degree + 1] += a[:, j, None] * b
+        size_a, size_b = np.abs(a).sum(axis=1), np.abs(b).sum(axis=1)
+        errors = np.abs(out[:, degree + 1 :]).sum(axis=1) + da * size_b + db * size_a + da * db
+        errors += (degree + 8.0) * 2.0 * _U * size_a * size_b
+        return out[:, : degree + 1], errors * (1.0 + 8.0 * _U)
 
 
 def _known(value: Coefficient | float) -> Coefficient:
@@ -139,7 +220,7 @@ def _known(value: Coefficient | float) -> Coefficient:
 
 
 class KnownMatrix:
-    """A(t) whose entries are given as formulas: a `PeriodicSystem` of it knows its breaks.
+    """A(t) whose entries are known as formulas: a `PeriodicSystem` of it has proven bounds.
 
     Parameters
     ----------
@@ -170,6 +251,20 @@ class KnownMatrix:
             out[:, i, j] = entry(times)
         return out
 
+    def taylor(
+        self, start: FloatArray, length: FloatArray, degree: int, scaling: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Polynomials of A_ij d_j/d_i, (k, degree + 1, n, n), and bounds (k,) on the norm of their errors."""
+        out = np.zeros((start.size, degree + 1, self.dimension, self.dimension))
+        total = np.zeros(start.size)
+        for i, j, entry in self._entries:
+            factor = float(scaling[j] / scaling[i])  # powers of two: exact
+            series, error = entry.taylor(start, length, degree)
+            out[:, :, i, j] = factor * series
+            with np.errstate(over="ignore"):  # of a step that is much too long
+                total = np.hypot(total, factor * error)
+        return out, total * (1.0 + 1e-12)
+
 
 class PeriodicMatrix(KnownMatrix):
     """B_0 + f_1(t) B_1 + f_2(t) B_2 + ...
@@ -178,6 +273,7 @@ class PeriodicMatrix(KnownMatrix):
     ----------
     constant : B_0, (n, n), or a number where n = 1
     terms : pairs (f_j, B_j) of a `Coefficient` and a matrix of the same shape
+    errors : (1 + terms, n, n) bounds on the errors of the entries of B_0, B_1, ...; None: they are exact
 
     Attributes
     ----------
@@ -191,7 +287,12 @@ class PeriodicMatrix(KnownMatrix):
     ParameterError : a matrix that is not square, of another shape, or not of finite numbers
     """
 
-    def __init__(self, constant: npt.ArrayLike, *terms: tuple[Coefficient, npt.ArrayLike]) -> None:
+    def __init__(
+        self,
+        constant: npt.ArrayLike,
+        *terms: tuple[Coefficient, npt.ArrayLike],
+        errors: FloatArray | None = None,
+    ) -> None:
         matrices = [square("constant", constant)]
         self.dimension = matrices[0].shape[0]
         for k, (function, matrix) in enumerate(terms, 1):
@@ -202,11 +303,33 @@ class PeriodicMatrix(KnownMatrix):
         self.matrices = np.stack(matrices)
         self.functions = tuple(function for function, _ in terms)
         self.breaks = tuple(sorted({t for function in self.functions for t in function.breaks}))
+        self._errors = np.zeros_like(self.matrices) if errors is None else errors
 
     def __call__(self, times: FloatArray) -> FloatArray:
         """See `KnownMatrix`."""
         factors = np.stack([np.ones(np.shape(times)), *(f(times) for f in self.functions)], axis=-1)
         return np.tensordot(factors, self.matrices, axes=1)
+
+    def taylor(
+        self, start: FloatArray, length: FloatArray, degree: int, scaling: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """See `KnownMatrix`; the scaling is by powers of two, which is exact."""
+        scale = scaling / scaling[:, None]
+        matrices = self.matrices * scale
+        sizes = np.linalg.norm(matrices, axis=(1, 2))
+        inexact = np.linalg.norm(self._errors * scale, axis=(1, 2))
+        out = np.zeros((start.size, degree + 1, *matrices.shape[1:]))
+        out[:, 0] = matrices[0]
+        rounded = (len(self.functions) + 2.0) * _U
+        total = np.full(start.size, inexact[0] + rounded * sizes[0])
+        for function, matrix, size, off in zip(
+            self.functions, matrices[1:], sizes[1:], inexact[1:], strict=True
+        ):
+            series, error = function.taylor(start, length, degree)
+            out += series[:, :, None, None] * matrix
+            reach = np.abs(series).sum(axis=1) + error
+            total += error * (size + off) + reach * (off + rounded * size)
+        return out, total * (1.0 + 1e-9)
 
 
 def square(field: str, value: npt.ArrayLike, n: int | None = None) -> FloatArray:

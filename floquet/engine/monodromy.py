@@ -11,10 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from floquet.engine.multipliers import Spectrum, multipliers_with_bounds
+from floquet.engine.coefficients import KnownMatrix
+from floquet.engine.multipliers import Certificate, Spectrum, multipliers_with_bounds
 from floquet.engine.propagation import LOOKS, Propagation, error_of_product, propagate
 from floquet.engine.propagators.one_step import Propagator
 from floquet.engine.propagators.registry import propagator
+from floquet.engine.proven import proven_propagation
 from floquet.engine.system import PeriodicSystem
 from lumped.arguments import of_type, real_number, whole_number
 from lumped.errors import NumericalError
@@ -32,12 +34,13 @@ class Monodromy(Spectrum):
     ----------
     matrix : (n, n) Phi(T, 0)
     matrix_error : bound on the 2-norm of the error of D^-1 M D, D = diag(``scaling``): truncation and
-        rounding, carried to the end of the period; an estimate, from each step and its two halves
+        rounding, carried to the end of the period; an estimate, from each step and its two halves, for a
+        callable A
     scaling : (n,) the balancing scales d
     liouville_residual : |sum over substeps of log det - integral of tr A|. Taken per substep it stays
         meaningful when M is so nearly singular that its own determinant carries no information.
     method : of computing it
-    resolution : features of A(t) that are narrower than this may have been missed [s]
+    resolution : features of A(t) that are narrower than this may have been missed [s]; 0 where A is a formula
     """
 
     matrix: FloatArray
@@ -52,7 +55,7 @@ def monodromy(
     system: PeriodicSystem,
     rtol: float = 1e-10,
     *,
-    method: str | Propagator = "gauss",
+    method: str | Propagator = "auto",
     max_substeps: int = 200_000,
 ) -> Monodromy:
     """Monodromy matrix of x' = A(t) x over one period, with multipliers and error bounds.
@@ -61,7 +64,9 @@ def monodromy(
     ----------
     system : the periodic system; its forcing, if any, plays no part
     rtol : wanted error of the matrix relative to its norm (in balanced coordinates), 1e-14 to 1e-1
-    method : a name in `floquet.PROPAGATORS`, or a propagator
+    method : "auto": where A is a `KnownMatrix`, Taylor steps with a proven bound, else "gauss"; or a name in
+        `floquet.PROPAGATORS`, or a propagator, whose error is an estimate: nothing is known of a callable
+        between the samples
     max_substeps : refuse to work harder than this
 
     Returns
@@ -83,26 +88,17 @@ def monodromy(
     """
     of_type("system", system, PeriodicSystem, "a PeriodicSystem; of a gear pair: gear_pair_system")
     rtol, max_substeps = checked_effort(rtol, max_substeps)
-    step = propagator(method)
+    automatic = isinstance(method, str) and method == "auto"
+    if automatic and isinstance(system.A, KnownMatrix):
+        return _proven(system, system.A, rtol, max_substeps)
+    step = propagator("gauss" if automatic else method)
     local = rtol
     for _attempt in range(4):
         propagation = propagate(system, step, local, max_substeps)
         M, delta, rounding = error_of_product(propagation)
         size = max(float(np.linalg.norm(M, 2)), _DEAD)
         if delta <= rtol * size:
-            d = propagation.scaling
-            multipliers, bounds = multipliers_with_bounds(M, delta)
-            return Monodromy(
-                multipliers=multipliers,
-                multiplier_errors=bounds,
-                period=system.period,
-                matrix=M * d[:, None] / d[None, :],
-                matrix_error=delta,
-                scaling=d,
-                liouville_residual=liouville_residual(system, propagation),
-                method=step.name,
-                resolution=system.period / LOOKS,
-            )
+            return _record(system, propagation, M, delta, step.name, "estimate")
         if rounding > 0.9 * rtol * size:
             break
         # Growth and decay inside the period amplified the local errors: ask for that much more.
@@ -130,6 +126,42 @@ def checked_effort(rtol: float, max_substeps: int) -> tuple[float, int]:
         real_number("rtol", rtol, 1e-14, 0.1, action=advice),
         whole_number("max_substeps", max_substeps, 2, 10**9, "Leave it at its default."),
     )
+
+
+def _record(
+    system: PeriodicSystem,
+    propagation: Propagation,
+    balanced: FloatArray,
+    delta: float,
+    method: str,
+    certificate: Certificate,
+) -> Monodromy:
+    d = propagation.scaling
+    multipliers, bounds = multipliers_with_bounds(balanced, delta)
+    return Monodromy(
+        multipliers=multipliers,
+        multiplier_errors=bounds,
+        period=system.period,
+        matrix=balanced * d[:, None] / d[None, :],
+        matrix_error=delta,
+        scaling=d,
+        liouville_residual=liouville_residual(system, propagation),
+        method=method,
+        resolution=0.0 if certificate == "proven" else system.period / LOOKS,
+        certificate=certificate,
+    )
+
+
+def _proven(system: PeriodicSystem, known: KnownMatrix, rtol: float, max_substeps: int) -> Monodromy:
+    propagation, M, delta = proven_propagation(system, known, rtol, max_substeps)
+    size = max(float(np.linalg.norm(M, 2)), _DEAD)
+    if not delta <= rtol * size:
+        raise NumericalError(
+            f"rtol = {rtol:g} cannot be proven: the bound on the error of the monodromy matrix is "
+            f"{delta / size:.2g} of its norm, rounding included. Ask for rtol >= {2.0 * delta / size:.1g}, "
+            'or for an estimate: method = "gauss".'
+        )
+    return _record(system, propagation, M, delta, "taylor", "proven")
 
 
 def liouville_residual(system: PeriodicSystem, propagation: Propagation) -> float:

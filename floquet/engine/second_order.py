@@ -19,12 +19,13 @@ from scipy.linalg import LinAlgError, cholesky, eigh
 from floquet.engine.coefficients import PeriodicMatrix, square
 from floquet.engine.system import PeriodicSystem, second_order
 from lumped.arguments import real_number
-from lumped.errors import refuse
+from lumped.errors import NumericalError, refuse
 from lumped.typing import FloatArray
 
 Matrix = npt.ArrayLike | PeriodicMatrix | Callable[[float], npt.ArrayLike]
 """A constant matrix, one with periodic terms, or a callable t [s] -> (n, n)."""
 
+_WIDE = np.longdouble
 #: Condition number of M, rows and columns scaled, beyond which it counts as singular.
 _SINGULAR = 1e13
 
@@ -47,7 +48,8 @@ def from_second_order(
 ) -> SecondOrderSystem:
     """Return M x'' + C(t) x' + K(t) x = 0 as a `PeriodicSystem`.
 
-    C and K need not be symmetric: gyroscopic and circulatory parts belong to them.
+    C and K need not be symmetric: gyroscopic and circulatory parts belong to them. Errors are proven bounds,
+    rounding of M^-1 K included, where neither of them is a callable.
 
     Parameters
     ----------
@@ -79,6 +81,9 @@ def from_second_order(
     C_of(middle)
     mean = np.tensordot(np.diff(places) / period, K_of(middle), axes=1)
     T = _coordinates(mass, mean)
+    if isinstance(damping, PeriodicMatrix) and isinstance(stiffness, PeriodicMatrix):
+        A = _known(mass, damping, stiffness, T)
+        return SecondOrderSystem(A, period, breakpoints, coordinates=T)
     inverse = np.linalg.inv(mass @ T)
 
     def sampled(times: FloatArray) -> FloatArray:
@@ -130,3 +135,63 @@ def _coordinates(M: FloatArray, K: FloatArray) -> FloatArray:
         return np.asarray(eigh(0.5 * (K + K.T), mass)[1])
     except LinAlgError:
         return np.eye(M.shape[0])
+
+
+def _known(M: FloatArray, C: PeriodicMatrix, K: PeriodicMatrix, T: FloatArray) -> PeriodicMatrix:
+    """A(t) in the coordinates T, with bounds on the rounding of its matrices."""
+    n = M.shape[0]
+    solve = _Solution(M, T)
+
+    def pair(stiffness: FloatArray, damping: FloatArray) -> tuple[FloatArray, FloatArray]:
+        (k, dk), (c, dc) = solve(stiffness), solve(damping)
+        errors = np.abs(second_order(dk, dc))
+        errors[:n, n:] = 0.0
+        return second_order(k, c), errors
+
+    none = np.zeros((n, n))
+    constant, off = pair(K.matrices[0], C.matrices[0])
+    terms, errors = [], [off]
+    varying = [(f, B, none) for f, B in zip(K.functions, K.matrices[1:], strict=True)]
+    varying += [(f, none, B) for f, B in zip(C.functions, C.matrices[1:], strict=True)]
+    for function, stiffness, damping in varying:
+        matrix, off = pair(stiffness, damping)
+        matrix[:n, n:] = 0.0
+        terms.append((function, matrix))
+        errors.append(off)
+    return PeriodicMatrix(constant, *terms, errors=np.stack(errors))
+
+
+class _Solution:
+    """B -> X = (M T)^-1 B T with bounds on the errors of its entries.
+
+    With W an approximate inverse of P = M T and G = I - W P, the error is (I - G)^-1 W (B T - P X);
+    products in the widest floating point that there is, which leaves little but the rounding of X itself.
+    """
+
+    def __init__(self, M: FloatArray, T: FloatArray) -> None:
+        n = M.shape[0]
+        self.T, self.size = T.astype(_WIDE), np.abs(M) @ np.abs(T)
+        self.P = M.astype(_WIDE) @ self.T
+        W = np.linalg.inv(self.P.astype(float))
+        self.W, self.sizes = W.astype(_WIDE), np.abs(W)
+        self.gamma = float((2.0 * n + 8.0) * np.finfo(_WIDE).eps)
+        G = np.abs(np.eye(n) - self.W @ self.P).astype(float) + self.gamma * (
+            self.sizes @ self.size + np.eye(n)
+        )
+        self.g = float(G.sum(axis=1).max())
+        if not self.g < 0.5:
+            raise NumericalError("M is too badly conditioned for bounds. Choose other units or coordinates.")
+
+    def __call__(self, B: FloatArray) -> tuple[FloatArray, FloatArray]:
+        Q = B.astype(_WIDE) @ self.T
+        X = np.zeros(B.shape)
+        for _ in range(3):
+            X = (X + self.W @ (Q - self.P @ X)).astype(float)
+        rest = Q - self.P @ X
+        left = (
+            np.abs(rest).astype(float)
+            + np.abs(B) @ np.abs(self.T).astype(float)
+            + 2.0 * self.size @ np.abs(X)
+        )
+        error = np.abs(self.W @ rest).astype(float) + self.gamma * (self.sizes @ left)
+        return X, np.asarray((error + self.g / (1.0 - self.g) * error.max(axis=0)) * (1.0 + 1e-9))

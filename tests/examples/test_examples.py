@@ -274,6 +274,7 @@ def test_22_mathieus_equation_grows_between_the_characteristic_values(example):
     stable = [(mathieu_a(m, q) < a) & (a < mathieu_b(m + 1, q)) for m in range(3)]
     np.testing.assert_array_equal(result["verdict"] == 0, np.any(stable, axis=0))
     assert not (result["verdict"] == 1).any()
+    assert result["proven"].all()
 
 
 def test_23_a_shaft_of_two_stiffnesses_grows_between_its_critical_speeds(example):
@@ -324,6 +325,7 @@ def test_25_the_mesh_drives_the_bending_shafts_at_twice_their_frequency(example)
     module = example(25)
     result = module.compute()
     labelled(module.draw(result))
+    assert result.attrs["certificate"] == "proven"
     unstable = result["speed_rpm"].where(result["verdict"] == -1, drop=True)
     # Ninth mode of ross.MultiRotor (2.3.0) of both shafts without damping, with the mean mesh stiffness.
     system, mode = module.on_shafts(19000.0), 4544.12869547

@@ -112,5 +112,5 @@ def _print(source: Path, found: Monodromy) -> None:
         stdout().print(f"and {found.multipliers.size - _SHOWN} smaller ones")
     stdout().print(
         f"{found.verdict}: largest multiplier {found.spectral_radius:.12g} +- {found.error:.1e}, "
-        "which is an estimate"
+        f"which is {'a proven bound' if found.certificate == 'proven' else 'an estimate'}"
     )

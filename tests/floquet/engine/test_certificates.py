@@ -13,8 +13,9 @@ from floquet import (
     monodromy,
     stability_chart,
 )
+from floquet.engine.proven import proven_product
 from lumped import load_gear_pair
-from lumped.errors import ParameterError, ResolutionWarning
+from lumped.errors import NumericalError, ParameterError, ResolutionWarning
 
 
 def bumped(width: float) -> PeriodicSystem:
@@ -35,23 +36,44 @@ def test_a_narrow_feature_of_a_callable_is_found_and_told() -> None:
     assert 0.0 < found.resolution < 1e-3
 
 
-def test_a_formula_knows_its_breaks_and_is_the_callable_that_it_says() -> None:
-    def rows(t: float) -> float:
-        return [0.0, 1.0, 2.0] @ t ** np.arange(3) if t < 0.3 else [1.0, 2.0, 3.0] @ (t - 0.3) ** np.arange(3)
-
-    def A(t: float) -> np.ndarray:
-        w = 2.0 * np.pi * t
-        entry = -30.0 - 5.0 * np.cos(w) - rows(t) * (1.0 + 0.3 * np.sin(w) + 0.2 * np.sin(2.0 * w))
-        return np.array([[0.0, 1.0], [entry, -0.04]])
-
+def test_a_formula_has_a_proven_bound_that_holds_for_both_routes() -> None:
     entry = FourierSeries(1.0, -30.0, [-5.0]) - PiecewisePolynomial(
         [0.0, 0.3, 1.0], [[0.0, 1.0, 2.0], [1.0, 2.0, 3.0]]
     ) * FourierSeries(1.0, 1.0, [], [0.3, 0.2])
     system = PeriodicSystem(KnownMatrix([[0.0, 1.0], [entry, -0.04]]), 1.0)
+    proven, sampled = monodromy(system), monodromy(system, method="gauss")
+    assert (proven.certificate, sampled.certificate) == ("proven", "estimate")
+    assert (proven.resolution, proven.method) == (0.0, "taylor")
     assert system.edges.tolist() == [0.0, 0.3, 1.0]  # the break of the polynomial
-    formula, sampled = monodromy(system), monodromy(PeriodicSystem(A, 1.0, [0.3]))
-    assert abs(formula.spectral_radius - sampled.spectral_radius) <= formula.error + sampled.error < 1e-8
-    assert formula.liouville_residual < 1e-11
+    assert abs(proven.spectral_radius - sampled.spectral_radius) <= proven.error + sampled.error
+    assert 0.0 < proven.matrix_error < 1e-10
+    assert proven.liouville_residual < 1e-11
+
+
+def test_what_the_polynomials_of_a_formula_leave_out_is_in_the_bound() -> None:
+    wave = FourierSeries(1.0, -30.0, [-5.0, 2.0, 3.0]) * FourierSeries(1.0, 1.0, [0.4, 0.1, 0.2], [0.3, 0.2])
+    system = PeriodicSystem(KnownMatrix([[0.0, 1.0], [wave, -0.04]]), 1.0)
+    loose, sharp = monodromy(system, 1e-3), monodromy(system, 1e-11)
+    scale = loose.scaling[None, :] / loose.scaling[:, None]
+    distance = np.linalg.norm((loose.matrix - sharp.matrix) * scale)
+    assert distance <= loose.matrix_error + sharp.matrix_error
+    assert distance > 5.0 * sharp.matrix_error  # more than rounding
+
+
+@pytest.mark.parametrize("degree", [2, 6, 14])
+def test_errors_of_the_polynomials_of_a_formula_hold(degree: int) -> None:
+    rng = np.random.default_rng(degree)
+    rows = rng.normal(size=(2, 5))
+    formula = FourierSeries(2.0, 0.3, rng.normal(size=3).tolist(), [1.0]) * PiecewisePolynomial(
+        [0.0, 1.0, 2.0], rows
+    ) + FourierSeries(2.0, 1.0, [0.5])
+    start, length = np.array([0.1, 1.2]), np.array([0.3, 0.15])
+    series, errors = formula.taylor(start, length, degree)
+    s = np.linspace(0.0, 1.0, 50)
+    exact = formula(start[:, None] + length[:, None] * s)
+    error = np.abs((s[:, None] ** np.arange(degree + 1)) @ series.T - exact.T).max(axis=0)
+    assert (error <= errors + 1e-14).all()
+    assert (error > 1e-3 * errors).all() or degree == 14
 
 
 def test_a_coefficient_that_is_zero_in_the_middle_does_not_spoil_the_scales() -> None:
@@ -61,7 +83,28 @@ def test_a_coefficient_that_is_zero_in_the_middle_does_not_spoil_the_scales() ->
     assert found.matrix_error < 1e-10
 
 
-def test_charts_say_what_their_errors_are() -> None:
+def test_the_product_keeps_terms_of_second_order() -> None:
+    # Errors so large that the first order alone is not enough: (1 + e)^m - 1 > m e.
+    e, m = 0.05, 40
+    exact, bound = proven_product(np.ones((m, 1, 1)), np.full(m, e))
+    assert exact[0, 0] == 1.0
+    assert (1.0 + e) ** m - 1.0 <= bound <= 1.001 * ((1.0 + e) ** m - 1.0)  # in one dimension nothing is lost
+
+
+def test_decay_beyond_the_squares_of_floating_point_keeps_its_bound() -> None:
+    # 150 steps of ten, then 170 of 1/10: the flow after step 149 is 1e-170, whose square is no number.
+    steps = np.concatenate([np.full(150, 10.0), np.full(170, 0.1)]).reshape(-1, 1, 1)
+    errors = np.zeros(320)
+    errors[149] = 1e-3
+    product, bound = proven_product(steps, errors)
+    assert product[0, 0] == pytest.approx(1e-20)
+    assert 1e-3 * 1e149 * 1e-170 <= bound < 1e-22
+    dead = monodromy(PeriodicSystem(KnownMatrix([[-4000.0]]), 0.2))
+    assert dead.multiplier_errors[0] >= 5e-324
+    assert dead.verdict == "stable"
+
+
+def test_charts_and_motions_say_what_their_errors_are() -> None:
     pair = load_gear_pair("nasa_28_28").with_({"friction.law": "xu_kahraman"})
     speeds = {"speed_rpm": [3000.0, 3010.0]}
     together, alone = stability_chart(pair, speeds), stability_chart(pair, {"speed_rpm": [3000.0]})
@@ -69,7 +112,10 @@ def test_charts_say_what_their_errors_are() -> None:
     assert together["proven"].values.tolist() == [False, False]
 
 
-def test_formulas_of_the_wrong_shape_are_refused() -> None:
+def test_what_cannot_be_proven_is_refused() -> None:
+    wave = FourierSeries(1.0, -30.0, [-5.0])
+    with pytest.raises(NumericalError, match="cannot be proven"):
+        monodromy(PeriodicSystem(KnownMatrix([[0.0, 1.0], [wave, -0.04]]), 400.0), 1e-14)
     with pytest.raises(ParameterError, match="square"):
         KnownMatrix([[0.0, 1.0]])
     with pytest.raises(ParameterError, match="coefficients"):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 
@@ -14,6 +16,7 @@ from floquet import (
     monodromy,
     scan,
 )
+from floquet.engine.second_order import _Solution
 from lumped.errors import ParameterError
 from tests.evidence.floquet.reference_systems import meissner_trace
 
@@ -30,9 +33,27 @@ def matrices(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray,
     return tuple(UNITS @ B @ UNITS for B in (M, C, C1, 20.0 * np.eye(4) + S + S.T, K1))
 
 
-def test_meissners_trace_is_exact_within_its_bound():
+def rational(B: np.ndarray) -> np.ndarray:
+    return np.array([[Fraction(float(x)) for x in row] for row in B])
+
+
+def exactly_solved(P: np.ndarray, Q: np.ndarray) -> np.ndarray:
+    """P^-1 Q in rational numbers, by elimination."""
+    A = np.hstack([P, Q])
+    for c in range(len(P)):
+        pivot = next(r for r in range(c, len(P)) if A[r, c] != 0)
+        A[[c, pivot]] = A[[pivot, c]]
+        A[c] = A[c] / A[c, c]
+        for r in range(len(P)):
+            if r != c:
+                A[r] = A[r] - A[r, c] * A[c]
+    return A[:, len(P) :]
+
+
+def test_meissners_trace_is_exact_within_a_proven_bound():
     jump = PiecewisePolynomial([0.0, 0.5 * PERIOD, PERIOD], [[0.4], [-0.4]])
     found = monodromy(from_second_order(2.0, 0.0, PeriodicMatrix(2.6, (jump, 2.0)), PERIOD))
+    assert found.certificate == "proven"
     exact = meissner_trace(1.3, 0.4, PERIOD)
     assert abs(np.trace(found.matrix) - exact) <= 2.0 * found.matrix_error < 1e-11
 
@@ -57,9 +78,26 @@ def test_matrices_in_all_forms_give_the_same_multipliers():
         from_second_order(M, C_of, K_at, PERIOD),
         PeriodicSystem(plain, PERIOD, [1.0]),
     ]
+    assert known.certificate == "proven"
     assert known.spectral_radius > 1e-3
     for other in map(monodromy, others):
+        assert other.certificate == "estimate"
         assert abs(other.spectral_radius - known.spectral_radius) <= other.error + known.error < 1e-8
+
+
+def test_the_rounding_of_the_matrices_is_in_their_bounds():
+    M, _, _, K, K1 = matrices(2)
+    T = from_second_order(M, 0.0 * M, K, PERIOD).coordinates
+    solve = _Solution(M, T)
+    for B in (K, K1):
+        X, bound = solve(B)
+        exact = exactly_solved(rational(M) @ rational(T), rational(B) @ rational(T))
+        error = np.abs(rational(X) - exact).astype(float)
+        assert (error <= bound).all()
+        # And from there they go into the polynomials of A.
+        _, off = PeriodicMatrix(X, errors=bound[None]).taylor(np.zeros(1), np.ones(1), 2, np.ones(4))
+        assert off[0] >= np.linalg.norm(bound)
+        assert (bound <= 8.0 * np.finfo(float).eps * np.abs(X).max()).all()
 
 
 def test_free_vibrations_keep_their_norm():
@@ -101,6 +139,7 @@ def test_a_chart_of_any_family_has_its_labels_and_three_verdicts():
     chart = scan(family, axes, labels={"c": ("1/s", "damping")})
     # a = 1 is the principal resonance: unstable for any q, on the unit circle for none, unless damped.
     assert chart["verdict"].values.tolist() == [[0, 1], [-1, -1]]
+    assert chart.attrs["certificate"] == "proven"
     assert chart["c"].attrs == {"units": "1/s", "long_name": "damping"}
     with pytest.raises(ParameterError, match="labels"):
         scan(family, axes, labels={"k": ("1", "stiffness")})
@@ -108,9 +147,9 @@ def test_a_chart_of_any_family_has_its_labels_and_three_verdicts():
         scan(lambda at: from_second_order(*[np.eye(int(at["n"]))] * 3, 1.0), {"n": [1, 2]})
 
 
-def test_a_high_harmonic_has_short_steps():
+def test_a_high_harmonic_is_proven_where_its_own_steps_are_short():
     # A mesh seen over a turn of its gear: far above 2 omega = 20, nothing grows, |mu| = exp(-c T/2).
     wave = FourierSeries(0.3, 0.0, [0.0] * 59 + [1.0])
     found = monodromy(from_second_order(1.0, 0.1, PeriodicMatrix(100.0, (wave, 20.0)), 0.3))
     assert found.spectral_radius == pytest.approx(np.exp(-0.015), abs=found.error + 1e-15)
-    assert found.error < 1e-9
+    assert found.error < 1e-11

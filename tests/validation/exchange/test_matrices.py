@@ -96,7 +96,7 @@ def test_the_command_prints_bounds_and_writes_a_chart(tmp_path):
     found = run(tmp_path / "rotor.npz", "--json")
     data = json.loads(found.stdout)
     exact = monodromy(read_second_order(tmp_path / "rotor.npz").system())
-    assert (data["verdict"], data["certificate"], found.exit_code) == ("stable", "estimate", 0)
+    assert (data["verdict"], data["certificate"], found.exit_code) == ("stable", "proven", 0)
     assert data["multipliers"] == [[z.real, z.imag] for z in exact.multipliers]
     axes = ("--axis", "frequency=4:6:3", "--axis", "damping=0:1:2")
     made = run(tmp_path / "rotor.npz", *axes, "-o", tmp_path / "c.nc", "-o", tmp_path / "c.png")

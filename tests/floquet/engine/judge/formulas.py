@@ -97,8 +97,13 @@ def formula(rng: np.random.Generator) -> list[Finding]:
         length = (arb(ends[j + 1]) - start) / parts
         exact += [Piece(start + i * length, length, entries, bound) for i in range(parts)]
     truth = exact_multipliers(lambda: exact, 2)
-    found = monodromy(system, 1e-8)
-    return [finding("formula", "engine", found.multipliers, found.multiplier_errors, truth, "estimate")]
+    findings = []
+    for method in ("auto", "gauss"):
+        found = monodromy(system, 1e-8, method=method)
+        kind, route = "formula", "engine" if method == "auto" else "engine, sampled"
+        errors = found.multiplier_errors
+        findings.append(finding(kind, route, found.multipliers, errors, truth, found.certificate))
+    return findings
 
 
 def matrices(rng: np.random.Generator) -> list[Finding]:
