@@ -112,7 +112,7 @@ class PiecewisePolynomial(Coefficient):
 
     def taylor(self, start: FloatArray, length: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
         """See `Coefficient`; the place since the start of the piece is wrong by 2 u of the times."""
-        piece = self._piece(start + 0.5 * length)
+        piece = self._piece(start)  # the middle of a piece one unit in the last place wide rounds to its end
         x = start - self._ends[piece]
         rows = self._rows[piece]
         most = rows.shape[1] - 1

@@ -101,7 +101,11 @@ def monodromy(
             return _record(system, propagation, M, delta, step.name, "estimate")
         if rounding > 0.9 * rtol * size:
             break
-        # Growth and decay inside the period amplified the local errors: ask for that much more.
+        # Growth and decay inside the period amplified the local errors: ask for that much more. What the
+        # steps have reached already is the measure, or else the same steps serve again.
+        norms = np.linalg.norm(propagation.steps, axis=(1, 2))
+        share = np.diff(propagation.times) / system.period
+        local = min(local, float((propagation.truncation / (share * norms)).max()))
         local *= max(0.3 * (rtol * size - rounding) / delta, 1e-4)
         if local < 1e-16:
             break

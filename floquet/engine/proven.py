@@ -17,7 +17,7 @@ from floquet.engine.coefficients import KnownMatrix
 from floquet.engine.propagation import Propagation
 from floquet.engine.system import PeriodicSystem
 from lumped.errors import NumericalError
-from lumped.typing import FloatArray
+from lumped.typing import BoolArray, FloatArray
 
 _U = 0.5 * float(np.finfo(np.float64).eps)
 _DEGREE = 14
@@ -51,10 +51,13 @@ def proven_propagation(
                 "check the units of A and the period."
             )
         first, last = start[:chunk], end[:chunk]
-        matrices, error, good = _steps(known, first, last, d, rtol)
         middle = 0.5 * (first + last)
-        if (~good & ((middle <= first) | (middle >= last))).any():
-            raise NumericalError(f"the step size fell to rounding at t = {first[~good][0]:.17g} s.")
+        whole = (middle <= first) | (middle >= last)
+        matrices, error, good = _steps(known, first, last, whole, d, rtol)
+        if (~good & whole).any():
+            raise NumericalError(
+                f"A is too large near t = {first[~good & whole][0]:.17g} s: the step fell to rounding."
+            )
         times.append(first[good])
         steps.append(matrices)
         errors.append(error[good])
@@ -69,9 +72,12 @@ def proven_propagation(
 
 
 def _steps(
-    known: KnownMatrix, start: FloatArray, end: FloatArray, d: FloatArray, rtol: float
-) -> tuple[FloatArray, FloatArray, np.ndarray[tuple[int], np.dtype[np.bool_]]]:
-    """Transition matrices of the good steps, bounds (k,) on the 2-norms of the errors, and which are good."""
+    known: KnownMatrix, start: FloatArray, end: FloatArray, whole: BoolArray, d: FloatArray, rtol: float
+) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """Transition matrices of the good steps, bounds (k,) on the 2-norms of the errors, and which are good.
+
+    A step that cannot be cut (``whole``) is good where its bound is, as with an impulse.
+    """
     h, n = end - start, d.size
     A, wrong = known.taylor(start, h, _DEGREE, d)
     B = A * h[:, None, None, None]
@@ -83,24 +89,25 @@ def _steps(
         g = a @ powers.T  # (k, radii)
         tails = g - _TERMS * np.log(_RADII) - np.log(_RADII - 1.0)
         tail = np.exp(tails.min(axis=1)) * _SLACK
-        whole = (a / np.arange(1, _DEGREE + 2)).sum(axis=1)  # sum of a_j/(j+1): sum of all r_k = exp
-        size = np.exp(whole)
-        rounding = math.sqrt(n) * _U * size * ((_DEGREE + n + 8.0) * whole + a.sum(axis=1) + 6.0)
+        total = (a / np.arange(1, _DEGREE + 2)).sum(axis=1)  # sum of a_j/(j+1): sum of all r_k = exp
+        size = np.exp(total)
+        rounding = math.sqrt(n) * _U * size * ((_DEGREE + n + 8.0) * total + a.sum(axis=1) + 6.0)
         errors = (tail + rounding + off * size**2 * np.exp(off)) * _SLACK
     room = np.maximum(1e-3 * rtol, 8.0 * rounding)
     good = (a.sum(axis=1) <= _ANGLE) & (tail + off <= room)
     # Where rounding of A itself is more than that, and its polynomials end, shorter steps do not help.
     good |= (a.sum(axis=1) <= 0.05) & (a[:, -2:].max(axis=1) <= room) & np.isfinite(errors)
+    good |= whole & (errors <= rtol)
     if not good.any():
         return np.empty((0, n, n)), errors, good
     used, B = np.flatnonzero(a.any(axis=0)), B[good]
     X = np.zeros((_TERMS + 1, len(B), n, n))
     X[0] = np.eye(n)
     for k in range(_TERMS):
-        total = B[:, 0] @ X[k]
+        term = B[:, 0] @ X[k]
         for j in used[(used > 0) & (used <= k)]:
-            total += B[:, j] @ X[k - j]
-        X[k + 1] = total / (k + 1)
+            term += B[:, j] @ X[k - j]
+        X[k + 1] = term / (k + 1)
     flow = X[_TERMS].copy()
     for k in range(_TERMS - 1, -1, -1):
         flow += X[k]

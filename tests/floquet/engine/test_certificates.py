@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 from floquet import (
     FourierSeries,
     KnownMatrix,
+    PeriodicMatrix,
     PeriodicSystem,
     PiecewisePolynomial,
+    from_second_order,
     monodromy,
     stability_chart,
 )
@@ -120,3 +123,52 @@ def test_what_cannot_be_proven_is_refused() -> None:
         KnownMatrix([[0.0, 1.0]])
     with pytest.raises(ParameterError, match="coefficients"):
         PiecewisePolynomial([0.0, 1.0, 2.0], [[1.0]])
+
+
+def pulsed(start: float, width: float, impulse: float):
+    """x'' + 0.02 x' + (9 + impulse/width from start on) x = 0 of period 1, and its exact radius."""
+    end = start + width
+    width = end - start  # as rounded
+    rows = [[0.0], [impulse / width], [0.0]]
+    stiffness = PeriodicMatrix(9.0, (PiecewisePolynomial([0.0, start, end, 1.0], rows), 1.0))
+    free = np.array([[0.0, 1.0], [-9.0, -0.02]])
+    inside = np.array([[0.0, width], [-9.0 * width - impulse, -0.02 * width]])
+    matrix = expm(free * (1.0 - end)) @ expm(inside) @ expm(free * start)
+    return from_second_order([[1.0]], [[0.02]], stiffness, 1.0), np.abs(np.linalg.eigvals(matrix)).max()
+
+
+@pytest.mark.parametrize("place", [0.5, 0.618, 0.75, 0.9])
+@pytest.mark.parametrize("odd", [False, True])
+@pytest.mark.parametrize("units", [1, 2, 3])
+def test_no_piece_is_lost_whatever_its_width(place: float, odd: bool, units: int) -> None:
+    """The middle of a piece one unit in the last place wide with an odd start rounds to its end."""
+    start = np.nextafter(place, 1.0) if odd else place
+    end = start
+    for _ in range(units):
+        end = np.nextafter(end, 1.0)
+    system, exact = pulsed(start, end - start, 4.0)
+    result = monodromy(system)
+    assert result.certificate == "proven"
+    assert abs(result.spectral_radius - exact) <= result.error
+    assert result.error < 1e-11
+
+
+@pytest.mark.parametrize("width", [1e-3, 1e-5, 1e-7, 1e-9])
+@pytest.mark.parametrize("impulse", [0.5, 4.0, 20.0])
+def test_narrow_spikes_are_proven(width: float, impulse: float) -> None:
+    """Coordinates are balanced by the mean of |A| over time, in which a spike counts as its impulse does."""
+    system, exact = pulsed(0.3, width, impulse)
+    result = monodromy(system, 1e-10)
+    assert result.certificate == "proven"
+    assert abs(result.spectral_radius - exact) <= result.error
+
+
+def test_a_tolerance_between_two_that_are_met_is_met() -> None:
+    """Refused steps are measured by what the last grid reached; else the same grid came again."""
+    a, b = -0.8119798362942523, 4.453781979209743
+    system = PeriodicSystem(
+        lambda t: np.array([[0.0, 1.0], [-(a + b * (np.cos(t) + 2.0 * np.cos(2.0 * t))), 0.0]]), 2.0 * np.pi
+    )
+    for rtol in (1e-6, 1e-7, 1e-8, 1e-9):
+        result = monodromy(system, rtol)
+        assert result.matrix_error <= rtol * np.linalg.norm(result.matrix, 2) * 1.5

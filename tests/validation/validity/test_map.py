@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from validation.plots.validity_map import validity_map_figure
 
 import lumped
 from floquet.gear.multipliers import gear_pair_multipliers
-from validation.plots.validity_map import validity_map_figure
 from validation.validity.flags import contact_loss, film_regime, sliding_reversal
 from validation.validity.map import STATES, validity_map, validity_state
 
