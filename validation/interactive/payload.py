@@ -15,8 +15,7 @@ from lumped import GearPair
 from lumped.friction import LAWS
 from validation.interactive.results import SAMPLES, PageResults, Slices
 from validation.plots.stability import pretty
-from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS
-from validation.validity.map import STATES
+from validation.validity.flags import LOAD_NOISE, REVERSAL_LIMITS, STATES
 
 #: Decimals of a largest multiplier, and significant digits of everything else.
 DECIMALS, DIGITS = 6, 6

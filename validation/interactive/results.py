@@ -28,8 +28,7 @@ from validation.validity.beyond_contact_loss import (
     branches_about_operation,
     jumps_about_operation,
 )
-from validation.validity.flags import LOAD_NOISE
-from validation.validity.map import STATES, validity_state
+from validation.validity.flags import LOAD_NOISE, STATES, validity_state
 
 Grid = dict[str, FloatArray]
 
@@ -98,7 +97,7 @@ class PageResults:
     found : Floquet multipliers at the operating point
     stability : third parameter -> its charts
     sweep : response over (law, speed): dte_peak_to_peak, y_p_peak_to_peak [m]; lowest_load over the static
-        load; reversal over the base pitch; validity, index into ``validation.validity.map.STATES``;
+        load; reversal over the base pitch; validity, index into ``validation.validity.flags.STATES``;
         spectral_radius, above 1 where the motion is unstable
     own_law : index of the pair's law in the sweep
     notes : for each law of the sweep, where it is used outside its range; empty where it is not

@@ -22,8 +22,9 @@ def over_speed_figure(data: xr.Dataset, operating_rpm: float, size: tuple[float,
 
     Parameters
     ----------
-    data : over ``speed_rpm``: ``linear`` (NaN where it does not hold), ``low`` and ``high`` where the inputs
-        were varied; over ``motion_speed_rpm``: ``motion`` with ``motion_stable`` where contact is lost; over
+    data : over ``speed_rpm``: ``linear`` (NaN where it does not hold), ``pulling`` (the same motion where a
+        tooth pair pulls, NaN elsewhere), ``low`` and ``high`` where the inputs were varied; over
+        ``motion_speed_rpm``: ``motion`` with ``motion_stable`` where contact is lost; over
         ``jump_speed_rpm``: ``jump_from``, ``jump_to``
     operating_rpm : operating speed [rpm]
     size : height and width [inch]
@@ -37,13 +38,18 @@ def over_speed_figure(data: xr.Dataset, operating_rpm: float, size: tuple[float,
     if "low" in data:
         low, high = data["low"].to_numpy() / factor, data["high"].to_numpy() / factor
         ax.fill_between(x, low, high, color=SKY, alpha=0.4, linewidth=0.0, label="5 to 95 % of the samples")
-    ax.plot(x, linear.to_numpy() / factor, color=BLUE, linewidth=1.6, gid="linear", label="as given")
+    if not linear.isnull().all():
+        ax.plot(x, linear.to_numpy() / factor, color=BLUE, linewidth=1.6, gid="linear", label="as given")
+    if not data["pulling"].isnull().all():
+        text = "linear, a tooth pair pulls"
+        ax.plot(x, data["pulling"].to_numpy() / factor, color=BLUE, linewidth=0.9, linestyle=":", label=text)
     if "motion" in data:
         stable = data["motion_stable"].to_numpy() > 0
         place, sizes = data["motion_speed_rpm"].to_numpy(), data["motion"].to_numpy() / factor
         look: dict[str, Any] = {"linestyle": "none", "marker": ".", "markersize": 3.5}
-        ax.plot(place[stable], sizes[stable], color=RED, label="with contact loss", gid="motion", **look)
-        ax.plot(place[~stable], sizes[~stable], color=GREY, label="unstable", **look)
+        ax.plot(place[stable], sizes[stable], color=RED, label="unilateral contact", gid="motion", **look)
+        if not stable.all():
+            ax.plot(place[~stable], sizes[~stable], color=GREY, label="unstable", **look)
         for at, start, end in zip(
             data["jump_speed_rpm"].to_numpy(),
             data["jump_from"].to_numpy() / factor,

@@ -245,7 +245,7 @@ def _verdict(results: Results) -> tuple[Verdict, str, str]:
     return (
         Verdict.COMPARE,
         Verdict.COMPARE.value,
-        f"{calm} But {inputs}, and they move the result by {100 * half:.0f} %.",
+        f"{calm} But {inputs}, and they move the result by ±{100 * half:.0f} %.",
     )
 
 

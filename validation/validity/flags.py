@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from lumped import GearPair, Geometry
 from lumped.arguments import of_type
@@ -20,7 +21,7 @@ from lumped.model.results import farthest_reversal
 from lumped.path_of_contact import contact_path, law_range_violations
 from lumped.ranges import RangeViolation
 from lumped.schema.files import AnyPair, load_gear_pair
-from lumped.typing import BoolArray
+from lumped.typing import BoolArray, FloatArray
 from validation.files.tables import read_table
 
 if TYPE_CHECKING:
@@ -34,6 +35,9 @@ REVERSAL_LIMITS = (0.02, 0.05)
 DRIFT_LIMITS = (1e-3, 1e-2)
 #: Estimated relative error of the periodic motion: warning, violation.
 ERROR_LIMITS = (1e-6, 1e-4)
+
+#: Values of `validity_state`: the worst of contact and sliding.
+STATES = ("valid", "warning", "violated", "no periodic motion")
 
 State = Literal["ok", "warning", "violated"]
 
@@ -172,6 +176,18 @@ def sliding_reversal(g: Geometry, motion: xr.Dataset) -> Flag:
     else:
         detail = "the actual sliding velocity, vibration included, keeps its nominal sign at every sample"
     return flag("sliding_reversal", state, farthest, detail)
+
+
+def validity_state(lowest_load: FloatArray, reversal: FloatArray) -> NDArray[np.int64]:
+    """Index into ``STATES``: the worse of contact and sliding, over speed.
+
+    ``lowest_load`` is over the static load, NaN without a periodic motion; ``reversal`` over the base pitch.
+    """
+    state = np.zeros(lowest_load.shape, dtype=np.int64)
+    state[reversal > REVERSAL_LIMITS[0]] = 1
+    state[(reversal > REVERSAL_LIMITS[1]) | (lowest_load < -LOAD_NOISE)] = 2
+    state[np.isnan(lowest_load)] = 3
+    return state
 
 
 def contact_ratio(g: Geometry) -> Flag:

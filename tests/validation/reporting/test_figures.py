@@ -82,6 +82,7 @@ def speeds_data():
     return labelled_dataset(
         {
             "linear": ("speed_rpm", np.linspace(1e-6, 5e-6, 5), "m", "peak to peak"),
+            "pulling": ("speed_rpm", np.array([np.nan, np.nan, 2.5e-6, np.nan, np.nan]), "m", "pulls"),
             "low": ("speed_rpm", np.linspace(0.5e-6, 4e-6, 5), "m", "5 %"),
             "high": ("speed_rpm", np.linspace(2e-6, 6e-6, 5), "m", "95 %"),
         },
@@ -96,6 +97,15 @@ def test_the_picture_over_speed_has_curve_band_and_operating_speed():
     assert band[:, 1].max() == pytest.approx(6.0)
     assert any(line.get_xdata()[0] == 1500.0 for line in ax.lines if len(line.get_xdata()) == 2)
     assert "1500 rpm" in [text.get_text() for text in ax.texts]
+    (dotted,) = (line for line in ax.lines if line.get_label() == "linear, a tooth pair pulls")
+    assert dotted.get_ydata()[2] == pytest.approx(2.5)
+
+
+def test_the_picture_over_speed_names_only_what_it_draws():
+    data = speeds_data()
+    data["linear"] = data["linear"] * np.nan
+    words = [text.get_text() for text in over_speed_figure(data, 1500.0).axes[0].get_legend().get_texts()]
+    assert words == ["5 to 95 % of the samples", "linear, a tooth pair pulls"]
 
 
 def test_the_picture_of_orders_has_bars_and_ranges():

@@ -6,7 +6,7 @@ import pytest
 import lumped
 from floquet.gear.multipliers import gear_pair_multipliers
 from validation.validity import flags as validity
-from validation.validity.flags import worst_state
+from validation.validity.flags import validity_state, worst_state
 
 
 @pytest.fixture(scope="module")
@@ -120,3 +120,8 @@ def test_a_stiffness_model_outside_its_fit_is_said():
     own = wide.with_(mesh__stiffness={"model": "rectangular", "pair_stiffness": 3e8})
     flag = validity.stiffness_ranges(own)
     assert (flag.state, flag.value, flag.action) == ("ok", 0.0, "")
+
+
+def test_state_over_speed_is_the_worse_of_contact_and_sliding():
+    lowest, reversal = np.array([0.5, 0.5, 0.5, -0.1, np.nan]), np.array([0.0, 0.03, 0.06, 0.0, 0.0])
+    assert validity_state(lowest, reversal).tolist() == [0, 1, 2, 2, 3]

@@ -124,10 +124,18 @@ def linear_over_speed(results: Results) -> xr.Dataset:
     """Linear peak to peak over speed, and its range where the inputs were varied."""
     sweep, band = results.sweep, results.band
     speeds = sweep["speed"].to_numpy()
-    holds = (sweep["spectral_radius"].to_numpy() <= 1.0) & (sweep["normal_load_min"].to_numpy() > 0.0)
-    values = np.where(holds, sweep["dte_peak_to_peak"].to_numpy(), np.nan)
+    size, pushes = sweep["dte_peak_to_peak"].to_numpy(), sweep["normal_load_min"].to_numpy() > 0.0
+    stable = sweep["spectral_radius"].to_numpy() <= 1.0
     text = "transmission error, peak to peak"
-    variables = {"linear": ("speed_rpm", values, "m", text)}
+    variables = {
+        "linear": ("speed_rpm", np.where(stable & pushes, size, np.nan), "m", text),
+        "pulling": (
+            "speed_rpm",
+            np.where(stable & ~pushes, size, np.nan),
+            "m",
+            f"{text}, a tooth pair pulls",
+        ),
+    }
     if isinstance(band, xr.Dataset):
         for name in ("low", "high"):
             ends = np.interp(speeds, band["speed_rpm"], band[name])
