@@ -184,7 +184,9 @@ def table(title: str, *columns: str, rows: Iterable[Sequence[str]] = ()) -> Tabl
     made = Table(title=title or None, title_justify="left", title_style="bold")
     for column in columns:
         right = column.startswith(">")
-        made.add_column(column.removeprefix(">"), justify="right" if right else "left", no_wrap=right, overflow="fold")
+        made.add_column(
+            column.removeprefix(">"), justify="right" if right else "left", no_wrap=right, overflow="fold"
+        )
     for row in rows:
         made.add_row(*row)
     return made

@@ -57,7 +57,7 @@ def uncertainty(
         given = float(found.attrs[f"given_{name}"])
         shown.add_row(words, *(quantity(float(v), unit, 3) for v in (given, *ends)))
     console.print(shown)
-    shown = table("what moves the transmission error", "input", "range", ">from", ">to", ">rank correlation")
+    shown = table("what moves the transmission error", "input", "range", ">from", ">to", ">rank corr.")
     swing = found["dte_peak_to_peak_swing"].to_numpy()
     for j in np.argsort(-np.nan_to_num(np.ptp(swing, axis=1)), kind="stable"):
         moved = (quantity(float(end), "m", 3) for end in (swing[j].min(), swing[j].max()))
