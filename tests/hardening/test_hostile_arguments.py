@@ -64,7 +64,7 @@ CALLS = {
         {"pair": PAIR, "speeds_rpm": [4000.0]},
         "speeds_rpm settle cycles samples_per_cycle fidelity effects rtol",
     ),
-    floquet.PeriodicSystem: ({"A": SYSTEM.A, "period": 1.0}, "A period breakpoints b"),
+    floquet.PeriodicSystem: ({"A": SYSTEM.A, "period": 1.0}, "A period breakpoints"),
     floquet.monodromy: ({"system": SYSTEM}, "rtol method max_substeps"),
     floquet.gear_pair_system: ({"source": PAIR}, "form"),
     floquet.gear_pair_multipliers: ({"source": PAIR}, "rtol method"),

@@ -61,7 +61,7 @@ def uncertainty(
     swing = found["dte_peak_to_peak_swing"].to_numpy()
     for j in np.argsort(-np.nan_to_num(np.ptp(swing, axis=1)), kind="stable"):
         moved = (quantity(float(end), "m", 3) for end in (swing[j].min(), swing[j].max()))
-        correlation = number(float(found["dte_peak_to_peak_rank_correlation"][j]), 2)
+        correlation = number(round(float(found["dte_peak_to_peak_rank_correlation"][j]), 2), 2)
         shown.add_row(str(found["input"].to_numpy()[j]), str(found.attrs["written"][j]), *moved, correlation)
     console.print(shown)
     counts = ("refused", "contact_lost", "unstable")

@@ -32,7 +32,7 @@ _WHY = {
     "bore": "solid disc",
     "viscosity_law.density": "mineral oil",
     **dict.fromkeys(("density", "youngs_modulus", "poisson_ratio"), "steel"),
-    "stiffness.model": "constant stiffness by ISO 6336-1; 'energy' computes it from the tooth form",
+    "stiffness.model": "computed from the tooth form; 'finite_elements' computes it from both gears",
     "backlash": "least by ISO/TR 10064-2 for module and centre distance, up to a tenth of the module",
     "viscosity": "oil warm from running",
     "temperature": "sump of an enclosed gear",

@@ -305,10 +305,10 @@ def _actions(results: Results, verdict: Verdict) -> tuple[Action, ...]:
             )
         )
         found.append(Action("Try tip relief for this torque", "--set pinion.tip_relief.amount=...", ""))
-    return (*found, *_of_inputs(results))[:_MOST_ACTIONS]
+    return (*found, *advice_on_inputs(results))[:_MOST_ACTIONS]
 
 
-def _of_inputs(results: Results) -> list[Action]:
+def advice_on_inputs(results: Results) -> list[Action]:
     """What to do about the inputs that move the result most, one action a kind of input."""
     found = results.uncertainty
     if isinstance(found, Absent):
@@ -322,6 +322,8 @@ def _of_inputs(results: Results) -> list[Action]:
             break
         field = str(found["input"].to_numpy()[j])
         advice = next((one for one in _ADVICE if fnmatch.fnmatchcase(field, one["field"])), None)
+        if advice is not None and results.pair.mesh.stiffness.model in advice.get("unless_model", ()):
+            continue  # the pair has it already
         if advice is not None and advice["text"] not in actions:
             gain = f"it moves the transmission error from {quantity(low, 'm', 2)} to {quantity(high, 'm', 2)}"
             actions[advice["text"]] = Action(advice["text"], advice["command"], gain)

@@ -48,7 +48,9 @@ def test_everything_that_rexs_can_say_comes_back(preset, tmp_path, leaves):
     )
     assert all(path.startswith(beyond) for path in lost), lost
     # A tip diameter says what a default addendum said; the geometry is the same to the fifteenth digit.
-    assert set(got) - set(sent) <= {"pinion.tip_diameter", "gear.tip_diameter"}
+    # REXS has no stiffness model: what stands in has parameters of its own.
+    more = {path for path in set(got) - set(sent) if not path.startswith("mesh.stiffness.")}
+    assert more <= {"pinion.tip_diameter", "gear.tip_diameter"}
     for name in ("contact_ratio", "L_XA", "L_XD", "centre_distance", "normal_backlash", "mesh_period"):
         sent_value, got_value = (getattr(lumped.geometry(p), name) for p in (preset, back))
         # backlash is a difference of lengths 1000 times its size, in fifteen digits

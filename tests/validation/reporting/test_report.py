@@ -5,13 +5,18 @@ from __future__ import annotations
 import html
 import json
 import re
+from types import SimpleNamespace
 
+import numpy as np
 import openpyxl
 import pytest
+import xarray as xr
 
+import lumped
 from tests.validation.reporting.conftest import PAIRS, SMALL
 from validation.reporting import build
-from validation.reporting.page_one import ABSOLUTE, Number, Verdict
+from validation.reporting.chapters.how_sure import inputs_table
+from validation.reporting.page_one import ABSOLUTE, Number, Verdict, advice_on_inputs
 from validation.reporting.relations import broken_relations
 from validation.reporting.results import Results
 
@@ -131,3 +136,28 @@ def test_no_more_digits_are_shown_than_the_range_supports(value, low, high, show
 
 def test_an_absolute_level_needs_inputs_within_ten_percent():
     assert ABSOLUTE == 0.10
+
+
+@pytest.mark.parametrize(("model", "advised"), [("rectangular", 2), ("energy", 1), ("finite_elements", 0)])
+def test_no_advice_is_to_do_what_the_pair_has(model, advised):
+    inputs = ["mesh.stiffness", "mesh.stiffness_factor"]
+    swing = (("input", "end"), np.array([[1.0, 2.0], [1.2, 2.0]]) * 1e-6)
+    results = SimpleNamespace(
+        uncertainty=xr.Dataset({"dte_peak_to_peak_swing": swing}, {"input": inputs}),
+        prediction=SimpleNamespace(peak_to_peak=1e-6),
+        pair=lumped.load_gear_pair("fzg_c").with_(mesh__stiffness={"model": model}),
+    )
+    assert len(advice_on_inputs(results)) == advised
+
+
+def test_an_input_without_effect_has_a_correlation_of_zero():
+    # 4.6e-5 is shown with a power of ten; the table of the report needs a number.
+    found = xr.Dataset(
+        {
+            "dte_peak_to_peak_swing": (("input", "end"), np.array([[1e-6, 1e-6]])),
+            "dte_peak_to_peak_rank_correlation": ("input", np.array([-4.6e-5])),
+        },
+        {"input": ["pinion.roughness"]},
+        {"written": ["* 0.7 .. * 1.5"], "reason": ["why"]},
+    )
+    assert inputs_table(found).rows[0][4] == 0.0

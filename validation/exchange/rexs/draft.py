@@ -33,7 +33,7 @@ _STAND_INS: dict[str, Any] = {
         for key, value in _BEARING.items()
     },
     "mesh.damping_ratio": 0.05,
-    "mesh.stiffness.model": "rectangular",
+    "mesh.stiffness.model": "energy",
     "friction.law": "xu_kahraman",
     "operating.pinion_speed": 1000.0,
 }

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from lumped.outcomes import Absent
-from validation.files.formatting import number, quantity
+from validation.files.formatting import quantity
 from validation.plots.prediction import budget_figure
 from validation.prediction.motion import QUANTITIES
 from validation.reporting.blocks import Block, Cell, Content, Picture, Quantity, Table, Text
@@ -33,7 +33,7 @@ def write(results: Results) -> Content:
     if isinstance(found, Absent):
         blocks.append(Text("The inputs were not varied in this report."))
         return Content(result, tuple(blocks))
-    blocks += [_ranges(found), _inputs(found)]
+    blocks += [_ranges(found), inputs_table(found)]
     samples = int(found.sizes["sample"])
     lost, unstable = int(found.attrs["contact_lost"]), int(found.attrs["unstable"])
     blocks.append(
@@ -92,7 +92,9 @@ def _ranges(found: xr.Dataset) -> Table:
     return Table("ranges", "Results with the uncertain inputs.", columns, tuple(rows))
 
 
-def _inputs(found: xr.Dataset) -> Table:
+def inputs_table(found: xr.Dataset) -> Table:
+    """Each uncertain input with its range and what it does to the transmission error, the largest first."""
+    correlation = found["dte_peak_to_peak_rank_correlation"].to_numpy()
     swing = found["dte_peak_to_peak_swing"].to_numpy()
     order = np.argsort(-np.nan_to_num(np.ptp(swing, axis=1)), kind="stable")
     rows = tuple(
@@ -101,11 +103,7 @@ def _inputs(found: xr.Dataset) -> Table:
             str(found.attrs["written"][j]),
             Quantity(float(swing[j].min()), "m"),
             Quantity(float(swing[j].max()), "m"),
-            float(
-                number(float(found["dte_peak_to_peak_rank_correlation"].to_numpy()[j]), 2).replace(
-                    "\u2212", "-"
-                )
-            ),
+            round(float(correlation[j]), 2),
             str(found.attrs["reason"][j]),
         )
         for j in order
