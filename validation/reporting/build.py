@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import time
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -14,7 +15,7 @@ from typing import Any
 
 import xarray as xr
 
-from lumped import GearPair, load_gear_pair
+from lumped import GearPair, LawRangeWarning, load_gear_pair
 from lumped.arguments import file_path, real_number
 from lumped.outcomes import Absent
 from lumped.typing import Progress
@@ -96,7 +97,10 @@ def report(
     target = file_path("out", out)
     earlier = None if compare is None else load_report(compare, quick=quick)
     real_number("--tolerance", tolerance, 0.0, 1.0, action="0.001 lets numbers change by 0.1 %.")
-    with whole_folder(target, force=force) as folder:
+    with whole_folder(target, force=force) as folder, warnings.catch_warnings():
+        # The page says where a law is outside its range at the operating point; each speed and sample more
+        # would say it again.
+        warnings.simplefilter("ignore", LawRangeWarning)
         results = Results(gear_pair, QUICK if quick else FULL, named)
         chapters = written(results, CHAPTERS, lambda f, stage="", /: tell(0.85 * f, stage))
         first, pictures = page_one(results), first_figures(results)

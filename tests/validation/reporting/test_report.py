@@ -138,6 +138,20 @@ def test_an_absolute_level_needs_inputs_within_ten_percent():
     assert ABSOLUTE == 0.10
 
 
+def test_a_law_outside_its_range_is_told_on_the_page_and_nowhere_else(tmp_path, monkeypatch, recwarn):
+    monkeypatch.setattr(build, "QUICK", SMALL)
+    changes = {
+        "operating.pinion_torque": 0.5,
+        "operating.pinion_speed": 20000.0,
+        "friction.law": "benedict_kelley",
+    }
+    small_load = PAIRS["calm"]().with_(changes)
+    written = build.report(small_load, tmp_path / "report", quick=True)
+    assert not [w for w in recwarn if issubclass(w.category, lumped.LawRangeWarning)]
+    text = (written.folder / "index.html").read_text(encoding="utf-8")
+    assert "friction_number" in text
+
+
 @pytest.mark.parametrize(("model", "advised"), [("rectangular", 2), ("energy", 1), ("finite_elements", 0)])
 def test_no_advice_is_to_do_what_the_pair_has(model, advised):
     inputs = ["mesh.stiffness", "mesh.stiffness_factor"]
