@@ -43,8 +43,10 @@ def over_speed_figure(data: xr.Dataset, operating_rpm: float, size: tuple[float,
     if not data["pulling"].isnull().all():
         text = "linear, a tooth pair pulls"
         ax.plot(x, data["pulling"].to_numpy() / factor, color=BLUE, linewidth=0.9, linestyle=":", label=text)
+    seen = [linear, *(data[name] for name in ("low", "high") if name in data)]
     if "motion" in data:
         stable = data["motion_stable"].to_numpy() > 0
+        seen.append(data["motion"][stable])
         place, sizes = data["motion_speed_rpm"].to_numpy(), data["motion"].to_numpy() / factor
         look: dict[str, Any] = {"linestyle": "none", "marker": ".", "markersize": 3.5}
         ax.plot(place[stable], sizes[stable], color=RED, label="unilateral contact", gid="motion", **look)
@@ -63,7 +65,9 @@ def over_speed_figure(data: xr.Dataset, operating_rpm: float, size: tuple[float,
     ax.axvline(operating_rpm, color=BLACK, linewidth=0.9, linestyle="--")
     write_beside(ax, f"{operating_rpm:.5g} rpm", (operating_rpm, 1.0), (0, 2), IN_X, ha="center")
     ax.set_xlim(x[0], x[-1])
-    ax.set_ylim(bottom=0.0)
+    # Motions that the pair cannot have (unstable, or with teeth that pull) may leave the picture.
+    top = max((float(np.nanmax(part)) for part in seen if part.notnull().any()), default=None)
+    ax.set_ylim(0.0, None if top is None else 1.25 * top / factor)
     legend(ax, loc="best")
     return figure
 

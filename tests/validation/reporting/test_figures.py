@@ -101,6 +101,23 @@ def test_the_picture_over_speed_has_curve_band_and_operating_speed():
     assert dotted.get_ydata()[2] == pytest.approx(2.5)
 
 
+def test_motions_that_the_pair_cannot_have_do_not_set_the_scale():
+    data = speeds_data()
+    data["pulling"] = data["pulling"] * 200.0
+    motions = {
+        "motion": ("motion_speed_rpm", np.array([9e-6, 300e-6]), "m", "peak to peak"),
+        "motion_stable": ("motion_speed_rpm", np.array([1.0, 0.0]), "1", "stable"),
+        "jump_from": ("jump_speed_rpm", np.empty(0), "m", "before"),
+        "jump_to": ("jump_speed_rpm", np.empty(0), "m", "after"),
+    }
+    axes = {
+        "motion_speed_rpm": (np.array([1200.0, 1400.0]), "rpm", "pinion speed"),
+        "jump_speed_rpm": (np.empty(0), "rpm", "pinion speed"),
+    }
+    ax = over_speed_figure(data.merge(labelled_dataset(motions, axes)), 1500.0).axes[0]
+    assert 9.0 < ax.get_ylim()[1] < 15.0
+
+
 def test_the_picture_over_speed_names_only_what_it_draws():
     data = speeds_data()
     data["linear"] = data["linear"] * np.nan
