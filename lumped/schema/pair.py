@@ -71,6 +71,8 @@ def _sources_in(value: object) -> object:
     return tuple(sorted(value.items()))
 
 
+#: Another model of stiffness starts with its own defaults: the keys of the model before are not its keys.
+_STIFFNESS = "mesh.stiffness.model"
 #: Fields of which only one can be given: naming one removes the others.
 _ALTERNATIVES = (
     ("pinion.addendum", "pinion.tip_diameter"),
@@ -289,11 +291,15 @@ def validated(data: Mapping[str, Any], source: str, folder: Path = Path()) -> Ge
 def _varied(pair: GearPair, changes: Mapping[str, Any]) -> GearPair:
     data = pair.to_mapping()
     sources: dict[str, str] = data.setdefault("sources", {})
-    for path, request in changes.items():
+    # The model first: it decides which other keys its table may have.
+    for path, request in sorted(changes.items(), key=lambda change: change[0] != _STIFFNESS):
         value = request.item() if isinstance(request, np.generic) else request
         if _reads(pair, path, value):
             continue
         outdated = [path]
+        if path == _STIFFNESS:
+            outdated.append(_STIFFNESS.rpartition(".")[0])
+            _assign(data, outdated[-1], {})
         for group in _ALTERNATIVES:
             if path in group and value is not None:
                 outdated += group

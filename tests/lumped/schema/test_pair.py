@@ -338,3 +338,17 @@ def test_the_old_name_of_prescribed_contact_is_read_with_a_note(nasa):
     with pytest.warns(FutureWarning, match="'prescribed'"):
         pair = nasa.with_(mesh__contact="paper")
     assert pair.mesh.contact == "prescribed"
+
+
+@pytest.mark.parametrize("model", ["rectangular", "parabolic", "energy", "finite_elements"])
+@pytest.mark.parametrize("before", ["rectangular", "energy", "finite_elements"])
+def test_one_change_names_another_stiffness_model(nasa, before, model):
+    pair = load_gear_pair(nasa).with_({"mesh.stiffness": {"model": before}})
+    found = pair.with_({"mesh.stiffness.model": model})
+    expected = pair.with_({"mesh.stiffness": {"model": model}})
+    assert found.mesh == expected.mesh
+
+
+def test_a_model_and_its_key_may_be_named_in_any_order(nasa):
+    changes = {"mesh.stiffness.scale": "iso6336", "mesh.stiffness.model": "energy"}
+    assert load_gear_pair(nasa).with_(changes).mesh.stiffness.scale == "iso6336"

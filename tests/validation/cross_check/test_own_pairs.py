@@ -15,6 +15,7 @@ from validation.exchange.new_pair_file import new_pair_text
 def own(teeth, module, width, speed, torque, **more):
     given = {
         "teeth": teeth,
+        "mesh.stiffness.model": "rectangular",
         "basic_rack.module": module,
         "gears.face_width": width,
         "operating.pinion_speed": speed,
