@@ -1,7 +1,5 @@
 """Does everything that the documentation tells a reader to type do what it says?"""
 
-from __future__ import annotations
-
 import re
 import shlex
 import shutil
@@ -29,10 +27,7 @@ from validation.measurements import MeasurementSpec
 #: reports are written and compared is tested in tests/validation.
 NOT_RUN = re.compile(r"spurcheck (report|figures|interactive) |--grid|--scheduler")
 #: What makes a stability chart small: tests/validation/commands judges the numbers, here the words matter.
-SMALL = {
-    "speed_rpm": "speed_rpm=16000:19000:9",
-    "damping_ratio": "damping_ratio=0:0.02:5",
-}
+SMALL = {"speed_rpm": "speed_rpm=16000:19000:9", "damping_ratio": "damping_ratio=0:0.02:5"}
 AXES_OF_VIEW = {"chart": SMALL, "campbell": ["speed_rpm"], "boundaries": ["speed_rpm"]}
 #: Commands that are meant to be refused.
 REFUSED = re.compile(r"centre_distance=80$")

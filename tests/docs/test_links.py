@@ -1,7 +1,5 @@
 """Does every link, path and name on the pages lead somewhere?"""
 
-from __future__ import annotations
-
 import importlib
 import re
 from pathlib import Path

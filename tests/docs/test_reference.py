@@ -1,7 +1,5 @@
 """Is every public name in the reference, once, under a concept?"""
 
-from __future__ import annotations
-
 import re
 
 import pytest

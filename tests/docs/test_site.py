@@ -1,7 +1,5 @@
 """Do the site's own extensions write what they should? The build itself treats warnings as errors."""
 
-from __future__ import annotations
-
 import re
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Compute the evidence: ``python -m tests.evidence`` writes ``validation/evidence.json``."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

@@ -1,7 +1,5 @@
 """A number of the evidence, and what it must be."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -3,8 +3,6 @@
 Sources: ISO 6336-1:2019, eqs. (82) to (93); docs/theory/elasticity.md.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import replace

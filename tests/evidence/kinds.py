@@ -1,7 +1,5 @@
 """Every kind of evidence about the program: its title, and what computes its checks."""
 
-from __future__ import annotations
-
 import json
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping

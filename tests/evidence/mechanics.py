@@ -4,8 +4,6 @@ Sources: the closed forms are derived where they are used; Oberkampf and Roy, Ve
 Scientific Computing, 2010, for the method.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 
@@ -237,9 +235,4 @@ def _energy(pair: GearPair, fidelity: Fidelity) -> Check:
     balance = multibody.power_balance(pair, _CYCLES, fidelity=fidelity, rtol=rtol)
     exact = "driving work = braking work + stored + dissipated; over the driving work"
     value = abs(balance.residual) / abs(balance.driving)
-    return Check(
-        f"power balance of the multibody model, {fidelity}, from rest",
-        exact,
-        value,
-        1e-7,
-    )
+    return Check(f"power balance of the multibody model, {fidelity}, from rest", exact, value, 1e-7)

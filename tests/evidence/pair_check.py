@@ -3,8 +3,6 @@
 Sources: docs/theory/shafts.md, "Checks".
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

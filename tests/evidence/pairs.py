@@ -1,7 +1,5 @@
 """The gear pairs on which the evidence is computed."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 
 from lumped import GearPair, load_gear_pair

@@ -5,8 +5,6 @@ it again, and the multibody model its own formula where it has one. Where the fo
 the energy method, the sum is taken here once more.
 """
 
-from __future__ import annotations
-
 import doctest
 import importlib
 import math

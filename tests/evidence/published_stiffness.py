@@ -6,8 +6,6 @@ https://github.com/git-akai/gearcalc, work/contact-model.md, section 2.4; F. H. 
 D. S. Chui, J. Braz. Soc. Mech. Sci. Eng. 46 (2024) 10.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -3,8 +3,6 @@
 Sources: Oberkampf and Roy, Verification and Validation in Scientific Computing, 2010, chapter 8.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

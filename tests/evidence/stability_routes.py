@@ -6,8 +6,6 @@ have them, else the coefficients of the characteristic polynomial, which unlike 
 where two of them meet. 1 % of any coefficient changes either by 1e-4 and more; runs are good to 1e-8.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator
 

@@ -1,7 +1,5 @@
 """Does every number of the evidence keep its limit, and is a changed source noticed?"""
 
-from __future__ import annotations
-
 import json
 import math
 

@@ -1,7 +1,5 @@
 """Is a published value that one of the models misses named?"""
 
-from __future__ import annotations
-
 import importlib
 
 import pytest

@@ -21,13 +21,7 @@ from lumped.labelling import labelled_dataset
 from lumped.path_of_contact import pair_stiffness
 from lumped.stiffness import iso6336
 from lumped.stiffness.energy import energy_curve
-from lumped.stiffness.finite_elements import (
-    Plane,
-    Support,
-    elastic_teeth,
-    pair_error,
-    self_compliance,
-)
+from lumped.stiffness.finite_elements import Plane, Support, elastic_teeth, pair_error, self_compliance
 from lumped.stiffness.foundation import thin_rims
 from lumped.typing import FloatArray
 from tests.evidence.pair_check import Check

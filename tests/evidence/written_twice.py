@@ -8,8 +8,6 @@ exact contact's kinematics, corner gaps and shared loads, and what is common to 
 Sources: docs/theory/contact_energy.md.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Periodic systems whose monodromy matrix is known in closed form."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

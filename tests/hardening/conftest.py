@@ -3,8 +3,6 @@
 For a long run set the environment variable SPURCHECK_FUZZ, see tests/conftest.py.
 """
 
-from __future__ import annotations
-
 import contextlib
 import copy
 import math

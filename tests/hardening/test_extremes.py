@@ -1,7 +1,5 @@
 """Do extreme but legal values give finite numbers with an honest error, or a clear refusal, in time?"""
 
-from __future__ import annotations
-
 import copy
 import math
 import os

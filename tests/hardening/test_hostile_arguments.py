@@ -1,7 +1,5 @@
 """Does every public function refuse by name what is no number, no list or no name, before it starts?"""
 
-from __future__ import annotations
-
 import inspect
 import math
 

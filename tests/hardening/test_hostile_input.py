@@ -1,7 +1,5 @@
 """Does any input do anything but give an answer or one clear refusal?"""
 
-from __future__ import annotations
-
 import copy
 import math
 import pickle

@@ -1,7 +1,5 @@
 """Do facts that hold for every gear pair hold for pairs drawn at random?"""
 
-from __future__ import annotations
-
 import math
 import warnings
 

@@ -1,7 +1,5 @@
 """Do results scale as they must when the units of length, time and force change?"""
 
-from __future__ import annotations
-
 import warnings
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Gear pairs and schema introspection shared by the tests of the lumped model."""
 
-from __future__ import annotations
-
 import copy
 import math
 from typing import get_origin

@@ -1,7 +1,5 @@
 """What is read as a number, a list or a name, and where ranges end."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Does compiled code on disk always belong to the source that runs?"""
 
-from __future__ import annotations
-
 import importlib
 import pkgutil
 import subprocess

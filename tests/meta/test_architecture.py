@@ -1,7 +1,5 @@
 """Do imports run one way, as the architecture page says? Is the Floquet engine free of gears?"""
 
-from __future__ import annotations
-
 import ast
 import functools
 import graphlib

@@ -1,7 +1,5 @@
 """Is the layout kept: folders by subject, files that are read in one sitting, tests beside what they test?"""
 
-from __future__ import annotations
-
 from collections import Counter
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Gear pairs as bare numbers for the kinematics tests, made without lumped."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

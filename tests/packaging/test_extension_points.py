@@ -1,7 +1,5 @@
 """Does a new law, model, propagator, chapter, command or preset take as few files as the pages say?"""
 
-from __future__ import annotations
-
 import ast
 import json
 import os

@@ -1,7 +1,5 @@
 """Does the command answer at once, and does an import load only what it needs?"""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

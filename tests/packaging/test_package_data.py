@@ -1,7 +1,5 @@
 """Are the files that are no Python code, which a wheel leaves out unless it is told, all named?"""
 
-from __future__ import annotations
-
 import tomllib
 from fnmatch import fnmatch
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The module `spurcheck`: the verbs of the packages under one name, and the command."""
 
-from __future__ import annotations
-
 import ast
 import subprocess
 import sys

@@ -78,10 +78,7 @@ def test_powers_balance_once_the_created_power_is_counted(which, printed, reques
 
 
 def test_third_law_residuals_are_twice_the_tooth_forces(pair):
-    for printed, residual, name in (
-        (7, "third_law_x", "normal_load"),
-        (9, "third_law_y", "friction_force"),
-    ):
+    for printed, residual, name in ((7, "third_law_x", "normal_load"), (9, "third_law_y", "friction_force")):
         r = response(pair, as_printed=(printed,))
         total = np.abs(r.cycle[name].sum("pair")).max().item()
         assert getattr(r, residual) == pytest.approx(2.0 * total, rel=1e-12)

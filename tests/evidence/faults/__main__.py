@@ -1,7 +1,5 @@
 """Judge the verdicts: ``python -m tests.evidence.faults``; see docs/verification/faults.md."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from pathlib import Path

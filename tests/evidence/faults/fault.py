@@ -4,8 +4,6 @@
 the fault needs to be absent; a table ``on`` of the file itself holds for all its faults.
 """
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field

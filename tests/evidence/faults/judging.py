@@ -1,7 +1,5 @@
 """What the verdicts say of a program with a fault in it: the parts of ``crosscheck`` and of ``report``."""
 
-from __future__ import annotations
-
 import time
 import tomllib
 import warnings

@@ -1,7 +1,5 @@
 """The quantities of the report as plain arrays, to tell how much a fault changes them."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Mapping
 from functools import partial

@@ -4,8 +4,6 @@ Sound means that the lumped model holds by its own numbers: a stable motion in w
 and never pull.
 """
 
-from __future__ import annotations
-
 import json
 import random
 import time

@@ -1,7 +1,5 @@
 """The table of faults: its rows, and what can be counted in them."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import math

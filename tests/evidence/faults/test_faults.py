@@ -1,7 +1,5 @@
 """Are the verdicts judged fairly: do faults go in, show, get caught, and come out without a trace?"""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from pathlib import Path

@@ -4,8 +4,6 @@ Sources: docs/verification/floquet.md; Oberkampf and Roy, Verification and Valid
 2010, for the method.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from itertools import pairwise
 
@@ -13,12 +11,7 @@ import numpy as np
 from scipy.linalg import expm
 from scipy.special import mathieu_a, mathieu_b
 
-from floquet import (
-    PROPAGATORS,
-    Monodromy,
-    PeriodicSystem,
-    monodromy,
-)
+from floquet import PROPAGATORS, Monodromy, PeriodicSystem, monodromy
 from floquet.engine.propagators.one_step import Propagator
 from floquet.engine.propagators.registry import propagator
 from lumped.typing import FloatArray

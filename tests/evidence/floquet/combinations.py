@@ -1,7 +1,5 @@
 """Combination resonances against first-order theory: Hsu's system and the gear chains of Lin and Parker."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

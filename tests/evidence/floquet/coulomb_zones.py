@@ -13,8 +13,6 @@ s_i = -1 in approach and +1 in recess. In double contact with one pair on either
 two cancel. Lengths of time are in parts of the mesh cycle, frequencies in units of omega.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise

@@ -7,8 +7,6 @@ mantissa on x86) they are only as good as any other route.
 Sources: docs/theory/floquet.md, "Computing M".
 """
 
-from __future__ import annotations
-
 import warnings
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """Periodic systems whose stability is known exactly or to first order, on which the engine is verified."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Does every number of the verification keep its limit, and would it notice a wrong engine?"""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

@@ -5,8 +5,6 @@ trochoid of the rack. Sources: Green's theorem on a polygon and Richardson's
 extrapolation; docs/theory/multibody.md, "What is own and what is shared".
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The multibody model by means that do not come from its comparison with the lumped model, as numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

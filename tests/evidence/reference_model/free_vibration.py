@@ -8,8 +8,6 @@ Sources: the decrement of consecutive samples, R. de Prony 1795; docs/theory/mul
 what is shared".
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

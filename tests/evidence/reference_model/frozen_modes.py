@@ -7,8 +7,6 @@ centres: the total normal load N acts as a spring -N/L_XY between y_p and y_g, w
 Sources: docs/theory/multibody.md, "Two builds of one machine".
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import exudyn as exu

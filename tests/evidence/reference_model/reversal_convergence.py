@@ -3,8 +3,6 @@
 Sources: docs/theory/multibody.md, "Sticking friction".
 """
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

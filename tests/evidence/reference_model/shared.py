@@ -6,8 +6,6 @@ here with the evidence that does not come from their comparison.
 Sources: docs/theory/multibody.md, "What is own and what is shared".
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 
@@ -52,11 +50,7 @@ SHARED: tuple[Shared, ...] = (
         "printed formulas of the friction laws, the film and Walther's law, with their constants",
         "they are what the prediction is about; each is written twice",
         "values that are published or worked out by hand, computed by both models on every installation",
-        (
-            "tests/evidence/published.py",
-            "tests/lumped/friction",
-            "docs/theory/friction.md",
-        ),
+        ("tests/evidence/published.py", "tests/lumped/friction", "docs/theory/friction.md"),
     ),
     Shared(
         "the load of the friction laws: full static load w_n, whatever a tooth pair carries",

@@ -1,7 +1,5 @@
 """Does the multibody model's own evidence hold: its damping, its bodies, its modes?"""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Is what cannot be computed refused with a message that says what to do?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Is what is proven called proven, and what is sampled an estimate that looks where nobody looked?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.linalg import expm

@@ -1,7 +1,5 @@
 """Are matrix and exponents those of constant coefficients, piece by piece?"""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.linalg import expm
 

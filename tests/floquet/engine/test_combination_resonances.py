@@ -1,7 +1,5 @@
 """What does first-order theory of combination tongues say, beyond the ends that the verification checks?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Is the order of every propagator kept across declared switches, and lost across undeclared ones?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

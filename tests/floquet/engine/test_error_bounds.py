@@ -1,7 +1,5 @@
 """Is the true error never above the reported bound, in easy and in awkward cases?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -24,13 +22,7 @@ def distances(computed: np.ndarray, exact: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("shape", ["sine", "triangle"])
 @pytest.mark.parametrize(
     ("method", "rtol"),
-    [
-        ("gauss", 1e-4),
-        ("gauss", 1e-7),
-        ("gauss", 1e-10),
-        ("gauss4", 1e-5),
-        ("dop853", 1e-8),
-    ],
+    [("gauss", 1e-4), ("gauss", 1e-7), ("gauss", 1e-10), ("gauss4", 1e-5), ("dop853", 1e-8)],
 )
 def test_bounds_hold_on_random_systems(known_system, method: str, rtol: float, shape: str) -> None:
     rng = np.random.default_rng(101)

@@ -1,7 +1,5 @@
 """Does the computed flow keep what the exact flow keeps?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

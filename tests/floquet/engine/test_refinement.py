@@ -1,7 +1,5 @@
 """Does a chart that refines itself find what the whole grid has, with few nodes?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.ndimage import label

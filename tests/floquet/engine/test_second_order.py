@@ -1,7 +1,5 @@
 """Are M, C and K of any kind made into the system that they are, with bounds that hold?"""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Which speeds do charts cover: those of the user, and by default those around the operating speed?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

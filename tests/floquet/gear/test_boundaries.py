@@ -1,7 +1,5 @@
 """Are the tongues of instability found where they are, all of them, and under their right names?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

@@ -1,7 +1,5 @@
 """Do knots of tables end pieces everywhere, and is the misfit of the gains a bound between samples too?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Does the Campbell diagram say what the multipliers say?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

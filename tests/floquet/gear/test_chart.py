@@ -1,7 +1,5 @@
 """Are charts of any size what the chart of the engine is, whatever method and slices they are made of?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

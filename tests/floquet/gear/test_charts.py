@@ -1,7 +1,5 @@
 """Does a chart show at every point what the single computation gives there?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.special import mathieu_a, mathieu_b

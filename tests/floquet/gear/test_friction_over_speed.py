@@ -1,7 +1,5 @@
 """Is one fit with factors on its friction the law at every speed, and refitted where it is not?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

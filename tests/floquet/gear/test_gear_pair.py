@@ -1,7 +1,5 @@
 """Are the multipliers of the gear pair those of its equations of motion, with the rotation kept apart?"""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Are the margins of stability what closed forms and an independent integrator say?"""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

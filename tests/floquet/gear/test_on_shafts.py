@@ -1,7 +1,5 @@
 """Are stability and bounds of a pair on its shafts those of its equations, whatever speed and route?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Are motions beyond contact loss what a closed fact, a symmetry or the linear model says?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Is the reference in extended precision the gear pair of the general engine?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Are tongues named by the motion that grows, and closed at the damping that closes them?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar

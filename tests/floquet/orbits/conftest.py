@@ -1,7 +1,5 @@
 """Systems with unilateral contacts that have closed solutions, or hard events."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

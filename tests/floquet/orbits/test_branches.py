@@ -1,7 +1,5 @@
 """Are orbits, multipliers and bifurcations of simple systems those that are known?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.linalg import expm

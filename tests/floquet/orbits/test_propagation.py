@@ -1,7 +1,5 @@
 """Do states, events and derivatives agree with closed solutions, differences and another integrator?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp

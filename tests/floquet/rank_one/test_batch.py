@@ -1,7 +1,5 @@
 """Does the compiled kernel agree with the general engine, within the bound it reports, everywhere?"""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -47,11 +45,7 @@ def random_system(rng: np.random.Generator) -> RankOneSystem:
         damping=np.diag(rng.uniform(-0.02, 0.2, m)),
         v=v,
         phases=phases,
-        gains=Gains(
-            w=w,
-            wd=wd,
-            fit_errors=np.zeros((pieces, 2)),
-        ),
+        gains=Gains(w=w, wd=wd, fit_errors=np.zeros((pieces, 2))),
         period=float(10.0 ** rng.uniform(-0.5, 1.5)),
         metric=metric,
     )

@@ -1,7 +1,5 @@
 """Do the parts of the compiled kernel keep what they promise, each by itself?"""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Do the bounds hold, and say something, with many modes, full damping and gyroscopic terms?"""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Are files that cannot be read refused with the reason?"""
 
-from __future__ import annotations
-
 import pytest
 
 from lumped.errors import ParameterError

@@ -60,10 +60,7 @@ SPELLINGS = {
     ("N*m", 59 * LBF * 0.3048): "59 ft-lbf|59 ft-lb|59 lb-ft|59 lbf ft|59 foot-pounds|59 ft.lbf|59 lbf·ft",
     ("N*m", 700 * LBF * 0.0254): "700 in-lb|700 lb-in|700 in-lbf|700 lbs in|700 inch-pound",
     ("N*m", 8 * 9.80665): "8 kpm|8 kp m|8 kgf m|8 kgf*m",
-    (
-        "rpm",
-        1450 / 60 * TURN,
-    ): "1450 rpm|1450rpm|1450 1/min|1450 /min|1450/min|1450 U/min|1450 u/min"
+    ("rpm", 1450 / 60 * TURN): "1450 rpm|1450rpm|1450 1/min|1450 /min|1450/min|1450 U/min|1450 u/min"
     "|1450 min-1|1450 min^-1|1450 min⁻¹|1450 RPM|1450 Upm|1450 rev/min|1450 r/min"
     "|1450 turns/minute|1450 tr/min",
     ("rpm", 24 * TURN): "24 Hz|0.024 kHz|24 rps|24 rev/s|24 U/s|24 turn/s",

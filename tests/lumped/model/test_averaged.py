@@ -22,10 +22,7 @@ def closed_form(pair):
     bearing, m = pair.bearings.pinion.loa_stiffness, body.mass_pinion
     # q'' = -k/m_e (q + d);  d'' = -2k/m (q + d) - K/m d
     reduced = np.array(
-        [
-            [k / body.effective_mass, k / body.effective_mass],
-            [2 * k / m, 2 * k / m + bearing / m],
-        ]
+        [[k / body.effective_mass, k / body.effective_mass], [2 * k / m, 2 * k / m + bearing / m]]
     )
     coupled = np.sqrt(np.linalg.eigvals(reduced).real)
     return np.sort(np.concatenate([coupled, np.full(3, np.sqrt(bearing / m))])) / (2 * np.pi)

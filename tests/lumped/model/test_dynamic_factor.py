@@ -1,7 +1,5 @@
 """K_v of ISO 6336-1 method B against a calculation by hand."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """Do straight lines between the speeds of a resolved sweep follow the response through its resonances?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Does the loaded contact carry the load, begin where the gap closes, and pay for every loss?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -254,8 +254,7 @@ class TestFiles:
         problem("zzzzzz", "preset", allowed="nasa_28_28", action="spurcheck presets")
 
     @pytest.mark.parametrize(
-        "text",
-        ["name = ", "[pinion", "a = 1\na = 2", "x = {", "= 3", "[" * 5000, "a" * 10, "\x00", "x = 1e"],
+        "text", ["name = ", "[pinion", "a = 1\na = 2", "x = {", "= 3", "[" * 5000, "a" * 10, "\x00", "x = 1e"]
     )
     def test_malformed_toml(self, tmp_path, text):
         path = tmp_path / "pair.toml"

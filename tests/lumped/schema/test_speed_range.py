@@ -1,7 +1,5 @@
 """Is the range of speeds of charts read as a user writes it, kept, and refused where it can be none?"""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """Is the contact force the gradient of an energy, and do dampers take no more than they turn to heat?"""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Does the contact core combine kinematics and element laws as the model says?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

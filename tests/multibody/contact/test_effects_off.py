@@ -1,7 +1,5 @@
 """Is the exact model without its effects the lumped equations, to rounding?"""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

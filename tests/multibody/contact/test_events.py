@@ -1,7 +1,5 @@
 """Does the model foresee where its contact force jumps, and is a run as accurate there as elsewhere?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Are the multibody model's own friction laws the published ones, and those of the lumped model?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

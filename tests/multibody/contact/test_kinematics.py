@@ -1,7 +1,5 @@
 """Are the contact kinematics those of two rigid involute gears? Gradients, invariances, drawn flanks."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Does a 1:1 pair give the mirror image of its motion when pinion and gear change places?"""
 
-from __future__ import annotations
-
 import numpy as np
 
 import lumped

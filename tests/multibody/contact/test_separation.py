@@ -1,7 +1,5 @@
 """Do the teeth separate, strike back and jump as a lightly damped pair with backlash does?"""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

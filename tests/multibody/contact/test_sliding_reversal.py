@@ -1,7 +1,5 @@
 """What happens where the actual sliding velocity changes sign away from the pitch point?"""
 
-from __future__ import annotations
-
 import pytest
 
 import lumped

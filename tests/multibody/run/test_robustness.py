@@ -1,7 +1,5 @@
 """Can a run hang, return nonsense in silence, swallow Ctrl-C or take arguments that make no sense?"""
 
-from __future__ import annotations
-
 import _thread
 import itertools
 import signal

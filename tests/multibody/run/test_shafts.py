@@ -1,7 +1,5 @@
 """The machine on shafts: is it what its equations say, and the pair on springs where its shafts are stiff?"""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

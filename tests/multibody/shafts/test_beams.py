@@ -1,7 +1,5 @@
 """Have the beams the frequencies and deflections of the closed forms, and does a disc whirl as it should?"""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Do the effect switches say why the models differ?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

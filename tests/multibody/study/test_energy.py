@@ -1,7 +1,5 @@
 """Does every joule that the drive puts in come out somewhere, and does friction only ever take?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

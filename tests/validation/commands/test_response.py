@@ -1,7 +1,5 @@
 """Does the command say where the pair jumps and what removes the jumps, and do the figures show it?"""
 
-from __future__ import annotations
-
 import json
 
 import pytest
@@ -75,10 +73,7 @@ def test_damping_removes_the_jump_at_the_cusp(tmp_path):
     done = CliRunner().invoke(app, ["response", *MAPPED, *axis, "--speeds", "60", "--json", "-o", str(data)])
     assert done.exit_code == 0, done.output
     found = json.loads(done.stdout)
-    assert [(j["damping_ratio"], j["rising"]) for j in found["jumps"]] == [
-        (0.1, False),
-        (0.1, True),
-    ]
+    assert [(j["damping_ratio"], j["rising"]) for j in found["jumps"]] == [(0.1, False), (0.1, True)]
     (removed,) = found["removed_by"]
     assert removed["value"] == pytest.approx(0.1055, abs=2e-4)
     assert removed["error"] < 2e-4

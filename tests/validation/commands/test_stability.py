@@ -1,7 +1,5 @@
 """Does spurcheck stability write what it promises for every view and axis, and refuse the rest early?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

@@ -1,7 +1,5 @@
 """Does ``spurcheck sweep`` do what its options say, and does its exit code?"""
 
-from __future__ import annotations
-
 import pytest
 from typer.testing import CliRunner
 

@@ -1,7 +1,5 @@
 """Does text from files stay text on the terminal?"""
 
-from __future__ import annotations
-
 import io
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Do the lumped and the multibody model agree, and differ by what finite motion explains?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -39,10 +37,7 @@ def test_both_models_return_the_same_table():
 @pytest.mark.parametrize("options", [{"fidelity": "linear"}, {"effects": ()}], ids=["linear", "effects off"])
 def test_all_effects_off_equals_lumped_to_integration_tolerance(options):
     """Involute geometry at the nominal pose is the lumped geometry: 1e-8 at rtol 1e-10."""
-    run, reference = (
-        multibody.simulate(BASE, 20, rtol=1e-10, **options),
-        lumped.simulate(BASE, 20),
-    )
+    run, reference = (multibody.simulate(BASE, 20, rtol=1e-10, **options), lumped.simulate(BASE, 20))
     for name in ("dte", "x_p", "x_g", "y_p", "y_g", "theta_p", "theta_g", "normal_load"):
         assert difference(run, reference, name) < 1e-8
 

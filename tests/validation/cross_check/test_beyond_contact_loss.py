@@ -1,7 +1,5 @@
 """Do motions of the multibody model that start on a motion with contact loss stay on it?"""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Sound pairs that an earlier limit refused: of none of them the cross-check fails."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import pytest

@@ -1,7 +1,5 @@
 """Faults put into the lumped model at run time: the cross-check fails."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

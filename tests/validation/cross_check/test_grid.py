@@ -1,7 +1,5 @@
 """Does the regression grid tell agreement, a broken rule, points without a motion and failures apart?"""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

@@ -6,8 +6,6 @@ not fall at all, and noise would not fall regularly: the ratio is the tolerance.
 contact depends on the torque, and teeth of the default pair part: flanks are without relief here.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Random pairs as ``spurcheck init --teeth`` makes them that were refused once, each with what was wrong."""
 
-from __future__ import annotations
-
 import tomllib
 
 import lumped

@@ -4,8 +4,6 @@ Each fault is put into ``lumped`` at run time. At fidelity "linear" both models 
 any number that the multibody model works out for itself must differ beyond the tolerance of integration.
 """
 
-from __future__ import annotations
-
 import contextlib
 import sys
 from dataclasses import replace
@@ -30,8 +28,7 @@ SLOW = lumped.load_gear_pair("fzg_c").with_(
     bearings__gear__oloa_damping_ratio=0.08,
 )
 RELIEVED = SLOW.with_(
-    mesh__relief="static",
-    pinion__tip_relief={"shape": "parabolic", "amount": 20.0, "start_roll_angle": 30.0},
+    mesh__relief="static", pinion__tip_relief={"shape": "parabolic", "amount": 20.0, "start_roll_angle": 30.0}
 )
 LAWS = {
     name: SLOW.with_(friction__law=name)

@@ -1,7 +1,5 @@
 """Does an independent nonlinear model confirm what Floquet theory says about the linear one?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -15,11 +13,7 @@ BASE = lumped.load_gear_pair("nasa_28_28").with_(
 SMOOTH = BASE.with_(mesh__stiffness={"model": "parabolic", "ramp_length": 3.0})
 #: Light mesh damping at the speed where the mesh frequency is twice the highest natural frequency: main
 #: tongue.
-TONGUE = BASE.with_(
-    friction__coefficient=0.03,
-    mesh__damping_ratio=0.01,
-    operating__pinion_speed=33500,
-)
+TONGUE = BASE.with_(friction__coefficient=0.03, mesh__damping_ratio=0.01, operating__pinion_speed=33500)
 
 
 def balanced_difference(matrix, reference, period):

@@ -1,7 +1,5 @@
 """Are matrices from a file the system that its page says, and is anything else refused by its name?"""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -61,8 +61,7 @@ def test_a_folder_with_a_file_of_the_user_is_not_replaced(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "content",
-    ["{}", "[1]", "no json", '{"format": "other", "files": []}', '{"format": "spurcheck-report"}'],
+    "content", ["{}", "[1]", "no json", '{"format": "other", "files": []}', '{"format": "spurcheck-report"}']
 )
 def test_a_folder_without_a_list_of_ours_is_not_touched(tmp_path, content):
     out = tmp_path / "out"

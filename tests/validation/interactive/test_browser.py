@@ -105,8 +105,7 @@ def test_a_law_shows_its_response_of_the_data_file(page, data):
         one = data.sel(law=law)
         for axis, variable in panels.items():
             shown = page.drawn(
-                "sweep-plot",
-                f"plot.data.filter(t => t.yaxis === '{axis}' && t.mode === 'lines').at(-1).y",
+                "sweep-plot", f"plot.data.filter(t => t.yaxis === '{axis}' && t.mode === 'lines').at(-1).y"
             )
             factor = 1.0 if variable == "lowest_load" else 1e6
             assert shown == six_digits(factor * one[variable].to_numpy()), (law, variable)

@@ -226,12 +226,7 @@ TEN_PERCENT = {"noise_normal": 0.1, "noise_friction": 0.1}
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("law", "noise"),
-    [
-        ("coulomb", {}),
-        ("coulomb", {"correlation": 0.7}),
-        ("coulomb", TEN_PERCENT),
-        ("xu_kahraman", {}),
-    ],
+    [("coulomb", {}), ("coulomb", {"correlation": 0.7}), ("coulomb", TEN_PERCENT), ("xu_kahraman", {})],
     ids=["white noise 2 %", "correlated noise", "noise 10 %", "scale on law III"],
 )
 def test_interval_covers_the_truth(pair, law, noise):

@@ -1,7 +1,5 @@
 """Do the figures of stability show what was computed, under the right names?"""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import numpy as np

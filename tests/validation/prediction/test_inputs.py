@@ -1,7 +1,5 @@
 """Are the uncertain inputs those that the file and the documented defaults state?"""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Is the prediction the best motion there is, and are its numbers those of that motion?"""
 
-from __future__ import annotations
-
 import tomllib
 
 import numpy as np

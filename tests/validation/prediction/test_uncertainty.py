@@ -1,7 +1,5 @@
 """Do the samples say what the uncertain inputs do? Closed forms where the result is known."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.stats import binom

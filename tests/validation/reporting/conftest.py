@@ -1,7 +1,5 @@
 """Reports of two unequal pairs, one that keeps contact and one that loses it, written once."""
 
-from __future__ import annotations
-
 import json
 import tomllib
 from dataclasses import dataclass

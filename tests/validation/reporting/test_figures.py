@@ -1,7 +1,5 @@
 """Is each curve of the report the result that it is labelled with, in the unit of its axis?"""
 
-from __future__ import annotations
-
 import base64
 import re
 

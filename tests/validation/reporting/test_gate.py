@@ -1,7 +1,5 @@
 """Does the comparison with an earlier report fail where a number moved, and only there?"""
 
-from __future__ import annotations
-
 import copy
 import json
 

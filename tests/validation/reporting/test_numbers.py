@@ -3,8 +3,6 @@
 The functions here are this test's own: they read NetCDF and TOML, and nothing of the program.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

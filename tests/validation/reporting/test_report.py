@@ -1,7 +1,5 @@
 """Is the report whole, short, and the same each time? Does page 1 say one thing, with its reason?"""
 
-from __future__ import annotations
-
 import html
 import json
 import re

@@ -1,7 +1,5 @@
 """A study of a few cheap cases, and its undisturbed result to compare with."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Callable
 from typing import Any

@@ -1,7 +1,5 @@
 """An evaluator that worker processes load by name, of which one case does something odd."""
 
-from __future__ import annotations
-
 import itertools
 import os
 import signal

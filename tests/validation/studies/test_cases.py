@@ -1,7 +1,5 @@
 """Is the list of cases the one that the study describes, and always the same?"""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

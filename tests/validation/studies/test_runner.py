@@ -1,7 +1,5 @@
 """Does a sweep compute every case once, whatever the cases do, and wherever they run?"""
 
-from __future__ import annotations
-
 import errno
 import threading
 import warnings

@@ -1,7 +1,5 @@
 """Is a study read as written, and is everything else refused with field, reason and next step?"""
 
-from __future__ import annotations
-
 import copy
 
 import pytest

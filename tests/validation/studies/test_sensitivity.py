@@ -1,7 +1,5 @@
 """Are the sensitivity indices those of a function whose indices are known?"""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 

@@ -1,7 +1,5 @@
 """Does the store give back what was added, and is every other file refused and left as it is?"""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import sqlite3

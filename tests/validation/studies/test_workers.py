@@ -1,7 +1,5 @@
 """Does a sweep give the same bytes wherever its cases run, and survive cases that end a worker?"""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

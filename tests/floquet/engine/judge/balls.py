@@ -4,8 +4,6 @@ Written without any code of the package under test: Taylor steps whose remainder
 pairs, eigenvalues by Arb (F. Johansson, IEEE Transactions on Computers 66 (2017) 1281-1292).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple

@@ -5,8 +5,6 @@
 It prints a table; `tests/floquet/engine/judge/test_judge.py` runs a sample of it with the suite.
 """
 
-from __future__ import annotations
-
 import argparse
 import math
 import sys
@@ -21,12 +19,7 @@ from typing import Any
 import numpy as np
 from flint import acb, ctx
 
-from floquet import (
-    fast_multipliers,
-    gear_block,
-    gear_pair_multipliers,
-    stability_chart,
-)
+from floquet import fast_multipliers, gear_block, gear_pair_multipliers, stability_chart
 from floquet.gear.axes import GearVariation, operating_rpm, vary
 from floquet.gear.block import feedback_system
 from floquet.gear.multipliers import OffLineOfAction
@@ -152,10 +145,7 @@ def _stiffness_variation(rng: np.random.Generator) -> list[Finding]:
         there = pair.with_({"operating.pinion_speed": point["speed_rpm"]})
         truth = exact_multipliers(partial(pieces, there, factor=factor), 6)
         found = chart.isel(speed_rpm=0, stiffness_variation=0)
-        return [
-            *_of_ten(kind, "chart", found, own.oloa, truth),
-            *_of_ten(kind, "pair", own, own.oloa, truth),
-        ]
+        return [*_of_ten(kind, "chart", found, own.oloa, truth), *_of_ten(kind, "pair", own, own.oloa, truth)]
 
 
 def _over_speeds(kind: str, count: int, rng: np.random.Generator) -> list[Finding]:

@@ -1,7 +1,5 @@
 """What the judge says of one bound."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

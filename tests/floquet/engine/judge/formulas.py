@@ -1,7 +1,5 @@
 """Systems without gears for the judge: by formulas, by M, C and K, and callables with a narrow feature."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Callable, Sequence

@@ -4,8 +4,6 @@ The equations are those of docs/theory/equations.md, written again from the stru
 supports and from the piecewise polynomials k, c and mu of a tooth pair, all floats taken as exact.
 """
 
-from __future__ import annotations
-
 import bisect
 from itertools import pairwise
 from typing import Any

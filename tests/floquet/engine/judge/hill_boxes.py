@@ -10,8 +10,6 @@ box. Along lines of constant b every change between trace inside and outside [-2
 of its ends must meet a box; one that does not is a contradiction.
 """
 
-from __future__ import annotations
-
 import argparse
 import math
 from itertools import pairwise

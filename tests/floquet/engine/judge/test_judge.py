@@ -1,7 +1,5 @@
 """A sample of the judge, and faults that it must find. In full: see court.py."""
 
-from __future__ import annotations
-
 import sys
 from dataclasses import replace
 from functools import partial
