@@ -102,7 +102,7 @@ def _problems(item: Any, root: type[BaseModel]) -> list[FieldProblem]:
     if kind in ("union_tag_invalid", "union_tag_not_found"):
         request = context.get("tag", "missing")
         tags = [str(tag) for model in models_in(field_of(root, path).annotation) for tag in _tags(model)]
-        return [_choice(f"{path}.model", request, tags)]
+        return [_choice(f"{path}.{context['discriminator'].strip(chr(39))}", request, tags)]
     if kind == "literal_error":
         info = field_of(root, path)
         marker = next((m for m in info.metadata if isinstance(m, OneOf)), None)
@@ -153,8 +153,8 @@ def _location(
 
 
 def _tags(model: type[BaseModel]) -> tuple[Any, ...]:
-    """Values of ``model`` in a parameter file that choose this member of a union."""
-    info = model.model_fields.get("model")
+    """Values of ``model`` or ``kind`` in a parameter file that choose this member of a union."""
+    info = model.model_fields.get("model") or model.model_fields.get("kind")
     return get_args(info.annotation) if info and get_origin(info.annotation) is Literal else ()
 
 

@@ -26,7 +26,8 @@ class Section(BaseModel):
             value = getattr(self, name)
             unit = next((m.unit for m in info.metadata if isinstance(m, Quantity)), None)
             if isinstance(value, tuple):
-                result[name] = [_plain(one, unit) for one in value]
+                if value:  # an empty list says nothing
+                    result[name] = [_plain(one, unit) for one in value]
             elif value is not None:
                 result[name] = _plain(value, unit)
         return result

@@ -358,6 +358,35 @@ class QuantityRange(Quantity):
         return {"anyOf": [ends, text], "unit": self.unit, "si_unit": UNITS[self.unit][0]}
 
 
+class QuantityList(Quantity):
+    """Annotation of a field that holds a list of quantities, or None."""
+
+    @property
+    def allowed(self) -> str:
+        """The allowed range of each as text."""
+        return f"a list of values, each {super().allowed}"
+
+    def parse(self, value: object) -> tuple[float, ...] | None:
+        """Read a list of numbers or text with units into SI, or refuse it."""
+        if value is None:
+            return None
+        if isinstance(value, np.ndarray):
+            value = value.tolist()
+        if not isinstance(value, (list, tuple)) or not value:
+            raise self._refusal(shown(value), "Give a list: [0.0, 1.2].")
+        return tuple(super(QuantityList, self).parse(one) for one in value)
+
+    def json_schema(self) -> JsonSchemaValue:
+        """A list of numbers."""
+        return {
+            "type": "array",
+            "items": super().json_schema(),
+            "minItems": 1,
+            "unit": self.unit,
+            "si_unit": UNITS[self.unit][0],
+        }
+
+
 def _ends(text: str) -> list[float | str]:
     """Ends of "FROM..TO": bare numbers as numbers; a first end without a unit has that of the second."""
     if text.count("..") != 1:

@@ -76,6 +76,7 @@ class Contact(ABC):
 
 def at_rest(pair: GearPair) -> GearPair:
     """The pair without speed, friction and dampers, which statics does not feel: the key of its results."""
+    pair = pair.healthy
     fields = {name: getattr(pair, name) for name in GearPair.model_fields}
     fields |= {
         "name": "",

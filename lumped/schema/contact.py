@@ -32,6 +32,9 @@ def _contact(value: object) -> object:
     return "prescribed"
 
 
+Tooth = Annotated[int, Field(ge=1, le=1000, strict=True)]
+
+
 class Mesh(Section):
     """The elastic mesh of the tooth pairs."""
 
@@ -56,6 +59,9 @@ class Mesh(Section):
     )
     backlash: Annotated[float, Quantity("mm", at_least=0)] = Field(
         0.0, description="normal backlash by tooth thinning, beyond that of the centre distance"
+    )
+    first_teeth: tuple[Tooth, Tooth] | None = Field(
+        None, description="teeth of pinion and gear that are at the start of contact A at t = 0; default 1, 1"
     )
 
 

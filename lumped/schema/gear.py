@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from lumped.errors import refuse
+from lumped.errors import FieldProblem, ParameterError, refuse
+from lumped.faults.registry import AnyFault
 from lumped.fields.section import Section
 from lumped.fields.units import Quantity
+from lumped.schema.teeth import Deviations, Mounting
 
 _MODULUS = "Steel has 206 GPa; write the unit where it is another one: '206000 MPa'."
 _SIZE = "Give the size as drawn; check the unit."
@@ -107,6 +110,42 @@ class Gear(Section):
     )
     tip_relief: ProfileRelief | None = Field(None, description="material removed towards the tip")
     root_relief: ProfileRelief | None = Field(None, description="material removed towards the root")
+    deviations: Deviations | None = Field(None, description="deviations of single teeth; default: all alike")
+    mounting: Mounting | None = Field(None, description="how the gear sits on its shaft; default: centred")
+    faults: tuple[Annotated[AnyFault, Field(discriminator="kind")], ...] = Field(
+        (), max_length=1000, description="damaged teeth"
+    )
+
+    @property
+    def eccentricity(self) -> float:
+        """Of the mounting [m]."""
+        return self.mounting.eccentricity if self.mounting else 0.0
+
+    @property
+    def has_own_teeth(self) -> bool:
+        """Whether its teeth or its turns differ."""
+        return self.deviations is not None or self.eccentricity > 0.0 or bool(self.faults)
+
+    @model_validator(mode="after")
+    def _fits_its_teeth(self) -> Self:
+        problems: list[FieldProblem] = []
+        if self.deviations is not None:
+            for one in self.deviations.problems(self.teeth, self.tip_relief is not None):
+                problems.append(replace(one, field=f"deviations.{one.field}"))
+            if self.eccentricity > 0.0 and self.deviations.first_order == "eccentricity":
+                action = (
+                    "The first harmonic of the deviations is an eccentricity already: remove one, or set "
+                    "deviations.first_order = 'steps' for pitch errors about the gear's own centre."
+                )
+                value = f"{self.eccentricity * 1e6:g} um beside deviations"
+                problems.append(FieldProblem("mounting.eccentricity", value, "one source", action))
+        for number, fault in enumerate(self.faults):
+            if fault.tooth > self.teeth:
+                allowed, action = f"1 to {self.teeth}", "Name a tooth of this gear."
+                problems.append(FieldProblem(f"faults.{number}.tooth", f"{fault.tooth}", allowed, action))
+        if problems:
+            raise ParameterError(problems)
+        return self
 
     @model_validator(mode="after")
     def _one_tip(self) -> Self:

@@ -20,6 +20,7 @@ from pydantic import BeforeValidator, Field, PlainSerializer, ValidationError, m
 from pydantic.fields import FieldInfo
 
 from lumped.errors import FieldProblem, ParameterError, refuse
+from lumped.faults.base import Flank
 from lumped.fields.refusals import field_of, translated, unknown_key
 from lumped.fields.section import Section, Text
 from lumped.fields.units import Quantity, QuantityRange, to_stated
@@ -28,6 +29,7 @@ from lumped.gear_geometry.tooth_profile import ToothProfile
 from lumped.schema.contact import Friction, Lubricant, Mesh
 from lumped.schema.gear import BasicRack, Gear
 from lumped.schema.shafts import Bearings, Shafts
+from lumped.schema.teeth import TorqueRipple
 
 #: Largest speed of a pinion [rpm].
 LARGEST_SPEED = 200000.0
@@ -58,6 +60,9 @@ class OperatingPoint(Section):
         None,
         description="lowest and highest pinion speed of charts, sweeps and margins; default: from a tenth of "
         "pinion_speed to twice it",
+    )
+    torque_ripple: tuple[TorqueRipple, ...] = Field(
+        (), max_length=100, description="harmonics of the torques over the turns of the shafts"
     )
 
 
@@ -132,6 +137,7 @@ class GearPair(Section):
         problems = existence_problems(*self.wheels, self.geometry, self.mesh.backlash)
         problems = self._with_centre_distance(problems)
         problems += [*self._too_light("pinion"), *self._too_light("gear")]
+        problems += [*self._teeth_that_are_not("pinion", 0), *self._teeth_that_are_not("gear", 1)]
         if problems:
             raise ParameterError(problems, self.name)
         wrong = [problem for path, _ in self.sources for problem in _path_problems(path, "sources")]
@@ -207,6 +213,36 @@ class GearPair(Section):
                 action = "Check the unit, or leave it out: the disc's is taken."
                 yield FieldProblem(f"{name}.{field}", f"{value:g} {unit}", allowed, action)
 
+    def _teeth_that_are_not(self, name: Literal["pinion", "gear"], which: int) -> Iterator[FieldProblem]:
+        """A first tooth that the gear does not have, and faults that do not fit its teeth."""
+        gear: Gear = getattr(self, name)
+        if self.mesh.first_teeth is not None and self.mesh.first_teeth[which] > gear.teeth:
+            value, allowed = f"{list(self.mesh.first_teeth)}", f"tooth of the {name} from 1 to {gear.teeth}"
+            yield FieldProblem("mesh.first_teeth", value, allowed, "Name a tooth that the gear has.")
+        for number, fault in enumerate(gear.faults):
+            for one in fault.problems(self.flank(which)):
+                yield replace(one, field=f"{name}.faults.{number}.{one.field}")
+
+    def flank(self, which: int) -> Flank:
+        """The loaded flank of a tooth of the pinion (0) or the gear (1), as faults see it."""
+        g, gear = self.geometry, (self.pinion, self.gear)[which]
+        moduli = [one.youngs_modulus / (1.0 - one.poisson_ratio**2) for one in (self.pinion, self.gear)]
+        tip, start = ((g.L_XD, g.L_XA), (g.L_XY - g.L_XA, g.L_XY - g.L_XD))[which]
+        hertz = 2.0 * (1.0 / moduli[0] + 1.0 / moduli[1]) / (math.pi * g.face_width)
+        return Flank(self.wheels[which], tip, start, g.face_width, gear.youngs_modulus, hertz)
+
+    @cached_property
+    def healthy(self) -> GearPair:
+        """The pair with like teeth, centred gears and steady torques; itself where it is that already."""
+        if not (self.pinion.has_own_teeth or self.gear.has_own_teeth or self.operating.torque_ripple):
+            return self
+        none = {"deviations": None, "mounting": None, "faults": ()}
+        gears = {name: getattr(self, name).model_copy(update=none) for name in ("pinion", "gear")}
+        steady = self.operating.model_copy(update={"torque_ripple": ()})
+        return GearPair.model_construct(
+            **{name: getattr(self, name) for name in GearPair.model_fields} | gears | {"operating": steady}
+        )
+
     def __repr__(self) -> str:
         """Return the pair in one line; ``to_toml()`` says every field."""
         pinion, gear, at = self.pinion, self.gear, self.operating
@@ -232,7 +268,7 @@ class GearPair(Section):
     def to_mapping(self) -> dict[str, Any]:
         """Return the pair as nested plain data for TOML or JSON; reading it back gives an equal pair."""
         data = super().to_mapping()
-        tables = {name: data.pop(name) for name in ("sources", "uncertainty")}
+        tables = {name: data.pop(name, {}) for name in ("sources", "uncertainty")}
         return data | {name: dict(table) for name, table in tables.items() if table}
 
     def to_toml(self) -> str:

@@ -29,6 +29,11 @@ def problem(source, field, **expected):
 #: Sections that the default pair leaves out, so that their fields can be set.
 LAW = {"kinematic_viscosity_40": 32.0, "kinematic_viscosity_100": 5.4, "temperature": 60.0, "density": 870.0}
 RELIEF = {"shape": "linear", "amount": 23.0, "start_roll_angle": 24.0}
+FAULTS = [
+    {"kind": "crack", "tooth": 1, "depth": 0.5, "angle": 70},
+    {"kind": "spall", "tooth": 1, "start_roll_angle": 18, "end_roll_angle": 22, "width": 2, "pit_depth": 9},
+    {"kind": "chip", "tooth": 1, "roll_angle": 27},
+]
 STIFFNESS = {
     "pair_stiffness": {"model": "rectangular"},
     "peak": {"model": "parabolic"},
@@ -51,6 +56,12 @@ def complete(nasa, shaft_tables):
             data[parents[0]][parents[-1]] = dict(RELIEF)
         if parents[:2] == ["mesh", "stiffness"]:
             data["mesh"]["stiffness"] = dict(STIFFNESS[leaf])
+        if parents[1:] == ["mounting"]:
+            data[parents[0]]["mounting"] = {}
+        if parents[1:] == ["faults", "0"]:
+            data[parents[0]]["faults"] = [dict(next(one for one in FAULTS if leaf in one))]
+        if parents[:2] == ["operating", "torque_ripple"]:
+            data["operating"]["torque_ripple"] = [{"shaft": "pinion", "order": 1, "amplitude": 1.0}]
         if parents and parents[0] == "shafts":
             data["shafts"] = copy.deepcopy(shaft_tables)
         node_at(data, parents)[leaf] = value

@@ -13,6 +13,23 @@ from lumped.fields.section import Section
 from lumped.fields.units import UNITS, SIValue
 
 #: Sections that no preset has, so that their fields are tried too.
+FAULTS = [
+    [
+        {"kind": "crack", "tooth": 4, "depth": 0.7, "angle": 71.3},
+        {"kind": "spall", "tooth": 1, "start_roll_angle": 18.3, "end_roll_angle": 21.7, "width": 2.3},
+    ],
+    [
+        {
+            "kind": "spall",
+            "tooth": 2,
+            "start_roll_angle": 18.3,
+            "end_roll_angle": 21.7,
+            "width": 3.1,
+            "pit_depth": 33.3,
+        }
+    ],
+    [{"kind": "chip", "tooth": 28, "roll_angle": 27.3}],
+]
 MORE = {
     "mesh.stiffness": [
         {"model": "energy", "ramp_length": 0.3},
@@ -34,6 +51,18 @@ MORE = {
         for gear in ("pinion", "gear")
     },
     "operating.brake_torque": [56.3],
+    "operating.torque_ripple": [[{"shaft": "gear", "order": 2, "amplitude": 2.1, "phase": 33.3}]],
+    "mesh.first_teeth": [[3, 5]],
+    **{f"{gear}.mounting": [{"eccentricity": 12.3, "phase": 31.7}] for gear in ("pinion", "gear")},
+    **{
+        f"{gear}.deviations": [
+            {"tolerance_class": 6, "seed": 3},
+            {"index": [0.1 * j for j in range(28)], "counted": "against", "first_order": "steps"},
+            {"index": ["1 um", *[0.3] * 27], "profile_slope": [1.1] * 28, "tip_relief": [2.3] * 28},
+        ]
+        for gear in ("pinion", "gear")
+    },
+    **{f"{gear}.faults": FAULTS for gear in ("pinion", "gear")},
     "friction": [{"law": "V", "coefficient": 0.07, "composite_roughness": 0.77, "sharpness": 33.3}],
 }  # fmt: skip
 PAIRS = [load_gear_pair(name) for name in preset_names()]

@@ -1,0 +1,1 @@
+"""Faults of single teeth: what each takes from stiffness and flank, one file each, and their registry."""
