@@ -207,8 +207,8 @@ class ResponseBranches:
         )
         found, reached = list[tuple[float, float]](), low
         for start, end in [*calm, (high, high)]:
-            if start - reached > _GAP * (high - low):
-                found.append((reached, start))
+            if min(start, high) - reached > _GAP * (high - low):
+                found.append((reached, min(start, high)))
             reached = max(reached, end)
         return tuple(found)
 
@@ -293,12 +293,14 @@ def response_branches(
 def lost_stability(branch: Branch) -> list[tuple[Bifurcation, float]]:
     """Places where a branch loses its stability, and T 0.1 % of the speed behind each."""
     found = []
+    marginal = {id(b.orbit) for b in branch.bifurcations if b.kind != "grazing"}
     for b in branch.bifurcations:
         at = branch.orbits.index(b.orbit)
-        if b.kind == "grazing" or not 0 < at < len(branch.orbits) - 1:
-            continue
-        before, after = branch.orbits[at - 1].stable, branch.orbits[at + 1].stable
-        if before == after:
+        before, after = (
+            next((o.stable for o in side if id(o) not in marginal), None)
+            for side in (branch.orbits[:at][::-1], branch.orbits[at + 1 :])
+        )
+        if b.kind == "grazing" or before is None or after is None or before == after:
             continue
         way = 1 if after else -1
         # A corner is not the extreme of the speed to the last digit.

@@ -6,9 +6,11 @@ Sources: docs/theory/orbits.md, "Bifurcations"; Kuznetsov, Elements of applied b
 
 from __future__ import annotations
 
+import contextlib
 from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -49,12 +51,24 @@ class Bifurcation:
     sharp: bool
 
 
-def with_bifurcations(path: Path, found: list[Bifurcation]) -> list[Orbit]:
-    """The orbits of a path with those of its bifurcations in their places, so that folds are among them."""
+def with_bifurcations(along: Continuation, path: Path, found: list[Bifurcation]) -> list[Orbit]:
+    """The orbits of a path with those of its bifurcations in their places, so that folds are among them.
+
+    Between two bifurcations of one step stands a motion as well: theirs, with a multiplier of modulus one but
+    for rounding, do not say whether the motions between them are stable.
+    """
     places = [
         *((float(j), orbit) for j, orbit in enumerate(path.orbits)),
         *((b.place, b.orbit) for b in found),
     ]
+    ordered = sorted(b.place for b in found)
+    for one, two in pairwise(ordered):
+        j, middle = int(one), 0.5 * (one + two)
+        if two < j + 1 and two > one:
+            chord = path.X[j + 1] - path.X[j]
+            with contextlib.suppress(NumericalError):
+                at = path.X[j] + (middle - j) * chord
+                places.append((middle, along.correct(at, chord / np.linalg.norm(chord))[1]))
     return [orbit for _, orbit in sorted(places, key=lambda item: item[0])]
 
 

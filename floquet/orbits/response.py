@@ -343,7 +343,7 @@ class _Search:
         if sum(self.known(orbit) for orbit in inner) > 1:
             return
         found = bifurcations(along, path)
-        orbits = tuple(with_bifurcations(path, found))
+        orbits = tuple(with_bifurcations(along, path, found))
         self.branches.append(Branch(self.family, along.n, orbits, tuple(found), (first_end, path.end)))
 
     def doublings(self) -> None:
